@@ -9,7 +9,7 @@ module implicit_friction_m
   use friction_state_m, only : sticks, slips
   use gap_rates_m, only : find_rates, add_turns, press_nodes, turns_alike, fill_band, along_tangent
   use kinds_m, only : wp
-  use law_friction_m, only : find_limits
+  use law_friction_m, only : coefficient_of, has_decay, find_limits
   use nodal_average_m, only : share_out
   use pressing_m, only : pressing_t, take_diagonal, set_diagonal, fill_columns
   use weighted_gaps_m, only : rows_t, node_of
@@ -40,16 +40,24 @@ contains
     end associate
   end subroutine rub_ahead
 
-  !> Largest tractions of the rows times kappa, by the speeds of the step behind.
+  !> Largest tractions of the rows times kappa, by the speeds of sliding of the step behind: what
+  !> stuck did not slide, however its spring moved.
   pure subroutine find_bounds(rule, step, memory)
     type(friction_rule_t), intent(in) :: rule
     type(pressing_t), intent(inout) :: step
     type(contact_state_t), intent(in) :: memory
+    integer :: i
 
     associate (n => step%rows%n, problem => step%problem)
-      if (rule%decay > 0.0_wp .and. step%dt_before > 0.0_wp) call find_slips(step%rows, &
-        memory%points, memory%places, memory%scratch%increment, problem%r)
-      call find_limits(rule, n, step%dt_before, problem%r, problem%x, problem%high)
+      call find_limits(rule, n, problem%x, problem%high)
+      if (has_decay(rule) .and. step%dt_before > 0.0_wp) then
+        call find_slips(step%rows, memory%points, memory%places, memory%scratch%increment, &
+          problem%r)
+        do i = 1, n
+          if (memory%scratch%former_state(step%rows%slave(i)) == sticks) cycle
+          problem%high(i) = coefficient_of(rule, abs(problem%r(i))/step%dt_before)*problem%x(i)
+        end do
+      end if
       if (rule%most > 0.0_wp) &
         problem%high(:n) = min(problem%high(:n), rule%most/step%rows%inverse(:n))
     end associate

@@ -16,7 +16,7 @@ module interface_m
   use contact_state_m, only : contact_state_t, is_free
   use contacts_m, only : contact_t, is_tied, penalty_implicit
   use crossing_m, only : crossings_t, find_crossings, catch_crossings
-  use damping_m, only : damp_points
+  use damping_m, only : damp_points, find_lag
   use energy_limit_m, only : keep_former_springs, form_springs, limit_forces, lend
   use facing_change_m, only : rest_loose_nodes
   use facing_look_m, only : has_outline, start_facing, look_at_facing, make_present
@@ -26,6 +26,7 @@ module interface_m
   use inside_answers_m, only : answers_t
   use interference_m, only : begin_growth
   use kinds_m, only : wp
+  use law_friction_m, only : has_decay
   use look_ahead_m, only : look_ahead, look_back
   use log_m, only : log_t
   use model_m, only : model_t
@@ -158,6 +159,8 @@ contains
       else
         call lend(energy_caught(contact, formulation%has_unit_area, memory), memory%limit)
       end if
+      if (has_decay(contact%friction) .and. times(2) > 0.0_wp) call find_lag(memory%points, &
+        memory%nodes, mass, contact%is_self, times(2), memory%scratch%nodal, memory%scratch%lag)
       if (allocated(memory%friction%force)) &
         call rub_places(contact, formulation%has_unit_area, times(2), memory)
       if (contact%damping > 0.0_wp) call damp_points(memory%points, contact%damping, &

@@ -18,6 +18,7 @@ module banded_lu_m
     integer, allocatable :: exchange(:) !! (n) row exchanges
     real(wp), allocatable :: band(:, :) !! (3 width + 1, n) the factors, as dgbtrf leaves them
     integer(long) :: bytes = 0          !! memory of the band
+    logical :: is_negative = .false.    !! the determinant
   end type banded_lu_t
 
   interface
@@ -76,6 +77,8 @@ contains
       if (abs(factor%band(2*w + 1, i)) < least_pivot) &
         factor%band(2*w + 1, i) = sign(least_pivot, factor%band(2*w + 1, i))
     end do
+    factor%is_negative = mod(count(factor%band(2*w + 1, :) < 0.0_wp) &
+      + count(factor%exchange /= [(i, i=1, matrix%n)]), 2) == 1
     factored = .true.
   end subroutine factor_banded
 

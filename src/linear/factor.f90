@@ -30,6 +30,7 @@ module factor_m
     integer :: method = method_banded  !! method used
     type(banded_lu_t) :: banded        !! ordered even where the method is another
     type(umfpack_t) :: sparse
+    logical :: is_negative = .false.   !! the determinant
     logical :: has_tiny_pivot = .false. !! sparse: nothing can be solved, not even a nearby system
   end type factor_t
 
@@ -50,8 +51,10 @@ contains
     select case (factor%method)
     case (method_sparse)
       call factor_sparse(matrix, factor, factored)
+      factor%is_negative = factor%sparse%is_negative
     case default
       call factor_banded(matrix, least_pivot, factor%banded, factored)
+      factor%is_negative = factor%banded%is_negative
     end select
   end subroutine factor_matrix
 

@@ -34,6 +34,7 @@ module linear_solver_m
     character(:), allocatable :: method   !! in words
     integer :: bandwidth = 0              !! on either side of the diagonal, equations reordered
     integer(long) :: bytes = 0            !! memory of the factors
+    logical :: is_negative = .false.      !! the determinant: an odd number of negative eigenvalues
     real(wp) :: residual = huge(1.0_wp)   !! max |b - A x| / max(|A||x| + |b|), A equilibrated
     integer :: n_refinement = 0           !! steps of iterative refinement
     logical :: is_singular = .false.      !! a motion meets no stiffness, or next to none, ...
@@ -123,6 +124,7 @@ contains
     type(report_t), intent(inout) :: report
 
     report%bandwidth = factor%banded%width
+    report%is_negative = factor%is_negative
     if (factor%method == method_sparse) then
       report%method = 'sparse LU (UMFPACK)'
       report%bytes = factor%sparse%bytes

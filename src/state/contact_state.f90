@@ -122,6 +122,8 @@ module contact_state_m
     real(wp), allocatable :: increment(:, :) !! (2, n_slave + n_master) displacements of the
                                             !! step, m
     real(wp) :: dt = 0.0_wp                 !! step that made them, s; only in implicit runs
+    real(wp) :: lag = 0.0_wp                !! damping of tangential springs that stick over their
+                                            !! stiffness, s; only in explicit runs
     real(wp), allocatable :: former_traction(:) !! (n_place) of the call before; this and the next
                                             !! two only where there is friction
     integer, allocatable :: former_state(:) !! (n_place) the same

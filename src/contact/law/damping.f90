@@ -5,7 +5,11 @@ module damping_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: damp_points
+  public :: damp_points, find_lag
+
+  !> Damping of stuck springs as a fraction of critical, and what it may be times omega and the step
+  !> (lagging by half a step it takes four times that off the square of what leap-frog bears).
+  real(wp), parameter :: of_stuck = 0.5_wp, of_step = 0.15_wp
 
 contains
 
@@ -21,42 +25,78 @@ contains
     real(wp), intent(in), contiguous :: mass(:)      !! (n_node) kg/m
     logical, intent(in) :: is_self !! each node is slave and master
     real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, local nodes) scratch
-    real(wp) :: rate, square, weight, damped
+    real(wp) :: rate, weight, damped
     integer :: p, k, local
 
-    call sum_springs(points, nodal)
-    if (is_self) then
-      associate (n => size(nodal, 2)/2)
-        nodal(1, :n) = nodal(1, :n) + nodal(1, n + 1:)
-        nodal(1, n + 1:) = nodal(1, :n)
-      end associate
-    end if
+    call sum_springs(points, is_self, nodal)
     points%load(:, :points%n) = 0.0_wp
     do p = 1, points%n
       if (.not. points%pressure(p)*points%area(p) > 0.0_wp) cycle
       rate = 0.0_wp
-      square = 0.0_wp
       do k = 1, n_side
         local = points%slave_nodes(k, p)
         weight = points%slave_weights(k, p)
         rate = rate + weight*dot_product(points%normal(:, p), motion(3:4, nodes(local)))
-        square = square + weight*nodal(1, local)/mass(nodes(local))
         local = points%master_nodes(k, p)
         weight = points%master_weights(k, p)
         rate = rate - weight*dot_product(points%normal(:, p), motion(3:4, nodes(local)))
-        square = square + weight*nodal(1, local)/mass(nodes(local))
       end do
       damped = max(0.0_wp, points%pressure(p) &
-        - 2.0_wp*fraction*rate*points%stiffness(p)/sqrt(square))
+        - 2.0_wp*fraction*rate*points%stiffness(p)/frequency(points, p, nodes, mass, nodal))
       points%load(3:4, p) = (damped - points%pressure(p))*points%area(p)*points%normal(:, p)
       points%pressure(p) = damped
     end do
   end subroutine damp_points
 
+  !> Damping over stiffness of tangential springs that stick, s: 2 fraction/omega with the largest
+  !> omega of the points in contact, and no more than the step bears. Undamped they ring in what
+  !> comes to stick, and it slips again before the traction that holds it has come to FS p.
+  pure subroutine find_lag(points, nodes, mass, is_self, dt, nodal, lag)
+    type(contact_points_t), intent(in) :: points
+    integer, intent(in), contiguous :: nodes(:)    !! mesh index of each local node
+    real(wp), intent(in), contiguous :: mass(:)    !! (n_node) kg/m
+    logical, intent(in) :: is_self                 !! each node is slave and master
+    real(wp), intent(in) :: dt                     !! step behind, s
+    real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, local nodes) scratch
+    real(wp), intent(out) :: lag
+    real(wp) :: omega
+    integer :: p
+
+    call sum_springs(points, is_self, nodal)
+    omega = 0.0_wp
+    do p = 1, points%n
+      if (points%pressure(p)*points%area(p) > 0.0_wp) &
+        omega = max(omega, frequency(points, p, nodes, mass, nodal))
+    end do
+    lag = 0.0_wp
+    if (omega > 0.0_wp) lag = 2.0_wp*min(of_stuck, of_step/(omega*dt))/omega
+  end subroutine find_lag
+
+  !> The frequency of a point: omega^2 = sum of w K/m, 1/s.
+  pure function frequency(points, p, nodes, mass, nodal) result(omega)
+    type(contact_points_t), intent(in) :: points
+    integer, intent(in) :: p
+    integer, intent(in), contiguous :: nodes(:)    !! mesh index of each local node
+    real(wp), intent(in), contiguous :: mass(:)    !! (n_node) kg/m
+    real(wp), intent(in), contiguous :: nodal(:, :) !! (1, :) K of the nodes, N/m
+    real(wp) :: omega
+    integer :: k
+
+    omega = 0.0_wp
+    do k = 1, n_side
+      associate (a => points%slave_nodes(k, p), b => points%master_nodes(k, p))
+        omega = omega + points%slave_weights(k, p)*nodal(1, a)/mass(nodes(a))
+        omega = omega + points%master_weights(k, p)*nodal(1, b)/mass(nodes(b))
+      end associate
+    end do
+    omega = sqrt(omega)
+  end function frequency
+
   !> Springs of all pressed points by node, N/m, into nodal(1, :): in two passes a node stands on
   !> either side.
-  pure subroutine sum_springs(points, nodal)
+  pure subroutine sum_springs(points, is_self, nodal)
     type(contact_points_t), intent(in) :: points
+    logical, intent(in) :: is_self
     real(wp), intent(inout), contiguous :: nodal(:, :)
     real(wp) :: spring
     integer :: p, k
@@ -72,6 +112,11 @@ contains
           + points%master_weights(k, p)*spring
       end do
     end do
+    if (.not. is_self) return
+    associate (n => size(nodal, 2)/2)
+      nodal(1, :n) = nodal(1, :n) + nodal(1, n + 1:)
+      nodal(1, n + 1:) = nodal(1, :n)
+    end associate
   end subroutine sum_springs
 
 end module damping_m

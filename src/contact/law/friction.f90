@@ -4,31 +4,19 @@
 module friction_m
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
   use contacts_m, only : contact_t, friction_rule_t
+  use friction_block_m, only : rubs_t, find_former, find_slid, rub_block
   use friction_sides_m, only : sides_t, find_portions, take_portions, take_feet, &
     n_block
   use friction_slips_m, only : find_slips
   use friction_state_m, only : friction_memory_t, is_open, sticks, slips
   use kinds_m, only : wp
-  use law_friction_m, only : find_limits, return_tractions
+  use law_friction_m, only : has_decay
   use lengths_m, only : competence_length
   use nodal_average_m, only : average_more, share_out
   implicit none
   private
   public :: start_trial_slip, take_trial_motion, set_tractions_aside, rub_places, place_of_point, &
     place_at, spot_at, has_slipped, let_stick
-
-  !> Places in a step. Without default values, which would be written before each use.
-  type :: rubs_t
-    integer :: place(n_block)
-    real(wp) :: slip(n_block)      !! of the step, m
-    real(wp) :: former(n_block)    !! traction before, N/m^2
-    real(wp) :: stiffness(n_block) !! tangential, N/m^3
-    real(wp) :: pressure(n_block)  !! N/m^2
-    real(wp) :: most(n_block)      !! largest traction whatever the pressure, N/m^2; only where the
-                                   !! rule has one
-    real(wp) :: traction(n_block)  !! after the step, N/m^2
-    integer :: state(n_block)      !! the same
-  end type rubs_t
 
 contains
 
@@ -132,6 +120,8 @@ contains
         call find_former(n, points%slave_nodes(1, first), points%slave_weights(1, first), &
           points%master_nodes(1, first), scratch%former_traction, scratch%former_state, &
           rubs%place, rubs%former)
+        if (has_decay(contact%friction)) call find_slid(n, points%slave_nodes(1, first), &
+          rubs%place, scratch%former_state, rubs%slid)
         rubs%pressure(:n) = points%pressure(first:last)
         rubs%stiffness(:n) = contact%friction%stiffness*points%stiffness(first:last)
         if (has_unit_area .and. contact%friction%most > 0.0_wp) then
@@ -140,44 +130,18 @@ contains
               memory%places(:, :memory%n_slave), rubs%place(k))
           end do
         end if
-        call rub_block(contact%friction, n, dt, rubs)
-        call leave_tractions(n, rubs, points%area(first), points%traction(first), scratch%nodal, &
-          memory%friction)
+        call rub_block(contact%friction, n, dt, scratch%lag, rubs)
+        call leave_tractions(n, rubs, has_decay(contact%friction), points%area(first), &
+          points%traction(first), scratch%nodal, memory%friction)
       end do
     end associate
   end subroutine rub_points
 
-  !> The places of some points and their tractions in the step before. A master node that was none
-  !> of the points then starts from what the two ends of its slave segment had: of nothing it would
-  !> lose that part of the shear.
-  pure subroutine find_former(n, slave_nodes, slave_weights, master_nodes, former_traction, &
-      former_state, place, former)
-    integer, intent(in) :: n, slave_nodes(n_side, *), master_nodes(n_side, *)
-    real(wp), intent(in) :: slave_weights(n_side, *)
-    real(wp), intent(in) :: former_traction(*)  !! of all places
-    integer, intent(in) :: former_state(*)
-    integer, intent(inout) :: place(*)          !! of the points
-    real(wp), intent(inout) :: former(*)
-    integer :: p
-
-    !GCC$ NOVECTOR
-    do p = 1, n
-      place(p) = slave_nodes(1, p)
-      former(p) = former_traction(slave_nodes(1, p))
-      if (slave_nodes(1, p) == slave_nodes(2, p)) cycle
-      place(p) = master_nodes(1, p)
-      if (former_state(master_nodes(1, p)) == is_open) then
-        former(p) = sum(slave_weights(:, p)*former_traction(slave_nodes(:, p)))
-      else
-        former(p) = former_traction(master_nodes(1, p))
-      end if
-    end do
-  end subroutine find_former
-
   !> Leave tractions to points and to their places.
-  pure subroutine leave_tractions(n, rubs, area, traction, total, friction)
+  pure subroutine leave_tractions(n, rubs, is_damped, area, traction, total, friction)
     integer, intent(in) :: n
     type(rubs_t), intent(in) :: rubs
+    logical, intent(in) :: is_damped          !! points have a drag beside
     real(wp), intent(in) :: area(n)           !! of the points, m
     real(wp), intent(inout) :: traction(n)    !! of the points, N/m^2
     real(wp), intent(inout) :: total(2, *)    !! scratch of all places: (1, :) their areas, m
@@ -188,6 +152,7 @@ contains
       traction(k) = merge(rubs%traction(k), 0.0_wp, rubs%pressure(k) > 0.0_wp)
     end do
     friction%stored = friction%stored + stored_by(n, area, traction, rubs%stiffness)
+    if (is_damped) traction = traction + rubs%drag(:n)
     do k = 1, n
       if (.not. rubs%pressure(k) > 0.0_wp) cycle
       associate (place => rubs%place(k))
@@ -293,7 +258,9 @@ contains
           rubs%former(k) = memory%scratch%former_traction(rubs%place(k))
           rubs%pressure(k) = points%pressure(portions(k))
         end do
-        call rub_block(contact%friction, n, dt, rubs)
+        if (has_decay(contact%friction)) &
+          rubs%slid(:n) = memory%scratch%former_state(rubs%place(:n)) == slips
+        call rub_block(contact%friction, n, dt, memory%scratch%lag, rubs)
         do k = 1, n
           if (rubs%pressure(k) > 0.0_wp) then
             call leave_traction(rubs, k, memory%friction)
@@ -301,17 +268,18 @@ contains
             rubs%traction(k) = 0.0_wp
           end if
         end do
-        call share_tractions(n, portions, rubs, points%area, points%traction, &
-          memory%friction%stored)
+        call share_tractions(n, portions, rubs, has_decay(contact%friction), points%area, &
+          points%traction, memory%friction%stored)
       end associate
       portions(1) = portions(n + 1)
     end do
   end subroutine rub_virtual_nodes
 
   !> Tractions of the portions of some spots, and what their springs hold.
-  pure subroutine share_tractions(n, portions, rubs, area, traction, stored)
+  pure subroutine share_tractions(n, portions, rubs, is_damped, area, traction, stored)
     integer, intent(in) :: n, portions(n + 1)
     type(rubs_t), intent(in) :: rubs
+    logical, intent(in) :: is_damped       !! points have a drag beside
     real(wp), intent(in) :: area(*)        !! of all points, m
     real(wp), intent(inout) :: traction(*) !! of all points, N/m^2
     real(wp), intent(inout) :: stored      !! J/m
@@ -323,6 +291,7 @@ contains
       do p = portions(k), portions(k + 1) - 1
         traction(p) = rubs%traction(k)
         stored = stored + area(p)*density
+        if (is_damped) traction(p) = traction(p) + rubs%drag(k)
       end do
     end do
   end subroutine share_tractions
@@ -373,8 +342,10 @@ contains
     real(wp), intent(in) :: dt
     type(contact_state_t), intent(inout) :: memory
     type(rubs_t) :: rubs
+    real(wp), allocatable :: drag(:) !! (n_slave) only where there is one
     integer :: i, n
 
+    if (has_decay(rule)) allocate (drag(memory%n_slave), source=0.0_wp)
     associate (points => memory%points, nodal => memory%scratch%nodal)
       call find_slips(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
         points%master_weights, points%normal, points%gap, memory%scratch%increment, &
@@ -392,44 +363,37 @@ contains
           rubs%pressure(n) = memory%node_pressure(i)
         end if
         if (n < n_block .and. i < memory%n_slave) cycle
-        call rub_nodes(rule, n, dt, nodal, rubs, memory%friction)
+        if (has_decay(rule)) rubs%slid(:n) = memory%scratch%former_state(rubs%place(:n)) == slips
+        call rub_nodes(rule, n, [dt, memory%scratch%lag], nodal, rubs, memory%friction)
+        if (allocated(drag)) drag(rubs%place(:n)) = rubs%drag(:n)
         n = 0
       end do
-      call share_out(points%n, points%slave_nodes, points%slave_weights, &
-        memory%friction%traction, points%traction)
+      if (allocated(drag)) then
+        call share_out(points%n, points%slave_nodes, points%slave_weights, &
+          memory%friction%traction(:memory%n_slave) + drag, points%traction)
+      else
+        call share_out(points%n, points%slave_nodes, points%slave_weights, &
+          memory%friction%traction, points%traction)
+      end if
     end associate
   end subroutine rub_slave_nodes
 
   !> Some of them, all pressed.
-  pure subroutine rub_nodes(rule, n, dt, nodal, rubs, friction)
+  pure subroutine rub_nodes(rule, n, times, nodal, rubs, friction)
     type(friction_rule_t), intent(in) :: rule
     integer, intent(in) :: n
-    real(wp), intent(in) :: dt
+    real(wp), intent(in) :: times(2)    !! the step and the lag of what is damped, s
     real(wp), intent(in) :: nodal(2, *) !! of all slave nodes: (2, :) areas, m
     type(rubs_t), intent(inout) :: rubs
     type(friction_memory_t), intent(inout) :: friction
     integer :: k
 
-    call rub_block(rule, n, dt, rubs)
+    call rub_block(rule, n, times(1), times(2), rubs)
     do k = 1, n
       call leave_traction(rubs, k, friction)
       friction%stored = friction%stored + nodal(2, rubs%place(k))*rubs%traction(k)**2 &
         /(2.0_wp*rubs%stiffness(k))
     end do
   end subroutine rub_nodes
-
-  !> Tractions and states of some places after a step.
-  pure subroutine rub_block(rule, n, dt, rubs)
-    type(friction_rule_t), intent(in) :: rule
-    integer, intent(in) :: n
-    real(wp), intent(in) :: dt
-    type(rubs_t), intent(inout) :: rubs
-    real(wp) :: limits(n_block)
-
-    call find_limits(rule, n, dt, rubs%slip, rubs%pressure, limits)
-    if (rule%most > 0.0_wp) limits(:n) = min(limits(:n), rubs%most(:n))
-    call return_tractions(n, rubs%former, rubs%stiffness, rubs%slip, limits, rubs%traction, &
-      rubs%state)
-  end subroutine rub_block
 
 end module friction_m

@@ -8,7 +8,15 @@ module law_friction_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: coefficient_of, find_limits, return_traction, return_tractions, vary_traction
+  public :: coefficient_of, has_decay, find_limits, sliding_speed, return_traction, &
+    return_tractions, vary_traction, goes_on
+
+  !> What slips on in the first tangent of a step, in which nothing has moved yet.
+  integer, parameter :: goes_on = -1
+
+  !> Passes of Newton's method for the speed of sliding. Where two roots all but meet each halves
+  !> the error.
+  integer, parameter :: most_passes = 100
 
 contains
 
@@ -24,24 +32,62 @@ contains
       + (rule%at_rest - rule%sliding)*exp(-rule%decay*speed)
   end function coefficient_of
 
-  !> Largest tractions of some places at their speeds; rules without a decay do not ask for these.
-  pure subroutine find_limits(rule, n, dt, slip, pressure, limit)
+  !> Whether the coefficient depends on the speed of sliding.
+  pure function has_decay(rule)
+    type(friction_rule_t), intent(in) :: rule
+    logical :: has_decay
+
+    has_decay = rule%decay > 0.0_wp .and. abs(rule%at_rest - rule%sliding) > 0.0_wp
+  end function has_decay
+
+  !> Largest tractions of some places that stick.
+  pure subroutine find_limits(rule, n, pressure, limit)
     type(friction_rule_t), intent(in) :: rule
     integer, intent(in) :: n
-    real(wp), intent(in) :: dt              !! step that made the slips, s
-    real(wp), intent(in) :: slip(n)         !! m
     real(wp), intent(in) :: pressure(n)     !! N/m^2
     real(wp), intent(inout) :: limit(n)     !! N/m^2
-    integer :: i
 
-    if (rule%decay > 0.0_wp .and. dt > 0.0_wp) then
-      do i = 1, n
-        limit(i) = coefficient_of(rule, abs(slip(i))/dt)*pressure(i)
-      end do
-    else
-      limit = coefficient_of(rule, 0.0_wp)*pressure
-    end if
+    limit = coefficient_of(rule, 0.0_wp)*pressure
   end subroutine find_limits
+
+  !> Speed of sliding of a place, m/s: that of the slip that does not come back, by v = (trial -
+  !> limit(v))/stiffness with limit(v) = min(mu(v) p, most); 0 where it sticks
+  !> (doc/theory/contact.md, section 6.2).
+  pure function sliding_speed(rule, trial, pressure, most, stiffness, slid) result(speed)
+    type(friction_rule_t), intent(in) :: rule
+    real(wp), intent(in) :: trial     !! size of the trial traction, N/m^2
+    real(wp), intent(in) :: pressure  !! N/m^2, > 0
+    real(wp), intent(in) :: most      !! largest traction whatever the pressure, N/m^2
+    real(wp), intent(in) :: stiffness !! tangential, times the step, N s/m^3, > 0
+    logical, intent(in) :: slid       !! the same way in the step before
+    real(wp) :: speed
+    real(wp) :: x, former, beyond, height, fall
+    integer :: pass
+
+    speed = 0.0_wp
+    ! With x = DC v: x + height exp(-x) = beyond, whose left side is least at x = log(height).
+    beyond = rule%decay*(trial - rule%sliding*pressure)/stiffness
+    height = rule%decay*(rule%at_rest - rule%sliding)*pressure/stiffness
+    if (trial <= min(coefficient_of(rule, speed)*pressure, most)) then
+      if (.not. (slid .and. height > 1.0_wp)) return
+      if (beyond < 1.0_wp + log(height)) return
+    else if (trial > most) then
+      speed = (trial - most)/stiffness
+      if (coefficient_of(rule, speed)*pressure >= most) return
+    end if
+    ! Where the coefficient falls the left side is convex, and Newton's method comes down to its
+    ! last root from the right; where it rises the left side is concave and increases, and it comes
+    ! up to its only one from the left. Neither passes the root.
+    x = merge(beyond, 0.0_wp, height > 0.0_wp)
+    do pass = 1, most_passes
+      former = x
+      fall = height*exp(-x)
+      if (fall >= 1.0_wp) exit
+      x = x - (x + fall - beyond)/(1.0_wp - fall)
+      if (abs(x - former) <= 2.0_wp*spacing(x)) exit
+    end do
+    speed = max(x, 0.0_wp)/rule%decay
+  end function sliding_speed
 
   !> Tractions of some places: springs over their slips, no more than the limits.
   pure subroutine return_tractions(n, former, stiffness, slip, limit, traction, state)
@@ -71,7 +117,7 @@ contains
 
   !> The traction of a place in contact with its derivatives. One that touches without pressure has
   !> none yet, and sticks.
-  pure function vary_traction(rule, former, slip, pressure, stiffness, most, dt, goes_on) &
+  pure function vary_traction(rule, former, slip, pressure, stiffness, most, dt, before) &
       result(traction)
     type(friction_rule_t), intent(in) :: rule
     type(dual_t), intent(in) :: former   !! traction before, N/m^2
@@ -80,9 +126,11 @@ contains
     real(wp), intent(in) :: stiffness    !! tangential, N/m^3
     type(dual_t), intent(in) :: most     !! largest traction whatever the pressure, N/m^2
     real(wp), intent(in) :: dt           !! step that made the slip, s
-    logical, intent(in) :: goes_on       !! at the limit, wherever the trial is
+    integer, intent(in) :: before        !! state before; `goes_on`: at the limit, wherever the
+                                         !! trial is
     type(dual_t) :: traction
-    type(dual_t) :: coefficient, limit
+    type(dual_t) :: trial, limit
+    real(wp) :: speed
 
     traction = stiffness*slip
     if (.not. pressure%value > 0.0_wp) then
@@ -90,16 +138,42 @@ contains
       return
     end if
     traction = former + traction
-    coefficient = constant(coefficient_of(rule, 0.0_wp))
-    if (dt > 0.0_wp) then
-      coefficient%value = coefficient_of(rule, abs(slip%value)/dt)
-      coefficient%slope = (-sign(rule%decay/dt, slip%value) &
-        *(coefficient%value - rule%sliding))*slip%slope
-    end if
-    limit = coefficient*pressure
+    trial = sign(1.0_wp, traction%value)*traction
+    limit = coefficient_of(rule, 0.0_wp)*pressure
     if (most%value < limit%value) limit = most
-    if (abs(traction%value) > limit%value .or. goes_on) &
-      traction = sign(1.0_wp, traction%value)*limit
+    speed = 0.0_wp
+    if (has_decay(rule) .and. stiffness*dt > 0.0_wp) speed = sliding_speed(rule, &
+      trial%value, pressure%value, most%value, stiffness*dt, (before == slips .or. &
+      before == goes_on) .and. traction%value*former%value > 0.0_wp)
+    if (speed > 0.0_wp) then
+      limit = vary_sliding_limit(rule, speed, trial, pressure, most, stiffness*dt)
+    else if (.not. (trial%value > limit%value .or. before == goes_on)) then
+      return
+    end if
+    traction = sign(1.0_wp, traction%value)*limit
   end function vary_traction
+
+  !> The limit at a speed of sliding with its derivatives, from those of the equation that the speed
+  !> solves.
+  pure function vary_sliding_limit(rule, speed, trial, pressure, most, stiffness) result(limit)
+    type(friction_rule_t), intent(in) :: rule
+    real(wp), intent(in) :: speed     !! m/s
+    type(dual_t), intent(in) :: trial !! size of the trial traction, N/m^2
+    type(dual_t), intent(in) :: pressure, most
+    real(wp), intent(in) :: stiffness !! tangential, times the step, N s/m^3
+    type(dual_t) :: limit
+    real(wp) :: coefficient, fall
+
+    coefficient = coefficient_of(rule, speed)
+    limit = coefficient*pressure
+    if (.not. most%value > limit%value) then
+      limit = most
+      return
+    end if
+    ! Not as steep as where two roots meet.
+    fall = rule%decay*(coefficient - rule%sliding)*pressure%value/stiffness
+    limit%slope = limit%slope - fall/max(1.0_wp - fall, sqrt(epsilon(fall))) &
+      *(trial%slope - limit%slope)
+  end function vary_sliding_limit
 
 end module law_friction_m

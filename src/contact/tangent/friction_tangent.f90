@@ -7,11 +7,11 @@ module friction_tangent_m
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/)
   use friction_state_m, only : is_open, slips
   use kinds_m, only : wp
-  use law_friction_m, only : vary_traction
+  use law_friction_m, only : vary_traction, goes_on
   use variation_m, only : varied_point_t, apart
   implicit none
   private
-  public :: vary_slip, vary_grip, largest_grip, goes_on
+  public :: vary_slip, vary_grip, largest_grip, state_before
 
 contains
 
@@ -64,29 +64,33 @@ contains
     type(dual_t), intent(in), optional :: length !! what the largest traction counts times, m
     type(dual_t) :: traction
     type(dual_t) :: former, most
+    integer :: before
 
-    associate (before => memory%scratch%former_traction)
-      former = constant(before(place))
-      if (point%nodes(4) == 0 .and. memory%scratch%former_state(place) == is_open) then
-        former = (before(point%nodes(2)) - before(point%nodes(1)))*point%slave_xi
-        former = former + before(point%nodes(1))
+    before = state_before(memory, place)
+    associate (tractions => memory%scratch%former_traction)
+      former = constant(tractions(place))
+      if (point%nodes(4) == 0 .and. before == is_open) then
+        former = (tractions(point%nodes(2)) - tractions(point%nodes(1)))*point%slave_xi
+        former = former + tractions(point%nodes(1))
+        if (any(memory%scratch%former_state(point%nodes(:2)) == slips)) before = slips
       end if
     end associate
     most = largest_grip(rule)
     if (present(length) .and. rule%most > 0.0_wp) most = rule%most*length
     traction = vary_traction(rule, former, vary_slip(memory, point, 3, point%master_xi), pressure, &
-      rule%stiffness*stiffness, most, memory%scratch%dt, goes_on(memory, place))
+      rule%stiffness*stiffness, most, memory%scratch%dt, before)
   end function vary_grip
 
-  !> Whether a place slips on in the first tangent of a step, in which nothing has moved yet, since
-  !> it slipped at the end of the step before.
-  pure function goes_on(memory, place)
+  !> The state of a place at the end of the step before; `goes_on` where it slipped, in the first
+  !> tangent of a step, in which nothing has moved yet.
+  pure function state_before(memory, place) result(before)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: place
-    logical :: goes_on
+    integer :: before
 
-    goes_on = memory%closed_gap > 0.0_wp .and. memory%scratch%former_state(place) == slips
-  end function goes_on
+    before = memory%scratch%former_state(place)
+    if (memory%closed_gap > 0.0_wp .and. before == slips) before = goes_on
+  end function state_before
 
   !> Largest traction whatever the pressure.
   pure function largest_grip(rule) result(most)

@@ -11,7 +11,7 @@ module nodal_grip_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, variable, operator(-), operator(+), operator(*)
-  use friction_tangent_m, only : vary_slip, largest_grip, goes_on
+  use friction_tangent_m, only : vary_slip, largest_grip, state_before
   use kinds_m, only : wp
   use law_friction_m, only : vary_traction
   use nodal_tangent_m, only : varied_list_t, average, nodal_share, eased_moment
@@ -91,7 +91,7 @@ contains
           vary_pressure(memory%contact_law, memory%slave_penalty, &
           variable(eased(node)/areas(node), 1)), &
           contact%friction%stiffness*memory%slave_penalty, largest_grip(contact%friction), &
-          memory%scratch%dt, goes_on(memory, node))
+          memory%scratch%dt, state_before(memory, node))
       end associate
     end do
   end subroutine grip_nodes

@@ -11,7 +11,7 @@ module tangent_vts_ppt_m
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
   use foot_m, only : mark_t, walk_to_mark
-  use friction_tangent_m, only : vary_slip, largest_grip, goes_on
+  use friction_tangent_m, only : vary_slip, largest_grip, state_before
   use kinds_m, only : wp
   use law_friction_m, only : vary_traction
   use place_vts_ppt_m, only : end_of_half
@@ -239,7 +239,7 @@ contains
     traction = vary_traction(contact%friction, &
       constant(memory%scratch%former_traction(place)), vary_slip(memory, point, 5, foot%xi), &
       pressure, contact%friction%stiffness*memory%slave_penalty, &
-      largest_grip(contact%friction), memory%scratch%dt, goes_on(memory, place))
+      largest_grip(contact%friction), memory%scratch%dt, state_before(memory, place))
   end function vary_grip
 
 end module tangent_vts_ppt_m

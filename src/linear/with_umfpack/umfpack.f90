@@ -44,6 +44,7 @@ module umfpack_m
     real(c_double), allocatable :: entry(:)        !! entries
     real(c_double) :: control(n_control) = 0.0_wp  !! settings
     real(wp) :: smallest_pivot = 0.0_wp            !! absolute value
+    logical :: is_negative = .false.               !! the determinant
     integer(long) :: bytes = 0                     !! memory of the factors, estimated beforehand
   end type umfpack_t
 
@@ -91,6 +92,16 @@ module umfpack_m
       integer(c_int) :: status
     end function umfpack_di_solve
 
+    !> The determinant, mantissa*10**exponent.
+    function umfpack_di_get_determinant(mantissa, exponent, numeric, info) result(status) &
+      bind(c, name='umfpack_di_get_determinant')
+      import :: c_double, c_int, c_ptr
+      real(c_double), intent(out) :: mantissa, exponent
+      type(c_ptr), value :: numeric
+      real(c_double), intent(out) :: info(*)
+      integer(c_int) :: status
+    end function umfpack_di_get_determinant
+
     !> Give the memory of a symbolic factorisation back.
     subroutine umfpack_di_free_symbolic(symbolic) bind(c, name='umfpack_di_free_symbolic')
       import :: c_ptr
@@ -112,7 +123,7 @@ contains
     type(sparse_t), intent(in) :: matrix
     type(umfpack_t), intent(inout) :: factor !! earlier factors in it are freed
     logical, intent(out) :: factored
-    real(c_double) :: info(n_info)
+    real(c_double) :: info(n_info), mantissa, exponent
     type(c_ptr) :: symbolic
     integer(c_int) :: status
 
@@ -135,6 +146,8 @@ contains
         factor%numeric, factor%control, info)
       factored = status == status_good .or. status == status_singular
       factor%smallest_pivot = info(info_smallest_pivot)
+      if (factored .and. umfpack_di_get_determinant(mantissa, exponent, factor%numeric, info) &
+        == status_good) factor%is_negative = mantissa < 0.0_c_double
     end if
     call umfpack_di_free_symbolic(symbolic)
   end subroutine factor_umfpack

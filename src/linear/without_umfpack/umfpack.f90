@@ -15,6 +15,7 @@ module umfpack_m
   type :: umfpack_t
     real(wp) :: smallest_pivot = 0.0_wp !! absolute value
     integer(long) :: bytes = 0          !! memory of the factors
+    logical :: is_negative = .false.    !! the determinant
   end type umfpack_t
 
 contains

@@ -17,7 +17,7 @@ module explicit_m
     press_cycle, end_cycle
   use explicit_report_m, only : report_cycle
   use failure_watch_m, only : report_failures
-  use health_m, only : check_tile, judge_energies, judge_ratio
+  use health_m, only : check_tile, judge_energies, judge_ratio, unaccounted
   use kinds_m, only : wp
   use mass_scaling_m, only : refine_limits
   use model_m, only : model_t
@@ -74,7 +74,7 @@ contains
     call report_rest(monitor%ranks, cycle%rest, monitor%log)
     if (allocated(error)) return
     call judge_energies(monitor%snapshot%energies, monitor%log)
-    call judge_ratio(monitor%snapshot%energies, monitor%log)
+    call judge_ratio(monitor%snapshot%energies, 0.0_wp, unaccounted, monitor%log)
   end subroutine advance_explicit
 
   !> The cycles, run by every thread of the team. The end of a cycle and the beginning of the next

@@ -14,7 +14,7 @@ module explicit_report_m
     table_nodfor, table_secforc
   use history_elements_m, only : fill_history_elements
   use first_change_m, only : first_change
-  use health_m, only : check_energy, check_ratio, check_radii, made_by_springs
+  use health_m, only : check_energy, check_ratio, check_radii, made_by_springs, unaccounted
   use kinds_m, only : wp
   use leapfrog_balance_m, only : complete_balance
   use model_log_m, only : log_smallest_steps, judge_damping
@@ -142,8 +142,8 @@ contains
       monitor%clock, state%cycle, state%time, state%dt, cycle%ratio, 'write vtkhdf state')
     if (.not. allocated(cycle%error) .and. cycle%due%tables(table_glstat)) then
       call check_energy(model%controls, monitor%snapshot%energies, made_by_springs, cycle%error)
-      if (.not. allocated(cycle%error)) call check_ratio(monitor%snapshot%energies, state%cycle, &
-        state%time, monitor%told_ratio, monitor%log)
+      if (.not. allocated(cycle%error)) call check_ratio(monitor%snapshot%energies, 0.0_wp, &
+        unaccounted, state%cycle, state%time, monitor%told_ratio, monitor%log)
     end if
     call check_radii(model, state, monitor%told_radii, monitor%log)
   end subroutine write_report

@@ -13,14 +13,15 @@ module implicit_m
   use equations_m, only : number_equations, find_equation
   use errors_m, only : error_t, raise, status_run
   use friction_m, only : has_slipped
+  use health_m, only : check_static_step, what_would_do
   use implicit_boundary_m, only : count_step_boundaries
   use implicit_forces_m, only : trial_t, start_trial, net_force, keep_sections
   use implicit_memory_m, only : implicit_memory_t, write_restarts
   use implicit_prescribed_m, only : prescribe_step
-  use implicit_report_m, only : reactions_work, report_step
+  use implicit_report_m, only : reactions_work, report_step, held_energy, spent_energy
   use implicit_start_m, only : begin_steps, plan_next, has_ended
   use implicit_tangent_m, only : step_t, new_acceleration, new_velocity
-  use log_m, only : log_t, write_log, to_text
+  use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, any_due
   use newton_m, only : outcome_t, find_equilibrium
@@ -146,6 +147,7 @@ contains
     type(outcome_t) :: outcome
     type(trial_t) :: attempt
     type(tie_memory_t), allocatable :: ties(:) !! as the step finds them
+    real(wp) :: held, work !! before the step, J/m
     logical :: may_retry
 
     if (any(breaks(model%contacts))) ties = state%contacts%ties
@@ -164,10 +166,38 @@ contains
       end if
       call plan_step(control, state%time)
     end do
+    held = held_energy(model, state)
+    work = work_done(state)
     call commit(model, state, step, attempt, trial)
+    if (.not. step%is_dynamic) call check_static_step([work, work_done(state)], [held, &
+      held_energy(model, state)], spent_energy(state, step), state%cycle, state%time, monitor%log)
+    call note_pivots(outcome%began_negative, state, step, monitor%log)
     call grow_step(control, step%dt, outcome%iterations)
     call lap(monitor%clock, phase_nodes)
   end subroutine take_step
+
+  !> Work of all that acts from outside, J/m.
+  pure function work_done(state) result(work)
+    type(state_t), intent(in) :: state
+    real(wp) :: work
+
+    work = state%external_work + sum(state%contacts%interference%work)
+  end function work_done
+
+  !> Tell of the first negative pivot in the stiffness of an equilibrium, that which the step set
+  !> out from.
+  subroutine note_pivots(is_negative, state, step, log)
+    logical, intent(in) :: is_negative
+    type(state_t), intent(in) :: state
+    type(step_t), intent(inout) :: step
+    type(log_t), intent(inout) :: log
+
+    if (is_negative .and. .not. (step%is_dynamic .or. step%began_negative)) call warn(log, &
+      'the stiffness at the end of step '//to_text(state%cycle - 1)//', time '//to_text(state%time &
+      - step%dt)//', has a negative pivot, and had none before: the equilibrium is not stable, ' &
+      //'the path has passed a limit point or a branch; '//what_would_do)
+    step%began_negative = is_negative
+  end subroutine note_pivots
 
   !> A step to `time`. What slipped in the step before slips on in its first iteration; if that
   !> finds no equilibrium, or leaves a body free, all sticks first: full iterations or searched

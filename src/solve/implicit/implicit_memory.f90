@@ -67,6 +67,7 @@ contains
     call keep(archive, 'target', control%target)
     call expect(archive, 'dt', control%dt > 0.0_wp, 'a step that is not positive')
     call keep(archive, 'searches', step%searches)
+    call keep(archive, 'began_negative', step%began_negative)
     call keep(archive, 'internal', trial%internal)
     call keep(archive, 'contact', trial%contact)
     call keep(archive, 'external', trial%external)

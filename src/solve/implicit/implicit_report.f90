@@ -12,12 +12,15 @@ module implicit_report_m
   use kinds_m, only : wp
   use clock_m, only : lap, phase_output
   use element_mass_m, only : mass_times, sum_part_motion
+  use element_state_m, only : add_part_energies
   use energies_m, only : energy_ratio, total_energy
   use equations_m, only : equations_t
   use errors_m, only : error_t
-  use health_m, only : check_energy, check_radii, judge_energies, judge_contact, made_by_forces
+  use health_m, only : check_energy, check_ratio, check_radii, judge_energies, judge_ratio, &
+    judge_contact, made_by_forces, unaccounted, dissipated
   use implicit_forces_m, only : trial_t, cut_sections
   use implicit_memory_m, only : implicit_memory_t
+  use implicit_tangent_m, only : step_t
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
   use output_schedule_m, only : output_reach
@@ -29,7 +32,7 @@ module implicit_report_m
   use support_forces_m, only : fill_reactions
   implicit none
   private
-  public :: report_step, reactions_work
+  public :: report_step, reactions_work, held_energy, spent_energy
 
 contains
 
@@ -90,10 +93,15 @@ contains
         energy_ratio(shot%energies), 'write vtkhdf state')
       if (.not. allocated(error)) call check_energy(model%controls, shot%energies, made_by_forces, &
         error)
+      if (.not. allocated(error)) call check_ratio(shot%energies, &
+        spent_energy(state, memory%step), cause_of(memory%step), state%cycle, state%time, &
+        monitor%told_ratio, monitor%log)
       call check_radii(model, state, monitor%told_radii, monitor%log)
       if (last .and. .not. allocated(error)) then
         call judge_contact(shot%energies, monitor%log)
         call judge_energies(shot%energies, monitor%log)
+        call judge_ratio(shot%energies, spent_energy(state, memory%step), &
+          cause_of(memory%step), monitor%log)
       end if
     end associate
     call lap(monitor%clock, phase_output)
@@ -123,6 +131,41 @@ contains
       shot%parts(i)%momentum = momentum(:, i)
     end do
   end subroutine fill_consistent_parts
+
+  !> All that a body at rest has taken of the work done on it, stored or dissipated, J/m.
+  function held_energy(model, state) result(held)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp) :: held
+    real(wp), dimension(size(model%parts)) :: internal, hourglass, viscous
+
+    internal = 0.0_wp
+    hourglass = 0.0_wp
+    viscous = 0.0_wp
+    call add_part_energies(model, state%motion, state%elements, internal, hourglass, viscous)
+    held = sum(internal + hourglass + viscous) + sum(state%contacts%energy) &
+      + sum(state%contacts%damping_work) + sum(state%contacts%friction%work)
+    if (allocated(state%elements%damping_work)) held = held + sum(state%elements%damping_work)
+  end function held_energy
+
+  !> Energy that may go without an account, J/m: in statics what springs and pre-stressed bodies
+  !> hold before the first equilibrium.
+  pure function spent_energy(state, step) result(spent)
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    real(wp) :: spent
+
+    spent = merge(0.0_wp, max(0.0_wp, state%initial_energy), step%is_dynamic)
+  end function spent_energy
+
+  !> Where missing energy has gone, in words.
+  pure function cause_of(step) result(words)
+    type(step_t), intent(in) :: step
+    character(:), allocatable :: words
+
+    words = unaccounted
+    if (step%is_dynamic .and. step%gamma > 0.5_wp*(1.0_wp + epsilon(step%gamma))) words = dissipated
+  end function cause_of
 
   !> Work of the forces that hold prescribed degrees of freedom to their curves: of inertia, change
   !> of momentum times mean velocity, which is the kinetic energy that they gain, also in a blow; of

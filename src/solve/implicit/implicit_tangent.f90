@@ -28,6 +28,8 @@ module implicit_tangent_m
     real(wp), allocatable :: old_force(:, :) !! (2, n_node) f_int - f_contact - f_ext at its start
     type(equations_t) :: equations
     logical :: searches = .false.      !! iterations that go too far are shortened
+    logical :: began_negative = .false. !! the matrix at its start had an odd number of negative
+                                       !! pivots
     logical :: slips_on = .true.       !! what slipped before does so in the first iteration
     type(prescribed_step_t) :: prescribed    !! what the curves ask for
   end type step_t

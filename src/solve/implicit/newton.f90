@@ -32,6 +32,7 @@ module newton_m
   type :: outcome_t
     logical :: converged = .false.
     integer :: iterations = 0
+    logical :: began_negative = .false.    !! an odd number of pivots of the first matrix
     integer :: singular_equation = 0       !! free motion found, 0 = none
     character(:), allocatable :: reason    !! why it did not converge
   end type outcome_t
@@ -80,6 +81,7 @@ contains
       way%moved = step%prescribed%increment
       if (iteration > 1) way%moved = 0.0_wp
       call find_way(model, state, step, clock, trial, matrix, way, report)
+      if (iteration == 1) outcome%began_negative = report%is_negative
       call judge_solution(report, outcome, solved)
       if (.not. solved) return
       now%energy = abs(dot_product(way%x, way%b))
