@@ -79,7 +79,6 @@ module deck_schema_others_m
     'CONTROL_STRUCTURED* ignored', &
     'CONTROL_DEBUG ignored', &
     'CONTROL_FORMING_* ignored', &
-    'CONTROL_UNITS ignored', &
     'CONTROL_REQUIRE_REVISION ignored', &
     'CONTROL_SPH ignored', &
     'CONTROL_ALE ignored', &

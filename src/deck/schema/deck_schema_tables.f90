@@ -53,6 +53,8 @@ module deck_schema_tables_m
     ' IGNORE:iw FRCENG:is SKIPRWG:is OUTSEG:is SPOTSTP:is SPOTDEL:is SPOTHIN:fs', &
     ' ISYM:is NSEROD:is RWGAPS:is RWGDTH:fs RWKSF:fs ICOV:is SWRADF:fs ITHOFF:is', &
     ' SHLEDG:is PSTIFF:is ITHCNT:is TDCNOF:is FTALL:is -:x SHLTRW:fs IGACTC:is', &
+    'CONTROL_UNITS', &
+    ' LENGTH:a TIME:a MASS:a TEMP:as', &
     'CONTROL_ENERGY', &
     ' HGEN:is RWEN:is SLNTEN:is RYLEN:is IRGEN:is MATEN:is DRLEN:is DISEN:is', &
     'CONTROL_OUTPUT', &
