@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> A model in a freight, for processes that share a run, component by component in their order; types
-!> without allocatable ones as they are. tests/house/test_model_freight.py notices what is missing.
+!> A model in a freight, for processes that share a run, component by component in their order, and
+!> plain types as they are. tests/house/test_model_freight.py notices what is missing.
 module model_freight_m
   use, intrinsic :: iso_c_binding, only : c_loc
   use boundary_rows_m, only : boundary_rows_t

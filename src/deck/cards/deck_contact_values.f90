@@ -91,8 +91,8 @@ contains
         call refuse(of_penalty, 'is not a penalty (more than 0)')
       if (contact%penalty_unit < penalty_per_node .or. contact%penalty_unit > penalty_implicit) &
         call refuse(of_unit, 'is not a unit of the penalty (0 force per length at each contact ' &
-        //'node, 1 stress, 2 factor on the built-in estimate, 3 share of the largest stable one, 4 factor on ' &
-        //'K L/A of implicit springs)')
+        //'node, 1 stress, 2 factor on the built-in estimate, 3 share of the largest stable ' &
+        //'one, 4 factor on K L/A of implicit springs)')
       if (contact%penalty_unit == penalty_implicit .and. any(kinds%number == contact%contact_type &
         .and. .not. kinds%has_implicit_springs)) call refuse(of_unit, &
         'asks for implicit springs'//implicit_names(kinds))
