@@ -35,7 +35,7 @@ SHORTER = {
     "tools/study.sh all": "{command} --help",
     "tools/study.sh": "{command} --list",      # tests/tools runs studies
     "tools/docs.sh": "bash -n tools/docs.sh",  # installs from the network
-    "tools/batch/run_folder.sh": "{command} endtim=0.01",
+    "tools/batch/run_folder.sh": "{command} endtim=1e-5",
     "cmake -S . -B build/mine": "grep -q SLIDELINE_TESTS CMakeLists.txt",  # compiles
     "cmake --build build/mine": "grep -q slideline CMakeLists.txt",
     "python3 -m venv build/venv": "test -x build/venv/bin/python",

@@ -86,4 +86,5 @@ def plot(results: Results | Outcome | str | os.PathLike, field: str | None = Non
                                  [history] if isinstance(history, str) else history, contact, zones)
     if output is not None:
         figure.savefig(output)
+    plots.plt.close(figure)  # a notebook shows what a cell gives; of pyplot's own figures it would show it again
     return figure
