@@ -14,6 +14,7 @@ module contact_log_m
   use surfaces_m, only : surface_t, has_closed_chain
   use tied_interface_m, only : tie_reach
   use ties_m, only : tied_nodes
+  use units_m, only : units_t, in_units, per_depth
   implicit none
   private
   public :: log_contact, penalty_text, report_initial_contact, report_released, report_tie_step, &
@@ -44,7 +45,7 @@ contains
     character(:), allocatable :: title
 
     if (contact%behind > 0) then
-      call log_behind(contact, memory, log)
+      call log_behind(contact, model%controls%units, memory, log)
       return
     end if
     title = ''
@@ -73,7 +74,7 @@ contains
     if (contact%damping > 0.0_wp) call write_log(log, '  damping: ' &
       //to_text(contact%damping)//' of critical')
     if (allocated(memory%friction%state)) call write_log(log, '  friction: ' &
-      //friction_text(contact%friction))
+      //friction_text(contact%friction, model%controls%units))
     if (memory%facing%is_used) then
       associate (present => memory%facing%present)
         title = runs_text(present%slave)
@@ -86,7 +87,7 @@ contains
       call log_ties(contact, model, memory, log)
     else
       call write_log(log, '  deepest first contact: '//to_text(minval( &
-        memory%slave_tracking%spot_depth))//' m or less')
+        memory%slave_tracking%spot_depth))//in_units(model%controls%units, 'L')//' or less')
     end if
   end subroutine log_contact
 
@@ -105,8 +106,9 @@ contains
         //'implicit springs of ' &
         //to_text(rigid_factor)//' times K L/A of the softer side are taken')
     else if (penalty > 0.0_wp) then
-      call write_log(log, '  penalty: implicit springs of '//to_text(penalty)//' N/m^2, ' &
-        //to_text(contact%penalty)//' times K L/A of the softer side')
+      call write_log(log, '  penalty: implicit springs of '//to_text(penalty) &
+        //in_units(model%controls%units, 'F/L^2')//', '//to_text(contact%penalty) &
+        //' times K L/A of the softer side')
     else
       call write_log(log, '  penalty: implicit, without compliance')
     end if
@@ -121,8 +123,9 @@ contains
   end subroutine log_implicit
 
   !> Contact of what ties have let go; the rest has been told of the tie.
-  subroutine log_behind(contact, memory, log)
+  subroutine log_behind(contact, units, memory, log)
     type(contact_t), intent(in) :: contact
+    type(units_t), intent(in) :: units
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
     character(:), allocatable :: text
@@ -132,7 +135,7 @@ contains
     if (contact%damping > 0.0_wp) text = text//', damping '//to_text(contact%damping) &
       //' of critical'
     if (allocated(memory%friction%state)) text = text//', friction ' &
-      //friction_text(contact%friction)
+      //friction_text(contact%friction, units)
     call write_log(log, text)
   end subroutine log_behind
 
@@ -143,7 +146,8 @@ contains
     character(:), allocatable :: text
 
     text = to_text(surface%n_node)//' nodes, '//to_text(surface%n_segment) &
-      //' segments of mean length '//to_text(mean_length(surface, model))//' m'
+      //' segments of mean length '//to_text(mean_length(surface, model)) &
+      //in_units(model%controls%units, 'L')
   end function surface_text
 
   !> Part of the penalty that either pass of a surface with itself has.
@@ -178,10 +182,11 @@ contains
     call write_log(log, '  tied: '//to_text(count(is_held(:memory%n_slave)))//' of ' &
       //to_text(memory%n_slave)//' slave nodes, '//to_text(n) &
       //' springs of area '//to_text(sum(memory%points%area(:memory%points%n))) &
-      //', reach '//to_text(tie_reach(contact, model))//' m')
+      //', reach '//to_text(tie_reach(contact, model)) &
+      //in_units(model%controls%units, 'L'))
     if (breaks(contact)) call write_log(log, '  breaks at a tension of ' &
       //to_text(contact%strength(1))//' or a shear of '//to_text(contact%strength(2)) &
-      //' N/m^2, together on an ellipse')
+      //in_units(model%controls%units, 'F/L^2')//', together on an ellipse')
     if (memory%points%n == 0 .or. all(is_held(:memory%n_slave))) return
     if (has_closed_chain(contact%slave)) return
     n = 0
@@ -218,14 +223,17 @@ contains
   end subroutine report_tie_step
 
   !> The rule of friction.
-  pure function friction_text(rule) result(text)
+  pure function friction_text(rule, units) result(text)
     type(friction_rule_t), intent(in) :: rule
+    type(units_t), intent(in) :: units
     character(:), allocatable :: text
 
     text = 'coefficient '//to_text(rule%at_rest)
     if (rule%decay > 0.0_wp .and. abs(rule%at_rest - rule%sliding) > 0.0_wp) text = text &
-      //' at rest, '//to_text(rule%sliding)//' in fast sliding, decay '//to_text(rule%decay)//' s/m'
-    if (rule%most > 0.0_wp) text = text//', stress at most '//to_text(rule%most)//' N/m^2'
+      //' at rest, '//to_text(rule%sliding)//' in fast sliding, decay '//to_text(rule%decay) &
+      //in_units(units, 'T/L')
+    if (rule%most > 0.0_wp) text = text//', stress at most '//to_text(rule%most) &
+      //in_units(units, 'F/L^2')
     text = text//'; tangential penalty '//to_text(rule%stiffness)//' of the normal one'
   end function friction_text
 
@@ -253,24 +261,27 @@ contains
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(in) :: memory
     character(:), allocatable :: text
-    character(:), allocatable :: factor !! PEN with PUNIT 2
+    character(:), allocatable :: factor, per_length !! PEN with PUNIT 2
     type(formulation_t) :: formulation
     real(wp) :: estimate
 
-    text = to_text(memory%node_penalty)//' N/m per slave node = '//to_text(memory%slave_penalty) &
-      //' N/m^2'
+    per_length = in_units(model%controls%units, 'F/L^2')
+    if (len(per_length) == 0) per_length = ' per unit length'
+    text = to_text(memory%node_penalty)//in_units(model%controls%units, 'F/L') &
+      //' per slave node = '//to_text(memory%slave_penalty)//per_length
     estimate = built_in_penalty(contact, model)
     factor = to_text(memory%slave_penalty/estimate)
     formulation = formulation_of(contact)
     if (formulation%has_two_passes) then
       text = text//'; master pass ' &
         //to_text(memory%master_penalty*mean_length(contact%master, model)) &
-        //' N/m per master node = '//to_text(memory%master_penalty)//' N/m^2'
+        //in_units(model%controls%units, 'F/L')//' per master node = ' &
+        //to_text(memory%master_penalty)//per_length
       factor = factor//' and '//to_text(memory%master_penalty/estimate)
     end if
     text = text//'; '//factor//' times the built-in estimate'
     if (model%is_round) text = text &
-      //' (per metre of the circumference: times the radius, per radian)'
+      //' (per unit length of the circumference: times the radius, per radian)'
   end function penalty_text
 
   !> Warn of the deepest penetration at time zero, with the node next to it and the force that it
@@ -299,22 +310,25 @@ contains
     k = maxloc(memory%points%slave_weights(:, p), 1)
     text = ' at '//to_text(count(is_pressed .and. memory%points%gap(:memory%points%n) < -depth)) &
       //' points, deepest at node '//to_text(model%mesh%node_id(memory%nodes( &
-      memory%points%slave_nodes(k, p))))//': '//to_text(-memory%points%gap(p))//' m'
+      memory%points%slave_nodes(k, p))))//': '//to_text(-memory%points%gap(p)) &
+      //in_units(model%controls%units, 'L')
     if (allocated(contact%interference)) then
       call write_log(log, 'interface '//to_text(contact%id)//': interference'//text//'; it grows ' &
         //'from 0 to that by curve '//to_text(contact%interference%id)//' until ' &
-        //to_text(contact%interference%abscissa(size(contact%interference%abscissa)))//' s')
+        //to_text(contact%interference%abscissa(size(contact%interference%abscissa))) &
+        //in_units(model%controls%units, 'T'))
       return
     end if
     call warn(log, 'interface '//to_text(contact%id)//': initial penetration'//text//', force of ' &
       //'that point '//to_text(memory%points%pressure(p)*memory%points%area(p)) &
-      //trim(merge(' N per radian', ' N/m         ', model%is_round)) &
+      //per_depth(model%controls%units, 'F', model%is_round) &
       //'; it is kept, so that the run starts with these forces')
   end subroutine report_initial_contact
 
   !> How much of a tie has broken, at the end of the run.
-  subroutine report_broken(contact, memory, log)
+  subroutine report_broken(contact, units, memory, log)
     type(contact_t), intent(in) :: contact
+    type(units_t), intent(in) :: units
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
     integer :: n
@@ -327,8 +341,8 @@ contains
       call write_log(log, 'interface '//to_text(contact%id)//': of its ties '//to_text(n)//' of ' &
         //to_text(count(memory%ties%state /= is_open))//' places have broken, from time ' &
         //to_text(memory%ties%first_break)//' to '//to_text(memory%ties%last_break) &
-        //'; what they held, '//to_text(memory%ties%spent)//trim(merge(' J per radian', &
-        ' J/m         ', contact%is_round))//', stays in the energy of contact')
+        //'; what they held, '//to_text(memory%ties%spent) &
+        //per_depth(units, 'F L', contact%is_round)//', stays in the energy of contact')
     end if
   end subroutine report_broken
 

@@ -13,6 +13,7 @@ module contact_overhang_m
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use surfaces_m, only : surface_t, meets_axis
+  use units_m, only : in_units
   implicit none
   private
   public :: overhang_t, report_overhang, find_overhang
@@ -80,10 +81,12 @@ contains
     place = merge('a point at slave node', 'slave node           ', allocated(memory%spots))
     call warn(log, 'interface '//to_text(contact%id)//': '//trim(place)//' ' &
       //to_text(model%mesh%node_id(contact%slave%nodes(spot_node(contact, memory, found%spot)))) &
-      //' stands '//to_text(found%distance)//' m beyond the end of the master at node ' &
+      //' stands '//to_text(found%distance)//in_units(model%controls%units, 'L') &
+      //' beyond the end of the master at node ' &
       //to_text(model%mesh%node_id(contact%master%nodes(found%node)))//others(found%n - 1) &
       //'; should it sink there and come in over the end, it is caught up to '//to_text(limit) &
-      //' m deep, which makes energy at any time step: SRCH '//to_text(cautious*limit) &
+      //in_units(model%controls%units, 'L')//' deep, which makes energy at any time ' &
+      //'step: SRCH '//to_text(cautious*limit) &
       //' would prevent it, '//covering_names()//' do without')
   end subroutine report_between
 

@@ -7,6 +7,7 @@ module controls_m
   use force_groups_m, only : force_group_t
   use history_tables_m, only : n_table
   use kinds_m, only : wp
+  use units_m, only : units_t
   implicit none
   private
   public :: controls_t, relaxation_t, implicit_t, output_plan_t, interval_t, is_asked, &
@@ -103,6 +104,7 @@ module controls_m
     real(wp) :: penalty_scale = 0.1_wp       !! SLSFAC
     integer :: contact_step = contact_step_warns !! ECDT, one of the `contact_step_` constants
     type(implicit_t) :: implicit
+    type(units_t) :: units                   !! *CONTROL_UNITS
     type(output_plan_t) :: output
   end type controls_t
 

@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> A model in a freight, for processes that share a run: type by type, component by component, in
-!> the order of their declarations. What is missing here is noticed by
-!> tests/house/test_model_freight.py. Types without allocatable components go as they are.
+!> A model in a freight, for processes that share a run, component by component in their order, and
+!> plain types as they are. tests/house/test_model_freight.py notices what is missing.
 module model_freight_m
   use, intrinsic :: iso_c_binding, only : c_loc
   use boundary_rows_m, only : boundary_rows_t
@@ -383,6 +382,7 @@ contains
     if (freight%unloads .and. n /= absent) allocate (controls%ends(n))
     if (n > 0) call pass_plain(freight, c_loc(controls%ends(1)), storage_size(controls%ends), n)
     call pass_plain(freight, c_loc(controls%relaxation), storage_size(controls%relaxation), 1)
+    call pass_plain(freight, c_loc(controls%units), storage_size(controls%units), 1)
     call pass_output_plan(freight, controls%output)
   end subroutine pass_controls
 

@@ -13,6 +13,7 @@ module contact_check_m
   use log_m, only : log_t, warn, write_log, to_text
   use model_m, only : model_t
   use state_m, only : state_t
+  use units_m, only : per_depth
   implicit none
   private
   public :: report_contact_start, report_contact_end
@@ -145,12 +146,12 @@ contains
     call report_estimates(model, state, log)
     do i = 1, size(model%contacts)
       call report_released(model%contacts(i), state%contacts(i), log)
-      call report_broken(model%contacts(i), state%contacts(i), log)
+      call report_broken(model%contacts(i), model%controls%units, state%contacts(i), log)
       associate (friction => state%contacts(i)%friction)
         if (abs(friction%work) > 0.0_wp) call write_log(log, 'interface ' &
           //to_text(model%contacts(i)%id)//': friction has dissipated ' &
           //to_text(friction%work - friction%stored) &
-          //trim(merge(' J per radian', ' J/m         ', model%is_round)))
+          //per_depth(model%controls%units, 'F L', model%is_round))
       end associate
     end do
   end subroutine report_contact_end

@@ -230,6 +230,17 @@ def test_what_the_house_does_without(what, pattern):
     assert not wrong
 
 
+#: A unit right behind a number (' m', ' J per radian', no text in spread letters), or a quotient ('N/m^2').
+UNIT = re.compile(r"^ (?:[kM]?N|k?J|[MG]?Pa|kg|[cm]?m|m?s)(?=[,;:)/]|$| (?!\w ))|\b(?:N|J|kg|[cm]?m|m?s)/m?[ms]\b")
+
+
+def test_messages_name_no_unit_of_their_own():
+    """The deck's units are not known; `units_m` has their names where *CONTROL_UNITS tells them."""
+    wrong = [f"{source.name}:{line}: {text}" for source in SOURCES if source.path.name != "units.f90"
+             for line, statement in source.statements for text in re.findall(r"'((?:[^']|'')*)'", statement) if UNIT.search(text)]
+    assert not wrong
+
+
 def test_only_main_stops():
     wrong = [f"{source.name}:{line}" for source in SOURCES if source.path.name != "main.f90"
              for line, statement in source.statements

@@ -24,6 +24,7 @@ TABLE = "*DEFINE_TABLE\n7,\n0.0,\n10.0,\n*DEFINE_CURVE\n8,\n0.0,2.0e4\n1.0,3.0e4
 @pytest.mark.parametrize("cards, words", [
     ("*CONTROL_HOURGLASS\n4,0.0", "means the default 0.1"),
     ("*MAT_RIGID\n5,1000.0,1.0e6,0.3\n0.0,7,7", "CON1 and CON2 have no effect while CMO is 0"),
+    ("*CONTROL_UNITS\nmm,ms,stone", '(MASS): "stone" is no unit that messages know (kg, g, mg'),
     (PIECEWISE + "0.0,0.0,5\n0.0,0.1\n2.0e4,3.0e4\n" + CURVE, "EPS and ES have no effect where LCSS"),
     (PIECEWISE + "40.0,5.0,7\n" + TABLE, "a table (LCSS) gives the rate effect: LCSR, C and P have none"),
     (PIECEWISE + "40.0,5.0,5,6\n" + CURVE + "\n" + FACTOR, "LCSR gives the rate effect: C and P have none"),

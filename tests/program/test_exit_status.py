@@ -175,7 +175,7 @@ def test_initial_penetration_is_one_warning(slideline, depth):
     done = slideline("d=i", deck=pushed_in(depth))
     assert done.returncode == 0, done.stderr
     found = re.findall(r"warning: interface 1: initial penetration at (\d+) points, deepest at "
-                       r"node \d+: (\S+) m", done.stderr)
+                       r"node \d+: (\S+), force of", done.stderr)
     assert [(int(n), float(d)) for n, d in found] == ([(4, depth)] if depth > 1.0e-3 else [])
     assert f"Warnings            = {len(found)}" in done.stdout
 

@@ -118,7 +118,7 @@ def test_blank_or_bad_field_that_the_command_line_gives(slideline, said, tmp_pat
     ("2,,-1.0,", None, "pen=-1.0", '"{0}-1.0" {1}is not a penalty (more than 0)'),
     ("9,,2.0e5,", None, "ctype=9", '"{0}9" {1}is not a contact type (1 classical NTS, 2 NTS-AR'),
     ("2,11,2.0e5,", None, "ngauss=11", '"{0}11" {1}is not a number of Gauss points from 1 to 10'),
-    ("2,,2.0e5,", ",,5", "punit=5", '"{0}5" {1}is not a unit of the penalty (0 N/m per contact node, 1 N/m^2'),
+    ("2,,2.0e5,", ",,5", "punit=5", '"{0}5" {1}is not a unit of the penalty (0 force per length at each contact node, 1 stress'),
 ])
 def test_one_rule_for_card_and_command_line(said, card_1, card_2, word, message):
     status, text = said(slide(card_1, card_2))

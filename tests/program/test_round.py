@@ -155,13 +155,19 @@ def test_units_of_contact_are_per_radian(exe, tmp_path):
         deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, 5, 2, 1.0, 0.3), (0.0, 1.0e20, 2))
         return deck.add("*INITIAL_VELOCITY", (3,), (1.0, 0.0)).output(glstat=1.0e-3).text()
 
-    for form, right, wrong in ((15, ("J per radian", "N per radian; it is kept", "times the radius, per radian"), ("J/m", "N/m;")),
-                               (13, ("J/m", "N/m; it is kept"), ("radian",))):
-        (tmp_path / "job.k").write_text(rubbing(form))
+    told = "*CONTROL_UNITS\n        mm       sec  mtrc_ton\n"
+    named = re.compile(r"\d (?:k?[NJ]|m?m|m?s)(?:[/ ]|$)", re.M)
+    for form, units, right in (
+            (15, "", (r"dissipated \S+ per radian\n", r"force of that point \S+ per radian; it is kept", "times the radius, per radian")),
+            (15, told, (r"dissipated \S+ N mm per radian\n", r"node \d+: \S+ mm, force of that point \S+ N per radian; it is kept")),
+            (13, "", (r"dissipated \S+\n", r"node \d+: \S+, force of that point \S+; it is kept")),
+            (13, told, (r"dissipated \S+ N mm/mm\n", r"force of that point \S+ N/mm; it is kept", r"mean length \S+ mm\n",
+                        r" N/mm per slave node = \S+ N/mm\^2; "))):
+        (tmp_path / "job.k").write_text(rubbing(form).replace("*END", units + "*END"))
         run(exe, tmp_path, "i=job.k", "d=out")
         log = (tmp_path / "out/job.log").read_text()
-        assert all(text in log for text in right), log
-        assert not any(text in log for text in wrong), log
+        assert all(re.search(text, log) for text in right), log
+        assert ("radian" in log) == (form == 15) and bool(named.search(log.split("first time step")[0])) == bool(units), log
 
 
 def struck(scale):

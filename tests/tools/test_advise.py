@@ -29,9 +29,9 @@ end: time 1.000000E-03, step scale 9.000000E-01
 part 1: one-point quads, viscous hourglass control 1.0E-01, bulk viscosity Q1 1.5E+00 Q2 6.0E-02
 part 7: fully integrated quads (2x2 points), mean dilatation, bulk viscosity Q1 0.0E+00 Q2 0.0E+00
 interface 4 "a title": two-pass NTS-AR (type 3)
-  slave: 49 nodes, 48 segments of mean length 4.2E-04 m
-  master: 41 nodes, 40 segments of mean length 6.2E-04 m
-  penalty: 5.0E+08 N/m per slave node = 1.2E+12 N/m^2; master pass 5.0E+08 N/m per master node = 8.0E+11 N/m^2
+  slave: 49 nodes, 48 segments of mean length 4.2E-04
+  master: 41 nodes, 40 segments of mean length 6.2E-04
+  penalty: 5.0E+08 per slave node = 1.2E+12 per unit length; master pass 5.0E+08 per master node = 8.0E+11 per unit length
 first time step 5.000000E-08, smallest L/c of the elements 6.943311E-08
 """
 
@@ -219,6 +219,16 @@ def test_log():
     assert (interface.slave_penalty, interface.master_penalty) == (1.2e12, 8.0e11)
     assert not log.driven and not log.normal and log.element_limit == 6.943311e-08
     assert read_log(LOG.format(body=2)).driven
+
+
+@pytest.mark.parametrize("force, length", [("N", "m"), ("(g cm/us^2)", "cm")])
+def test_log_of_a_deck_that_tells_its_units(force, length):
+    text = LOG.format(body=0).replace(" per unit length", f" {force}/{length}^2")
+    for side in ("slave", "master"):
+        text = text.replace(f"5.0E+08 per {side}", f"5.0E+08 {force}/{length} per {side}")
+    text = text.replace("E-04\n", f"E-04 {length}\n")
+    assert text.count(f"{force}/{length}") == 4 and text.count(f"E-04 {length}\n") == 2
+    assert read_log(text) == read_log(LOG.format(body=0))
 
 
 def test_log_of_a_material_with_points_of_hardening():

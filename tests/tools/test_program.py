@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Running the program from Python: run, sweep, plot; names that do not exist; types and completion."""
+import json
 import os
 import re
 import subprocess
@@ -69,13 +70,39 @@ def test_run_refuses_an_array(tmp_path):
 def test_run_that_fails(slideline, tmp_path):
     with pytest.raises(program.RunError, match="no such file"):
         slideline_tools.run(tmp_path / "none.k")
-    with pytest.raises(program.RunError, match="cannot run the program /nowhere"):
+    with pytest.raises(program.RunError, match="cannot run the program /nowhere: .*name it by --program or program=, or .* as SLIDELINE"):
         slideline_tools.run(DECK, tmp_path, program="/nowhere")
     with pytest.raises(program.RunError, match="error termination") as caught:
         slideline_tools.run(DECK, tmp_path, program=slideline, v0=-4000.0, pen=1e15, endtim=3e-5)
     assert caught.value.outcome.status == 2 and caught.value.outcome.history("glstat")
     outcome = slideline_tools.run(DECK, tmp_path, program=slideline, check=False, ctype=99)
     assert outcome.status == 1 and "refused" in repr(outcome)
+
+
+def test_program_of_tools_that_pip_has_copied(tmp_path, monkeypatch):
+    """Not beside the tools: that of the tree which pip installed from, of the present folder or above it, or by its name."""
+    def tree(name):
+        built = tmp_path / name / "build/release/slideline"
+        built.parent.mkdir(parents=True)
+        built.touch()
+        return built
+
+    class Installed:
+        def read_text(self, name):
+            return json.dumps({"url": (tmp_path / "the tree/tools").as_uri(), "dir_info": {}}) if name == "direct_url.json" else None
+
+    (tmp_path / "away").mkdir()
+    monkeypatch.delenv("SLIDELINE", raising=False)
+    monkeypatch.setattr(program, "__file__", str(tmp_path / "venv/lib/slideline_tools/program.py"))
+    monkeypatch.setattr(program.importlib.metadata, "distribution", lambda name: Installed())
+    monkeypatch.chdir(tmp_path / "away")
+    assert program.find_program() == "slideline"
+    above = tree(".")
+    assert program.find_program() == str(above)
+    its_tree = tree("the tree")
+    assert program.find_program() == str(its_tree)
+    monkeypatch.setenv("SLIDELINE", "/named")
+    assert program.find_program() == "/named" and program.find_program("/first") == "/first"
 
 
 def test_sweep(slideline, tmp_path):

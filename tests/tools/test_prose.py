@@ -40,3 +40,12 @@ def test_tables_titles_and_code_are_left_alone():
     assert wrapped(page) == page
     assert too_wide(page) == [f"line 5: a cell of {len(LONG.strip())} characters"]
     assert len(LONG.strip()) > max(CELL, LONGEST)
+
+
+def test_blocks_of_code_stay_as_they_are():
+    """Indented after an empty line: also where a line is too long, and beside prose that is filled anew."""
+    code = f"    import slideline_tools\n    results = 1  # {'w ' * LONGEST}\n\n    more = 2\n"
+    page = f"# Title\n\n{LONG}\n\n{code}\nprose\n    that goes on\n"
+    assert code in wrapped(page) and wrapped(code) == code
+    assert [line.split(":")[0] for line in too_wide(page)] == ["line 3"]
+    assert too_wide(f"prose\n    {'w ' * LONGEST}")

@@ -105,7 +105,7 @@ def test_frames_without_pandas(results_file, monkeypatch):
         return real(name, *arguments, **named)
 
     monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(HistoryError, match="build/venv/bin/pip install './tools\\[frames\\]'"):
+    with pytest.raises(HistoryError, match="build/venv/bin/pip install pandas"):
         slideline_tools.read(results_file).frame("glstat")
 
 

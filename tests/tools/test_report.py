@@ -202,6 +202,11 @@ def test_gathering_is_not_reading(collision):
     assert path.stat().st_atime == 1.0e9
 
 
+def test_a_program_that_is_not_there_is_told_with_how_to_name_one(collision, tmp_path):
+    page = write_report(collision, tmp_path / "page.html", program="/nowhere/slideline").read_text(encoding="utf-8")
+    assert "cannot run the program /nowhere/slideline" in page and "name it by --program" in page
+
+
 # ---- runs that lack something -------------------------------------------------------------------
 
 def test_killed_run(collision, tmp_path):

@@ -20,9 +20,9 @@ EXAMPLE = ROOT / "doc/examples/contact_2d_slideline_friction.k"
 LOG = """interface 1: NTS-mAR (type 5)
   friction: coefficient 3.000000E-01; tangential penalty 1.000000E+00 of the normal one
 interface 2: NTS-AR (type 2)
-  friction: coefficient 5.000000E-01 at rest, 2.000000E-01 in fast sliding, decay 2.000000E+00 s/m, stress at most 4.000000E+06 N/m^2; tangential penalty 1.000000E-01 of the normal one
+  friction: coefficient 5.000000E-01 at rest, 2.000000E-01 in fast sliding, decay 2.000000E+00{slowness}, stress at most 4.000000E+06{stress}; tangential penalty 1.000000E-01 of the normal one
 interface 3: mortar (type 6)
-interface 1: friction has dissipated 4.25E+01 J/m
+interface 1: friction has dissipated 4.25E+01{energy}
 """
 
 
@@ -63,8 +63,9 @@ def test_the_picture_has_the_states_as_shades():
     assert charts.zones(table(broken)).legends[0].get_texts()[-1].get_text() == "broken"
 
 
-def test_friction_of_the_log():
-    log = read_log(LOG)
+@pytest.mark.parametrize("units", [("", "", ""), (" s/m", " N/m^2", " N m/m"), (" ms/mm", " kN/mm^2", " kN mm per radian")])
+def test_friction_of_the_log(units):
+    log = read_log(LOG.format(**dict(zip(("slowness", "stress", "energy"), units))))
     assert [one.friction for one in log.interfaces.values()] == [0.3, 0.5, 0.0]
     assert log.interfaces[1].sliding_friction == 0.3 and log.interfaces[1].dissipated == 42.5
     two = log.interfaces[2]

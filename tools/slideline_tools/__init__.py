@@ -56,7 +56,7 @@ def read(path: str | os.PathLike) -> Results:
     `results.point_field(name)`  (n_state, n_node[, 3]) see Results.point_field
     `results.cell_field(name)`   (n_state, n_cell[, 6]) see Results.cell_field
     `results.history(name)`      columns by name; of a killed run from its CSV files
-    `results.frame(name)`        the same as a pandas DataFrame (build/venv/bin/pip install './tools[frames]')
+    `results.frame(name)`        the same as a pandas DataFrame
 
     Nothing is read before it is asked for. Raises UserError where there are no results.
     """
@@ -86,4 +86,5 @@ def plot(results: Results | Outcome | str | os.PathLike, field: str | None = Non
                                  [history] if isinstance(history, str) else history, contact, zones)
     if output is not None:
         figure.savefig(output)
+    plots.plt.close(figure)  # a notebook shows what a cell gives; of pyplot's own figures it would show it again
     return figure

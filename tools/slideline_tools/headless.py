@@ -7,6 +7,10 @@ import os
 import sys
 
 import matplotlib
+import matplotlib.pyplot
 
 if "IPython" not in sys.modules and not os.environ.get("MPLBACKEND"):
     matplotlib.use("Agg")
+elif "IPython" in sys.modules:
+    # A notebook sets up its backend with the first figure: within the style of ours what that sets would be lost.
+    matplotlib.pyplot.close(matplotlib.pyplot.figure())

@@ -73,7 +73,7 @@ class History:
     def frame(self) -> pandas.DataFrame:
         """The table as a pandas DataFrame; `attrs["table"]` is its name.
 
-        pandas is an extra: build/venv/bin/pip install './tools[frames]'. HistoryError without it.
+        HistoryError without pandas.
         """
         frame = require_pandas().DataFrame(self.columns)
         frame.attrs["table"] = self.name
@@ -113,7 +113,7 @@ def require_pandas() -> types.ModuleType:
     try:
         import pandas
     except ImportError:
-        raise HistoryError("frames need pandas: build/venv/bin/pip install './tools[frames]'") from None
+        raise HistoryError("frames need pandas: build/venv/bin/pip install pandas") from None
     return pandas
 
 

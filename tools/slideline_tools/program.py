@@ -8,12 +8,16 @@ from __future__ import annotations
 
 import concurrent.futures
 import dataclasses
+import importlib.metadata
 import itertools
+import json
 import os
 import pathlib
 import re
 import subprocess
 import typing
+import urllib.parse
+import urllib.request
 
 from slideline_tools import UserError
 from slideline_tools.histories import History, read_csv, require_pandas
@@ -91,10 +95,31 @@ class Outcome:
 
 
 def find_program(program: str | os.PathLike | None = None) -> str:
-    """The program: as named, $SLIDELINE, that of the repository that holds these tools, that of the path."""
-    named = program or os.environ.get("SLIDELINE")
-    built = pathlib.Path(__file__).resolve().parents[2] / "build" / "release" / "slideline"
-    return os.fspath(named) if named else str(built) if built.exists() else "slideline"
+    """The program: as named, $SLIDELINE, build/release/slideline of the tree of these tools (which pip remembers) or of the
+    present folder and those above it, that of the path."""
+    if named := program or os.environ.get("SLIDELINE"):
+        return os.fspath(named)
+    here = pathlib.Path.cwd()
+    for tree in (pathlib.Path(__file__).resolve().parents[2], *installed_from(), here, *here.parents):
+        if (built := tree / "build" / "release" / "slideline").exists():
+            return str(built)
+    return "slideline"
+
+
+def installed_from() -> list[pathlib.Path]:
+    """The tree whose folder `tools` pip has installed; empty where these tools come from elsewhere."""
+    try:
+        told = importlib.metadata.distribution("slideline-tools").read_text("direct_url.json")
+        url = urllib.parse.urlsplit(json.loads(told or "{}").get("url", ""))
+    except (importlib.metadata.PackageNotFoundError, ValueError):
+        return []
+    return [pathlib.Path(urllib.request.url2pathname(url.path)).parent] if url.scheme == "file" else []
+
+
+def not_run(program: str | os.PathLike, problem: OSError) -> str:
+    """That a program can not be run, and how to name another."""
+    return (f"cannot run the program {os.fspath(program)}: {problem.strerror or problem} (name it by --program or program=, or in "
+            "the environment as SLIDELINE; tools/build.sh builds it)")
 
 
 def words_of(parameters: typing.Mapping[str, typing.Any]) -> list[str]:
@@ -133,8 +158,7 @@ def run(deck: str | os.PathLike, folder: str | os.PathLike | None = None, *,
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
     except OSError as problem:
-        raise RunError(f"cannot run the program {command[0]}: {problem} (program= names another, "
-                       "tools/build.sh builds it)") from problem
+        raise RunError(not_run(command[0], problem)) from problem
     told = re.search(r"^case \d+ \((.+)\)$", done.stdout, re.M) if "case" in parameters else None
     outcome = Outcome(folder, told[1] if told else deck.stem, dict(parameters), done.returncode, done.stderr.strip())
     if check and not outcome.ended_well:

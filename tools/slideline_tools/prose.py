@@ -13,6 +13,7 @@ LONGEST = 160  # columns of a line of prose; longer ones are broken
 WIDTH = 120  # where they are broken
 CELL = 119  # characters of a cell of a table
 
+CODE = "    "
 FENCE = re.compile(r"\s*(```|~~~|\$\$)")
 ITEM = re.compile(r"(\s*)([-*+]|\d+[.)])\s+")
 NO_PROSE = re.compile(r"\s*(\||#|<|!\[|\[[^\]]+\]:\s)|(---|===)")
@@ -53,15 +54,18 @@ def filled(paragraph: list[str]) -> list[str]:
 
 def prose(text: str):
     """(number, line, whether it is prose) of each line of a page."""
-    fence = ""
+    fence, is_code, before = "", False, ""
     for number, line in enumerate(text.split("\n"), 1):
         mark = FENCE.match(line)
+        # A block that stands four columns in is code, whose lines stay as they are.
+        is_code = line.startswith(CODE) and (is_code or not before.strip()) or is_code and not line.strip()
+        before = line
         if fence:
             fence = "" if mark and mark[1] == fence else fence
         elif mark and not (mark[1] == "$$" and line.count("$$") > 1):
             fence = mark[1]
         else:
-            yield number, line, not NO_PROSE.match(line) and not mark
+            yield number, line, not (is_code or NO_PROSE.match(line) or mark)
             continue
         yield number, line, False
 

@@ -245,8 +245,7 @@ class Results:
         """A history table as a pandas DataFrame: columns and rows of the CSV file, time and
         entities (interface, side, wall, node, part) first.
 
-        `attrs` has the table (`table`) and the title of the run (`title`). pandas is an extra:
-        build/venv/bin/pip install './tools[frames]'.
+        `attrs` has the table (`table`) and the title of the run (`title`).
         """
         frame = self.history(name).frame()
         frame.attrs["title"] = self.run.get("title", "")

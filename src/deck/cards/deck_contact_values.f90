@@ -90,9 +90,9 @@ contains
         .and. .not. leaves_penalty(contact)) &
         call refuse(of_penalty, 'is not a penalty (more than 0)')
       if (contact%penalty_unit < penalty_per_node .or. contact%penalty_unit > penalty_implicit) &
-        call refuse(of_unit, 'is not a unit of the penalty (0 N/m per contact node, 1 N/m^2, ' &
-        //'2 factor on the built-in estimate, 3 share of the largest stable one, 4 factor on ' &
-        //'K L/A of implicit springs)')
+        call refuse(of_unit, 'is not a unit of the penalty (0 force per length at each contact ' &
+        //'node, 1 stress, 2 factor on the built-in estimate, 3 share of the largest stable ' &
+        //'one, 4 factor on K L/A of implicit springs)')
       if (contact%penalty_unit == penalty_implicit .and. any(kinds%number == contact%contact_type &
         .and. .not. kinds%has_implicit_springs)) call refuse(of_unit, &
         'asks for implicit springs'//implicit_names(kinds))

@@ -3,11 +3,15 @@
 module deck_control_m
   use kinds_m, only : wp
   use log_m, only : to_text
+  use text_m, only : upper_case
+  use units_m, only : units_t, find_unit, set_force
   use controls_m, only : length_by_side, length_by_diagonal, contact_step_warns, contact_step_rules
   use deck_lines_m, only : deck_t, line_warning
-  use deck_fields_m, only : card_t
+  use deck_fields_m, only : card_t, field_text
   use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field, reject_field
+  use deck_card_specs_m, only : field_number
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field, &
+    reject_field, warn_of_field
   use deck_checks_m, only : refuse_negative, refuse_outside
   use deck_values_m, only : integer_of, real_of, place_of
   use deck_implicit_m, only : take_implicit, take_dynamics, take_spectral_radius, take_solution, &
@@ -66,6 +70,8 @@ contains
       call take_solution(deck, cursor, cards(1), raw)
     case ('CONTROL_IMPLICIT_AUTO')
       call take_automatic(deck, cursor, cards(1), raw)
+    case ('CONTROL_UNITS')
+      call take_units(deck, cards(1), raw)
     case ('CONTROL_OUTPUT')
       call refuse_negative(deck, cursor, cards(1), 'IKEDIT')
       raw%controls%output%status_interval = integer_of(cards(1), 'IKEDIT')
@@ -237,5 +243,31 @@ contains
     call note_explicit(raw, cards(2), 'ECDT', raw%controls%contact_step /= 0)
     call take_default_friction(deck, cursor, cards(3), raw)
   end subroutine take_contact
+
+  !> *CONTROL_UNITS: names for messages alone. A word that is not known leaves them without.
+  subroutine take_units(deck, card, raw)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(in) :: card
+    type(raw_t), intent(inout) :: raw
+    character(*), parameter :: fields(3) = ['LENGTH', 'TIME  ', 'MASS  '], &
+      defaults(3) = ['M  ', 'SEC', 'KG ']
+    character(*), parameter :: known(3) = [character(40) :: 'm, cm, mm, in, ft', &
+      'sec, ms, micro_s', 'kg, g, mg, mtrc_ton, lb, slug, slinch']
+    character(:), allocatable :: word
+    real(wp) :: values(3)
+    integer :: k
+
+    raw%controls%units = units_t()
+    do k = 1, 3
+      word = upper_case(field_text(deck, card, field_number(card%names, fields(k))))
+      if (len(word) == 0) word = trim(defaults(k))
+      call find_unit(k, word, raw%controls%units%names(k), values(k))
+      if (len_trim(raw%controls%units%names(k)) > 0) cycle
+      call warn_of_field(deck, place_of(card, fields(k)), 'is no unit that messages know (' &
+        //trim(known(k))//'), so that they name none')
+      values(k) = 0.0_wp
+    end do
+    if (all(values > 0.0_wp)) call set_force(values, raw%controls%units)
+  end subroutine take_units
 
 end module deck_control_m

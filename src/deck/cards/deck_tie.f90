@@ -37,8 +37,9 @@ contains
       contact%search_depth = 0.0_wp
       if (.not. (abs(contact%penalty) > 0.0_wp .or. any(commanded([of_penalty, of_unit]))) .and. &
         abs(contact%master_penalty) > 0.0_wp .and. contact%penalty_unit == penalty_per_node) &
-        call report_field(deck, cursor, cards(2), 'PENT', 'is in N/m (PUNIT 0) beside a blank ' &
-        //'PEN, which ties take as a factor on the built-in estimate; give PEN too, or PUNIT 2')
+        call report_field(deck, cursor, cards(2), 'PENT', 'is a force per length (PUNIT 0) ' &
+        //'beside a blank PEN, which ties take as a factor on the built-in estimate; give PEN ' &
+        //'too, or PUNIT 2')
     end associate
   end subroutine take_tie
 

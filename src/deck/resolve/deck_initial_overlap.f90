@@ -6,6 +6,7 @@ module deck_initial_overlap_m
   use log_m, only : to_text
   use surfaces_m, only : surface_t, has_closed_chain
   use model_m, only : model_t
+  use units_m, only : in_units
   use body_view_m, only : body_view_t, view_body
   use initial_overlap_m, only : overlap_t, find_crossing, find_overlap
   use deck_lines_m, only : deck_t
@@ -83,9 +84,11 @@ contains
     if (found%nodes(1) /= found%nodes(2)) text = 'a place between nodes ' &
       //to_text(model%mesh%node_id(found%nodes(1)))//' and ' &
       //to_text(model%mesh%node_id(found%nodes(2)))
-    text = text//' lies '//to_text(found%depth)//' m deep behind the segment between ' &
+    text = text//' lies '//to_text(found%depth)//in_units(model%controls%units, 'L') &
+      //' deep behind the segment between ' &
       //ends_text(model, other, found%segment)//'; contact takes up less than ' &
-      //to_text(found%allowed)//' m there, half of the element behind it'
+      //to_text(found%allowed)//in_units(model%controls%units, 'L') &
+      //' there, half of the element behind it'
   end function depth_text
 
   !> `nodes a and b`, the ends of a segment.

@@ -6,6 +6,7 @@ module deck_interference_m
   use contacts_m, only : contact_t
   use curves_m, only : curve_t
   use model_m, only : model_t
+  use units_m, only : in_units
   use deck_lines_m, only : deck_t, line_warning
   use deck_cards_m, only : reject_field
   use deck_maps_m, only : maps_t, resolve_id
@@ -46,7 +47,8 @@ contains
       if (curve%abscissa(n) > model%controls%end_time) call line_warning(deck, &
         entry%interference_place%line, 'interference'//to_text(contact%id), 'interface ' &
         //to_text(contact%id)//': the curve of its interference ends at '//to_text( &
-        curve%abscissa(n))//' s, after the run; the overlap does not act in full')
+        curve%abscissa(n))//in_units(model%controls%units, 'T') &
+        //', after the run; the overlap does not act in full')
       contact%interference = curve
     end associate
 

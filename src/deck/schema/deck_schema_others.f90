@@ -104,7 +104,6 @@ module deck_schema_others_m
     'CONTROL_IMPLICIT_SOLVER* ignored', &
     'CONTROL_STRUCTURED* ignored', &
     'CONTROL_DEBUG ignored', &
-    'CONTROL_UNITS ignored', &
     'CONTROL_REQUIRE_REVISION ignored', &
     'CONTROL_SPH* ignored', &
     'CONTROL_ALE ignored', &

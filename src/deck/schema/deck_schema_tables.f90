@@ -55,6 +55,8 @@ module deck_schema_tables_m
     ' SHLEDG:is PSTIFF:is ITHCNT:is TDCNOF:is FTALL:is -:x SHLTRW:fs IGACTC:is', &
     'CONTROL_SOLUTION', &
     ' SOLN:ir NLQ:is ISNAN:is LCINT:is LCACC:is NCDCF:is NOCOP:is', &
+    'CONTROL_UNITS', &
+    ' LENGTH:a TIME:a MASS:a TEMP:as', &
     'CONTROL_ENERGY', &
     ' HGEN:is RWEN:is SLNTEN:is RYLEN:is IRGEN:is MATEN:is DRLEN:is DISEN:is', &
     'CONTROL_OUTPUT', &

@@ -11,6 +11,7 @@ module contact_account_m
   use model_m, only : model_t
   use share_text_m, only : percent
   use state_m, only : state_t
+  use units_m, only : per_depth
   implicit none
   private
   public :: plan_looks, follow_contact, report_contact_energies
@@ -153,8 +154,8 @@ contains
 
     if (state%contacts(i)%watch%balance > 0.0_wp) call write_log(log, 'interface ' &
       //to_text(model%contacts(i)%id)//': impacts have taken ' &
-      //to_text(state%contacts(i)%watch%balance)//trim(merge(' J per radian', ' J/m         ', &
-      model%is_round))//', '//percent(state%contacts(i)%watch%balance, state%largest_energy) &
+      //to_text(state%contacts(i)%watch%balance)//per_depth(model%controls%units, 'F L', &
+      model%is_round)//', '//percent(state%contacts(i)%watch%balance, state%largest_energy) &
       //' of the largest energy so far; finer meshes lose less')
     if (state%contacts(i)%n_swept > 0) call write_log(log, 'interface ' &
       //to_text(model%contacts(i)%id)//': in '//to_text(state%contacts(i)%n_swept) &

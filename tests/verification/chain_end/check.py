@@ -267,7 +267,7 @@ def check_short_master(run, kind):
 
 # Overhang in slave elements: a node, virtual node or Gauss point stands up to a tenth beyond the end.
 OVERHANG = {1: 0.1, 2: 1.1, 3: 1.02, 4: 0.3, 5: 0.1, 6: 0.38, 7: 0.1}
-WHOLE_NODE, BESIDE = (1, 2, 3, 4, 6), re.compile(r"node (\d+) stands (\S+) m beyond the end of the master")
+WHOLE_NODE, BESIDE = (1, 2, 3, 4, 6), re.compile(r"node (\d+) stands (\S+) beyond the end of the master")
 CATCH = 0.1  # of the default limit
 
 

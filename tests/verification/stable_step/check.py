@@ -97,7 +97,7 @@ class Said:
 
 def said(result):
     text = (result.folder / f"{result.job}.log").read_text()
-    penalty = re.findall(r"per slave node = (\S+) N/m\^2", text)[-1]
+    penalty = re.findall(r"per slave node = (\S+) per unit length", text)[-1]
     return Said(float(penalty), float(re.search(r"first time step ([^,]+),", text).group(1)))
 
 

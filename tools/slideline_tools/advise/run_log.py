@@ -6,8 +6,9 @@ import dataclasses
 import re
 
 NUMBER = r"([-+0-9.E]+)"
-PENALTIES = (rf"{NUMBER} N/m per slave node = {NUMBER} N/m\^2(?:; master pass {NUMBER} N/m per master "
-             rf"node = {NUMBER} N/m\^2)?")
+UNIT = r"(?: \S+(?: \S+)??)??"  # its name, where the deck tells its units (*CONTROL_UNITS)
+PENALTIES = (rf"{NUMBER}{UNIT} per slave node = {NUMBER}[^;,]*(?:; master pass {NUMBER}{UNIT} per master "
+             rf"node = {NUMBER})?")
 
 
 @dataclasses.dataclass
@@ -24,7 +25,7 @@ class Part:
 
 @dataclasses.dataclass
 class Interface:
-    """An interface; lengths in m, penalties in N/m^2 (`node_penalty` in N/m), of one pass no `master_penalty`."""
+    """An interface; in the units of the deck; penalties per unit length (`node_penalty` per node), of one pass no `master_penalty`."""
 
     id: int
     name: str
@@ -40,9 +41,9 @@ class Interface:
     is_automatic: bool = False   # penalty by the program from the step (PUNIT 3)
     friction: float = 0.0        # coefficient at rest
     sliding_friction: float = 0.0  # in fast sliding
-    decay: float = 0.0           # DC, s/m
-    most_friction: float = 0.0   # VC, N/m^2, 0 = no cap
-    dissipated: float | None = None  # by friction, at the end, J/m
+    decay: float = 0.0           # DC
+    most_friction: float = 0.0   # VC, 0 = no cap
+    dissipated: float | None = None  # by friction, at the end
     estimate: str = ""           # of the error, at the end, in words
     missed: tuple[str, str] | None = None  # a target that was not kept, and what would keep it
 
@@ -148,7 +149,7 @@ def read_interface(log: RunLog, line: str) -> None:
     if found := re.match(rf"interface (\d+): penalty {PENALTIES}", line):
         if interface := log.interfaces.get(int(found[1])):
             set_penalties(interface, found.groups()[1:])
-    if found := re.match(rf"interface (\d+): friction has dissipated {NUMBER} J/m", line):
+    if found := re.match(rf"interface (\d+): friction has dissipated {NUMBER}", line):
         if interface := log.interfaces.get(int(found[1])):
             interface.dissipated = float(found[2])
     if found := re.match(r"interface (\d+): contact pressure and the stress behind it differ by (.*?)[,;] (?:by|springs)", line):
@@ -166,8 +167,8 @@ def read_interface(log: RunLog, line: str) -> None:
         last.n_master, last.master_length = int(found[1]), float(found[2])
     elif found := re.match(rf"  penalty: {PENALTIES}", line):
         set_penalties(last, found.groups())
-    elif found := re.match(rf"  friction: coefficient {NUMBER}(?: at rest, {NUMBER} in fast sliding, decay {NUMBER} s/m)?"
-                           rf"(?:, stress at most {NUMBER} N/m\^2)?;", line):
+    elif found := re.match(rf"  friction: coefficient {NUMBER}(?: at rest, {NUMBER} in fast sliding, decay {NUMBER}{UNIT})?"
+                           rf"(?:, stress at most {NUMBER}[^;]*)?;", line):
         last.friction, fast, last.decay, last.most_friction = (float(number or 0.0) for number in found.groups())
         last.sliding_friction = fast if found[2] else last.friction
     elif re.match(rf"  penalty: {NUMBER} of the largest stable one", line):

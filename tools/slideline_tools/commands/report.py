@@ -22,6 +22,8 @@ def add(commands) -> None:
                              "(default: at the largest contact force, and the last)")
     parser.add_argument("--scale", type=float, default=1.0,
                         help="factor on the displacements in the pictures (1)")
+    parser.add_argument("--program", help="program that reads the deck as run (default: $SLIDELINE or "
+                                          "build/release/slideline)")
     parser.set_defaults(run=run)
 
 
@@ -29,6 +31,6 @@ def run(options) -> int:
     """Write the report."""
     from slideline_tools.report import write_report
     path = write_report(options.run_path, options.output, options.field, options.state,
-                        options.scale)
+                        options.scale, options.program)
     print(f"wrote {path} ({path.stat().st_size / 1e6:.1f} MB)")
     return 0

@@ -19,6 +19,7 @@ import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.draw.surface import Surface
+from slideline_tools.program import not_run
 
 DIRECTIONS = {1: "x", 2: "y", 3: "turn about z"}
 QUANTITIES = {0: "velocity", 1: "acceleration", 2: "displacement"}
@@ -272,7 +273,7 @@ def check_deck(deck: str | os.PathLike, program: str | os.PathLike, overrides: t
     except subprocess.TimeoutExpired:
         raise ModelError(f"{deck}: the program took more than {LONGEST:.0f} s") from None
     except OSError as problem:
-        raise ModelError(f"cannot run the program {program}: {problem} (--program names another)") from problem
+        raise ModelError(not_run(program, problem)) from problem
     except ValueError:
         raise ModelError(f"{program} tells no model of {deck}: {done.stderr.strip() or 'is it an older one?'}") from None
     if "cases" in answer:

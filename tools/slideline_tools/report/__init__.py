@@ -49,12 +49,13 @@ def attempt(anchor: str, title: str, make, *arguments) -> Section | None:
                                                 "note"))
 
 
-def write_report(path, output=None, fields=(), states=(), scale: float = 1.0) -> pathlib.Path:
+def write_report(path, output=None, fields=(), states=(), scale: float = 1.0, program=None) -> pathlib.Path:
     """Write the report of the run at `path` (its folder or a file of it); gives its path.
 
-    Without `output` it goes beside the results as `<job>.report.html`.
+    Without `output` it goes beside the results as `<job>.report.html`. `program` reads the deck as run; the page notes where
+    it can not.
     """
-    run = gather(path)
+    run = gather(path, program)
     output = pathlib.Path(output) if output else run.folder / f"{run.job}.report.html"
     words = report_html(run, fields, states, scale)
     output.parent.mkdir(parents=True, exist_ok=True)

@@ -91,7 +91,7 @@ class Gathered:
         return sorted(numbers)
 
 
-def gather(path) -> Gathered:
+def gather(path, program=None) -> Gathered:
     """The run whose folder, or any file, is `path`; the access times of its files stay."""
     folder, job = find_run(pathlib.Path(path))
     prefix = folder / job
@@ -100,7 +100,7 @@ def gather(path) -> Gathered:
     if not stamps:
         raise UserError(f"{prefix}: no file of a run")
     try:
-        return read_all(folder, job, stamps)
+        return read_all(folder, job, stamps, program)
     finally:
         put_back(prefix, stamps)
 
@@ -116,7 +116,7 @@ def find_run(path: pathlib.Path) -> tuple[pathlib.Path, str]:
     return find_job(path)
 
 
-def read_all(folder: pathlib.Path, job: str, stamps: dict) -> Gathered:
+def read_all(folder: pathlib.Path, job: str, stamps: dict, program) -> Gathered:
     """Read what there is, and note what there is not."""
     prefix, notes = folder / job, []
     log_text = read_text(f"{prefix}.log")
@@ -131,7 +131,7 @@ def read_all(folder: pathlib.Path, job: str, stamps: dict) -> Gathered:
         notes.append("The log is empty or missing: parts, interfaces and warnings are known as far "
                      "as the deck and the tables tell.")
     return Gathered(folder, job, log_text, log, read_ending(log_text, tables, results, timing),
-                    tables, results, timing, read_deck(prefix, results, notes),
+                    tables, results, timing, read_deck(prefix, results, program, notes),
                     [(f"{job}{ending}", stamp.st_size) for ending, stamp in stamps.items()], notes)
 
 
@@ -164,7 +164,7 @@ def read_table(prefix, name: str, results: Results | None, notes: list[str]) -> 
     return None
 
 
-def read_deck(prefix, results: Results | None, notes: list[str]) -> Model | None:
+def read_deck(prefix, results: Results | None, program, notes: list[str]) -> Model | None:
     """The model of the effective deck, of its file or of the text in the results file, as the program understands it."""
     text = read_text(f"{prefix}.effective.k") or (results.run.get("effective_deck", "")
                                                    if results else "")
@@ -174,7 +174,7 @@ def read_deck(prefix, results: Results | None, notes: list[str]) -> Model | None
         deck = pathlib.Path(folder) / "model.k"
         deck.write_text(text, encoding="utf-8")
         try:
-            return check_deck(deck, find_program())
+            return check_deck(deck, find_program(program))
         except UserError as problem:
             words = str(problem).replace(str(deck), f"{prefix}.effective.k")
             notes.append(f"The deck as run could not be read: {words}.")

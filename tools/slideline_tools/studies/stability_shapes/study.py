@@ -197,8 +197,8 @@ def rebound(block, glstat):
 
 
 def stiffness_of(log):
-    """Penalty of the slave pass, N/m^2, as the log tells it."""
-    found = re.search(r"penalty:? \S+ N/m per slave node = (\S+) N/m\^2", log.read_text(encoding="utf-8"))
+    """Penalty of the slave pass per unit length, as the log tells it."""
+    found = re.search(r"penalty:? \S+ per slave node = (\S+) per unit length", log.read_text(encoding="utf-8"))
     if not found:
         raise UserError(f"{log}: no penalty")
     return float(found[1])
