@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Segments that stand for arcs: how far these stand off them beside the penetration. Where that is
-!> much, facets make the pressure (doc/theory/contact.md, section 8.3).
+!> Segments that stand for arcs: by how much these facets put gaps off beside the penetration. Where
+!> that is much, they make the pressure (doc/theory/contact.md, section 8.3).
 module contact_facets_m
   use arcs_m, only : find_curvatures, arc_height
   use contact_estimate_m, only : contact_estimate_t
@@ -13,8 +13,9 @@ module contact_facets_m
   private
   public :: follow_arcs, report_facets
 
-  !> Part of the largest penetration from which on the height of arcs over their segments is told.
-  real(wp), parameter :: noticed_part = 0.1_wp
+  !> Part of the largest penetration from which on the height of arcs over their segments is told,
+  !> and part of that height by which gaps are off where facets do not match.
+  real(wp), parameter :: noticed_part = 0.1_wp, noticed_error = 0.01_wp
   !> Weight of the other node up to which a point is at a node.
   real(wp), parameter :: at_node = 1.0e-6_wp
 
@@ -32,7 +33,7 @@ contains
 
   !> Follow an interface: the deepest penetration so far of places on curved segments, that of time
   !> zero included, which is the interference, and the way by which bodies of unlike curvature are
-  !> flattened there; and the highest arc.
+  !> flattened there; and what facets put gaps off by.
   pure subroutine follow_arcs(contact, memory, estimate)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -84,7 +85,8 @@ contains
     real(wp), intent(inout) :: deepest !! penetration of arcs, m
     type(contact_estimate_t), intent(inout) :: estimate
     integer :: k, side(2), segment(2), nodes(n_side, 2)
-    real(wp) :: weights(n_side, 2), curvature(2), height, depth
+    real(wp) :: weights(n_side, 2), curvature(2), off
+    logical :: meets_corner(2)
 
     nodes = reshape([points%slave_nodes(:, p), points%master_nodes(:, p)], [n_side, 2])
     weights = reshape([points%slave_weights(:, p), points%master_weights(:, p)], [n_side, 2])
@@ -100,22 +102,28 @@ contains
     end associate
     if (any(segment == 0)) return
     curvature = [(arcs(side(k))%curvature(segment(k)), k=1, 2)]
+    meets_corner = [(arcs(side(k))%meets_corner(segment(k)), k=1, 2)]
     if (.not. any(abs(curvature) > 0.0_wp)) return
-    depth = -points%gap(p)
+    off = 0.0_wp
     do k = 1, 2
-      arcs(side(k))%is_pressed(segment(k)) = .true.
-      if (.not. (arcs(side(1))%meets_corner(segment(1)) .or. arcs(side(2))%meets_corner( &
-        segment(2)))) arcs(side(k))%unlike(segment(k)) = abs(sum(curvature))
-      ! Of the arcs, in place of their facets, whose own penetration is no measure.
-      depth = depth + 0.5_wp*curvature(k)*arcs(side(k))%chord(segment(k))**2 &
-        *max(product(weights(:, k)), 0.0_wp)
-      height = height_of(arcs(side(k)), segment(k))
-      if (.not. height > estimate%arc_height) cycle
-      estimate%arc_height = height
+      associate (arc => arcs(side(k)), i => segment(k))
+        off = off + 0.5_wp*curvature(k)*arc%chord(i)**2*max(product(weights(:, k)), 0.0_wp)
+        arc%is_pressed(i) = .true.
+        if (.not. any(meets_corner)) arc%unlike(i) = abs(sum(curvature))
+      end associate
+    end do
+    ! That of the arcs: what facets add is no measure of itself.
+    deepest = max(deepest, off - points%gap(p))
+    ! Of a facet that turns by more, nobody knows by how much it is off.
+    if (any(meets_corner .and. product(weights, 1) > at_node)) &
+      off = maxval([(height_of(arcs(side(k)), segment(k)), k=1, 2)])
+    estimate%facet_error = max(estimate%facet_error, abs(off))
+    do k = 1, 2
+      if (.not. height_of(arcs(side(k)), segment(k)) > estimate%arc_height) cycle
+      estimate%arc_height = height_of(arcs(side(k)), segment(k))
       estimate%arc_curvature = abs(curvature(k))
       estimate%arc_side = side(k)
     end do
-    deepest = max(deepest, depth)
   end subroutine look_at_point
 
   !> The segment that a place is on; of those beside the node that it is at, the one with the higher
@@ -182,7 +190,7 @@ contains
   end function flattening
 
   !> At the end: a warning where arcs stand off their segments by much of the penetration, with the
-  !> number of segments that would do.
+  !> number of segments that would do. Facets of two meshes that match lie in each other.
   subroutine report_facets(contact, estimate, log)
     type(contact_t), intent(in) :: contact
     type(contact_estimate_t), intent(in) :: estimate
@@ -191,7 +199,8 @@ contains
 
     associate (height => estimate%arc_height, curvature => estimate%arc_curvature, &
       depth => estimate%penetration)
-      if (.not. height > noticed_part*depth) return
+      if (.not. (height > noticed_part*depth &
+        .and. estimate%facet_error > noticed_error*height)) return
       text = trim(merge('slave ', 'master', estimate%arc_side == 1))
       if (contact%is_self) text = 'surface'
       text = 'interface '//to_text(contact%id)//': pressure is made by facets: arcs of its '//text &

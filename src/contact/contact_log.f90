@@ -217,8 +217,8 @@ contains
     end if
   end subroutine report_tie_step
 
-  !> How far the springs are pressed in beside the elements behind both surfaces, by the bulk modulus
-  !> of these; rigid ones are not pressed in.
+  !> How far the springs are pressed in beside the elements behind both surfaces, by the bulk
+  !> modulus of these; rigid ones are not pressed in.
   subroutine log_softness(contact, model, memory, log)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model

@@ -256,6 +256,7 @@ contains
     call keep(archive, 'stored', estimate%stored)
     call keep(archive, 'bodies', estimate%bodies)
     call keep(archive, 'penetration', estimate%penetration)
+    call keep(archive, 'facet_error', estimate%facet_error)
     call keep(archive, 'arc_height', estimate%arc_height)
     call keep(archive, 'arc_curvature', estimate%arc_curvature)
     call keep(archive, 'arc_side', estimate%arc_side)

@@ -93,7 +93,8 @@ contains
     call write_log(log, 'interface '//to_text(id)//': the step obeys its springs, since the deck ' &
       //'leaves penalty and step to the program: stable step ' &
       //to_text(stable_step(element_limit, bound))//', of the elements alone ' &
-      //to_text(element_limit)//'; a penalty of '//to_text(fitting_scale(dt, element_limit, bound)) &
+      //to_text(element_limit)//'; a penalty of ' &
+      //to_text(fitting_scale(dt, element_limit, bound)) &
       //' times this one would fit the step of the elements')
   end subroutine tell_obeyed_step
 

@@ -36,6 +36,7 @@ module contact_estimate_m
     real(wp) :: bodies = 0.0_wp        !! largest internal energy of the bodies on both sides, J/m
     real(wp) :: penetration = 0.0_wp   !! deepest one of curved places, their flattening
                                        !! included, m
+    real(wp) :: facet_error = 0.0_wp   !! by which facets put gaps off there, m
     real(wp) :: arc_height = 0.0_wp    !! of the highest arc over its segment there, m
     real(wp) :: arc_curvature = 0.0_wp !! of that arc, 1/m
     integer :: arc_side = 0            !! it is on: 1 slave, 2 master

@@ -16,8 +16,8 @@ module arcs_m
 contains
 
   !> Curvature of the arc that each segment of a surface stands for: the mean of those at its ends,
-  !> of circles through three nodes each; 0 where one end is a corner, flat, or bent the other way; at
-  !> an end of an open surface that of the other end.
+  !> of circles through three nodes each; 0 where one end is a corner, flat, or bent the other way;
+  !> at an end of an open surface that of the other end.
   pure subroutine find_curvatures(surface, places, curvature, meets_corner)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: places(:, :)      !! (at least 2, n_node) X, Y at time zero, m
