@@ -219,11 +219,12 @@ contains
 
   !> How far the springs are pressed in beside the elements behind both surfaces, by the bulk
   !> modulus of these; rigid ones are not pressed in.
-  subroutine log_softness(contact, model, memory, log)
+  subroutine log_softness(contact, model, memory, log, softness)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
+    real(wp), intent(inout) :: softness !! that ratio; left alone between rigid bodies, and of ties
     type(formulation_t) :: formulation
     real(wp) :: stiffness !! of the springs of both passes, N/m^2
     real(wp) :: rows      !! compliance of the elements, m^2/N
@@ -234,9 +235,10 @@ contains
     if (formulation%has_two_passes) stiffness = stiffness + memory%master_penalty
     if (contact%is_self) stiffness = 2.0_wp*stiffness
     rows = row_compliance(contact%slave, model) + row_compliance(contact%master, model)
-    if (stiffness > 0.0_wp .and. rows > 0.0_wp) call write_log(log, 'interface ' &
-      //to_text(contact%id)//': under a pressure its springs are pressed in ' &
-      //to_text(1.0_wp/(stiffness*rows))//' times as far as the elements behind them, one row on ' &
+    if (.not. (stiffness > 0.0_wp .and. rows > 0.0_wp)) return
+    softness = 1.0_wp/(stiffness*rows)
+    call write_log(log, 'interface '//to_text(contact%id)//': under a pressure its springs are ' &
+      //'pressed in '//to_text(softness)//' times as far as the elements behind them, one row on ' &
       //'either side')
   end subroutine log_softness
 

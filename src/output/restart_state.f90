@@ -253,6 +253,7 @@ contains
     call keep(archive, 'n_open', estimate%n_open)
     call keep(archive, 'n_stayed', estimate%n_stayed)
     call keep(archive, 'contact_type', estimate%contact_type)
+    call keep(archive, 'softness', estimate%softness)
     call keep(archive, 'stored', estimate%stored)
     call keep(archive, 'bodies', estimate%bodies)
     call keep(archive, 'penetration', estimate%penetration)

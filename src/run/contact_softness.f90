@@ -18,6 +18,9 @@ module contact_softness_m
 
   !> Part of the internal energy of the bodies from which on what springs stored is told.
   real(wp), parameter :: noticed_part = 0.1_wp
+  !> Compliance of springs, over that of a row of elements on either side, below which stiffer ones
+  !> take little away; a penalty that is named goes to half of it at most.
+  real(wp), parameter :: stiff = 0.5_wp
   !> Ratio of bulk moduli from which on one body is hard beside the other.
   real(wp), parameter :: much_harder = 10.0_wp
 
@@ -122,9 +125,9 @@ contains
     end do
   end subroutine report_softness
 
-  !> One interface whose springs stored much. Like bodies part as if they were stiffer or softer
-  !> both; of a hard one on a soft one the springs give back what the soft one would have kept, and
-  !> the rebound is wrong: a warning.
+  !> One interface whose springs stored much. Like bodies part as if both were softer; of a hard one
+  !> on a soft one the springs give back what the soft one would have kept, and the rebound is wrong:
+  !> a warning, unless the springs are stiff beside the elements, which then are too coarse.
   subroutine tell_softness(model, contact, estimate, log)
     type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact
@@ -135,13 +138,12 @@ contains
     text = 'interface '//to_text(contact%id)//': its springs have stored up to ' &
       //to_text(estimate%stored)//', '//percent(estimate%stored, estimate%bodies) &
       //' of the largest internal energy of the bodies on both sides, ' &
-      //to_text(estimate%bodies)//', so that '
-    if (has_unlike_bodies(model, contact)) then
-      call warn(log, text//'a hard body rebounds from them more than from the soft one; ' &
-        //remedy(contact, estimate))
+      //to_text(estimate%bodies)
+    if (estimate%softness > stiff .and. has_unlike_bodies(model, contact)) then
+      call warn(log, text//', so that the hard body rebounds from them more than from the soft ' &
+        //'one; '//remedy(contact, estimate))
     else
-      call write_log(log, text//'contact is as soft as more of both bodies; ' &
-        //remedy(contact, estimate))
+      call write_log(log, text//'; '//remedy(contact, estimate))
     end if
   end subroutine tell_softness
 
@@ -159,22 +161,25 @@ contains
   end function has_unlike_bodies
 
   !> The penalty whose springs would store no more than that part. Under a given force they store by
-  !> the inverse of their stiffness, in impacts by less than that: its power -0.64 for a hard block
-  !> on a soft one. Where the first row of nodes takes much of a blow, finer elements alone do.
+  !> the inverse of their stiffness, in impacts by less than that: by its power -0.64 where a hard
+  !> block hits a soft one. What the first row of nodes takes of a blow no penalty makes less.
   pure function remedy(contact, estimate) result(text)
     type(contact_t), intent(in) :: contact
     type(contact_estimate_t), intent(in) :: estimate
     character(:), allocatable :: text
     real(wp), parameter :: power = 1.5_wp
-    real(wp) :: wanted
+    real(wp) :: factor
 
-    wanted = contact%penalty*(estimate%stored/(noticed_part*estimate%bodies))**power
-    text = 'PEN '//to_text(wanted)
-    if (contact%penalty_unit == penalty_factor) text = 'SFACT '//to_text(wanted) &
-      //', or PEN with PUNIT 2,'
-    if (contact%penalty_unit == penalty_share .and. wanted > 1.0_wp) text = &
-      'a penalty '//to_text(wanted/contact%penalty)//' times as large, with a step that bears it,'
-    text = text//' would do, or finer elements'
+    text = 'finer elements would take more of it'
+    if (.not. estimate%softness > stiff) return
+    factor = min((estimate%stored/(noticed_part*estimate%bodies))**power, 2.0_wp*estimate%softness/stiff)
+    associate (wanted => factor*contact%penalty)
+      text = 'PEN '//to_text(wanted)//' would do'
+      if (contact%penalty_unit == penalty_factor) text = 'SFACT '//to_text(wanted) &
+        //', or PEN with PUNIT 2, would do'
+      if (contact%penalty_unit == penalty_share .and. wanted > 1.0_wp) text = &
+        'a penalty '//to_text(factor)//' times as large would do, and a step that bears it'
+    end associate
   end function remedy
 
 end module contact_softness_m

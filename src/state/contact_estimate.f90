@@ -32,6 +32,7 @@ module contact_estimate_m
     integer :: n_open = 0              !! looks in a row that found it open, a better type wanted
     integer :: n_stayed = 0            !! times that the step did not bear a better type
     integer :: contact_type = 0        !! the present one
+    real(wp) :: softness = 0.0_wp      !! of springs, over that of a row of elements on either side
     real(wp) :: stored = 0.0_wp        !! largest energy of the springs, J/m
     real(wp) :: bodies = 0.0_wp        !! largest internal energy of the bodies on both sides, J/m
     real(wp) :: penetration = 0.0_wp   !! deepest one of curved places, their flattening

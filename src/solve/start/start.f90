@@ -107,8 +107,9 @@ contains
     else
       call set_automatic_penalties(model, state, log, error)
       if (allocated(error)) return
-      do i = 1, size(model%contacts)
-        call log_softness(model%contacts(i), model, state%contacts(i), log)
+      do i = 1, size(state%estimates)
+        call log_softness(model%contacts(i), model, state%contacts(i), log, &
+          state%estimates(i)%softness)
       end do
     end if
   end subroutine start_state
