@@ -126,8 +126,8 @@ contains
   end subroutine report_softness
 
   !> One interface whose springs stored much. Like bodies part as if both were softer; of a hard one
-  !> on a soft one the springs give back what the soft one would have kept, and the rebound is wrong:
-  !> a warning, unless the springs are stiff beside the elements, which then are too coarse.
+  !> on a soft one the springs give back what the soft one would have kept, and the rebound is
+  !> wrong: a warning, unless the springs are stiff beside the elements, which then are too coarse.
   subroutine tell_softness(model, contact, estimate, log)
     type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact
@@ -172,7 +172,8 @@ contains
 
     text = 'finer elements would take more of it'
     if (.not. estimate%softness > stiff) return
-    factor = min((estimate%stored/(noticed_part*estimate%bodies))**power, 2.0_wp*estimate%softness/stiff)
+    factor = min((estimate%stored/(noticed_part*estimate%bodies))**power, &
+      2.0_wp*estimate%softness/stiff)
     associate (wanted => factor*contact%penalty)
       text = 'PEN '//to_text(wanted)//' would do'
       if (contact%penalty_unit == penalty_factor) text = 'SFACT '//to_text(wanted) &
