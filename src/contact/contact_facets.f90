@@ -44,9 +44,10 @@ contains
 
     associate (points => memory%points, n => memory%n_slave)
       if (.not. any(points%gap(:points%n) < 0.0_wp)) return
-      arcs = [arcs_of(contact%slave, memory%places(:, :n)), &
-        arcs_of(contact%master, memory%places(:, n + 1:))]
-      if (.not. any(abs([arcs(1)%curvature, arcs(2)%curvature]) > 0.0_wp)) return
+      call find_arcs(contact%slave, memory%places(:, :n), arcs(1))
+      call find_arcs(contact%master, memory%places(:, n + 1:), arcs(2))
+      if (.not. (any(abs(arcs(1)%curvature) > 0.0_wp) &
+        .or. any(abs(arcs(2)%curvature) > 0.0_wp))) return
       deepest = 0.0_wp
       do p = 1, points%n
         if (.not. points%gap(p) < 0.0_wp) cycle
@@ -61,19 +62,22 @@ contains
   end subroutine follow_arcs
 
   !> The arcs of one surface.
-  pure function arcs_of(surface, places) result(arcs)
+  pure subroutine find_arcs(surface, places, arcs)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: places(:, :) !! (4, n_node) X, Y, u_x, u_y
-    type(arcs_t) :: arcs
-    integer :: s
+    type(arcs_t), intent(out) :: arcs
+    integer :: s, n
 
-    allocate (arcs%curvature(surface%n_segment), arcs%meets_corner(surface%n_segment))
+    n = surface%n_segment
+    allocate (arcs%curvature(n), arcs%chord(n), arcs%unlike(n), source=0.0_wp)
+    allocate (arcs%meets_corner(n), arcs%is_pressed(n), source=.false.)
     call find_curvatures(surface, places, arcs%curvature, arcs%meets_corner)
-    arcs%chord = [(norm2(places(1:2, surface%segments(2, s)) - places(1:2, &
-      surface%segments(1, s))), s=1, surface%n_segment)]
-    allocate (arcs%unlike(surface%n_segment), source=0.0_wp)
-    allocate (arcs%is_pressed(surface%n_segment), source=.false.)
-  end function arcs_of
+    do s = 1, n
+      associate (ends => surface%segments(:, s))
+        arcs%chord(s) = norm2(places(1:2, ends(2)) - places(1:2, ends(1)))
+      end associate
+    end do
+  end subroutine find_arcs
 
   !> One point that is pressed: the segments that it is on, either of which may be of either surface
   !> where there are two passes.

@@ -11,6 +11,7 @@ module contact_softness_m
   use log_m, only : log_t, warn, write_log, to_text
   use model_m, only : model_t
   use share_text_m, only : percent
+  use snapshot_m, only : part_result_t
   use state_m, only : state_t
   implicit none
   private
@@ -28,9 +29,9 @@ contains
 
   !> Follow all interfaces: the largest energies of their springs and of the bodies on both sides,
   !> which have none yet at time zero, and the facets of curved surfaces.
-  subroutine follow_softness(model, internal, bodies, state)
+  subroutine follow_softness(model, parts, bodies, state)
     type(model_t), intent(in) :: model
-    real(wp), intent(in) :: internal(:)              !! (n_part) internal energies, J/m
+    type(part_result_t), intent(in) :: parts(:)      !! their internal energies are known
     integer, allocatable, intent(inout) :: bodies(:) !! (n_part) found in the first call
     type(state_t), intent(inout) :: state
     integer :: i
@@ -46,12 +47,24 @@ contains
           call follow_arcs(contact, memory, estimate)
         end if
         if (state%cycle == 0) cycle
-        estimate%bodies = max(estimate%bodies, sum(internal, mask=of_bodies(bodies, &
-          parts_behind(model, contact))))
+        estimate%bodies = max(estimate%bodies, internal_energy(parts, &
+          of_bodies(bodies, parts_behind(model, contact))))
         estimate%stored = max(estimate%stored, memory%watch%stored)
       end associate
     end do
   end subroutine follow_softness
+
+  !> Internal energy of some parts, J/m.
+  pure real(wp) function internal_energy(parts, is_some)
+    type(part_result_t), intent(in) :: parts(:)
+    logical, intent(in) :: is_some(:) !! (n_part)
+    integer :: i
+
+    internal_energy = 0.0_wp
+    do i = 1, size(parts)
+      if (is_some(i)) internal_energy = internal_energy + parts(i)%internal
+    end do
+  end function internal_energy
 
   !> Bodies: parts that share nodes, or are tied to each other, have one number.
   pure subroutine find_bodies(model, bodies)
@@ -89,11 +102,14 @@ contains
     integer :: s
 
     is_behind = .false.
-    associate (elements => [contact%slave%segment_element, contact%master%segment_element])
-      do s = 1, size(elements)
-        is_behind(slot_part(model%layout, model%layout%element_slot(elements(s)))) = .true.
-      end do
-    end associate
+    do s = 1, contact%slave%n_segment
+      is_behind(slot_part(model%layout, model%layout%element_slot( &
+        contact%slave%segment_element(s)))) = .true.
+    end do
+    do s = 1, contact%master%n_segment
+      is_behind(slot_part(model%layout, model%layout%element_slot( &
+        contact%master%segment_element(s)))) = .true.
+    end do
   end function parts_behind
 
   !> Which parts are of the bodies that some of them belong to.
@@ -153,11 +169,23 @@ contains
     type(contact_t), intent(in) :: contact
     logical :: has
 
-    associate (materials => model%materials(pack(model%parts%material, &
-      parts_behind(model, contact))))
-      has = any(materials%is_rigid) &
-        .or. maxval(materials%bulk) > much_harder*minval(materials%bulk)
-    end associate
+    logical :: is_behind(size(model%parts))
+    real(wp) :: softest, hardest
+    integer :: i
+
+    is_behind = parts_behind(model, contact)
+    has = .false.
+    softest = huge(1.0_wp)
+    hardest = 0.0_wp
+    do i = 1, size(model%parts)
+      if (.not. is_behind(i)) cycle
+      associate (material => model%materials(model%parts(i)%material))
+        has = has .or. material%is_rigid
+        softest = min(softest, material%bulk)
+        hardest = max(hardest, material%bulk)
+      end associate
+    end do
+    has = has .or. hardest > much_harder*softest
   end function has_unlike_bodies
 
   !> The penalty whose springs would store no more than that part. Under a given force they store by

@@ -109,7 +109,7 @@ contains
       monitor%snapshot%energies%initial = state%initial_energy
     end if
     if (cycle%due%tables(table_glstat)) call follow_softness(model, &
-      monitor%snapshot%parts%internal, monitor%bodies, state)
+      monitor%snapshot%parts, monitor%bodies, state)
     if (cycle%due%tables(table_matsum)) call fill_parts(model, state%elements, &
       monitor%snapshot)
     if (cycle%due%tables(table_glstat)) call find_slowest(model, state, monitor%snapshot)

@@ -67,7 +67,7 @@ contains
         state%initial_energy = total_energy(shot%energies)
         shot%energies%initial = state%initial_energy
       end if
-      call follow_softness(model, shot%parts%internal, monitor%bodies, state)
+      call follow_softness(model, shot%parts, monitor%bodies, state)
       if (due%tables(table_matsum)) call fill_consistent_parts(model, state%elements, shot)
       if (any(due%tables([table_rcforc, table_sleout, table_contact]))) &
         call fill_interfaces(model, state, shot)
