@@ -117,9 +117,14 @@ contains
     integer, intent(in) :: bodies(:)  !! (n_part)
     logical, intent(in) :: is_some(:) !! (n_part)
     logical :: is_of(size(bodies))
+    logical :: is_body(size(bodies))
     integer :: i
 
-    is_of = [(any(is_some .and. bodies == bodies(i)), i=1, size(bodies))]
+    is_body = .false.
+    do i = 1, size(bodies)
+      if (is_some(i)) is_body(bodies(i)) = .true.
+    end do
+    is_of = is_body(bodies)
   end function of_bodies
 
   !> At the end: interfaces whose springs stored much beside the bodies, and those whose pressure is
