@@ -18,7 +18,7 @@ module contact_log_m
   implicit none
   private
   public :: log_contact, penalty_text, report_initial_contact, report_released, report_tie_step, &
-    report_broken
+    report_broken, log_softness
 
   !> Part of the search reach below which a penetration at time zero is round-off, that of
   !> coordinates written with some eight digits included.
@@ -221,6 +221,44 @@ contains
       call write_log(log, text)
     end if
   end subroutine report_tie_step
+
+  !> How far the springs are pressed in beside the elements behind both surfaces, by the bulk
+  !> modulus of these; rigid ones are not pressed in.
+  subroutine log_softness(contact, model, memory, log, softness)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(in) :: memory
+    type(log_t), intent(inout) :: log
+    real(wp), intent(inout) :: softness !! that ratio; left alone between rigid bodies, and of ties
+    type(formulation_t) :: formulation
+    real(wp) :: stiffness !! of the springs of both passes, N/m^2
+    real(wp) :: rows      !! compliance of the elements, m^2/N
+
+    if (is_tied(contact) .or. contact%behind > 0) return
+    formulation = formulation_of(contact)
+    stiffness = memory%slave_penalty
+    if (formulation%has_two_passes) stiffness = stiffness + memory%master_penalty
+    if (contact%is_self) stiffness = 2.0_wp*stiffness
+    rows = row_compliance(contact%slave, model) + row_compliance(contact%master, model)
+    if (.not. (stiffness > 0.0_wp .and. rows > 0.0_wp)) return
+    softness = 1.0_wp/(stiffness*rows)
+    call write_log(log, 'interface '//to_text(contact%id)//': under a pressure its springs are ' &
+      //'pressed in '//to_text(softness)//' times as far as the elements behind them, one row on ' &
+      //'either side')
+  end subroutine log_softness
+
+  !> How far a pressure presses in the elements behind a surface: A/(K L), m^2/N.
+  pure function row_compliance(surface, model) result(compliance)
+    type(surface_t), intent(in) :: surface
+    type(model_t), intent(in) :: model
+    real(wp) :: compliance
+
+    associate (part => model%mesh%element_part(surface%segment_element(1)))
+      compliance = 0.0_wp
+      if (.not. model%materials(model%parts(part)%material)%is_rigid) compliance = &
+        1.0_wp/max(tiny(1.0_wp), side_stiffness(surface, model))
+    end associate
+  end function row_compliance
 
   !> The rule of friction.
   pure function friction_text(rule, units) result(text)

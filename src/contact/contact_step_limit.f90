@@ -21,7 +21,7 @@ module contact_step_limit_m
   implicit none
   private
   public :: spring_bound_t, bound_springs, stable_step, closed_step, opening_step, &
-    binding_bound, fitting_scale
+    binding_bound, fitting_scale, sharpness
 
   !> What is known of the springs at the nodes of one interface, those of other interfaces there
   !> included.
@@ -37,6 +37,10 @@ module contact_step_limit_m
     real(wp), allocatable :: at(:)    !! (n_slave + n_master)
     real(wp) :: c = 1.0_wp            !! share between its sides
   end type ratios_t
+
+  !> How far the bounds may lie below the step that eigenvalues allow: the least of the ratios in
+  !> doc/studies/stability.md.
+  real(wp), parameter :: sharpness = 0.78_wp
 
   !> Rounds over all interfaces, and halvings of the interval of log c: any c is safe, more only
   !> sharpen the bound.

@@ -176,6 +176,7 @@ contains
     memory%damping_work = old%damping_work
     memory%n_active = old%n_active
     memory%n_released = old%n_released
+    memory%rules_step = old%rules_step
     memory%watch = old%watch
     memory%friction%work = old%friction%work
     memory%friction%stored = old%friction%stored

@@ -58,6 +58,7 @@ contains
     call keep_watch(archive, 'watch', contact%watch)
     call keep_limit(archive, 'limit', contact%limit)
     call keep(archive, 'n_active', contact%n_active)
+    call keep(archive, 'rules_step', contact%rules_step)
     call keep(archive, 'n_released', contact%n_released)
     call keep(archive, 'n_swept', contact%n_swept)
     call keep(archive, 'n_dropped', contact%n_dropped)

@@ -254,6 +254,14 @@ contains
     call keep(archive, 'n_open', estimate%n_open)
     call keep(archive, 'n_stayed', estimate%n_stayed)
     call keep(archive, 'contact_type', estimate%contact_type)
+    call keep(archive, 'softness', estimate%softness)
+    call keep(archive, 'stored', estimate%stored)
+    call keep(archive, 'bodies', estimate%bodies)
+    call keep(archive, 'penetration', estimate%penetration)
+    call keep(archive, 'facet_error', estimate%facet_error)
+    call keep(archive, 'arc_height', estimate%arc_height)
+    call keep(archive, 'arc_curvature', estimate%arc_curvature)
+    call keep(archive, 'arc_side', estimate%arc_side)
     call leave(archive)
   end subroutine keep_estimate
 

@@ -6,8 +6,9 @@ module contact_check_m
   use contacts_m, only : contact_t, is_tied, penalty_factor, penalty_implicit
   use contact_judging_m, only : report_estimates
   use contact_overhang_m, only : report_overhang
+  use contact_softness_m, only : report_softness
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
-    opening_step, binding_bound, fitting_scale
+    opening_step, binding_bound, fitting_scale, sharpness
   use controls_m, only : controls_t, contact_step_free
   use kinds_m, only : wp
   use log_m, only : log_t, warn, write_log, to_text
@@ -20,9 +21,6 @@ module contact_check_m
 
   !> By which a step may miss the bound that its penalty was made for (PUNIT 3).
   real(wp), parameter :: round_off = 1.0e-12_wp
-  !> How far the bounds may lie below the step that eigenvalues allow: the least of the ratios in
-  !> doc/studies/stability.md.
-  real(wp), parameter :: sharpness = 0.78_wp
 
 contains
 
@@ -61,6 +59,8 @@ contains
       if (model%contacts(i)%behind > 0) cycle
       call report_overhang(model%contacts(i), model, state%contacts(i), log)
       if (.not. limits_step .or. model%contacts(i)%penalty_unit == penalty_implicit) cycle
+      if (state%contacts(i)%rules_step) call tell_obeyed_step(model%contacts(i)%id, &
+        model%controls%dt_scale*element_limit, element_limit, bounds(i), log)
       if (state%dt <= stable_step(element_limit, bounds(i))*(1.0_wp + round_off)) cycle
       if (has_usual_penalty(model%contacts(i), model%controls) .and. state%dt < element_limit &
         .and. state%dt*sharpness <= stable_step(element_limit, bounds(i))) then
@@ -82,6 +82,22 @@ contains
       .and. max(contact%penalty, contact%master_penalty) <= 1.0_wp &
       .and. controls%penalty_scale <= default%penalty_scale
   end function has_usual_penalty
+
+  !> The line for an interface whose springs the step obeys, since nobody has chosen either.
+  subroutine tell_obeyed_step(id, dt, element_limit, bound, log)
+    integer, intent(in) :: id
+    real(wp), intent(in) :: dt            !! step without this contact, s
+    real(wp), intent(in) :: element_limit !! s
+    type(spring_bound_t), intent(in) :: bound
+    type(log_t), intent(inout) :: log
+
+    call write_log(log, 'interface '//to_text(id)//': the step obeys its springs, since the deck ' &
+      //'leaves penalty and step to the program: stable step ' &
+      //to_text(stable_step(element_limit, bound))//', of the elements alone ' &
+      //to_text(element_limit)//'; a penalty of ' &
+      //to_text(fitting_scale(dt, element_limit, bound)) &
+      //' times this one would fit the step of the elements')
+  end subroutine tell_obeyed_step
 
   !> The line for such an interface.
   subroutine tell_usual_step(id, dt, element_limit, bound, log)
@@ -144,6 +160,7 @@ contains
     integer :: i
 
     call report_estimates(model, state, log)
+    call report_softness(model, state, log)
     do i = 1, size(model%contacts)
       call report_released(model%contacts(i), state%contacts(i), log)
       call report_broken(model%contacts(i), model%controls%units, state%contacts(i), log)

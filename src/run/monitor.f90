@@ -40,6 +40,7 @@ module monitor_m
     type(histories_t) :: histories
     type(snapshot_t) :: snapshot
     type(face_rows_t) :: rows          !! elements behind contact surfaces
+    integer, allocatable :: bodies(:)  !! (n_part) parts that hang together have one number
     type(log_t) :: log
     type(clock_t) :: clock
     type(progress_t) :: progress

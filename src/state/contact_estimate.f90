@@ -32,6 +32,15 @@ module contact_estimate_m
     integer :: n_open = 0              !! looks in a row that found it open, a better type wanted
     integer :: n_stayed = 0            !! times that the step did not bear a better type
     integer :: contact_type = 0        !! the present one
+    real(wp) :: softness = 0.0_wp      !! of springs, over that of a row of elements on either side
+    real(wp) :: stored = 0.0_wp        !! largest energy of the springs, J/m
+    real(wp) :: bodies = 0.0_wp        !! largest internal energy of the bodies on both sides, J/m
+    real(wp) :: penetration = 0.0_wp   !! deepest one of curved places, their flattening
+                                       !! included, m
+    real(wp) :: facet_error = 0.0_wp   !! by which facets put gaps off there, m
+    real(wp) :: arc_height = 0.0_wp    !! of the highest arc over its segment there, m
+    real(wp) :: arc_curvature = 0.0_wp !! of that arc, 1/m
+    integer :: arc_side = 0            !! it is on: 1 slave, 2 master
   end type contact_estimate_t
 
 end module contact_estimate_m

@@ -191,6 +191,7 @@ module contact_state_m
     type(contact_watch_t) :: watch          !! whether the springs give back what they take
     type(energy_limit_t) :: limit           !! that they give back no more
     integer :: n_active = 0                 !! points that carry pressure
+    logical :: rules_step = .false.         !! the step obeys the springs, which nobody has chosen
     integer :: n_released = 0               !! first contacts deeper than the limit that were let go
     integer :: n_swept = 0                  !! calls in which sweeps had to settle which nodes press
     integer :: n_dropped = 0                !! calls in which some pressures depended on others

@@ -46,7 +46,7 @@ KEPT = {
     "histories_t": ("output/history_file.f90", "output/restart_history.f90", "histories%", {
         "tables": "kept one by one"}),
     "monitor_t": ("run/monitor.f90", "run/restart_run.f90", "monitor%", {
-        "results": "times of its states are kept", "snapshot": "filled anew before it is written", "rows": "of the mesh",
+        "results": "times of its states are kept", "snapshot": "filled anew before it is written", "rows": "of the mesh", "bodies": "of the mesh",
         "log": "of each run", "told_radii": "of its log", "told_ratio": "of its log", "clock": "of each run", "progress": "of each run",
         "restarts": "n_dump is kept", "has_plot": "from the deck", "only_checks": "of a check",
         "ranks": "of each run", "tables": "kept one by one", "scheduled": "from the deck"}),

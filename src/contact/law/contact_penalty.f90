@@ -3,7 +3,8 @@
 module contact_penalty_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t, penalty_per_node, penalty_distributed, penalty_factor, &
-    penalty_share, penalty_implicit
+    penalty_share, penalty_implicit, is_tied
+  use controls_m, only : controls_t
   use kinds_m, only : wp
   use model_m, only : model_t
   use rigids_m, only : mark_rigid_nodes
@@ -11,12 +12,26 @@ module contact_penalty_m
   implicit none
   private
   public :: set_penalties, rigid_factor, built_in_penalty, softer_side, side_stiffness, &
-    mean_length, spread_of_stiffness
+    mean_length, spread_of_stiffness, has_default_penalty
 
   !> Times K L/A of the softer side: implicit springs of a rigid slave without compliance.
   real(wp), parameter :: rigid_factor = 1000.0_wp
 
 contains
+
+  !> Whether the penalty is the built-in one and nothing has scaled it: SFACT, PEN and SLSFAC at
+  !> their defaults. Ties, and contact behind them, have one of their own.
+  pure function has_default_penalty(contact, controls) result(has)
+    type(contact_t), intent(in) :: contact
+    type(controls_t), intent(in) :: controls
+    logical :: has
+    type(controls_t) :: default
+
+    has = contact%penalty_unit == penalty_factor .and. contact%behind == 0 &
+      .and. .not. is_tied(contact) .and. .not. abs(contact%penalty - 1.0_wp) > 0.0_wp &
+      .and. .not. abs(contact%master_penalty - 1.0_wp) > 0.0_wp &
+      .and. .not. abs(controls%penalty_scale - default%penalty_scale) > 0.0_wp
+  end function has_default_penalty
 
   !> All equivalents of the penalty. The rule eps_hat = eps/l (Kang, Lee & Shin 2023) with the mean
   !> segment length of the initial mesh converts; l is that of the slave surface for eps_hat of the

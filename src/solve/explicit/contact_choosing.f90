@@ -230,6 +230,7 @@ contains
     memory%watch = before%watch
     memory%limit = before%limit
     memory%n_released = before%n_released
+    memory%rules_step = before%rules_step
     if (.not. is_automatic) return
     memory%slave_penalty = before%slave_penalty
     memory%master_penalty = before%master_penalty

@@ -119,7 +119,7 @@ contains
     real(wp), intent(inout) :: damping(2)
     real(wp), intent(inout) :: ratio
 
-    if (has_springs(model)) &
+    if (has_springs(model, state%contacts)) &
       allocate (steps%springs(size(model%contacts)))
     call keep_steps(source, size(state%motion, 2), state%cycle, steps, damping, ratio)
   end subroutine read_steps

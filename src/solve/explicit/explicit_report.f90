@@ -6,6 +6,7 @@ module explicit_report_m
   use contact_check_m, only : report_contact_start
   use contact_choosing_m, only : follow_choices
   use contact_judging_m, only : judge_contacts
+  use contact_softness_m, only : follow_softness
   use energies_m, only : energy_ratio, total_energy
   use erosion_account_m, only : settle_elements, note_least_step
   use explicit_prescribed_m, only : start_prescribed, prescribed_work
@@ -34,7 +35,7 @@ module explicit_report_m
   use state_m, only : state_t
   use wall_motion_m, only : hold_nodes, count_walls, fill_walls
   use support_forces_m, only : fill_explicit_reactions
-  use time_step_m, only : first_step, shorten_first_step, follow_springs
+  use time_step_m, only : first_step, shorten_first_step, obey_defaults, follow_springs
   use explicit_cycle_m, only : explicit_cycle_t, prepare_leap, press_cycle
   use node_motion_m, only : leap_t
   implicit none
@@ -54,7 +55,10 @@ contains
     call count_sums(cycle%sums, state%external_work, state%damping_work)
     if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
     call judge_elements(monitor%ranks, model, state, cycle%error)
-    if (state%cycle == 0) call follow_springs(model, state, cycle%steps%springs)
+    if (state%cycle == 0) then
+      call obey_defaults(model, state)
+      call follow_springs(model, state, cycle%steps%springs)
+    end if
     if (state%cycle == 0 .and. .not. allocated(cycle%error)) &
       call first_step(model, state%elements, monitor%log, cycle%steps, state%dt, cycle%error)
     if (allocated(cycle%error)) then
@@ -121,6 +125,8 @@ contains
       state%initial_energy = total_energy(monitor%snapshot%energies)
       monitor%snapshot%energies%initial = state%initial_energy
     end if
+    if (cycle%due%tables(table_glstat)) call follow_softness(model, &
+      monitor%snapshot%parts, monitor%bodies, state)
     if (cycle%due%tables(table_matsum)) call fill_parts(model, state%elements, &
       monitor%snapshot)
     if (cycle%due%tables(table_glstat)) call find_slowest(model, state, monitor%snapshot)

@@ -6,10 +6,12 @@
 !> the step of the next, so that a cycle need not wait for its own elements.
 module time_step_m
   use block_state_m, only : block_state_t
-  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step
+  use contact_penalty_m, only : has_default_penalty
+  use contact_state_m, only : contact_state_t
+  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, sharpness
   use contacts_m, only : is_tied, penalty_implicit
   use friction_state_m, only : is_broken
-  use controls_m, only : contact_step_rules, contact_step_free
+  use controls_m, only : contact_step_rules, contact_step_free, contact_step_warns
   use curves_m, only : curve_value, curve_is_constant
   use errors_m, only : error_t, raise, status_input
   use kinds_m, only : wp
@@ -20,7 +22,7 @@ module time_step_m
   implicit none
   private
   public :: step_plan_t, start_steps, first_step, shorten_first_step, volume_step, next_step, &
-    is_last, cycles_in, follow_springs, has_springs
+    is_last, cycles_in, obey_defaults, follow_springs, has_springs
 
   !> What a step must be allowed to rise by before it does.
   real(wp), parameter :: least_rise = 0.05_wp
@@ -42,7 +44,8 @@ module time_step_m
     real(wp) :: end_time = 0.0_wp
     logical :: warned = .false.      !! the cap has been found above the stable step
     type(spring_bound_t), allocatable :: springs(:) !! that the step must respect; none unless ECDT
-                                                    !! = 2, or there are ties
+                                                    !! = 2, or there are ties or default
+                                                    !! penalties that need it
   end type step_plan_t
 
 contains
@@ -216,9 +219,34 @@ contains
     if (steps%end_cycle > 0) last = last .or. cycle >= steps%end_cycle
   end function is_last
 
+  !> At time zero: where penalty and step are both left to the program (SFACT or PEN, SLSFAC, LCTM
+  !> and ECDT at their defaults) and the springs ask for less than TSSFAC times the step of the
+  !> elements, by more than their bound may be too low, the step obeys them from then on.
+  pure subroutine obey_defaults(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    logical, dimension(size(model%contacts)) :: is_default, counts
+    type(spring_bound_t) :: bounds(size(model%contacts))
+    real(wp) :: limit, dt
+    integer :: i
+
+    if (model%controls%contact_step /= contact_step_warns .or. model%controls%dt_curve > 0) return
+    is_default = [(has_default_penalty(model%contacts(i), model%controls), &
+      i=1, size(model%contacts))]
+    if (.not. any(is_default)) return
+    limit = minval(state%elements%time_limit)
+    dt = scaled_step(model, limit, state%time)
+    if (.not. dt < limit) return
+    counts = is_default .or. is_tied(model%contacts)
+    call bound_springs(model%contacts, state%contact_mass, state%contacts, &
+      merge(1.0_wp, 0.0_wp, counts), bounds)
+    state%contacts%rules_step = is_default .and. sharpness*dt > stable_step(limit, bounds)
+  end subroutine obey_defaults
+
   !> Where ECDT = 2 asks for it, and for ties unless ECDT = 1: find now and then what the springs at
   !> the present places demand of the steps to come. Contact behind a tie counts with it once
-  !> anything of that has broken: it has the tie's penalty, which nobody chose for contact.
+  !> anything of that has broken: it has the tie's penalty, which nobody chose for contact. So do
+  !> default penalties that ask for a smaller step.
   pure subroutine follow_springs(model, state, bounds)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -226,10 +254,11 @@ contains
     logical :: counts(size(model%contacts))
     integer :: i
 
-    if (.not. has_springs(model)) return
+    if (.not. has_springs(model, state%contacts)) return
     if (mod(state%cycle, refresh_interval) /= 0) return
     counts = (model%controls%contact_step == contact_step_rules &
-      .and. model%contacts%penalty_unit /= penalty_implicit) .or. is_tied(model%contacts)
+      .and. model%contacts%penalty_unit /= penalty_implicit) .or. is_tied(model%contacts) &
+      .or. state%contacts%rules_step
     do i = 1, size(counts)
       if (model%contacts(i)%behind > 0) counts(i) = counts(i) &
         .or. any(state%contacts(model%contacts(i)%behind)%ties%state == is_broken)
@@ -246,12 +275,13 @@ contains
   end subroutine follow_springs
 
   !> Whether the step follows springs of interfaces.
-  pure function has_springs(model) result(has)
+  pure function has_springs(model, memories) result(has)
     type(model_t), intent(in) :: model
+    type(contact_state_t), intent(in) :: memories(:) !! of its interfaces
     logical :: has
 
     has = model%controls%contact_step == contact_step_rules .or. (any(is_tied(model%contacts)) &
-      .and. model%controls%contact_step /= contact_step_free)
+      .and. model%controls%contact_step /= contact_step_free) .or. any(memories%rules_step)
   end function has_springs
 
 end module time_step_m

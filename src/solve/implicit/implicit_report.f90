@@ -4,6 +4,7 @@
 module implicit_report_m
   use boundary_filling_m, only : fill_boundaries
   use contact_judging_m, only : judge_contacts
+  use contact_softness_m, only : follow_softness
   use implicit_boundary_m, only : find_forces
   use history_elements_m, only : fill_history_elements
   use history_tables_m, only : table_matsum, table_rcforc, table_sleout, table_spcforc, &
@@ -69,6 +70,7 @@ contains
         state%initial_energy = total_energy(shot%energies)
         shot%energies%initial = state%initial_energy
       end if
+      call follow_softness(model, shot%parts, monitor%bodies, state)
       if (due%tables(table_matsum)) call fill_consistent_parts(model, state%elements, shot)
       if (any(due%tables([table_rcforc, table_sleout, table_contact]))) &
         call fill_interfaces(model, state, shot)

@@ -9,7 +9,7 @@
 !> would turn them round within a step.
 module automatic_penalty_m
   use contact_log_m, only : penalty_text
-  use contact_penalty_m, only : spread_of_stiffness
+  use contact_penalty_m, only : spread_of_stiffness, has_default_penalty
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
     binding_bound, fitting_scale
   use contact_state_m, only : contact_state_t
@@ -79,7 +79,7 @@ contains
           //to_text(model%contacts(i)%penalty)//' of the largest for a time step of ' &
           //to_text(dt)//' by the bound of '//binding_bound(limit, bounds(i)))
       else
-        call warn_of_mean(model, i, dt, state%contacts(i), log)
+        call tell_of_mean(model, i, dt, state%contacts(i), log)
       end if
     end do
   end subroutine set_automatic_penalties
@@ -102,20 +102,27 @@ contains
     memory%node_penalty = factor*memory%node_penalty
   end subroutine scale_penalties
 
-  !> Interface `i` has less than the built-in penalty, and what does without.
-  subroutine warn_of_mean(model, i, dt, memory, log)
+  !> Interface `i` has less than the built-in penalty, and what does without: a warning where
+  !> somebody has chosen the penalty.
+  subroutine tell_of_mean(model, i, dt, memory, log)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
     real(wp), intent(in) :: dt !! s
     type(contact_state_t), intent(in) :: memory !! with the penalty that it has now
     type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
 
-    call warn(log, 'interface '//to_text(model%contacts(i)%id)//': one of its surfaces is of soft '&
+    text = 'interface '//to_text(model%contacts(i)%id)//': one of its surfaces is of soft ' &
       //'and stiff materials, and nodes of the soft ones do not bear the mean penalty of both at ' &
       //'the time step '//to_text(dt)//'; it is lowered to ' &
       //penalty_text(model%contacts(i), model, memory)//'. Stiff parts sink in less with ' &
-      //'interfaces of their own, or with the step of the springs (ECDT 2 of *CONTROL_CONTACT)')
-  end subroutine warn_of_mean
+      //'interfaces of their own, or with the step of the springs (ECDT 2 of *CONTROL_CONTACT)'
+    if (has_default_penalty(model%contacts(i), model%controls)) then
+      call write_log(log, text)
+    else
+      call warn(log, text)
+    end if
+  end subroutine tell_of_mean
 
   !> By interface the share of the largest stable penalty that the memory holds a penalty of: PEN
   !> with PUNIT 3, 1 where a surface of soft and stiff materials may have no more than that, 0 for

@@ -10,6 +10,7 @@ module start_m
   use contact_inertia_m, only : weigh_contacts
   use element_log_m, only : log_elements
   use element_start_m, only : start_elements, lump_mass
+  use contact_log_m, only : log_softness
   use contacts_m, only : is_tied, n_told, told_as
   use controls_m, only : is_asked
   use cross_sections_m, only : n_cut
@@ -105,6 +106,11 @@ contains
       end do
     else
       call set_automatic_penalties(model, state, log, error)
+      if (allocated(error)) return
+      do i = 1, size(state%estimates)
+        call log_softness(model%contacts(i), model, state%contacts(i), log, &
+          state%estimates(i)%softness)
+      end do
     end if
   end subroutine start_state
 

@@ -1,0 +1,229 @@
+! SPDX-License-Identifier: MIT
+!> Segments that stand for arcs: by how much these facets put gaps off beside the penetration. Where
+!> that is much, they make the pressure (doc/theory/contact.md, section 8.3).
+module contact_facets_m
+  use arcs_m, only : find_curvatures, arc_height
+  use contact_estimate_m, only : contact_estimate_t
+  use contact_state_m, only : contact_state_t, contact_points_t, n_side
+  use contacts_m, only : contact_t
+  use kinds_m, only : wp
+  use log_m, only : log_t, warn, to_text
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: follow_arcs, report_facets
+
+  !> Part of the largest penetration from which on the height of arcs over their segments is told,
+  !> and part of that height by which gaps are off where facets do not match.
+  real(wp), parameter :: noticed_part = 0.1_wp, noticed_error = 0.01_wp
+  !> Weight of the other node up to which a point is at a node.
+  real(wp), parameter :: at_node = 1.0e-6_wp
+
+  !> Arcs that the segments of a surface stand for.
+  type :: arcs_t
+    real(wp), allocatable :: curvature(:) !! (n_segment) 1/m
+    real(wp), allocatable :: chord(:)     !! (n_segment) length of the segment, m
+    real(wp), allocatable :: unlike(:)    !! (n_segment) curvature of both surfaces together, where
+                                          !! it is pressed, 1/m
+    logical, allocatable :: meets_corner(:) !! (n_segment) and may stand for a coarse arc
+    logical, allocatable :: is_pressed(:) !! (n_segment)
+  end type arcs_t
+
+contains
+
+  !> Follow an interface: the deepest penetration so far of places on curved segments, that of time
+  !> zero included, which is the interference, and the way by which bodies of unlike curvature are
+  !> flattened there; and what facets put gaps off by.
+  pure subroutine follow_arcs(contact, memory, estimate)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(contact_estimate_t), intent(inout) :: estimate
+    type(arcs_t) :: arcs(2) !! of slave and master
+    real(wp) :: deepest
+    integer :: p
+
+    associate (points => memory%points, n => memory%n_slave)
+      if (.not. any(points%gap(:points%n) < 0.0_wp)) return
+      call find_arcs(contact%slave, memory%places(:, :n), arcs(1))
+      call find_arcs(contact%master, memory%places(:, n + 1:), arcs(2))
+      if (.not. (any(abs(arcs(1)%curvature) > 0.0_wp) &
+        .or. any(abs(arcs(2)%curvature) > 0.0_wp))) return
+      deepest = 0.0_wp
+      do p = 1, points%n
+        if (.not. points%gap(p) < 0.0_wp) cycle
+        ! Those of an overlap that grows have no pressure at first.
+        if (points%pressure(p) > 0.0_wp .or. allocated(memory%interference%depth)) &
+          call look_at_point(contact, points, p, arcs, deepest, estimate)
+      end do
+    end associate
+    if (any(arcs(1)%is_pressed) .or. any(arcs(2)%is_pressed)) estimate%penetration = &
+      max(estimate%penetration, deepest + max(flattening(contact%slave, arcs(1)), &
+      flattening(contact%master, arcs(2))))
+  end subroutine follow_arcs
+
+  !> The arcs of one surface.
+  pure subroutine find_arcs(surface, places, arcs)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in) :: places(:, :) !! (4, n_node) X, Y, u_x, u_y
+    type(arcs_t), intent(out) :: arcs
+    integer :: s, n
+
+    n = surface%n_segment
+    allocate (arcs%curvature(n), arcs%chord(n), arcs%unlike(n), source=0.0_wp)
+    allocate (arcs%meets_corner(n), arcs%is_pressed(n), source=.false.)
+    call find_curvatures(surface, places, arcs%curvature, arcs%meets_corner)
+    do s = 1, n
+      associate (ends => surface%segments(:, s))
+        arcs%chord(s) = norm2(places(1:2, ends(2)) - places(1:2, ends(1)))
+      end associate
+    end do
+  end subroutine find_arcs
+
+  !> One point that is pressed: the segments that it is on, either of which may be of either surface
+  !> where there are two passes.
+  pure subroutine look_at_point(contact, points, p, arcs, deepest, estimate)
+    type(contact_t), intent(in) :: contact
+    type(contact_points_t), intent(in) :: points
+    integer, intent(in) :: p
+    type(arcs_t), intent(inout) :: arcs(2)
+    real(wp), intent(inout) :: deepest !! penetration of arcs, m
+    type(contact_estimate_t), intent(inout) :: estimate
+    integer :: k, side(2), segment(2), nodes(n_side, 2)
+    real(wp) :: weights(n_side, 2), curvature(2), off
+    logical :: meets_corner(2)
+
+    nodes = reshape([points%slave_nodes(:, p), points%master_nodes(:, p)], [n_side, 2])
+    weights = reshape([points%slave_weights(:, p), points%master_weights(:, p)], [n_side, 2])
+    associate (n => contact%slave%n_node)
+      side = merge(1, 2, nodes(1, :) <= n)
+      do k = 1, 2
+        if (side(k) == 1) then
+          segment(k) = segment_at(contact%slave, arcs(1), nodes(:, k), weights(:, k))
+        else
+          segment(k) = segment_at(contact%master, arcs(2), nodes(:, k) - n, weights(:, k))
+        end if
+      end do
+    end associate
+    if (any(segment == 0)) return
+    curvature = [(arcs(side(k))%curvature(segment(k)), k=1, 2)]
+    meets_corner = [(arcs(side(k))%meets_corner(segment(k)), k=1, 2)]
+    if (.not. any(abs(curvature) > 0.0_wp)) return
+    off = 0.0_wp
+    do k = 1, 2
+      associate (arc => arcs(side(k)), i => segment(k))
+        off = off + 0.5_wp*curvature(k)*arc%chord(i)**2*max(product(weights(:, k)), 0.0_wp)
+        arc%is_pressed(i) = .true.
+        if (.not. any(meets_corner)) arc%unlike(i) = abs(sum(curvature))
+      end associate
+    end do
+    ! That of the arcs: what facets add is no measure of itself.
+    deepest = max(deepest, off - points%gap(p))
+    ! Of a facet that turns by more, nobody knows by how much it is off.
+    if (any(meets_corner .and. product(weights, 1) > at_node)) &
+      off = maxval([(height_of(arcs(side(k)), segment(k)), k=1, 2)])
+    estimate%facet_error = max(estimate%facet_error, abs(off))
+    do k = 1, 2
+      if (.not. height_of(arcs(side(k)), segment(k)) > estimate%arc_height) cycle
+      estimate%arc_height = height_of(arcs(side(k)), segment(k))
+      estimate%arc_curvature = abs(curvature(k))
+      estimate%arc_side = side(k)
+    end do
+  end subroutine look_at_point
+
+  !> The segment that a place is on; of those beside the node that it is at, the one with the higher
+  !> arc; 0: none.
+  pure function segment_at(surface, arcs, nodes, weights) result(segment)
+    type(surface_t), intent(in) :: surface
+    type(arcs_t), intent(in) :: arcs
+    integer, intent(in) :: nodes(n_side)     !! local numbers in the surface
+    real(wp), intent(in) :: weights(n_side)
+    integer :: segment
+    integer :: beside(2), k, main
+
+    main = maxloc(weights, 1)
+    beside = [surface%incoming(nodes(main)), surface%outgoing(nodes(main))]
+    segment = 0
+    do k = 1, 2
+      if (beside(k) == 0) cycle
+      if (minval(weights) > at_node .and. &
+        .not. any(surface%segments(:, beside(k)) == nodes(3 - main))) cycle
+      if (segment > 0) then
+        if (.not. height_of(arcs, beside(k)) > height_of(arcs, segment)) cycle
+      end if
+      segment = beside(k)
+    end do
+  end function segment_at
+
+  !> How far the arc of a segment stands off it, m.
+  pure real(wp) function height_of(arcs, segment)
+    type(arcs_t), intent(in) :: arcs
+    integer, intent(in) :: segment
+
+    height_of = arc_height(arcs%curvature(segment), arcs%chord(segment))
+  end function height_of
+
+  !> The largest way by which bodies of unlike curvature are flattened where they touch: the arc of
+  !> both curvatures over a run of pressed segments, up to one radian of it. A ring that is pressed
+  !> all round has a like one in it.
+  pure function flattening(surface, arcs) result(way)
+    type(surface_t), intent(in) :: surface
+    type(arcs_t), intent(in) :: arcs
+    real(wp) :: way !! m
+    real(wp) :: length, unlike, bend
+    integer :: s, k
+
+    way = 0.0_wp
+    do s = 1, surface%n_segment
+      if (.not. arcs%is_pressed(s)) cycle
+      if (surface%previous(s) > 0) then
+        if (arcs%is_pressed(surface%previous(s))) cycle
+      end if
+      length = 0.0_wp
+      unlike = 0.0_wp
+      bend = tiny(1.0_wp)
+      k = s
+      do while (k > 0)
+        if (.not. arcs%is_pressed(k)) exit
+        length = length + arcs%chord(k)
+        unlike = max(unlike, arcs%unlike(k))
+        bend = max(bend, abs(arcs%curvature(k)))
+        k = surface%next(k)
+      end do
+      way = max(way, arc_height(unlike, min(length, 1.0_wp/bend)))
+    end do
+  end function flattening
+
+  !> At the end: a warning where arcs stand off their segments by much of the penetration, with the
+  !> number of segments that would do. Facets of two meshes that match lie in each other.
+  subroutine report_facets(contact, estimate, log)
+    type(contact_t), intent(in) :: contact
+    type(contact_estimate_t), intent(in) :: estimate
+    type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
+
+    associate (height => estimate%arc_height, curvature => estimate%arc_curvature, &
+      depth => estimate%penetration)
+      if (.not. (height > noticed_part*depth &
+        .and. estimate%facet_error > noticed_error*height)) return
+      text = trim(merge('slave ', 'master', estimate%arc_side == 1))
+      if (contact%is_self) text = 'surface'
+      text = 'interface '//to_text(contact%id)//': pressure is made by facets: arcs of its '//text &
+        //' (radius '//to_text(1.0_wp/curvature)//') stand up to '//to_text(height) &
+        //' off their segments, more than a tenth of the largest penetration and flattening of ' &
+        //'the arcs, interference included, '//to_text(depth)//'; it has ' &
+        //to_text(nint(segments_of(curvature, height)))//' segments on a full circle'
+      if (depth > 0.0_wp) text = text//', ' &
+        //to_text(ceiling(segments_of(curvature, noticed_part*depth)))//' would do'
+      call warn(log, text)
+    end associate
+  end subroutine report_facets
+
+  !> Segments on a full circle whose arcs stand so far off them: over the turn phi by
+  !> phi^2/(8 curvature).
+  pure real(wp) function segments_of(curvature, height)
+    real(wp), intent(in) :: curvature, height !! 1/m, m
+
+    segments_of = 2.0_wp*acos(-1.0_wp)/sqrt(8.0_wp*curvature*height)
+  end function segments_of
+
+end module contact_facets_m

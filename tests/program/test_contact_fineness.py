@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: MIT
+"""What a run says, and does, about penalties, springs and facets that are not fine enough for the answer."""
+import re
+
+import numpy as np
+import pytest
+from conftest import columns, numbers, some_types
+from meshes import Deck, grid
+from test_implicit import implicit
+from test_restart import assert_same, part_of, with_files
+
+STOCK = "*CONTACT_2D_AUTOMATIC_"
+MATERIALS = {"steel": (7.85e-9, 2.1e5, 0.3), "aluminium": (2.7e-9, 7.0e4, 0.33), "brass": (8.5e-9, 1.0e5, 0.35),
+             "lead": (11.34e-9, 1.6e4, 0.42), "rubber": (1.1e-9, 5.0, 0.49)}
+OBEYS = "the step obeys its springs, since the deck leaves penalty and step to the program"
+
+
+def blow(keyword, upper, lower, form=13, contact=(1, 2), end=2.0e-5):
+    """A block hits another one that lies on rollers, in N, mm, s and t: (material, columns, rows, height) of each."""
+    deck = Deck("small elements").add("*CONTROL_TERMINATION", (end,)).add("*SECTION_SHELL", (1, form), (1.0,))
+    below = lower[3]
+    ids = []
+    for part, ((material, n_x, n_y, height), y) in enumerate(((upper, below + 1.0e-4), (lower, 0.0)), 1):
+        deck.add("*PART", "block", (part, 1, part)).elastic(*MATERIALS[material], part)
+        ids.append(deck.mesh(*grid(n_x, n_y, 2.0, height, (0.0, y)), part=part))
+        deck.add("*SET_PART_LIST", (part,), (part,))
+    deck.node_set(3, ids[0]).add("*INITIAL_VELOCITY", (3,), (0.0, -1.0e3)).fix(ids[1][:lower[1] + 1], y=1)
+    deck.add(keyword, contact)
+    return deck.output(plot=end, glstat=end / 50, matsum=end / 50)
+
+
+SMALL = {
+    "plane, nodes": ((STOCK + "NODE_TO_SURFACE", ("brass", 4, 2, 0.2), ("lead", 40, 2, 0.05)), {"end": 3.0e-6}),
+    "plane, two passes": ((STOCK + "SURFACE_TO_SURFACE", ("steel", 4, 4, 0.4), ("brass", 40, 4, 0.2)), {"end": 2.0e-6}),
+    "round, mortar": ((STOCK + "SURFACE_TO_SURFACE_MORTAR", ("steel", 4, 2, 2.0), ("aluminium", 10, 4, 0.4)), {"form": 15, "end": 8.0e-6}),
+    "round, two passes": ((STOCK + "SURFACE_TO_SURFACE", ("rubber", 10, 2, 0.2), ("rubber", 4, 4, 0.4)), {"form": 15, "end": 1.2e-4}),
+}
+
+
+@pytest.mark.parametrize("scene", SMALL)
+def test_default_penalty_and_step_fit_each_other(slideline, tmp_path, scene):
+    """No warning, one line, and the answer of less than a quarter of the step; restarts go on so."""
+    args, more = SMALL[scene]
+    text = with_files(blow(*args, **more), dump=100)
+    for name, words in (("own", ()), ("fine", ("tssfac=0.2",))):
+        done = slideline(f"d={name}", *words, deck=text)
+        assert done.returncode == 0, done.stderr
+    log = (tmp_path / "own/job.log").read_text()
+    assert log.count(OBEYS) == 1 and "warning: interface" not in log and "time step of at most" not in log
+    stable, alone = (float(found) for found in re.search(r"stable step (\S+), of the elements alone (\S+);", log).groups())
+    steps = numbers(tmp_path / "own/job.glstat.csv", "dt")
+    assert stable < 0.78 * alone and steps[0] == pytest.approx(0.9 * stable, rel=1e-6) and max(steps) < 0.95 * alone
+    assert abs(numbers(tmp_path / "own/job.glstat.csv", "energy_ratio") - 1.0).max() < 2.0e-3
+    own, fine = (numbers(tmp_path / name / "job.matsum.csv", "momentum_y")[::2] for name in ("own", "fine"))
+    assert own[-1] == pytest.approx(fine[-1], abs=0.01 * abs(own[0]))
+    rest = part_of(tmp_path / "own", tmp_path / "rest", "job.dump01.h5", "job.vtkhdf")
+    assert slideline("r=rest/job.dump01.h5").returncode == 0
+    assert_same(tmp_path / "own", rest)
+
+
+def test_a_written_penalty_and_a_written_step_keep_their_warning(slideline, tmp_path):
+    args, more = SMALL["plane, nodes"]
+    for words, deck in ((("pen=1.001",), blow(*args, **more)), ((), blow(*args, contact=(1, 2, 1.001), **more)),
+                        (("dt=1.15e-8",), blow(*args, **more))):
+        done = slideline(*words, deck=deck)
+        assert done.returncode == 0, done.stderr
+        log = (tmp_path / "job.log").read_text()
+        assert OBEYS not in log and log.count("its penalty demands a time step of at most") == 1
+
+
+def hard_on_soft(factor=1.0, modulus=1.0e10, layers=False, n=6):
+    """A block of one modulus falls on a soft one on rollers, as wide as high; `layers`: its upper half is another part."""
+    deck = Deck("hard on soft").add("*CONTROL_TERMINATION", (0.1,)).add("*SECTION_SHELL", (1, 13), (1.0,))
+    for part, young in enumerate((modulus, 1.0e6, 1.0e6), 1):
+        deck.add("*PART", "block", (part, 1, part)).elastic(1000.0, young, 0.3, part)
+    upper = deck.mesh(*grid(n // 2, n // 2, 0.5, 0.5, (0.25, 1.0)), part=1)
+    points, quads = grid(n, n)
+    first = len(upper) + np.arange(1, len(points) + 1)
+    deck.add("*NODE", *[(int(i), *x) for i, x in zip(first, points)])
+    deck.add("*ELEMENT_SHELL", *[(100 + k, 3 if layers and 2 * k >= n * n else 2, *[int(first[i]) for i in quad])
+                                 for k, quad in enumerate(quads)])
+    deck.add("*SET_PART_LIST", (1,), (1,)).add("*SET_PART_LIST", (2,), (2, 3) if layers else (2,))
+    deck.node_set(3, upper).add("*INITIAL_VELOCITY", (3,), (0.0, -1.0)).fix(first[:n + 1], y=1)
+    deck.add(STOCK + "SURFACE_TO_SURFACE", (1, 2, factor))
+    return deck.output(plot=0.1, glstat=1.0e-3, matsum=1.0e-3, rcforc=1.0e-3).add("*DATABASE_SLEOUT", (1.0e-3,))
+
+
+def told(log, words):
+    return [line for line in log.splitlines() if words in line]
+
+
+def test_springs_that_store_much_of_a_blow_on_a_soft_body_are_told(slideline, tmp_path):
+    """With the penalty that the message names the block rebounds as with a tenth of the compliance."""
+    def run(name, *args, **more):
+        done = slideline(f"d={name}", deck=with_files(hard_on_soft(*args, **more), dump=400))
+        assert done.returncode == 0, done.stderr
+        parts = columns(tmp_path / name / "job.matsum.csv")
+        speed = np.array([float(p) for p, k in zip(parts["momentum_y"], parts["part"]) if k == "1"]) / 250.0
+        return (tmp_path / name / "job.log").read_text(), speed[-1]
+
+    log, speed = run("stock")
+    # Ten elements of the soft side by either pass, beside one of the soft and one of the hard row, which is 1e4 times as stiff.
+    found = re.search(r"pressed in (\S+) times as far as the elements behind them", log)
+    assert float(found[1]) == pytest.approx(5.0 / (1.0 + 1.0e-4), rel=1.0e-4)
+    line, = told(log, "its springs have stored up to")
+    assert line.startswith(" warning:") or line.strip().startswith("warning:")
+    stored, share, bodies, factor = (float(text) for text in re.search(
+        r"up to (\S+), (\S+) % of .* sides, (\S+), so that .* SFACT (\S+), or", line).groups())
+    assert stored == pytest.approx(numbers(tmp_path / "stock/job.sleout.csv", "stored").max(), rel=1.0e-6)
+    assert bodies == pytest.approx(numbers(tmp_path / "stock/job.glstat.csv", "internal").max(), rel=1.0e-6)
+    assert share == pytest.approx(100.0 * stored / bodies, abs=0.01) and share > 50.0
+    stiff, better = run("stiff", factor)
+    assert "warning: interface" not in stiff
+    _, right = run("stiffer", 10.0 * factor)
+    assert better == pytest.approx(right, abs=0.05) and speed > right + 0.1
+    # A body may be of several parts; a restarted run tells of all of it.
+    layered, _ = run("layers", layers=True)
+    assert told(layered, "its springs have stored up to") == [line]
+    rest = part_of(tmp_path / "stock", tmp_path / "rest", "job.dump01.h5", "job.vtkhdf")
+    assert slideline("r=rest/job.dump01.h5").returncode == 0
+    assert told((rest / "job.log").read_text(), "its springs have stored up to") == [line]
+    # Like bodies: a line, no warning.
+    alike, _ = run("alike", modulus=1.0e6)
+    line, = told(alike, "its springs have stored up to")
+    assert line.strip().startswith("interface 1:") and "SFACT" in line
+
+
+def ring(n, rows, inner, outer, start=0.0, centre=0.0):
+    """Nodes and quads of a full ring, row by row from the bore."""
+    angle = start + 2.0 * np.pi * np.arange(n) / n
+    radius = np.linspace(inner, outer, rows + 1)[:, None]
+    points = np.stack([centre + radius * np.cos(angle), radius * np.sin(angle)], axis=-1).reshape(-1, 2)
+    return points, [(j * n + i, (j + 1) * n + i, (j + 1) * n + (i + 1) % n, j * n + (i + 1) % n)
+                    for j in range(rows) for i in range(n)]
+
+
+def press_fit(kind, shaft=48, hub=60, static=False, fit=1.0e-3, form=13, turn=0.01):
+    """A hollow shaft in a hub, radii 0.5, 1 and 2, too thick by `fit`."""
+    deck = implicit(1.0, 1.0) if static else Deck("press fit").add("*CONTROL_TERMINATION", (0.2,))
+    deck.hourglass(4, 0.05).add("*SECTION_SHELL", (1, form, None, 4 if static else None), (1.0,))
+    bodies = ring(shaft, 4, 0.5, 1.0 + 0.5 * fit, 0.0, 3.0 * (form == 15)), ring(hub, 4, 1.0 - 0.5 * fit, 2.0, turn, 3.0 * (form == 15))
+    ids = []
+    for part, body in enumerate(bodies, 1):
+        deck.add("*PART", "ring", (part, 1, part)).elastic(1.0, 1.0, 0.3, part).add("*SET_PART_LIST", (part,), (part,))
+        ids.append(deck.mesh(*body, part=part))
+        if static:
+            deck.fix(ids[-1][:1], x=1, y=1).fix(ids[-1][len(ids[-1]) // 10:len(ids[-1]) // 10 + 1], y=1)
+    deck.add("*CONTACT_2D_SLIDELINE", (1, 2, kind, 2, 16.0), (0.0, 1.0e20, 1))
+    return deck.output(plot=1.0, glstat=0.1)
+
+
+FACETS = re.compile(r"warning: interface 1: pressure is made by facets: arcs of its slave \(radius (\S+)\) stand up to (\S+) off their "
+                    r"segments, .* included, (\S+); it has (\d+) segments on a full circle, (\d+) would do")
+
+
+@pytest.mark.parametrize("static", (False, True))
+@pytest.mark.parametrize("kind", some_types(2, release=7))
+def test_facets_of_a_press_fit_are_told(slideline, tmp_path, kind, static):
+    """48 facets of the shaft stand off by R (pi/48)^2/2, twice the interference; a tenth of it needs some 220."""
+    done = slideline(deck=press_fit(kind, static=static))
+    assert done.returncode == 0, done.stderr
+    found, = FACETS.findall((tmp_path / "job.log").read_text())
+    radius, height, depth = (float(text) for text in found[:3])
+    assert radius == pytest.approx(1.0005, abs=1.0e-4)
+    assert height == pytest.approx(0.5 * radius * (np.pi / 48.0) ** 2, rel=0.01)
+    assert depth == pytest.approx(1.0e-3, rel=1.1 if kind == 4 else 0.2)
+    assert int(found[3]) == 48 and int(found[4]) == pytest.approx(np.pi * np.sqrt(radius / (0.2 * depth)), rel=0.01)
+
+
+@pytest.mark.parametrize("more, warns", [
+    ({"form": 15}, True), ({"shaft": 60, "hub": 48}, True), ({"hub": 48, "turn": 0.05}, True), ({"shaft": 24, "hub": 20}, True),
+    ({"shaft": 225, "hub": 230}, False), ({"hub": 48, "turn": 0.0}, False), ({"fit": -0.05}, False)])
+def test_facets_that_match_or_are_fine_or_never_touch_are_not(slideline, tmp_path, more, warns):
+    done = slideline(deck=press_fit(5, **more))
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "job.log").read_text().count("pressure is made by facets") == int(warns)
+
+
+def test_a_cylinder_on_a_plane_is_made_by_facets_where_few_of_them_touch(slideline, tmp_path):
+    """Where many segments touch, bodies are flattened by much more than these stand off."""
+    for n, speed, warns in ((48, 0.005, True), (48, 0.5, False), (192, 0.02, False)):
+        deck = Deck("cylinder").add("*CONTROL_TERMINATION", (2.0,)).add("*SECTION_SHELL", (1, 13), (1.0,))
+        for part in (1, 2):
+            deck.add("*PART", "body", (part, 1, part)).elastic(1.0, 1.0, 0.3, part).add("*SET_PART_LIST", (part,), (part,))
+        roller = deck.mesh(*ring(n, n // 12, 0.5, 1.0), part=1)
+        plane = deck.mesh(*grid(n // 2, n // 12, 2.0, 0.5, (-1.03, -1.501)), part=2)
+        deck.node_set(1, roller).add("*INITIAL_VELOCITY", (1,), (0.0, -speed)).fix(plane[:n // 2 + 1], x=1, y=1)
+        deck.add("*CONTACT_2D_SLIDELINE", (1, 2, 7, 2, 2.0 * n), (0.0, 1.0e20, 1))
+        done = slideline(deck=deck.output(plot=2.0, glstat=0.02))
+        assert done.returncode == 0, done.stderr
+        assert (tmp_path / "job.log").read_text().count("pressure is made by facets") == int(warns), (n, speed)
