@@ -357,8 +357,11 @@ contains
       cycle%steps, state%time, state%dt)
     if (.not. allocated(cycle%error)) call check_step(model%controls, cycle%steps%first_dt, &
       state%time, state%dt, cycle%error)
-    if (allocated(cycle%error) .and. monitor%ranks%n == 1) call name_collapsed(model, state, &
-      cycle%error)
+    if (allocated(cycle%error)) then
+      if (monitor%ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .false., &
+        monitor%ranks, state)
+      if (monitor%ranks%mine == 0) call name_collapsed(model, state, cycle%error)
+    end if
     if (.not. allocated(cycle%error)) call check_cycle(state%cycle, state%time, cycle%error)
     cycle%finished = allocated(cycle%error)
     if (allocated(model%controls%ends)) call heed_ends(model, state, cycle)
