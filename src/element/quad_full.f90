@@ -18,7 +18,7 @@ module quad_full_m
   use quad_points_m, only : n_point, form_point, add_point_force
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
   use viscous_stress_m, only : viscous_start, add_viscous_deviator, add_viscous_pressure
-  use volumetric_m, only : volumetric_stress
+  use volumetric_m, only : volumetric_stress, largest_size
   implicit none
   private
   public :: advance_full, has_mean_dilatation
@@ -163,7 +163,7 @@ contains
     first = elements%point_start(i_chunk) + 3*chunk_size*(k - 1)
     call form_increments(dt, point, stress)
     elements%volume_change(i_chunk) = max(elements%volume_change(i_chunk), &
-      dt*maxval(abs(point%trace)))
+      dt*largest_size(point%trace))
     call load_deviator(elements%point_deviator(first), chunk_size, stress)
     if (allocated(material%eos)) call load_point_state(i_chunk, material, point%mid_area &
       *(1.0_wp + point%stretch)*point%inverse_area, point%stretch, chunk, point, elements, stress)

@@ -18,7 +18,7 @@ module quad_one_point_m
   use quad_kinematics_m, only : form_present_shape, form_increments, form_forces
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
   use viscous_stress_m, only : viscous_start, add_viscous_deviator, add_viscous_pressure
-  use volumetric_m, only : volumetric_stress
+  use volumetric_m, only : volumetric_stress, largest_size
   implicit none
   private
   public :: advance_one_point
@@ -52,7 +52,7 @@ contains
     call gather_chunk(nodes, motion, chunk)
     call form_present_shape(elements%reference(first, 1), n_slot, chunk)
     call form_increments(dt, chunk, stress)
-    elements%volume_change(i_chunk) = dt*maxval(abs(chunk%trace))
+    elements%volume_change(i_chunk) = dt*largest_size(chunk%trace)
     call load_deviator(elements%deviator(first, 1), n_slot, stress)
     if (allocated(material%eos)) call load_point_state(i_chunk, material, chunk%mid_area &
       *(1.0_wp + chunk%stretch)*chunk%inverse_area, chunk%stretch, chunk, chunk, elements, stress)

@@ -15,7 +15,7 @@ module quad_plain_m
   use material_dispatch_m, only : is_elastic, returns_radially
   use parts_m, only : hourglass_t, material_t, hourglass_viscous
   use quad_kinematics_m, only : form_present_shape
-  use volumetric_m, only : atanh_series, log_ratio
+  use volumetric_m, only : atanh_series, log_ratio, largest_size
   implicit none
   private
   public :: is_plain, advance_plain
@@ -35,7 +35,6 @@ module quad_plain_m
     real(wp), dimension(chunk_size) :: cosine, sine   !! of the rotation of the step
     real(wp), dimension(chunk_size) :: mean, half, shear !! strain increments (xx + yy)/2,
                                                          !! (xx - yy)/2 and xy in the mid-step frame
-    real(wp) :: largest_mean                             !! largest |mean|
   end type shape_t
 
   !> What is found of the chunk.
@@ -94,7 +93,10 @@ contains
       *material%sound_speed, shape, n_slot, elements%deviator(first, 1), &
       elements%hourglass_strain(elements%hourglass_start(i_chunk)), chunk, found)
     elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + 0.5_wp*dt*found%power
-    elements%volume_change(i_chunk) = 2.0_wp*shape%largest_mean
+    ! Where no volume is 2 % from its own there is nothing to limit, or a step later there is.
+    elements%volume_change(i_chunk) = 0.0_wp
+    if (found%least < -0.01_wp .or. found%largest > 0.01_wp) &
+      elements%volume_change(i_chunk) = 2.0_wp*largest_size(shape%mean)
     elements%time_limit(i_chunk) = 1.0_wp/(material%sound_speed*sqrt(found%longest))
     elements%volume_limit(i_chunk) = (1.0_wp + found%least)/(1.0_wp - found%least)
     if (found%least >= -0.1_wp .and. found%largest <= 0.1_wp) return
@@ -132,14 +134,11 @@ contains
     type(diagonals_t), intent(in) :: diagonals
     type(shape_t), intent(inout) :: shape           !! set here
     real(wp) :: back, x31, y31, x42, y42, s2, growth, a2, u31, v31, u42, v42, x, y, xx, yy, m2, &
-      nxx, nxy, nyx, nyy, turn, square, p, q, r, all, lxx, lxy, lyx, lyy, hx, hy, sine, &
-      largest_mean
+      nxx, nxy, nyx, nyy, turn, square, p, q, r, all, lxx, lxy, lyx, lyy, hx, hy, sine
     integer :: i
 
     back = 0.5_wp*dt
-    largest_mean = 0.0_wp
-    !$omp simd reduction(max : largest_mean) &
-    !$omp& private(x31, y31, x42, y42, s2, growth, a2, u31, v31, u42, v42, x, y, xx, yy, m2, &
+    !$omp simd private(x31, y31, x42, y42, s2, growth, a2, u31, v31, u42, v42, x, y, xx, yy, m2, &
     !$omp& nxx, nxy, nyx, nyy, turn, square, p, q, r, all, lxx, lxy, lyx, lyy, hx, hy, sine)
     do i = 1, chunk_size
       ! A - A0 from the displacement, so that small strains keep their digits.
@@ -185,7 +184,6 @@ contains
       lyx = all*nyx
       lyy = all*nyy
       shape%mean(i) = back*(lxx + lyy)
-      largest_mean = max(largest_mean, abs(shape%mean(i)))
       shape%half(i) = back*(lxx - lyy)
       shape%shear(i) = back*(lxy + lyx)
       hx = reference(i, 5) + diagonals%h(1, i)
@@ -203,7 +201,6 @@ contains
       shape%a2(i) = a2
       shape%m2(i) = m2
     end do
-    shape%largest_mean = largest_mean
   end subroutine form_shape
 
   !> Deviator of elastic elements. It stands as mean (s_xx + s_yy)/2, half (s_xx - s_yy)/2 and

@@ -23,7 +23,7 @@ module round_full_m
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
   use viscous_stress_m, only : viscous_start, add_viscous_deviator, add_viscous_pressure, &
     trace_of
-  use volumetric_m, only : volumetric_stress
+  use volumetric_m, only : volumetric_stress, largest_size
   implicit none
   private
   public :: advance_round_full
@@ -171,7 +171,7 @@ contains
     call form_increments(dt, point, stress)
     call add_hoop_strain(dt, place, point, stress)
     elements%volume_change(i_chunk) = max(elements%volume_change(i_chunk), &
-      dt*maxval(abs(trace_of(stress))))
+      dt*largest_size(trace_of(stress)))
     first = elements%point_start(i_chunk) + 3*chunk_size*(k - 1)
     call load_deviator(elements%point_deviator(first), chunk_size, stress)
     if (allocated(material%eos)) call load_point_state(i_chunk, material, point%mid_area &

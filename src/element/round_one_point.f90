@@ -19,7 +19,7 @@ module round_one_point_m
   use round_time_step_m, only : round_step
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
   use viscous_stress_m, only : viscous_start, add_viscous_deviator, add_viscous_pressure
-  use volumetric_m, only : volumetric_stress
+  use volumetric_m, only : volumetric_stress, largest_size
   implicit none
   private
   public :: advance_round_one_point
@@ -48,7 +48,7 @@ contains
     call gather_round(nodes, motion, chunk, round)
     call form_round_shape(elements%reference(first, 1), n_slot, chunk, round)
     call form_round_increments(dt, chunk, round, stress)
-    elements%volume_change(i_chunk) = dt*maxval(abs(chunk%trace))
+    elements%volume_change(i_chunk) = dt*largest_size(chunk%trace)
     call load_deviator(elements%deviator(first, 1), n_slot, stress)
     if (allocated(material%eos)) call load_round_state(i_chunk, material, chunk%mid_area &
       *(1.0_wp + chunk%stretch)*round%inverse_volume, chunk, round, elements, stress)

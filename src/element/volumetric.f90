@@ -5,9 +5,22 @@ module volumetric_m
   use layout_m, only : chunk_size
   implicit none
   private
-  public :: volumetric_stress, volumetric_energy, log_ratio, atanh_series
+  public :: volumetric_stress, volumetric_energy, log_ratio, atanh_series, largest_size
 
 contains
+
+  !> Largest absolute value of a chunk.
+  pure function largest_size(values) result(largest)
+    real(wp), intent(in) :: values(chunk_size)
+    real(wp) :: largest
+    integer :: i
+
+    largest = 0.0_wp
+    !$omp simd reduction(max : largest)
+    do i = 1, chunk_size
+      largest = max(largest, abs(values(i)))
+    end do
+  end function largest_size
 
   !> K ln(1 + stretch) for a chunk. ln(J) = 2 atanh(z), z = s/(2 + s), as a series where
   !> |z| <= 0.1 (its truncation is below round-off there), the library's logarithm for a chunk
