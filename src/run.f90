@@ -130,6 +130,7 @@ contains
     call read_deck(request, contact_kinds, monitor%log, model, effective, error)
     if (.not. allocated(error)) call refuse_several(model, monitor%ranks, error)
     if (allocated(error)) return
+    call move_alloc(request%files, monitor%restarts%inputs)
     if (allocated(request%text)) deallocate (request%text)
     if (arguments%no_dump) model%controls%output%dump_cycles = -1
     call renumber_model(model)

@@ -24,6 +24,7 @@ module restart_plan_m
     character(:), allocatable :: job       !! stem of the result files
     character(:), allocatable :: prefix    !! directory and job name
     character(:), allocatable :: deck      !! file name of the deck
+    character(:), allocatable :: inputs(:) !! paths of the deck and of what it includes
     character(:), allocatable :: program   !! version and build
     character(:), allocatable :: effective_deck_checksum !! of the file `<prefix>.effective.k`
     logical :: is_implicit = .false.       !! method of the run

@@ -1,11 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> The names of all results of a run, looked at before anything is touched.
+!> The names of all results of a run and of the files that it reads, looked at before anything is touched.
 module result_names_m
   use errors_m, only : error_t, raise, status_files
-  use file_facts_m, only : file_facts_t, facts_of_name, what_hinders
+  use file_facts_m, only : file_facts_t, facts_of_name, facts_of_target, is_same_file, what_hinders
   use files_m, only : join_path, unfinished
   use history_tables_m, only : history_tables
   use restart_plan_m, only : restarts_t, dump_path, running_path
+  use sense_switch_m, only : switch_path
   implicit none
   private
   public :: check_names
@@ -14,36 +15,55 @@ module result_names_m
   !> two digits.
   integer, parameter :: least_numbers = 99
 
+  !> A file that the run has read.
+  type :: input_t
+    character(:), allocatable :: path
+    type(file_facts_t) :: facts
+  end type input_t
+
 contains
 
   !> Refuse names of results under which something else stands than a file: a directory, a pipe, a
-  !> device, a symbolic link. Other files are replaced. Numbered restart files have no last number:
-  !> beyond the least, or where only a request can ask for one, they are looked at while they follow
-  !> without a gap.
+  !> device, a symbolic link; and those of files that the run has read, by whatever path. Other files
+  !> are replaced. Numbered restart files have no last number: beyond the least, or where only a
+  !> request can ask for one, they are looked at while they follow without a gap. The restart file
+  !> that a run goes on from may have the name of the running one, or of one that it does not
+  !> write any more.
   subroutine check_names(restarts, keeps_files, error)
-    type(restarts_t), intent(in) :: restarts !! its directory, job and prefix
+    type(restarts_t), intent(in) :: restarts !! its directory, job, prefix, inputs and source
     logical, intent(in) :: keeps_files       !! the deck asks for numbered restart files
     type(error_t), allocatable, intent(out) :: error
     character(12), parameter :: kinds(4) = [character(12) :: '.log', '.effective.k', '.vtkhdf', &
       '.timing.csv']
+    type(input_t), allocatable :: inputs(:), decks(:)
     integer :: i
 
+    decks = [(input_t(trim(restarts%inputs(i)), facts_of_target(trim(restarts%inputs(i)))), &
+      i=1, size(restarts%inputs))]
+    inputs = decks
+    if (restarts%goes_on) inputs = [decks, input_t(restarts%source%path, &
+      facts_of_target(restarts%source%path))]
+    call check_input(switch_path(restarts%directory), inputs, error)
     do i = 1, size(kinds)
-      call check_name(restarts%prefix//trim(kinds(i)), error)
+      call check_name(restarts%prefix//trim(kinds(i)), inputs, error)
     end do
     do i = 1, size(history_tables)
-      call check_name(restarts%prefix//'.'//trim(history_tables(i)%name), error)
-      call check_name(restarts%prefix//'.'//trim(history_tables(i)%name)//'.csv', error)
+      call check_name(restarts%prefix//'.'//trim(history_tables(i)%name), inputs, error)
+      call check_name(restarts%prefix//'.'//trim(history_tables(i)%name)//'.csv', inputs, error)
     end do
-    call check_name(join_path(restarts%directory, 'status.out'), error)
-    call check_name(join_path(restarts%directory, restarts%job//'.status.out'), error)
-    call check_name(running_path(restarts), error)
+    call check_name(join_path(restarts%directory, 'status.out'), inputs, error)
+    call check_name(join_path(restarts%directory, restarts%job//'.status.out'), inputs, error)
+    call check_name(running_path(restarts), decks, error)
     i = 1
     do
       if (i > least_numbers .or. .not. keeps_files) then
         if (.not. is_taken(dump_path(restarts, i))) exit
       end if
-      call check_name(dump_path(restarts, i), error)
+      if (restarts%goes_on .and. i <= restarts%n_dump) then
+        call check_name(dump_path(restarts, i), decks, error)
+      else
+        call check_name(dump_path(restarts, i), inputs, error)
+      end if
       i = i + 1
     end do
   end subroutine check_names
@@ -60,8 +80,9 @@ contains
   end function is_taken
 
   !> Refuse one name, or that which the file has before it is complete; the first failure stays.
-  subroutine check_name(path, error)
+  subroutine check_name(path, inputs, error)
     character(*), intent(in) :: path
+    type(input_t), intent(in) :: inputs(:)
     type(error_t), allocatable, intent(inout) :: error
     character(:), allocatable :: name
 
@@ -70,6 +91,27 @@ contains
     if (len(what_hinders(name)) == 0) name = path//unfinished
     if (len(what_hinders(name)) > 0) call raise(error, 'cannot write '//name//': ' &
       //what_hinders(name), status_files)
+    call check_input(path, inputs, error)
+    call check_input(path//unfinished, inputs, error)
   end subroutine check_name
+
+  !> Refuse the name of a file that the run has read.
+  subroutine check_input(path, inputs, error)
+    character(*), intent(in) :: path
+    type(input_t), intent(in) :: inputs(:)
+    type(error_t), allocatable, intent(inout) :: error
+    type(file_facts_t) :: facts
+    integer :: i
+
+    if (allocated(error)) return
+    facts = facts_of_name(path)
+    if (.not. facts%is_there) return
+    do i = 1, size(inputs)
+      if (.not. is_same_file(facts, inputs(i)%facts)) cycle
+      call raise(error, 'cannot write '//path//': it is the file '//inputs(i)%path//', which this ' &
+        //'run reads; give the run another name (jobid=) or folder (d=)', status_files)
+      return
+    end do
+  end subroutine check_input
 
 end module result_names_m
