@@ -8,7 +8,7 @@ help_or_go_on() {
   for word; do
     case $word in
     -h | --help)
-      awk 'NR == 1 || /^# SPDX/ || /^#SBATCH/ { next } !/^#/ { exit } { sub(/^# ?/, ""); print }' "$0"
+      awk 'NR == 1 || /^# SPDX/ || /^#SBATCH/ { next } !/^#/ { exit } { sub(/^# ?/, ""); print }' <"$0"
       exit 0
       ;;
     esac
