@@ -31,10 +31,10 @@ module file_facts_m
     integer(c_int64_t) :: skipped(11) = 0, device = 0, spare(14) = 0
   end type statx_t
 
-  !> Of the system: names from the present directory; links are followed or not; the open file itself;
-  !> what is asked for (kind, links, inode, length).
-  integer(c_int), parameter :: present_directory = -100, follow = 0, no_follow = 256, open_file = 4096, &
-    wanted = ior(ior(1, 4), ior(256, 512))
+  !> Of the system: names from the present directory; links are followed or not; the open file
+  !> itself; what is asked for (kind, links, inode, length).
+  integer(c_int), parameter :: present_directory = -100, follow = 0, no_follow = 256, &
+    open_file = 4096, wanted = ior(ior(1, 4), ior(256, 512))
   !> Kinds (S_IFMT and so on).
   integer, parameter :: kind_bits = 61440, kind_pipe = 4096, kind_directory = 16384, &
     kind_regular = 32768, kind_link = 40960, kind_socket = 49152

@@ -7,8 +7,8 @@ module sense_switch_m
   use text_m, only : upper_case
   implicit none
   private
-  public :: switch_path, take_switch, forget_switch, switch_none, switch_dump_and_stop, switch_status, &
-    switch_dump, switch_plot, switch_stop, switch_flush, switch_unknown
+  public :: switch_path, take_switch, forget_switch, switch_none, switch_dump_and_stop, &
+    switch_status, switch_dump, switch_plot, switch_stop, switch_flush, switch_unknown
 
   !> What is asked for: nothing; sw1, sw2, sw3, sw4, stop, swa; a word that says nothing.
   integer, parameter :: switch_none = 0, switch_dump_and_stop = 1, switch_status = 2, &

@@ -31,9 +31,9 @@ module text_files_m
 
 contains
 
-  !> Make a text file, empty; one of the same name is removed before, so that other names of it (hard
-  !> links) keep what they have. What is no regular file is refused: to open a pipe could wait for
-  !> ever, and a link leads elsewhere.
+  !> Make a text file, empty; one of the same name is removed before, so that other names of it
+  !> (hard links) keep what they have. What is no regular file is refused: to open a pipe could wait
+  !> for ever, and a link leads elsewhere.
   subroutine create_text_file(file, path, error)
     type(text_file_t), intent(out) :: file
     character(*), intent(in) :: path
@@ -102,8 +102,8 @@ contains
       file%n_byte = facts%n_byte
       is_taken = is_taken .or. .not. is_same_file(facts, facts_of_name(path))
     end if
-    if (is_taken) call raise(error, 'cannot write '//path//': another run that is going on has it ' &
-      //'open; give this one another name (jobid=) or folder (d=)', status_files)
+    if (is_taken) call raise(error, 'cannot write '//path//': another run that is going on has ' &
+      //'it open; give this one another name (jobid=) or folder (d=)', status_files)
   end subroutine open_alone
 
   !> Append what a file holds to one that is open.

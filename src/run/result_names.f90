@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The names of all results of a run and of the files that it reads, looked at before anything is touched.
+!> The names of all results of a run and of the files that it reads, looked at before anything is
+!> touched.
 module result_names_m
   use errors_m, only : error_t, raise, status_files
   use file_facts_m, only : file_facts_t, facts_of_name, facts_of_target, is_same_file, what_hinders
@@ -24,7 +25,7 @@ module result_names_m
 contains
 
   !> Refuse names of results under which something else stands than a file: a directory, a pipe, a
-  !> device, a symbolic link; and those of files that the run has read, by whatever path. Other files
+  !> device, a symbolic link; and those of files that the run reads, by whatever path. Other files
   !> are replaced. Numbered restart files have no last number: beyond the least, or where only a
   !> request can ask for one, they are looked at while they follow without a gap. The restart file
   !> that a run goes on from may have the name of the running one, or of one that it does not
@@ -108,8 +109,8 @@ contains
     if (.not. facts%is_there) return
     do i = 1, size(inputs)
       if (.not. is_same_file(facts, inputs(i)%facts)) cycle
-      call raise(error, 'cannot write '//path//': it is the file '//inputs(i)%path//', which this ' &
-        //'run reads; give the run another name (jobid=) or folder (d=)', status_files)
+      call raise(error, 'cannot write '//path//': it is the file '//inputs(i)%path//', which ' &
+        //'this run reads; give the run another name (jobid=) or folder (d=)', status_files)
       return
     end do
   end subroutine check_input
