@@ -75,6 +75,8 @@ contains
     character(:), allocatable :: text
 
     text = ' at time '//to_text(state%time)//', cycle '//to_text(state%cycle)
+    if (state%relaxation%n > 0) text = ' in dynamic relaxation, after ' &
+      //to_text(state%relaxation%n)//' cycles'
   end function place_text
 
   !> Which kinds of files are due before cycle `cycle`: at their intervals; before the last cycle

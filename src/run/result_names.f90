@@ -36,14 +36,18 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(12), parameter :: kinds(4) = [character(12) :: '.log', '.effective.k', '.vtkhdf', &
       '.timing.csv']
-    type(input_t), allocatable :: inputs(:), decks(:)
-    integer :: i
+    type(input_t) :: inputs(size(restarts%inputs) + 1) !! the last one: the restart file, if any
+    integer :: i, n_deck
 
-    decks = [(input_t(trim(restarts%inputs(i)), facts_of_target(trim(restarts%inputs(i)))), &
-      i=1, size(restarts%inputs))]
-    inputs = decks
-    if (restarts%goes_on) inputs = [decks, input_t(restarts%source%path, &
-      facts_of_target(restarts%source%path))]
+    n_deck = size(restarts%inputs)
+    do i = 1, n_deck
+      inputs(i)%path = trim(restarts%inputs(i))
+      inputs(i)%facts = facts_of_target(inputs(i)%path)
+    end do
+    if (restarts%goes_on) then
+      inputs(n_deck + 1)%path = restarts%source%path
+      inputs(n_deck + 1)%facts = facts_of_target(restarts%source%path)
+    end if
     call check_input(switch_path(restarts%directory), inputs, error)
     do i = 1, size(kinds)
       call check_name(restarts%prefix//trim(kinds(i)), inputs, error)
@@ -54,14 +58,14 @@ contains
     end do
     call check_name(join_path(restarts%directory, 'status.out'), inputs, error)
     call check_name(join_path(restarts%directory, restarts%job//'.status.out'), inputs, error)
-    call check_name(running_path(restarts), decks, error)
+    call check_name(running_path(restarts), inputs(:n_deck), error)
     i = 1
     do
       if (i > least_numbers .or. .not. keeps_files) then
         if (.not. is_taken(dump_path(restarts, i))) exit
       end if
       if (restarts%goes_on .and. i <= restarts%n_dump) then
-        call check_name(dump_path(restarts, i), decks, error)
+        call check_name(dump_path(restarts, i), inputs(:n_deck), error)
       else
         call check_name(dump_path(restarts, i), inputs, error)
       end if

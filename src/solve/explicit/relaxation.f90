@@ -131,8 +131,10 @@ contains
       if (monitor%ranks%mine == 0) call write_files(wanted, state, monitor, error)
       call share_error(monitor%ranks, error)
     end if
-    if (asked%stop .and. .not. allocated(error)) call raise(error, 'stopped on request in ' &
-      //'dynamic relaxation after '//to_text(state%relaxation%n)//' cycles', status_stopped)
+    if (.not. asked%stop .or. allocated(error)) return
+    call raise(error, 'stopped on request in dynamic relaxation after ' &
+      //to_text(state%relaxation%n)//' cycles', status_stopped)
+    state%time = 0.0_wp
   end subroutine heed_requests
 
   !> What one process is asked for is done by all.
