@@ -95,7 +95,7 @@ contains
     call join_failures(runs, failures, error)
   end subroutine read_decks
 
-  !> Look at the names of the results of a case.
+  !> Whether a result of a case has the name of a file that is read.
   subroutine check_case(run, model, files, error)
     type(arguments_t), intent(in) :: run
     type(model_t), intent(in) :: model
@@ -106,8 +106,8 @@ contains
     names%directory = run%directory
     names%job = run%job
     names%prefix = join_path(run%directory, run%job)
-    names%inputs = files
-    call check_names(names, model%controls%output%dump_cycles >= 0, error)
+    allocate (names%inputs, source=files)
+    call check_names(names, model%controls%output%dump_cycles >= 0, .true., error)
   end subroutine check_case
 
   !> Why a case has not ended normally; others may follow.

@@ -35,7 +35,8 @@ contains
     if (.not. allocated(arguments%job)) arguments%job = monitor%restarts%job
     request%path = arguments%restart
     if (allocated(arguments%deck)) then
-      request%files = [arguments%deck]
+      allocate (character(len(arguments%deck)) :: request%files(1))
+      request%files = arguments%deck
       call read_file(arguments%deck, changes, reason)
       if (allocated(reason)) then
         call raise(error, 'cannot read the deck '//arguments%deck//': '//reason, status_input)

@@ -160,7 +160,7 @@ contains
     monitor%restarts%job = arguments%job
     monitor%restarts%prefix = prefix
     if (.not. allocated(error)) &
-      call check_names(monitor%restarts, keeps_files, error)
+      call check_names(monitor%restarts, keeps_files, .false., error)
     if (.not. allocated(error)) &
       call open_log(monitor%log, prefix//'.log', monitor%restarts%goes_on, error)
   end subroutine claim_folder

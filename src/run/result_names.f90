@@ -30,9 +30,10 @@ contains
   !> request can ask for one, they are looked at while they follow without a gap. The restart file
   !> that a run goes on from may have the name of the running one, or of one that it does not
   !> write any more.
-  subroutine check_names(restarts, keeps_files, error)
+  subroutine check_names(restarts, keeps_files, inputs_only, error)
     type(restarts_t), intent(in) :: restarts !! its directory, job, prefix, inputs and source
     logical, intent(in) :: keeps_files       !! the deck asks for numbered restart files
+    logical, intent(in) :: inputs_only       !! only files that the run reads are looked for
     type(error_t), allocatable, intent(out) :: error
     character(12), parameter :: kinds(4) = [character(12) :: '.log', '.effective.k', '.vtkhdf', &
       '.timing.csv']
@@ -48,29 +49,37 @@ contains
       inputs(n_deck + 1)%path = restarts%source%path
       inputs(n_deck + 1)%facts = facts_of_target(restarts%source%path)
     end if
-    call check_input(switch_path(restarts%directory), inputs, error)
+    call check_name(switch_path(restarts%directory), inputs, .true., error)
     do i = 1, size(kinds)
-      call check_name(restarts%prefix//trim(kinds(i)), inputs, error)
+      call look(restarts%prefix//trim(kinds(i)), size(inputs))
     end do
     do i = 1, size(history_tables)
-      call check_name(restarts%prefix//'.'//trim(history_tables(i)%name), inputs, error)
-      call check_name(restarts%prefix//'.'//trim(history_tables(i)%name)//'.csv', inputs, error)
+      call look(restarts%prefix//'.'//trim(history_tables(i)%name), size(inputs))
+      call look(restarts%prefix//'.'//trim(history_tables(i)%name)//'.csv', size(inputs))
     end do
-    call check_name(join_path(restarts%directory, 'status.out'), inputs, error)
-    call check_name(join_path(restarts%directory, restarts%job//'.status.out'), inputs, error)
-    call check_name(running_path(restarts), inputs(:n_deck), error)
+    call look(join_path(restarts%directory, 'status.out'), size(inputs))
+    call look(join_path(restarts%directory, restarts%job//'.status.out'), size(inputs))
+    call look(running_path(restarts), n_deck)
     i = 1
     do
       if (i > least_numbers .or. .not. keeps_files) then
         if (.not. is_taken(dump_path(restarts, i))) exit
       end if
-      if (restarts%goes_on .and. i <= restarts%n_dump) then
-        call check_name(dump_path(restarts, i), inputs(:n_deck), error)
-      else
-        call check_name(dump_path(restarts, i), inputs, error)
-      end if
+      call look(dump_path(restarts, i), merge(n_deck, size(inputs), i <= restarts%n_dump))
       i = i + 1
     end do
+
+  contains
+
+    !> Look at one name and at that which the file has before it is complete.
+    subroutine look(path, n)
+      character(*), intent(in) :: path
+      integer, intent(in) :: n !! inputs whose name it may not have, the first ones
+
+      call check_name(path, inputs(:n), inputs_only, error)
+      call check_name(path//unfinished, inputs(:n), inputs_only, error)
+    end subroutine look
+
   end subroutine check_names
 
   !> Whether a file of this name stands there, whole or not.
@@ -84,26 +93,11 @@ contains
     is_taken = whole%is_there .or. part%is_there
   end function is_taken
 
-  !> Refuse one name, or that which the file has before it is complete; the first failure stays.
-  subroutine check_name(path, inputs, error)
+  !> Refuse one name; the first failure stays.
+  subroutine check_name(path, inputs, inputs_only, error)
     character(*), intent(in) :: path
     type(input_t), intent(in) :: inputs(:)
-    type(error_t), allocatable, intent(inout) :: error
-    character(:), allocatable :: name
-
-    if (allocated(error)) return
-    name = path
-    if (len(what_hinders(name)) == 0) name = path//unfinished
-    if (len(what_hinders(name)) > 0) call raise(error, 'cannot write '//name//': ' &
-      //what_hinders(name), status_files)
-    call check_input(path, inputs, error)
-    call check_input(path//unfinished, inputs, error)
-  end subroutine check_name
-
-  !> Refuse the name of a file that the run has read.
-  subroutine check_input(path, inputs, error)
-    character(*), intent(in) :: path
-    type(input_t), intent(in) :: inputs(:)
+    logical, intent(in) :: inputs_only !! whatever else stands there
     type(error_t), allocatable, intent(inout) :: error
     type(file_facts_t) :: facts
     integer :: i
@@ -111,12 +105,16 @@ contains
     if (allocated(error)) return
     facts = facts_of_name(path)
     if (.not. facts%is_there) return
+    if (.not. (facts%is_regular .or. inputs_only)) then
+      call raise(error, 'cannot write '//path//': '//what_hinders(path), status_files)
+      return
+    end if
     do i = 1, size(inputs)
       if (.not. is_same_file(facts, inputs(i)%facts)) cycle
       call raise(error, 'cannot write '//path//': it is the file '//inputs(i)%path//', which ' &
         //'this run reads; give the run another name (jobid=) or folder (d=)', status_files)
       return
     end do
-  end subroutine check_input
+  end subroutine check_name
 
 end module result_names_m

@@ -11,8 +11,7 @@ module deck_lines_m
   implicit none
   private
   public :: deck_t, source_t, block_t, place_t, case_blocks_t, file_paths, line_text, &
-    block_of_line, &
-    where_text, line_error, deck_error, line_warning, replace_line, written_text, &
+    block_of_line, where_text, line_error, deck_error, line_warning, replace_line, written_text, &
     line_spot, keyword_of_line, shown_text, marked_line, layout_mark, format_standard, &
     format_long, format_i10, flag_comma, flag_parameter, flag_blank, max_source
 
