@@ -268,3 +268,20 @@ def test_a_table_that_can_not_be_written_leaves_the_old_one(place, signal_is):
                            "--collect", results / "list.txt", results], capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 1 and "normal" in done.stdout and "summary.csv: can not be written" in done.stderr, done.stderr
     assert (results / "summary.csv").read_bytes() == before and not (results / "summary.csv.new").exists()
+
+
+def test_a_search_path_for_folders_is_no_matter(place):
+    """With CDPATH the shell prints where `cd` has gone."""
+    deck(place / "decks" / "a.k")
+    done = subprocess.run(["tools/batch/run_folder.sh", place / "decks"], cwd=BATCH.parents[1], capture_output=True, text=True,
+                          env={**os.environ, "SLIDELINE": str(place / "the program"), "CDPATH": f"{place}:."}, timeout=60)
+    assert done.returncode == 0 and statuses(place / "decks" / "results") == {"a": "0"}, done.stderr
+
+
+@pytest.mark.parametrize("name", ["!", "(", "-type", "kept=1"])
+def test_comparison_of_folders_with_names_that_find_knows(place, name):
+    for folder in ("new", name):
+        (place / folder).mkdir()
+        (place / folder / "a.csv").write_text("time\n0.0\n")
+    assert "1 agreed" in call(place, "compare_folder.sh", "new", name, TOOLS="true").stdout
+    assert "1 agreed" in call(place, "compare_folder.sh", name, "new", TOOLS="true").stdout

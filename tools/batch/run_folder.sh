@@ -8,7 +8,7 @@
 #   tools/batch/run_folder.sh -j 4 "my decks" ctype=5 p:v0=-80.0
 set -eu
 
-here=$(cd "$(dirname "$0")" && pwd)
+here=$(CDPATH='' cd "$(dirname "$0")" && pwd)
 . "$here/../help.sh"
 . "$here/lists.sh"
 help_or_go_on "$@"

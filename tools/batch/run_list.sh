@@ -18,7 +18,7 @@ set -eu
 # xargs must outlive them. The program sets its own handlers.
 trap '' USR1 USR2
 
-here=$(cd "$(dirname "$0")" && pwd)
+here=$(CDPATH='' cd "$(dirname "$0")" && pwd)
 . "$here/../help.sh"
 . "$here/lists.sh"
 help_or_go_on "$@"
