@@ -8,9 +8,12 @@ module case_runs_m
   use deck_m, only : deck_request_t, read_deck
   use endings_m, only : error_ending
   use errors_m, only : error_t, raise, status_run
+  use files_m, only : join_path
   use log_m, only : log_t, to_text
   use model_m, only : model_t
   use ranks_m, only : ranks_t, share_error
+  use restart_plan_m, only : restarts_t
+  use result_names_m, only : check_names
   use run_m, only : run_deck
   use screen_m, only : show, complain
   implicit none
@@ -86,10 +89,26 @@ contains
       if (allocated(request%refusal)) deallocate (request%refusal)
       if (allocated(runs(i)%refusal)) request%refusal = runs(i)%refusal
       call read_deck(request, contact_kinds, unused, model, effective, failure)
+      if (.not. allocated(failure)) call check_case(runs(i), model, request%files, failure)
       if (allocated(failure)) failures(i) = failure
     end do
     call join_failures(runs, failures, error)
   end subroutine read_decks
+
+  !> Whether a result of a case has the name of a file that is read.
+  subroutine check_case(run, model, files, error)
+    type(arguments_t), intent(in) :: run
+    type(model_t), intent(in) :: model
+    character(*), intent(in) :: files(:) !! that have been read
+    type(error_t), allocatable, intent(out) :: error
+    type(restarts_t) :: names
+
+    names%directory = run%directory
+    names%job = run%job
+    names%prefix = join_path(run%directory, run%job)
+    allocate (names%inputs, source=files)
+    call check_names(names, model%controls%output%dump_cycles >= 0, .true., error)
+  end subroutine check_case
 
   !> Why a case has not ended normally; others may follow.
   subroutine tell_failure(run, failure, has_ended)

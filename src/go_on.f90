@@ -35,6 +35,8 @@ contains
     if (.not. allocated(arguments%job)) arguments%job = monitor%restarts%job
     request%path = arguments%restart
     if (allocated(arguments%deck)) then
+      allocate (character(len(arguments%deck)) :: request%files(1))
+      request%files = arguments%deck
       call read_file(arguments%deck, changes, reason)
       if (allocated(reason)) then
         call raise(error, 'cannot read the deck '//arguments%deck//': '//reason, status_input)
@@ -52,6 +54,7 @@ contains
       call merge_decks(deck, changes, arguments%deck, request%text, error)
       if (allocated(error)) return
     else
+      allocate (character(1) :: request%files(0))
       call move_alloc(deck, request%text)
     end if
     if (.not. only_end_time(arguments)) call raise(error, &
@@ -77,6 +80,7 @@ contains
     if (allocated(arguments%refusal)) whole%refusal = arguments%refusal
     call move_alloc(request%deck, whole%deck)
     call read_deck(whole, contact_kinds, unused, model, request%text, error)
+    if (allocated(whole%files)) call move_alloc(whole%files, request%files)
     if (allocated(error)) return
     if (model%controls%implicit%is_on .neqv. is_implicit) then
       call raise(error, 'the restart file '//arguments%restart//' is refused: it is of ' &

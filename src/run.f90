@@ -130,6 +130,7 @@ contains
     call read_deck(request, contact_kinds, monitor%log, model, effective, error)
     if (.not. allocated(error)) call refuse_several(model, monitor%ranks, error)
     if (allocated(error)) return
+    call move_alloc(request%files, monitor%restarts%inputs)
     if (allocated(request%text)) deallocate (request%text)
     if (arguments%no_dump) model%controls%output%dump_cycles = -1
     call renumber_model(model)
@@ -159,7 +160,7 @@ contains
     monitor%restarts%job = arguments%job
     monitor%restarts%prefix = prefix
     if (.not. allocated(error)) &
-      call check_names(monitor%restarts, keeps_files, error)
+      call check_names(monitor%restarts, keeps_files, .false., error)
     if (.not. allocated(error)) &
       call open_log(monitor%log, prefix//'.log', monitor%restarts%goes_on, error)
   end subroutine claim_folder
@@ -264,6 +265,7 @@ contains
     type(state_t), intent(inout) :: state  !! where the run goes on it is known already
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
+    logical :: relaxes
 
     if (monitor%ranks%mine == 0) &
       call write_deck(arguments, prefix, info%effective_deck, monitor, error)
@@ -278,14 +280,17 @@ contains
       call make_state(has_all, prefix, model, state, monitor, error)
     if (allocated(error)) return
     call start_monitor(model, size(state%elements%history) > 0, monitor)
-    if (model%controls%relaxation%is_on .and. .not. monitor%restarts%goes_on &
-      .and. .not. model%controls%check_only) call relax(model, monitor%log, state, error)
+    relaxes = model%controls%relaxation%is_on .and. .not. model%controls%check_only .and. &
+      (state%relaxation%n > 0 .or. .not. monitor%restarts%goes_on)
+    if (relaxes) call relax(model, monitor, state, error)
     if (allocated(error)) return
     call leave_relaxation(model)
     call forget_start(model)
     call give_back_memory()
     monitor%progress%first_cycle = state%cycle
     if (monitor%restarts%goes_on) call take_up_outputs(model, state, monitor, error)
+    ! Behind relaxation a run begins at time zero, wherever it has come from.
+    if (relaxes) monitor%restarts%goes_on = .false.
     call forget_others(model, monitor%ranks, state)
     call share_error(monitor%ranks, error)
     if (.not. allocated(error) .and. monitor%ranks%mine == 0) &
@@ -382,22 +387,29 @@ contains
       'stopped on request at time '//to_text(state%time), status_stopped)
   end subroutine drive
 
-  !> The end of a run that could not begin. The results file has no state and does not take its
-  !> name: that of a run before a restart keeps its states. Nor does status.out speak of a run
-  !> before.
+  !> The end of a run that could not begin, or was stopped before its first state. The results file
+  !> has no state and does not take its name: that of a run before a restart keeps its states. Nor
+  !> does status.out speak of a run before.
   subroutine give_up(model, prefix, state, monitor, error)
     type(model_t), intent(in) :: model
     character(*), intent(in) :: prefix
     type(state_t), intent(in) :: state
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(inout) :: error
-    type(error_t), allocatable :: ignored
+    type(error_t), allocatable :: ignored, stop
+    character(:), allocatable :: reason
 
     call close_histories(monitor%histories, ignored)
     if (allocated(monitor%results%path)) &
       call remove_file(monitor%results%path//unfinished, ignored)
     call begin_status(model, state, monitor)
-    call tell_end(model, prefix, state, '', monitor, error)
+    reason = ''
+    if (error%status == status_stopped) then
+      call move_alloc(error, stop)
+      reason = stop%message//' (exit status '//to_text(status_stopped)//')'
+    end if
+    call tell_end(model, prefix, state, reason, monitor, error)
+    if (allocated(stop) .and. .not. allocated(error)) call move_alloc(stop, error)
   end subroutine give_up
 
   !> Write the timing file and say how the run ended: by `error` or else for `reason`.

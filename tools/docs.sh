@@ -6,7 +6,7 @@
 # until Ctrl-C, with search, which browsers do not allow in files.  --no-fortran leaves out the pages
 # of the Fortran interface, which take the longest.
 set -euo pipefail
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+root=$(CDPATH='' cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
 build="$root/build"

@@ -3,7 +3,7 @@
 # first; the Python tools, which come over the network, follow.
 # Needs bash; sets `root`, the top of the source tree.
 
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+root=$(CDPATH='' cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 venv="$root/build/venv"
 . "$root/tools/help.sh"
 

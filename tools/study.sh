@@ -5,7 +5,7 @@
 # and charts in results/study-NAME (after tools/build.sh, --help lists the studies and explains all
 # options). Killed, it goes on with the same command.
 set -uo pipefail
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+root=$(CDPATH='' cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/tools/help.sh"
 python="$root/build/venv/bin/python"
 [ -x "$python" ] || help_or_go_on "$@"

@@ -7,14 +7,16 @@ module file_facts_m
   use kinds_m, only : long
   implicit none
   private
-  public :: file_facts_t, facts_of_name, facts_of_descriptor, what_hinders, is_same_file
+  public :: file_facts_t, facts_of_name, facts_of_target, facts_of_descriptor, what_hinders, &
+    is_same_file
 
   !> What is known of a file.
   type :: file_facts_t
     logical :: is_there = .false.
     logical :: is_regular = .false.
     integer :: kind = 0            !! bits of the kind, as in st_mode
-    integer(long) :: identity = 0  !! inode
+    integer(long) :: device = 0    !! of the file system
+    integer(long) :: identity = 0  !! inode, of its own within a device
     integer(long) :: n_name = 0    !! hard links; 0: removed while open
     integer(long) :: n_byte = 0    !! length
   end type file_facts_t
@@ -26,13 +28,13 @@ module file_facts_m
     integer(c_int32_t) :: n_link = 0, user = 0, group = 0
     integer(c_int16_t) :: mode = 0, spare_1 = 0
     integer(c_int64_t) :: inode = 0, size = 0
-    integer(c_int64_t) :: spare(26) = 0
+    integer(c_int64_t) :: skipped(11) = 0, device = 0, spare(14) = 0
   end type statx_t
 
-  !> Of the system: names from the present directory; no link is followed; the open file itself;
-  !> what is asked for (kind, links, inode, length).
-  integer(c_int), parameter :: present_directory = -100, no_follow = 256, open_file = 4096, &
-    wanted = ior(ior(1, 4), ior(256, 512))
+  !> Of the system: names from the present directory; links are followed or not; the open file
+  !> itself; what is asked for (kind, links, inode, length).
+  integer(c_int), parameter :: present_directory = -100, follow = 0, no_follow = 256, &
+    open_file = 4096, wanted = ior(ior(1, 4), ior(256, 512))
   !> Kinds (S_IFMT and so on).
   integer, parameter :: kind_bits = 61440, kind_pipe = 4096, kind_directory = 16384, &
     kind_regular = 32768, kind_link = 40960, kind_socket = 49152
@@ -59,6 +61,14 @@ contains
     facts = ask_system(present_directory, path, no_follow)
   end function facts_of_name
 
+  !> Facts of the file that a name leads to, over links too.
+  function facts_of_target(path) result(facts)
+    character(*), intent(in) :: path
+    type(file_facts_t) :: facts
+
+    facts = ask_system(present_directory, path, follow)
+  end function facts_of_target
+
   !> Facts of an open file.
   function facts_of_descriptor(descriptor) result(facts)
     integer(c_int), intent(in) :: descriptor
@@ -78,6 +88,7 @@ contains
     if (.not. facts%is_there) return
     facts%kind = iand(int(answer%mode), kind_bits)
     facts%is_regular = facts%kind == kind_regular
+    facts%device = int(answer%device, long)
     facts%identity = int(answer%inode, long)
     facts%n_name = int(answer%n_link, long)
     facts%n_byte = int(answer%size, long)
@@ -108,7 +119,8 @@ contains
     type(file_facts_t), intent(in) :: a, b
     logical :: same
 
-    same = a%is_there .and. b%is_there .and. a%identity == b%identity
+    same = a%is_there .and. b%is_there .and. a%identity == b%identity .and. &
+      a%device == b%device
   end function is_same_file
 
 end module file_facts_m

@@ -6,8 +6,7 @@
 module log_m
   use errors_m, only : error_t
   use screen_m, only : complain
-  use text_files_m, only : text_file_t, continue_text_file, empty_text_file, append_text, &
-    close_text_file
+  use text_files_m, only : text_file_t, continue_text_file, append_text, close_text_file
   implicit none
   private
   public :: log_t, open_log, write_log, warn, close_log, forget_waiting, to_text
@@ -40,8 +39,7 @@ contains
     logical, intent(in) :: goes_on
     type(error_t), allocatable, intent(out) :: error
 
-    call continue_text_file(log%file, path, error)
-    if (.not. allocated(error) .and. .not. goes_on) call empty_text_file(log%file, error)
+    call continue_text_file(log%file, path, goes_on, error)
     if (allocated(error)) return
     log%is_open = .true.
     if (allocated(log%waiting)) then

@@ -7,8 +7,8 @@ module sense_switch_m
   use text_m, only : upper_case
   implicit none
   private
-  public :: take_switch, forget_switch, switch_none, switch_dump_and_stop, switch_status, &
-    switch_dump, switch_plot, switch_stop, switch_flush, switch_unknown
+  public :: switch_path, take_switch, forget_switch, switch_none, switch_dump_and_stop, &
+    switch_status, switch_dump, switch_plot, switch_stop, switch_flush, switch_unknown
 
   !> What is asked for: nothing; sw1, sw2, sw3, sw4, stop, swa; a word that says nothing.
   integer, parameter :: switch_none = 0, switch_dump_and_stop = 1, switch_status = 2, &
@@ -21,6 +21,14 @@ module sense_switch_m
 
 contains
 
+  !> Where a request is looked for.
+  pure function switch_path(directory) result(path)
+    character(*), intent(in) :: directory !! of the results
+    character(:), allocatable :: path
+
+    path = join_path(directory, file_name)
+  end function switch_path
+
   !> What the file in this folder asks for; the file is removed. One without a word is left: it
   !> may be about to be written.
   subroutine take_switch(directory, switch)
@@ -31,9 +39,9 @@ contains
     integer :: unit, status, i
 
     switch = switch_none
-    if (.not. file_exists(join_path(directory, file_name))) return
-    if (is_endless(join_path(directory, file_name))) return
-    open (newunit=unit, file=join_path(directory, file_name), status='old', action='read', &
+    if (.not. file_exists(switch_path(directory))) return
+    if (is_endless(switch_path(directory))) return
+    open (newunit=unit, file=switch_path(directory), status='old', action='read', &
       recl=line_length, iostat=status)
     if (status /= 0) return
     read (unit, '(a)', iostat=status) line
@@ -45,7 +53,7 @@ contains
     do i = 1, size(words)
       if (line == words(i)) switch = i
     end do
-    call remove_file(join_path(directory, file_name), ignored)
+    call remove_file(switch_path(directory), ignored)
   end subroutine take_switch
 
   !> Remove a file that was meant for an earlier run.
@@ -53,7 +61,7 @@ contains
     character(*), intent(in) :: directory
     type(error_t), allocatable :: ignored
 
-    call remove_file(join_path(directory, file_name), ignored)
+    call remove_file(switch_path(directory), ignored)
   end subroutine forget_switch
 
 end module sense_switch_m

@@ -4,16 +4,16 @@ module text_files_m
   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_null_char, c_null_ptr, &
     c_ptr, c_size_t
   use c_files_m, only : c_creat, c_write, c_close, c_fopen, c_fileno, c_fclose, c_flock, &
-    c_ftruncate, system_reason, system_failure
+    system_reason, system_failure
   use errors_m, only : error_t, raise, status_files
   use file_facts_m, only : file_facts_t, facts_of_name, facts_of_descriptor, what_hinders, &
     is_same_file
-  use files_m, only : open_failure
+  use files_m, only : open_failure, remove_file, rename_file, unfinished
   use kinds_m, only : long
   implicit none
   private
-  public :: text_file_t, create_text_file, continue_text_file, empty_text_file, &
-    append_text, close_text_file, overwrite_start
+  public :: text_file_t, create_text_file, continue_text_file, append_text, close_text_file, &
+    overwrite_start
 
   !> Permissions of a new file, before the user's mask: rw for all.
   integer(c_int), parameter :: file_mode = 438_c_int
@@ -31,28 +31,61 @@ module text_files_m
 
 contains
 
-  !> Make a text file, empty; one of the same name is emptied. What is no regular file is refused:
-  !> to open a pipe could wait for ever, and a link leads elsewhere.
+  !> Make a text file, empty; one of the same name is removed before, so that other names of it
+  !> (hard links) keep what they have. What is no regular file is refused: to open a pipe could wait
+  !> for ever, and a link leads elsewhere.
   subroutine create_text_file(file, path, error)
     type(text_file_t), intent(out) :: file
     character(*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
 
     file%path = path
-    if (len(what_hinders(path)) == 0) file%descriptor = c_creat(path//c_null_char, file_mode)
+    if (len(what_hinders(path)) == 0) then
+      call remove_file(path, error)
+      if (allocated(error)) return
+      file%descriptor = c_creat(path//c_null_char, file_mode)
+    end if
     if (file%descriptor < 0) call raise(error, 'cannot write '//path//': '// &
       open_failure(path), status_files)
     file%n_byte = 0
   end subroutine create_text_file
 
-  !> Open a text file to write on behind what it holds, for this process alone as long as it is
-  !> open; it is made when there is none. The lock ends with the process, however that ends; where
-  !> the file system has no locks there is none.
-  subroutine continue_text_file(file, path, error)
+  !> Open a text file to write on behind what it holds, or from its start, for this process alone as
+  !> long as it is open; it is made when there is none. A file that holds something is not written
+  !> to: a copy, or an empty file, takes its place, so that other names of it keep what they have.
+  subroutine continue_text_file(file, path, keeps, error)
+    type(text_file_t), intent(out) :: file
+    character(*), intent(in) :: path
+    logical, intent(in) :: keeps !! what it holds
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: ignored
+    type(text_file_t) :: before
+    type(file_facts_t) :: facts
+
+    call open_alone(file, path, error)
+    if (allocated(error)) return
+    facts = facts_of_descriptor(file%descriptor)
+    if (facts%is_there .and. facts%n_byte == 0 .and. facts%n_name == 1) return
+    before = file
+    call remove_file(path//unfinished, error)
+    if (.not. allocated(error)) call open_alone(file, path//unfinished, error)
+    if (keeps .and. .not. allocated(error)) call copy_text(path, file, error)
+    if (.not. allocated(error)) call rename_file(path//unfinished, path, error)
+    if (allocated(error)) call remove_file(path//unfinished, ignored)
+    file%path = path
+    before%n_byte = -1
+    call close_text_file(before, ignored)
+  end subroutine continue_text_file
+
+  !> Open a file behind what it holds and lock it; it is made when there is none. The lock ends with
+  !> the process, however that ends; where the file system has no locks there is none. A file that
+  !> another one has replaced meanwhile is that of a run that has just begun.
+  subroutine open_alone(file, path, error)
     type(text_file_t), intent(out) :: file
     character(*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
     type(file_facts_t) :: facts
+    logical :: is_taken
 
     file%path = path
     if (len(what_hinders(path)) == 0) &
@@ -62,26 +95,40 @@ contains
       return
     end if
     file%descriptor = c_fileno(file%stream)
-    if (c_flock(file%descriptor, lock_alone) /= 0) then
-      if (system_failure() == is_locked) call raise(error, 'cannot write '//path//': another ' &
-        //'run that is going on has it open; give this one another name (jobid=) or folder (d=)', &
-        status_files)
-    end if
+    is_taken = c_flock(file%descriptor, lock_alone) /= 0
+    if (is_taken) is_taken = system_failure() == is_locked
     facts = facts_of_descriptor(file%descriptor)
-    if (facts%is_there) file%n_byte = facts%n_byte
-  end subroutine continue_text_file
+    if (facts%is_there) then
+      file%n_byte = facts%n_byte
+      is_taken = is_taken .or. .not. is_same_file(facts, facts_of_name(path))
+    end if
+    if (is_taken) call raise(error, 'cannot write '//path//': another run that is going on has ' &
+      //'it open; give this one another name (jobid=) or folder (d=)', status_files)
+  end subroutine open_alone
 
-  !> Take all out of a file that was opened to be continued.
-  subroutine empty_text_file(file, error)
+  !> Append what a file holds to one that is open.
+  subroutine copy_text(path, file, error)
+    character(*), intent(in) :: path
     type(text_file_t), intent(inout) :: file
     type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable :: text
+    integer(long) :: n_byte
+    integer :: unit, status
 
-    if (c_ftruncate(file%descriptor, 0_c_size_t) /= 0) then
-      call raise(error, 'cannot write '//file%path//': '//system_reason(), status_files)
-    else
-      file%n_byte = 0
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
+      action='read', iostat=status)
+    if (status == 0) then
+      inquire (unit=unit, size=n_byte)
+      allocate (character(n_byte) :: text)
+      read (unit, iostat=status) text
+      close (unit)
     end if
-  end subroutine empty_text_file
+    if (status == 0) then
+      call append_text(file, text, error)
+    else
+      call raise(error, 'cannot read '//path//', behind which the run would write', status_files)
+    end if
+  end subroutine copy_text
 
   !> Append text as it is, line ends included, with one system call as long as the system takes all.
   !> Fails too where the file is no longer what this program has written.

@@ -11,7 +11,7 @@ module deck_m
   use model_m, only : model_t
   use deck_findings_m, only : list_findings
   use deck_report_m, only : emit_warnings, emit_errors
-  use deck_lines_m, only : deck_t, line_error, line_warning, shown_text
+  use deck_lines_m, only : deck_t, line_error, line_warning, shown_text, file_paths
   use deck_choose_case_m, only : choose_case
   use deck_reader_m, only : read_blocks, cut_deck
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
@@ -65,6 +65,7 @@ module deck_m
     type(deck_t), allocatable :: deck         !! where it has been read and cut; reading takes it
     integer :: case = 0                       !! of *CASE, 0: a deck without cases
     character(:), allocatable :: refusal      !! why the cases can not run as they are asked for
+    character(:), allocatable :: files(:)     !! that have been read: the deck, what it includes
   end type deck_request_t
 
 contains
@@ -94,6 +95,7 @@ contains
       if (present(findings)) findings = ''
       if (allocated(error)) return
     end if
+    if (.not. allocated(request%text)) request%files = file_paths(deck)
     if (deck%cases%found .or. request%case > 0) call choose_case(deck, request%case, &
       request%refusal, log)
     call interpret_deck(deck, request, kinds, log, model, effective, error)

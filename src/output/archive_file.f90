@@ -6,7 +6,7 @@
 module archive_file_m
   use, intrinsic :: iso_c_binding, only : c_ptr
   use hdf5, only : hid_t, hsize_t, haddr_t, size_t, H5S_NULL_F, H5S_SIMPLE_F, &
-    H5D_CONTIGUOUS_F, H5L_TYPE_HARD_F, h5dclose_f, h5dcreate_f, &
+    H5D_CHUNKED_F, H5D_COMPACT_F, H5D_CONTIGUOUS_F, H5L_TYPE_HARD_F, h5dclose_f, h5dcreate_f, &
     h5dget_create_plist_f, h5dget_space_f, h5dget_storage_size_f, h5dget_type_f, h5dopen_f, &
     h5dread_f, h5dwrite_f, h5lexists_f, h5lget_info_f, h5pclose_f, h5pget_external_count_f, &
     h5pget_layout_f, h5sclose_f, h5screate_f, h5screate_simple_f, h5sget_simple_extent_dims_f, &
@@ -18,7 +18,7 @@ module archive_file_m
   implicit none
   private
   public :: archive_t, enter, leave, fail_archive, refuse, put_array, open_array, &
-    get_values, close_array, is_hard
+    get_values, close_array, is_hard, is_stored_within
 
   !> Most dimensions that an array has in HDF5.
   integer, parameter :: most_dims = 32
@@ -196,6 +196,22 @@ contains
       kind_of_link, address, length, status)
     is_hard = status >= 0 .and. kind_of_link == H5L_TYPE_HARD_F
   end function is_hard
+
+  !> Whether the values of an open dataset lie in the file itself: no outer storage, and no virtual
+  !> dataset, which has those of others.
+  function is_stored_within(dataset)
+    integer(hid_t), intent(in) :: dataset
+    logical :: is_stored_within
+    integer(hid_t) :: creation
+    integer :: status(3), layout, n_outside, ignored
+
+    call h5dget_create_plist_f(dataset, creation, status(1))
+    call h5pget_layout_f(creation, layout, status(2))
+    call h5pget_external_count_f(creation, n_outside, status(3))
+    is_stored_within = minval(status) >= 0 .and. n_outside == 0 .and. &
+      any(layout == [H5D_COMPACT_F, H5D_CONTIGUOUS_F, H5D_CHUNKED_F])
+    call h5pclose_f(creation, ignored)
+  end function is_stored_within
 
   !> What an open dataset is: readable when it holds numbers of this kind as this program writes
   !> them, all of them within the file.

@@ -50,6 +50,8 @@ contains
         //what_hinders(path//unfinished), status_files)
       return
     end if
+    call remove_file(path//unfinished, archive%error)
+    if (allocated(archive%error)) return
     call open_library(status(1))
     call h5pcreate_f(H5P_FILE_CREATE_F, creation, status(2))
     call h5pset_userblock_f(creation, int(head_size, hsize_t), status(3))

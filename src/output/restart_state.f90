@@ -11,6 +11,7 @@ module restart_state_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use others_memory_m, only : others_t, forget_nodes, forget_slots
+  use relaxation_state_m, only : relaxation_state_t
   use restart_contact_m, only : keep_contact
   use rigid_state_m, only : rigid_state_t
   use state_m, only : state_t
@@ -54,6 +55,7 @@ contains
     call keep(archive, 'former_dt', state%former_dt)
     call keep(archive, 'acceleration', state%acceleration)
     call keep_fixed(archive, 'body_acceleration', state%body_acceleration)
+    call keep_relaxation(archive, 'relaxation', state%relaxation)
     call keep_elements(archive, 'elements', state%elements, others)
     call keep_contacts(archive, 'contacts', state)
     call keep_estimates(archive, 'estimates', state)
@@ -73,6 +75,20 @@ contains
     call keep(archive, 'largest_energy', state%largest_energy)
     call leave(archive)
   end subroutine keep_state
+
+  !> The phase before time zero, where it goes on.
+  subroutine keep_relaxation(archive, name, relaxation)
+    type(archive_t), intent(inout) :: archive
+    character(*), intent(in) :: name
+    type(relaxation_state_t), intent(inout) :: relaxation
+
+    call enter(archive, name)
+    call keep(archive, 'n', relaxation%n)
+    call keep(archive, 'time', relaxation%time)
+    call keep(archive, 'most', relaxation%most)
+    call keep_growing(archive, 'velocity', relaxation%velocity)
+    call leave(archive)
+  end subroutine keep_relaxation
 
   !> Vectors that a history asks for. The run that goes on may ask for them anew: they begin at 0
   !> then.

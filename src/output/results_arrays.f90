@@ -16,7 +16,7 @@ module results_arrays_m
   use kinds_m, only : wp, long
   use errors_m, only : error_t, raise, status_files
   use file_facts_m, only : file_facts_t, what_hinders
-  use files_m, only : unfinished
+  use files_m, only : remove_file, unfinished
   use mesh_m, only : mesh_t
   use controls_m, only : controls_t
   use hdf5_library_m, only : open_library
@@ -122,6 +122,8 @@ contains
 
     call refuse_name(file%path, error)
     if (.not. allocated(error)) call refuse_name(file%path//unfinished, error)
+    if (allocated(error)) return
+    call remove_file(file%path//unfinished, error)
     if (allocated(error)) return
     call open_library(status(1))
     call h5pcreate_f(H5P_FILE_CREATE_F, creation, status(2))

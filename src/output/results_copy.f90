@@ -4,8 +4,9 @@
 module results_copy_m
   use, intrinsic :: iso_c_binding, only : c_ptr, c_loc
   use hdf5, only : hid_t, hsize_t, H5F_ACC_RDONLY_F, H5S_SELECT_SET_F, h5dclose_f, h5dget_space_f, &
-    h5dopen_f, h5dread_f, h5fclose_f, h5fopen_f, h5sclose_f, h5screate_simple_f, &
+    h5dopen_f, h5dread_f, h5fclose_f, h5fopen_f, h5lexists_f, h5sclose_f, h5screate_simple_f, &
     h5sget_simple_extent_dims_f, h5sget_simple_extent_ndims_f, h5sselect_hyperslab_f
+  use archive_file_m, only : archive_t, is_hard, is_stored_within
   use errors_m, only : error_t, raise, status_files, status_input
   use files_m, only : file_exists
   use hdf5_library_m, only : open_library
@@ -41,6 +42,11 @@ contains
     call h5fopen_f(path, H5F_ACC_RDONLY_F, id, status)
     fits = status >= 0
     if (fits) then
+      call check_own_arrays(id, path, error)
+      if (allocated(error)) then
+        call h5fclose_f(id, status)
+        return
+      end if
       n_state = row_count(id, 'VTKHDF/Steps/Values')
       n_point = row_count(id, 'VTKHDF/PointData/node_id')
       fits = n_state >= size(times) .and. n_point == n_node
@@ -54,6 +60,67 @@ contains
     if (.not. fits) call raise(error, path//' does not hold the states before the restart: it is ' &
       //'of another run, or damaged; move it away, or give another folder by d=', status_input)
   end subroutine check_old_results
+
+  !> Refuse a file of which an array lies elsewhere: in another file, by a link or as a virtual
+  !> dataset, or in outer storage. It would get into the results of this run.
+  subroutine check_own_arrays(id, path, error)
+    integer(hid_t), intent(in) :: id       !! open file
+    character(*), intent(in) :: path       !! for messages
+    type(error_t), allocatable, intent(out) :: error
+    integer :: i
+
+    call check_own('Steps/Values')
+    call check_own('PointData/node_id')
+    call check_own(point_names(1))
+    do i = 2, size(point_names)
+      call check_own('PointData/'//point_names(i))
+    end do
+    do i = 1, size(cell_names)
+      call check_own('CellData/'//cell_names(i))
+    end do
+
+  contains
+
+    subroutine check_own(name)
+      character(*), intent(in) :: name
+
+      if (allocated(error) .or. is_own(id, 'VTKHDF/'//trim(name))) return
+      call raise(error, path//' is refused: its VTKHDF/'//trim(name)//' is not stored in it, but ' &
+        //'a link, a virtual dataset or outer storage; move it away, or give another folder by ' &
+        //'d=', status_input)
+    end subroutine check_own
+
+  end subroutine check_own_arrays
+
+  !> Whether an array is stored in the file itself, as are the groups that it lies in; an array that
+  !> is not there at all is.
+  function is_own(id, path)
+    integer(hid_t), intent(in) :: id       !! open file
+    character(*), intent(in) :: path
+    logical :: is_own
+    type(archive_t) :: file
+    integer(hid_t) :: dataset
+    integer :: i, n, status
+    logical :: found
+
+    file%id = id
+    file%folder = ''
+    is_own = .true.
+    n = 0
+    do
+      i = index(path(n + 1:)//'/', '/')
+      n = n + i
+      call h5lexists_f(id, path(:n - 1), found, status)
+      if (status < 0 .or. .not. found) return
+      is_own = is_hard(file, path(:n - 1))
+      if (n > len(path) .or. .not. is_own) exit
+    end do
+    if (.not. is_own) return
+    call h5dopen_f(id, path, dataset, status)
+    if (status < 0) return
+    is_own = is_stored_within(dataset)
+    call h5dclose_f(dataset, status)
+  end function is_own
 
   !> Rows of a dataset, -1 when there is none.
   function row_count(id, name) result(n)

@@ -35,6 +35,7 @@ contains
     call require(archive, 'state/dt', state%dt > 0.0_wp, 'a step that is not positive')
     call require(archive, 'state/dt_before', state%dt_before >= 0.0_wp, 'a step below zero')
     call require(archive, 'state/mass', all(state%mass >= 0.0_wp), 'masses below zero')
+    call check_relaxation(model, state, archive)
     do i = 1, size(state%contacts)
       if (model%erodes) then
         call check_contact(state%outlines(i), model%mesh%n_node, state%contacts(i), &
@@ -45,6 +46,27 @@ contains
       end if
     end do
   end subroutine check_state
+
+  !> The phase before time zero: one that the deck has, with a velocity of each node.
+  subroutine check_relaxation(model, state, archive)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(archive_t), intent(inout) :: archive
+    logical :: fits
+
+    associate (relaxation => state%relaxation)
+      call require(archive, 'state/relaxation/n', relaxation%n == 0 .or. (relaxation%n > 0 .and. &
+        model%controls%relaxation%is_on), 'a phase that the deck does not ask for')
+      call require(archive, 'state/relaxation/time', relaxation%time >= 0.0_wp, 'a time below zero')
+      fits = allocated(relaxation%velocity) .eqv. relaxation%n > 0
+      if (fits .and. relaxation%n > 0) fits = all(shape(relaxation%velocity) == &
+        [2, size(state%motion, 2)])
+      call require(archive, 'state/relaxation/velocity', fits, 'another number of velocities ' &
+        //'than there are nodes')
+      call require(archive, 'state/time', relaxation%n == 0 .or. .not. state%time > 0.0_wp, &
+        'a time after that of the relaxation')
+    end associate
+  end subroutine check_relaxation
 
   !> The memory of one interface.
   subroutine check_contact(contact, n_node, memory, folder, archive)

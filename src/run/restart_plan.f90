@@ -24,6 +24,7 @@ module restart_plan_m
     character(:), allocatable :: job       !! stem of the result files
     character(:), allocatable :: prefix    !! directory and job name
     character(:), allocatable :: deck      !! file name of the deck
+    character(:), allocatable :: inputs(:) !! paths of the deck and of what it includes
     character(:), allocatable :: program   !! version and build
     character(:), allocatable :: effective_deck_checksum !! of the file `<prefix>.effective.k`
     logical :: is_implicit = .false.       !! method of the run
@@ -74,6 +75,8 @@ contains
     character(:), allocatable :: text
 
     text = ' at time '//to_text(state%time)//', cycle '//to_text(state%cycle)
+    if (state%relaxation%n > 0) text = ' in dynamic relaxation, after ' &
+      //to_text(state%relaxation%n)//' cycles'
   end function place_text
 
   !> Which kinds of files are due before cycle `cycle`: at their intervals; before the last cycle

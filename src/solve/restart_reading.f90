@@ -143,7 +143,7 @@ contains
       output_reach(model%controls, state%dt_before), planned)
     if (model%controls%implicit%is_on) then
       call check_memory(model, state, source)
-    else
+    else if (state%relaxation%n == 0) then
       call check_steps(model, state, source)
     end if
     if (allocated(source%error)) error = source%error

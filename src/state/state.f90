@@ -12,6 +12,7 @@ module state_m
   use contact_estimate_m, only : contact_estimate_t
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
+  use relaxation_state_m, only : relaxation_state_t
   use rigid_state_m, only : rigid_state_t
   use wall_state_m, only : wall_state_t
   implicit none
@@ -46,6 +47,7 @@ module state_m
     real(wp), allocatable :: acceleration(:, :) !! (2, n_node) of the implicit driver, whose v and a
                                                 !! belong to the instant of u
     real(wp) :: body_acceleration(2) = 0.0_wp  !! of *LOAD_BODY at `time`
+    type(relaxation_state_t) :: relaxation     !! of the phase before time zero
     type(block_state_t) :: elements
     type(contact_state_t), allocatable :: contacts(:)
     type(contact_estimate_t), allocatable :: estimates(:) !! of the interfaces of the deck

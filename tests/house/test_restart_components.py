@@ -14,6 +14,7 @@ KEPT = {
         "estimates": "kept one by one",
         "boundary_since": "of this run, where the file has no works",
         "outlines": "made of the deck and the status of elements"}),
+    "relaxation_state_t": ("state/relaxation_state.f90", "output/restart_state.f90", "relaxation%", {}),
     "erosion_state_t": ("state/erosion_state.f90", "output/restart_state.f90", "erosion%", {}),
     "rigid_state_t": ("state/rigid_state.f90", "output/restart_state.f90", "rigid%", {}),
     "wall_state_t": ("state/wall_state.f90", "output/restart_state.f90", "wall%", {}),

@@ -68,6 +68,9 @@ def test_contact_lets_go(slideline, tmp_path):
     times = numbers(tmp_path / "out" / "job.rcforc.csv", "time")[::2]
     last = times[force > 0.0].max()
     assert last > 0.005 and time == pytest.approx(last + 0.002, abs=3.1e-4)
+    # The rest before the first contact does not count to that after it.
+    rested = check_end(slideline, tmp_path, text.replace("*END", "*TERMINATION_CONTACT\n1,0.0,0.003\n*END"), "bears no force", "rested")
+    assert rested == pytest.approx(last + 0.003, abs=3.1e-4)
     at_once = check_end(slideline, tmp_path, text.replace("*END", "*TERMINATION_CONTACT\n1,0.0\n*END"), "bears no force", "once")
     assert at_once <= 2.1e-4
     never = slideline("d=never", "endtim=0.01", deck=text.replace("*END", "*TERMINATION_CONTACT\n1,0.3\n*END"))

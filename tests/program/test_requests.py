@@ -208,3 +208,60 @@ def test_log_names_masses_and_the_elements_that_rule_the_step(slideline, tmp_pat
         assert np.array(steps) / steps[0] == pytest.approx(np.sort(sizes)[:10] / 0.1, rel=1e-6)
     first = float(re.search(r"smallest L/c of the elements (\S+)", log).group(1))
     assert steps[0] == pytest.approx(first, rel=1e-6)
+
+
+def relaxing(points, most_time):
+    """A column that comes to rest very slowly under its weight; the phase ends by DRTERM. Velocities begin with the run."""
+    deck = Deck("relaxing")
+    deck.add("*CONTROL_TERMINATION", (0.05,)).add("*CONTROL_TIMESTEP", (0.0, 0.9)).hourglass(4, 0.1)
+    deck.part(points=points).add("*MAT_PLASTIC_KINEMATIC", (1, 1000.0, 1.0e6, 0.25, 300.0, 1.0e5))
+    nodes = deck.mesh(*grid(2, 8, 0.5, 2.0))
+    deck.fix(nodes[:3], x=1, y=1).node_set(1, nodes).add("*INITIAL_VELOCITY", (1,), (0.01, 0.0))
+    deck.add("*DEFINE_CURVE", (1, 2), (0.0, 0.05), (1.0e4, 1.0)).add("*LOAD_BODY_Y", (1, 1.0))
+    deck.add("*CONTROL_DYNAMIC_RELAXATION", (1000, 1.0e-12, 0.99999, most_time))
+    deck.output(plot=0.01, glstat=0.001, nodout=0.001, nodes=nodes)
+    return deck.add("*DATABASE_BINARY_D3DUMP", (1000000,)).text()
+
+
+@pytest.mark.parametrize("points", [None, 4])
+def test_dynamic_relaxation_hears(exe, tmp_path, points):
+    """A restart file of the phase goes on to the bits of the whole run, whether it was asked for or left by a stop; sense
+    switches are heard too."""
+    def start(name, most_time=600.0):
+        (tmp_path / "job.k").write_text(relaxing(points, most_time))
+        process = subprocess.Popen([exe, "i=job.k", f"d={name}"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   text=True)
+        wait_for((tmp_path / name / "job.nodout.csv").exists)
+        return process
+
+    def on(file, name):
+        with h5py.File(file) as stream:
+            assert stream["state/relaxation/n"][()] > 0, "the phase was over"
+        done = subprocess.run([exe, f"r={file}", f"d={name}"], cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    whole = start("whole")
+    whole.send_signal(signal.SIGUSR1)
+    said, complaint = whole.communicate(timeout=60)
+    assert whole.returncode == 0 and "job.dump01.h5 in dynamic relaxation, after" in said, complaint
+    on(tmp_path / "whole" / "job.dump01.h5", "asked")
+    for name, act in (("term", signal.SIGTERM), ("int", signal.SIGINT), ("stop", None)):
+        process = start(name, 600.0 if act else 1.0e6)
+        if act:
+            process.send_signal(act)
+        else:
+            ask(tmp_path / name, "stop")
+        said, complaint = process.communicate(timeout=60)
+        assert process.returncode == 4, complaint
+        assert "stopped on request in dynamic relaxation" in said and "N o r m a l" in said and "E r r o r" not in said
+        assert status(tmp_path / name / "status.out")["state"].startswith("normal termination: stopped on request")
+        assert not list((tmp_path / name).glob("job.vtkhdf*"))
+        if act:
+            on(tmp_path / name / "job.dump01.h5", name)
+    for name in ("asked", "term", "int"):
+        for table in ("glstat", "nodout"):
+            assert (tmp_path / name / f"job.{table}.csv").read_bytes() == (tmp_path / "whole" / f"job.{table}.csv").read_bytes()
+        with h5py.File(tmp_path / name / "job.vtkhdf") as one, h5py.File(tmp_path / "whole" / "job.vtkhdf") as two:
+            for field in ("Steps/Values", "Points", "PointData/velocity", "CellData/stress"):
+                assert np.array_equal(one[f"VTKHDF/{field}"][()], two[f"VTKHDF/{field}"][()]), field

@@ -49,6 +49,7 @@ def test_files_made_by_hand(exe, checked, tmp_path, scene):
 
 #: dataset -> (new content, word of the message)
 LIES = {
+    "state/relaxation/n": (lambda old: old * 0 + 5, "the deck does not ask for"),
     "state/contacts/1/slave_tracking/segment": (lambda old: old * 0 + 10**6, "no segment has"),
     "state/contacts/1/slave_tracking/touching": (lambda old: old * 0 + 2**30, "no spot has"),
     "state/contacts/1/slave_tracking/n_touching": (lambda old: old + 1, "spots"),
@@ -136,6 +137,43 @@ def test_states_of_another_run_are_not_taken(exe, job, tmp_path, place):
     done = subprocess.run([exe, f"r={dump}"], cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 1 and "does not hold the states before the restart" in done.stderr, done.stderr
     assert (folder / "job.vtkhdf").read_bytes() == before
+
+
+def outside(stream, way):
+    """Put what lies in another file, or elsewhere in this one, in the place of a field."""
+    values = stream["VTKHDF/CellData/mises"]
+    shape, name = values.shape, "VTKHDF/CellData/mises"
+    if way == "group":
+        name = "VTKHDF/CellData"
+    elif way == "offsets":
+        name = "VTKHDF/Steps/Values"
+    del stream[name]
+    if way == "virtual":
+        layout = h5py.VirtualLayout(shape, "<f8")
+        layout[:] = h5py.VirtualSource("elsewhere.h5", name, shape)
+        stream.create_virtual_dataset(name, layout)
+    elif way == "storage":
+        stream.create_dataset(name, shape, "<f8", external=[("elsewhere.bin", 0, h5py.h5f.UNLIMITED)])
+    elif way == "soft":
+        stream[name] = h5py.SoftLink("/VTKHDF/CellData/pressure")
+    else:
+        stream[name] = h5py.ExternalLink("elsewhere.h5", name)
+
+
+@pytest.mark.parametrize("way", ["link", "group", "offsets", "soft", "virtual", "storage"])
+def test_a_results_file_does_not_lead_elsewhere(exe, job, tmp_path, way):
+    """Fields that a run would take over from other files: refused before anything is written, as in restart files."""
+    folder = tmp_path / "again"
+    shutil.copytree(job.whole, folder)
+    shutil.copy(folder / "job.vtkhdf", folder / "elsewhere.h5")
+    (folder / "elsewhere.bin").write_bytes(bytes(10 ** 6))
+    with h5py.File(folder / "job.vtkhdf", "r+") as stream:
+        outside(stream, way)
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    dump = sorted(folder.glob("job.dump*.h5"))[1]
+    done = subprocess.run([exe, f"r={dump}"], cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 1 and "is not stored in it" in done.stderr, done.stderr
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
 
 
 #: stands between program and C library: the call number FAULT_AT of a kind for restart files fails

@@ -96,6 +96,78 @@ def test_a_hard_link_or_a_folder_that_is_a_link_serves(exe, deck, whole):
     assert (deck / "real" / "job.glstat.csv").read_bytes() == (whole / "job.glstat.csv").read_bytes()
 
 
+def test_no_result_is_written_through_a_hard_link(exe, deck, whole):
+    """After cp -al of a folder the other names keep what they have, whether the run begins anew or goes on."""
+    for words in (["i=job.k", "endtim=0.011"], ["r=again/job.dump03.h5"]):
+        shutil.rmtree(deck / "again", ignore_errors=True)
+        shutil.rmtree(deck / "kept", ignore_errors=True)
+        shutil.copytree(whole, deck / "again")
+        (deck / "again" / "job.vtkhdf.part").write_text("left by a killed run\n")
+        (deck / "again" / "job.dump60.h5.part").write_text("behind a gap\n")
+        shutil.copytree(deck / "again", deck / "kept", copy_function=os.link)
+        before = {path.name: path.read_bytes() for path in (deck / "kept").iterdir()}
+        done = run(exe, deck, *words, "d=again")
+        assert done.returncode == 0, done.stderr
+        assert {path.name: path.read_bytes() for path in (deck / "kept").iterdir()} == before
+        kept, now = before["job.log"], (deck / "again" / "job.log").read_bytes()
+        assert now.startswith(kept) == words[0].startswith("r=") and now.count(b"N o r m a l") == 1 + now.startswith(kept)
+
+
+@pytest.mark.parametrize("name", ["job.log", "job.effective.k", "job.glstat.csv", "job.glstat", "job.timing.csv", "job.vtkhdf",
+                                  "status.out", "job.status.out.part", "job.runrsf.h5", "job.dump02.h5", "d3kil"])
+@pytest.mark.parametrize("way", ["deck", "included", "linked"])
+def test_a_file_that_the_run_reads_is_no_name_of_a_result(exe, deck, name, way):
+    """By whatever path; refused before anything is written."""
+    folder = deck / "own"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    shutil.copy(deck / "job.k", folder / name)
+    word = f"i=./own/{name}"
+    if way == "included":
+        (folder / "job.k").write_text(f"*KEYWORD\n*INCLUDE\n{name}\n*END\n")
+        word = "i=own/job.k"
+    elif way == "linked":
+        (deck / "own.k").unlink(missing_ok=True)
+        (deck / "own.k").symlink_to(folder / name)
+        word = "i=own.k"
+    before = snapshot(folder)
+    done = run(exe, deck, word, "d=own", "jobid=job")
+    assert done.returncode == 3 and name in done.stderr and "which this run reads" in done.stderr, done.stderr
+    assert snapshot(folder) == before
+    done = run(exe, deck, word, "d=other", "jobid=job")
+    assert done.returncode == 0, "another folder is no matter"
+
+
+def test_a_restart_file_is_no_name_of_a_result(exe, deck, whole):
+    """But for the running one, which is replaced, and the numbers that are past; the deck of changes is looked at too."""
+    (deck / "more.k").write_text("*KEYWORD\n*CONTROL_TERMINATION\n0.021\n*END\n")
+    for source, name, changes, status in (("job.dump03.h5", "job.dump03.h5", "more.k", 0), ("job.runrsf.h5",) * 2 + ("more.k", 0),
+                                          ("job.dump03.h5", "job.dump05.h5", "more.k", 3),
+                                          ("job.dump03.h5", "job.timing.csv", "more.k", 3),
+                                          ("job.dump03.h5", "job.dump03.h5", "own/job.timing.csv", 3)):
+        shutil.rmtree(deck / "own", ignore_errors=True)
+        shutil.copytree(whole, deck / "own")
+        if name != source:
+            shutil.copy(whole / source, deck / "own" / name)
+        if changes != "more.k":
+            shutil.copy(deck / "more.k", deck / changes)
+        before = snapshot(deck / "own")
+        done = run(exe, deck, f"r=own/{name}", f"i={changes}", "d=own")
+        assert done.returncode == status, (name, changes, done.stderr)
+        assert status == 0 or "which this run reads" in done.stderr and snapshot(deck / "own") == before, done.stderr
+
+
+def test_the_cases_of_a_deck_look_at_names_before_the_first_runs(exe, deck):
+    folder = deck / "cases"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    (folder / "case2.effective.k").write_text(drop(end_time=0.002).text().rsplit("*END", 1)[0])
+    (folder / "c.k").write_text("*KEYWORD\n*CASE\n1\n\n*CASE\n2\n\n*INCLUDE\ncase2.effective.k\n*END\n")
+    done = run(exe, folder, "i=c.k", "case")
+    assert done.returncode == 3 and "case 2" in done.stderr and "case 1" not in done.stderr, done.stderr
+    assert sorted(path.name for path in folder.iterdir()) == ["c.k", "case2.effective.k"]
+
+
 @pytest.fixture
 def slow(exe, deck):
     """A run that goes on until it is ended."""

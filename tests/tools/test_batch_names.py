@@ -233,3 +233,55 @@ def test_comparison_of_names_that_are_alike(place):
     (place / "kept" / "x\ny.csv").write_text("time\n")
     done = call(place, "compare_folder.sh", "new", "kept", TOOLS=str(tool))
     assert done.returncode == 2 and "control character" in done.stderr
+
+
+@pytest.mark.parametrize("script, words", [("run_folder.sh", ["E=200"]), ("run_folder.sh", ["-o", "mu=0.3", "E=200"]),
+                                           ("sweep.sh", ["-o", "mu=0.3", "E=200/a.k", "ctype=1,2"])])
+def test_a_folder_with_a_name_like_an_assignment(place, script, words):
+    """awk takes NAME=VALUE for an assignment, and reads its standard input instead."""
+    deck(place / "E=200" / "a.k")
+    deck(place / "E=200" / "b.k", more="*INCLUDE\n-\n")
+    done = call(place, script, *words)
+    assert done.returncode == 0, done.stderr
+    results = place / (words[1] if len(words) > 1 else "E=200/results")
+    assert list(statuses(results).values()) == ["0", "0"]
+
+
+@pytest.mark.parametrize("included", ["pipe", "/dev/zero"])
+def test_a_deck_that_includes_no_file_holds_no_batch(place, included):
+    os.mkfifo(place / "pipe")
+    deck(place / "decks" / "it's a.k", more="*INCLUDE\nit's b.k\n")
+    deck(place / "decks" / "it's b.k", 1)
+    deck(place / "decks" / "z.k", 1, more=f"*INCLUDE\n{included}\n")
+    done = call(place, "run_folder.sh", "decks")
+    assert statuses(place / "decks" / "results") == {"it's a": "0", "z": "1"}, done.stderr
+
+
+@pytest.mark.parametrize("signal_is", ["-", "''"], ids=["killed", "refused"])
+def test_a_table_that_can_not_be_written_leaves_the_old_one(place, signal_is):
+    """The largest file size stands for a full disk; the table on the screen is whole."""
+    deck(place / "decks" / "a.k")
+    assert call(place, "run_folder.sh", "decks").returncode == 0
+    results = place / "decks" / "results"
+    before = (results / "summary.csv").read_bytes()
+    done = subprocess.run(["sh", "-c", f"trap {signal_is} XFSZ; ulimit -f 0; exec \"$@\"", "sh", BATCH / "run_list.sh",
+                           "--collect", results / "list.txt", results], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 1 and "normal" in done.stdout and "summary.csv: can not be written" in done.stderr, done.stderr
+    assert (results / "summary.csv").read_bytes() == before and not (results / "summary.csv.new").exists()
+
+
+def test_a_search_path_for_folders_is_no_matter(place):
+    """With CDPATH the shell prints where `cd` has gone."""
+    deck(place / "decks" / "a.k")
+    done = subprocess.run(["tools/batch/run_folder.sh", place / "decks"], cwd=BATCH.parents[1], capture_output=True, text=True,
+                          env={**os.environ, "SLIDELINE": str(place / "the program"), "CDPATH": f"{place}:."}, timeout=60)
+    assert done.returncode == 0 and statuses(place / "decks" / "results") == {"a": "0"}, done.stderr
+
+
+@pytest.mark.parametrize("name", ["!", "(", "-type", "kept=1"])
+def test_comparison_of_folders_with_names_that_find_knows(place, name):
+    for folder in ("new", name):
+        (place / folder).mkdir()
+        (place / folder / "a.csv").write_text("time\n0.0\n")
+    assert "1 agreed" in call(place, "compare_folder.sh", "new", name, TOOLS="true").stdout
+    assert "1 agreed" in call(place, "compare_folder.sh", name, "new", TOOLS="true").stdout

@@ -143,3 +143,51 @@ def test_what_no_reader_has_noticed_is_one_line_too(monkeypatch, sound, capsys):
     monkeypatch.setenv("SLIDELINE_TRACEBACK", "1")
     with pytest.raises(ZeroDivisionError):
         cli.main(["info", str(sound)])
+
+
+#: what a tool writes, beside the run
+WRITERS = {"report": ("report", ".report.html"), "binout": ("binout", ".binout0000"), "d3plot": ("d3plot", ".d3plot"),
+           "d3plot01": ("d3plot", ".d3plot01")}
+
+
+@pytest.mark.parametrize("kind, ending", [("pipe", ".vtkhdf"), ("pipe", ".log"), ("pipe", ".effective.k"),
+                                          ("device", ".glstat.csv")])
+def test_no_tool_waits_at_what_is_no_file(damaged, capsys, kind, ending):
+    from slideline_tools import cli
+    path, run = damaged / f"{fuzz.JOB}{ending}", str(damaged / f"{fuzz.JOB}.vtkhdf")
+    path.unlink(missing_ok=True)
+    if kind == "pipe":
+        os.mkfifo(path)
+    else:
+        path.symlink_to("/dev/zero")
+    for tool in ("report", "binout"):
+        assert cli.main([tool, run]) in (0, 2)
+    assert "Traceback" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_no_tool_writes_through_links(damaged, capsys, name):
+    """As the program: a symbolic link and a pipe are refused, other names of a file (hard links) keep what they have."""
+    from slideline_tools import cli
+    tool, ending = WRITERS[name]
+    path, mine, run = damaged / f"{fuzz.JOB}{ending}", damaged / "mine", str(damaged / f"{fuzz.JOB}.vtkhdf")
+    mine.write_text("mine\n")
+    path.symlink_to(mine)
+    assert cli.main([tool, run]) == 2 and "is a symbolic link" in capsys.readouterr().err
+    path.unlink()
+    os.mkfifo(path)
+    assert cli.main([tool, run]) == 2 and "is a pipe" in capsys.readouterr().err
+    path.unlink()
+    os.link(mine, path)
+    assert cli.main([tool, run]) == 0
+    assert mine.read_text() == "mine\n" and path.stat().st_size > 10
+
+
+@pytest.mark.parametrize("tool", ["report", "binout", "d3plot", "plot"])
+def test_no_tool_writes_over_what_it_reads(damaged, capsys, tool):
+    from slideline_tools import cli
+    path = damaged / f"{fuzz.JOB}.vtkhdf"
+    before = path.read_bytes()
+    (damaged / "again.png").symlink_to(damaged)
+    assert cli.main([tool, str(path), "-o", str(damaged / "again.png" / path.name)]) == 2
+    assert "which is read" in capsys.readouterr().err and path.read_bytes() == before

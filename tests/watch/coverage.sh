@@ -6,7 +6,7 @@
 # (FOLDER/coverage.txt). PYTHON names the Python with the tools' packages (build/venv/bin/python), JOBS how many
 # tests run side by side. A test that fails here is only reported: a few judge times or the last bits of Release.
 set -euo pipefail
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+here=$(CDPATH='' cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"

@@ -6,7 +6,7 @@
 # predicts beside what was saved. With an argument, the page goes to results/batch/advise/doc.
 set -eu
 
-root=$(cd "$(dirname "$0")/../.." && pwd)
+root=$(CDPATH='' cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
 out=$results/batch/advise

@@ -7,7 +7,7 @@
 # minutes for the retired instructions, which are counted where the machine can (tools/slideline_tools/counting.py).
 set -eu
 
-root=$(cd "$(dirname "$0")/../.." && pwd)
+root=$(CDPATH='' cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
 . "$root/tools/batch/lists.sh"

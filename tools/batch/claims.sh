@@ -5,7 +5,7 @@
 # results of block.sh, sliding.sh and of tools/study.sh paper-tables. A few seconds.
 set -eu
 
-root=$(cd "$(dirname "$0")/../.." && pwd)
+root=$(CDPATH='' cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
 out=$results/batch/claims

@@ -7,7 +7,7 @@
 # 2 some are missing or can not be compared, or there is nothing to compare.
 set -eu
 
-here=$(cd "$(dirname "$0")" && pwd)
+here=$(CDPATH='' cd "$(dirname "$0")" && pwd)
 . "$here/../help.sh"
 . "$here/lists.sh"
 help_or_go_on "$@"
@@ -29,8 +29,9 @@ for folder in "$results" "$references"; do
   [ -d "$folder" ] || { echo "$folder: no such folder" >&2 && exit 2; }
 done
 
-case $results in -*) results=./$results ;; esac
-case $references in -*) references=./$references ;; esac
+# find takes names such as - and ! for words of its own.
+case $results in -* | '!'* | '('* | ')'*) results=./$results ;; esac
+case $references in -* | '!'* | '('* | ')'*) references=./$references ;; esac
 odd=$(find "$references" -type f -name '*.csv' | LC_ALL=C grep -v '\.csv$' || :)
 check_words "$results" "$references" ${odd:+"$odd
 "}

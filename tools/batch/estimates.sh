@@ -7,7 +7,7 @@
 # folder of the results instead.
 set -eu
 
-root=$(cd "$(dirname "$0")/../.." && pwd)
+root=$(CDPATH='' cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
 . "$root/tools/batch/lists.sh"

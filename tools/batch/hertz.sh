@@ -7,7 +7,7 @@
 # results/batch/hertz/doc instead. About two minutes.
 set -eu
 
-root=$(cd "$(dirname "$0")/../.." && pwd)
+root=$(CDPATH='' cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
 . "$root/tools/batch/lists.sh"

@@ -6,7 +6,7 @@
 # Needs what the tests need: tools/test.sh, run once before, installs it.
 set -eu
 
-root=$(cd "$(dirname "$0")/../.." && pwd)
+root=$(CDPATH='' cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
 "$root/tools/build.sh" release

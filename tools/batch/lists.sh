@@ -31,7 +31,7 @@ own() {
     echo "$1: holds the runs of $held, not of $2: name another folder, or remove it (nothing has run)" >&2
     exit 2
   fi
-  printf '%s\n' "$here_now" >"$1/source.txt"
+  [ "$held" = "$here_now" ] || printf '%s\n' "$here_now" >"$1/source.txt"
 }
 
 # distinct: lines "name TAB longer name TAB rest" become "name TAB rest", with names that differ even where
@@ -53,11 +53,14 @@ distinct() {
 
 # files_of: reads paths of decks and writes for each its path behind an =, then behind a + each what it includes, directly
 # or not, where the program would find it (as named, in the folders of *INCLUDE_PATH, beside the file that includes it).
+# What is no file, such as a pipe, which would be waited for, is left to the program.
 files_of() {
   LC_ALL=C awk '
-    function is_there(path,   line, r) { if (path in seen) return 1
-      r = (getline line <path) >= 0; close(path); return r }
+    function is_there(path,   word) {
+      if (!(path in known)) { word = path; gsub("\047", "\047\\\\\047\047", word); known[path] = !system("[ -f \047" word "\047 ]") }
+      return known[path] }
     function find(name, beside,   i) {
+      if (name == "-") name = "./-" # awk would read the standard input
       if (is_there(name)) return name
       if (name ~ /^\//) return ""
       for (i = 1; i <= n_folder; i++) {

@@ -8,7 +8,7 @@
 #   tools/batch/run_folder.sh -j 4 "my decks" ctype=5 p:v0=-80.0
 set -eu
 
-here=$(cd "$(dirname "$0")" && pwd)
+here=$(CDPATH='' cd "$(dirname "$0")" && pwd)
 . "$here/../help.sh"
 . "$here/lists.sh"
 help_or_go_on "$@"
@@ -71,7 +71,7 @@ for deck in "$folder"/*; do
   esac
   [ -f "$deck" ] || continue
   check_words "$deck"
-  printf '%s\n' "$deck"
+  printf '%s\n' "$deck" || exit 2
 done >"$list.all"
 # A deck that another one includes is no run of its own.
 files_of <"$list.all" | sed -n 's/^+//p' | LC_ALL=C sort -u | while IFS= read -r path; do

@@ -18,7 +18,7 @@ set -eu
 # xargs must outlive them. The program sets its own handlers.
 trap '' USR1 USR2
 
-here=$(cd "$(dirname "$0")" && pwd)
+here=$(CDPATH='' cd "$(dirname "$0")" && pwd)
 . "$here/../help.sh"
 . "$here/lists.sh"
 help_or_go_on "$@"
@@ -70,7 +70,10 @@ first_line() {
 with_inputs() {
   identity=$1
   shift
-  held=$(printf '%s\n' "$@" | cut -f 2 | files_of)
+  held=$(printf '%s\n' "$@" | cut -f 2 | while IFS= read -r path; do
+    [ -f "$path" ] || path=/dev/null # a pipe would be waited for; the program says what is wrong
+    printf '%s\n' "$path"
+  done | files_of)
   {
     printf '%s\n' "$held" | cut -c 2- | LC_ALL=C sort -u | tr '\n' '\0' | xargs -0 cksum -- || :
     printf '\n%s\n\n' "$held"
@@ -133,12 +136,16 @@ collect() {
     function quoted(text) {
       if (text !~ /[",\r\n]/) return text
       gsub(/"/, "\"\"", text); return "\"" text "\"" }
-    function add_row(row,   i, line) {
+    function add_row(row,   i) {
       n_row++
       for (i = 1; i <= n; i++) {
-        cell[n_row, i] = row[i]; line = line (i > 1 ? "," : "") quoted(row[i])
-        if (i < n && length(row[i]) > width[i]) width[i] = length(row[i]) }
-      print line >csv }
+        cell[n_row, i] = row[i]; csv_line[n_row] = csv_line[n_row] (i > 1 ? "," : "") quoted(row[i])
+        if (i < n && length(row[i]) > width[i]) width[i] = length(row[i]) } }
+    # Whether the file holds the lines: no awk tells of a full disk as another does.
+    function is_whole(path,   r, line, same) {
+      same = 1
+      for (r = 1; r <= n_row; r++) if ((getline line <path) <= 0 || line != csv_line[r]) same = 0
+      close(path); return same }
     BEGIN {
       out = ENVIRON["OUT"]; csv = out "/summary.csv.new"
       n = split("run,status,meaning,time,cycles,seconds,warnings,energy_ratio,reason", row, ",")
@@ -160,17 +167,20 @@ collect() {
       row[9] = status == "-" || status == 0 ? "" : first_error(folder "/said.txt")
       add_row(row) }
     END {
-      close(csv)
       for (r = 1; r <= n_row; r++) {
         line = ""
         for (i = 1; i <= n; i++) line = line sprintf("%-*s  ", width[i], cell[r, i])
         sub(/ +$/, "", line)
         print line }
-      if (!bad) exit 0
-      print bad " of the runs have not ended well: see said.txt in their folders" | "cat 1>&2"; close("cat 1>&2")
-      exit 1 }' "$1" && status=0 || status=1
-  mv "$2/summary.csv.new" "$2/summary.csv" || return 1
-  return "$status"
+      if (bad) { print bad " of the runs have not ended well: see said.txt in their folders" | "cat 1>&2"; close("cat 1>&2") }
+      fflush()
+      for (r = 1; r <= n_row; r++) print csv_line[r] >csv
+      close(csv)
+      exit !is_whole(csv) ? 2 : bad ? 1 : 0 }' <"$1" && status=0 || status=$?
+  if [ "$status" -lt 2 ] && mv "$2/summary.csv.new" "$2/summary.csv"; then return "$status"; fi
+  rm -f "$2/summary.csv.new"
+  echo "$2/summary.csv: can not be written (is the disk full?); one that was there stays" >&2
+  return 1
 }
 
 if [ "${1:-}" = --some ]; then
@@ -220,10 +230,10 @@ if [ "$runs" = yes ]; then
   identity=$({ "$program" --version; cksum <"$(command -v "$program")"; } | cksum)
   # One to sixteen lines a call, and at least eight calls for each of the runs at a time, so that they end together.
   some=$(LC_ALL=C awk -v k="$k" -v n="$n" -v jobs="$jobs" '(NR - 1) % n == k && NF { lines++ }
-    END { some = int(lines/(8*jobs)); print(some < 1 ? 1 : some > 16 ? 16 : some) }' "$1")
+    END { some = int(lines/(8*jobs)); print(some < 1 ? 1 : some > 16 ? 16 : some) }' <"$1")
   # Lines become arguments by null bytes, so that blanks and quotes in them mean nothing. A run that can not even
   # begin is no reason to leave the others out.
-  LC_ALL=C awk -v k="$k" -v n="$n" '(NR - 1) % n == k && NF' "$1" | tr '\n' '\0' \
+  LC_ALL=C awk -v k="$k" -v n="$n" '(NR - 1) % n == k && NF' <"$1" | tr '\n' '\0' \
     | xargs -0 -n "$some" -P "$jobs" "$here/run_list.sh" --some "$fresh" "$2" "$identity" || :
   [ "$part" = 0/1 ] || exit 0
 fi

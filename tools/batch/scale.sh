@@ -6,7 +6,7 @@
 # results/batch/scale/doc (--publish: doc/studies/scale.md). Some minutes and 5 GB of memory at 64 processes.
 set -eu
 
-root=$(cd "$(dirname "$0")/../.." && pwd)
+root=$(CDPATH='' cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
 out=$results/batch/scale

@@ -9,7 +9,7 @@
 #   tools/batch/sweep.sh -j 4 -o results/sweep input/collision/collision.k ctype=1,2,5 p:v0=-40.0,-80.0
 set -eu
 
-here=$(cd "$(dirname "$0")" && pwd)
+here=$(CDPATH='' cd "$(dirname "$0")" && pwd)
 . "$here/../help.sh"
 . "$here/lists.sh"
 help_or_go_on "$@"

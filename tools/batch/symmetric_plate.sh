@@ -6,7 +6,7 @@
 # and compares it with the reference. RENEW=1 makes the table the new reference.
 set -eu
 
-root=$(cd "$(dirname "$0")/../.." && pwd)
+root=$(CDPATH='' cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
 meshes=${1:-8x4 16x8 32x16 64x32}

@@ -5,7 +5,7 @@
 # the radius and length of converged codes, and both over time. A few seconds after the build.
 set -eu
 
-root=$(cd "$(dirname "$0")/../.." && pwd)
+root=$(CDPATH='' cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
 . "$root/tools/batch/lists.sh"

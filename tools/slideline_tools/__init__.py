@@ -74,7 +74,7 @@ def plot(results: Results | Outcome | str | os.PathLike, field: str | None = Non
     `history` such as "glstat:kinetic,internal" or a list of these; `contact` the pressure along the
     slave surface; `zones` where it sticks and slips; `mirror` with the image in x = 0.
     """
-    from slideline_tools import plots
+    from slideline_tools import files, plots
     from slideline_tools.mirrored import Mirrored
     from slideline_tools.program import Outcome
     from slideline_tools.results import Results
@@ -85,6 +85,6 @@ def plot(results: Results | Outcome | str | os.PathLike, field: str | None = Non
     figure = plots.choose_figure(Mirrored(results) if mirror else results, field, states, scale, zoom,
                                  [history] if isinstance(history, str) else history, contact, zones)
     if output is not None:
-        figure.savefig(output)
+        figure.savefig(files.output(output, [results.path]))
     plots.plt.close(figure)  # a notebook shows what a cell gives; of pyplot's own figures it would show it again
     return figure

@@ -9,6 +9,7 @@ Energies, forces and masses are those of the tables, per unit depth.
 import numpy as np
 
 from slideline_tools import UserError, __version__
+from slideline_tools.files import output
 from slideline_tools.finished_run import Run
 from slideline_tools.histories import History
 from slideline_tools.lsda import Writer
@@ -53,7 +54,7 @@ def write_binout(run, path):
     tables = {name: table for name, table in tables.items() if len(table)}
     if not tables:
         raise BinoutError(f"{run.prefix} has no history tables")
-    with Writer(path) as file:
+    with Writer(output(path, run.files())) as file:
         for name, table in tables.items():
             for branch, metadata, states in branches_of(name, table, run):
                 write_branch(file, branch, {"title": run.title[:80].ljust(80), **metadata}, states)

@@ -16,6 +16,7 @@ from slideline_tools.commands import from_mesh as from_mesh_command
 from slideline_tools.commands import dyna as dyna_command
 from slideline_tools.commands import make_deck as make_deck_command
 from slideline_tools.commands import report as report_command
+from slideline_tools.files import output
 
 OK, FAILED, UNUSABLE = 0, 1, 2
 NO_READER = 141  # what a shell gives for a program that SIGPIPE ends
@@ -82,7 +83,7 @@ def plot(options):
     results = opened(options)
     figure = plots.choose_figure(results, options.field, options.state or (), options.scale, options.zoom,
                                  options.history or (), options.contact, options.zones)
-    plots.save(figure, made_folder(options.output))
+    plots.save(figure, output(options.output, [results.path]))
     print(f"wrote {options.output}")
     return OK
 
@@ -98,17 +99,11 @@ def add_animate(commands):
 
 def animate(options):
     from slideline_tools import animation
-    count = animation.animate(opened(options), made_folder(options.output), options.field,
+    results = opened(options)
+    count = animation.animate(results, output(options.output, [results.path]), options.field,
                               options.scale, options.rate, options.zoom)
     print(f"wrote {options.output} ({count} states)")
     return OK
-
-
-def made_folder(path):
-    """The path, after its folder has been made."""
-    path = pathlib.Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    return path
 
 
 def add_compare(commands):

@@ -15,6 +15,7 @@ import pathlib
 import numpy as np
 
 from slideline_tools import UserError
+from slideline_tools.files import output
 from slideline_tools.finished_run import Run
 
 N_HEADER, N_ID_HEADER = 64, 16
@@ -43,7 +44,7 @@ def write_d3plot(run, path, file_limit=FILE_LIMIT):
         raise D3plotError(f"{run.prefix} has no states: the deck asks for none (*DATABASE_BINARY_D3PLOT)")
     path = pathlib.Path(path)
     parts = np.unique(run.results.cell_field("part_id")[0])
-    path.write_bytes(geometry(run, parts))
+    output(path, run.files()).write_bytes(geometry(run, parts))
     states = (state_words(run.results, k, globals_of) for k, globals_of in
               enumerate(global_values(run, parts)))
     count, last = write_states(path, states, file_limit)
@@ -166,7 +167,7 @@ def write_states(path, states, file_limit):
                 stream.write(END_MARK)
                 stream.close()
             number, written = number + 1, 0
-            stream = open(member(path, number), "wb")
+            stream = open(output(member(path, number)), "wb")
         stream.write(state)
         written += len(state)
         count += 1

@@ -6,6 +6,7 @@ import re
 import numpy as np
 
 from slideline_tools import UserError
+from slideline_tools.files import source
 from slideline_tools.histories import TABLES, History, read_csv
 from slideline_tools.results import read
 
@@ -42,6 +43,10 @@ class Run:
                 found[name] = read_csv(path)
         return {name: whole_instants(table) for name, table in found.items() if len(table)}
 
+    def files(self):
+        """Paths of all that may be read of the run."""
+        return [f"{self.prefix}{ending}" for ending in (".vtkhdf", ".effective.k", *(f".{name}.csv" for name in TABLES))]
+
     @property
     def title(self):
         """Title of the deck, '' where it is not known."""
@@ -52,7 +57,7 @@ class Run:
         text = self.results.run.get("effective_deck", "") if self.results else ""
         path = pathlib.Path(f"{self.prefix}.effective.k")
         if not text and path.exists():
-            text = path.read_text(encoding="latin-1")
+            text = source(path).read_text(encoding="latin-1")
         return part_titles(text)
 
 

@@ -11,6 +11,7 @@ import typing
 import numpy as np
 
 from slideline_tools import UserError
+from slideline_tools.files import source
 from slideline_tools.names import missing, one_line
 
 if typing.TYPE_CHECKING:
@@ -124,7 +125,7 @@ def read_csv(path: str | os.PathLike) -> History:
     """
     path = pathlib.Path(path)
     try:
-        with open(path, newline="", encoding="utf-8") as stream:
+        with open(source(path), newline="", encoding="utf-8") as stream:
             rows = [row for row in csv.reader(stream) if row]
     except UnicodeDecodeError as problem:
         raise HistoryError(f"cannot read {path}: it is no text; wanted is a CSV table of the program") \

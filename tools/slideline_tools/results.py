@@ -22,6 +22,7 @@ import h5py
 import numpy as np
 
 from slideline_tools import UserError
+from slideline_tools.files import source
 from slideline_tools.histories import TABLES, History, from_hdf5, read_csv
 from slideline_tools.names import missing, one_line
 
@@ -103,7 +104,7 @@ class Results:
     def reading(self, what: str) -> typing.Iterator[h5py.File]:
         """The file, open; ResultsError where it, or what is read of it, is damaged."""
         try:
-            with h5py.File(self.path, "r") as stream:
+            with h5py.File(source(self.path), "r") as stream:
                 yield stream
         except UserError:
             raise

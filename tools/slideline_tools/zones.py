@@ -5,6 +5,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
 from slideline_tools.advise.run_log import read_log
+from slideline_tools.files import source
 from slideline_tools.plots import COLOURS, PAGE_WIDTH, STYLE, plt, run_title
 from slideline_tools.results import ResultsError
 
@@ -67,7 +68,7 @@ def limit_of(results, interface):
     log = results.path.with_suffix(".log")
     if not log.exists():
         return None
-    one = read_log(log.read_text(encoding="utf-8", errors="replace")).interfaces.get(int(interface))
+    one = read_log(source(log).read_text(encoding="utf-8", errors="replace")).interfaces.get(int(interface))
     if one is None or not one.friction or (one.decay and one.sliding_friction != one.friction):
         return None
     return one.friction, one.most_friction

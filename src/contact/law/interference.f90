@@ -32,7 +32,6 @@ contains
       call add_work(0.5_wp*interference%moment*(former - interference%left), memory)
       memory%scratch%growth = former - interference%left
       memory%scratch%is_start = .not. time > 0.0_wp
-      if (memory%scratch%is_start) memory%scratch%growth = 0.0_wp
       interference%moment = 0.0_wp
     end associate
   end subroutine begin_growth

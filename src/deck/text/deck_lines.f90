@@ -10,8 +10,8 @@ module deck_lines_m
   use log_m, only : to_text
   implicit none
   private
-  public :: deck_t, source_t, block_t, place_t, case_blocks_t, line_text, block_of_line, &
-    where_text, line_error, deck_error, line_warning, replace_line, written_text, &
+  public :: deck_t, source_t, block_t, place_t, case_blocks_t, file_paths, line_text, &
+    block_of_line, where_text, line_error, deck_error, line_warning, replace_line, written_text, &
     line_spot, keyword_of_line, shown_text, marked_line, layout_mark, format_standard, &
     format_long, format_i10, flag_comma, flag_parameter, flag_blank, max_source
 
@@ -87,6 +87,19 @@ module deck_lines_m
   end type deck_t
 
 contains
+
+  !> Paths of the files that a deck has been read from.
+  pure function file_paths(deck) result(paths)
+    type(deck_t), intent(in) :: deck
+    character(:), allocatable :: paths(:)
+    integer :: i
+
+    allocate (character(maxval([(len(deck%sources(i)%path), i=1, deck%n_source)])) :: &
+      paths(deck%n_source))
+    do i = 1, deck%n_source
+      paths(i) = deck%sources(i)%path
+    end do
+  end function file_paths
 
   !> Text of a line.
   pure function line_text(deck, line) result(text)

@@ -3,19 +3,27 @@
 !> the body, and every step leaves a share of the velocities, until the body rests. What it has come
 !> to is the state at time zero. One thread, before any output.
 module relaxation_m
+  use archive_file_m, only : archive_t
   use block_state_m, only : block_state_t
+  use clock_m, only : lap, phase_input
   use cycle_loads_m, only : apply_loads
   use element_dispatch_m, only : add_tile_forces
-  use errors_m, only : error_t, raise, status_run
+  use errors_m, only : error_t, raise, status_run, status_stopped
   use health_m, only : check_elements
   use kinds_m, only : wp
   use layout_m, only : chunk_size
-  use log_m, only : log_t, write_log, warn, to_text
+  use log_m, only : write_log, warn, to_text
   use mass_scaling_m, only : refine_limits, needs_refinement
   use model_m, only : model_t
+  use monitor_m, only : monitor_t
   use motion_sums_m, only : motion_sums_t
   use node_motion_m, only : leap_t, make_leap, move_tile_nodes, move_special_nodes
   use parts_m, only : hourglass_viscous
+  use ranks_m, only : ranks_t, find_least, share_error
+  use relaxation_state_m, only : relaxation_state_t
+  use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
+  use restart_m, only : begin_file, end_file
+  use restart_plan_m, only : wanted_files
   use scaled_step_m, only : scaled_step
   use skew_motion_m, only : hold_skew_nodes
   use state_m, only : state_t
@@ -29,51 +37,141 @@ module relaxation_m
   integer, parameter :: most_cycles = 5000000
   !> By how much the limit of the step must rise before the step does.
   real(wp), parameter :: least_rise = 0.05_wp
+  !> Cycles between two looks for what someone asks for.
+  integer, parameter :: look_cycles = 8
 
 contains
 
-  !> From the state that the deck describes to the one at rest, which becomes that of time zero.
-  subroutine relax(model, log, state, error)
+  !> From the state that the deck describes, or that a restart file of this phase holds, to the one
+  !> at rest, which becomes that of time zero.
+  subroutine relax(model, monitor, state, error)
     type(model_t), intent(in) :: model
-    type(log_t), intent(inout) :: log
+    type(monitor_t), intent(inout) :: monitor
     type(state_t), intent(inout) :: state
     type(error_t), allocatable, intent(out) :: error
     type(model_t), allocatable :: relaxing
-    real(wp), allocatable :: start_velocity(:, :), force(:, :)
-    real(wp) :: most, share
+    type(requests_t) :: asked
+    type(echoes_t) :: echoes
+    real(wp), allocatable :: force(:, :)
+    real(wp) :: share !! of the largest kinetic energy
     integer :: n
 
     allocate (relaxing, source=model)
     call switch_loads(relaxing, 0)
-    start_velocity = state%motion(3:4, :)
-    state%motion(3:4, :) = 0.0_wp
+    call begin_phase(state)
     allocate (force(2, model%layout%n_local))
-    most = 0.0_wp
     share = 1.0_wp
     associate (rules => model%controls%relaxation)
-      do n = 1, most_cycles
+      do n = state%relaxation%n + 1, most_cycles
         call relax_once(relaxing, force, state)
         if (mod(n, 100) == 0 .or. mod(n, rules%check_cycles) == 0) &
           call check_elements(relaxing, state, error)
         if (allocated(error)) return
-        share = own_energy(state)
-        most = max(most, share)
-        if (most > 0.0_wp) share = share/most
+        call follow_energy(state, share)
         if (mod(n, rules%check_cycles) == 0 .and. share < rules%tolerance) exit
         if (state%time >= rules%most_time) exit
+        state%relaxation%n = n
+        if (mod(n, look_cycles) == 0) call heed_requests(asked, echoes, state, monitor, error)
+        if (allocated(error)) return
       end do
       if (n > most_cycles) then
         call raise(error, 'dynamic relaxation does not come to rest in '//to_text(most_cycles) &
           //' cycles: its kinetic energy is '//to_text(share)//' of the largest', status_run)
         return
       end if
-      call write_log(log, 'dynamic relaxation: '//to_text(n)//' cycles, kinetic energy ' &
+      call write_log(monitor%log, 'dynamic relaxation: '//to_text(n)//' cycles, kinetic energy ' &
         //to_text(share)//' of its largest at the end')
-      if (.not. share < rules%tolerance) call warn(log, 'dynamic relaxation ended by DRTERM ' &
-        //'before it converged')
+      if (.not. share < rules%tolerance) call warn(monitor%log, 'dynamic relaxation ended by ' &
+        //'DRTERM before it converged')
     end associate
-    call begin_at_zero(model, start_velocity, state)
+    call begin_at_zero(model, state%relaxation%velocity, state)
+    state%relaxation = relaxation_state_t()
   end subroutine relax
+
+  !> The phase begins at rest, or where a restart file has left it.
+  subroutine begin_phase(state)
+    type(state_t), intent(inout) :: state
+
+    if (state%relaxation%n > 0) then
+      state%time = state%relaxation%time
+    else
+      state%relaxation%velocity = state%motion(3:4, :)
+      state%motion(3:4, :) = 0.0_wp
+    end if
+  end subroutine begin_phase
+
+  !> The largest kinetic energy, and its share now.
+  pure subroutine follow_energy(state, share)
+    type(state_t), intent(inout) :: state
+    real(wp), intent(out) :: share
+
+    share = own_energy(state)
+    state%relaxation%most = max(state%relaxation%most, share)
+    if (state%relaxation%most > 0.0_wp) share = share/state%relaxation%most
+  end subroutine follow_energy
+
+  !> Do what someone asks for: a restart file, from which the phase goes on, and an end, which is
+  !> told as an error. The plot state that may be asked for is that of time zero.
+  subroutine heed_requests(asked, echoes, state, monitor, error)
+    type(requests_t), intent(inout) :: asked !! last time, and now
+    type(echoes_t), intent(inout) :: echoes
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+    type(requests_t) :: before
+    logical :: wanted(2)
+
+    before = asked
+    call lap(monitor%clock, phase_input)
+    if (monitor%ranks%mine == 0) then
+      call take_requests(state, 1.0_wp, .false., monitor, asked, error)
+    else
+      call hear_signals(asked)
+    end if
+    call drop_echoes(before, echoes, asked)
+    if (monitor%ranks%n > 1) call agree(monitor%ranks, asked)
+    wanted = wanted_files(monitor%restarts, 0, asked%dump, .false., asked%signalled)
+    if (any(wanted)) then
+      if (monitor%ranks%mine == 0) call write_files(wanted, state, monitor, error)
+      call share_error(monitor%ranks, error)
+    end if
+    if (.not. asked%stop .or. allocated(error)) return
+    call raise(error, 'stopped on request in dynamic relaxation after ' &
+      //to_text(state%relaxation%n)//' cycles', status_stopped)
+    state%time = 0.0_wp
+  end subroutine heed_requests
+
+  !> What one process is asked for is done by all.
+  subroutine agree(ranks, asked)
+    type(ranks_t), intent(inout) :: ranks
+    type(requests_t), intent(inout) :: asked
+    real(wp) :: none(3)
+
+    none = merge(0.0_wp, 1.0_wp, [asked%dump, asked%stop, asked%signalled])
+    call find_least(ranks, none)
+    asked%dump = none(1) < 1.0_wp
+    asked%stop = none(2) < 1.0_wp
+    asked%signalled = none(3) < 1.0_wp
+  end subroutine agree
+
+  !> Write restart files, for which the run stands at time zero.
+  subroutine write_files(wanted, state, monitor, error)
+    logical, intent(in) :: wanted(:)        !! numbered_file, running_file
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(inout) :: error
+    type(archive_t) :: archive
+    integer :: kind
+
+    state%relaxation%time = state%time
+    state%time = 0.0_wp
+    do kind = 1, size(wanted)
+      if (.not. wanted(kind) .or. allocated(error)) cycle
+      call begin_file(kind, state, monitor, archive)
+      call end_file(kind, state, monitor, archive, error)
+    end do
+    state%time = state%relaxation%time
+  end subroutine write_files
 
   !> One cycle of relaxation: v(n+1/2) = DRFCTR v(n-1/2) + h a.
   subroutine relax_once(model, force, state)

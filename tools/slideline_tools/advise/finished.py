@@ -9,6 +9,7 @@ import pathlib
 from slideline_tools import UserError
 from slideline_tools.advise.run_deck import Block, read_blocks
 from slideline_tools.advise.run_log import RunLog, read_log
+from slideline_tools.files import source
 from slideline_tools.histories import TABLES, History, read_csv
 from slideline_tools.results import Results, ResultsError, read
 
@@ -108,7 +109,7 @@ def find_job(path: pathlib.Path) -> tuple[pathlib.Path, str]:
 def read_text(path: str) -> str:
     """A text file; empty if there is none."""
     try:
-        return pathlib.Path(path).read_text(encoding="utf-8", errors="replace")
+        return source(path).read_text(encoding="utf-8", errors="replace")
     except FileNotFoundError:
         return ""
 

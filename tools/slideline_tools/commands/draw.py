@@ -47,11 +47,10 @@ def run(options) -> int:
     """Draw, and say what could not be shown."""
     from slideline_tools.draw import draw
     deck = pathlib.Path(options.deck)
-    output = pathlib.Path(options.output or f"{stem(deck)}.png")
-    output.parent.mkdir(parents=True, exist_ok=True)
-    model = draw(deck, output, options.program, options.overrides, options.show, options.zoom)
+    path = options.output or f"{stem(deck)}.png"
+    model = draw(deck, path, options.program, options.overrides, options.show, options.zoom)
     counts = {"node": model.points, "element": model.cells, "part": model.parts, "interface": model.interfaces}
-    print(f"wrote {output} (" + ", ".join(f"{len(all_of)} {name}{'s' * (len(all_of) != 1)}" for name, all_of in counts.items()) + ")")
+    print(f"wrote {path} (" + ", ".join(f"{len(all_of)} {name}{'s' * (len(all_of) != 1)}" for name, all_of in counts.items()) + ")")
     for words in model.warnings:
         print(f"warning: {words}")
     if model.not_drawn:

@@ -2,8 +2,6 @@
 """The commands `slideline-tools binout` and `slideline-tools d3plot`."""
 from __future__ import annotations
 
-import pathlib
-
 
 def add_binout(commands) -> None:
     """Add the command `binout` and its options."""
@@ -35,7 +33,7 @@ def run_binout(options) -> int:
     from slideline_tools.binout import write_binout
     from slideline_tools.finished_run import Run
     run = Run(options.run_path)
-    path = made_folder(options.output or f"{run.prefix}.binout0000")
+    path = options.output or f"{run.prefix}.binout0000"
     names = write_binout(run, path)
     print(f"wrote {path} ({', '.join(names)})")
     return 0
@@ -46,14 +44,7 @@ def run_d3plot(options) -> int:
     from slideline_tools.d3plot import write_d3plot
     from slideline_tools.finished_run import Run
     run = Run(options.run_path)
-    path = made_folder(options.output or f"{run.prefix}.d3plot")
+    path = options.output or f"{run.prefix}.d3plot"
     count = write_d3plot(run, path)
     print(f"wrote {path} ({count} states)")
     return 0
-
-
-def made_folder(path) -> pathlib.Path:
-    """The path, after its folder has been made."""
-    path = pathlib.Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    return path

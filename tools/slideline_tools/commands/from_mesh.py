@@ -20,17 +20,17 @@ def add(commands) -> None:
 def run(options) -> int:
     """Read, write, and say what became of the groups."""
     from slideline_tools import UserError, from_mesh
+    from slideline_tools.files import output
     from slideline_tools.names import counted
     source = pathlib.Path(options.mesh)
-    output = pathlib.Path(options.output or source.with_suffix(".k"))
-    if output.exists() and not options.output:
-        raise UserError(f"{output} exists; give -o FILE to write over it, or elsewhere")
+    path = pathlib.Path(options.output or source.with_suffix(".k"))
+    if path.exists() and not options.output:
+        raise UserError(f"{path} exists; give -o FILE to write over it, or elsewhere")
     mesh = from_mesh.read(source)
     deck = from_mesh.deck_of(mesh, f"from {source.name}")
-    output.parent.mkdir(parents=True, exist_ok=True)
-    output.write_text(deck.text(), encoding="utf-8")
+    output(path, [source]).write_text(deck.text(), encoding="utf-8")
     n_face = sum(map(len, mesh.parts.values()))
-    print(f"wrote {output} ({counted(len(mesh.points), 'node')}, {counted(n_face, 'element')})")
+    print(f"wrote {path} ({counted(len(mesh.points), 'node')}, {counted(n_face, 'element')})")
     for pid, (name, faces) in enumerate(mesh.parts.items(), start=1):
         print(f"part {pid}: {name}, {counted(len(faces), 'element')}")
     for sid, (name, rows) in enumerate([*mesh.lines.items(), *mesh.nodes.items()], start=1):

@@ -4,9 +4,9 @@ that writes the scene, and what is not given is left to that function."""
 from __future__ import annotations
 
 import argparse
-import pathlib
 
 from slideline_tools import UserError
+from slideline_tools.files import output
 
 # The names of scenes.patch.MESHES and SURFACES, here without its slow imports.
 MESHES = ("3/2", "5/4", "7/5", "2/7", "51/50")
@@ -98,8 +98,7 @@ def run(options) -> int:
         text = getattr(scenes, options.scene)(**given)
     except ValueError as problem:
         raise UserError(str(problem)) from problem
-    path = pathlib.Path(options.output)
-    path.parent.mkdir(parents=True, exist_ok=True)
+    path = output(options.output)
     path.write_text(text, encoding="ascii")
     print(f"wrote {path}")
     return 0

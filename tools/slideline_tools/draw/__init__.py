@@ -10,7 +10,7 @@ import os
 import pathlib
 import typing
 
-from slideline_tools import UserError
+from slideline_tools import UserError, files
 from slideline_tools.draw.model import Model, check_deck
 from slideline_tools.program import find_program
 
@@ -38,5 +38,5 @@ def draw(deck: str | os.PathLike, output: str | os.PathLike, program: str | os.P
     """Write the picture of a deck (or of a results folder) and give its model."""
     from slideline_tools.draw.picture import model_figure, save
     model = resolve(deck, program, overrides)
-    save(model_figure(model, show, zoom), output)
+    save(model_figure(model, show, zoom), files.output(output, [deck]))
     return model

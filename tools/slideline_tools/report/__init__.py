@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import pathlib
 
-from slideline_tools import UserError, __version__
+from slideline_tools import UserError, __version__, files
 from slideline_tools.report import sections
 from slideline_tools.report.asked import asked
 from slideline_tools.report.gather import Gathered, gather
@@ -56,8 +56,7 @@ def write_report(path, output=None, fields=(), states=(), scale: float = 1.0, pr
     it can not.
     """
     run = gather(path, program)
-    output = pathlib.Path(output) if output else run.folder / f"{run.job}.report.html"
     words = report_html(run, fields, states, scale)
-    output.parent.mkdir(parents=True, exist_ok=True)
-    output.write_text(words, encoding="utf-8")
-    return output
+    path = files.output(output or run.folder / f"{run.job}.report.html", [run.folder / name for name, _ in run.files])
+    path.write_text(words, encoding="utf-8")
+    return path

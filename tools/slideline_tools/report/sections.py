@@ -12,6 +12,7 @@ import numpy as np
 from slideline_tools import UserError, advise
 from slideline_tools.advise import report as advice_report
 from slideline_tools.fields import ROUND_OFF, default_field, scalar_field
+from slideline_tools.files import source
 from slideline_tools.report import charts
 from slideline_tools.report.gather import Gathered
 from slideline_tools.report.html import (Section, figures, folded, paragraph, picture, table,
@@ -427,7 +428,7 @@ def files(run: Gathered) -> Section:
 def deck_text(run: Gathered) -> str:
     """The effective deck with the lines of nodes and elements counted, not shown."""
     path = run.folder / f"{run.job}.effective.k"
-    whole = path.read_text(encoding="utf-8", errors="replace") if path.exists() else (
+    whole = source(path).read_text(encoding="utf-8", errors="replace") if path.exists() else (
         run.results.run.get("effective_deck", "") if run.results else "")
     kept, hidden = [], 0
     in_mesh = False

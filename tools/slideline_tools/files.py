@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+"""Files that the tools read and write. The rules are those of the program: a pipe or a device is not read, nothing is
+written through a link, and what a tool writes is a file of its own."""
+from __future__ import annotations
+
+import os
+import pathlib
+import stat
+
+from slideline_tools import UserError
+
+KINDS = {stat.S_IFDIR: "a folder", stat.S_IFLNK: "a symbolic link", stat.S_IFIFO: "a pipe", stat.S_IFSOCK: "a socket"}
+
+
+def source(path: str | os.PathLike) -> pathlib.Path:
+    """The path of a file to be read; UserError where a pipe or a device stands there, which may have no end."""
+    path = pathlib.Path(path)
+    if path.exists() and not path.is_file() and not path.is_dir():
+        raise UserError(f"cannot read {path}: it is {kind_of(path.stat())} and no file")
+    return path
+
+
+def output(path: str | os.PathLike, inputs=()) -> pathlib.Path:
+    """The path of a file to be made, in a folder that is there. A file of that name goes before, so that other names of
+    it (hard links) keep what they have; UserError where anything else stands there, or one of the files that are read."""
+    path = pathlib.Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if not os.path.lexists(path):
+        return path
+    if not stat.S_ISREG(path.lstat().st_mode):
+        raise UserError(f"cannot write {path}: it is {kind_of(path.lstat())}")
+    for read in map(pathlib.Path, inputs):
+        if read.exists() and read.samefile(path):
+            raise UserError(f"cannot write {path}: it is {read}, which is read; name another file")
+    path.unlink()
+    return path
+
+
+def kind_of(facts: os.stat_result) -> str:
+    """What stands under a name, in words."""
+    return KINDS.get(stat.S_IFMT(facts.st_mode), "a device")
