@@ -355,12 +355,12 @@ contains
     call follow_springs(model, state, cycle%steps%springs)
     call next_step(model, element_limit(model, state, cycle), monitor%log, state%cycle, &
       cycle%steps, state%time, state%dt)
-    if (.not. allocated(cycle%error)) call check_step(model%controls, cycle%steps%first_dt, &
-      state%time, state%dt, cycle%error)
-    if (allocated(cycle%error)) then
-      if (monitor%ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .false., &
-        monitor%ranks, state)
-      if (monitor%ranks%mine == 0) call name_collapsed(model, state, cycle%error)
+    if (.not. allocated(cycle%error)) then
+      call check_step(model%controls, cycle%steps%first_dt, state%time, state%dt, cycle%error)
+      if (allocated(cycle%error) .and. monitor%ranks%n > 1) call gather_state(cycle%shares, &
+        cycle%borders, .false., monitor%ranks, state)
+      if (allocated(cycle%error) .and. monitor%ranks%mine == 0) call name_collapsed(model, state, &
+        cycle%error)
     end if
     if (.not. allocated(cycle%error)) call check_cycle(state%cycle, state%time, cycle%error)
     cycle%finished = allocated(cycle%error)
