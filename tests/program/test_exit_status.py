@@ -201,7 +201,7 @@ def test_released_first_contacts_are_warned_of(slideline):
     assert done.returncode == 0, done.stderr
     assert re.search(r"warning: interface 1: \d+ first contacts were deeper than the limit and were "
                      r"released", done.stderr)
-    assert "Warnings            = 2" in done.stdout and "the constant time step" in done.stderr
+    assert "Warnings            = 1" in done.stdout
 
 
 def driven_through(deck, start, drop):
@@ -224,7 +224,7 @@ def test_released_first_contacts_are_told_at_an_error(slideline, tmp_path):
     cycle = int(re.search(r"Problem cycle += (\d+)", done.stdout)[1])
     assert cycle not in numbers(tmp_path / "i" / "job.glstat.csv", "cycle")
     assert len(re.findall(r"warning: interface 1: \d+ first contacts were deeper", done.stderr)) == 1
-    assert "Warnings            = 1" in done.stdout
+    assert "Warnings            = 2" in done.stdout and "the constant time step" in done.stderr
 
 
 def test_step_below_its_floor_is_2(slideline):
