@@ -49,13 +49,14 @@ contains
     case (table_glstat)
       names = 'time,cycle,dt,kinetic,internal,hourglass,viscous,damping,contact,external_work,'// &
         'total,energy_ratio,leapfrog,velocity_x,velocity_y,element,element_part,'// &
-        'friction,eroded_kinetic,eroded_internal,eroded_hourglass,eroded_contact'
+        'friction,eroded_kinetic,eroded_internal,eroded_hourglass,eroded_contact,'// &
+        'added_mass,mass_increase,by_dt2ms'
     case (table_rcforc)
       names = 'time,interface,side,fx,fy'
     case (table_nodout)
       names = 'time,node,x,y,ux,uy,vx,vy,ax,ay,cycle'
     case (table_matsum)
-      names = 'time,part,kinetic,internal,hourglass,momentum_x,momentum_y,mass'
+      names = 'time,part,kinetic,internal,hourglass,momentum_x,momentum_y,mass,added_mass'
     case (table_sleout)
       names = 'time,cycle,interface,energy,damping,friction'
     case (table_spcforc)
@@ -83,7 +84,7 @@ contains
 
     select case (i_table)
     case (table_glstat)
-      n = n_label + 5
+      n = n_label + 8
     case (table_matsum)
       n = 4*n_row + 3
     case (table_elout)
@@ -97,14 +98,15 @@ contains
     case (table_secforc)
       n = 5*n_row
     case default
-      n = n_row + 12
+      n = n_row + 13
     end select
   end function n_line_of
 
   !> The lines of one instant.
-  pure subroutine form_block(i_table, control, rows, lines, n_line)
+  pure subroutine form_block(i_table, control, scales, rows, lines, n_line)
     integer, intent(in) :: i_table                      !! one of `table_`
     character(*), intent(in) :: control                 !! what rules the step where no element does
+    logical, intent(in) :: scales                       !! masses are scaled
     real(wp), intent(in) :: rows(:, :)                  !! (n_column, n_row) of `columns_of`
     character(line_size), intent(inout) :: lines(:)     !! `n_line_of` or more
     integer, intent(out) :: n_line
@@ -112,7 +114,7 @@ contains
     n_line = 0
     select case (i_table)
     case (table_glstat)
-      call form_glstat(rows(:, 1), control, lines, n_line)
+      call form_glstat(rows(:, 1), control, scales, lines, n_line)
     case (table_rcforc)
       call form_rcforc(rows, lines, n_line)
     case (table_nodout)
@@ -138,12 +140,14 @@ contains
     end select
   end subroutine form_block
 
-  !> Energies. DYNA counts the work of the bulk viscosity as internal energy; so the
-  !> lines add up to the total but for what leap-frog adds (doc/results.md). Springs of contact that
-  !> went with elements stay with those that are there: DYNA has no line for them.
-  pure subroutine form_glstat(row, control, lines, n_line)
+  !> Energies. DYNA counts the work of the bulk viscosity as internal energy, and what has eroded in
+  !> kinetic, internal and hourglass energy, of which the eroded lines say how much; so the lines of
+  !> these energies add up to the total but for what leap-frog adds (doc/results.md). Springs of
+  !> contact that went with elements stay with those that are there: DYNA has no line for them.
+  pure subroutine form_glstat(row, control, scales, lines, n_line)
     real(wp), intent(in) :: row(:)
     character(*), intent(in) :: control
+    logical, intent(in) :: scales
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
     real(wp) :: values(n_label)
@@ -153,7 +157,9 @@ contains
 
     call add_line('', lines, n_line)
     call add_line('', lines, n_line)
-    if (nint(row(16)) > 0) then
+    if (scales .and. nint(row(25)) > 0) then
+      call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by dt2ms', lines, n_line)
+    else if (nint(row(16)) > 0) then
       call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by shell ' &
         //number(row(16), 8)//' of part '//number(row(17), 8), lines, n_line)
     else
@@ -162,14 +168,20 @@ contains
     call add_line('', lines, n_line)
     share = 1.0_wp
     if (abs(row(11)) > 0.0_wp) share = 1.0_wp - sum(row(19:22))/row(11)
-    values = [row(1), row(3), row(4), row(5) + row(7), 0.0_wp, 0.0_wp, row(6), row(8), &
-      row(9) + row(18) + row(22), row(10), row(19:21), row(11), row(12), share*row(12), row(14), &
-      row(15), 0.0_wp]
+    values = [row(1), row(3), row(4) + row(19), row(5) + row(7) + row(20), 0.0_wp, 0.0_wp, &
+      row(6) + row(21), row(8), row(9) + row(18) + row(22), row(10), row(19:21), row(11), row(12), &
+      share*row(12), row(14), row(15), 0.0_wp]
     do i = 1, n_label
       write (line, '(ss,a,es14.5)') labels(i), tidy(values(i))
       call add_line(line, lines, n_line)
     end do
     call add_line(' time per zone cycle.(nanosec)..             0', lines, n_line)
+    if (.not. scales) return
+    call add_line('', lines, n_line)
+    write (line, '(ss,a,es14.5)') ' added mass.....................', tidy(row(23))
+    call add_line(line, lines, n_line)
+    write (line, '(ss,a,es14.5)') ' percentage increase............', tidy(row(24))
+    call add_line(line, lines, n_line)
   end subroutine form_glstat
 
   !> Contact forces, a line for each side.
@@ -217,7 +229,8 @@ contains
     end do
   end subroutine form_nodout
 
-  !> Sums of parts; the velocity of the body is that of its centre of mass.
+  !> Sums of parts; the velocity of the body is that of its centre of mass, `+mass` is the mass that
+  !> mass scaling has added.
   pure subroutine form_matsum(rows, lines, n_line)
     real(wp), intent(in) :: rows(:, :)
     character(line_size), intent(inout) :: lines(:)
@@ -245,7 +258,7 @@ contains
         '     z-rbv=', 0.0_wp
       call add_line(line, lines, n_line)
       write (line, '(ss,25x,a,es13.4,5x,a,es13.4)') 'hgeng=', tidy(rows(5, i)), '+mass=', &
-        tidy(rows(8, i))
+        tidy(rows(9, i))
       call add_line(line, lines, n_line)
     end do
   end subroutine form_matsum
@@ -260,7 +273,7 @@ contains
   end function part_field
 
   !> Energies of interfaces. Penalty springs act between the sides: each interface has one number,
-  !> as DYNA's single-sided contacts do.
+  !> as DYNA's single-sided contacts do, and what of it friction has dissipated.
   pure subroutine form_sleout(rows, lines, n_line)
     real(wp), intent(in) :: rows(:, :)
     character(line_size), intent(inout) :: lines(:)
@@ -273,11 +286,13 @@ contains
     end do
     write (line, '(ss,a,es14.7)') ' contact interface energy file, time=', tidy(rows(1, 1))
     call add_line(line, lines, n_line)
-    write (line, '(ss,a,i14)') '    #            slave       master        cycle=', nint(rows(2, 1))
+    write (line, '(ss,a,i14)') '    #            slave       master   frictional   cycle=', &
+      nint(rows(2, 1))
     call add_line(line, lines, n_line)
     call add_line('', lines, n_line)
     do i = 1, size(rows, 2)
-      write (line, '(ss,i10,es13.4)') nint(rows(3, i)), tidy(sum(rows(4:6, i)))
+      write (line, '(ss,i10,3es13.4)') nint(rows(3, i)), tidy([sum(rows(4:6, i)), 0.0_wp, &
+        rows(6, i)])
       call add_line(line, lines, n_line)
     end do
     call add_line('', lines, n_line)
@@ -286,6 +301,8 @@ contains
     write (line, '(ss,a,es14.7)') '           total mastr side=', 0.0_wp
     call add_line(line, lines, n_line)
     write (line, '(ss,a,es14.7)') '           total energy    =', tidy(sum(rows(4:6, :)))
+    call add_line(line, lines, n_line)
+    write (line, '(ss,a,es14.7)') '           friction energy =', tidy(sum(rows(6, :)))
     call add_line(line, lines, n_line)
   end subroutine form_sleout
 

@@ -9,7 +9,7 @@ module dyna_text_m
   use dyna_lines_m, only : line_size
   use errors_m, only : error_t
   use history_tables_m, only : table_rcforc, table_nodout, table_matsum, table_rwforc, &
-    table_spcforc, table_elout, table_secforc
+    table_sleout, table_spcforc, table_elout, table_secforc
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use kinds_m, only : wp, long
   use model_m, only : model_t
@@ -29,6 +29,7 @@ module dyna_text_m
     integer :: i_table = 0                   !! one of `table_`
     integer, allocatable :: columns(:)       !! those of the table that the layout takes
     character(:), allocatable :: control     !! what rules the step where no element does
+    logical :: scales = .false.              !! masses are scaled
     integer :: n_row = 0                     !! rows of the present instant so far
     real(wp), allocatable :: rows(:, :)      !! (columns, rows of an instant)
     character(line_size), allocatable :: lines(:) !! of one instant
@@ -57,6 +58,7 @@ contains
     call find_columns(columns_of(i_table), names, text%columns)
     text%control = 'load curve'
     if (model%controls%implicit%is_on) text%control = 'implicit'
+    text%scales = index(','//names//',', ',by_dt2ms,') > 0
     allocate (text%rows(size(text%columns), n_row))
     allocate (text%lines(n_line_of(i_table, n_row)))
     allocate (character(buffer_size) :: text%buffer)
@@ -126,11 +128,11 @@ contains
       do i = 1, size(model%parts)
         call put_entity(text, has_legend, model%parts(i)%id, text_of(model%parts(i)%title))
       end do
-    case (table_rcforc)
+    case (table_rcforc, table_sleout)
       do i = 1, n_told(model%contacts)
         call put_entity(text, has_legend, model%contacts(i)%id, text_of(model%contacts(i)%title))
       end do
-      if (allocated(model%transducers)) then
+      if (text%i_table == table_rcforc .and. allocated(model%transducers)) then
         do i = 1, size(model%transducers)
           call put_entity(text, has_legend, model%transducers(i)%id, &
             text_of(model%transducers(i)%title))
@@ -192,7 +194,7 @@ contains
     end do
     if (text%n_row < size(text%rows, 2)) return
     text%n_row = 0
-    call form_block(text%i_table, text%control, text%rows, text%lines, n_line)
+    call form_block(text%i_table, text%control, text%scales, text%rows, text%lines, n_line)
     do i = 1, n_line
       call put_line(text, trim(text%lines(i)))
     end do

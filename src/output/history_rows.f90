@@ -53,7 +53,7 @@ contains
     case (table_contact)
       call put_contact(row, nothing%time, [0, 0], nowhere, slave, 0)
     case (table_matsum)
-      call put_matsum(row, nothing%time, 0, sums)
+      call put_matsum(row, nothing%time, 0, sums, tells_mass)
     case (table_rwforc)
       call put_rwforc(row, nothing%time, 0, wall)
     case (table_sleout)
@@ -96,7 +96,8 @@ contains
       end do
     case (table_matsum)
       do i = 1, size(model%parts)
-        call put_matsum(row, snapshot%time, model%parts(i)%id, snapshot%parts(i))
+        call put_matsum(row, snapshot%time, model%parts(i)%id, snapshot%parts(i), &
+          snapshot%energies%tells_mass)
         call take(table, row)
       end do
     case (table_rwforc)
@@ -251,6 +252,10 @@ contains
       call put(row, 'friction', e%friction)
       if (e%tells_mass) call put_added_mass(row, e%added_mass)
       if (erodes) call put(row, 'eroded', sum(e%eroded))
+      if (e%tells_mass) then
+        call put(row, 'mass_increase', e%mass_increase)
+        call put(row, 'by_dt2ms', shot%by_dt2ms)
+      end if
       call end_csv(row)
       if (erodes) call put(row, 'eroded_kinetic,eroded_internal,eroded_hourglass,eroded_contact', &
         e%eroded)
@@ -328,11 +333,12 @@ contains
   end subroutine put_contact
 
   !> Sums over a part.
-  pure subroutine put_matsum(row, time, id, sums)
+  pure subroutine put_matsum(row, time, id, sums, tells_mass)
     type(row_t), intent(inout) :: row
     real(wp), intent(in) :: time
     integer, intent(in) :: id
     type(part_result_t), intent(in) :: sums
+    logical, intent(in) :: tells_mass      !! masses are scaled
 
     call put(row, 'time', time)
     call put(row, 'part', id)
@@ -341,6 +347,7 @@ contains
     call put(row, 'hourglass', sums%hourglass)
     call put(row, 'momentum_x,momentum_y', sums%momentum)
     call put(row, 'mass', sums%mass)
+    if (tells_mass) call put(row, 'added_mass', sums%added_mass)
   end subroutine put_matsum
 
   !> Resultant of a rigid wall.

@@ -207,7 +207,9 @@ contains
       if (model%erodes) energies%eroded = state%elements%erosion%took
       if (.not. energies%tells_mass) return
       call added_masses(model, state%elements, added, own)
+      snapshot%parts%added_mass = added
       energies%added_mass = sum(added)
+      energies%mass_increase = 100.0_wp*sum(added)/max(sum(own), tiny(total))
     end associate
   end subroutine fill_energies
 

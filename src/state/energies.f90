@@ -29,6 +29,7 @@ module energies_m
     real(wp) :: initial = 0.0_wp       !! total at time zero
     logical :: tells_mass = .false.    !! masses are scaled
     real(wp) :: added_mass = 0.0_wp    !! by mass scaling, kg per metre of depth or per radian
+    real(wp) :: mass_increase = 0.0_wp !! added mass over that of the densities, %
   end type energies_t
 
 contains

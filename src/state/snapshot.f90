@@ -30,7 +30,8 @@ module snapshot_m
     real(wp) :: internal = 0.0_wp
     real(wp) :: hourglass = 0.0_wp
     real(wp) :: momentum(2) = 0.0_wp
-    real(wp) :: mass = 0.0_wp
+    real(wp) :: mass = 0.0_wp       !! mass scaling included
+    real(wp) :: added_mass = 0.0_wp !! by mass scaling
   end type part_result_t
 
   !> Resultants of one rigid wall, of the force that acts on the nodes.
@@ -106,6 +107,7 @@ module snapshot_m
     real(wp), allocatable :: contact_slip(:)     !! interface has friction
     real(wp), allocatable :: contact_state(:)
     real(wp) :: mean_velocity(2) = 0.0_wp        !! momentum over mass, of all nodes
+    integer :: by_dt2ms = 0                      !! 1: no element has a smaller step than DT2MS
     integer :: slowest(2) = 0                    !! ids of the element that rules the step and of
                                                  !! its part, 0 = none
     integer, allocatable :: supports(:)          !! nodes with a fixed degree of freedom, by rising

@@ -312,7 +312,7 @@ def test_the_first_process_alone_reads_the_deck(tmp_path):
 
 
 def test_a_process_that_is_not_the_first_never_has_the_mesh(tmp_path):
-    """Its peak, an element of the model: a quarter of some 220 bytes and what all know of nodes between tiles. Nodes, elements
+    """Its peak, an element of the model: a quarter of some 236 bytes and what all know of nodes between tiles. Nodes, elements
     and slots alone would be 80 more, at whatever number of processes."""
     peaks = []
     for n in (10, 300):
@@ -326,7 +326,7 @@ def test_a_process_that_is_not_the_first_never_has_the_mesh(tmp_path):
         for rank in range(4):
             (tmp_path / f"{rank}.peak").unlink()
     for rank in (1, 2, 3):
-        assert (peaks[1][rank] - peaks[0][rank]) * 1024 / 300**2 < 110, peaks
+        assert (peaks[1][rank] - peaks[0][rank]) * 1024 / 300**2 < 114, peaks
     assert (peaks[1][0] - peaks[0][0]) * 1024 / 300**2 > 200, peaks
 
 

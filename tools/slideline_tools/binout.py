@@ -19,7 +19,8 @@ GLSTAT = {"time": "time", "cycle": "cycle", "time_step": "dt", "kinetic_energy":
           "hourglass_energy": "hourglass", "system_damping_energy": "damping",
           "sliding_interface_energy": "contact", "external_work": "external_work",
           "total_energy": "total", "energy_ratio": "energy_ratio",
-          "global_x_velocity": "velocity_x", "global_y_velocity": "velocity_y"}
+          "global_x_velocity": "velocity_x", "global_y_velocity": "velocity_y",
+          "added_mass": "added_mass", "percent_increase": "mass_increase"}
 RCFORC = {"x_force": "fx", "y_force": "fy"}
 NODOUT = {"x_displacement": "ux", "y_displacement": "uy", "x_velocity": "vx", "y_velocity": "vy",
           "x_acceleration": "ax", "y_acceleration": "ay", "x_coordinate": "x", "y_coordinate": "y"}
@@ -80,21 +81,30 @@ def write_branch(file, name, metadata, states):
 
 
 def glstat_branch(table, _):
-    """Energies; the work of the bulk viscosity counts as internal energy, as in DYNA."""
+    """Energies; the work of the bulk viscosity counts as internal energy, and what has eroded in those of elements, as in DYNA."""
     states = {name: table[column] for name, column in GLSTAT.items() if column in table}
-    states["internal_energy"] = table["internal"] + table["viscous"]
-    if "friction" in table:
-        states["sliding_interface_energy"] = table["contact"] + table["friction"]
     zero = np.zeros(len(table))
-    for name in ("spring_and_damper_energy", "eroded_kinetic_energy", "eroded_internal_energy",
-                 "eroded_hourglass_energy", "global_z_velocity"):
+    states["internal_energy"] = table["internal"] + table["viscous"]
+    states["sliding_interface_energy"] = optional(table, "contact") + optional(table, "friction") + optional(table, "eroded_contact")
+    for name in ("kinetic", "internal", "hourglass"):
+        eroded = optional(table, f"eroded_{name}")
+        states[f"{name}_energy"] = states.get(f"{name}_energy", zero) + eroded
+        states[f"eroded_{name}_energy"] = eroded
+    for name in ("spring_and_damper_energy", "global_z_velocity"):
         states[name] = zero
-    states["energy_ratio_wo_eroded"] = table["energy_ratio"]
+    total = optional(table, "total")
+    left = np.divide(total - optional(table, "eroded"), total, out=zero + 1.0, where=total != 0.0)
+    states["energy_ratio_wo_eroded"] = left * table["energy_ratio"]
     states["nzc"] = np.zeros(len(table), dtype=int)
     if "element" in table and np.all(table["element"] > 0):
         states["ts_eltype"] = np.ones(len(table), dtype=int)
         states["ts_element"], states["ts_part"] = table["element"], table["element_part"]
     return {"element_types": "shell"}, states
+
+
+def optional(table, column):
+    """A column, or zeros where a run has none."""
+    return table[column] if column in table else np.zeros(len(table))
 
 
 def whole_instants(table):
@@ -140,12 +150,12 @@ def with_z(states, *names):
     return states
 
 
-def rcforc_branch(table, _):
+def rcforc_branch(table, run):
     """Contact forces; side 0 is the slave surface, 1 the master surface."""
     ids = entities(table, "interface")
     states = with_z(by_instant(table, len(ids), RCFORC), "force")
     states["mass"] = np.zeros(states["x_force"].shape)
-    return {"ids": ids, "side": (table["side"][:len(ids)] == "master").astype(int)}, states
+    return {"ids": ids, "side": (table["side"][:len(ids)] == "master").astype(int), **legend(ids, run.interface_titles())}, states
 
 
 def nodout_branch(table, _):
@@ -165,22 +175,25 @@ def matsum_branch(table, run):
     mass = np.where(states["mass"] > 0.0, states["mass"], 1.0)
     for axis in "xy":
         states[f"{axis}_rbvelocity"] = states[f"{axis}_momentum"] / mass
+    states["added_mass"] = optional(table, "added_mass").reshape(mass.shape)
     for name in ("eroded_kinetic_energy", "eroded_internal_energy"):
         states[name] = np.zeros(mass.shape)
     return {"ids": ids, **legend(ids, run.part_titles())}, states
 
 
-def sleout_branch(table, _):
-    """Energies of interfaces, one number each."""
+def sleout_branch(table, run):
+    """Energies of interfaces, one number each, and what of it friction has dissipated."""
     ids = entities(table, "interface")
     states = by_instant(table, len(ids), {"slave": "energy"})
     for part in ("damping", "friction"):
         if part in table:
             states["slave"] = states["slave"] + by_instant(table, len(ids), {"slave": part})["slave"]
     states["cycle"] = table["cycle"].reshape(-1, len(ids))[:, 0]
+    states["friction_energy"] = optional(table, "friction").reshape(-1, len(ids))
+    states["total_friction"] = states["friction_energy"].sum(axis=1)
     states["total_slave"] = states["total_energy"] = states["slave"].sum(axis=1)
     states["total_master"] = np.zeros(len(states["time"]))
-    return {"ids": ids, "single_sided": np.ones(len(ids), dtype=int)}, states
+    return {"ids": ids, "single_sided": np.ones(len(ids), dtype=int), **legend(ids, run.interface_titles())}, states
 
 
 def spcforc_branch(table, _):

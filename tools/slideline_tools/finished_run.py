@@ -54,11 +54,19 @@ class Run:
 
     def part_titles(self):
         """part id -> heading of *PART, from the deck as run."""
+        return part_titles(self.deck_as_run())
+
+    def interface_titles(self):
+        """interface id -> title of *CONTACT_..._TITLE, from the deck as run."""
+        return interface_titles(self.deck_as_run())
+
+    def deck_as_run(self):
+        """Text of the deck as run, as far as the run has left it."""
         text = self.results.run.get("effective_deck", "") if self.results else ""
         path = pathlib.Path(f"{self.prefix}.effective.k")
         if not text and path.exists():
             text = source(path).read_text(encoding="latin-1")
-        return part_titles(text)
+        return text
 
 
 def whole_instants(table):
@@ -89,6 +97,20 @@ def find_prefix(path):
         raise RunError(f"{path} holds {'several runs: ' + ', '.join(jobs) if jobs else 'no run'}; "
                        "name a results file")
     return path / jobs[0]
+
+
+def interface_titles(deck):
+    """interface id -> title on the first card of *CONTACT_..._TITLE of a deck."""
+    titles, waits = {}, False
+    for line in deck.splitlines():
+        if line.startswith("*"):
+            waits = bool(re.match(r"\*CONTACT_\w+_TITLE\b", line, re.I))
+        elif waits and not line.startswith("$"):
+            number, title = line.split(",", 1) if "," in line[:20] else (line[:10], line[10:])
+            if number.strip().isdigit():
+                titles[int(number)] = title.strip()
+            waits = False
+    return titles
 
 
 def part_titles(deck):

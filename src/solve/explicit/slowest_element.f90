@@ -12,9 +12,13 @@ module slowest_element_m
   private
   public :: find_slowest
 
+  !> By how much of it a step that mass scaling has set may fall short of DT2MS.
+  real(wp), parameter :: round_off = 1.0e-9_wp
+
 contains
 
-  !> Ids of the element with the smallest stable step, and of its part; 0 where the curve rules.
+  !> Ids of the element with the smallest stable step, and of its part; 0 where the curve rules. And
+  !> whether that step is the one of DT2MS.
   subroutine find_slowest(model, state, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -23,12 +27,15 @@ contains
     real(wp), allocatable :: steps(:)
 
     snapshot%slowest = 0
+    snapshot%by_dt2ms = 0
     if (model%controls%dt_curve > 0) then
       if (.not. abs(curve_value(model%curves(model%controls%dt_curve), state%time) - state%dt) &
         > 0.0_wp) return
     end if
     call find_smallest_steps(model, state%elements, state%motion, 1, found, steps)
     if (size(found) == 0) return
+    if (snapshot%energies%tells_mass) snapshot%by_dt2ms = merge(1, 0, steps(1) &
+      >= (1.0_wp - round_off)*abs(model%controls%mass_step))
     snapshot%slowest = [model%mesh%element_id(found(1)), &
       model%parts(slot_part(model%layout, model%layout%element_slot(found(1))))%id]
   end subroutine find_slowest
