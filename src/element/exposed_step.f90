@@ -21,7 +21,7 @@ module exposed_step_m
     real(wp) :: x(4), y(4)       !! dN/dx, dN/dy, 1/m
     real(wp) :: area             !! m^2
     real(wp) :: growth           !! A/A0, at least 1
-    real(wp) :: rate             !! trace of the velocity gradient, 1/s, where negative
+    real(wp) :: rate             !! size of the trace of the velocity gradient, 1/s
   end type gradients_t
 
 contains
@@ -104,7 +104,7 @@ contains
     gradients%growth = max(1.0_wp, gradients%area/start)
     gradients%x = 0.5_wp*[-b(2), a(2), b(2), -a(2)]/gradients%area
     gradients%y = 0.5_wp*[b(1), -a(1), -b(1), a(1)]/gradients%area
-    gradients%rate = min(0.0_wp, sum(gradients%x*motion(3, :) + gradients%y*motion(4, :)))
+    gradients%rate = abs(sum(gradients%x*motion(3, :) + gradients%y*motion(4, :)))
     select case (side)
     case (1)
       along = a - b - h
@@ -131,7 +131,7 @@ contains
 
   !> Stable step of the motions in which these nodes move in the first and in the second direction:
   !> of dt^2 omega^2/4 + dt rate/2 <= 1, with the rate of bulk viscosity, whose pressure is that of
-  !> v(n-1/2).
+  !> v(n-1/2). It counts in expansion too: two steps later such an element is in compression.
   pure function mode_step(now, viscosity, gradients, moves_x, moves_y) result(step)
     type(material_t), intent(in) :: now
     type(hourglass_t), intent(in) :: viscosity         !! its Q1 and Q2
@@ -153,10 +153,9 @@ contains
       [0.5_wp*(xx + yy), 0.5_wp*(xx + yy), shear], &
       [0.5_wp*(xx - yy), (xy + yx)/sqrt(2.0_wp), (xy - yx)/sqrt(2.0_wp)]))
     rate = 0.0_wp
-    if (gradients%rate < 0.0_wp .and. (viscosity%quadratic > 0.0_wp .or. viscosity%linear &
-      > 0.0_wp)) then
+    if (viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp) then
       length = sqrt(abs(gradients%area))
-      rate = 2.0_wp*length*(viscosity%linear*now%sound_speed - viscosity%quadratic*length &
+      rate = 2.0_wp*length*(viscosity%linear*now%sound_speed + viscosity%quadratic*length &
         *gradients%rate)*(xx + yy)
     end if
     step = 2.0_wp/(rate + sqrt(rate**2 + omega**2))

@@ -83,22 +83,20 @@ contains
     if (viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp) &
       step = viscous_step(step, 2.0_wp*material%density/modulus/(1.0_wp + chunk%stretch) &
       *sqrt(abs(chunk%area))*(viscosity%linear*material%sound_speed &
-      - viscosity%quadratic*sqrt(abs(chunk%area))*min(0.0_wp, chunk%trace)), chunk%trace)
+      + viscosity%quadratic*sqrt(abs(chunk%area))*abs(chunk%trace)))
     limit = minval(step)
     if (present(single)) single = step
   end subroutine full_step
 
-  !> Step under viscous pressure in compression: damping of the fastest mode at most
-  !> zeta = (2 viscosity/C)/step.
-  pure elemental function viscous_step(step, viscosity, trace) result(limit)
+  !> Step under viscous pressure: damping of the fastest mode at most zeta = (2 viscosity/C)/step. It
+  !> counts in expansion too: two steps later the fastest mode is in compression.
+  pure elemental function viscous_step(step, viscosity) result(limit)
     real(wp), intent(in) :: step      !! without viscosity
-    real(wp), intent(in) :: viscosity !! 2 q/(-t C), s
-    real(wp), intent(in) :: trace
+    real(wp), intent(in) :: viscosity !! 2 q/(|t| C), s
     real(wp) :: limit
     real(wp) :: zeta
 
-    zeta = 0.0_wp
-    if (trace < 0.0_wp) zeta = viscosity/step
+    zeta = viscosity/step
     limit = step/(zeta + sqrt(zeta*zeta + 1.0_wp))
   end function viscous_step
 

@@ -60,10 +60,9 @@ contains
     if (.not. (viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp)) return
     step = limit
     do i = 1, chunk_size
-      if (.not. chunk%trace(i) < 0.0_wp) cycle
       length = sqrt(abs(chunk%area(i)))
-      rate = length/(1.0_wp + chunk%stretch(i))*(viscosity%linear*material%sound_speed &
-        - viscosity%quadratic*length*chunk%trace(i))*both(i)
+      rate = length/abs(1.0_wp + chunk%stretch(i))*(viscosity%linear*material%sound_speed &
+        + viscosity%quadratic*length*abs(chunk%trace(i)))*both(i)
       limit = min(limit, step/(1.0_wp + 0.5_wp*step*rate))
     end do
   end subroutine round_full_step
@@ -89,9 +88,9 @@ contains
     single = 2.0_wp/sqrt((2.0_wp*material%shear*(plane + hoop) + modulus*both)/material%density)
     if (.not. (viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp)) return
     length = sqrt(abs(chunk%area))
-    rate = length/(1.0_wp + chunk%stretch)*(viscosity%linear*material%sound_speed &
-      - viscosity%quadratic*length*chunk%trace)*both
-    where (chunk%trace < 0.0_wp) single = single/(1.0_wp + 0.5_wp*single*rate)
+    rate = length/abs(1.0_wp + chunk%stretch)*(viscosity%linear*material%sound_speed &
+      + viscosity%quadratic*length*abs(chunk%trace))*both
+    single = single/(1.0_wp + 0.5_wp*single*rate)
   end subroutine single_round_full_steps
 
   !> Largest row sums of H and T of the elements, over the volumes of the nodes. H is that of the

@@ -200,8 +200,8 @@ contains
     end do
   end subroutine form_sums
 
-  !> Bulk viscosity in compression has a rate of its own, which is added: x + y <= theta at a share
-  !> theta <= 1 of the step without it.
+  !> Bulk viscosity has a rate of its own, which is added: x + y <= theta at a share theta <= 1 of the
+  !> step without it. It counts in expansion too: two steps later the fastest mode is in compression.
   pure subroutine limit_bulk_viscosity(viscosity, sound_speed, chunk, sums, limit)
     type(hourglass_t), intent(in) :: viscosity
     real(wp), intent(in) :: sound_speed
@@ -213,10 +213,9 @@ contains
 
     rate = 0.0_wp
     do i = 1, chunk_size
-      if (.not. chunk%trace(i) < 0.0_wp) cycle
-      length = sqrt(chunk%area(i))
-      rate = max(rate, length/(1.0_wp + chunk%stretch(i))*(viscosity%linear*sound_speed &
-        - viscosity%quadratic*length*chunk%trace(i))*sums%dilation(i))
+      length = sqrt(abs(chunk%area(i)))
+      rate = max(rate, length/abs(1.0_wp + chunk%stretch(i))*(viscosity%linear*sound_speed &
+        + viscosity%quadratic*length*abs(chunk%trace(i)))*sums%dilation(i))
     end do
     limit = limit/(1.0_wp + 0.5_wp*limit*rate)
   end subroutine limit_bulk_viscosity
