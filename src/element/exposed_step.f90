@@ -62,7 +62,7 @@ contains
     real(wp) :: step
     type(material_t) :: now
     type(gradients_t) :: gradients
-    real(wp) :: normal(2)
+    real(wp) :: normal(2), shape(6), nodal(4, 4)
     logical :: is_free(4)
     logical, parameter :: all_free(4) = .true.
 
@@ -72,8 +72,9 @@ contains
       side => elements%exposed_side(slot))
       if (side == 0) return
       call take_now(model%materials(part%material), elements, slot, now)
-      call form_gradients(elements%reference(slot, :6), &
-        motion(:, model%layout%slot_nodes(:, slot)), side, gradients, normal)
+      shape = elements%reference(slot, :6)
+      nodal = motion(:, model%layout%slot_nodes(:, slot))
+      call form_gradients(shape, nodal, side, gradients, normal)
       if (side == no_side) then
         step = mode_step(now, part%hourglass, gradients, all_free, all_free)
         return
