@@ -88,8 +88,8 @@ contains
     if (present(single)) single = step
   end subroutine full_step
 
-  !> Step under viscous pressure: damping of the fastest mode at most zeta = (2 viscosity/C)/step. It
-  !> counts in expansion too: two steps later the fastest mode is in compression.
+  !> Step under viscous pressure: damping of the fastest mode at most zeta = (2 viscosity/C)/step.
+  !> It counts in expansion too: two steps later the fastest mode is in compression.
   pure elemental function viscous_step(step, viscosity) result(limit)
     real(wp), intent(in) :: step      !! without viscosity
     real(wp), intent(in) :: viscosity !! 2 q/(|t| C), s

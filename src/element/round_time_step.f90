@@ -200,8 +200,9 @@ contains
     end do
   end subroutine form_sums
 
-  !> Bulk viscosity has a rate of its own, which is added: x + y <= theta at a share theta <= 1 of the
-  !> step without it. It counts in expansion too: two steps later the fastest mode is in compression.
+  !> Bulk viscosity has a rate of its own, which is added: x + y <= theta at a share theta <= 1 of
+  !> the step without it. It counts in expansion too: two steps later the fastest mode is in
+  !> compression.
   pure subroutine limit_bulk_viscosity(viscosity, sound_speed, chunk, sums, limit)
     type(hourglass_t), intent(in) :: viscosity
     real(wp), intent(in) :: sound_speed
