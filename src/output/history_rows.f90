@@ -256,9 +256,9 @@ contains
         call put(row, 'mass_increase', e%mass_increase)
         call put(row, 'by_dt2ms', shot%by_dt2ms)
       end if
-      call end_csv(row)
       if (erodes) call put(row, 'eroded_kinetic,eroded_internal,eroded_hourglass,eroded_contact', &
         e%eroded)
+      call end_csv(row)
       call put(row, 'velocity_x,velocity_y', shot%mean_velocity)
       call put(row, 'element', shot%slowest(1))
       call put(row, 'element_part', shot%slowest(2))

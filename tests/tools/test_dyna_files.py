@@ -273,6 +273,25 @@ def test_binout_sleout(run, binout):
     assert binout.read("sleout", "ids").tolist() == [1]
 
 
+def test_binout_counts_what_has_eroded(tmp_path):
+    """Energies of glstat hold what has eroded, which stands apart too; mass scaling and friction have variables of their own."""
+    (tmp_path / "a.log").write_text("")
+    (tmp_path / "a.glstat.csv").write_text(
+        "time,cycle,dt,kinetic,internal,hourglass,viscous,damping,contact,external_work,total,energy_ratio,leapfrog,friction,added_mass,"
+        "eroded,mass_increase,by_dt2ms,eroded_kinetic,eroded_internal,eroded_hourglass,eroded_contact\n"
+        "0.,0,1.,1.25,2.,0.5,0.25,0.,0.125,0.,8.,1.,0.,0.125,3.,3.75,50.,1,0.75,1.,1.5,0.5\n")
+    (tmp_path / "a.sleout.csv").write_text("time,cycle,interface,energy,damping,stored,friction\n0.,0,7,1.,0.5,0.,0.25\n")
+    (tmp_path / "a.effective.k").write_text("*KEYWORD\n*CONTACT_2D_SLIDELINE_TITLE\n         7anvil\n*END\n")
+    write_binout(tmp_path, tmp_path / "b")
+    binout = Binout(str(tmp_path / "b"))
+    wanted = {"kinetic_energy": 2.0, "internal_energy": 3.25, "hourglass_energy": 2.0, "sliding_interface_energy": 0.75,
+              "eroded_kinetic_energy": 0.75, "eroded_internal_energy": 1.0, "eroded_hourglass_energy": 1.5, "total_energy": 8.0,
+              "energy_ratio_wo_eroded": 4.25 / 8.0, "added_mass": 3.0, "percent_increase": 50.0}
+    assert {name: float(np.ravel(binout.read("glstat", name))[0]) for name in wanted} == pytest.approx(wanted, rel=1e-6)
+    assert binout.read("sleout", "friction_energy") == pytest.approx(0.25) and binout.read("sleout", "slave") == pytest.approx(1.75)
+    assert "anvil" in str(binout.read("sleout", "legend"))
+
+
 def test_binout_as_pandas(binout):
     frame = binout.as_df("rcforc", "y_force")
     assert list(frame.columns) == ["1s", "1m"] and frame["1s"].abs().max() > 1.0e6
