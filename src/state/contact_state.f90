@@ -123,7 +123,7 @@ module contact_state_m
                                             !! step, m
     real(wp) :: dt = 0.0_wp                 !! step that made them, s; only in implicit runs
     real(wp) :: lag = 0.0_wp                !! damping of tangential springs that stick over their
-                                            !! stiffness, s; only in explicit runs
+                                            !! stiffness, s
     real(wp), allocatable :: former_traction(:) !! (n_place) of the call before; this and the next
                                             !! two only where there is friction
     integer, allocatable :: former_state(:) !! (n_place) the same

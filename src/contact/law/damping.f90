@@ -5,7 +5,7 @@ module damping_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: damp_points, find_lag
+  public :: damp_points, find_lag, of_stuck
 
   !> Damping of stuck springs as a fraction of critical, and what it may be times omega and the step
   !> (lagging by half a step it takes four times that off the square of what leap-frog bears).

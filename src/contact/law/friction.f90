@@ -4,7 +4,7 @@
 module friction_m
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
   use contacts_m, only : contact_t, friction_rule_t
-  use friction_block_m, only : rubs_t, find_former, find_slid, rub_block
+  use friction_block_m, only : rubs_t, find_former, find_before, rub_block
   use friction_sides_m, only : sides_t, find_portions, take_portions, take_feet, &
     n_block
   use friction_slips_m, only : find_slips
@@ -120,8 +120,8 @@ contains
         call find_former(n, points%slave_nodes(1, first), points%slave_weights(1, first), &
           points%master_nodes(1, first), scratch%former_traction, scratch%former_state, &
           rubs%place, rubs%former)
-        if (has_decay(contact%friction)) call find_slid(n, points%slave_nodes(1, first), &
-          rubs%place, scratch%former_state, rubs%slid)
+        if (has_decay(contact%friction)) call find_before(n, points%slave_nodes(1, first), &
+          rubs%place, scratch%former_state, rubs%before)
         rubs%pressure(:n) = points%pressure(first:last)
         rubs%stiffness(:n) = contact%friction%stiffness*points%stiffness(first:last)
         if (has_unit_area .and. contact%friction%most > 0.0_wp) then
@@ -259,7 +259,7 @@ contains
           rubs%pressure(k) = points%pressure(portions(k))
         end do
         if (has_decay(contact%friction)) &
-          rubs%slid(:n) = memory%scratch%former_state(rubs%place(:n)) == slips
+          rubs%before(:n) = memory%scratch%former_state(rubs%place(:n))
         call rub_block(contact%friction, n, dt, memory%scratch%lag, rubs)
         do k = 1, n
           if (rubs%pressure(k) > 0.0_wp) then
@@ -363,7 +363,7 @@ contains
           rubs%pressure(n) = memory%node_pressure(i)
         end if
         if (n < n_block .and. i < memory%n_slave) cycle
-        if (has_decay(rule)) rubs%slid(:n) = memory%scratch%former_state(rubs%place(:n)) == slips
+        if (has_decay(rule)) rubs%before(:n) = memory%scratch%former_state(rubs%place(:n))
         call rub_nodes(rule, n, [dt, memory%scratch%lag], nodal, rubs, memory%friction)
         if (allocated(drag)) drag(rubs%place(:n)) = rubs%drag(:n)
         n = 0

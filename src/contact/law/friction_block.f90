@@ -11,7 +11,7 @@ module friction_block_m
     return_tractions
   implicit none
   private
-  public :: rubs_t, find_former, find_slid, rub_block
+  public :: rubs_t, find_former, find_before, rub_block
 
   !> Places in a step. Without default values, which would be written before each use.
   type :: rubs_t
@@ -24,8 +24,8 @@ module friction_block_m
                                    !! rule has one
     real(wp) :: traction(n_block)  !! after the step, N/m^2
     integer :: state(n_block)      !! the same
-    logical :: slid(n_block)       !! in the step before; this and the next only where the rule
-                                   !! has a decay
+    integer :: before(n_block)     !! state in the step before; this and the next only where the
+                                   !! rule has a decay
     real(wp) :: drag(n_block)      !! traction of the damping of what sticks, N/m^2
   end type rubs_t
 
@@ -58,19 +58,20 @@ contains
     end do
   end subroutine find_former
 
-  !> Which of some points slid in the step before. A master node that was none of the points goes on
-  !> as the ends of its slave segment.
-  pure subroutine find_slid(n, slave_nodes, place, former_state, slid)
+  !> States of some points in the step before. A master node that was none of the points goes on
+  !> sliding where an end of its slave segment slid.
+  pure subroutine find_before(n, slave_nodes, place, former_state, before)
     integer, intent(in) :: n, slave_nodes(n_side, *), place(*)
     integer, intent(in) :: former_state(*)  !! of all places
-    logical, intent(inout) :: slid(*)
+    integer, intent(inout) :: before(*)
     integer :: p
 
     do p = 1, n
-      slid(p) = former_state(place(p)) == slips
-      if (former_state(place(p)) == is_open) slid(p) = any(former_state(slave_nodes(:, p)) == slips)
+      before(p) = former_state(place(p))
+      if (before(p) /= is_open) cycle
+      if (any(former_state(slave_nodes(:, p)) == slips)) before(p) = slips
     end do
-  end subroutine find_slid
+  end subroutine find_before
 
   !> Tractions and states of some places after a step.
   pure subroutine rub_block(rule, n, dt, lag, rubs)
@@ -87,46 +88,40 @@ contains
       rubs%state)
     if (.not. has_decay(rule)) return
     rubs%drag(:n) = 0.0_wp
-    if (.not. dt > 0.0_wp) return
-    call slow_down(rule, n, dt, rubs)
-    if (lag > 0.0_wp) call drag_stuck(n, lag/dt, limits, rubs)
+    if (dt > 0.0_wp) call slow_down(rule, n, [dt, lag], limits, rubs)
   end subroutine rub_block
 
-  !> Damping of the places that stick, up to their limits.
-  pure subroutine drag_stuck(n, ratio, limits, rubs)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: ratio     !! of the damping to the springs, for a slip of this step
-    real(wp), intent(in) :: limits(n) !! N/m^2
-    type(rubs_t), intent(inout) :: rubs
-    real(wp) :: traction
-    integer :: k
-
-    do k = 1, n
-      if (rubs%state(k) /= sticks .or. .not. rubs%pressure(k) > 0.0_wp) cycle
-      traction = rubs%traction(k) + ratio*rubs%stiffness(k)*rubs%slip(k)
-      rubs%drag(k) = sign(min(abs(traction), limits(k)), traction) - rubs%traction(k)
-    end do
-  end subroutine drag_stuck
-
-  !> Tractions of the places that slide, each at the speed of its sliding.
-  pure subroutine slow_down(rule, n, dt, rubs)
+  !> Tractions of the places that slide, each at the speed of its sliding, and damping of those that
+  !> stick and did so before, up to their limits. A damped place slides where its spring and both
+  !> together are beyond the limit, so that tractions do not jump between the two.
+  pure subroutine slow_down(rule, n, times, limits, rubs)
     type(friction_rule_t), intent(in) :: rule
     integer, intent(in) :: n
-    real(wp), intent(in) :: dt
+    real(wp), intent(in) :: times(2)  !! the step and the lag of what is damped, s
+    real(wp), intent(in) :: limits(n) !! of what sticks, N/m^2
     type(rubs_t), intent(inout) :: rubs
-    real(wp) :: trial, most, speed
+    real(wp) :: trial, damped, most, speed
     integer :: k
 
     most = huge(most)
     do k = 1, n
       if (.not. min(rubs%pressure(k), rubs%stiffness(k)) > 0.0_wp) cycle
       trial = rubs%former(k) + rubs%stiffness(k)*rubs%slip(k)
+      damped = trial
+      if (rubs%before(k) == sticks) &
+        damped = trial + times(2)/times(1)*rubs%stiffness(k)*rubs%slip(k)
       if (rule%most > 0.0_wp) most = rubs%most(k)
-      speed = sliding_speed(rule, abs(trial), rubs%pressure(k), most, rubs%stiffness(k)*dt, &
-        rubs%slid(k) .and. trial*rubs%former(k) > 0.0_wp)
-      if (.not. speed > 0.0_wp) cycle
-      rubs%traction(k) = sign(min(coefficient_of(rule, speed)*rubs%pressure(k), most), trial)
-      rubs%state(k) = slips
+      speed = sliding_speed(rule, min(abs(trial), damped*sign(1.0_wp, trial)), rubs%pressure(k), &
+        most, rubs%stiffness(k)*times(1), rubs%before(k) == slips &
+        .and. trial*rubs%former(k) > 0.0_wp)
+      if (speed > 0.0_wp) then
+        rubs%traction(k) = sign(min(coefficient_of(rule, speed)*rubs%pressure(k), most), trial)
+        rubs%state(k) = slips
+      else if (rubs%before(k) == sticks) then
+        rubs%traction(k) = trial
+        rubs%state(k) = sticks
+        rubs%drag(k) = sign(min(abs(damped), limits(k)), damped) - trial
+      end if
     end do
   end subroutine slow_down
 

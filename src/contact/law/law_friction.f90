@@ -76,8 +76,8 @@ contains
       if (coefficient_of(rule, speed)*pressure >= most) return
     end if
     ! Where the coefficient falls the left side is convex, and Newton's method comes down to its
-    ! last root from the right; where it rises the left side is concave and increases, and it comes
-    ! up to its only one from the left. Neither passes the root.
+    ! last root from the right; where it rises the left side is concave and increases, and it comes up to
+    ! its only one from the left. Neither passes the root.
     x = merge(beyond, 0.0_wp, height > 0.0_wp)
     do pass = 1, most_passes
       former = x
@@ -117,7 +117,7 @@ contains
 
   !> The traction of a place in contact with its derivatives. One that touches without pressure has
   !> none yet, and sticks.
-  pure function vary_traction(rule, former, slip, pressure, stiffness, most, dt, before) &
+  pure function vary_traction(rule, former, slip, pressure, stiffness, most, times, before) &
       result(traction)
     type(friction_rule_t), intent(in) :: rule
     type(dual_t), intent(in) :: former   !! traction before, N/m^2
@@ -125,11 +125,11 @@ contains
     type(dual_t), intent(in) :: pressure !! N/m^2
     real(wp), intent(in) :: stiffness    !! tangential, N/m^3
     type(dual_t), intent(in) :: most     !! largest traction whatever the pressure, N/m^2
-    real(wp), intent(in) :: dt           !! step that made the slip, s
+    real(wp), intent(in) :: times(2)     !! step that made the slip, and lag of what sticks, s
     integer, intent(in) :: before        !! state before; `goes_on`: at the limit, wherever the
                                          !! trial is
     type(dual_t) :: traction
-    type(dual_t) :: trial, limit
+    type(dual_t) :: trial, damped, limit
     real(wp) :: speed
 
     traction = stiffness*slip
@@ -142,12 +142,19 @@ contains
     limit = coefficient_of(rule, 0.0_wp)*pressure
     if (most%value < limit%value) limit = most
     speed = 0.0_wp
-    if (has_decay(rule) .and. stiffness*dt > 0.0_wp) speed = sliding_speed(rule, &
-      trial%value, pressure%value, most%value, stiffness*dt, (before == slips .or. &
-      before == goes_on) .and. traction%value*former%value > 0.0_wp)
+    if (has_decay(rule) .and. stiffness*times(1) > 0.0_wp) then
+      if (before == sticks) then
+        damped = traction + (times(2)/times(1)*stiffness)*slip
+        if (sign(1.0_wp, traction%value)*damped%value < trial%value) &
+          trial = sign(1.0_wp, traction%value)*damped
+        traction = damped
+      end if
+      speed = sliding_speed(rule, trial%value, pressure%value, most%value, stiffness*times(1), &
+        (before == slips .or. before == goes_on) .and. traction%value*former%value > 0.0_wp)
+    end if
     if (speed > 0.0_wp) then
-      limit = vary_sliding_limit(rule, speed, trial, pressure, most, stiffness*dt)
-    else if (.not. (trial%value > limit%value .or. before == goes_on)) then
+      limit = vary_sliding_limit(rule, speed, trial, pressure, most, stiffness*times(1))
+    else if (.not. (abs(traction%value) > limit%value .or. before == goes_on)) then
       return
     end if
     traction = sign(1.0_wp, traction%value)*limit

@@ -78,7 +78,7 @@ contains
     most = largest_grip(rule)
     if (present(length) .and. rule%most > 0.0_wp) most = rule%most*length
     traction = vary_traction(rule, former, vary_slip(memory, point, 3, point%master_xi), pressure, &
-      rule%stiffness*stiffness, most, memory%scratch%dt, before)
+      rule%stiffness*stiffness, most, [memory%scratch%dt, memory%scratch%lag], before)
   end function vary_grip
 
   !> The state of a place at the end of the step before; `goes_on` where it slipped, in the first

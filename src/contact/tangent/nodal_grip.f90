@@ -91,7 +91,7 @@ contains
           vary_pressure(memory%contact_law, memory%slave_penalty, &
           variable(eased(node)/areas(node), 1)), &
           contact%friction%stiffness*memory%slave_penalty, largest_grip(contact%friction), &
-          memory%scratch%dt, state_before(memory, node))
+          [memory%scratch%dt, memory%scratch%lag], state_before(memory, node))
       end associate
     end do
   end subroutine grip_nodes

@@ -239,7 +239,8 @@ contains
     traction = vary_traction(contact%friction, &
       constant(memory%scratch%former_traction(place)), vary_slip(memory, point, 5, foot%xi), &
       pressure, contact%friction%stiffness*memory%slave_penalty, &
-      largest_grip(contact%friction), memory%scratch%dt, state_before(memory, place))
+      largest_grip(contact%friction), [memory%scratch%dt, memory%scratch%lag], &
+      state_before(memory, place))
   end function vary_grip
 
 end module tangent_vts_ppt_m

@@ -4,7 +4,11 @@ module implicit_start_m
   use kinds_m, only : wp
   use clock_m, only : lap, phase_solver
   use contact_check_m, only : report_contact_start
+  use contact_spring_ratios_m, only : spring_ratios
+  use contact_state_m, only : contact_state_t
   use contact_springs_m, only : measure_springs
+  use contacts_m, only : is_tied
+  use damping_m, only : of_stuck
   use element_mass_m, only : add_mass, mass_times
   use equations_m, only : equations_t, number_equations, take_free
   use errors_m, only : error_t, raise, status_run
@@ -12,6 +16,7 @@ module implicit_start_m
   use implicit_memory_m, only : implicit_memory_t, take_up_memory, write_restarts
   use implicit_prescribed_m, only : prescribe_start, list_changes
   use implicit_tangent_m, only : step_t
+  use law_friction_m, only : has_decay
   use linear_solver_m, only : report_t, solve_linear
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
@@ -41,6 +46,7 @@ contains
     call list_changes(model, changes)
     memory%control = start_step_control(model%controls, changes)
     call set_scheme(model, memory%step)
+    if (memory%step%is_dynamic) call set_lags(model, state)
     last = .false.
     if (monitor%restarts%goes_on) then
       call take_up_memory(model, state, monitor%restarts%source, memory, error)
@@ -101,6 +107,26 @@ contains
       step%beta = implicit%beta
     end associate
   end subroutine set_scheme
+
+  !> Damping of what sticks, by the frequencies of the springs of contact at time zero.
+  subroutine set_lags(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    type(contact_state_t) :: undeformed
+    integer :: i
+
+    do i = 1, size(model%contacts)
+      if (.not. has_decay(model%contacts(i)%friction) .or. is_tied(model%contacts(i))) cycle
+      undeformed = state%contacts(i)
+      undeformed%places(1:2, :) = model%mesh%coordinates(:, undeformed%nodes)
+      undeformed%places(3:4, :) = 0.0_wp
+      associate (ratio => spring_ratios(model%contacts(i), state%mass, undeformed), &
+        n => undeformed%n_slave)
+        state%contacts(i)%scratch%lag = 2.0_wp*of_stuck/sqrt(maxval(ratio(:n)) &
+          + maxval(ratio(n + 1:)))
+      end associate
+    end do
+  end subroutine set_lags
 
   !> Tell the log of the method.
   subroutine log_method(model, control, log)
