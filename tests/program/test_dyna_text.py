@@ -188,6 +188,9 @@ def test_added_mass(slideline, tmp_path):
     assert numbers(tmp_path / "o/job.matsum.csv", "added_mass") == pytest.approx([6.0, 2.0, 0.0] * 4, rel=1e-14)
     text = (tmp_path / "o/job.glstat").read_text()
     assert text.count("is controlled by dt2ms") == 4
+    deck.lines[deck.lines.index("*CONTROL_TIMESTEP") + 1] = "0.0,0.9,0,0.0,-0.01"
+    assert slideline("d=none", deck=deck).returncode == 0
+    assert "dt2ms" not in (tmp_path / "none/job.glstat").read_text()
     assert line_of(text, "added mass") == 8.0
     increase = numbers(tmp_path / "o/job.glstat.csv", "mass_increase")
     assert increase[-1] == pytest.approx(100.0 * 8.0 / 9.0) and line_of(text, "percentage increase") == pytest.approx(increase[-1], rel=1e-5)

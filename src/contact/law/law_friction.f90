@@ -76,8 +76,8 @@ contains
       if (coefficient_of(rule, speed)*pressure >= most) return
     end if
     ! Where the coefficient falls the left side is convex, and Newton's method comes down to its
-    ! last root from the right; where it rises the left side is concave and increases, and it comes up to
-    ! its only one from the left. Neither passes the root.
+    ! last root from the right; where it rises the left side is concave and increases, and it comes
+    ! up to its only one from the left. Neither passes the root.
     x = merge(beyond, 0.0_wp, height > 0.0_wp)
     do pass = 1, most_passes
       former = x

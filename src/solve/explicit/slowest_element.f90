@@ -12,7 +12,7 @@ module slowest_element_m
   private
   public :: find_slowest
 
-  !> By how much of it a step that mass scaling has set may fall short of DT2MS.
+  !> Part of DT2MS by which a step that mass scaling has set may differ from it.
   real(wp), parameter :: round_off = 1.0e-9_wp
 
 contains
@@ -34,8 +34,10 @@ contains
     end if
     call find_smallest_steps(model, state%elements, state%motion, 1, found, steps)
     if (size(found) == 0) return
-    if (snapshot%energies%tells_mass) snapshot%by_dt2ms = merge(1, 0, steps(1) &
-      >= (1.0_wp - round_off)*abs(model%controls%mass_step))
+    ! An element that is as large without added mass rules by itself.
+    if (snapshot%energies%tells_mass) snapshot%by_dt2ms = merge(1, 0, &
+      abs(steps(1)/abs(model%controls%mass_step) - 1.0_wp) <= round_off .or. &
+      (model%controls%mass_step > 0.0_wp .and. steps(1) > model%controls%mass_step))
     snapshot%slowest = [model%mesh%element_id(found(1)), &
       model%parts(slot_part(model%layout, model%layout%element_slot(found(1))))%id]
   end subroutine find_slowest
