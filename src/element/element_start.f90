@@ -53,17 +53,17 @@ contains
     if (model%erodes) call start_erosion(model, elements)
   end subroutine start_elements
 
-  !> Quads of the whole mesh that have at most one neighbour.
+  !> Exposed quads of the whole mesh.
   pure subroutine start_exposed(model, elements)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(inout) :: elements
     integer :: i
 
     if (.not. allocated(model%layout%exposed)) return
-    if (size(model%layout%exposed, 2) == 0) return
-    allocate (elements%exposed_side(model%layout%n_slot), source=0)
-    do i = 1, size(model%layout%exposed, 2)
-      elements%exposed_side(model%layout%exposed(1, i)) = model%layout%exposed(2, i)
+    if (size(model%layout%exposed) == 0) return
+    allocate (elements%mass_shares(4, model%layout%n_slot), source=0.0_wp)
+    do i = 1, size(model%layout%exposed)
+      elements%mass_shares(:, model%layout%exposed(i)) = model%layout%exposed_shares(:, i)
     end do
   end subroutine start_exposed
 

@@ -1,12 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> Stable step of a plane one-point quad with at most one neighbour, whose nodes carry little mass
-!> but its own. Without a neighbour it is 2/omega of the free element: omega^2 = 4 J c^2 lambda,
-!> lambda the largest eigenvalue of D B B^T over K + 4G/3 and J = A/A0. The end of a strip moves as
-!> if its neighbour were its mirror image: the nodes of their common side keep either their normal
-!> or their tangential place (doc/theory/elements.md, "Stable step").
+!> Stable step of plane one-point quads whose nodes carry hardly any mass but their own. A node moves
+!> as if the rest of its mass belonged to mirror images of the element: one component of its
+!> acceleration is that of the free element, the other one 2 s - 1 of that where s > 1/2 is the
+!> element's share in its mass, and 0 below. omega^2 = 4 J c^2 lambda, lambda the largest eigenvalue
+!> of D B Q B^T over K + 4G/3 with these weights Q, and J = A/A0. Of a free element, and of four in a
+!> block, this is exact (doc/theory/elements.md, "Stable step").
 module exposed_step_m
   use block_state_m, only : block_state_t
-  use exposed_quads_m, only : no_side
   use kinds_m, only : wp
   use law_pressure_m, only : take_now
   use layout_m, only : chunk_size
@@ -26,18 +26,18 @@ module exposed_step_m
 
 contains
 
-  !> Whether elements of a chunk have at most one neighbour.
+  !> Whether elements of a chunk are exposed.
   pure function has_exposed(elements, i_chunk) result(has)
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: i_chunk
     logical :: has
 
     has = .false.
-    if (allocated(elements%exposed_side)) has = any(elements%exposed_side((i_chunk - 1)*chunk_size &
-      + 1:i_chunk*chunk_size) > 0)
+    if (allocated(elements%mass_shares)) has = any(elements%mass_shares(:, (i_chunk &
+      - 1)*chunk_size + 1:i_chunk*chunk_size) > 0.0_wp)
   end function has_exposed
 
-  !> Lower the steps of those elements of a chunk that have at most one neighbour.
+  !> Lower the steps of those elements of a chunk that are exposed.
   subroutine limit_exposed(model, elements, i_chunk, motion, steps)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -52,8 +52,8 @@ contains
     end do
   end subroutine limit_exposed
 
-  !> Stable step of the element in a slot, s, with the mass of its density; huge where it has more
-  !> than one neighbour.
+  !> Stable step of the element in a slot, s, with the mass of its density; huge where it is not
+  !> exposed.
   function exposed_step(model, elements, slot, motion) result(step)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -62,33 +62,27 @@ contains
     real(wp) :: step
     type(material_t) :: now
     type(gradients_t) :: gradients
-    real(wp) :: normal(2), shape(6), nodal(4, 4)
-    logical :: is_free(4)
-    logical, parameter :: all_free(4) = .true.
+    real(wp) :: normal(2), shape(6), nodal(4, 4), weights(4)
+    real(wp), parameter :: one(4) = 1.0_wp
 
     step = huge(step)
-    if (.not. allocated(elements%exposed_side)) return
+    if (.not. allocated(elements%mass_shares)) return
     associate (part => model%parts(model%layout%chunk_part((slot - 1)/chunk_size + 1)), &
-      side => elements%exposed_side(slot))
-      if (side == 0) return
+      shares => elements%mass_shares(:, slot))
+      if (.not. any(shares > 0.0_wp)) return
       call take_now(model%materials(part%material), elements, slot, now)
       shape = elements%reference(slot, :6)
       nodal = motion(:, model%layout%slot_nodes(:, slot))
-      call form_gradients(shape, nodal, side, gradients, normal)
-      if (side == no_side) then
-        step = mode_step(now, part%hourglass, gradients, all_free, all_free)
-        return
-      end if
+      ! Mirror images lie beyond the side where the least of the mass is its own.
+      call form_gradients(shape, nodal, minloc(shares + cshift(shares, 1), 1), gradients, normal)
       call turn_gradients(normal, gradients)
-      is_free = .true.
-      is_free(side) = .false.
-      is_free(mod(side, 4) + 1) = .false.
-      step = min(mode_step(now, part%hourglass, gradients, is_free, all_free), &
-        mode_step(now, part%hourglass, gradients, all_free, is_free))
+      weights = max(0.0_wp, 2.0_wp*shares - 1.0_wp)
+      step = min(mode_step(now, part%hourglass, gradients, one, weights), &
+        mode_step(now, part%hourglass, gradients, weights, one))
     end associate
   end function exposed_step
 
-  !> Gradients in the present shape, and the unit normal of the neighbouring side.
+  !> Gradients in the present shape, and the unit normal of a side.
   pure subroutine form_gradients(shape, motion, side, gradients, normal)
     real(wp), intent(in) :: shape(6)      !! X31 Y31 X42 Y42 h.X h.Y at time zero
     real(wp), intent(in) :: motion(4, 4)  !! u, v of the nodes
@@ -130,22 +124,23 @@ contains
     gradients%y = across
   end subroutine turn_gradients
 
-  !> Stable step of the motions in which these nodes move in the first and in the second direction:
-  !> of dt^2 omega^2/4 + dt rate/2 <= 1, with the rate of bulk viscosity, whose pressure is that of
-  !> v(n-1/2). It counts in expansion too: two steps later such an element is in compression.
-  pure function mode_step(now, viscosity, gradients, moves_x, moves_y) result(step)
+  !> Stable step of the motions in which the nodes have these weights in the first and in the second
+  !> direction: of dt^2 omega^2/4 + dt rate/2 <= 1, with the rate of bulk viscosity, whose pressure
+  !> is that of v(n-1/2). It counts in expansion too: two steps later such an element is in
+  !> compression.
+  pure function mode_step(now, viscosity, gradients, weights_x, weights_y) result(step)
     type(material_t), intent(in) :: now
     type(hourglass_t), intent(in) :: viscosity         !! its Q1 and Q2
     type(gradients_t), intent(in) :: gradients
-    logical, intent(in) :: moves_x(4), moves_y(4)
+    real(wp), intent(in) :: weights_x(4), weights_y(4) !! 0 to 1
     real(wp) :: step
     real(wp) :: xx, yy, xy, yx, shear, modulus, lateral, omega, rate, length
 
-    xx = sum(gradients%x**2, moves_x)
-    yy = sum(gradients%y**2, moves_y)
-    xy = sum(gradients%x*gradients%y, moves_x)
-    yx = sum(gradients%x*gradients%y, moves_y)
-    shear = sum(gradients%y**2, moves_x) + sum(gradients%x**2, moves_y)
+    xx = sum(weights_x*gradients%x**2)
+    yy = sum(weights_y*gradients%y**2)
+    xy = sum(weights_x*gradients%x*gradients%y)
+    yx = sum(weights_y*gradients%x*gradients%y)
+    shear = sum(weights_x*gradients%y**2) + sum(weights_y*gradients%x**2)
     modulus = now%bulk + 4.0_wp*now%shear/3.0_wp
     lateral = (modulus - 2.0_wp*now%shear)/modulus
     ! D B B^T of the strains (xx + yy)/root 2, (xx - yy)/root 2 and xy.

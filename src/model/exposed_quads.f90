@@ -1,97 +1,131 @@
 ! SPDX-License-Identifier: MIT
-!> Plane one-point quads with at most one neighbour: single elements, and the ends of strips one
-!> element thick. L/c is above their stable step (doc/theory/elements.md, "Stable step").
+!> Plane one-point quads whose nodes carry hardly any mass but their own: single elements, ends of
+!> strips one element thick, what is dense in something light. L/c is above their stable step
+!> (doc/theory/elements.md, "Stable step").
 module exposed_quads_m
-  use boundary_m, only : boundary_t, find_boundary
   use kinds_m, only : wp
   use model_m, only : model_t
   implicit none
   private
-  public :: find_exposed, list_exposed, no_side
+  public :: find_exposed, list_exposed
 
-  !> The neighbouring side of a quad without a neighbour.
-  integer, parameter :: no_side = 5
+  !> From this share of the mass of a node on, what else is there weighs about half as much or less.
+  real(wp), parameter :: main_share = 0.66_wp
 
 contains
 
-  !> The only side of each element that a neighbour shares or a support holds (side k runs from node
-  !> k to the next one), `no_side` where there is none, 0 where there are more and in all other
-  !> elements than plane one-point quads.
-  pure function find_exposed(model, is_left) result(side)
+  !> Shares of exposed quads in the masses of their nodes, 0 in all other elements and at nodes that
+  !> a support, a prescribed motion or a rigid body holds. A quad is exposed that has the main share
+  !> of two nodes, or of one where every element around it has one too (four quads in a block).
+  pure function find_exposed(model, is_left) result(shares)
     type(model_t), intent(in) :: model
     logical, intent(in) :: is_left(:)  !! (n_element) elements that have not eroded
-    integer, allocatable :: side(:)    !! (n_element)
-    type(boundary_t) :: boundary
-    logical, allocatable :: is_free(:, :), is_held(:, :), among(:)
-    integer :: i, edge
+    real(wp), allocatable :: shares(:, :)  !! (4, n_element)
+    real(wp), allocatable :: mass(:)
+    logical, allocatable :: is_surrounded(:)
+    integer :: i, k
 
-    allocate (side(model%mesh%n_element), source=0)
-    if (model%is_round) return
-    associate (mesh => model%mesh)
-      allocate (is_free(4, mesh%n_element), among(mesh%n_node))
-      is_free = .false.
-      among = .true.
-      call find_boundary(mesh%element_nodes, is_left, among, boundary)
-      is_held = held_directions(model)
-      do edge = 1, boundary%n_edge
-        associate (nodes => boundary%nodes(:, edge), element => boundary%elements(edge))
-          if (any(is_held(:, nodes(1)) .and. is_held(:, nodes(2)))) cycle
-          is_free(findloc(mesh%element_nodes(:, element), nodes(1), dim=1), element) = .true.
+    if (model%is_round) then
+      allocate (shares(4, model%mesh%n_element), source=0.0_wp)
+      return
+    end if
+    allocate (mass(model%mesh%n_node), source=0.0_wp)
+    allocate (is_surrounded(model%mesh%n_node), source=.true.)
+    shares = corner_masses(model, is_left)
+    do i = 1, model%mesh%n_element
+      do k = 1, 4
+        associate (node => model%mesh%element_nodes(k, i))
+          mass(node) = mass(node) + shares(k, i)
         end associate
       end do
-      do i = 1, mesh%n_element
-        if (count(is_free(:, i)) < 3) cycle
-        if (mesh%element_nodes(4, i) == mesh%element_nodes(3, i)) cycle
-        associate (part => model%parts(mesh%element_part(i)))
-          if (model%materials(part%material)%is_rigid .or. model%sections(part%section)%is_full) &
-            cycle
-        end associate
-        side(i) = findloc(is_free(:, i), .false., dim=1)
-        if (side(i) == 0) side(i) = no_side
-      end do
-    end associate
+    end do
+    call hold_nodes(model, mass)
+    do i = 1, model%mesh%n_element
+      if (.not. is_left(i)) cycle
+      associate (nodes => model%mesh%element_nodes(:, i))
+        shares(:, i) = shares(:, i)/mass(nodes)
+        if (.not. any(shares(:, i) > main_share)) is_surrounded(nodes) = .false.
+      end associate
+    end do
+    do i = 1, model%mesh%n_element
+      if (.not. is_exposed(model, i, shares(:, i), is_surrounded)) shares(:, i) = 0.0_wp
+    end do
   end function find_exposed
 
-  !> Slot and side of each exposed element of a mesh that is whole.
-  pure function list_exposed(model) result(list)
+  !> Slot and shares of each exposed element of a mesh that is whole.
+  pure subroutine list_exposed(model, slots, shares)
     type(model_t), intent(in) :: model
-    integer, allocatable :: list(:, :)  !! (2, n)
-    integer, allocatable :: side(:)
+    integer, allocatable, intent(out) :: slots(:)
+    real(wp), allocatable, intent(out) :: shares(:, :)  !! (4, size(slots))
+    real(wp), allocatable :: all_shares(:, :)
+    integer, allocatable :: found(:)
     logical, allocatable :: is_left(:)
-    integer :: i, n
-
-    allocate (is_left(model%mesh%n_element), source=.true.)
-    side = find_exposed(model, is_left)
-    allocate (list(2, count(side > 0)))
-    n = 0
-    do i = 1, size(side)
-      if (side(i) == 0) cycle
-      n = n + 1
-      list(:, n) = [model%layout%element_slot(i), side(i)]
-    end do
-  end function list_exposed
-
-  !> Degrees of freedom that are held or prescribed during the whole run.
-  pure function held_directions(model) result(is_held)
-    type(model_t), intent(in) :: model
-    logical :: is_held(2, model%mesh%n_node)
     integer :: i
 
-    is_held = .false.
+    allocate (is_left(model%mesh%n_element), source=.true.)
+    all_shares = find_exposed(model, is_left)
+    found = pack([(i, i = 1, size(is_left))], any(all_shares > 0.0_wp, 1))
+    slots = model%layout%element_slot(found)
+    shares = all_shares(:, found)
+  end subroutine list_exposed
+
+  !> Lumped masses of the elements at their corners; 0 at the fourth of a triangle.
+  pure function corner_masses(model, is_left) result(masses)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: is_left(:)
+    real(wp) :: masses(4, model%mesh%n_element)
+    real(wp) :: x(2, 4)
+    integer :: i, n
+
+    masses = 0.0_wp
+    do i = 1, model%mesh%n_element
+      if (.not. is_left(i)) cycle
+      associate (nodes => model%mesh%element_nodes(:, i), &
+        part => model%parts(model%mesh%element_part(i)))
+        n = merge(3, 4, nodes(4) == nodes(3))
+        x = model%mesh%coordinates(:, nodes)
+        masses(:n, i) = model%materials(part%material)%density/n*0.5_wp*((x(1, 3) - x(1, 1))*( &
+          x(2, 4) - x(2, 2)) - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+      end associate
+    end do
+  end function corner_masses
+
+  !> Whether an element is exposed, see `find_exposed`.
+  pure logical function is_exposed(model, i, shares, is_surrounded)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    real(wp), intent(in) :: shares(4)
+    logical, intent(in) :: is_surrounded(:)  !! (n_node) by elements with a main share
+
+    is_exposed = .false.
+    if (.not. any(shares > main_share)) return
+    associate (nodes => model%mesh%element_nodes(:, i), &
+      part => model%parts(model%mesh%element_part(i)))
+      if (nodes(4) == nodes(3) .or. model%sections(part%section)%is_full &
+        .or. model%materials(part%material)%is_rigid) return
+      is_exposed = count(shares > main_share) > 1 .or. all(is_surrounded(nodes))
+    end associate
+  end function is_exposed
+
+  !> Nodes that are held or prescribed in a direction during the whole run move as if a mirror image
+  !> hung on them: their mass counts as infinite.
+  pure subroutine hold_nodes(model, mass)
+    type(model_t), intent(in) :: model
+    real(wp), intent(inout) :: mass(:)  !! (n_node)
+    integer :: i
+
     associate (conditions => model%conditions)
-      do i = 1, size(conditions%fixed_nodes)
-        is_held(conditions%fixed_directions(i), conditions%fixed_nodes(i)) = .true.
-      end do
+      mass(conditions%fixed_nodes) = huge(1.0_wp)
       do i = 1, size(conditions%motions)
         associate (motion => conditions%motions(i))
           if (motion%birth > 0.0_wp .or. motion%death < model%controls%end_time) cycle
-          is_held(motion%direction, motion%node) = .true.
+          mass(motion%node) = huge(1.0_wp)
         end associate
       end do
     end associate
     do i = 1, size(model%rigids)
-      is_held(:, model%rigids(i)%nodes) = .true.
+      mass(model%rigids(i)%nodes) = huge(1.0_wp)
     end do
-  end function held_directions
+  end subroutine hold_nodes
 
 end module exposed_quads_m

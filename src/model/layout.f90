@@ -11,6 +11,7 @@
 !> so that the result has the same bits at any number of threads.
 module layout_m
   use, intrinsic :: iso_fortran_env, only : int16
+  use kinds_m, only : wp
   implicit none
   private
   public :: layout_t, tile_t, chunk_size, local_kind, slot_part, first_slot, last_slot
@@ -46,8 +47,8 @@ module layout_m
     integer(local_kind), allocatable :: slot_local(:, :) !! (4, n_slot) local numbers in the tile:
                                              !! interior nodes from 1, then its special nodes;
                                              !! all equal in padding
-    integer, allocatable :: exposed(:, :)    !! (2, n) slot and neighbouring side of the quads that
-                                             !! have at most one neighbour (`find_exposed`)
+    integer, allocatable :: exposed(:)       !! slots of exposed quads (`find_exposed`)
+    real(wp), allocatable :: exposed_shares(:, :) !! (4, size(exposed)) in the masses of nodes
     integer, allocatable :: special_node(:)  !! (force slots) node of each force slot, tile by tile
     integer, allocatable :: node_slots(:)    !! (n_special + 1) where each special node's list
                                              !! starts ...

@@ -107,6 +107,7 @@ contains
     call pass(freight, layout%chunk_part)
     call pass(freight, layout%chunk_elements)
     call pass(freight, layout%exposed)
+    call pass(freight, layout%exposed_shares)
     call pass(freight, layout%special_node)
     call pass(freight, layout%node_slots)
     call pass(freight, layout%slot_list)

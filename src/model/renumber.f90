@@ -52,7 +52,8 @@ contains
     call renumber_rigids(model, new_index)
     if (allocated(model%walls)) call renumber_walls(model, new_index)
     call build_local_numbers(model%mesh, model%layout)
-    if (.not. model%controls%implicit%is_on) model%layout%exposed = list_exposed(model)
+    if (.not. model%controls%implicit%is_on) call list_exposed(model, model%layout%exposed, &
+      model%layout%exposed_shares)
     if (allocated(model%controls%output%cross_sections)) call renumber_sections(model, new_index)
     if (allocated(model%controls%ends)) call renumber_ends(new_index, model%controls%ends)
     model%conditions%n_support = count(mark_supports(model))

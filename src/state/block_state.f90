@@ -57,9 +57,8 @@ module block_state_m
                                                 !! last step
     real(wp), allocatable :: volume_change(:)   !! (n_chunk) largest change of ln V of an element in
                                                 !! the last step, without its sign
-    integer, allocatable :: exposed_side(:)     !! (n_slot) side of the only neighbour of a plane
-                                                !! one-point quad, see `find_exposed`; only where
-                                                !! some quads have at most one
+    real(wp), allocatable :: mass_shares(:, :)  !! (4, n_slot) of exposed quads in the masses of
+                                                !! their nodes (`find_exposed`); only where some are
     type(erosion_state_t), allocatable :: erosion !! only where elements may leave the mesh
   end type block_state_t
 

@@ -20,7 +20,7 @@ KEPT = {
     "wall_state_t": ("state/wall_state.f90", "output/restart_state.f90", "wall%", {}),
     "block_state_t": ("state/block_state.f90", "output/restart_state.f90", "elements%", {
         "n_failed": "counted in each step", "volume_change": "found in each step",
-        "exposed_side": "made of the deck and the status of elements"}),
+        "mass_shares": "made of the deck and the status of elements"}),
     "contact_state_t": ("state/contact_state.f90", "output/restart_contact.f90", "contact%", {
         "scratch": "nothing in it lasts to the next step"}),
     "contact_estimate_t": ("state/contact_estimate.f90", "output/restart_state.f90", "estimate%", {}),

@@ -64,6 +64,24 @@ def test_bulk_viscosity_of_one_free_square(slideline, tmp_path, form, points, nu
     assert max(abs(numbers(table, "energy_ratio") - 1.0)) < 0.05
 
 
+@pytest.mark.parametrize("nu, n_x, n_y, dense, ratio", [
+    (0.49, 2, 2, range(4), 1.0), (0.3, 5, 5, [12], 0.01), (0.45, 5, 5, [12], 0.1), (0.49, 6, 2, range(6, 12), 1.0 / 3.0)])
+def test_dense_among_light_keeps_its_energy(slideline, tmp_path, nu, n_x, n_y, dense, ratio):
+    """Four free squares, a dense square in foam, a dense strip on foam, of one speed of sound: L/c is above their stable step."""
+    deck = Deck("dense").control(200.0).part(1).part(2)
+    deck.elastic(1.0, 1.0, nu, 1).elastic(ratio, ratio, nu, 2)
+    coordinates, quads = grid(n_x, n_y, n_x, n_y)
+    deck.add("*NODE", *[(i + 1, *x) for i, x in enumerate(coordinates)])
+    deck.add("*ELEMENT_SHELL", *[(i + 1, 1 if i in dense else 2, *[n + 1 for n in quad]) for i, quad in enumerate(quads)])
+    speed = 1.0e-7 * np.random.default_rng(3).standard_normal((len(coordinates), 2))
+    deck.add("*INITIAL_VELOCITY_NODE", *[(i + 1, *v) for i, v in enumerate(speed)])
+    assert slideline("d=o", deck=deck.output(glstat=4.0)).returncode == 0
+    table = tmp_path / "o" / "job.glstat.csv"
+    assert max(numbers(table, "kinetic")) <= 1.001 * numbers(table, "kinetic")[0]
+    assert max(abs(numbers(table, "energy_ratio") - 1.0)) < 0.01
+    assert first_step(tmp_path) < 0.9 / math.sqrt(modulus(nu))
+
+
 def test_thicker_bodies_and_held_sides_keep_their_step(slideline, tmp_path):
     """Two elements thick; a bar whose nodes all keep their y: L/c."""
     for deck in (squares(0.3, 4, 2, end=5.0), squares(0.3, 4, 1, end=5.0, extra=[

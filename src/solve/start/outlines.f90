@@ -38,7 +38,7 @@ contains
     integer :: i
 
     is_left = elements_left(model, state)
-    call expose_neighbours(model, is_left, state)
+    call expose_elements(model, is_left, state)
     do i = 1, size(state%outlines)
       if (.not. (loses(state%outlines(i)%slave) .or. loses(state%outlines(i)%master))) cycle
       former = state%outlines(i)
@@ -71,21 +71,21 @@ contains
 
   end subroutine follow_outlines
 
-  !> Quads that have at most one neighbour left.
-  subroutine expose_neighbours(model, is_left, state)
+  !> Quads whose neighbours have left.
+  subroutine expose_elements(model, is_left, state)
     type(model_t), intent(in) :: model
     logical, intent(in) :: is_left(:)  !! (n_element)
     type(state_t), intent(inout) :: state
-    integer, allocatable :: side(:)
+    real(wp), allocatable :: shares(:, :)
 
-    side = find_exposed(model, is_left)
-    if (.not. allocated(state%elements%exposed_side)) then
-      if (all(side == 0)) return
-      allocate (state%elements%exposed_side(model%layout%n_slot))
+    shares = find_exposed(model, is_left)
+    if (.not. allocated(state%elements%mass_shares)) then
+      if (.not. any(shares > 0.0_wp)) return
+      allocate (state%elements%mass_shares(4, model%layout%n_slot))
     end if
-    state%elements%exposed_side = 0
-    state%elements%exposed_side(model%layout%element_slot) = side
-  end subroutine expose_neighbours
+    state%elements%mass_shares = 0.0_wp
+    state%elements%mass_shares(:, model%layout%element_slot) = shares
+  end subroutine expose_elements
 
   !> Which elements are there.
   function elements_left(model, state) result(is_left)
@@ -134,7 +134,7 @@ contains
 
     is_left = elements_left(model, state)
     if (all(is_left)) return
-    call expose_neighbours(model, is_left, state)
+    call expose_elements(model, is_left, state)
     do i = 1, size(state%outlines)
       call take_left(model, i, is_left, state%outlines(i))
       call reshape_contact(state%outlines(i), model, state%contacts(i))
