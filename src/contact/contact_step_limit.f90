@@ -21,7 +21,7 @@ module contact_step_limit_m
   implicit none
   private
   public :: spring_bound_t, bound_springs, stable_step, closed_step, opening_step, &
-    binding_bound, fitting_scale, sharpness
+    binding_bound, fitting_scale, approach_step, sharpness
 
   !> What is known of the springs at the nodes of one interface, those of other interfaces there
   !> included.
@@ -41,6 +41,9 @@ module contact_step_limit_m
   !> How far the bounds may lie below the step that eigenvalues allow: the least of the ratios in
   !> doc/studies/stability.md.
   real(wp), parameter :: sharpness = 0.78_wp
+
+  !> Part of the depth of a first contact by which bodies may come nearer in a step.
+  real(wp), parameter :: approach_share = 0.8_wp
 
   !> Rounds over all interfaces, and halvings of the interval of log c: any c is safe, more only
   !> sharpen the bound.
@@ -194,6 +197,31 @@ contains
 
     limit = min(closed_step(element_limit, bound), opening_step(bound))
   end function stable_step
+
+  !> Step in which nothing that is still outside comes deeper than a first contact may be, from the
+  !> relative motion in a step `dt`; huge where nothing can touch within the next two steps, and
+  !> where the deck says what counts as a first contact (ties, a depth of its own).
+  pure function approach_step(contact, memory, dt) result(limit)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in) :: dt             !! s
+    real(wp) :: limit
+    real(wp) :: depth, ahead
+
+    limit = huge(limit)
+    if (is_tied(contact) .or. contact%search_depth > 0.0_wp) return
+    associate (slave => memory%slave_tracking, master => memory%master_tracking)
+      depth = approach_share*min(slave%shallowest, master%shallowest)
+      if (memory%advance < 0.01_wp*depth) return
+      ahead = slave%next_wake
+      if (master%n > 0) ahead = min(ahead, master%next_wake)
+    end associate
+    if (allocated(memory%segments%wake)) then
+      if (size(memory%segments%wake) > 0) ahead = min(ahead, memory%segments%next_wake)
+    end if
+    if (ahead - memory%travel > 3.0_wp*memory%advance) return
+    limit = dt*(depth/memory%advance)
+  end function approach_step
 
   !> Springs that stay closed: the largest dt with
   !> (dt/element_limit)^2 + dt^2 rate/4 + dt damping <= 1, s.

@@ -167,6 +167,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     memory%travel = old%travel
+    memory%advance = old%advance
     memory%is_stale = old%is_stale
     memory%next_search = old%next_search
     memory%slave_penalty = old%slave_penalty

@@ -31,6 +31,7 @@ contains
     call keep_same(archive, 'nodes', contact%nodes)
     call keep(archive, 'places', contact%places)
     call keep(archive, 'travel', contact%travel)
+    call keep(archive, 'advance', contact%advance)
     call keep(archive, 'is_stale', contact%is_stale)
     call keep(archive, 'next_search', contact%next_search)
     call keep(archive, 'spots', contact%spots)

@@ -78,6 +78,7 @@ contains
     integer :: i, n_segments(2), n_spot
 
     call require(archive, folder//'travel', memory%travel >= 0.0_wp, 'a way below zero')
+    call require(archive, folder//'advance', memory%advance >= 0.0_wp, 'a way below zero')
     call require(archive, folder//'n_active', memory%n_active >= 0, 'a number below zero')
     call require(archive, folder//'n_released', memory%n_released >= 0 .and. &
       memory%n_released <= 10**9, 'a number that no run reaches')

@@ -94,6 +94,7 @@ module contact_state_m
     real(wp), allocatable :: spot_depth(:)   !! (n) deepest first contact of a spot, m
     real(wp), allocatable :: segment_depth(:) !! (n_segment) deepest first contact of a segment, m
     real(wp) :: deepest = huge(1.0_wp)       !! largest of these, m
+    real(wp) :: shallowest = huge(1.0_wp)    !! smallest of both, m
     integer, allocatable :: chord(:, :)      !! (2, n) neighbours along the spot's own surface
     integer :: own_spots = -1                !! where the chain is the spots' own surface: how many
                                              !! there are on a segment, 0: at its nodes; else -1
@@ -158,6 +159,7 @@ module contact_state_m
     real(wp), allocatable :: places(:, :)   !! (4, n_slave + n_master) X, Y, u_x, u_y of the last
                                             !! call
     real(wp) :: travel = 0.0_wp             !! bound on relative motion since the start, m
+    real(wp) :: advance = 0.0_wp            !! bound on relative motion in the last step, m
     logical :: is_stale = .false.           !! tracking has been left alone outside birth .. death
     integer :: next_search = 0              !! cycle at which FREQ asks for a global search
     real(wp), allocatable :: spots(:, :)    !! (4, n_spot) places of spots that are not nodes

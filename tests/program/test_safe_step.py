@@ -200,3 +200,24 @@ def test_a_collapsed_element_is_named_with_the_remedy(slideline):
     done = slideline("d=o", deck=deck)
     assert done.returncode == 2
     assert "element 1 of part 1 has collapsed" in done.stderr and "TSSFAC" in done.stderr
+
+
+def test_plates_do_not_fly_through_each_other(slideline, tmp_path):
+    """Mach 0.7: half an element in a stable step. Pressure of Hugoniot's jump, at restart before the impact too; the first step as well."""
+    density, sound, slope = 2785.0, 5328.0, 1.338
+    speed = 0.7 * sound
+    deck = Deck("plates").control(9.0e-7)
+    deck.add("*SECTION_SHELL", (1, 13)).add("*CONTROL_BULK_VISCOSITY", (1.5, 0.06))
+    for k, gap in ((1, 1.0e-6), (2, -0.01)):
+        deck.add("*PART", f"plate {k}", (k, 1, k, k)).add("*MAT_NULL", (k, density))
+        deck.add("*EOS_GRUNEISEN", (k, sound, slope, 0.0, 0.0, 2.0, 0.47, 0.0), (1.0,))
+        deck.fix(deck.mesh(*grid(2, 80, 0.0002, 0.01, (0.0, gap)), k), x=1).add("*SET_PART_LIST", (k,), (k,))
+    deck.add("*INITIAL_VELOCITY_GENERATION", (1, 2, 0.0, 0.0, -speed)).add("*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE", (1, 2))
+    deck.add("*DATABASE_HISTORY_SHELL", (5, 9, 13)).add("*DATABASE_ELOUT", (1.0e-7,)).add("*DATABASE_BINARY_D3DUMP", (2,))
+    assert slideline("d=o", "ctype=5", deck=deck.output(glstat=2.0e-8)).returncode == 0
+    jump = density * (sound + slope * speed / 2.0) * speed / 2.0
+    pressure = -numbers(tmp_path / "o" / "job.elout.csv", "syy")[-3:]
+    assert np.median(pressure) == pytest.approx(jump, rel=0.03)
+    before = columns(tmp_path / "o" / "job.glstat.csv")
+    assert slideline("r=o/job.dump02.h5", "d=o").returncode == 0
+    assert columns(tmp_path / "o" / "job.glstat.csv") == before

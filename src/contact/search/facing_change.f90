@@ -9,7 +9,7 @@ module facing_change_m
   use kinds_m, only : wp
   use spots_m, only : list_chords, move_spots
   use surfaces_m, only : surface_t
-  use tracking_m, only : list_touching
+  use tracking_m, only : list_touching, measure_depths
   implicit none
   private
   public :: move_memory, rest_loose_nodes
@@ -80,7 +80,7 @@ contains
     tracking%grid%cell = 0.0_wp
     tracking%segment_depth(:side%n) = side%caught(side%segments(:side%n))
     tracking%segment_depth(side%n + 1:) = huge(1.0_wp)
-    tracking%deepest = maxval([0.0_wp, tracking%segment_depth(:side%n)])
+    call measure_depths(tracking)
   end subroutine follow_chain
 
   !> Spots of slave segments that have other numbers.

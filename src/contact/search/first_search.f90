@@ -17,7 +17,8 @@ module first_search_m
   use model_m, only : model_t
   use self_search_m, only : find_nearest_other
   use surfaces_m, only : surface_t
-  use tracking_m, only : update_tracking, list_touching, most_facing, begin_contact
+  use tracking_m, only : update_tracking, list_touching, most_facing, begin_contact, &
+    measure_depths
   implicit none
   private
   public :: allocate_slave_tracking, allocate_master_tracking, allocate_segments, &
@@ -196,7 +197,7 @@ contains
       tracking%spot_depth = tracking%reach
       tracking%segment_depth = tracking%reach
     end if
-    tracking%deepest = maxval(tracking%segment_depth)
+    call measure_depths(tracking)
     tracking%grid%least_cell = least_cell*tracking%reach
 
   contains

@@ -23,7 +23,8 @@ contains
 
     associate (n => size(memory%nodes), increment => memory%scratch%increment)
       call take_places(n, memory%nodes, motion, memory%places, increment)
-      memory%travel = memory%travel + spread_of(n, increment)
+      memory%advance = spread_of(n, increment)
+      memory%travel = memory%travel + memory%advance
     end associate
   end subroutine gather_places
 

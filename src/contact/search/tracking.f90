@@ -403,12 +403,14 @@ contains
     tracking%next_wake = -huge(1.0_wp)
   end subroutine wake_all
 
-  !> After a restart: how deep a first contact is at most on any segment.
+  !> Largest and smallest depth of first contacts.
   pure subroutine measure_depths(tracking)
     type(tracking_t), intent(inout) :: tracking
 
     if (allocated(tracking%segment_depth)) tracking%deepest = maxval([0.0_wp, &
       tracking%segment_depth], mask=[0.0_wp, tracking%segment_depth] < huge(1.0_wp))
+    if (allocated(tracking%spot_depth)) tracking%shallowest = minval([tracking%spot_depth, &
+      tracking%segment_depth])
   end subroutine measure_depths
 
   !> Start a tracking anew, knowing nothing.

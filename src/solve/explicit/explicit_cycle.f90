@@ -11,6 +11,7 @@ module explicit_cycle_m
   use contact_choosing_m, only : judges_at_all, is_judged
   use contact_inertia_m, only : weigh_contacts
   use contact_pressing_m, only : pressing_t, press_contacts
+  use contact_step_limit_m, only : approach_step
   use contacts_m, only : told_as, penalty_implicit
   use cycle_loads_m, only : apply_loads
   use early_end_m, only : find_early_end
@@ -370,19 +371,23 @@ contains
       state%cycle, .false., state%time, state%dt, cycle%ratio)
   end subroutine end_cycle
 
-  !> Smallest step of the elements. Where all have left nothing limits it, and it stays as it is.
+  !> Smallest step of the elements, and what bodies that come near each other leave of it. Where all have left nothing limits it, and it stays as it is.
   pure function element_limit(model, state, cycle) result(limit)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(explicit_cycle_t), intent(in) :: cycle
-    real(wp) :: limit
+    real(wp) :: limit, dt
+    integer :: i
 
+    ! Changes are those of the step before the last, in the first cycle those of the first step.
+    dt = merge(state%former_dt, state%dt_before, state%cycle > 1)
     associate (checks => cycle%checks(cycle%first_check:))
-      ! The change is that of the step before the last, in the first cycle that of the first step.
-      limit = min(minval(checks%time_limit), volume_step(merge(state%former_dt, state%dt_before, &
-        state%cycle > 1), merge(state%dt_before, 0.0_wp, state%cycle > 1), &
-        maxval(checks%volume_change)))
+      limit = min(minval(checks%time_limit), volume_step(dt, merge(state%dt_before, 0.0_wp, &
+        state%cycle > 1), maxval(checks%volume_change)))
     end associate
+    do i = 1, size(state%contacts)
+      limit = min(limit, approach_step(model%contacts(i), state%contacts(i), dt))
+    end do
     if (.not. model%erodes) return
     associate (n_gone => state%elements%erosion%n_gone)
       if (sum(n_gone) == sum(model%layout%chunk_elements(:size(n_gone)))) &

@@ -7,6 +7,7 @@ module explicit_report_m
   use contact_choosing_m, only : follow_choices
   use contact_judging_m, only : judge_contacts
   use contact_softness_m, only : follow_softness
+  use contact_step_limit_m, only : approach_step
   use energies_m, only : energy_ratio, total_energy
   use erosion_account_m, only : settle_elements, note_least_step
   use explicit_prescribed_m, only : start_prescribed, prescribed_work
@@ -18,6 +19,7 @@ module explicit_report_m
   use health_m, only : check_energy, check_ratio, check_radii, made_by_springs, unaccounted
   use kinds_m, only : wp
   use leapfrog_balance_m, only : complete_balance
+  use log_m, only : write_log, to_text
   use model_log_m, only : log_smallest_steps, judge_damping
   use model_m, only : model_t
   use monitor_m, only : monitor_t, write_due
@@ -90,14 +92,29 @@ contains
     cycle%finished = cycle%last .or. allocated(cycle%error)
   end subroutine report_cycle
 
-  !> A shorter first step where elements would change their volume by too much in it.
+  !> A shorter first step where elements would change their volume by too much in it, or bodies come
+  !> too far into each other.
   subroutine bound_first_change(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    real(wp) :: change
+    real(wp) :: change, dt
+    integer :: i
 
+    dt = state%dt
+    do i = 1, size(state%contacts)
+      associate (memory => state%contacts(i))
+        memory%advance = state%dt*norm2(maxval(state%motion(3:4, memory%nodes), 2) &
+          - minval(state%motion(3:4, memory%nodes), 2))
+        state%dt = min(state%dt, approach_step(model%contacts(i), memory, state%dt))
+      end associate
+    end do
+    if (state%dt < dt) then
+      cycle%steps%constant = 0.0_wp
+      call write_log(monitor%log, 'first time step shortened to '//to_text(state%dt) &
+        //': bodies would come into each other by more than a first contact may be deep')
+    end if
     call prepare_leap(model, state, cycle)
     call first_change(model, cycle%shares, cycle%leap, cycle%velocity, state, monitor%ranks, change)
     call shorten_first_step(monitor%log, cycle%steps, state%dt, change)
