@@ -198,29 +198,21 @@ contains
     limit = min(closed_step(element_limit, bound), opening_step(bound))
   end function stable_step
 
-  !> Step in which nothing that is still outside comes deeper than a first contact may be, from the
-  !> relative motion in a step `dt`; huge where nothing can touch within the next two steps, and
-  !> where the deck says what counts as a first contact (ties, a depth of its own).
+  !> Step in which nothing comes deeper than a first contact may be, from the relative motion in a
+  !> step `dt`; huge where that is slow, and where the deck says what counts as a first contact
+  !> (ties, a depth of its own). Alarms of the search are no part of it: they depend on when it last
+  !> looked.
   pure function approach_step(contact, memory, dt) result(limit)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     real(wp), intent(in) :: dt             !! s
     real(wp) :: limit
-    real(wp) :: depth, ahead
+    real(wp) :: depth
 
     limit = huge(limit)
     if (is_tied(contact) .or. contact%search_depth > 0.0_wp) return
-    associate (slave => memory%slave_tracking, master => memory%master_tracking)
-      depth = approach_share*min(slave%shallowest, master%shallowest)
-      if (memory%advance < 0.01_wp*depth) return
-      ahead = slave%next_wake
-      if (master%n > 0) ahead = min(ahead, master%next_wake)
-    end associate
-    if (allocated(memory%segments%wake)) then
-      if (size(memory%segments%wake) > 0) ahead = min(ahead, memory%segments%next_wake)
-    end if
-    if (ahead - memory%travel > 3.0_wp*memory%advance) return
-    limit = dt*(depth/memory%advance)
+    depth = approach_share*min(memory%slave_tracking%shallowest, memory%master_tracking%shallowest)
+    if (memory%advance > 0.01_wp*depth) limit = dt*(depth/memory%advance)
   end function approach_step
 
   !> Springs that stay closed: the largest dt with

@@ -1,10 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> Stable step of plane one-point quads whose nodes carry hardly any mass but their own. A node moves
-!> as if the rest of its mass belonged to mirror images of the element: one component of its
+!> Stable step of plane one-point quads whose nodes carry hardly any mass but their own. A node
+!> moves as if the rest of its mass belonged to mirror images of the element: one component of its
 !> acceleration is that of the free element, the other one 2 s - 1 of that where s > 1/2 is the
 !> element's share in its mass, and 0 below. omega^2 = 4 J c^2 lambda, lambda the largest eigenvalue
-!> of D B Q B^T over K + 4G/3 with these weights Q, and J = A/A0. Of a free element, and of four in a
-!> block, this is exact (doc/theory/elements.md, "Stable step").
+!> of D B Q B^T over K + 4G/3 with these weights Q, and J = A/A0. Of a free element, and of four in
+!> a block, this is exact (doc/theory/elements.md, "Stable step").
 module exposed_step_m
   use block_state_m, only : block_state_t
   use kinds_m, only : wp

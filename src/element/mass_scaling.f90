@@ -81,8 +81,8 @@ contains
       .or. allocated(elements%mass_shares)
   end function needs_refinement
 
-  !> Limits of the chunks of a tile with elements that are scaled, damped or exposed, once the forces
-  !> of the step have left those of others.
+  !> Limits of the chunks of a tile with elements that are scaled, damped or exposed, once the
+  !> forces of the step have left those of others.
   subroutine refine_limits(model, tile, motion, dt, elements)
     type(model_t), intent(in) :: model
     type(tile_t), intent(in) :: tile

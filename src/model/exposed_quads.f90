@@ -9,14 +9,15 @@ module exposed_quads_m
   private
   public :: find_exposed, list_exposed
 
-  !> From this share of the mass of a node on, what else is there weighs about half as much or less.
+  !> From this share of the mass of a node on, what else is there weighs about half or less of it.
   real(wp), parameter :: main_share = 0.66_wp
 
 contains
 
   !> Shares of exposed quads in the masses of their nodes, 0 in all other elements and at nodes that
   !> a support, a prescribed motion or a rigid body holds. A quad is exposed that has the main share
-  !> of two nodes, or of one where every element around it has one too (four quads in a block).
+  !> of two nodes; above a Poisson's ratio of 0.4 also that of one, where every element around it
+  !> has one too (four quads in a block: 0.94 L/c and less).
   pure function find_exposed(model, is_left) result(shares)
     type(model_t), intent(in) :: model
     logical, intent(in) :: is_left(:)  !! (n_element) elements that have not eroded
@@ -103,7 +104,11 @@ contains
       part => model%parts(model%mesh%element_part(i)))
       if (nodes(4) == nodes(3) .or. model%sections(part%section)%is_full &
         .or. model%materials(part%material)%is_rigid) return
-      is_exposed = count(shares > main_share) > 1 .or. all(is_surrounded(nodes))
+      is_exposed = count(shares > main_share) > 1
+      associate (law => model%materials(part%material))
+        if (law%shear < (law%bulk + 4.0_wp*law%shear/3.0_wp)/6.0_wp) &
+          is_exposed = is_exposed .or. all(is_surrounded(nodes))
+      end associate
     end associate
   end function is_exposed
 

@@ -32,7 +32,8 @@ KEPT = {
     "tie_memory_t": ("state/tie_state.f90", "output/restart_contact.f90", "ties%", {}),
     "friction_memory_t": ("state/friction_state.f90", "output/restart_contact.f90", "friction%", {}),
     "tracking_t": ("state/contact_state.f90", "output/restart_contact.f90", "tracking%", {
-        "n_aside": "set by each update", "own_spots": "from the deck", "deepest": "of segment_depth"}),
+        "n_aside": "set by each update", "own_spots": "from the deck", "shallowest": "of the depths (measure_depths)",
+        "deepest": "of segment_depth"}),
     "bucket_grid_t": ("state/contact_state.f90", "output/restart_contact.f90", "grid%", {}),
     "facing_t": ("state/facing_state.f90", "output/restart_contact.f90", "facing%", {
         "present": "made of the lists and the deck"}),

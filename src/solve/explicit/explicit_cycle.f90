@@ -11,7 +11,6 @@ module explicit_cycle_m
   use contact_choosing_m, only : judges_at_all, is_judged
   use contact_inertia_m, only : weigh_contacts
   use contact_pressing_m, only : pressing_t, press_contacts
-  use contact_step_limit_m, only : approach_step
   use contacts_m, only : told_as, penalty_implicit
   use cycle_loads_m, only : apply_loads
   use early_end_m, only : find_early_end
@@ -48,8 +47,8 @@ module explicit_cycle_m
   use skew_motion_m, only : remember_common, move_common
   use state_m, only : state_t
   use tile_forces_m, only : sum_special_forces
-  use time_step_m, only : step_plan_t, start_steps, volume_step, next_step, is_last, &
-    follow_springs
+  use time_step_m, only : step_plan_t, start_steps, volume_step, next_step, obey_approach, &
+    is_last, follow_springs
   use wall_motion_m, only : count_walls
   implicit none
   private
@@ -316,7 +315,7 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    real(wp) :: before
+    real(wp) :: before, limit
 
     if (allocated(state%elements%n_failed)) call follow_failures(model, state, cycle%failures, &
       monitor%log)
@@ -354,8 +353,10 @@ contains
     state%dt_before = state%dt
     if (allocated(state%elements%mass_ratio)) call follow_masses(model, monitor%ranks, state, cycle)
     call follow_springs(model, state, cycle%steps%springs)
-    call next_step(model, element_limit(model, state, cycle), monitor%log, state%cycle, &
-      cycle%steps, state%time, state%dt)
+    limit = element_limit(model, state, cycle)
+    if (size(state%contacts) > 0) call obey_approach(model, merge(state%former_dt, &
+      state%dt_before, state%cycle > 1), state, monitor%log, cycle%steps, limit)
+    call next_step(model, limit, monitor%log, state%cycle, cycle%steps, state%time, state%dt)
     if (.not. allocated(cycle%error)) then
       call check_step(model%controls, cycle%steps%first_dt, state%time, state%dt, cycle%error)
       if (allocated(cycle%error) .and. monitor%ranks%n > 1) call gather_state(cycle%shares, &
@@ -371,13 +372,12 @@ contains
       state%cycle, .false., state%time, state%dt, cycle%ratio)
   end subroutine end_cycle
 
-  !> Smallest step of the elements, and what bodies that come near each other leave of it. Where all have left nothing limits it, and it stays as it is.
+  !> Smallest step of the elements. Where all have left nothing limits it, and it stays as it is.
   pure function element_limit(model, state, cycle) result(limit)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(explicit_cycle_t), intent(in) :: cycle
     real(wp) :: limit, dt
-    integer :: i
 
     ! Changes are those of the step before the last, in the first cycle those of the first step.
     dt = merge(state%former_dt, state%dt_before, state%cycle > 1)
@@ -385,9 +385,6 @@ contains
       limit = min(minval(checks%time_limit), volume_step(dt, merge(state%dt_before, 0.0_wp, &
         state%cycle > 1), maxval(checks%volume_change)))
     end associate
-    do i = 1, size(state%contacts)
-      limit = min(limit, approach_step(model%contacts(i), state%contacts(i), dt))
-    end do
     if (.not. model%erodes) return
     associate (n_gone => state%elements%erosion%n_gone)
       if (sum(n_gone) == sum(model%layout%chunk_elements(:size(n_gone)))) &

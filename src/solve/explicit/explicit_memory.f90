@@ -61,6 +61,7 @@ contains
     call keep(archive, 'end_cycle', steps%end_cycle)
     call keep(archive, 'end_time', steps%end_time)
     call keep(archive, 'warned', steps%warned)
+    call keep(archive, 'warned_approach', steps%warned_approach)
     call keep_springs(archive, 'springs', n_node, steps%springs)
     call expect(archive, 'first_dt', steps%first_dt > 0.0_wp, 'a step that is not positive')
     call expect(archive, 'constant', steps%constant >= 0.0_wp, 'a step below zero')

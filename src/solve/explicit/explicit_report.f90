@@ -7,7 +7,6 @@ module explicit_report_m
   use contact_choosing_m, only : follow_choices
   use contact_judging_m, only : judge_contacts
   use contact_softness_m, only : follow_softness
-  use contact_step_limit_m, only : approach_step
   use energies_m, only : energy_ratio, total_energy
   use erosion_account_m, only : settle_elements, note_least_step
   use explicit_prescribed_m, only : start_prescribed, prescribed_work
@@ -37,7 +36,8 @@ module explicit_report_m
   use state_m, only : state_t
   use wall_motion_m, only : hold_nodes, count_walls, fill_walls
   use support_forces_m, only : fill_explicit_reactions
-  use time_step_m, only : first_step, shorten_first_step, obey_defaults, follow_springs
+  use time_step_m, only : first_step, shorten_first_step, obey_approach, obey_defaults, &
+    follow_springs
   use explicit_cycle_m, only : explicit_cycle_t, prepare_leap, press_cycle
   use node_motion_m, only : leap_t
   implicit none
@@ -105,16 +105,14 @@ contains
     dt = state%dt
     do i = 1, size(state%contacts)
       associate (memory => state%contacts(i))
-        memory%advance = state%dt*norm2(maxval(state%motion(3:4, memory%nodes), 2) &
+        memory%advance = dt*norm2(maxval(state%motion(3:4, memory%nodes), 2) &
           - minval(state%motion(3:4, memory%nodes), 2))
-        state%dt = min(state%dt, approach_step(model%contacts(i), memory, state%dt))
       end associate
     end do
-    if (state%dt < dt) then
-      cycle%steps%constant = 0.0_wp
-      call write_log(monitor%log, 'first time step shortened to '//to_text(state%dt) &
-        //': bodies would come into each other by more than a first contact may be deep')
-    end if
+    call obey_approach(model, dt, state, monitor%log, cycle%steps, state%dt)
+    if (state%dt < dt) call write_log(monitor%log, 'first time step shortened to ' &
+      //to_text(state%dt)//': bodies would come deeper into each other in it than a first ' &
+      //'contact may be')
     call prepare_leap(model, state, cycle)
     call first_change(model, cycle%shares, cycle%leap, cycle%velocity, state, monitor%ranks, change)
     call shorten_first_step(monitor%log, cycle%steps, state%dt, change)

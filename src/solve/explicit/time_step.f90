@@ -8,7 +8,8 @@ module time_step_m
   use block_state_m, only : block_state_t
   use contact_penalty_m, only : has_default_penalty
   use contact_state_m, only : contact_state_t
-  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, sharpness
+  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, approach_step, &
+    sharpness
   use contacts_m, only : is_tied, penalty_implicit
   use friction_state_m, only : is_broken
   use controls_m, only : contact_step_rules, contact_step_free, contact_step_warns
@@ -22,7 +23,7 @@ module time_step_m
   implicit none
   private
   public :: step_plan_t, start_steps, first_step, shorten_first_step, volume_step, next_step, &
-    is_last, cycles_in, obey_defaults, follow_springs, has_springs
+    is_last, cycles_in, obey_approach, obey_defaults, follow_springs, has_springs
 
   !> What a step must be allowed to rise by before it does.
   real(wp), parameter :: least_rise = 0.05_wp
@@ -43,6 +44,7 @@ module time_step_m
     integer :: end_cycle = 0         !! ENDCYC, 0 = none
     real(wp) :: end_time = 0.0_wp
     logical :: warned = .false.      !! the cap has been found above the stable step
+    logical :: warned_approach = .false. !! bodies have been found to approach too fast for it
     type(spring_bound_t), allocatable :: springs(:) !! that the step must respect; none unless ECDT
                                                     !! = 2, or there are ties or default
                                                     !! penalties that need it
@@ -124,6 +126,33 @@ contains
     passed = dt + since
     step = sqrt(passed**2 + dt*(dt + 2.0_wp*passed)*(largest_change/change)) - passed
   end function volume_step
+
+  !> Lower a step in which bodies would come deeper into each other than a first contact may be. One
+  !> that the deck sets (LCTM, DT2MS) stays, and the log warns once.
+  subroutine obey_approach(model, dt, state, log, steps, limit)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: dt              !! step in which the interfaces have last moved, s
+    type(state_t), intent(in) :: state
+    type(log_t), intent(inout) :: log
+    type(step_plan_t), intent(inout) :: steps
+    real(wp), intent(inout) :: limit        !! s
+    real(wp) :: steps_of(size(state%contacts)), allowed
+    integer :: i
+
+    do i = 1, size(steps_of)
+      steps_of(i) = approach_step(model%contacts(i), state%contacts(i), dt)
+    end do
+    allowed = minval(steps_of)
+    if (model%controls%dt_curve == 0 .and. .not. abs(model%controls%mass_step) > 0.0_wp) then
+      limit = min(limit, allowed)
+    else if (allowed < state%dt .and. .not. steps%warned_approach) then
+      call warn(log, 'interface '//to_text(model%contacts(minloc(steps_of, 1))%id)//': at time ' &
+        //to_text(state%time)//' bodies come deeper into each other in a step than a first ' &
+        //'contact may be, and may pass each other unseen; a step of at most '//to_text(allowed) &
+        //' avoids that')
+      steps%warned_approach = .true.
+    end if
+  end subroutine obey_approach
 
   !> Constant steps `dt` in a time, at least one and no more than can be counted.
   pure function cycles_in(time, dt) result(n)
