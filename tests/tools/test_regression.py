@@ -11,8 +11,8 @@ import pytest
 
 from slideline_tools.compare import Unusable, compare
 from slideline_tools.histories import History, read_csv
-from slideline_tools.regression import (ROWS, Case, CaseError, digits_that_matter, kept_rows, repository_root, rows_at, run_case,
-                                        tolerance, write_reference)
+from slideline_tools.regression import (ROWS, Case, CaseError, at_times_of, digits_that_matter, kept_rows, repository_root,
+                                        run_case, tolerance, write_reference)
 
 # A shell finds the Python, whose path may hold blanks; to Python the second line is a string.
 STAND_IN = """#!/bin/sh
@@ -105,7 +105,7 @@ def test_changed_result_fails_and_names_the_column(world, tool, capsys):
     assert "failed: kinetic" in text
 
 
-@pytest.mark.parametrize("steps, why", [(10, "no row at the time 1"), (12, "the run ends at 1.1, the reference at 1")])
+@pytest.mark.parametrize("steps, why", [(9, "the run ends at 0.8, the reference at 1"), (13, "the run ends at 1.2, the reference at 1")])
 def test_run_of_another_length_fails(world, tool, capsys, steps, why):
     bless(world, tool, "--reason", "first")
     path = world[1] / "case.toml"
@@ -139,7 +139,7 @@ def test_only_the_kept_rows_are_compared_each_within_its_tolerance(tmp_path):
     reference, entry = read_csv(tmp_path / "nodout.csv"), tolerance({"rtol": 1e-5, "floor": 1e-5})
 
     def passes(*deviation):
-        return compare(rows_at(long_table(*deviation), reference), reference, ["vy"], {}, entry).passed
+        return compare(at_times_of(reference, long_table(*deviation)), reference, ["vy"], {}, entry).passed
 
     assert passes() and passes(rows[5] + 1, 1.0)
     for row in rows:
@@ -151,7 +151,7 @@ def test_rows_of_other_entities_or_none_fail():
     reference = long_table().rows(kept_rows(long_table(), ["vy"]))
     for wrong in (long_table().where(node=7), long_table().rows(slice(0, 0))):
         with pytest.raises(Unusable):
-            rows_at(wrong, reference)
+            at_times_of(reference, wrong)
 
 
 def test_program_that_breaks_down(world, tool, capsys):

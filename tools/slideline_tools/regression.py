@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Regression cases: run a deck, compare its histories with stored references, renew these.
 
-A reference keeps ROWS rows of a table, the first and the last among them, and the digits that matter for the tolerance; it
-is compared with the rows of the run at the same times. A case is a folder with `case.toml`:
+A reference keeps ROWS rows of a table, the first and the last among them, and the digits that matter for the tolerance;
+they are compared with the run at the same times. A case is a folder with `case.toml`:
 
     deck = "input/collision/collision.k"    # below the root of the repository
     arguments = ["ctype=1"]                 # for the program, may be left out
@@ -30,12 +30,11 @@ except ModuleNotFoundError:  # Python before 3.11
     import tomli as tomllib
 
 from slideline_tools import UserError
-from slideline_tools.compare import Tolerance, Unusable, compare, judged_columns, require_usable
+from slideline_tools.compare import Tolerance, Unusable, compare, judged_columns, require_usable, unique_times
 from slideline_tools.histories import History, HistoryError, read_csv
 
 ROWS = 20
 TIME_DIGITS = 10
-SAME_TIME = 1.0e-7  # as a fraction of the last time
 
 
 class CaseError(UserError):
@@ -97,7 +96,7 @@ class Case:
             special = {name: tolerance({**entry, **changes})
                        for name, changes in entry.get("tolerance", {}).items()}
             judged_columns(reference, entry["columns"])
-            yield compare(rows_at(self.table(entry, work), reference), reference, entry["columns"], special, default)
+            yield compare(at_times_of(reference, self.table(entry, work)), reference, entry["columns"], special, default)
 
     def reference_file(self, entry):
         return self.folder / entry.get("reference", f"{entry['name']}.csv")
@@ -139,26 +138,24 @@ def kept_rows(table, names):
     return rows[np.unique(np.linspace(0, len(rows) - 1, ROWS).round().astype(int))]
 
 
-def rows_at(table, reference):
-    """The rows of a table that belong to those of its reference: of the same entity, at the same time."""
-    require_usable(table, "result", [])
-    numbered = History(table.name, {**table.columns, "row": np.arange(len(table))})
-    ours, theirs = dict(numbered.series()), dict(reference.series())
+def at_times_of(reference, table):
+    """The values of a run at the times of the rows of its reference, entity by entity, interpolated between its rows."""
+    names = reference.value_columns
+    require_usable(table, "result", names)
+    numbered = History(reference.name, {**reference.columns, "row": np.arange(len(reference))})
+    ours, theirs = dict(table.series()), dict(numbered.series())
     if set(ours) != set(theirs):
         odd = ", ".join(sorted(map(str, set(ours) ^ set(theirs))))
         raise Unusable(f"{reference.name}: only one of the tables has {reference.entity_columns} {odd}")
-    end, allowed = reference["time"][-1], SAME_TIME*abs(reference["time"][-1])
-    if table["time"][-1] > end + allowed:
-        raise Unusable(f"{reference.name}: the run ends at {table['time'][-1]:g}, the reference at {end:g}")
-    names, chosen = reference.entity_columns, []
-    for row, time in enumerate(reference["time"]):
-        rows = ours[tuple(reference[name][row].item() for name in names)]
-        gap = np.abs(rows["time"] - time)
-        if gap.min() > allowed:
-            raise Unusable(f"{reference.name}: the run has no row at the time {time:g}")
-        chosen.append(rows["row"][gap == gap.min()][-1])
-    # The digits of the reference: nothing is left to interpolate.
-    return History(table.name, {**table.rows(chosen).columns, "time": reference["time"]})
+    end, wanted = table["time"][-1], reference["time"][-1]
+    if abs(end - wanted) > np.max(np.diff(table["time"]), initial=0.0):
+        raise Unusable(f"{reference.name}: the run ends at {end:g}, the reference at {wanted:g}")
+    columns = {**reference.columns, **{name: np.zeros(len(reference)) for name in names}}
+    for entity, rows in theirs.items():
+        for name in names:
+            time, values = unique_times(ours[entity]["time"], ours[entity][name])
+            columns[name][rows["row"]] = np.interp(rows["time"], time, values)
+    return History(table.name, columns)
 
 
 def digits_that_matter(entry):
