@@ -147,7 +147,7 @@ def main() -> int:
     parser.add_argument("--keep", type=Path, default=Path("fuzz_failures"), help="where failures go")
     parser.add_argument("--traps", action="store_true", help="count traps of a checked build as failures")
     options = parser.parse_args()
-    named = [(name, short(read(path), 5)) for name, path in corpus()]
+    named = [(name, short(lines, 5)) for name, lines in corpus()]
     decks = [lines for _, lines in named]
     # Most refused decks stay refused, whatever else is broken.
     weights = [0.1 if name.startswith("tests/rejected") else 1.0 for name, _ in named]

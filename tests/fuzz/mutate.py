@@ -2,9 +2,13 @@
 """Break decks the way people and programs break them: a mutator that knows keywords, cards and fields."""
 import random
 import re
+import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/rejected"))
+
+from refused_decks import refused_decks  # noqa: E402
 
 #: field values at the edges of what numbers are
 EDGES = ("0", "-0", "-0.0", "1", "-1", "2", "-2", "3", "7", "0.5", "1e-308", "4.9e-324", "-1e-30", "1e-12",
@@ -23,11 +27,12 @@ CHANGES = ("*CONTROL_TERMINATION\n0.004,\n", "*DATABASE_BINARY_RUNRSF\n3,\n*DATA
 WORDS = re.compile(r"[^\s,]+")
 
 
-def corpus(largest: int = 60000) -> list[tuple[str, Path]]:
-    """Names and paths of the decks that are broken: examples, refused decks, scenes."""
-    folders = ("doc/examples", "tests/rejected", "input/*", "tests/fuzz/decks")
+def corpus(largest: int = 60000) -> list[tuple[str, list[str]]]:
+    """Names and lines of the decks that are broken: examples, scenes, refused decks."""
+    folders = ("doc/examples", "input/*", "tests/fuzz/decks")
     found = [path for folder in folders for path in sorted(ROOT.glob(f"{folder}/*.k"))]
-    return [(str(path.relative_to(ROOT)), path) for path in found if path.stat().st_size <= largest]
+    decks = [(str(path.relative_to(ROOT)), read(path)) for path in found if path.stat().st_size <= largest]
+    return decks + [(f"tests/rejected/{deck.name}", deck.text.splitlines()) for deck in refused_decks()]
 
 
 def read(path: Path) -> list[str]:

@@ -122,13 +122,13 @@ def test_the_reason_stands_in_the_table(place):
 
 
 def test_refusals_of_the_program_stand_in_the_table(place, slideline):
-    text = (BATCH.parents[1] / "tests" / "rejected" / "hourglass_negative.k").read_text()
+    text = (BATCH.parents[1] / "tests" / "rejected" / "examples" / "hourglass_negative.k").read_text()
     (place / "decks").mkdir()
     (place / "decks" / "a.k").write_text(text)
     call(place, "run_folder.sh", "decks", program=slideline)
     (place / "decks" / "b.k").write_text(text.replace("      -0.1", "       0.1"))
     call(place, "sweep.sh", "-o", "swept", "decks/b.k", "ctype=8,9", program=slideline)
-    reason = 'decks/a.k:55: *HOURGLASS card 1 field 3 (QM): "-0.1" is negative'
+    reason = 'decks/a.k:54: *HOURGLASS card 1 field 3 (QM): "-0.1" is negative'
     assert [row["reason"] for row in summary(place / "decks" / "results").values()] == [reason]
     first, second = (row["reason"] for row in summary(place / "swept").values())
     assert '"ctype=8" on the command line is not a contact type' in first

@@ -6,11 +6,13 @@ import subprocess
 import sys
 
 import conftest
+import numpy as np
 import pytest
 
-from slideline_tools.compare import compare
-from slideline_tools.histories import read_csv
-from slideline_tools.regression import Case, CaseError, repository_root, run_case
+from slideline_tools.compare import Unusable, compare
+from slideline_tools.histories import History, read_csv
+from slideline_tools.regression import (ROWS, Case, CaseError, at_times_of, digits_that_matter, kept_rows, repository_root,
+                                        run_case, tolerance, write_reference)
 
 # A shell finds the Python, whose path may hold blanks; to Python the second line is a string.
 STAND_IN = """#!/bin/sh
@@ -26,7 +28,7 @@ if factor < 0:
     print("Error: it broke", file=sys.stderr)
     sys.exit(2)
 rows = ["time,part,kinetic,mass"]
-for step in range(11):
+for step in range(int(values.get("steps", "11"))):
     for part in (1, 2):
         rows.append("%r,%d,%r,1.0" % (0.1 * step, part, factor * part * step ** 2))
 out = pathlib.Path(values["d"], values["jobid"] + ".matsum.csv")
@@ -103,6 +105,55 @@ def test_changed_result_fails_and_names_the_column(world, tool, capsys):
     assert "failed: kinetic" in text
 
 
+@pytest.mark.parametrize("steps, why", [(9, "the run ends at 0.8, the reference at 1"), (13, "the run ends at 1.2, the reference at 1")])
+def test_run_of_another_length_fails(world, tool, capsys, steps, why):
+    bless(world, tool, "--reason", "first")
+    path = world[1] / "case.toml"
+    path.write_text(path.read_text().replace("factor=1", f"steps={steps}"))
+    status, text = judge(world, capsys)
+    assert status == 2 and why in text
+
+
+def long_table(moved=None, by=0.0):
+    """Two nodes, 500 rows each, at rest for the first 100 times; row `moved` of the second node deviates."""
+    time = np.repeat(np.arange(500)/3.0, 2)
+    vy = np.where(time < 100.0/3.0, 0.0, 1.0 + np.sin(time))
+    if moved is not None:
+        vy[moved] += by
+    return History("nodout", {"time": time, "node": np.tile([7, 8], 500), "vy": vy})
+
+
+def test_reference_keeps_rows_in_which_something_happens(tmp_path):
+    table = long_table()
+    rows = kept_rows(table, ["time", "node", "vy"])
+    assert len(rows) == 20 and rows[0] == 0 and rows[-1] == 999 and rows[1] > 200
+    assert set(np.diff(rows[1:])) <= {42, 43}
+    write_reference(tmp_path / "nodout.csv", table.rows(rows), ["time", "node", "vy"], digits_that_matter({"rtol": 1e-5}))
+    assert (tmp_path / "nodout.csv").read_text().splitlines()[2].split(",")[2] == f"{table['vy'][rows[1]]:.7g}"
+    assert [digits_that_matter({"rtol": 1e-3, "tolerance": {"vy": {"rtol": rtol}}}) for rtol in (1e-2, 1e-6)] == [5, 8]
+
+
+def test_only_the_kept_rows_are_compared_each_within_its_tolerance(tmp_path):
+    rows = kept_rows(long_table(), ["vy"])
+    write_reference(tmp_path / "nodout.csv", long_table().rows(rows), ["time", "node", "vy"], 7)
+    reference, entry = read_csv(tmp_path / "nodout.csv"), tolerance({"rtol": 1e-5, "floor": 1e-5})
+
+    def passes(*deviation):
+        return compare(at_times_of(reference, long_table(*deviation)), reference, ["vy"], {}, entry).passed
+
+    assert passes() and passes(rows[5] + 1, 1.0)
+    for row in rows:
+        allowed = 1e-5*(np.max(reference["vy"]) + abs(long_table()["vy"][row]))
+        assert passes(row, 0.8*allowed) and not passes(row, 1.2*allowed)
+
+
+def test_rows_of_other_entities_or_none_fail():
+    reference = long_table().rows(kept_rows(long_table(), ["vy"]))
+    for wrong in (long_table().where(node=7), long_table().rows(slice(0, 0))):
+        with pytest.raises(Unusable):
+            at_times_of(reference, wrong)
+
+
 def test_program_that_breaks_down(world, tool, capsys):
     bless(world, tool, "--reason", "first")
     write_case(world[1], -1)
@@ -157,3 +208,4 @@ def test_kept_case_is_complete(file):
     for entry in case.content["table"]:
         reference = read_csv(case.reference_file(entry))
         assert compare(reference, reference, entry["columns"]).passed
+        assert len(reference) <= ROWS

@@ -19,6 +19,7 @@ from pathlib import Path
 from watching import HERE, ROOT, Plant, build, build_with, copy_tree, jobs_of_machine, side_by_side
 
 from kill_runs import with_end  # noqa: E402  (watching sets the path)
+from refused_decks import refused_decks  # noqa: E402
 from slideline_tools import scenes  # noqa: E402
 from slideline_tools.scenes.patch import even_lines  # noqa: E402
 from stock_list import RUN  # noqa: E402
@@ -85,7 +86,8 @@ def all_cases() -> list[Case]:
               for path in sorted((ROOT / "doc/examples").glob("*.k"))]
     stock = ROOT / "tests/program/stock"
     cases += [Case(f"stock_{name}", stock / f"stock_{name}.k") for name in RUN]
-    cases += [Case(f"refused_{path.stem}", path, status=1) for path in sorted((ROOT / "tests/rejected").glob("*.k"))]
+    cases += [Case(f"refused_{deck.name}", deck.folder / f"{deck.name}.k" if deck.family == "examples" else deck.text, status=1)
+              for deck in refused_decks()]
     return cases
 
 

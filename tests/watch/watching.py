@@ -12,7 +12,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "tests" / "program"), str(ROOT / "tests" / "verification")]
+sys.path[:0] = [str(ROOT / "tools"), *(str(ROOT / "tests" / name) for name in ("program", "verification", "rejected"))]
 
 
 def run_or_stop(words: list[str], log: Path) -> None:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Regression cases: run a deck, compare its histories with stored references, renew these.
 
-A case is a folder with `case.toml`:
+A reference keeps ROWS rows of a table, the first and the last among them, and the digits that matter for the tolerance;
+they are compared with the run at the same times. A case is a folder with `case.toml`:
 
     deck = "input/collision/collision.k"    # below the root of the repository
     arguments = ["ctype=1"]                 # for the program, may be left out
@@ -17,8 +18,11 @@ A case is a folder with `case.toml`:
 """
 import datetime
 import json
+import math
 import pathlib
 import subprocess
+
+import numpy as np
 
 try:
     import tomllib
@@ -26,10 +30,11 @@ except ModuleNotFoundError:  # Python before 3.11
     import tomli as tomllib
 
 from slideline_tools import UserError
-from slideline_tools.compare import Tolerance, Unusable, compare, judged_columns
-from slideline_tools.histories import HistoryError, read_csv
+from slideline_tools.compare import Tolerance, Unusable, compare, judged_columns, require_usable, unique_times
+from slideline_tools.histories import History, HistoryError, read_csv
 
-REFERENCE_FORMAT = "{:.9E}"
+ROWS = 20
+TIME_DIGITS = 10
 
 
 class CaseError(UserError):
@@ -91,7 +96,7 @@ class Case:
             special = {name: tolerance({**entry, **changes})
                        for name, changes in entry.get("tolerance", {}).items()}
             judged_columns(reference, entry["columns"])
-            yield compare(self.table(entry, work), reference, entry["columns"], special, default)
+            yield compare(at_times_of(reference, self.table(entry, work)), reference, entry["columns"], special, default)
 
     def reference_file(self, entry):
         return self.folder / entry.get("reference", f"{entry['name']}.csv")
@@ -103,10 +108,11 @@ class Case:
             table = self.table(entry, work)
             names = ["time", *table.entity_columns, *judged_columns(table, entry["columns"])]
             # Several entries may look at columns of one file, each with its own tolerance.
-            _, before = found.get(self.reference_file(entry), (None, []))
-            found[self.reference_file(entry)] = table, list(dict.fromkeys([*before, *names]))
-        for file, (table, names) in found.items():
-            write_reference(file, table, names)
+            _, before, digits = found.get(self.reference_file(entry), (None, [], 0))
+            found[self.reference_file(entry)] = (table, list(dict.fromkeys([*before, *names])),
+                                                 max(digits, digits_that_matter(entry)))
+        for file, (table, names, digits) in found.items():
+            write_reference(file, table.rows(kept_rows(table, names)), names, digits)
         note = ["", "[[blessed]]", f'date = "{datetime.date.today().isoformat()}"',
                 f"reason = {json.dumps(reason)}"]
         if version:
@@ -124,16 +130,51 @@ def tolerance(entry):
     return Tolerance(**given)
 
 
-def write_reference(path, table, names):
-    """A CSV file of the given columns with ten significant digits."""
+def kept_rows(table, names):
+    """Numbers of the rows that a reference keeps: ROWS at most, spread evenly over those with values other than zero."""
+    values = [name for name in names if name in table.value_columns]
+    active = np.flatnonzero(np.any([table[name] != 0 for name in values], axis=0))
+    rows = np.unique([0, *active, len(table) - 1])
+    return rows[np.unique(np.linspace(0, len(rows) - 1, ROWS).round().astype(int))]
+
+
+def at_times_of(reference, table):
+    """The values of a run at the times of the rows of its reference, entity by entity, interpolated between its rows."""
+    names = reference.value_columns
+    require_usable(table, "result", names)
+    numbered = History(reference.name, {**reference.columns, "row": np.arange(len(reference))})
+    ours, theirs = dict(table.series()), dict(numbered.series())
+    if set(ours) != set(theirs):
+        odd = ", ".join(sorted(map(str, set(ours) ^ set(theirs))))
+        raise Unusable(f"{reference.name}: only one of the tables has {reference.entity_columns} {odd}")
+    end, wanted = table["time"][-1], reference["time"][-1]
+    if abs(end - wanted) > np.max(np.diff(table["time"]), initial=0.0):
+        raise Unusable(f"{reference.name}: the run ends at {end:g}, the reference at {wanted:g}")
+    columns = {**reference.columns, **{name: np.zeros(len(reference)) for name in names}}
+    for entity, rows in theirs.items():
+        for name in names:
+            time, values = unique_times(ours[entity]["time"], ours[entity][name])
+            columns[name][rows["row"]] = np.interp(rows["time"], time, values)
+    return History(table.name, columns)
+
+
+def digits_that_matter(entry):
+    """Significant digits of a reference: two more than its tightest tolerance."""
+    rtol = min(tolerance({**entry, **changes}).rtol for changes in [{}, *entry.get("tolerance", {}).values()])
+    return 2 + math.ceil(-math.log10(rtol) - 1.0e-9)
+
+
+def write_reference(path, table, names, digits):
+    """A CSV file of the given columns."""
     lines = [",".join(names)]
-    columns = [[text_of(value) for value in table[name].tolist()] for name in names]
+    columns = [[text_of(value, TIME_DIGITS if name == "time" else digits) for value in table[name].tolist()]
+               for name in names]
     lines += [",".join(row) for row in zip(*columns)]
     path.write_text("\n".join(lines) + "\n", encoding="ascii")
 
 
-def text_of(value):
-    return REFERENCE_FORMAT.format(value) if isinstance(value, float) else str(value)
+def text_of(value, digits):
+    return f"{value:.{digits}g}" if isinstance(value, float) else str(value)
 
 
 def run_case(case, program, work, out):
