@@ -62,10 +62,11 @@ contains
     product = 0.0_wp
     do i = 1, model%mesh%n_element
       mass = element_mass(model, i)
-      associate (nodes => model%mesh%element_nodes(:, i))
-        part = spread(weights(:, model%mesh%element_part(i)), 2, 4)*matmul(vector(:, nodes), mass)
+      associate (nodes => model%mesh%element_nodes(:, i), &
+        weight => weights(:, model%mesh%element_part(i)))
+        part = matmul(vector(:, nodes), mass)
         do k = 1, 4
-          product(:, nodes(k)) = product(:, nodes(k)) + part(:, k)
+          product(:, nodes(k)) = product(:, nodes(k)) + weight*part(:, k)
         end do
       end associate
     end do
