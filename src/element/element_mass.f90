@@ -14,20 +14,26 @@ module element_mass_m
 
 contains
 
-  !> Add `factor` times the mass matrix.
-  pure subroutine add_mass(model, factor, equation, matrix)
+  !> Add `factor` times the mass matrix, or that of damping by mass.
+  pure subroutine add_mass(model, factor, equation, matrix, rates)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: factor
     integer, intent(in) :: equation(:, :)   !! (2, n_node) equation numbers, 0 = none
     type(sparse_t), intent(inout) :: matrix !! started, not compressed
-    real(wp) :: mass(4, 4)
+    real(wp), intent(in), optional :: rates(:, :) !! (2, n_part + 1) D of each part and of masses on
+                                            !! nodes, 1/s; absent: 1
+    real(wp) :: mass(4, 4), weights(2, size(model%parts) + 1)
     integer :: i, k
+
+    weights = 1.0_wp
+    if (present(rates)) weights = rates
 
     do i = 1, model%mesh%n_element
       mass = factor*element_mass(model, i)
       associate (nodes => model%mesh%element_nodes(:, i))
         do k = 1, 2
-          call add_block(matrix, equation(k, nodes), equation(k, nodes), mass)
+          call add_block(matrix, equation(k, nodes), equation(k, nodes), &
+            weights(k, model%mesh%element_part(i))*mass)
         end do
       end associate
     end do
@@ -36,34 +42,39 @@ contains
       associate (lump => model%conditions%lumped_masses(i))
         do k = 1, 2
           call add_block(matrix, equation(k, [lump%node]), equation(k, [lump%node]), &
-            reshape([factor*lump%mass], [1, 1]))
+            reshape([weights(k, size(weights, 2))*factor*lump%mass], [1, 1]))
         end do
       end associate
     end do
   end subroutine add_mass
 
-  !> The mass matrix times a nodal vector.
-  pure function mass_times(model, vector) result(product)
+  !> The mass matrix, or that of damping by mass, times a nodal vector.
+  pure function mass_times(model, vector, rates) result(product)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: vector(:, :) !! (2, n_node)
+    real(wp), intent(in), optional :: rates(:, :) !! as above
     real(wp) :: product(2, size(vector, 2))
-    real(wp) :: mass(4, 4), part(2, 4)
+    real(wp) :: mass(4, 4), part(2, 4), weights(2, size(model%parts) + 1)
     integer :: i, k
 
+    weights = 1.0_wp
+    if (present(rates)) weights = rates
     product = 0.0_wp
     do i = 1, model%mesh%n_element
       mass = element_mass(model, i)
-      associate (nodes => model%mesh%element_nodes(:, i))
+      associate (nodes => model%mesh%element_nodes(:, i), &
+        weight => weights(:, model%mesh%element_part(i)))
         part = matmul(vector(:, nodes), mass)
         do k = 1, 4
-          product(:, nodes(k)) = product(:, nodes(k)) + part(:, k)
+          product(:, nodes(k)) = product(:, nodes(k)) + weight*part(:, k)
         end do
       end associate
     end do
     if (.not. allocated(model%conditions%lumped_masses)) return
     do i = 1, size(model%conditions%lumped_masses)
       associate (lump => model%conditions%lumped_masses(i))
-        product(:, lump%node) = product(:, lump%node) + lump%mass*vector(:, lump%node)
+        product(:, lump%node) = product(:, lump%node) + weights(:, size(weights, 2))*lump%mass &
+          *vector(:, lump%node)
       end associate
     end do
   end function mass_times

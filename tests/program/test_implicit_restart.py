@@ -45,13 +45,14 @@ def pressed(kind, most_iterations=5):
 
 
 def struck(kind):
-    """Dynamic: falls on under gravity, a load and a motion that comes and goes; constant steps."""
+    """Dynamic: falls on under gravity, damping, a load and a motion that comes and goes; constant steps."""
     deck = implicit(0.03, 5.0e-4, dynamic=True)
     upper, lower = blocks(deck, kind)
     deck.add("*INITIAL_VELOCITY", (1,), (0.3, -2.0)).curve(1, [(0.0, 9.81), (10.0, 9.81)]).add("*LOAD_BODY_Y", (1, 1.0))
     deck.curve(2, [(0.0, 0.0), (0.01, 1.0), (0.02, 0.0)]).add("*LOAD_NODE_POINT", (int(upper[-1]), 2, 2, -200.0))
     deck.add("*BOUNDARY_PRESCRIBED_MOTION_NODE", (int(lower[-1]), 1, 0, 2, 0.05, 0, 0.0223, 0.0042),
              (int(upper[-5]), 2, 2, 2, -0.01, 0, 0.018, 0.0))
+    deck.add("*DAMPING_PART_MASS", (1, 2, 5.0)).add("*DAMPING_GLOBAL", (0, 0.1))
     return tables(deck, 1.0e-3, [1, int(upper[-1])])
 
 

@@ -41,7 +41,7 @@ pytestmark = pytest.mark.skipif(not PROGRAM or not shutil.which("mpirun"), reaso
 
 
 def growing(kind):
-    """A part is damped and gets mass as its elements are crushed."""
+    """A part is damped and gets mass as its elements are crushed; on a node more mass, with the damping of all alone."""
     deck = Deck("mass that grows")
     deck.control(0.01, scale=0.9)
     deck.add("*CONTROL_TIMESTEP", (0.0, 0.9, 0, 0.0, -2.2e-4))
@@ -53,6 +53,7 @@ def growing(kind):
     deck.contact(2, 3, kind, 2.0e5)
     deck.fix(lower[:61], x=1, y=1)
     deck.curve(1, [(0.0, 20.0), (1.0, 20.0)]).add("*DAMPING_PART_MASS", (1, 1))
+    deck.add("*DAMPING_GLOBAL", (0, 5.0)).add("*ELEMENT_MASS", (1, int(upper[400]), 0.5), (2, int(lower[800]), 0.5))
     deck.add("*INITIAL_VELOCITY", (1,), (0.0, -12.0))
     return deck.output(plot=2.0e-3, glstat=2.0e-4, matsum=1.0e-3, rcforc=2.0e-4).text()
 

@@ -24,7 +24,7 @@ module deck_resolve_m
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
   use deck_resolve_cross_sections_m, only : resolve_cross_sections
-  use deck_resolve_damping_m, only : resolve_damping, settle_relaxation
+  use deck_resolve_damping_m, only : resolve_damping, refuse_static, settle_relaxation
   use deck_resolve_points_m, only : settle_points
   use deck_resolve_rigids_m, only : resolve_rigids
   use deck_resolve_round_m, only : settle_form, settle_axis, mark_round_contacts, &
@@ -60,8 +60,7 @@ contains
     call check_implicit_laws(deck, raw, model)
     do i = 1, raw%n_row
       associate (row => raw%rows(i))
-        if (row%kind == row_damping) call line_error(deck, row%line, &
-          '*DAMPING_GLOBAL is damping that the implicit method does not have')
+        if (row%kind == row_damping) call refuse_static(deck, model, row%line, '*DAMPING_GLOBAL')
         if ((row%kind == row_motion_node .or. row%kind == row_motion_set) &
           .and. row%motion == motion_acceleration .and. .not. model%controls%implicit%is_dynamic) &
           call reject_field(deck, place_t(row%line, 1, 'VAD'), &

@@ -16,7 +16,7 @@ module deck_resolve_damping_m
   use deck_resolve_conditions_m, only : row_nodes, load_axes
   implicit none
   private
-  public :: resolve_damping, settle_relaxation
+  public :: resolve_damping, refuse_static, settle_relaxation
 
 contains
 
@@ -32,7 +32,7 @@ contains
       associate (row => raw%rows(i))
         select case (row%kind)
         case (row_damping_part, row_damping_part_set)
-          call refuse_implicit(deck, model, row%line, '*DAMPING_PART_MASS is damping')
+          call refuse_static(deck, model, row%line, '*DAMPING_PART_MASS')
           call take_part_damping(deck, maps, row, model)
         case (row_stiffness, row_stiffness_set)
           call refuse_implicit(deck, model, row%line, '*DAMPING_PART_STIFFNESS is damping')
@@ -94,6 +94,19 @@ contains
     if (model%controls%implicit%is_on) call line_error(deck, line, what &
       //' that the implicit method does not have')
   end subroutine refuse_implicit
+
+  !> Damping by mass acts on velocities.
+  subroutine refuse_static(deck, model, line, name)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: line
+    character(*), intent(in) :: name
+
+    associate (implicit => model%controls%implicit)
+      if (implicit%is_on .and. .not. implicit%is_dynamic) call line_error(deck, line, name &
+        //' damps velocities, which statics do not have (IMASS 1 of *CONTROL_IMPLICIT_DYNAMICS)')
+    end associate
+  end subroutine refuse_static
 
   !> The part of a row, or those of its part set; none where the id is wrong.
   subroutine row_parts(deck, maps, model, row, parts)

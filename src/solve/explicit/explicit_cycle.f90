@@ -83,7 +83,7 @@ module explicit_cycle_m
                                      !! more, behind those of the tiles, that they have exchanged
     type(failure_watch_t) :: failures !! points that have failed, as far as the log tells of them
     real(wp) :: damping(2) = 0.0_wp  !! D per direction
-    real(wp), allocatable :: rates(:, :) !! (2, n_part) D of parts, where the deck damps some
+    real(wp), allocatable :: rates(:, :) !! (2, n_part + 1) D of parts, where the deck damps some
     real(wp) :: ratio = 1.0_wp       !! last energy ratio known
     integer, allocatable :: told(:)  !! (n_part) eroded elements that interfaces have heard of; only
                                      !! where elements may leave the mesh
@@ -156,7 +156,7 @@ contains
     cycle%writes = any_due(cycle%due) .or. state%cycle == 0 .or. cycle%last .or. cycle%judges
     call apply_loads(model, state, cycle%damping, cycle%sums)
     if (allocated(state%boundary_work)) call count_boundary_loads(model, state)
-    if (allocated(state%node_damping)) call follow_damping(model, cycle%damping, cycle%rates, state)
+    if (allocated(state%node_damping)) call follow_damping(model, cycle%rates, state)
     ! What ended the cycle before is in this lap, or without contact in the one below.
     if (size(model%contacts) > 0) call lap(monitor%clock, phase_nodes)
     call plan_looks(model, cycle%writes, state)

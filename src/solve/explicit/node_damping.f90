@@ -1,12 +1,13 @@
 ! SPDX-License-Identifier: MIT
 !> D of each node where the deck damps parts (*DAMPING_PART_MASS): the mean over the masses that
-!> elements bring to it, and the global damping on top. Nodes of a rigid body have that of its part.
+!> elements bring to it, and those on nodes, which have the global damping alone. Nodes of a rigid
+!> body have that of its part.
 module node_damping_m
   use element_shares_m, only : element_shares
   use kinds_m, only : wp
   use layout_m, only : slot_part
   use model_m, only : model_t
-  use part_damping_m, only : part_damping_rate
+  use part_damping_m, only : damping_rates
   use state_m, only : state_t
   implicit none
   private
@@ -16,17 +17,15 @@ contains
 
   !> Form the rates of the nodes anew where those of parts have changed since, or `rates` is not
   !> there.
-  subroutine follow_damping(model, damping, rates, state)
+  subroutine follow_damping(model, rates, state)
     type(model_t), intent(in) :: model
-    real(wp), intent(in) :: damping(2)                   !! D of *DAMPING_GLOBAL
-    real(wp), allocatable, intent(inout) :: rates(:, :)  !! (2, n_part) with it
+    real(wp), allocatable, intent(inout) :: rates(:, :)  !! (2, n_part + 1) as `damping_rates` has
+                                                         !! them
     type(state_t), intent(inout) :: state
-    real(wp) :: now(2, size(model%parts))
+    real(wp) :: now(2, size(model%parts) + 1)
     integer :: i
 
-    do i = 1, size(model%parts)
-      now(:, i) = damping + part_damping_rate(model, i, state%time)
-    end do
+    now = damping_rates(model, state%time)
     if (allocated(rates)) then
       if (all(abs(now - rates) <= 0.0_wp)) return
     end if
@@ -38,7 +37,7 @@ contains
     end do
   end subroutine follow_damping
 
-  !> The mean of the rates of parts over the mass of each node.
+  !> The mean of the rates over the mass of each node.
   subroutine spread_rates(model, rates, state)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: rates(:, :)
@@ -47,6 +46,14 @@ contains
     integer :: slot, k
 
     state%node_damping = 0.0_wp
+    if (allocated(model%conditions%lumped_masses)) then
+      do k = 1, size(model%conditions%lumped_masses)
+        associate (lump => model%conditions%lumped_masses(k))
+          state%node_damping(:, lump%node) = state%node_damping(:, lump%node) &
+            + lump%mass*rates(:, size(rates, 2))
+        end associate
+      end do
+    end if
     do slot = 1, model%layout%n_slot
       if (model%layout%slot_element(slot) == 0) cycle
       shares = element_shares(model, slot)

@@ -15,7 +15,7 @@ module implicit_m
   use friction_m, only : has_slipped
   use health_m, only : check_static_step, what_would_do
   use implicit_boundary_m, only : count_step_boundaries
-  use implicit_forces_m, only : trial_t, start_trial, net_force, keep_sections
+  use implicit_forces_m, only : trial_t, start_trial, damping_force, net_force, keep_sections
   use implicit_memory_m, only : implicit_memory_t, write_restarts
   use implicit_prescribed_m, only : prescribe_step
   use implicit_report_m, only : reactions_work, report_step, held_energy, spent_energy
@@ -259,8 +259,8 @@ contains
     end do
   end subroutine break_ties_of_step
 
-  !> The trial becomes the state; works of contact, loads and prescribed
-  !> motion by the trapezoidal rule.
+  !> The trial becomes the state; works of contact, loads, damping and prescribed motion by the
+  !> trapezoidal rule.
   subroutine commit(model, state, step, attempt, trial)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -279,6 +279,11 @@ contains
     if (step%is_dynamic) then
       acceleration = new_acceleration(state, step, attempt)
       velocity = new_velocity(state, step, acceleration)
+      if (allocated(attempt%damping)) then
+        attempt%damping = damping_force(model, step%time, velocity)
+        state%damping_work = state%damping_work + 0.5_wp*sum((trial%damping + attempt%damping) &
+          *attempt%motion(3:4, :))
+      end if
       state%external_work = state%external_work + reactions_work(model, step%equations, trial, &
         attempt, reshape([state%motion(3:4, :), velocity], [2, size(velocity, 2), 2]))
       call count_step_boundaries(model, trial, attempt, step%time, velocity, state)

@@ -16,11 +16,12 @@ module implicit_forces_m
   use external_force_m, only : form_external_force, body_acceleration
   use freight_m, only : freight_t
   use model_m, only : model_t
+  use part_damping_m, only : damping_rates
   use state_m, only : state_t
   use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
   implicit none
   private
-  public :: trial_t, start_trial, assemble_forces, net_force, trouble_of, &
+  public :: trial_t, start_trial, assemble_forces, damping_force, net_force, trouble_of, &
     keep_sections, cut_sections
 
   !> Step of the kernels: motion holds increments in place of velocities.
@@ -34,6 +35,8 @@ module implicit_forces_m
     real(wp), allocatable :: internal(:, :) !! (2, n_node) divergence of stress
     real(wp), allocatable :: contact(:, :)  !! (2, n_node)
     real(wp), allocatable :: external(:, :) !! (2, n_node) loads and gravity
+    real(wp), allocatable :: damping(:, :)  !! (2, n_node) D M v of an equilibrium; only where the
+                                            !! deck damps by mass
     real(wp), allocatable :: slots(:, :)    !! forces of tiles on their special nodes
     type(freight_t), allocatable :: before(:) !! chunks of cross sections before the step, until
                                             !! the forces of these are formed
@@ -49,6 +52,8 @@ contains
 
     allocate (trial%motion(4, model%mesh%n_node), trial%internal(2, model%mesh%n_node), &
       trial%contact(2, model%mesh%n_node), trial%external(2, model%mesh%n_node), source=0.0_wp)
+    if (allocated(model%conditions%damping) .or. allocated(model%conditions%part_damping)) &
+      allocate (trial%damping, source=trial%external)
     allocate (trial%slots, source=state%force_slots)
     trial%motion(1:2, :) = state%motion(1:2, :)
   end subroutine start_trial
@@ -128,12 +133,23 @@ contains
     deallocate (trial%before)
   end subroutine cut_sections
 
-  !> Internal minus contact and external forces.
+  !> What damping by mass takes, D M v with the consistent mass of each part.
+  pure function damping_force(model, time, velocity) result(force)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: time
+    real(wp), intent(in) :: velocity(:, :) !! (2, n_node) at `time`
+    real(wp) :: force(2, size(velocity, 2))
+
+    force = mass_times(model, velocity, damping_rates(model, time))
+  end function damping_force
+
+  !> Internal minus contact and external forces, and damping.
   pure function net_force(trial) result(force)
     type(trial_t), intent(in) :: trial
     real(wp) :: force(2, size(trial%internal, 2))
 
     force = trial%internal - trial%contact - trial%external
+    if (allocated(trial%damping)) force = force + trial%damping
   end function net_force
 
   !> What is wrong with a trial in words; empty where all volumes are

@@ -71,6 +71,7 @@ contains
     call keep(archive, 'internal', trial%internal)
     call keep(archive, 'contact', trial%contact)
     call keep(archive, 'external', trial%external)
+    call keep(archive, 'damping', trial%damping)
     call keep(archive, 'ratio', ratio)
     call leave(archive)
   end subroutine keep_memory

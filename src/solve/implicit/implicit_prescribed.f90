@@ -188,6 +188,7 @@ contains
   pure subroutine list_changes(model, changes)
     type(model_t), intent(in) :: model
     real(wp), allocatable, intent(out) :: changes(:)
+    integer, allocatable :: used(:)
     integer :: i
 
     associate (conditions => model%conditions)
@@ -195,10 +196,11 @@ contains
       if (.not. model%controls%implicit%is_automatic) return
       changes = [changes, conditions%pressures%arrival, model%contacts%birth, &
         model%contacts%death, plot_times(model%controls)]
+      used = [conditions%motions%curve, conditions%nodal_loads%curve, conditions%body_loads%curve]
+      if (allocated(conditions%damping)) used = [used, conditions%damping%curve]
+      if (allocated(conditions%part_damping)) used = [used, conditions%part_damping%curve]
       do i = 1, size(model%curves)
-        if (any(conditions%motions%curve == i) .or. any(conditions%nodal_loads%curve == i) &
-          .or. any(conditions%body_loads%curve == i)) &
-          changes = [changes, turning_points(model%curves(i))]
+        if (any(used == i)) changes = [changes, turning_points(model%curves(i))]
         call add_pressure_turns(model, i, changes)
       end do
     end associate

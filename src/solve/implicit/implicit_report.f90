@@ -19,7 +19,7 @@ module implicit_report_m
   use errors_m, only : error_t
   use health_m, only : check_energy, check_ratio, check_radii, judge_energies, judge_ratio, &
     judge_contact, made_by_forces, unaccounted, dissipated
-  use implicit_forces_m, only : trial_t, cut_sections
+  use implicit_forces_m, only : trial_t, net_force, cut_sections
   use implicit_memory_m, only : implicit_memory_t
   use implicit_tangent_m, only : step_t
   use model_m, only : model_t
@@ -179,13 +179,11 @@ contains
     real(wp), intent(in), optional :: velocities(:, :, :) !! (2, n_node, 2) v(n) and v(n+1); absent:
                                                           !! static
     real(wp) :: work
-    real(wp), allocatable :: reaction(:, :)
 
     work = 0.0_wp
     if (equations%n == equations%n_free) return
-    reaction = (before%internal - before%contact - before%external) &
-      + (after%internal - after%contact - after%external)
-    work = 0.5_wp*sum(reaction*after%motion(3:4, :), equations%number > equations%n_free)
+    work = 0.5_wp*sum((net_force(before) + net_force(after))*after%motion(3:4, :), &
+      equations%number > equations%n_free)
     if (.not. present(velocities)) return
     work = work + 0.5_wp*sum(mass_times(model, velocities(:, :, 2) - velocities(:, :, 1)) &
       *(velocities(:, :, 1) + velocities(:, :, 2)), equations%number > equations%n_free)

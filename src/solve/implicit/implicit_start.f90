@@ -12,7 +12,8 @@ module implicit_start_m
   use element_mass_m, only : add_mass, mass_times
   use equations_m, only : equations_t, number_equations, take_free
   use errors_m, only : error_t, raise, status_run
-  use implicit_forces_m, only : start_trial, assemble_forces, net_force, keep_sections
+  use implicit_forces_m, only : start_trial, assemble_forces, damping_force, net_force, &
+    keep_sections
   use implicit_memory_m, only : implicit_memory_t, take_up_memory, write_restarts
   use implicit_prescribed_m, only : prescribe_start, list_changes
   use implicit_tangent_m, only : step_t
@@ -171,6 +172,8 @@ contains
       call measure_springs(state%contacts(i))
       state%contacts(i)%energy = state%contacts(i)%watch%stored
     end do
+    if (allocated(memory%trial%damping)) memory%trial%damping = damping_force(model, 0.0_wp, &
+      state%motion(3:4, :))
     memory%step%old_force = net_force(memory%trial)
     if (memory%step%is_dynamic) call find_first_acceleration(model, monitor, memory%step, state, &
       error)

@@ -10,9 +10,10 @@ module implicit_tangent_m
   use element_mass_m, only : add_mass, mass_times
   use element_stiffness_m, only : add_stiffness
   use equations_m, only : equations_t, put_prescribed
-  use implicit_forces_m, only : trial_t
+  use implicit_forces_m, only : trial_t, damping_force
   use implicit_prescribed_m, only : prescribed_step_t
   use model_m, only : model_t
+  use part_damping_m, only : damping_rates
   use sparse_m, only : sparse_t, start_matrix, add_block
   use state_m, only : state_t
   implicit none
@@ -25,7 +26,7 @@ module implicit_tangent_m
     real(wp) :: dt = 0.0_wp
     logical :: is_dynamic = .false.
     real(wp) :: alpha_m = 0.0_wp, alpha_f = 0.0_wp, gamma = 0.5_wp, beta = 0.25_wp
-    real(wp), allocatable :: old_force(:, :) !! (2, n_node) f_int - f_contact - f_ext at its start
+    real(wp), allocatable :: old_force(:, :) !! (2, n_node) `net_force` at its start
     type(equations_t) :: equations
     logical :: searches = .false.      !! iterations that go too far are shortened
     logical :: began_negative = .false. !! the matrix at its start had an odd number of negative
@@ -36,9 +37,9 @@ module implicit_tangent_m
 
 contains
 
-  !> R = M A + (1 - alpha_f) f(n+1) + alpha_f f(n) with f = f_int - f_contact - f_ext and
-  !> A = (1 - alpha_m) a(n+1) + alpha_m a(n) (Chung & Hulbert 1993, eq. 12, forces of both
-  !> instants weighted); on prescribed degrees of freedom A is the change of velocity over the
+  !> R = M A + (1 - alpha_f) f(n+1) + alpha_f f(n) with f = f_int - f_contact - f_ext
+  !> + D M v and A = (1 - alpha_m) a(n+1) + alpha_m a(n) (Chung & Hulbert 1993, eq. 12, forces of
+  !> both instants weighted); on prescribed degrees of freedom A is the change of velocity over the
   !> step, whatever the weights.
   function assemble_residual(model, state, step, trial) result(residual)
     type(model_t), intent(in) :: model
@@ -50,8 +51,10 @@ contains
 
     residual = trial%internal - trial%contact - trial%external
     if (.not. step%is_dynamic) return
-    acceleration = (1.0_wp - step%alpha_m)*new_acceleration(state, step, trial) &
-      + step%alpha_m*state%acceleration
+    acceleration = new_acceleration(state, step, trial)
+    if (allocated(trial%damping)) residual = residual + damping_force(model, step%time, &
+      new_velocity(state, step, acceleration))
+    acceleration = (1.0_wp - step%alpha_m)*acceleration + step%alpha_m*state%acceleration
     call put_prescribed(step%equations, step%prescribed%mean, acceleration)
     residual = (1.0_wp - step%alpha_f)*residual + step%alpha_f*step%old_force &
       + mass_times(model, acceleration)
@@ -81,8 +84,8 @@ contains
     call put_prescribed(step%equations, step%prescribed%velocity, velocity)
   end function new_velocity
 
-  !> dR/du(n+1), collected. The inertia of prescribed degrees of freedom does not depend on u, so
-  !> their columns hold stiffness alone.
+  !> dR/du(n+1), collected. Inertia and damping of prescribed degrees of freedom do not depend on u,
+  !> so their columns hold stiffness alone.
   subroutine assemble_tangent(model, state, step, trial, clock, matrix)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
@@ -90,7 +93,7 @@ contains
     type(trial_t), intent(in) :: trial
     type(clock_t), intent(inout) :: clock
     type(sparse_t), intent(inout) :: matrix
-    integer :: i
+    integer :: columns(2, model%mesh%n_node), i
 
     call start_matrix(matrix, step%equations%n)
     call add_stiffness(model, trial%motion, 1.0_wp, state%elements, step%equations%number, matrix)
@@ -107,8 +110,10 @@ contains
     end do
     if (.not. step%is_dynamic) return
     matrix%values(:matrix%n_entry) = (1.0_wp - step%alpha_f)*matrix%values(:matrix%n_entry)
-    call add_mass(model, (1.0_wp - step%alpha_m)/(step%beta*step%dt**2), &
-      merge(step%equations%number, 0, step%equations%number <= step%equations%n_free), matrix)
+    columns = merge(step%equations%number, 0, step%equations%number <= step%equations%n_free)
+    call add_mass(model, (1.0_wp - step%alpha_m)/(step%beta*step%dt**2), columns, matrix)
+    if (allocated(trial%damping)) call add_mass(model, (1.0_wp - step%alpha_f)*step%gamma &
+      /(step%beta*step%dt), columns, matrix, damping_rates(model, step%time))
   end subroutine assemble_tangent
 
   !> Minus the derivative of a pressure, which turns and stretches with its edge, and grows with its

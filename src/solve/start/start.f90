@@ -75,7 +75,7 @@ contains
       allocate (state%external(2, model%layout%n_special), source=0.0_wp)
     if (allocated(model%conditions%damping) .and. .not. model%controls%implicit%is_on) &
       call start_vectors(known, model%mesh%n_node, state%former_velocity)
-    if (allocated(model%conditions%part_damping)) then
+    if (allocated(model%conditions%part_damping) .and. .not. model%controls%implicit%is_on) then
       allocate (state%node_damping(2, model%mesh%n_node), &
         state%former_damping(2, model%mesh%n_node), source=0.0_wp)
       if (.not. allocated(state%former_velocity)) &

@@ -35,30 +35,95 @@ def rate_and_frequency(time, motion):
     return np.roots([1.0, p, q])
 
 
+def implicit(deck, dt, radius):
+    """The same deck with implicit steps of a spectral radius and inertia; NIP 1 is taken as 4."""
+    deck.add("*CONTROL_IMPLICIT_GENERAL", (1, dt)).add("*CONTROL_IMPLICIT_DYNAMICS", (1,))
+    return deck.add("*CONTROL_IMPLICIT_SPECTRAL_RADIUS", (radius,))
+
+
 def check_rigid_motion(run):
-    """Velocities of two parts with rates of their own; the curve, SF and the factors of the directions."""
-    deck = Deck("two parts")
+    """Velocities of two parts with rates of their own; the curve, SF and the factors of the directions. Both methods
+    multiply by (2 - D dt)/(2 + D dt) in a step."""
     dt, end = 1.0e-4, 0.1
-    deck.control(end, dt=dt).hourglass(4, 0.1)
-    deck.add("*PART", "one", (1, 1, 1)).add("*PART", "two", (2, 1, 1)).add("*SECTION_SHELL", (1, 13), (1.0,))
-    deck.elastic(RHO, YOUNG, POISSON)
-    for part, left in ((1, 0.0), (2, 5.0)):
-        deck.mesh(*grid(1, 1, origin=(left, 0.0)), part=part)
-    deck.curve(1, [(0.0, 10.0), (1.0, 10.0)]).curve(2, [(0.0, 0.0), (0.1, 40.0)])
-    deck.add("*DAMPING_PART_MASS", (1, 1, 2.0, 1), (1.0, 0.0), (2, 2))
-    deck.add("*INITIAL_VELOCITY", (0,), (2.0, -1.0))
-    deck.output(glstat=0.01, nodout=0.01, nodes=[1, 5])
-    result = run.program(deck)
-    one, two, table = result.node(1), result.node(5), result.table("glstat")
-    inner = slice(1, -1)
-    run.check("part 1: velocity x", one["vx"][inner], 2.0 * np.exp(-20.0 * one["time"][inner]), 2e-6,
-              source="v exp(-SF LCID STX t)")
-    run.check("part 1: velocity y", one["vy"], -1.0, 1e-13, source="STY = 0")
-    run.check("part 2: velocity", two["vx"][inner], 2.0 * np.exp(-200.0 * two["time"][inner] ** 2), 2e-4,
-              source="v exp(-integral of the curve)")
-    lost = 0.5 * RHO * (4.0 * (1.0 - np.exp(-40.0 * 0.1)) + 5.0 * (1.0 - np.exp(-400.0 * 0.01)))
-    run.check("what damping has taken", table["damping"][-1], lost, 1e-4, source="kinetic energy that is gone")
-    run.check("balance", table["energy_ratio"], 1.0, 1e-12, "abs", source="the sum that leap-frog keeps")
+    for method in ("explicit", "implicit"):
+        deck = Deck(f"two parts, {method}")
+        deck.add("*PART", "one", (1, 1, 1)).add("*PART", "two", (2, 1, 1)).add("*SECTION_SHELL", (1, 13, None, 4), (1.0,))
+        deck.elastic(RHO, YOUNG, POISSON)
+        for part, left in ((1, 0.0), (2, 5.0)):
+            deck.mesh(*grid(1, 1, origin=(left, 0.0)), part=part)
+        if method == "explicit":
+            deck.control(end, dt=dt)
+        else:
+            implicit(deck, dt, 1.0).add("*CONTROL_TERMINATION", (end,))
+        deck.curve(1, [(0.0, 10.0), (1.0, 10.0)]).curve(2, [(0.0, 0.0), (0.1, 40.0)])
+        deck.add("*DAMPING_PART_MASS", (1, 1, 2.0, 1), (1.0, 0.0), (2, 2))
+        deck.add("*INITIAL_VELOCITY", (0,), (2.0, -1.0))
+        deck.output(glstat=0.01, nodout=0.01, nodes=[1, 5])
+        result = run.program(deck)
+        one, two, table = result.node(1), result.node(5), result.table("glstat")
+        inner = slice(1, -1)
+        run.check(f"{method}: part 1: velocity x", one["vx"][inner], 2.0 * np.exp(-20.0 * one["time"][inner]), 2e-6,
+                  source="v exp(-SF LCID STX t)")
+        run.check(f"{method}: part 1: velocity y", one["vy"], -1.0, 1e-12, source="STY = 0")
+        run.check(f"{method}: part 2: velocity", two["vx"][inner], 2.0 * np.exp(-200.0 * two["time"][inner] ** 2), 2e-4,
+                  source="v exp(-integral of the curve)")
+        lost = 0.5 * RHO * (4.0 * (1.0 - np.exp(-40.0 * 0.1)) + 5.0 * (1.0 - np.exp(-400.0 * 0.01)))
+        run.check(f"{method}: what damping has taken", table["damping"][-1], lost, 1e-4, source="kinetic energy that is gone")
+        run.check(f"{method}: balance", table["energy_ratio"], 1.0, 1e-12, "abs", source="the sum that each method keeps")
+
+
+def check_lumps(run):
+    """A square and masses on its nodes, as heavy: *DAMPING_GLOBAL acts on both, that of the part on its own mass alone."""
+    dt, end, part, all_masses = 1.0e-3, 0.05, 20.0, 8.0
+    for method in ("explicit", "implicit"):
+        deck = Deck(f"lumps, {method}").part(points=4).elastic(RHO, YOUNG, POISSON)
+        nodes = deck.mesh(*grid(1, 1))
+        deck.add("*ELEMENT_MASS", *[(k + 1, int(node), 0.25 * RHO) for k, node in enumerate(nodes)])
+        if method == "explicit":
+            deck.control(end, dt=dt)
+        else:
+            implicit(deck, dt, 1.0).add("*CONTROL_TERMINATION", (end,))
+        deck.curve(1, [(0.0, part), (1.0, part)]).add("*DAMPING_PART_MASS", (1, 1))
+        deck.add("*DAMPING_GLOBAL", (0, all_masses, 1.0, 0.5)).add("*INITIAL_VELOCITY", (0,), (2.0, -1.0))
+        result = run.program(deck.output(glstat=0.01, nodout=0.01, nodes=[1]))
+        history = result.node(1)
+        rates = 0.5 * part + all_masses * np.array([1.0, 0.5])
+        for name, start, rate in zip(("vx", "vy"), (2.0, -1.0), rates):
+            run.check(f"{method}, masses on nodes: {name}", history[name][1:-1], start * np.exp(-rate * history["time"][1:-1]),
+                      5e-5, source="the mean of both rates, D on top")
+        run.check(f"{method}, masses on nodes: balance", result.table("glstat")["energy_ratio"], 1.0, 1e-12, "abs")
+
+
+def check_order(run):
+    """Implicit steps of default dissipation: decay by a rate that grows, with errors of second order in the step."""
+    end, errors = 0.2, []
+    for n in (10, 20, 40):
+        deck = implicit(Deck(f"order, {n} steps"), end / n, 0.8).add("*CONTROL_TERMINATION", (end,))
+        deck.part(points=4).elastic(RHO, YOUNG, POISSON).mesh(*grid(1, 1))
+        deck.curve(1, [(0.0, 5.0), (1.0, 45.0)]).add("*DAMPING_PART_MASS", (1, 1)).add("*INITIAL_VELOCITY", (0,), (2.0, -1.0))
+        result = run.program(deck.output(glstat=end, nodout=end, nodes=[1]))
+        errors.append(result.node(1)["vx"][-1] - 2.0 * np.exp(-5.0 * end - 20.0 * end ** 2))
+    errors = np.array(errors)
+    run.check("implicit: order in the step", np.log2(errors[:-1] / errors[1:]), 2.0, 0.1, "abs", source="v exp(-integral of the curve)")
+    run.check("implicit: error of 40 steps", abs(errors[-1]), 0.0, 1e-3, "abs")
+
+
+def check_drag(run):
+    """A bar led at one end by implicit steps: the force there ends as D m V, and the works balance on the way."""
+    dt, end, damping, speed = 4.0e-3, 1.0, 40.0, 0.01
+    deck = implicit(Deck("drag"), dt, 1.0).add("*CONTROL_TERMINATION", (end,))
+    deck.part(points=4).elastic(RHO, YOUNG, POISSON)
+    nodes = deck.mesh(*grid(3, 1, 3.0, 1.0))
+    deck.curve(1, [(0.0, 0.0), (0.05, 1.0), (1.0, 1.0)]).curve(2, [(0.0, damping), (1.0, damping)])
+    deck.add("*DAMPING_PART_MASS", (1, 2)).fix(nodes, y=1)
+    for node in nodes[::4]:
+        deck.prescribe(node, 1, 0, 1, speed)
+    deck.add("*DATABASE_BNDOUT", (dt,))
+    result = run.program(deck.output(glstat=dt))
+    table, rows = result.table("glstat"), result.table("bndout")
+    force = rows["fx"].reshape(-1, 2).sum(1)
+    run.check("drag: force", force[-20:].mean(), damping * 3.0 * RHO * speed, 1e-4, source="D m V")
+    run.check("drag: balance", table["external_work"], table["total"], 1e-8, source="trapezoidal work of all forces")
 
 
 def check_oscillator(run):
@@ -148,6 +213,9 @@ def check_stability(run):
 
 def check(run):
     check_rigid_motion(run)
+    check_lumps(run)
+    check_order(run)
+    check_drag(run)
     check_oscillator(run)
     check_share(run)
     check_time(run)
