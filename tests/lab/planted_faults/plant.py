@@ -103,11 +103,12 @@ class Planted:
 
     def link(self, target: str) -> Path:
         """The program or a unit test with the fault in it."""
+        is_mpi = self.fault is not None and self.fault.file.startswith("parallel/mpi/")
         if target not in self.made:
             words = shlex.split(self.commands(target)[-1].removeprefix(": && ").removesuffix(" && :"))
             k = words.index("-o")
             self.made[target] = self.build / words[k + 1]
-            if self.fault:
+            if self.fault and (not is_mpi or target == "slideline_mpi"):
                 self.made[target] = self.scratch / target
                 objects = [word for word in words[:k] if word != self.stands_for]
                 done = self.run([*objects, str(self.object), "-o", str(self.made[target]), *words[k + 2:]], self.build)
@@ -148,6 +149,8 @@ class Planted:
         words = {"SLIDELINE_BUILD": "Release", "OPENBLAS_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
         if kind != "unit":
             words["SLIDELINE"] = str(self.link("slideline"))
+        if name.startswith("test_ranks"):
+            words["SLIDELINE_MPI"] = str(self.link("slideline_mpi"))
         done = self.run(["timeout", str(LONGEST), *command], self.scratch if kind == "unit" else ROOT, words)
         (self.scratch / "last_test.txt").write_text(done.stdout + done.stderr)
         return done.returncode != 0
@@ -188,7 +191,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("ids", nargs="*", metavar="ID")
     parser.add_argument("--build", type=Path, default=ROOT / "build/release", help="a finished Ninja build with unit tests")
-    parser.add_argument("--out", type=Path, default=HERE / "noticed.csv", help="table, made or gone on with")
+    parser.add_argument("--out", type=Path, default=ROOT / "build/noticed.csv", help="table, made or gone on with")
     parser.add_argument("--broader", action="store_true", help="go on with all tests of the folder")
     parser.add_argument("--sound", action="store_true", help="run the nearest tests without any fault")
     options = parser.parse_args()
