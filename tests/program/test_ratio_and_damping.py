@@ -84,6 +84,16 @@ def test_factors_and_curves_count(slideline, tmp_path, factors, curve, told):
         assert ("largest ordinate of curve 7" if curve else "VALDMP") in log
 
 
+def test_cards_of_one_part_add_up(slideline, tmp_path):
+    """Two cards of *DAMPING_PART_MASS, one with STX and STY, and global damping: velocities fall by the sum of all."""
+    deck = damped(100.0).curve(8, [(0.0, 1000.0), (1.0, 1000.0)]).curve(9, [(0.0, 500.0), (1.0, 500.0)])
+    deck.add("*DAMPING_PART_MASS", (1, 8, 1.0, 1), (1.0, 2.0), (1, 9))
+    assert slideline("d=o", deck=deck).returncode == 0
+    for direction, rate in (("x", 1600.0), ("y", 2600.0)):
+        v = numbers(tmp_path / "o" / "job.nodout.csv", f"v{direction}")
+        assert v[4] / v[3] == pytest.approx((2.0 - rate * STEP) / (2.0 + rate * STEP), rel=1.0e-9)
+
+
 def test_energies_that_do_not_add_up_are_told_once_while_the_run_goes_on(slideline, tmp_path):
     """Waves of two elements at a fifth of the wave speed: viscous forces are right to first order only."""
     deck = Deck("short waves").control(20.0).elastic(1.0, 1.0, 0.3).output(glstat=0.5)

@@ -8,7 +8,7 @@ import time
 import h5py
 import numpy as np
 import pytest
-from conftest import drop
+from conftest import drop, numbers
 from meshes import Deck, grid
 from test_implicit import pulled
 
@@ -218,6 +218,7 @@ def relaxing(points, most_time):
     nodes = deck.mesh(*grid(2, 8, 0.5, 2.0))
     deck.fix(nodes[:3], x=1, y=1).node_set(1, nodes).add("*INITIAL_VELOCITY", (1,), (0.01, 0.0))
     deck.add("*DEFINE_CURVE", (1, 2), (0.0, 0.05), (1.0e4, 1.0)).add("*LOAD_BODY_Y", (1, 1.0))
+    deck.add("*CONTROL_BULK_VISCOSITY", (1.5, 0.06))
     deck.add("*CONTROL_DYNAMIC_RELAXATION", (1000, 1.0e-12, 0.99999, most_time))
     deck.output(plot=0.01, glstat=0.001, nodout=0.001, nodes=nodes)
     return deck.add("*DATABASE_BINARY_D3DUMP", (1000000,)).text()
@@ -245,6 +246,7 @@ def test_dynamic_relaxation_hears(exe, tmp_path, points):
     whole.send_signal(signal.SIGUSR1)
     said, complaint = whole.communicate(timeout=60)
     assert whole.returncode == 0 and "job.dump01.h5 in dynamic relaxation, after" in said, complaint
+    assert numbers(tmp_path / "whole" / "job.glstat.csv", "viscous")[0] == 0.0    # of the run alone
     on(tmp_path / "whole" / "job.dump01.h5", "asked")
     for name, act in (("term", signal.SIGTERM), ("int", signal.SIGINT), ("stop", None)):
         process = start(name, 600.0 if act else 1.0e6)

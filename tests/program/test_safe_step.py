@@ -97,6 +97,18 @@ def test_a_support_stands_for_the_other_half(slideline, tmp_path):
     assert first_step(tmp_path) == pytest.approx(0.9 * row_limit(0.49) / math.sqrt(modulus(0.49)), rel=1.0e-6)
 
 
+def test_a_free_square_that_grows_keeps_its_step(slideline, tmp_path):
+    """Stretched alike along both axes its gradients fall as its sides grow, but its mass stays: so does the stable step."""
+    deck = squares(0.3, 1, end=61.0).curve(1, [(0.0, 0.0), (60.0, 0.3), (70.0, 0.3)]).curve(2, [(0.0, 0.0), (70.0, 0.0)])
+    deck.add("*BOUNDARY_PRESCRIBED_MOTION_NODE", *[(node, dof, 2, 1 if place else 2, 1.0, 0, 60.0) for node, places in
+                                                   enumerate(((0, 0), (1, 0), (0, 1), (1, 1)), 1) for dof, place in enumerate(places, 1)])
+    done = slideline("d=o", deck=deck.output(nodout=1.0, nodes=[4]))
+    assert done.returncode == 0, done.stderr
+    assert max(numbers(tmp_path / "o" / "job.nodout.csv", "ux")) > 0.29
+    steps = numbers(tmp_path / "o" / "job.glstat.csv", "dt")[:-2]
+    assert steps == pytest.approx(np.full(len(steps), 0.9 * math.sqrt(0.7 / modulus(0.3))), rel=1.0e-6)
+
+
 def test_scaled_masses_take_the_same_bound(slideline, tmp_path):
     """DT2MS of a single free square: its mass grows by (DT2MS over sqrt(1 - nu) L/c) squared."""
     deck = squares(0.3, 1)
