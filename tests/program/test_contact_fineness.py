@@ -68,7 +68,7 @@ def test_a_written_penalty_and_a_written_step_keep_their_warning(slideline, tmp_
         assert OBEYS not in log and log.count("its penalty demands a time step of at most") == 1
 
 
-def hard_on_soft(factor=1.0, modulus=1.0e10, layers=False, n=6, wide=1, ecdt=0, glstat=1.0e-3):
+def hard_on_soft(factor=1.0, modulus=1.0e10, layers=False, n=6, wide=1, ecdt=0, rows=1.0e-3):
     """A block of one modulus falls on a soft one on rollers, `wide` times as wide as high; `layers`: its upper half is another part."""
     deck = Deck("hard on soft").add("*CONTROL_TERMINATION", (0.1,)).add("*SECTION_SHELL", (1, 13), (1.0,))
     for part, young in enumerate((modulus, 1.0e6, 1.0e6), 1):
@@ -83,7 +83,7 @@ def hard_on_soft(factor=1.0, modulus=1.0e10, layers=False, n=6, wide=1, ecdt=0, 
     deck.node_set(3, upper).add("*INITIAL_VELOCITY", (3,), (0.0, -1.0)).fix(first[:wide * n + 1], y=1)
     deck.add("*CONTROL_CONTACT", (0.0,), (0, 0, 0, 0, 0.0, 0, ecdt))
     deck.add(STOCK + "SURFACE_TO_SURFACE", (1, 2, factor))
-    return deck.output(plot=0.01, glstat=glstat, matsum=1.0e-3, rcforc=1.0e-3).add("*DATABASE_SLEOUT", (1.0e-3,))
+    return deck.output(plot=0.01, glstat=rows, matsum=rows, rcforc=1.0e-3).add("*DATABASE_SLEOUT", (1.0e-3,))
 
 
 def told(log, words):
@@ -126,7 +126,7 @@ def test_springs_that_store_much_of_a_blow_on_a_soft_body_are_told(slideline, tm
     assert slideline("r=rest/job.dump01.h5").returncode == 0
     assert told((rest / "job.log").read_text(), "its springs have stored up to") == lines
     # Plot states alone show it too.
-    line, = fall("plots", glstat=1.0)[1]
+    line, = fall("plots", rows=1.0)[1]
     assert float(re.search(r" sides, (\S+): springs", line)[1]) == pytest.approx(bodies, rel=0.05)
 
 
