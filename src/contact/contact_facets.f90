@@ -13,10 +13,9 @@ module contact_facets_m
   private
   public :: follow_arcs, report_facets
 
-  !> Part of the largest penetration from which on the height of arcs over their segments is told,
-  !> and part of that height by which gaps are off where facets do not match.
-  real(wp), parameter :: noticed_part = 0.1_wp, noticed_error = 0.01_wp
-  !> Weight of the other node up to which a point is at a node.
+  !> Part of the largest penetration from which on what facets put gaps off by is told.
+  real(wp), parameter :: noticed_part = 0.1_wp
+  !> Weight of the other node up to which a point is at a node, and part by which heights are equal.
   real(wp), parameter :: at_node = 1.0e-6_wp
 
   !> Arcs that the segments of a surface stand for.
@@ -131,7 +130,7 @@ contains
   end subroutine look_at_point
 
   !> The segment that a place is on; of those beside the node that it is at, the one with the higher
-  !> arc; 0: none.
+  !> arc, the first one of equal ones (round-off is no choice); 0: none.
   pure function segment_at(surface, arcs, nodes, weights) result(segment)
     type(surface_t), intent(in) :: surface
     type(arcs_t), intent(in) :: arcs
@@ -148,7 +147,7 @@ contains
       if (minval(weights) > at_node .and. &
         .not. any(surface%segments(:, beside(k)) == nodes(3 - main))) cycle
       if (segment > 0) then
-        if (.not. height_of(arcs, beside(k)) > height_of(arcs, segment)) cycle
+        if (.not. height_of(arcs, beside(k)) > (1.0_wp + at_node)*height_of(arcs, segment)) cycle
       end if
       segment = beside(k)
     end do
@@ -163,19 +162,21 @@ contains
   end function height_of
 
   !> The largest way by which bodies of unlike curvature are flattened where they touch: the arc of
-  !> both curvatures over a run of pressed segments, up to one radian of it. A ring that is pressed
-  !> all round has a like one in it.
+  !> both curvatures over a run of pressed segments, up to one radian of it.
   pure function flattening(surface, arcs) result(way)
     type(surface_t), intent(in) :: surface
     type(arcs_t), intent(in) :: arcs
     real(wp) :: way !! m
     real(wp) :: length, unlike, bend
-    integer :: s, k
+    logical :: is_left(surface%n_segment)
+    integer :: i, s, k
 
     way = 0.0_wp
-    do s = 1, surface%n_segment
-      if (.not. arcs%is_pressed(s)) cycle
-      if (surface%previous(s) > 0) then
+    is_left = arcs%is_pressed
+    do i = 0, 2*surface%n_segment - 1
+      s = 1 + modulo(i, surface%n_segment)
+      ! What is pressed all round has no first segment: any one, the second time.
+      if (i == s - 1 .and. surface%previous(s) > 0) then
         if (arcs%is_pressed(surface%previous(s))) cycle
       end if
       length = 0.0_wp
@@ -183,7 +184,8 @@ contains
       bend = tiny(1.0_wp)
       k = s
       do while (k > 0)
-        if (.not. arcs%is_pressed(k)) exit
+        if (.not. is_left(k)) exit
+        is_left(k) = .false.
         length = length + arcs%chord(k)
         unlike = max(unlike, arcs%unlike(k))
         bend = max(bend, abs(arcs%curvature(k)))
@@ -193,8 +195,9 @@ contains
     end do
   end function flattening
 
-  !> At the end: a warning where arcs stand off their segments by much of the penetration, with the
-  !> number of segments that would do. Facets of two meshes that match lie in each other.
+  !> At the end: a warning where arcs stand off their segments by much of the penetration, and gaps
+  !> are off by that much, with the number of segments that would do. Facets whose nodes lie opposite
+  !> each other lie in each other, however coarse: gaps are right.
   subroutine report_facets(contact, estimate, log)
     type(contact_t), intent(in) :: contact
     type(contact_estimate_t), intent(in) :: estimate
@@ -203,14 +206,14 @@ contains
 
     associate (height => estimate%arc_height, curvature => estimate%arc_curvature, &
       depth => estimate%penetration)
-      if (.not. (height > noticed_part*depth &
-        .and. estimate%facet_error > noticed_error*height)) return
+      if (.not. min(height, estimate%facet_error) > noticed_part*depth) return
       text = trim(merge('slave ', 'master', estimate%arc_side == 1))
       if (contact%is_self) text = 'surface'
       text = 'interface '//to_text(contact%id)//': pressure is made by facets: arcs of its '//text &
         //' (radius '//to_text(1.0_wp/curvature)//') stand up to '//to_text(height) &
-        //' off their segments, more than a tenth of the largest penetration and flattening of ' &
-        //'the arcs, interference included, '//to_text(depth)//'; it has ' &
+        //' off their segments, which puts gaps off by up to '//to_text(estimate%facet_error) &
+        //', more than a tenth of the largest penetration and flattening of the arcs, ' &
+        //'interference included, '//to_text(depth)//'; it has ' &
         //to_text(nint(segments_of(curvature, height)))//' segments on a full circle'
       if (depth > 0.0_wp) text = text//', ' &
         //to_text(ceiling(segments_of(curvature, noticed_part*depth)))//' would do'

@@ -6,6 +6,7 @@ module contact_softness_m
   use contact_facets_m, only : follow_arcs, report_facets
   use contacts_m, only : contact_t, is_tied, told_as, penalty_factor, penalty_share, &
     penalty_implicit
+  use controls_m, only : controls_t, contact_step_rules
   use kinds_m, only : wp
   use layout_m, only : slot_part
   use log_m, only : log_t, warn, write_log, to_text
@@ -22,8 +23,8 @@ module contact_softness_m
   !> Compliance of springs, over that of a row of elements on either side, below which stiffer ones
   !> take little away; a penalty that is named goes to half of it at most.
   real(wp), parameter :: stiff = 0.5_wp
-  !> Ratio of bulk moduli from which on one body is hard beside the other.
-  real(wp), parameter :: much_harder = 10.0_wp
+  !> Ratio of bulk moduli from which on one body is hard beside the other: 10, less round-off.
+  real(wp), parameter :: much_harder = 9.999_wp
 
 contains
 
@@ -147,8 +148,8 @@ contains
   end subroutine report_softness
 
   !> One interface whose springs stored much. Like bodies part as if both were softer; of a hard one
-  !> on a soft one the springs give back what the soft one would have kept, and the rebound is
-  !> wrong: a warning, unless the springs are stiff beside the elements, which then are too coarse.
+  !> on a soft one the springs give back what the soft one would in part have kept, and the rebound
+  !> is wrong: a warning, unless the springs are stiff beside the elements, too coarse ones then.
   subroutine tell_softness(model, contact, estimate, log)
     type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact
@@ -161,10 +162,11 @@ contains
       //' of the largest internal energy of the bodies on both sides, ' &
       //to_text(estimate%bodies)
     if (estimate%softness > stiff .and. has_unlike_bodies(model, contact)) then
-      call warn(log, text//', so that the hard body rebounds from them more than from the soft ' &
-        //'one; '//remedy(contact, estimate))
+      call warn(log, text//': springs give back all of it, of which the soft body would keep a ' &
+        //'part, so that the hard one goes in deeper and may rebound faster than it should; ' &
+        //remedy(model%controls, contact, estimate))
     else
-      call write_log(log, text//'; '//remedy(contact, estimate))
+      call write_log(log, text//'; '//remedy(model%controls, contact, estimate))
     end if
   end subroutine tell_softness
 
@@ -190,30 +192,33 @@ contains
         hardest = max(hardest, material%bulk)
       end associate
     end do
-    has = has .or. hardest > much_harder*softest
+    has = has .or. hardest >= much_harder*softest
   end function has_unlike_bodies
 
-  !> The penalty whose springs would store no more than that part. Under a given force they store by
-  !> the inverse of their stiffness, in impacts by less than that: by its power -0.64 where a hard
-  !> block hits a soft one. What the first row of nodes takes of a blow no penalty makes less.
-  pure function remedy(contact, estimate) result(text)
+  !> The penalty whose springs would store no more than that part, and the step that bears it. By a
+  !> given force they store as the inverse of their stiffness, in impacts as its power -0.64 where a
+  !> hard block hits a soft one, and less where rows are coarse: what the first row of nodes takes of
+  !> a blow no penalty makes less.
+  pure function remedy(controls, contact, estimate) result(text)
+    type(controls_t), intent(in) :: controls
     type(contact_t), intent(in) :: contact
     type(contact_estimate_t), intent(in) :: estimate
     character(:), allocatable :: text
-    real(wp), parameter :: power = 1.5_wp
     real(wp) :: factor
 
     text = 'finer elements would take more of it'
     if (.not. estimate%softness > stiff) return
-    factor = min((estimate%stored/(noticed_part*estimate%bodies))**power, &
+    factor = min((estimate%stored/(noticed_part*estimate%bodies))**2, &
       2.0_wp*estimate%softness/stiff)
     associate (wanted => factor*contact%penalty)
       text = 'PEN '//to_text(wanted)//' would do'
       if (contact%penalty_unit == penalty_factor) text = 'SFACT '//to_text(wanted) &
         //', or PEN with PUNIT 2, would do'
       if (contact%penalty_unit == penalty_share .and. wanted > 1.0_wp) text = &
-        'a penalty '//to_text(factor)//' times as large would do, and a step that bears it'
+        'a penalty '//to_text(factor)//' times as large would do'
     end associate
+    if (.not. controls%implicit%is_on .and. controls%contact_step /= contact_step_rules) &
+      text = text//', with the step of the springs (ECDT 2 of *CONTROL_CONTACT)'
   end function remedy
 
 end module contact_softness_m
