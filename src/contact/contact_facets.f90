@@ -196,8 +196,8 @@ contains
   end function flattening
 
   !> At the end: a warning where arcs stand off their segments by much of the penetration, and gaps
-  !> are off by that much, with the number of segments that would do. Facets whose nodes lie opposite
-  !> each other lie in each other, however coarse: gaps are right.
+  !> are off by that much, with the number of segments that would do. Where nodes lie opposite each
+  !> other facets lie in each other, however coarse: gaps are right.
   subroutine report_facets(contact, estimate, log)
     type(contact_t), intent(in) :: contact
     type(contact_estimate_t), intent(in) :: estimate

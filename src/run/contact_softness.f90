@@ -196,9 +196,9 @@ contains
   end function has_unlike_bodies
 
   !> The penalty whose springs would store no more than that part, and the step that bears it. By a
-  !> given force they store as the inverse of their stiffness, in impacts as its power -0.64 where a
-  !> hard block hits a soft one, and less where rows are coarse: what the first row of nodes takes of
-  !> a blow no penalty makes less.
+  !> given force their energy goes with the power -1 of their stiffness, by blows of a hard block on
+  !> a soft one -0.64, and less where rows are coarse: no penalty makes less what the first row of
+  !> nodes takes.
   pure function remedy(controls, contact, estimate) result(text)
     type(controls_t), intent(in) :: controls
     type(contact_t), intent(in) :: contact

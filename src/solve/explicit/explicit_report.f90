@@ -127,22 +127,22 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    logical :: judges !! springs beside the bodies, of which energies are known
+    logical :: follows !! springs beside the bodies, of which energies are known
 
     call fill_motion(model, state, cycle%damping, cycle%velocity, monitor%snapshot)
     call fill_rigids(model, state, monitor%snapshot)
     if (cycle%due%tables(table_rwforc) .and. allocated(state%walls)) &
       call fill_walls(model, state, monitor%snapshot%walls)
-    judges = any(cycle%due%tables([table_glstat, table_matsum])) &
+    follows = any(cycle%due%tables([table_glstat, table_matsum])) &
       .or. (cycle%due%plot .and. size(model%contacts) > 0)
-    if (judges) call fill_energies(model, state, cycle%damping, monitor%snapshot)
+    if (follows) call fill_energies(model, state, cycle%damping, monitor%snapshot)
     if (cycle%due%tables(table_glstat)) call complete_balance(model, state, cycle%damping, &
       cycle%velocity, monitor%snapshot)
     if (state%cycle == 0) then
       state%initial_energy = total_energy(monitor%snapshot%energies)
       monitor%snapshot%energies%initial = state%initial_energy
     end if
-    if (judges) call follow_softness(model, monitor%snapshot%parts, monitor%bodies, state)
+    if (follows) call follow_softness(model, monitor%snapshot%parts, monitor%bodies, state)
     if (cycle%due%tables(table_matsum)) call fill_parts(model, state%elements, &
       monitor%snapshot)
     if (cycle%due%tables(table_glstat)) call find_slowest(model, state, monitor%snapshot)
