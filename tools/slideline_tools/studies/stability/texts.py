@@ -73,7 +73,7 @@ Smallest and largest penalty over `K L/A` for which all steps tried below the pr
 
 - *Too stiff* begins along one curve, `dt = 2/omega`, in all scenes and types: above it the energy law cuts the forces in nearly every cycle (limited), or the run blows up. Past `K L/A` the limit falls with the root of the penalty: ten times the penalty costs three times the steps. Up to about `K L/A` a contact
   costs next to nothing. The program asks for half of that where springs may open and close: between `omega dt` 1 and 2 a contact that stays closed is stable, as most cells here, and one that bounces makes
-  energy at each bounce ([ping-pong](../verification/ping_pong.md)).
+  energy at each bounce ([ping-pong](../../tests/verification/ping_pong/README.md)).
 - The types differ in where the curve lies, not in its shape. Type 1 gives every node the same spring: an end node has half of the mass and the whole spring. Type 3 adds its two passes. In both the curve
   lies about half a decade of penalty lower. Types 5 and 7 integrate along both chains, and their limits are predicted best; types 2, 4 and 6 stay stable a little above the program's limit, because no node gets
   the most that it could get.
