@@ -30,17 +30,19 @@ class Keyword:
 
 #: a row of fields: card and field; columns, kind and default; treatment and meaning
 ROW = re.compile(r"\| (\d+) (\S+) \| (\d+-\d+) (\w+)(?: = (\S+))? \| (?:\*(no effect|warning|refused)\*(?:; )?)?(.*?) ?\|$")
-SAME = re.compile(r"^Cards and fields as those of \[`\*(\S+)`\]\(\S+\)\.\n?", re.M)
+SAME = re.compile(r"^Cards and fields as those of \[`\*(\S+)`\]\(\S+\)(?:\.|, but for:)\n?", re.M)
 
 
 def read_fields(body, others=()):
     """Rows (card, field, columns, kind, default, treatment, meaning) of a section of doc/keywords.md."""
-    same = SAME.search(body)
-    if same:
-        return next(keyword.fields for keyword in others if keyword.name == same[1])
-    return [[card, field, columns, kind, default or "", treatment or "honoured", meaning]
+    rows = [[card, field, columns, kind, default or "", treatment or "honoured", meaning]
             for card, field, columns, kind, default, treatment, meaning
             in (ROW.match(line).groups() for line in body.splitlines() if re.match(r"\| \d", line))]
+    same = SAME.search(body)
+    if not same:
+        return rows
+    taken = {(row[0], row[1]): row for row in next(other.fields for other in others if other.name == same[1])}
+    return list((taken | {(row[0], row[1]): row for row in rows}).values())
 
 
 def read_keywords(text):
