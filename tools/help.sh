@@ -17,8 +17,8 @@ help_or_go_on() {
   done
 }
 
-# Results and pages: below the top of the tree, or where SLIDELINE_RESULTS says, which `study.sh all` sets so that one
+# Results and the pages made of them: in results/, or where SLIDELINE_RESULTS says, which `study.sh all` sets so that one
 # program's results stay together.
 results=${SLIDELINE_RESULTS:-${root:-.}/results}
 # shellcheck disable=SC2034  # for the scripts that source this
-pages=${SLIDELINE_RESULTS:-${root:-.}}/doc
+pages=$results/doc

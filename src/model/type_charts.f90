@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> What the published studies say of the contact types, as far as the program chooses by it: the
 !> estimate of each in scenes of a kind, the largest of all meshes, and the time of its contact.
-!> Tests compare these figures with the pages (doc/studies/estimates.md, speed_accuracy.md).
+!> Tests compare these figures with the pages (doc/studies/choosing.md, speed_accuracy.md).
 module type_charts_m
   use contacts_m, only : contact_t, has_friction
   use kinds_m, only : wp

@@ -3,7 +3,7 @@
 # usage: tests/bench/laws.sh [--publish] [--rounds N]
 # Builds the counted program (x86-64-v3) with its element routine and prints what each material law costs: instructions by
 # callgrind (valgrind must be there), and times in turn with the yardstick (none with --rounds 0). The page goes to
-# results/laws/doc (--publish: doc/studies/speed_laws.md).
+# results/laws/doc (--publish: results/doc/studies/speed_laws.md).
 set -eu
 
 root=$(cd "$(dirname "$0")/../.." && pwd)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # usage: tests/bench/run.sh [--quick | --publish] [--rounds N] [--parts ...] [--sizes ...]
 # Builds the Release program and its benchmarks and runs them on this machine: results/bench/bench.csv, and the
-# page with its chart in results/bench/doc (--publish: doc/studies/speed.md). Five rounds take a quarter of an hour
+# page with its chart in results/bench/doc (--publish: results/doc/studies/speed.md). Five rounds take a quarter of an hour
 # (--quick: a minute, into results/bench-quick). Keep the machine quiet: what counts are the ratios to the
 # yardstick (yardstick/run.sh) and to the memory's bandwidth, measured in the same minute. Where valgrind is installed the instructions
 # of a step are counted too, once for a program.

@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: MIT
 """doc/keywords.md says of every keyword and field what the reader's table says."""
 import re
+import sys
 
 import pytest
 
 from fortran_source import ROOT, read_source
+
+sys.path.insert(0, str(ROOT / "tools/docs"))
+
+from keyword_pages import read_keywords  # noqa: E402
 
 SOURCE = "".join((ROOT / "src/deck/schema" / name).read_text(encoding="utf-8")
                  for name in ("deck_schema_tables.f90", "deck_schema_others.f90"))
@@ -42,13 +47,7 @@ def keywords_of_the_reader():
 def keywords_of_the_page():
     """The same, as doc/keywords.md has it."""
     text = (ROOT / "doc/keywords.md").read_text(encoding="utf-8")
-    found = {}
-    for section in re.split(r"^### \*", text, flags=re.M)[1:]:
-        keyword = section.split()[0]
-        found[keyword] = [tuple(cell.strip() for cell in line.split("|")[1:7])
-                          for line in section.split("\n## ")[0].splitlines()
-                          if re.match(r"\| \d", line)]
-    return found
+    return {keyword.name: [tuple(row[:6]) for row in keyword.fields] for keyword in read_keywords(text)}
 
 
 READER, PAGE = keywords_of_the_reader(), keywords_of_the_page()

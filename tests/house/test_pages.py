@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Published pages keep up with the code that they speak of, or doc/studies/README.md says until when they need not.
+"""Pages of doc/studies keep up with the code that they speak of, or doc/studies/README.md says until when they need not.
 
 A page names the digest of its sources (slideline_tools/studies/framework/pages.py); no history is asked, so that this judges a
 shallow clone and an unpacked archive as well.
@@ -31,31 +31,37 @@ def version():
     return int(found[1]), int(found[2])
 
 
+def commands(name):
+    """What makes the figures of a page."""
+    return [" ".join(page.command) for page in pages.PAGES.values() if page.quoted == name]
+
+
 def judge(texts, allowed, now):
     """What is wrong: `texts` {page: text}, `allowed` as of `allowances`, `now` the version."""
     trouble = []
     for name, text in texts.items():
         behind = pages.is_behind(name, text)
         if behind and name not in allowed:
-            trouble.append(f"{name}.md is behind the code ({behind}): publish it anew "
-                           f"({' '.join(pages.PAGES[name].command)}), or allow it in doc/studies/README.md")
+            trouble.append(f"{name}.md is behind the code ({behind}): make its figures anew "
+                           f"({', '.join(commands(name))}), or allow it in doc/studies/README.md")
         elif behind and now >= allowed[name]:
-            trouble.append(f"{name}.md was to be published with release {allowed[name][0]}.{allowed[name][1]}")
+            trouble.append(f"{name}.md was to be made anew with release {allowed[name][0]}.{allowed[name][1]}")
         elif not behind and name in allowed:
             trouble.append(f"{name}.md is up to date: take its line out of doc/studies/README.md")
     return trouble + [f"{name}: no such page" for name in allowed if name not in texts]
 
 
-def published():
-    return {name: (STUDIES / f"{name}.md").read_text(encoding="utf-8") for name in pages.PAGES}
+def written():
+    return {path.stem: path.read_text(encoding="utf-8") for path in STUDIES.glob("*.md") if path.stem != "README"}
 
 
-def test_every_page_has_its_maker_and_every_maker_its_page():
-    assert {path.stem for path in STUDIES.glob("*.md")} - {"README"} == set(pages.PAGES)
+def test_every_page_has_its_figures_and_every_study_its_page():
+    assert set(written()) == {page.quoted for page in pages.PAGES.values()}
     readme = (STUDIES / "README.md").read_text(encoding="utf-8")
+    assert all(f"[{name}]({name}.md)" in readme for name in written())
     for name, page in pages.PAGES.items():
         assert (ROOT / page.command[0]).exists()
-        assert f"[{name}]({name}.md)" in readme and f"`{' '.join(page.command)}`" in readme
+        assert pathlib.PurePath(page.command[0]).name in readme + written()[page.quoted]
         assert set(page.sources) <= {path.name for path in (ROOT / "src").iterdir()}
         order = list(pages.PAGES)
         assert all(order.index(other) < order.index(name) for other in page.after)
@@ -63,31 +69,31 @@ def test_every_page_has_its_maker_and_every_maker_its_page():
 
 def test_pages_keep_up_with_the_code():
     allowed = allowances((STUDIES / "README.md").read_text(encoding="utf-8"))
-    assert judge(published(), allowed, version()) == []
+    assert judge(written(), allowed, version()) == []
 
 
 @pytest.fixture
 def fresh():
     """A page made from the sources as they are."""
     with pages.made_by("0123456789ab", "a processor, 2 logical cores"):
-        return pages.with_origin("hertz", "# Hertz\n\nText.\n")
+        return pages.with_origin("stability", "# Hertz\n\nText.\n")
 
 
 def test_a_page_that_is_behind_is_noticed(fresh):
     old = re.sub(r"speaks of `\w+`", "speaks of `000000000000`", fresh)
-    assert judge({"hertz": fresh}, {}, (0, 1)) == []
-    assert "changed since 0123456789ab" in judge({"hertz": old}, {}, (0, 1))[0]
-    assert "does not name" in judge({"hertz": "# Hertz\n\nText.\n"}, {}, (0, 1))[0]
+    assert judge({"stability": fresh}, {}, (0, 1)) == []
+    assert "changed since 0123456789ab" in judge({"stability": old}, {}, (0, 1))[0]
+    assert "does not name" in judge({"stability": "# Hertz\n\nText.\n"}, {}, (0, 1))[0]
 
 
 def test_an_allowance_ends_with_its_release_and_is_not_kept_for_nothing(fresh):
-    table = "## Behind the code\n\n| page | until | why |\n|---|---|---|\n| [hertz](hertz.md) | release 0.2 | words. |\n"
+    table = "## Behind the code\n\n| page | until | why |\n|---|---|---|\n| [stability](stability.md) | release 0.2 | words. |\n"
     allowed = allowances(table)
-    assert allowed == {"hertz": (0, 2)} and allowances(table.replace(" words. ", " ")) == {}
-    assert judge({"hertz": "# Hertz\n"}, allowed, (0, 1)) == []
-    assert "release 0.2" in judge({"hertz": "# Hertz\n"}, allowed, (0, 2))[0]
-    assert "take its line out" in judge({"hertz": fresh}, allowed, (0, 1))[0]
-    assert judge({}, allowed, (0, 1)) == ["hertz: no such page"]
+    assert allowed == {"stability": (0, 2)} and allowances(table.replace(" words. ", " ")) == {}
+    assert judge({"stability": "# Hertz\n"}, allowed, (0, 1)) == []
+    assert "release 0.2" in judge({"stability": "# Hertz\n"}, allowed, (0, 2))[0]
+    assert "take its line out" in judge({"stability": fresh}, allowed, (0, 1))[0]
+    assert judge({}, allowed, (0, 1)) == ["stability: no such page"]
 
 
 def test_the_digest_is_that_of_the_code_and_not_of_its_comments(tmp_path):
@@ -104,6 +110,6 @@ def test_the_digest_is_that_of_the_code_and_not_of_its_comments(tmp_path):
 
 def test_the_line_of_origin_is_replaced_and_not_repeated(fresh):
     with pages.made_by("ba9876543210", "another"):
-        again = pages.with_origin("hertz", fresh)
+        again = pages.with_origin("stability", fresh)
     assert again.count("Made from source") == 1 and "`ba9876543210` on another;" in again
     assert again.endswith("\n\nText.\n") and again.startswith("# Hertz\n\nMade from")

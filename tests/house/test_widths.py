@@ -14,9 +14,6 @@ from test_pages import STUDIES, allowances
 
 sys.path.insert(0, str(ROOT / "tools"))
 
-sys.path.insert(0, str(ROOT / "tests" / "verification"))
-
-from make_table import named  # noqa: E402
 from slideline_tools.prose import CELL, LONGEST, too_wide  # noqa: E402
 
 BEHIND = {f"doc/studies/{name}.md" for name in allowances((STUDIES / "README.md").read_text(encoding="utf-8"))}
@@ -25,7 +22,7 @@ PAGES = [name for name in tracked_files()
 
 
 def test_pages_are_found():
-    assert {"README.md", "doc/keywords.md", "doc/verification/spin.md", "doc/studies/README.md"} <= set(PAGES)
+    assert {"README.md", "doc/keywords.md", "doc/verification.md", "doc/studies/README.md"} <= set(PAGES)
 
 
 @pytest.mark.parametrize("name", PAGES)
@@ -37,11 +34,3 @@ def test_what_is_too_wide_is_noticed():
     page = (ROOT / "doc" / "keywords.md").read_text(encoding="utf-8")
     wide = f"\n{'w ' * LONGEST}\n\n| card |\n|---|\n| {'c' * (CELL + 1)} |\n"
     assert ["prose" in line for line in too_wide(page + wide)] == [True, False]
-
-
-def test_long_names_of_checks_are_told_in_two_rows():
-    """The scene once for the checks that follow each other."""
-    scene = "mortar, " + CELL * "s"
-    rows = [(f"{scene}: force", "0 | 1"), (f"{scene}: gap", "2 | 3"), ("short: force", "4 | 5"), (f"{scene}: area", "6 | 7")]
-    assert named(rows) == [f"| {scene}: | | |", "| ... force | 0 | 1 |", "| ... gap | 2 | 3 |", "| short: force | 4 | 5 |",
-                           f"| {scene}: | | |", "| ... area | 6 | 7 |"]

@@ -13,7 +13,7 @@ import pytest
 
 from slideline_tools import scenes
 from slideline_tools.advise import (advise, bodies, finished, geometry, outputs, report,
-                                    stepping, study, study_decks, surfaces, touching)
+                                    stepping, study_decks, surfaces, touching)
 from slideline_tools.advise.run_deck import read_blocks, sets
 from slideline_tools.advise.run_log import read_log
 from slideline_tools.contact_types import ALL_TYPES
@@ -486,19 +486,3 @@ def test_saving_of_an_interface(runs):
     saved, = touching.never_touched(run)
     assert saved.seconds == pytest.approx(
         run.seconds_of("contact") / 2.0 + run.seconds_of("nodes") / 4.0)
-
-
-def test_page(runs):
-    """Per cent of the fastest round stand in the page, and what was not found is named."""
-    totals = {topic: [2.0, 1.0, 1.5] for topic in (study.ALL, *study_decks.WASTE)}
-    totals["symmetry"] = [0.9, 0.8, 0.6]
-    predicted = {topic: [0.1, 0.2, 0.3] for topic in study_decks.WASTE if topic != "long flight"}
-    last, clean = advise(runs["all"])[:2], advise(runs["none"])[:2]
-    text = study.page(predicted, totals, last, clean, {
-        "argument": "dt=2", "predicted": 7.0, "measured": 8.0, "rebound": [4.0, 4.1]},
-        ({study.ALL: 800, "symmetry": 700}, "counted by a test"))
-    assert "| symmetry | 20.0 | 40.0 | 12.5 |" in text and "| long flight | not found | 0.0 |  |" in text
-    assert "saved, counted by a test." in text
-    assert "differed by 50%" in text and "dt=2: predicted 7.0 %, measured 8.0 %" in text
-    assert str(runs["all"]) not in text
-    assert not [line for line in too_wide(text) if "a cell of" in line]

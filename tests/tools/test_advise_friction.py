@@ -44,7 +44,7 @@ def damped_first(text, after):
 def test_flutter_is_told_and_damping_silences_it(slideline, tmp_path):
     found = run(slideline, tmp_path / "bare", damped_first(fluttering(), True))
     item = found["undamped sliding"]
-    assert item.seconds is None and "mu 0.5" in item.evidence and "stability_friction" in item.evidence
+    assert item.seconds is None and "mu 0.5" in item.evidence and "studies/stability.md" in item.evidence
     assert int(re.match(r"(\d+)%", item.evidence)[1]) >= 100 * rubbing.CHANGING
     assert "undamped sliding" not in run(slideline, tmp_path / "damped", fluttering())
 

@@ -199,22 +199,6 @@ def test_medians_and_groups():
     assert {key: table.median(same, "x") for key, same in groups.items()} == {(0,): 2.0, (1,): 3.0}
 
 
-def test_links_of_a_page_that_is_not_published_lead_to_the_published_ones(tmp_path):
-    home, folder = tmp_path / "repo/doc/studies", tmp_path / "repo/results/study-x/doc/studies"
-    for place in (home, folder, home.parent / "theory", folder.parent / "pictures"):
-        place.mkdir(parents=True)
-    for path in (home / "a.md", home / "x.md", home.parent / "theory/t.md",
-                 folder.parent / "pictures/p.png", home.parent / "p.png"):
-        path.write_text("", encoding="utf-8")
-    (folder / "x.md").write_text("[a](a.md) [t](../theory/t.md#one) ![p](../pictures/p.png) [x](x.md) "
-                                 "[none](none.md) [w](https://w.org/a.md)", encoding="utf-8")
-    for _ in range(2):
-        command.lead_links_home(folder, home)
-        assert (folder / "x.md").read_text(encoding="utf-8") == (
-            "[a](../../../../doc/studies/a.md) [t](../../../../doc/theory/t.md#one) "
-            "![p](../pictures/p.png) [x](x.md) [none](none.md) [w](https://w.org/a.md)")
-
-
 def test_time_to_go():
     shown = Progress()
     assert shown.to_go() is None

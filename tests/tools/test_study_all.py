@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`tools/study.sh all`: goes on where it was stopped, mixes nothing, publishes together."""
+"""`tools/study.sh all`: goes on where it was stopped, mixes nothing, copies nothing."""
 import json
 
 import pytest
@@ -30,18 +30,18 @@ class Tree:
     def source(self, name):
         (self.root / "source").write_text(name)
 
-    def make(self, publish=True, pattern=None):
+    def make(self, pattern=None):
         """Returns the pages that were made now."""
         (self.root / "log").write_text("")
         self.results.mkdir(parents=True, exist_ok=True)
-        everything.make_all(self.results, publish, pattern, self.said.append)
+        everything.make_all(self.results, pattern, self.said.append)
         return self.log()
 
     def log(self):
         return (self.root / "log").read_text().split()
 
-    def published(self):
-        return sorted(path.stem for path in (self.root / "doc" / "studies").glob("*.md"))
+    def made(self):
+        return sorted(path.stem for path in (self.results / "doc" / "studies").glob("*.md"))
 
 
 @pytest.fixture
@@ -49,26 +49,26 @@ def tree(tmp_path, monkeypatch):
     made = Tree(tmp_path)
     monkeypatch.setattr(everything, "ROOT", tmp_path)
     monkeypatch.setattr(everything, "PAGES", {
-        "one": Page(("make", "one")), "two": Page(("make", "two")), "three": Page(("make", "three"), after=("two",))})
+        "one": Page("a", ("make", "one")), "two": Page("a", ("make", "two")), "three": Page("a", ("make", "three"), after=("two",))})
     monkeypatch.setattr(everything, "processor", lambda: "a processor")
     monkeypatch.setattr(everything, "program_source", lambda _: (tmp_path / "source").read_text())
     return made
 
 
-def test_all_pages_are_published_together_and_made_once(tree):
+def test_all_pages_are_made_once(tree):
     assert tree.make() == ["one", "two", "three"]
-    assert tree.published() == ["one", "three", "two"]
+    assert tree.made() == ["one", "three", "two"]
     assert tree.make() == []
     assert "2 of 3 pages: two has been made before" in tree.said
 
 
-def test_it_goes_on_after_a_failure_and_publishes_nothing_until_then(tree):
+def test_it_goes_on_after_a_failure(tree):
     (tree.root / "broken").write_text("two")
-    with pytest.raises(UserError, match="two .failed with status 1.*three .wants two.*nothing was published"):
+    with pytest.raises(UserError, match="two .failed with status 1.*three .wants two"):
         tree.make()
-    assert tree.log() == ["one", "two"] and tree.published() == []
+    assert tree.log() == ["one", "two"] and tree.made() == ["one"]
     (tree.root / "broken").unlink()
-    assert tree.make() == ["two", "three"] and tree.published() == ["one", "three", "two"]
+    assert tree.make() == ["two", "three"] and tree.made() == ["one", "three", "two"]
 
 
 def test_it_stops_when_asked_and_goes_on(tree, monkeypatch):
@@ -89,7 +89,7 @@ def test_results_of_another_program_or_machine_are_refused(tree, monkeypatch, wh
         monkeypatch.setattr(everything, "processor", lambda: "another processor")
     with pytest.raises(UserError, match=f"holds results of {what} .* not to be mixed"):
         tree.make()
-    assert tree.log() == [] and tree.published() == ["one"]
+    assert tree.log() == [] and tree.made() == ["one"]
 
 
 def test_a_source_that_changes_meanwhile_is_noticed(tree, monkeypatch):
@@ -101,18 +101,18 @@ def test_a_source_that_changes_meanwhile_is_noticed(tree, monkeypatch):
 
 
 @pytest.mark.parametrize("name", ["abc-dirty", "unknown"])
-def test_what_is_not_committed_is_not_published(tree, name):
+def test_what_is_not_committed_is_refused(tree, name):
     tree.source(name)
     with pytest.raises(UserError, match="committed"):
         tree.make()
-    assert tree.make(publish=False, pattern="one") == ["one"]
+    assert tree.made() == []
 
 
 def test_the_command_knows_all(tmp_path, monkeypatch, capsys):
     asked = []
     monkeypatch.setattr(everything, "make_all", lambda *words: asked.append(words))
-    assert command.main(["all", "--folder", str(tmp_path / "x"), "--publish", "--only", "b*"]) == 0
-    assert asked == [(tmp_path / "x", True, "b*")]
+    assert command.main(["all", "--folder", str(tmp_path / "x"), "--only", "b*"]) == 0
+    assert asked == [(tmp_path / "x", "b*")]
     assert command.main(["all", "--folder", str(tmp_path / "x"), "--levels", "1"]) == 2
     assert "takes no --levels" in capsys.readouterr().err
 

@@ -4,12 +4,12 @@
 
 The case is the folder CASE beside this file; its check.py holds `check(run)`.
 With `--full` (or SLIDELINE_FULL=1) it runs every combination and the longest
-runs, as for doc/verification.md; without, as in CI, a covering design of them
+runs; without, as in CI, a covering design of them
 (`run.cover`) and what else `run.is_full` leaves. Tolerances are the same.
 With `--seed N --count M` a case of random scenes goes through M new ones
 instead, `sweep(run, seed, count)` of its check.py.
 Each check is printed as one line and kept in DIR/<case>.json, from which
-make_table.py writes the table of doc/verification.md. The exit status is 0
+make_table.py takes the figures of doc/verification.md. The exit status is 0
 only if at least one check ran and all passed.
 """
 import argparse
@@ -263,7 +263,9 @@ def main():
     n_passed = sum(record["passed"] for record in run.records)
     report = {"case": options.case, "full": options.full, "checks": run.records, "reported": run.reported,
               "problem": problem}
-    (work / f"{options.case}.json").write_text(json.dumps(report, indent=1) + "\n")
+    part = work / f"{options.case}.json.part"  # a site that is built meanwhile reads whole files
+    part.write_text(json.dumps(report, indent=1) + "\n")
+    part.replace(part.with_suffix(""))
     if not run.records:
         print("no check ran")
     print(f"{n_passed} passed, {n_failed} failed")

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/block.sh [TYPES]
 # Runs the block-to-block scene for every contact type (default: all) into
-# results/batch/block and writes doc/studies/block_to_block.md with its picture; with arguments, the
+# results/batch/block and writes results/doc/studies/block_to_block.md with its picture; with arguments, the
 # page goes to results/batch/block/doc instead. A few seconds.
 set -eu
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/block_implicit.sh [TYPES]
 # Runs the block-to-block scene implicitly and explicitly for every contact type (default
-# all) into results/batch/block_implicit and writes doc/studies/block_to_block_implicit.md
+# all) into results/batch/block_implicit and writes results/doc/studies/block_to_block_implicit.md
 # with its picture; with arguments, the page goes to results/batch/block_implicit/doc instead. Some seconds, and some
 # minutes for the retired instructions, which are counted where the machine can (tools/slideline_tools/counting.py).
 set -eu

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/chooses.sh
 # Runs the scenes of speed-accuracy on their coarsest meshes with every contact type and with CTYPE 0, whole and cut
-# short and counted, some minutes, into results/batch/chooses, and writes doc/studies/chooses.md: what leaving the type to
+# short and counted, some minutes, into results/batch/chooses, and writes results/doc/studies/chooses.md: what leaving the type to
 # the program costs.
 set -eu
 

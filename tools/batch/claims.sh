@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/claims.sh
-# Answers the claims of Kang, Lee & Shin (2023) from runs: writes doc/studies/claims.md. Wants the
+# Answers the claims of Kang, Lee & Shin (2023) from runs: writes results/doc/studies/claims.md. Wants the
 # results of block.sh, sliding.sh and of tools/study.sh paper-tables. A few seconds.
 set -eu
 

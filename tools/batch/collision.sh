@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/collision.sh [LEVELS [TYPES]]
 # Runs the collision scene for every refinement level and contact type (default "1 2 3 4" and
-# all) into results/batch/collision and writes doc/studies/collision.md with its
+# all) into results/batch/collision and writes results/doc/studies/collision.md with its
 # pictures; with arguments, the page goes to results/batch/collision/doc instead. Then prints a
 # table and compares it with the reference. RENEW=1 makes the table the new reference.
 set -eu

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/estimates.sh [TYPES]
 # Runs the contact of a cylinder with a block on three meshes, that of spheres on two, sliding and ironing with every
-# contact type (default: all), some minutes, into results/batch/estimates, and writes doc/studies/estimates.md
+# contact type (default: all), some minutes, into results/batch/estimates, and writes results/doc/studies/estimates.md
 # with its picture: what the runs say of themselves beside their errors. With types, the page goes to doc/ in the
 # folder of the results instead.
 set -eu

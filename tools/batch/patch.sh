@@ -1,23 +1,16 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# usage: tools/batch/patch.sh [static] [TYPES]
+# usage: tools/batch/patch.sh [TYPES]
 # Runs the contact patch test on several meshes and with penalties from 1e3 to 1e10 N/m for every
-# contact type (default: all), explicitly damped to rest (about two minutes) or in one
-# static step (less than a minute), into results/batch/patch or patch_static, and writes
-# doc/studies/patch_test.md or patch_test_static.md with its pictures; with types, the page goes to
-# doc/ in the folder of the results instead.
+# contact type (default: all), explicitly damped to rest (about two minutes), into results/batch/patch, and writes
+# results/doc/studies/patch_test.md with its picture; with types, the page goes to results/batch/patch/doc instead.
 set -eu
 
 root=$(CDPATH='' cd "$(dirname "$0")/../.." && pwd)
 . "$root/tools/help.sh"
 help_or_go_on "$@"
 . "$root/tools/batch/lists.sh"
-study=patch
-if [ "${1:-}" = static ]; then
-  study=patch_static
-  shift
-fi
-out=$results/batch/$study
+out=$results/batch/patch
 doc=$pages
 [ $# -eq 0 ] || doc=$out/doc
 
@@ -25,9 +18,9 @@ doc=$pages
 types=${1:-$(all_types)}
 python=$root/build/venv/bin/python
 mkdir -p "$out"
-"$python" -m slideline_tools.studies.$study decks "$out" >"$out/list.txt"
+"$python" -m slideline_tools.studies.patch decks "$out" >"$out/list.txt"
 while read -r name; do
-  echo "== $study, $name"
+  echo "== patch, $name"
   for type in $types; do
     run=$out/${name}_type_$type
     mkdir -p "$run"
@@ -37,4 +30,4 @@ while read -r name; do
 done <"$out/list.txt"
 
 # shellcheck disable=SC2086  # the types are words
-"$python" -m slideline_tools.studies.$study page "$out" "$doc" --types $types
+"$python" -m slideline_tools.studies.patch page "$out" "$doc" --types $types

@@ -3,7 +3,7 @@
 # usage: tools/batch/scale.sh [--publish] [--most N]
 # Builds the program with MPI, runs some steps of four meshes on 1 to 64 processes (--most: fewer), which count what they
 # exchange, cuts the meshes by METIS too (the wheel pymetis, into results/batch/scale), and writes the page of the study to
-# results/batch/scale/doc (--publish: doc/studies/scale.md). Some minutes and 5 GB of memory at 64 processes.
+# results/batch/scale/doc (--publish: results/doc/studies/scale.md). Some minutes and 5 GB of memory at 64 processes.
 set -eu
 
 root=$(CDPATH='' cd "$(dirname "$0")/../.." && pwd)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/sliding.sh [LEVELS [TYPES]]
 # Runs the sliding scene for every refinement level and contact type (default "1 2 3" and
-# all) into results/batch/sliding and writes doc/studies/sliding.md with its pictures;
+# all) into results/batch/sliding and writes results/doc/studies/sliding.md with its pictures;
 # with arguments, the page goes to results/batch/sliding/doc instead.
 # The contact force is written every tenth step. About five minutes.
 set -eu

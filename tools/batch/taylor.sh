@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # usage: tools/batch/taylor.sh
-# Runs input/taylor/taylor.k into results/batch/taylor and draws doc/pictures/taylor.png: the final shape beside
+# Runs input/taylor/taylor.k into results/batch/taylor and draws results/doc/pictures/taylor.png: the final shape beside
 # the radius and length of converged codes, and both over time. A few seconds after the build.
 set -eu
 

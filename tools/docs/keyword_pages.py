@@ -28,6 +28,23 @@ class Keyword:
         return f"{self.name.lower()}.md"
 
 
+#: a row of fields: card and field; columns, kind and default; treatment and meaning
+ROW = re.compile(r"\| (\d+) (\S+) \| (\d+-\d+) (\w+)(?: = (\S+))? \| (?:\*(no effect|warning|refused)\*(?:; )?)?(.*?) ?\|$")
+SAME = re.compile(r"^Cards and fields as those of \[`\*(\S+)`\]\(\S+\)(?:\.|, but for:)\n?", re.M)
+
+
+def read_fields(body, others=()):
+    """Rows (card, field, columns, kind, default, treatment, meaning) of a section of doc/keywords.md."""
+    rows = [[card, field, columns, kind, default or "", treatment or "honoured", meaning]
+            for card, field, columns, kind, default, treatment, meaning
+            in (ROW.match(line).groups() for line in body.splitlines() if re.match(r"\| \d", line))]
+    same = SAME.search(body)
+    if not same:
+        return rows
+    taken = {(row[0], row[1]): row for row in next(other.fields for other in others if other.name == same[1])}
+    return list((taken | {(row[0], row[1]): row for row in rows}).values())
+
+
 def read_keywords(text):
     """The keywords of doc/keywords.md in their order."""
     found, group = [], ""
@@ -37,12 +54,9 @@ def read_keywords(text):
             group = head[3:].strip()
         if not head.startswith("### *"):
             continue
-        rows = [[cell.strip() for cell in line.strip().strip("|").split("|")]
-                for line in body.splitlines() if re.match(r"\| \d", line)]
-        remarks = "\n".join(line for line in body.splitlines() if not line.startswith("|")).strip()
+        remarks = "\n".join(line for line in SAME.sub("", body).splitlines() if not line.startswith("|")).strip()
         name, _, mark = head[5:].partition(" ")
-        found.append(Keyword(name, group, mark.strip() == "(title)", remarks,
-                             [row + [""] * (7 - len(row)) for row in rows]))
+        found.append(Keyword(name, group, mark.strip() == "(title)", remarks, read_fields(body, found)))
     return found
 
 

@@ -3,6 +3,7 @@
 
 FOLDER/pages gets the Markdown of the repository (links and names of files turned to what they are
 on the site) and the generated keyword pages; FOLDER/mkdocs.yml the settings with the navigation.
+The page of a verification case ends with all its checks, where its results are in build/release/verification.
 """
 import json
 import os
@@ -14,6 +15,11 @@ import sys
 import keyword_pages
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "verification"))
+
+from make_table import all_checks, read_reports  # noqa: E402
+
+RESULTS = ROOT / "build/release/verification"
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)\s]+)\)")
 NAMED_PAGE = re.compile(r"(?<!\[)`((?:[\w.]+/)*\w+\.md)`(?!\])")
 NAMED_KEYWORD = re.compile(r"(?<!\[)`\*([A-Z0-9_-]+)`(?!\])")
@@ -112,8 +118,7 @@ def navigation(folder, keywords):
                       {"Example decks": "examples/index.md"},
                       *({group: entries} for group, entries in groups.items())]},
         {"Theory": pages("theory/*.md", theory)},
-        {"Verification": ["verification.md", {"Cases": pages("cases/*.md")},
-                          {"All checks": pages("verification/*.md")}]},
+        {"Verification": ["verification.md", {"Cases": pages("cases/*.md")}]},
         {"Studies": pages("studies/*.md", ["studies/index.md"])},
         {"Extend": ["architecture.md", "add_a_formulation.md", "add_a_material.md", "add_a_history.md",
                     {"Fortran interface": "fortran_interface.md"}]},
@@ -146,6 +151,9 @@ def make(build):
                                                   [*made, "keywords/index.md"]}}, names)
         (folder / page).parent.mkdir(parents=True, exist_ok=True)
         (folder / page).write_text(turned, encoding="utf-8")
+    for case, report in read_reports(RESULTS).items():
+        if (page := folder / "cases" / f"{case}.md").exists():
+            page.write_text(page.read_text(encoding="utf-8") + all_checks(report), encoding="utf-8")
     (folder / "fortran_interface.md").write_text(FORTRAN, encoding="utf-8")
     shutil.copytree(ROOT / "doc/pictures", folder / "pictures")
     shutil.copy(ROOT / "doc/site.css", folder)

@@ -3,7 +3,7 @@
 # usage: tests/bench/peers/run.sh [--quick | --publish] [--rounds N]
 # slideline beside Akantu and Kratos (wheels from PyPI, into build/venv-peers, about 200 MB) and CalculiX
 # (the Debian package calculix-ccx, which has to be installed: apt-get install calculix-ccx), all on this machine and in one run: tables in
-# results/peers and the page in results/peers/doc (--publish: doc/studies/peers.md). About ten minutes, and as long again
+# results/peers and the page in results/peers/doc (--publish: results/doc/studies/peers.md). About ten minutes, and as long again
 # where callgrind counts the retired instructions (tools/slideline_tools/counting.py). SLIDELINE_MEASURED: another
 # program than that of the release. OpenRadioss comes as source alone; whoever has built it sets OPENRADIOSS_STARTER and
 # OPENRADIOSS_ENGINE (its two programs), what these need, and OPENRADIOSS_BUILT: which source and how, in words for the page.

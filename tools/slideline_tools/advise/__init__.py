@@ -5,7 +5,7 @@
     run, advice, notes = advise("results/collision")
 
 Every check says nothing unless the files of the run prove its point; its thresholds stand at the
-top of its module (bodies, touching, rubbing, stepping, outputs; doc/studies/advise.md lists them).
+top of its module (bodies, touching, rubbing, stepping, outputs; doc/studies/simplify.md lists them).
 """
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ NO_TRACTION, NO_WORK, STATES_IN_CONTACT = 0.01, 1.0e-4, 10
 # changes that could have been, and the e-folds by which it could have grown.
 CHANGING, FEWEST, GROWN = 0.2, 50, 10.0
 # E-folds in 1000 of the shortest stable steps of the elements by coefficient, at a penalty of K L/A: the slowest of all types
-# (doc/studies/stability_friction.md).
+# (doc/studies/stability.md).
 GROWTH = ((0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8), (0.0, 0.0, 0.8, 3.9, 8.4, 14.7, 32.9))
 
 
@@ -98,7 +98,7 @@ def undamped_sliding(run) -> list[Advice]:
             "undamped sliding", f"{interface.label} slides without any damping, and may flutter.",
             f"{changed / possible:.0%} of the pressed nodes are in the other state, stick or slip, at the next of the states; at mu "
             f"{interface.sliding_friction:g} a small motion grows by {rate * run.log.element_limit * 1000.0:.2g} e-folds or more in 1000 steps of the "
-            f"elements (doc/studies/stability_friction.md), {folds:.2g} while it slid",
+            f"elements (doc/studies/stability.md), {folds:.2g} while it slid",
             f"*DAMPING_GLOBAL with D of {2.0 * rate:.2g} or more stops it, and slows what moves steadily; VDC, bulk viscosity or "
             "the viscous form of hourglass control hold down its short waves", None, "a smoother contact force, no time"))
     return advice

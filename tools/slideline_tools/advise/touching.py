@@ -19,7 +19,7 @@ LONG_FLIGHT, FREE_FLIGHT = 0.05, 1.0e-9
 # less, with what it saves (doc/studies/speed_accuracy.md: contact times, means over all scenes).
 CONTACT_MATTERS = 0.15
 CHEAPER = {6: (5, "NTS-mAR", 0.20), 7: (5, "NTS-mAR", 0.34)}
-# The same with friction (doc/studies/speed_accuracy_friction.md: ironing): type 6 costs what type 5 does.
+# The same with friction (the same page: ironing): type 6 costs what type 5 does.
 CHEAPER_WITH_FRICTION = {7: (5, "NTS-mAR", 0.20)}
 
 # Nodes of an interface are moved one by one: they take so much of the phase `nodes` at least.
@@ -199,7 +199,6 @@ def dear_type(run) -> list[Advice]:
         return []
     advice = []
     for interface, (number, name, saved) in dear:
-        page = "speed_accuracy_friction" if interface.friction else "speed_accuracy"
         advice.append(Advice(
             "dear type", f"{interface.label} takes much of the run; {name} (type {number}) passes "
             "the patch test and usually costs less.",
@@ -207,7 +206,7 @@ def dear_type(run) -> list[Advice]:
             f"{interface.id} (command line: ctype.{interface.id}={number}), where the resultants "
             "matter more than a smooth pressure; compare both once",
             contact_seconds(run, interface) * saved,
-            f"mean over the scenes of doc/studies/{page}.md, which differ"
+            f"mean over the scenes of doc/studies/speed_accuracy.md, which differ"
             + (", and where the forces of ironing are rougher with it" if interface.friction else "")))
     return advice
 
@@ -216,7 +215,7 @@ def missed_target(run) -> list[Advice]:
     """Targets of the estimate of contact that were not kept, with what the run says would keep them."""
     return [Advice("missed target", f"{interface.label} does not keep its target of {interface.missed[0]}.",
                    f"pressure and the stress behind it differ by {interface.estimate}", interface.missed[1], None,
-                   "costs time; figures of doc/studies/estimates.md, as the log has them")
+                   "costs time; figures of doc/studies/choosing.md, as the log has them")
             for interface in run.log.interfaces.values() if interface.missed]
 
 

@@ -6,7 +6,6 @@ import fcntl
 import fnmatch
 import os
 import pathlib
-import re
 import signal
 import sys
 
@@ -30,7 +29,7 @@ def build_parser():
         epilog="A study that was stopped or killed goes on with the same command. Exit status: "
                "0 done (failed runs are results too), 2 unusable, 4 stopped on request.")
     parser.add_argument("name", choices=[*registry.STUDIES, EVERYTHING], metavar="NAME",
-                        help=", ".join(registry.STUDIES) + f"; {EVERYTHING}: every page of doc/studies, from one "
+                        help=", ".join(registry.STUDIES) + f"; {EVERYTHING}: all of them and the batches, from one "
                         "program on one machine (hours), into results/all")
     parser.add_argument("--levels", type=int, nargs="+", help="refinement levels")
     parser.add_argument("--types", type=parse_series, nargs="+", choices=SERIES,
@@ -47,7 +46,7 @@ def build_parser():
     parser.add_argument("--part", metavar="I/N", help="run only part I (0 to N-1) of N, no table")
     parser.add_argument("--collect", action="store_true", help="no runs: table and charts alone")
     parser.add_argument("--publish", action="store_true", help="write the page and its pictures "
-                        "into doc/ instead of results/study-NAME/doc")
+                        "into results/doc instead of results/study-NAME/doc")
     parser.add_argument("--folder", type=pathlib.Path, help="instead of results/study-NAME")
     parser.add_argument("--program", type=pathlib.Path,
                         help="default: $SLIDELINE or build/release/slideline")
@@ -134,29 +133,15 @@ def collect(study, jobs, sweep, doc, publish=False):
             study.page(rows, doc)
 
 
-def lead_links_home(folder, home):
-    """Let the pages below `folder` link to those of `home` (the repository's doc/studies) that
-    they do not find beside them."""
-    def target(link):
-        path = link[1]
-        if (folder / path).exists() or not (home / path).exists():
-            return link[0]
-        return f"]({os.path.relpath((home / path).resolve(), folder)}"
-
-    for page in folder.glob("*.md"):
-        text = page.read_text(encoding="utf-8")
-        page.write_text(re.sub(r"\]\(([^):#]+)", target, text), encoding="utf-8")
-
-
 def perform_all(wanted):
     """Every page."""
     folder = (wanted.folder or ROOT / "results" / "all").resolve()
-    others = [name for name in ("levels", "types", "quick", "repeats", "retry", "list", "part", "collect", "program")
+    others = [name for name in ("levels", "types", "quick", "repeats", "retry", "list", "part", "collect", "publish", "program")
               if getattr(wanted, name)]
     if others:
         raise UserError(f"{EVERYTHING} takes no {', '.join('--' + name for name in others)}")
     with held(folder, shared=False):
-        everything.make_all(folder, wanted.publish, wanted.only)
+        everything.make_all(folder, wanted.only)
 
 
 def perform(wanted):
@@ -188,10 +173,7 @@ def perform(wanted):
         if not wanted.collect:
             sweep.run(chosen, wanted.parallel, Progress(), wanted.retry)
         if not wanted.part:
-            published = pathlib.Path(os.environ.get("SLIDELINE_RESULTS") or ROOT) / "doc"
-            collect(study, jobs, sweep, published if wanted.publish else folder / "doc", wanted.publish)
-            if not wanted.publish:
-                lead_links_home(folder / "doc" / "studies", ROOT / "doc" / "studies")
+            collect(study, jobs, sweep, (results if wanted.publish else folder) / "doc", wanted.publish)
 
 
 def interrupt(*_):

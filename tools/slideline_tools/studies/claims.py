@@ -99,8 +99,7 @@ This page is written by `tools/batch/claims.sh` from runs: do not edit it. The v
 the figures by the rules stated here; "partly" means in some of the runs, or in part of the sense, as the
 section tells. The figures stand in the pages that the sections name. The claims are those of Kang, Lee & Shin (2023), the source;
 its text compares types 1, 3, 4, 5 and 6. Type 3 has the source's penalty, with which it is the stiffer interface. Dimensions that
-the source does not give are ours, and its program and machine are others. It has no friction: our own claims about that are in
-[claims_friction](claims_friction.md).
+the source does not give are ours, and its program and machine are others. It has no friction.
 
 | claim | answer |
 |---|---|

@@ -8,6 +8,9 @@
 as job SCENE. The page goes to DOC/studies, its picture to DOC/pictures.
 """
 import dataclasses
+import functools
+import importlib.util
+import pathlib
 import re
 import sys
 
@@ -24,14 +27,28 @@ from slideline_tools.studies import peaks
 from slideline_tools.studies import sliding as sliding_study
 from slideline_tools.studies.common import (colour, decks_and_page_main, label, marker, markdown_table, save_small,
                                             write_page)
-from slideline_tools.studies.round_contact.study import case
-from slideline_tools.studies.speed_accuracy_friction.decks import ironing
-from slideline_tools.studies.speed_accuracy_friction.measures import forces_along, roughness
+from slideline_tools.studies.ironing import forces_along, ironing, roughness
 
+VERIFICATION = pathlib.Path(__file__).resolve().parents[3] / "tests" / "verification"
 LEVELS = {"hertz": (1, 2, 3), "spheres": (1, 2), "sliding": (1,), "ironing": (1, 2)}
 TITLES = {"hertz": "Hertz, cylinder on block", "spheres": "Hertz, spheres", "sliding": "sliding", "ironing": "ironing"}
 TOLD = re.compile(r"stress behind it differ by +([\d.E+-]+) %")
 ROUGH = re.compile(r"the force is rough by +([\d.E+-]+) %")
+
+
+@functools.lru_cache(maxsize=None)
+def case(name):
+    """The check of a verification case, as a module; `spheres` is its module of closed forms."""
+    sys.path.insert(0, str(VERIFICATION))
+    try:
+        spec = importlib.util.spec_from_file_location(f"round_{name}", VERIFICATION / name / "check.py")
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        return module
+    except OSError as problem:
+        raise UserError(f"cannot read {VERIFICATION / name}: {problem}") from problem
+    finally:
+        sys.path.remove(str(VERIFICATION))
 
 
 def deck_of(scene, level):
@@ -205,7 +222,7 @@ The thin line is where both are the same. Points of a type are joined from mesh 
 ## Cylinder on block
 
 `slideline-tools make-deck hertz`, at rest. Error: `sqrt(sum (p - q)^2 a / sum p0^2 a)` over all slave nodes, q the ellipse of Hertz for the force of the run, widened and lowered
-by the springs of the penalty ([Hertz](hertz.md)), p0 without them; the column after it with p0 for q, so that the softness of the penalty counts.
+by the springs of the penalty , p0 without them; the column after it with p0 for q, so that the softness of the penalty counts.
 
 {hertz}
 
@@ -224,7 +241,7 @@ Slope of log over log.
 ## Sliding and ironing
 
 There is no closed form. The force should be smooth: roughness as [sliding](sliding.md) measures it (r.m.s. without the trend, over the mean), and as
-[speed against accuracy with friction](speed_accuracy_friction.md) does for the vertical force of ironing. The estimate is that of all instants written. *As told* is the roughness of the
+`slideline_tools/studies/ironing.py` does for the vertical force of ironing. The estimate is that of all instants written. *As told* is the roughness of the
 log, between the instants that are written (plot states and rows of sleout), which are far apart here.
 
 {sliding}

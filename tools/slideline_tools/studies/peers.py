@@ -12,7 +12,9 @@ import statistics
 import sys
 
 from slideline_tools import UserError
-from slideline_tools.studies.common import markdown_table, page_main, write_page
+from slideline_tools.plots import PAGE_WIDTH, plt
+from slideline_tools.studies.common import markdown_table, page_main, save_small, write_page
+from slideline_tools.studies.framework.charts import styled
 from slideline_tools.studies.framework.counted import who_counted
 from slideline_tools.studies.framework.runner import processor
 from slideline_tools.studies.framework.table import COUNTED
@@ -46,6 +48,8 @@ run ({yardstick}); times over K are medians of these ratios, and depend less on 
 {radioss}
 
 ## The element step
+
+![Time of an element and step](../pictures/peers.png)
 
 A square block of elastic quads (plane strain, no lateral contraction), held on its left side, swings in its slowest longitudinal mode with a
 very small amplitude: the closed form is `u = V/w sin(w t) sin(pi x / 2 L)`. The same mesh, lumped mass, central differences and
@@ -143,6 +147,23 @@ def element_table(rows, counts):
                           f"{error:+.1e}"])
     return markdown_table(["elements", "program", "element", "ns per element and step", "K",
                            "over slideline, 2x2", "instructions", "free side", "error"], lines)
+
+
+def step_figure(rows):
+    """Bars of the time of an element and step, by program and element, a shade for each size; call it within `styled()`."""
+    sizes = list(grouped(rows, "elements"))
+    kinds = list(grouped(rows, "program", "element"))
+    figure, axes = plt.subplots(figsize=(PAGE_WIDTH, 0.35 * len(kinds) + 0.6), layout="constrained")
+    for number, (elements,) in enumerate(sizes):
+        times = [middle([row for row in rows if (row["elements"], row["program"], row["element"]) == (elements, *kind)], "ns")[0]
+                 for kind in kinds]
+        places = [len(kinds) - k - 0.25 * number for k in range(len(kinds))]
+        axes.barh(places, times, 0.22, color=str(0.25 + 0.2 * number), label=f"{int(elements)} elements")
+    axes.set_yticks([len(kinds) - k - 0.25 for k in range(len(kinds))], [f"{program}, {element}" for program, element in kinds])
+    axes.set_xscale("log")
+    axes.set_xlabel("ns per element and step")
+    axes.legend()
+    return figure
 
 
 def over_yardstick(rows, name, unit=1.0):
@@ -291,6 +312,8 @@ def write(folder, doc):
     """The page."""
     elements, collision, contact = (read_table(folder / f"{name}.csv") for name in ("elements", "collision", "contact"))
     counts, counted = read_counts(folder / "counts.csv")
+    with styled():
+        save_small(step_figure(elements), doc / "pictures" / "peers.png", lines=True)
     write_page(doc, "peers", PAGE.format(
         counted=counted, radioss=radioss_in_words(folder / "versions.txt"), built=built_in_words(folder / "versions.txt"), yardstick=yardstick_words(elements, collision, contact),
         rounds=rounds_in_words(max(int(row["round"]) for row in elements)), processor=processor(),

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""`tools/study.sh all`: every page of doc/studies from one program on one machine.
+"""`tools/study.sh all`: the tables of all studies from one program on one machine.
 
 Results and pages gather in one folder, whose `all.json` names their source and processor and the pages that are
-done: stopped, the same command goes on. Pages are published together, when all are there.
+done: stopped, the same command goes on.
 """
 import fnmatch
 import json
 import os
-import shutil
 import signal
 import subprocess
 
@@ -100,21 +99,19 @@ def make_page(name, folder, origin, stamp, environment, log):
     return {}
 
 
-def make_all(folder, publish, pattern=None, say=print):
-    """Make the pages (of a pattern of names) below `folder`; copy them to doc/ if `publish` and all are there."""
+def make_all(folder, pattern=None, say=print):
+    """Make the pages (of a pattern of names) below `folder`/doc."""
     names = [name for name in PAGES if fnmatch.fnmatchcase(name, pattern or "*")]
     if not names:
         raise UserError(f"no page is named {pattern}")
     origin = {"source": program_source(ROOT / "build" / "release" / "slideline"), "processor": processor()}
-    if publish and (origin["source"] == "unknown" or origin["source"].endswith("-dirty")):
-        raise UserError(f"pages are published from a source that is committed, not from {origin['source']}")
+    if origin["source"] == "unknown" or origin["source"].endswith("-dirty"):
+        raise UserError(f"pages are made from a source that is committed, not from {origin['source']}")
     stamp = read_stamp(folder, origin)
     write_whole(folder / STAMP, json.dumps(stamp, indent=1) + "\n")
     say(f"source {origin['source']}, {origin['processor']}; results in {folder}")
     trouble = make_pages(names, folder, origin, stamp, say)
     if trouble:
         raise UserError("not made: " + "; ".join(f"{name} ({why})" for name, why in trouble.items()) +
-                        ". The same command goes on with these" + ("; nothing was published" if publish else ""))
-    if publish:
-        shutil.copytree(folder / "doc", ROOT / "doc", dirs_exist_ok=True)
-        say(f"published {len(names)} pages in doc/studies")
+                        ". The same command goes on with these")
+    say(f"made {len(names)} pages in {folder / 'doc' / 'studies'}")

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The pages of doc/studies: what makes each, and which sources it speaks of.
+"""Tables of the studies: what makes each, which sources it speaks of, and the page of doc/studies that quotes it.
 
-A page names in its third line the source and the processor it was made from, and the digest of those sources. Where
-the digest is another today the page is behind the code; that has to be allowed openly, in doc/studies/README.md
-(tests/house/test_pages.py).
+Made tables (all levels, types and counts, with their pictures) go to results/doc and are kept with releases; pages of
+doc/studies are written and quote them. Both name in the third line the source and the processor they were made from, and
+the digest of those sources. Where the digest is another today a page is behind the code; that has to be allowed openly,
+in doc/studies/README.md (tests/house/test_pages.py).
 """
 from __future__ import annotations
 
@@ -26,50 +27,49 @@ ALL = (*CONTACT, "deck", "output")
 
 @dataclasses.dataclass(frozen=True)
 class Page:
-    """`command`: what makes it, from the top of the tree; `sources`: folders of src; `after`: pages whose results it reads."""
+    """`quoted`: page of doc/studies; `command`: what makes it, from the top of the tree; `sources`: folders of src; `after`:
+    those whose results it reads."""
 
+    quoted: str
     command: tuple
     sources: tuple = CONTACT
     after: tuple = ()
 
 
-def study(name, sources=CONTACT, after=()):
-    """A page of tools/study.sh."""
-    return Page(("tools/study.sh", name, "--publish"), sources, after)
+def study(quoted, name, sources=CONTACT):
+    """Tables of tools/study.sh."""
+    return Page(quoted, ("tools/study.sh", name, "--publish"), sources)
 
 
-def batch(name, *words, after=(), sources=CONTACT):
-    """A page of a script in tools/batch."""
-    return Page((f"tools/batch/{name}.sh", *words), sources, after)
+def batch(quoted, name, *words, after=(), sources=CONTACT):
+    """Tables of a script in tools/batch."""
+    return Page(quoted, (f"tools/batch/{name}.sh", *words), sources, after)
 
 
 PAGES = {  # quick ones first
-    "patch_test": batch("patch"),
-    "patch_test_static": batch("patch", "static"),
-    "block_to_block": batch("block"),
-    "block_to_block_implicit": batch("block_implicit", after=("block_to_block",)),
-    "hertz": batch("hertz"),
-    "collision": batch("collision"),
-    "sliding": batch("sliding"),
-    "exchange": batch("exchange"),
-    "estimates": batch("estimates"),
-    "advise": batch("advise", sources=ALL),
-    "paper_tables": study("paper-tables"),
-    "claims": batch("claims", after=("block_to_block", "sliding", "collision", "paper_tables")),
-    "claims_friction": study("claims-friction"),
-    "round_contact": study("round-contact"),
-    "stability_friction": study("stability-friction"),
-    "stability_shapes": study("stability-shapes"),
-    "stability": study("stability"),
-    "speed_accuracy": study("speed-accuracy"),
-    "chooses": batch("chooses", after=("speed_accuracy",)),
-    "speed_accuracy_friction": study("speed-accuracy-friction"),
-    "simplify": study("simplify", ALL),
-    "scale": batch("scale", "--publish", sources=("parallel",)),
-    "peers": Page(("tests/bench/peers/run.sh", "--publish")),
-    "speed_laws": Page(("tests/bench/laws.sh", "--publish"), ("material",)),
-    "speed": Page(("tests/bench/run.sh", "--publish"), ALL),
+    "patch_test": batch("paper", "patch"),
+    "block_to_block": batch("paper", "block"),
+    "block_to_block_implicit": batch("paper", "block_implicit", after=("block_to_block",)),
+    "collision": batch("paper", "collision"),
+    "sliding": batch("paper", "sliding"),
+    "estimates": batch("choosing", "estimates"),
+    "paper_tables": study("paper", "paper-tables"),
+    "claims": batch("paper", "claims", after=("block_to_block", "sliding", "collision", "paper_tables")),
+    "stability": study("stability", "stability"),
+    "speed_accuracy": study("speed_accuracy", "speed-accuracy"),
+    "chooses": batch("choosing", "chooses", after=("speed_accuracy",)),
+    "simplify": study("simplify", "simplify", ALL),
+    "scale": batch("scale", "scale", "--publish", sources=("parallel",)),
+    "peers": Page("peers", ("tests/bench/peers/run.sh", "--publish")),
+    "speed_laws": Page("speed", ("tests/bench/laws.sh", "--publish"), ("material",)),
+    "speed": Page("speed", ("tests/bench/run.sh", "--publish"), ALL),
 }
+
+
+def sources_of(quoted):
+    """Folders of src that a page of doc/studies speaks of."""
+    return tuple(sorted({folder for page in PAGES.values() if page.quoted == quoted for folder in page.sources}))
+
 
 ORIGIN = re.compile(r"^Made from source `(?P<source>\S+)` on (?P<processor>.+); digest of what it speaks of "
                     r"`(?P<digest>[0-9a-f]{12})`\.$", re.MULTILINE)
@@ -129,11 +129,11 @@ def with_origin(name, text):
             f"digest of what it speaks of `{digest(PAGES[name].sources)}`.\n\n{rest.lstrip()}")
 
 
-def is_behind(name, text):
-    """Why a page is behind the code, or ''."""
+def is_behind(quoted, text):
+    """Why a page of doc/studies is behind the code, or ''."""
     origin = ORIGIN.search(text)
     if not origin:
         return "it does not name the source it was made from"
-    if origin["digest"] != digest(PAGES[name].sources):
+    if origin["digest"] != digest(sources_of(quoted)):
         return f"its sources have changed since {origin['source']}"
     return ""

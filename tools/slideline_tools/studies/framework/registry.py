@@ -5,14 +5,9 @@ import importlib
 from slideline_tools import UserError
 
 STUDIES = {  # name on the command line: module of slideline_tools.studies
-    "claims-friction": "claims_friction.study",
     "paper-tables": "paper_tables",
-    "round-contact": "round_contact.study",
     "stability": "stability.study",
-    "stability-friction": "stability_friction.study",
-    "stability-shapes": "stability_shapes.study",
     "speed-accuracy": "speed_accuracy.study",
-    "speed-accuracy-friction": "speed_accuracy_friction.study",
     "simplify": "simplify.study",
 }
 

@@ -200,8 +200,7 @@ def general_advice(over):
             + (f" and {names(chosen)} are not told apart." if len(chosen) > 1 else ".")
             + scene_text(over, chosen)
             + f" The whole computation takes {between(run)} times that of type 1.")
-    parts = [cost, accuracy_text(over, chosen), moment_advice(over, chosen),
-             "What each type does when a corner hits: [exchange](exchange.md)."]
+    parts = [cost, accuracy_text(over, chosen), moment_advice(over, chosen)]
     return chosen, "\n  - ".join([text.rstrip(), *(part for part in parts if part)])
 
 

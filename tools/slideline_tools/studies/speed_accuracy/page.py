@@ -69,8 +69,7 @@ The cheapest types and mesh (types/N_r) by computing time that keep an error at 
 
 {counts}
 
-What each step of the contact costs, and how that compares with the paper: [paper_tables](paper_tables.md). With friction:
-[speed_accuracy_friction](speed_accuracy_friction.md).
+What each step of the contact costs, and how that compares with the paper: [paper_tables](paper_tables.md).
 """
 
 TEXTS = {
@@ -80,7 +79,7 @@ TEXTS = {
     "block": """[Block-to-block](block_to_block.md), 51 N_r over 50 N_r quads, 0.2 s in 2000 steps (a tenth of that page's
 steps, so that there is a time to measure). Exact: the pressure of a separate one-dimensional solution (a chain of masses
 and springs) with the springs that the type has; with PUNIT 4 they act by the end of the step. What is left of the types that pass is the elements' own lateral stress.""",
-    "hertz": """[Hertz](hertz.md), cylinder on block, 50 microseconds. Errors against the closed form: largest distance of a
+    "hertz": """Hertz, cylinder on block, 50 microseconds. Errors against the closed form: largest distance of a
 nodal pressure from the ellipse inside 0.8 a, over p0; and the half width. The closed form leaves out finite strain, about 0.1 %
 here. The penalty is a layer of springs, which widens the contact in the same way for all types; 7i and 7h have less of it or none.""",
     "sliding": """[Sliding](sliding.md), 6 ms. The error is the difference of the vertical force to the reference at the same

@@ -24,7 +24,6 @@ from slideline_tools.scenes.patch import patch, patch_grids
 from slideline_tools.studies import block as block_study
 from slideline_tools.studies import hertz as hertz_study
 from slideline_tools.studies import sliding as sliding_study
-from slideline_tools.studies.exchange import mean_lengths
 from slideline_tools.studies.patch import LAYOUTS
 
 CHAIN = pathlib.Path(__file__).resolve().parents[4] / "tests/verification/block_to_block/chain.py"
@@ -33,8 +32,17 @@ SLIDING_STEP = 40.0e-9  # s at level 1
 TWO_PASS = 3
 ROUND_OFF = 1.0e-9
 AT_REST = 1.0e-16  # kinetic over internal energy
-LENGTHS = mean_lengths()
-FINITE_STRAIN = 1.0e-3  # what Hertz's closed form leaves out here: doc/studies/hertz.md
+FINITE_STRAIN = 1.0e-3  # what Hertz's closed form leaves out here: its relative size is that of the strains
+
+
+def sliding_lengths():
+    """(slave, master) mean segment lengths of the sliding at level 1."""
+    die, plate = scenes.sliding_grids(1)[::-1]
+    arc = die.points[:, 0]
+    return np.mean(np.linalg.norm(np.diff(arc, axis=0), axis=1)), 0.036 / (len(plate.lower) - 1)
+
+
+LENGTHS = {"block": (10.0 / 51.0, 10.0 / 50.0), "sliding": sliding_lengths(), "collision": (0.020 / 24.0, 0.025 / 20.0)}
 
 
 @dataclasses.dataclass(frozen=True)

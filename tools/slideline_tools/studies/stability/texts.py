@@ -73,18 +73,18 @@ Smallest and largest penalty over `K L/A` for which all steps tried below the pr
 
 - *Too stiff* begins along one curve, `dt = 2/omega`, in all scenes and types: above it the energy law cuts the forces in nearly every cycle (limited), or the run blows up. Past `K L/A` the limit falls with the root of the penalty: ten times the penalty costs three times the steps. Up to about `K L/A` a contact
   costs next to nothing. The program asks for half of that where springs may open and close: between `omega dt` 1 and 2 a contact that stays closed is stable, as most cells here, and one that bounces makes
-  energy at each bounce ([ping-pong](../verification/ping_pong.md)).
+  energy at each bounce ([ping-pong](../../tests/verification/ping_pong/README.md)).
 - The types differ in where the curve lies, not in its shape. Type 1 gives every node the same spring: an end node has half of the mass and the whole spring. Type 3 adds its two passes. In both the curve
   lies about half a decade of penalty lower. Types 5 and 7 integrate along both chains, and their limits are predicted best; types 2, 4 and 6 stay stable a little above the program's limit, because no node gets
   the most that it could get.
 - Past the curve springs that open and close at each step would make energy and turn an element over within tens of steps. The energy law takes it from them at once, and a stiffer penalty then changes nothing: between the
   blocks a hundred and ten thousand times `K L/A` give the same depth at the same step. On the sliding die such contact chatters as well.
-- Nothing locks: at no stable penalty does the pressure of the patch or of the blocks scatter by more than {UNEVEN:.0%}. What types 1 to 3 get wrong there they get wrong at any penalty (`patch_test.md`).
+- Nothing locks: at no stable penalty does the pressure of the patch or of the blocks scatter by more than {UNEVEN:.0%}. What types 1 to 3 get wrong there they get wrong at any penalty ([paper](paper.md)).
 - *Blown up below the program's limit*: {blown}. It is not the step. The two surfaces of the blocks end at the same place, and their ends do not spread alike: an end node of types 1 and 2 slips over the end of the other
   surface, loses its whole spring at once and gets it back when it returns at another depth. The contact makes energy that way, the more, the stiffer the spring. With a second pass (type 3), or without a place at
-  the very end that carries a whole spring (types 4 to 7), it does not. `stability_shapes.md` has places that start just beyond the end, where types 3, 4 and 6 make energy too.
+  the very end that carries a whole spring (types 4 to 7), it does not. A surface may have places that start just beyond the end, where types 3, 4 and 6 make energy too.
 - Cells at a step of exactly `L/c` can be stable although the limit by eigenvalue lies one or two per cent below: so near to it growth takes longer than these runs.
-- All this is without friction, which has an instability of its own at any penalty and step: [stability_friction](stability_friction.md).
+- All this is without friction, which has an instability of its own at any penalty and step (flutter: [stability](stability.md)).
 - Between the two lines lies what the program gives away to be safe for all positions of the surfaces. (They are drawn straight between full decades.)
 
 The deck of every failing cell, named by cell and verdict, is in `results/study-stability/failing/`, ready to run; meshes that cells share are written once and included.

@@ -1,34 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""What breaks a contact that is stable by penalty and step: meshes, angles, overhangs, corners, speeds.
+"""A block flies onto a larger one whose lower face is fixed, with half of the largest stable penalty (PUNIT 3) and TSSFAC 0.8;
+mesh ratio, angle, overhang, corner, speed and hourglass control may be varied.
 
-A block flies onto a larger one whose lower face is fixed, with half of the largest stable penalty
-(PUNIT 3) and TSSFAC 0.8; one thing is varied at a time.  Where meshes are compared the interface
-keeps one stiffness, and the run one step: PUNIT 3 would choose a stiffer one with every finer mesh.
+Where meshes are compared the interface keeps one stiffness, and the run one step: PUNIT 3 would choose a stiffer one with every
+finer mesh.
 """
 from __future__ import annotations
 
 import dataclasses
-import re
 
 import numpy as np
 
-from slideline_tools import UserError
 from slideline_tools.decks import Deck, Grid, spaced
-from slideline_tools.histories import read_csv
 from slideline_tools.scenes.common import elastic, energies_on, part, plane_strain, slideline
-from slideline_tools.studies.framework.charts import save, styled
-from slideline_tools.studies.framework.job import Job, Study
-from slideline_tools.studies.stability.failing import keep_failing
-from slideline_tools.studies.stability.measures import measure_run
 from slideline_tools.studies.stability.scenes import SAMPLES, SOFT
-from slideline_tools.studies.stability_shapes.page import draw_shapes, write_shapes_page
 
 WAVE = np.sqrt(SOFT["young"] / SOFT["rho"])   # m/s
 FALL = 0.03 * WAVE                            # m/s
 END = 0.12                                    # s: there and back again
 GAP = 0.002                                   # m
 SHARE, STEP = 0.5, 0.8
-BLOCK = 2  # the part that flies
 STIFFNESS, FINEST = 1.4e6, 32  # N/m^2 and segments a metre: stable at every mesh ratio and type
 TWO_PASS = 3
 
@@ -140,95 +131,3 @@ def deck_of(case, ctype):
     lower.write(deck, 1)
     upper.write(deck, 2)
     return deck.text()
-
-
-RATIOS = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
-OVERHANGS = (-0.5, 0.0, 0.02, 0.1, 0.3, 0.4, 0.5, 0.8, 0.9, 1.1, 1.5, 2.5)
-
-SWEEPS = {  # name: (title, unit, {value: case})
-    "ratio": ("slave segments per master segment, one stiffness", {
-        value: Case(ratio=value, stiffness=STIFFNESS) for value in RATIOS}),
-    "ratio_punit3": ("slave segments per master segment, PUNIT 3", {
-        value: Case(ratio=value) for value in RATIOS}),
-    "turn": ("angle of the interface, degrees", {
-        value: Case(turn=value) for value in (0.0, 17.0, 45.0, 90.0, 163.0)}),
-    "overhang": ("overhang of the slave, in its elements", {
-        value: Case(overhang=value) for value in OVERHANGS}),
-    "overhang_srch": ("overhang, SRCH a tenth of its default", {
-        value: Case(overhang=value, catch=0.1) for value in OVERHANGS}),
-    "tilt": ("tilt of the falling block (corner first), degrees", {
-        value: Case(tilt=value) for value in (0.1, 0.5, 2.0, 5.0, 15.0, 30.0, 45.0)}),
-    "speed": ("sideways speed over the wave speed", {
-        value: Case(speed=value) for value in (0.001, 0.01, 0.1, 0.3, 0.6, 1.0)}),
-    **{f"hourglass_{refine}": (
-        f"hourglass coefficient, stiffness form, refinement {refine}", {
-            value: Case(refine=refine, hourglass=value) for value in (0.01, 0.05, 0.1, 0.3, 0.6, 1.0)})
-        for refine in (1, 2, 4)},
-}
-QUICK = ("ratio", "tilt")
-
-
-class Limits:
-    """What `measure_run` asks of a scene."""
-
-    def __init__(self, case):
-        self.end, self.approach, self.is_uniform = END, np.inf, False
-        self.side = 1.0 / max(case.counts)
-
-
-def jobs(options):
-    """All sweeps and types."""
-    return [Job(f"{name}_{value:g}_type_{ctype}", deck_of(case, ctype), "impact",
-                (f"ctype={ctype}", *case.penalty(ctype), "ncpu=1"),
-                {"sweep": name, "value": value, "type": ctype}, group=name,
-                cost=float(case.refine ** 3 * max(case.counts) / 5), limit=120.0)
-            for name, (_, cases) in SWEEPS.items() if not options.quick or name in QUICK
-            for value, case in cases.items() for ctype in options.types]
-
-
-def rebound(block, glstat):
-    """Impulse on the block, which is its change of momentum, N s/m, and how much of the energy of
-    its flight swings in both bodies at the end; rows of matsum of the block, and of glstat."""
-    px, py, mass = (block[name] for name in ("momentum_x", "momentum_y", "mass"))
-    flight, back = ((px[k] ** 2 + py[k] ** 2) / (2.0 * mass[k]) for k in (0, -1))
-    left = glstat["kinetic"][-1] + glstat["internal"][-1] - back
-    return {"impulse": float(np.hypot(px[-1] - px[0], py[-1] - py[0])),
-            "vibration": float(left / flight)}
-
-
-def stiffness_of(log):
-    """Penalty of the slave pass per unit length, as the log tells it."""
-    found = re.search(r"penalty:? \S+ per slave node = (\S+) per unit length", log.read_text(encoding="utf-8"))
-    if not found:
-        raise UserError(f"{log}: no penalty")
-    return float(found[1])
-
-
-def measure(job, folder):
-    """The verdict, the impulse, the penalty, and the part of the energy that is in hourglasses."""
-    case = SWEEPS[job.labels["sweep"]][1][job.labels["value"]]
-    row = measure_run(folder, job.jobid, Limits(case))
-    forces = read_csv(folder / f"{job.jobid}.rcforc.csv").where(side="slave")
-    total = np.hypot(forces["fx"], forces["fy"])
-    glstat = read_csv(folder / f"{job.jobid}.glstat.csv")
-    row["stiffness"] = stiffness_of(folder / f"{job.jobid}.log")
-    row.update(rebound(read_csv(folder / f"{job.jobid}.matsum.csv").where(part=BLOCK), glstat))
-    row["roughness"] = float(np.sum(np.abs(np.diff(total))) / (2.0 * max(total.max(), 1e-300)))
-    row["hourglass"] = float(glstat["hourglass"][-1] / np.max(glstat["total"]))
-    row["kinetic"] = float(glstat["kinetic"][-1] / glstat["kinetic"][0])
-    return row
-
-
-def chart(rows, folder):
-    """Strips of verdicts; decks of failing cells."""
-    keep_failing(rows, folder)
-    with styled():
-        save(draw_shapes(rows, SWEEPS), folder, "shapes")
-
-
-def page(rows, doc):
-    """doc/studies/stability_shapes.md and its picture."""
-    write_shapes_page(rows, SWEEPS, doc)
-
-
-STUDY = Study("stability-shapes", jobs, measure, chart, page=page)

@@ -1,52 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Decks of the two scenes with friction by which types are compared: a cylinder drawn aside, and ironing."""
+"""Ironing after Fischer and Wriggers: a die with a round foot goes down into a soft slab and along it, with friction."""
 import numpy as np
 
+from slideline_tools import UserError
 from slideline_tools.decks import Deck, Grid
-from slideline_tools.scenes.common import STEEL, elastic, energies_on, implicit_static, part, plane_strain
-from slideline_tools.scenes.hertz import GRADED_CELLS, PENALTY, hertz_grids
+from slideline_tools.histories import read_csv
+from slideline_tools.scenes.common import elastic, energies_on, part, plane_strain
 
 FRICTION = 0.3
-
-# ---- a cylinder pressed on a block and drawn aside: Cattaneo (1938), Mindlin (1949) ----------------
-
-DOWN, ASIDE = 3.0e-5, 8.0e-6   # m: then the half width is some 9 slave segments at level 2, Q half of mu P
-SIDE_STEPS = 8
-
-
-def rolled_aside(ctype, level):
-    """Static: down within 1 s, then aside within 2 s; both bodies of steel. The order counts: where both grow together
-    nothing slips."""
-    block, cylinder, round_face, flat_face = hertz_grids(level)
-    deck = Deck(f"Cattaneo and Mindlin, type {ctype}, N_r = {level}")
-    deck.keyword("CONTROL_TERMINATION").card("endtim", 3.0)
-    implicit_static(deck, 2.0 / SIDE_STEPS)
-    deck.keyword("CONTROL_IMPLICIT_AUTO").card("iauto", 1)
-    energies_on(deck)
-    part(deck, 1, "block", 1, 1)
-    part(deck, 2, "cylinder", 1, 1)
-    plane_strain(deck, 1, 4)
-    elastic(deck, 1, **STEEL)
-    deck.node_set(1, "lower face of the block", block.lower).spc_set(1, True, True)
-    deck.node_set(2, "cut of the cylinder", cylinder.upper)
-    deck.curve(1, "down", [(0.0, 0.0), (1.0, -DOWN), (9.0, -DOWN)])
-    deck.curve(2, "aside", [(0.0, 0.0), (1.0, 0.0), (3.0, ASIDE)])
-    for direction, curve in ((2, 1), (1, 2)):
-        deck.keyword("BOUNDARY_PRESCRIBED_MOTION_SET").card("nsid dof vad lcid sf", 2, direction, 2, curve, 1.0)
-    deck.node_set(3, "slave", round_face).node_set(4, "master", flat_face)
-    deck.keyword("CONTACT_2D_SLIDELINE").card("surfa surfb ctype ngauss pen fs", -3, -4, ctype, 4, passes(ctype, PENALTY), FRICTION)
-    block.write(deck, 1)
-    cylinder.write(deck, 2)
-    return deck.database(glstat=0.25, rcforc=0.25, binary_d3plot=1.0).text()
-
-
-def passes(ctype, penalty):
-    """The same stiffness for all types: two passes lie side by side."""
-    return 0.5 * penalty if ctype == 3 else penalty
-
-
-# ---- ironing after Fischer & Wriggers ----------------------------------------------------------------
-
 YOUNG, POISSON = (6.896e8, 68.96e8), 0.32    # slab, die
 RHO = 1000.0                                 # of the slab; the die is ten times as heavy: waves run as fast in both
 #: Time in which a wave goes a unit of length.
@@ -59,6 +20,13 @@ IRON_PENALTY = 2.0e10                        # N/m^2 at level 2, the mesh of the
 SOFT = 0.04                                  # of each way: until the speed is steady
 DAMPING = 0.3                                # over a UNIT
 SHARE = 0.3                                  # TSSFAC
+#: Part of the way along in which forces are judged, places there, and cells of the slab at level 1.
+JUDGED, PLACES, CELLS = (0.25, 0.975), 1001, 60
+
+
+def passes(ctype, penalty):
+    """The same stiffness for all types: two passes lie side by side."""
+    return 0.5 * penalty if ctype == 3 else penalty
 
 
 def ironing_grids(level):
@@ -107,3 +75,21 @@ def ironing(ctype, level):
                                               passes(ctype, IRON_PENALTY * 0.5 * level), FRICTION)
     deck.card("tbirth tdeath punit", 0.0, 1.0e20, 1)
     return deck.database(glstat=end / 500.0, sleout=end / 500.0, rcforc=DRAW * UNIT / 2000.0, binary_d3plot=end / 100.0).text()
+
+
+def forces_along(folder, jobid):
+    """(horizontal, vertical) force of the die at even places of the judged part of the way, N/m."""
+    rows = read_csv(folder / f"{jobid}.rcforc.csv").where(side="slave")
+    share = np.linspace(*JUDGED, PLACES)
+    times = (PRESS + DRAW * share) * UNIT
+    if rows["time"][-1] < times[-1]:
+        raise UserError(f"{folder}: ended before the way did")
+    return np.array([np.interp(times, rows["time"], sign * rows[name]) for sign, name in ((-1.0, "fx"), (1.0, "fy"))])
+
+
+def roughness(force, level):
+    """Standard deviation from the running mean over one element of the slab, over the mean; the largest deviation too."""
+    window = int(round(SLAB / (CELLS * level) / (ALONG * (JUDGED[1] - JUDGED[0])) * (PLACES - 1))) | 1
+    mean = np.convolve(force, np.full(window, 1.0 / window), mode="valid")
+    rest = force[window // 2:][:len(mean)] - mean
+    return float(np.std(rest) / abs(np.mean(force))), float(np.max(np.abs(rest)) / abs(np.mean(force)))

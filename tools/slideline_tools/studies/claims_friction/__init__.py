@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: MIT
-"""Our claims about friction: which types transmit a shear exactly."""

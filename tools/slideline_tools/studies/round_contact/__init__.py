@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: MIT
-"""Bodies of revolution in contact."""

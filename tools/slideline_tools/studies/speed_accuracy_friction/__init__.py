@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: MIT
-"""Cost against error with friction: partial slip and ironing."""
