@@ -371,6 +371,7 @@ contains
     real(wp) :: power
 
     memory%is_stale = .true.
+    memory%advance = 0.0_wp
     memory%watch%has_looked = .false.
     if (memory%n_active == 0) return
     call take_force(memory%nodes, motion, memory%force, power)

@@ -214,22 +214,57 @@ def test_a_collapsed_element_is_named_with_the_remedy(slideline):
     assert "element 1 of part 1 has collapsed" in done.stderr and "TSSFAC" in done.stderr
 
 
-def test_plates_do_not_fly_through_each_other(slideline, tmp_path):
-    """Mach 0.7: half an element in a stable step. Pressure of Hugoniot's jump, at restart before the impact too; the first step as well."""
+def plates(mach, contact, gap=1.0e-6, card="", end=9.0e-7):
+    """Two plates of aluminium, 80 rows of 0.125 mm, that meet; the pressure of Hugoniot's jump."""
     density, sound, slope = 2785.0, 5328.0, 1.338
-    speed = 0.7 * sound
-    deck = Deck("plates").control(9.0e-7)
+    speed = mach * sound
+    deck = Deck("plates").control(end)
     deck.add("*SECTION_SHELL", (1, 13)).add("*CONTROL_BULK_VISCOSITY", (1.5, 0.06))
-    for k, gap in ((1, 1.0e-6), (2, -0.01)):
+    for k, start in ((1, gap), (2, -0.01)):
         deck.add("*PART", f"plate {k}", (k, 1, k, k)).add("*MAT_NULL", (k, density))
         deck.add("*EOS_GRUNEISEN", (k, sound, slope, 0.0, 0.0, 2.0, 0.47, 0.0), (1.0,))
-        deck.fix(deck.mesh(*grid(2, 80, 0.0002, 0.01, (0.0, gap)), k), x=1).add("*SET_PART_LIST", (k,), (k,))
-    deck.add("*INITIAL_VELOCITY_GENERATION", (1, 2, 0.0, 0.0, -speed)).add("*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE", (1, 2))
-    deck.add("*DATABASE_HISTORY_SHELL", (5, 9, 13)).add("*DATABASE_ELOUT", (1.0e-7,)).add("*DATABASE_BINARY_D3DUMP", (2,))
-    assert slideline("d=o", "ctype=5", deck=deck.output(glstat=2.0e-8)).returncode == 0
-    jump = density * (sound + slope * speed / 2.0) * speed / 2.0
-    pressure = -numbers(tmp_path / "o" / "job.elout.csv", "syy")[-3:]
-    assert np.median(pressure) == pytest.approx(jump, rel=0.03)
-    before = columns(tmp_path / "o" / "job.glstat.csv")
-    assert slideline("r=o/job.dump02.h5", "d=o").returncode == 0
-    assert columns(tmp_path / "o" / "job.glstat.csv") == before
+        deck.fix(deck.mesh(*grid(2, 80, 0.0002, 0.01, (0.0, start)), k), x=1).add("*SET_PART_LIST", (k,), (k,))
+    deck.add("*INITIAL_VELOCITY_GENERATION", (1, 2, 0.0, 0.0, -speed)).add("*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE", *contact)
+    deck.add("*DATABASE_HISTORY_SHELL", (5, 9, 13)).add("*DATABASE_ELOUT", (1.0e-7,)).add("*DATABASE_BINARY_D3DUMP", (10,))
+    text = deck.output(glstat=1.0e-9).text()
+    if card:
+        text = text.replace("*CONTROL_TIMESTEP\n0.0,0.9", f"*CONTROL_TIMESTEP\n0.0,0.9,{card}")
+    return text, density * (sound + slope * speed / 2.0) * speed / 2.0
+
+
+def test_plates_do_not_fly_through_each_other(slideline, tmp_path):
+    """Mach 0.7: half an element in a stable step. No step is shorter than that takes, and a restart has the same bits."""
+    text, jump = plates(0.7, [(1, 2)])
+    assert slideline("d=o", "ctype=5", deck=text).returncode == 0
+    assert np.median(-numbers(tmp_path / "o" / "job.elout.csv", "syy")[-3:]) == pytest.approx(jump, rel=0.03)
+    table = tmp_path / "o" / "job.glstat.csv"
+    assert min(numbers(table, "dt")) > 0.9 * 0.9 * 0.8 * 0.00005 / (0.7 * 5328.0)
+    before = columns(table)
+    assert slideline("r=o/job.dump01.h5", "d=o").returncode == 0
+    assert columns(table) == before
+
+
+@pytest.mark.parametrize("kind, gap", [(6, 0.0031), (6, 0.00325)])
+def test_plates_that_come_from_afar_are_seen(slideline, tmp_path, kind, gap):
+    """Mach 3, beyond what faces each other at the start: the same bound for all that may be faced later."""
+    text, _ = plates(3.0, [(1, 2)], gap, end=4.0e-7)
+    slideline("d=o", f"ctype={kind}", deck=text)
+    assert max(numbers(tmp_path / "o" / "job.glstat.csv", "internal")) > 0.0
+
+
+def test_contact_that_pauses_bounds_no_step(slideline, tmp_path):
+    """Born after the end: the step is that of the elements."""
+    text, _ = plates(0.7, [(1, 2), (None, 1.0e-3)], 0.01)
+    assert slideline("d=o", "ctype=5", deck=text).returncode == 0
+    dt = numbers(tmp_path / "o" / "job.glstat.csv", "dt")
+    assert min(dt) == pytest.approx(max(dt), rel=0.01)
+
+
+@pytest.mark.parametrize("card, is_bound", [("0,0.0,-1.0e-12", True), ("0,0.0,-2.5e-8", False)])
+def test_steps_of_scaled_masses_stay_with_a_warning(slideline, tmp_path, card, is_bound):
+    """DT2MS that scales nothing has no say; one that rules the step keeps it, and the log warns."""
+    text, _ = plates(1.0, [(1, 2)], 0.001, card, end=2.0e-7)
+    warned = "may pass each other unseen" in slideline("d=o", "ctype=5", deck=text).stderr
+    dt = numbers(tmp_path / "o" / "job.glstat.csv", "dt")
+    assert warned is not is_bound
+    assert (max(dt) <= 0.41 * 0.000125 / 5328.0) if is_bound else dt[1] == pytest.approx(0.9 * 2.5e-8, rel=0.02)

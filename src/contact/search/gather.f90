@@ -25,6 +25,8 @@ contains
       call take_places(n, memory%nodes, motion, memory%places, increment)
       memory%advance = spread_of(n, increment)
       memory%travel = memory%travel + memory%advance
+      ! That of a pause is not that of a step.
+      if (memory%is_stale) memory%advance = 0.0_wp
     end associate
   end subroutine gather_places
 

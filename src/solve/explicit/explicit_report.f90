@@ -99,23 +99,29 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    real(wp) :: change, dt
+    real(wp) :: change, dt, limit
     integer :: i
 
     dt = state%dt
+    limit = dt/model%controls%dt_scale
     do i = 1, size(state%contacts)
       associate (memory => state%contacts(i))
+        if (memory%is_stale) cycle
         memory%advance = dt*norm2(maxval(state%motion(3:4, memory%nodes), 2) &
           - minval(state%motion(3:4, memory%nodes), 2))
       end associate
     end do
-    call obey_approach(model, dt, state, monitor%log, cycle%steps, state%dt)
-    if (state%dt < dt) call write_log(monitor%log, 'first time step shortened to ' &
-      //to_text(state%dt)//': bodies would come deeper into each other in it than a first ' &
-      //'contact may be')
+    call obey_approach(model, dt, state, monitor%log, cycle%steps, limit)
+    if (model%controls%dt_scale*limit < dt) then
+      state%dt = model%controls%dt_scale*limit
+      cycle%steps%constant = 0.0_wp
+      call write_log(monitor%log, 'first time step shortened to '//to_text(state%dt) &
+        //': bodies would come deeper into each other in it than a first contact may be')
+    end if
     call prepare_leap(model, state, cycle)
     call first_change(model, cycle%shares, cycle%leap, cycle%velocity, state, monitor%ranks, change)
     call shorten_first_step(monitor%log, cycle%steps, state%dt, change)
+    state%contacts%advance = state%contacts%advance*(state%dt/dt)
     ! What the elements of the first cycle could not yet tell the step of the second one.
     cycle%checks(cycle%first_check)%volume_change = change
   end subroutine bound_first_change

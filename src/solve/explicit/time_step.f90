@@ -128,7 +128,7 @@ contains
   end function volume_step
 
   !> Lower a step in which bodies would come deeper into each other than a first contact may be. One
-  !> that the deck sets (LCTM, DT2MS) stays, and the log warns once.
+  !> that the deck sets (by a curve or scaled masses that rule it) stays, and the log warns once.
   subroutine obey_approach(model, dt, state, log, steps, limit)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: dt              !! step in which the interfaces have last moved, s
@@ -137,13 +137,18 @@ contains
     type(step_plan_t), intent(inout) :: steps
     real(wp), intent(inout) :: limit        !! s
     real(wp) :: steps_of(size(state%contacts)), allowed
+    logical :: is_set
     integer :: i
 
     do i = 1, size(steps_of)
       steps_of(i) = approach_step(model%contacts(i), state%contacts(i), dt)
     end do
     allowed = minval(steps_of)
-    if (model%controls%dt_curve == 0 .and. .not. abs(model%controls%mass_step) > 0.0_wp) then
+    ! Scaled masses leave a little more than DT2MS.
+    is_set = limit <= 1.02_wp*abs(model%controls%mass_step)
+    if (model%controls%dt_curve > 0) is_set = is_set &
+      .or. curve_value(model%curves(model%controls%dt_curve), state%time) <= limit
+    if (.not. is_set) then
       limit = min(limit, allowed)
     else if (allowed < state%dt .and. .not. steps%warned_approach) then
       call warn(log, 'interface '//to_text(model%contacts(minloc(steps_of, 1))%id)//': at time ' &
