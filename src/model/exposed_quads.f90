@@ -14,8 +14,9 @@ module exposed_quads_m
 
 contains
 
-  !> Shares of exposed quads in the masses of their nodes, 0 in all other elements and at nodes that
-  !> a support, a prescribed motion or a rigid body holds. A quad is exposed that has the main share
+  !> Shares of exposed quads in what elements weigh at their nodes (masses of *ELEMENT_MASS only
+  !> allow larger steps), 0 in all other elements and, but for round-off, at nodes that a
+  !> support, a prescribed motion or a rigid body holds. A quad is exposed that has the main share
   !> of two nodes; above a Poisson's ratio of 0.4 also that of one, where every element around it
   !> has one too (four quads in a block: 0.94 L/c and less).
   pure function find_exposed(model, is_left) result(shares)
