@@ -44,9 +44,9 @@ SHORTER = {
                 "tar -czf {package}.tar.gz {package} && rm -r {package} && {command}",
     "slideline-0.2.0/bin/slideline": "{command} endtim=2e-5 && rm -r {package} {package}.tar.gz",
     "build/venv/bin/python results/hertz_mesh.py": "build/venv/bin/python {here}/coarse_hertz.py results/hertz.msh",  # gmsh
-    "SLIDELINE=build/release/slideline build/venv/bin/python tests/fuzz/": "test -f $(echo '{command}' | cut -d' ' -f3)",
+    "SLIDELINE=build/release/slideline build/venv/bin/python tests/lab/fuzz/": "test -f $(echo '{command}' | cut -d' ' -f3)",
     "SLIDELINE_FUZZ=600 tools/test.sh": "test -x tools/test.sh",
-    "build/venv/bin/python tests/fuzz/": "test -f $(echo '{command}' | cut -d' ' -f2)",
+    "build/venv/bin/python tests/lab/fuzz/": "test -f $(echo '{command}' | cut -d' ' -f2)",
 }
 PACKAGE = "slideline-0.2.0"
 #: what a page has the reader install first, if it is not there: its block is compiled only

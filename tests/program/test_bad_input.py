@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Input that no one should give: files without end, include loops, numbers at the edges. Each has a defined end.
-A short run of the fuzzer (tests/fuzz) stands last."""
+A short run of the fuzzer (tests/lab/fuzz) stands last."""
 import os
 import re
 import signal
@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from conftest import drop, is_full, numbers
 
-FUZZER = Path(__file__).resolve().parents[1] / "fuzz" / "fuzz_decks.py"
+FUZZER = Path(__file__).resolve().parents[1] / "lab/fuzz" / "fuzz_decks.py"
 
 
 def check(exe, folder, deck="job.k", seconds=20):

@@ -14,7 +14,7 @@ from conftest import drop
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 
-#: keywords of which every honoured field is tried here (check alone; tests/fuzz/sweep_fields.py tries all, with runs)
+#: keywords of which every honoured field is tried here (check alone; tests/lab/fuzz/sweep_fields.py tries all, with runs)
 QUICK = ("*DAMPING_GLOBAL", "*CONTROL_TERMINATION", "*RIGIDWALL_PLANAR")
 #: keyword, field -> values that must be refused
 REFUSED = {
@@ -36,7 +36,7 @@ def said(slideline, tmp_path):
 
 
 def test_every_field_of_some_keywords(tmp_path):
-    done = subprocess.run([sys.executable, ROOT / "tests/fuzz/sweep_fields.py", "--program", os.environ["SLIDELINE"], "--check",
+    done = subprocess.run([sys.executable, ROOT / "tests/lab/fuzz/sweep_fields.py", "--program", os.environ["SLIDELINE"], "--check",
                            "--output", tmp_path, "--keywords", *QUICK], capture_output=True, text=True, timeout=250)
     assert done.returncode == 0, done.stdout + done.stderr
     rows = list(csv.DictReader(open(tmp_path / "fields.csv", newline="", encoding="utf-8")))

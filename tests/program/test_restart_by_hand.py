@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from conftest import is_full
 
-sys.path.append(str(Path(__file__).resolve().parents[1] / "fuzz"))
+sys.path.append(str(Path(__file__).resolve().parents[1] / "lab/fuzz"))
 import fuzz_restarts  # noqa: E402
 from slideline_tools.contact_types import ALL_TYPES  # noqa: E402
 

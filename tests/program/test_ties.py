@@ -14,7 +14,7 @@ from test_restart import assert_same, histories, part_of, with_files
 
 from slideline_tools.contact_types import ALL_TYPES
 
-sys.path.append(str(Path(__file__).resolve().parents[1] / "fuzz"))
+sys.path.append(str(Path(__file__).resolve().parents[1] / "lab/fuzz"))
 import fuzz_restarts  # noqa: E402
 
 

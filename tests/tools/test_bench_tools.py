@@ -1,29 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""What the benchmarks make of samples, their decks, and the pages of speed and peers, from made-up tables."""
+"""The pages of speed and peers, from made-up tables of the benchmarks (tests/lab/bench)."""
 import csv
 import itertools
 import json
-import os
 import pathlib
-import subprocess
 import sys
 
-import numpy as np
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests" / "bench"), str(ROOT / "tests" / "bench" / "peers")]
+sys.path.insert(0, str(ROOT / "tests" / "lab" / "bench"))
 
-import calculix  # noqa: E402
-import collision  # noqa: E402
-import counted  # noqa: E402
-import elements  # noqa: E402
 import measuring  # noqa: E402
 import search  # noqa: E402
-import wave  # noqa: E402
-from slideline_tools import UserError  # noqa: E402
 from slideline_tools.contact_types import ALL_TYPES  # noqa: E402
-from slideline_tools.counting import Counts  # noqa: E402
 from slideline_tools.studies import peers, speed  # noqa: E402
 
 STEP = measuring.Variant("step", "elastic", 4000, 1, "ns/element")
@@ -47,75 +37,6 @@ def test_ratios_are_those_of_the_same_minute():
     assert row["over_bandwidth"] == pytest.approx(10.0 * 8.0 / measuring.BYTES)
     assert row["over_goal"] == pytest.approx(10.0 / (3.3 * 4.0 + 220.0 / 8.0))
     assert (row["low"], row["median"], row["high"]) == (12.5, 15.0, 17.5)
-
-
-def test_samples_over_an_older_unit_are_refused(tmp_path):
-    (tmp_path / "program").write_text("1")
-    (tmp_path / "s.csv").write_text("part,case,size,threads,unit,value,kernel_ns,bandwidth_gb_s,share,program\n")
-    with pytest.raises(SystemExit, match="older unit"):
-        measuring.Samples(tmp_path / "s.csv", tmp_path / "program")
-
-
-def test_samples_of_another_program_are_left_alone(tmp_path):
-    first, second = tmp_path / "first", tmp_path / "second"
-    first.write_text("1")
-    second.write_text("2")
-    units = measuring.Units(4.0, {1: 8.0, 2: 16.0})
-    measuring.Samples(tmp_path / "s.csv", first).add(STEP, 10.0, units)
-    samples = measuring.Samples(tmp_path / "s.csv", second)
-    samples.add(STEP, 30.0, units, 0.5)
-    assert samples.of_program() == {STEP: [(30.0, 4.0, 8.0, 0.5)]}
-
-
-def test_bandwidth_is_that_of_as_many_threads(tmp_path):
-    (tmp_path / "program").write_text("1")
-    samples = measuring.Samples(tmp_path / "s.csv", tmp_path / "program")
-    two = measuring.Variant("step", "elastic", 4000, 2, "ns/element")
-    samples.add(two, 10.0, measuring.Units(4.0, {1: 8.0, 2: 16.0}))
-    assert samples.of_program()[two][0][2] == 16.0
-
-
-def test_a_run_that_takes_too_long_is_no_sample(tmp_path, monkeypatch):
-    slow = tmp_path / "slow"
-    slow.write_text("#!/bin/sh\nexec sleep 20\n")
-    slow.chmod(0o755)
-    monkeypatch.setattr(measuring, "LONGEST", 0.2)
-    with pytest.raises(measuring.Disturbed):
-        measuring.run_program(slow, "deck.k", tmp_path)
-
-
-# ---- decks -------------------------------------------------------------------------------------
-
-def test_block_of_about_as_many_elements(tmp_path):
-    count = elements.write_deck(tmp_path / "block.k", 300, True, steps=20)
-    assert abs(count - 300) <= 10
-    mesh = (tmp_path / "mesh_17x18.inc").read_text().split("*ELEMENT_SHELL\n")
-    assert len(mesh[0].splitlines()) == 2 + 18 * 19
-    assert mesh[1].splitlines()[0].split() == ["1", "1", "1", "20", "21", "2"]
-
-
-def test_steps_are_counted_as_taken(tmp_path):
-    """Elements that get shorter take more steps than the deck was planned for."""
-    (tmp_path / "bench.timing.csv").write_text("phase,seconds,calls\nelements,1.5,40\nnodes,0.5,80\n")
-    assert elements.step_time(tmp_path, {"elements": 1.5, "nodes": 0.5}, 1000) == pytest.approx(5.0e4)
-
-
-@pytest.mark.parametrize("case", search.CASES)
-def test_search_deck_runs_with_contact(case, tmp_path):
-    text = search.search_deck(case, 200)
-    assert search.slave_nodes(case, 200)[0] == 200
-    assert text.count("*CONTACT_2D_SLIDELINE") == (50 if case == "interfaces" else 1)
-    if "SLIDELINE" not in os.environ:
-        pytest.skip("SLIDELINE is not set")
-    (tmp_path / "s.k").write_text(text)
-    text = text.replace("*DATABASE_GLSTAT", f"*DATABASE_RCFORC\n{10.0 * search.STEP:.9g},\n*DATABASE_GLSTAT")
-    (tmp_path / "s.k").write_text(text)
-    subprocess.run([os.environ["SLIDELINE"], f"i={tmp_path}/s.k", f"d={tmp_path}", "jobid=s"],
-                   check=True, capture_output=True)
-    with open(tmp_path / "s.rcforc.csv", newline="", encoding="ascii") as stream:
-        rows = [row for row in csv.DictReader(stream) if row["side"] == "slave"]
-    assert max(float(row["fy"]) for row in rows) > 0.0
-    assert max(int(row["n_active"]) for row in rows) > 0
 
 
 # ---- pages -------------------------------------------------------------------------------------
@@ -197,34 +118,6 @@ def test_ratios_of_peers_are_taken_round_by_round():
     assert peers.ratio(other, ours, "ns") == 4.0
 
 
-def test_stresses_of_calculix_are_those_of_the_last_state(tmp_path):
-    head = " stresses (elem, integ.pnt.,sxx,syy,szz,sxy,sxz,syz) for set EALL and time  {}\n\n"
-    line = "{:10d}{:4d} 0.0 {:13.6E} 0.0 0.0 0.0 0.0\n"
-    text = head.format(0.5) + line.format(1, 1, -9.0) + "\n" + head.format(1.0) + line.format(
-        1, 1, -1.0) + line.format(1, 2, -3.0) + line.format(7, 1, -4.0)
-    (tmp_path / "a.dat").write_text(text)
-    assert calculix.stresses(tmp_path / "a.dat") == {1: -2.0, 7: -4.0}
-
-
-def test_mesh_of_the_peers_is_that_of_slideline():
-    points, quads = wave.grid(3)
-    assert len(points) == 16 and len(quads) == 9
-    x, y = points[quads[4]].T
-    area = 0.5 * sum(x[k] * y[(k + 1) % 4] - x[(k + 1) % 4] * y[k] for k in range(4))
-    assert area == pytest.approx(1.0 / 9.0)
-
-
-def test_blocks_of_the_collision_have_the_mass_of_the_grid(capsys):
-    n, m = 10, collision.below(10)
-    assert collision.weights(n).sum() == pytest.approx(1.0) and collision.elements(n) == 164
-    assert collision.steps(n) * collision.step(n) >= 4.0 * collision.LENGTH / collision.C
-    speeds = np.full((n + 1) ** 2, -0.5 * collision.V), np.full((m + 1) ** 2, 0.25 * collision.V)
-    collision.report("Some", "contact", n, 5, 164.0e-8, speeds)
-    found = json.loads(capsys.readouterr().out)
-    assert found["ns"] == pytest.approx(2.0)
-    assert [found[name] for name in ("upper", "lower", "momentum")] == pytest.approx([-1.0, 0.5, -0.5])
-
-
 def test_page_of_peers(tmp_path):
     waves = [{"round": n, "program": program, "element": element, "elements": 100, "steps": 10,
               "ns": ns * n, "free_side": 0.5 + error, "exact": 0.5, "yardstick_ns": 2.0 * n}
@@ -270,15 +163,10 @@ def test_page_of_peers(tmp_path):
     assert "No instructions were counted" in (tmp_path / "doc" / "studies" / "peers.md").read_text(encoding="utf-8")
 
 
-def test_counted_steps_of_peers_are_the_difference_of_two_runs(tmp_path, monkeypatch):
-    commands = {"few": 5000, "many": 9000}
-    def count(command, folder):
-        if command not in commands:
-            raise UserError("no such program")
-        return Counts(commands[command], {}, "somebody")
-    monkeypatch.setattr(counted, "count_instructions", count)
-    labels = {"elements": 20, "program": "Other", "element": "2x2 points", "steps": 10}
-    assert counted.step_row(labels, ("few", "many"), tmp_path) == [
-        {"scene": "step", "elements": 20, "program": "Other", "what": "2x2 points", "instructions": 20.0,
-         "counted_by": "somebody"}]
-    assert counted.step_row(labels, ("few", "none"), tmp_path) == []
+def test_the_page_says_how_openradioss_was_built_or_that_it_was_not(tmp_path):
+    versions = tmp_path / "versions.txt"
+    versions.write_text("akantu==5.0\n")
+    assert peers.radioss_in_words(versions) == peers.NOT_BUILT
+    versions.write_text("akantu==5.0\nOpenRadioss==source abc, gfortran with x==1\n")
+    assert "source abc, gfortran with x==1" in peers.radioss_in_words(versions)
+    assert "OpenRadioss" not in peers.version_rows(versions)

@@ -129,7 +129,7 @@ def yardstick():
     """The yardstick for x86-64-v3, which callgrind knows."""
     if not shutil.which("valgrind") or platform.machine() != "x86_64":
         pytest.skip("no valgrind for x86-64 here")
-    subprocess.run([ROOT / "tests/bench/yardstick/run.sh", "x86-64-v3"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([ROOT / "tests/lab/bench/yardstick/run.sh", "x86-64-v3"], check=True, stdout=subprocess.DEVNULL)
     return ROOT / "build/yardstick/x86-64-v3/yardstick"
 
 

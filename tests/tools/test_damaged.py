@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Damaged files of a run: every tool ends with one line and its status. tests/fuzz/damage_results.py makes such files by
+"""Damaged files of a run: every tool ends with one line and its status. tests/lab/fuzz/damage_results.py makes such files by
 chance; these are what it has found, and their like."""
 import os
 import shutil
@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "fuzz"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "lab/fuzz"))
 import damage_results as fuzz  # noqa: E402
 
 

@@ -4,6 +4,7 @@
 
     plant.py [--build DIR] [--out FILE.csv] [--broader] [ID...]   these faults, or all that the table lacks
     plant.py --sound [ID...]                                      their nearest tests without a fault
+    plant.py --random N [--seed S] [--folder contact/law]         N faults by rule (random_faults.py) against the broader tests
 
 A fault is an edit of one place of src/. The edited file is compiled apart and its object stands before the
 libraries on the link line of the program and of the unit tests, as the build has them: neither the sources
@@ -26,11 +27,17 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
+import random_faults
+
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 COLUMNS = ("id", "noticed_by", "seconds")
-NOT_NOTICED = "not noticed"
+NOT_NOTICED, BY_COMPILER = "not noticed", "the compiler"
 LONGEST = 600.0  #: seconds that a test may take
+
+
+class DoesNotCompile(SystemExit):
+    """The compiler refuses the edited file."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +106,7 @@ class Planted:
         done = self.run([*words, "-w", f"-J{self.scratch}", f"-I{modules[2:]}", "-nocpp", "-c",
                          str(self.scratch / Path(file).name), "-o", str(self.object)], self.build)
         if done.returncode != 0:
-            raise SystemExit(f"{self.fault.id} does not compile:\n{done.stderr}")
+            raise DoesNotCompile(f"{self.fault.id} does not compile:\n{done.stderr}")
 
     def link(self, target: str) -> Path:
         """The program or a unit test with the fault in it."""
@@ -194,8 +201,14 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=ROOT / "build/noticed.csv", help="table, made or gone on with")
     parser.add_argument("--broader", action="store_true", help="go on with all tests of the folder")
     parser.add_argument("--sound", action="store_true", help="run the nearest tests without any fault")
+    parser.add_argument("--random", type=int, metavar="N", help="this many faults by rule instead of the list")
+    parser.add_argument("--seed", type=int, default=1, help="which of them")
+    parser.add_argument("--folder", default="", help="folder of src/ to break, all unless given")
     options = parser.parse_args()
     faults, broader = read_faults(options.ids)
+    if options.random:
+        faults = [Fault(**drawn, capability="", late=False, tests=())
+                  for drawn in random_faults.draw(ROOT / "src", options.folder, options.random, options.seed)]
     build = options.build.resolve()
     if options.sound:
         with tempfile.TemporaryDirectory() as scratch:
@@ -210,9 +223,14 @@ def main() -> None:
         start = time.monotonic()
         folder = fault.file.split("/")[0] if "/" in fault.file else "."
         further = [test for prefix in broader[folder] for test in all_tests() if test.startswith(prefix)] \
-            if options.broader else []
+            if options.broader or options.random else []
         with tempfile.TemporaryDirectory() as scratch:
-            noticed_by = who_notices(Planted(build, Path(scratch), fault), further)
+            try:
+                noticed_by = who_notices(Planted(build, Path(scratch), fault), further)
+            except DoesNotCompile:
+                if not options.random:
+                    raise
+                noticed_by = BY_COMPILER
         seconds = f"{time.monotonic() - start:.0f}"
         note(options.out, {"id": fault.id, "noticed_by": noticed_by, "seconds": seconds})
         print(f"{fault.id}: {noticed_by}, {seconds} s", flush=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The page doc/studies/peers.md, from the tables of tests/bench/peers/run.sh.
+"""The page doc/studies/peers.md, from the tables of tests/lab/bench/peers/run.sh.
 
     python -m slideline_tools.studies.peers FOLDER DOC
 
@@ -30,7 +30,7 @@ BUILT = ("OpenRadioss comes as source alone and was built for this page: {}. Its
 
 PAGE = """# Side by side with other programs
 
-This page is written by `tests/bench/peers/run.sh --publish`: do not edit it. All programs run in turn on one machine,
+This page is written by `tests/lab/bench/peers/run.sh --publish`: do not edit it. All programs run in turn on one machine,
 one thread each; times are medians of {rounds}, with the quartiles in brackets. Processor time is what counts: the machine may be shared.
 
 | program | version | from |
@@ -96,7 +96,7 @@ some 3e-5.
 def read_table(path):
     """Rows of a table, numbers as floats where they are numbers."""
     if not path.exists():
-        raise UserError(f"{path} is missing: run tests/bench/peers/run.sh")
+        raise UserError(f"{path} is missing: run tests/lab/bench/peers/run.sh")
     with path.open(newline="", encoding="utf-8") as stream:
         return list(csv.DictReader(stream))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The page doc/studies/speed.md and its pictures, from the table of tests/bench/run.sh.
+"""The page doc/studies/speed.md and its pictures, from the table of tests/lab/bench/run.sh.
 
     python -m slideline_tools.studies.speed FOLDER DOC
 
@@ -17,12 +17,12 @@ from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.studies.common import (TYPES, colour, label, markdown_table, page_main, save_small,
                                             write_page)
 
-BYTES = 216.0  # moved per element and step, as in tests/bench/measuring.py
+BYTES = 216.0  # moved per element and step, as in tests/lab/bench/measuring.py
 IN_MEMORY = 20000  # elements: from there on a model is larger than the caches of a core
 AT_ONCE = ", 2 runs at once"
 ROUTINE_GOAL, SMALL_GOAL = 2.0, 4.5  # element routine, step of 300 elements over K
 STEP_GOAL, TEAM_GOAL = 3.6, 1.9  # step over K, speed-up of two threads; 4000 to 100 000 elements
-LARGE_GOAL, GOAL_YARDSTICKS, GOAL_BYTES = 1.3, 3.3, 220.0  # as in tests/bench/measuring.py
+LARGE_GOAL, GOAL_YARDSTICKS, GOAL_BYTES = 1.3, 3.3, 220.0  # as in tests/lab/bench/measuring.py
 POINT_GOAL, POINT_SIZES, SMALL_CONTACT = 6.4, (100, 1000, 10000, 100000), 455.0  # contact: K a point; a step of 20 slave nodes
 STYLES = {("elastic", 1): ("-", "o"), ("elastic", 2): ("--", "o"),
           ("yielding", 1): ("-", "s"), ("yielding", 2): ("--", "s")}
@@ -31,13 +31,13 @@ SEARCHES = {"still": "pressed, not sliding", "sliding": "sliding fast",
 
 PAGE = """# Speed
 
-This page and its pictures are written by `tests/bench/run.sh --publish`: do not edit it. All figures are medians of
+This page and its pictures are written by `tests/lab/bench/run.sh --publish`: do not edit it. All figures are medians of
 interleaved rounds on one machine; quartiles, repeats and all the rest are in the table that the command leaves in
 `results/bench/bench.csv`.
 
 ## In plain words
 
-- **K** is the unit of all times: the yardstick of `tests/bench/yardstick`, the bare arithmetic of one step of a plastic one-point quad
+- **K** is the unit of all times: the yardstick of `tests/lab/bench/yardstick`, the bare arithmetic of one step of a plastic one-point quad
   in one loop, on data in the L1 cache. It is a program of its own with flags of its own and stays as it is, whatever becomes of
   slideline. Here {yardstick:.2f} ns.
 - The **element routine** is slideline's own on one chunk of elements, with the gathering of their nodes. Here {routine:.2f} ns = {routine_over:.2f} K.
@@ -86,7 +86,7 @@ interface, [20 to 40 ns each](../results.md#what-the-timing-costs).
 
 ## The search stays linear
 
-Decks that try the contact search (`tests/bench/search.py` writes them): strips of elements pressed upon each other; the same
+Decks that try the contact search (`tests/lab/bench/search.py` writes them): strips of elements pressed upon each other; the same
 sliding at 400 m/s, some 2.7 % of a segment in a step; both strips thrown into waves that fold at up to 300 m/s; 50 pairs that slide, each
 an interface of its own. ns of search and pairing per slave node and step; the whole of contact is drawn thinner. A search that compared all with all
 would rise {ratio:.0f} times from left to right.
@@ -105,7 +105,7 @@ in the same minute; neither is forced to the disk.
 ## Small jobs
 
 A job of 306 elements and 1,000 cycles steps 306,000 elements; what else it takes from start to exit is felt when there are thousands of
-them. `tests/bench/small_jobs.sh` measures it, and how many jobs a second two processors take through `tools/batch/run_folder.sh -j 2` and
+them. `tests/lab/bench/small_jobs.sh` measures it, and how many jobs a second two processors take through `tools/batch/run_folder.sh -j 2` and
 through `xargs -P 2`. Counted, without plot states, on Debian 12 (page faults and calls to the system beside instructions):
 
 | job | libraries | instructions | page faults | calls | forced to the disk |
@@ -130,7 +130,7 @@ class Bench:
 
     def __init__(self, path):
         if not path.exists():
-            raise UserError(f"{path} is missing: run tests/bench/run.sh")
+            raise UserError(f"{path} is missing: run tests/lab/bench/run.sh")
         with path.open(newline="", encoding="ascii") as stream:
             self.rows = list(csv.DictReader(stream))
         for row in self.rows:

@@ -60,9 +60,9 @@ PAGES = {  # quick ones first
     "chooses": batch("choosing", "chooses", after=("speed_accuracy",)),
     "simplify": study("simplify", "simplify", ALL),
     "scale": batch("scale", "scale", "--publish", sources=("parallel",)),
-    "peers": Page("peers", ("tests/bench/peers/run.sh", "--publish")),
-    "speed_laws": Page("speed", ("tests/bench/laws.sh", "--publish"), ("material",)),
-    "speed": Page("speed", ("tests/bench/run.sh", "--publish"), ALL),
+    "peers": Page("peers", ("tests/lab/bench/peers/run.sh", "--publish")),
+    "speed_laws": Page("speed", ("tests/lab/bench/laws.sh", "--publish"), ("material",)),
+    "speed": Page("speed", ("tests/lab/bench/run.sh", "--publish"), ALL),
 }
 
 

@@ -85,7 +85,7 @@ with contact (dashed).
 - **Memory.** The first process holds the whole model: here {bytes_element:.0f} bytes an element at the peak, while the deck is read (two sizes of the square on one process). On a machine
   with 4 GB a process that is {memory_limit:.1f} million elements; at 1e8 it would need {memory_large:.0f} GB. The others get special nodes and their own tiles
   from it: of four processes with a square of a million elements the second took 71 bytes an element at the peak and 69 in the cycles
-  (`tests/bench/ranks.sh`), of sixteen 35 (by hand): its share of what one process takes and some 20 for the nodes between all tiles and the lists of
+  (`tests/lab/bench/ranks.sh`), of sixteen 35 (by hand): its share of what one process takes and some 20 for the nodes between all tiles and the lists of
   their forces, whatever p, 2 GB a process at 1e8. Beyond, these have to be left to the processes whose tiles touch them: the lists of border slots (`rank_borders`)
   already name nothing but what neighbours share.
 - **Start.** The first process reads the deck and renumbers it: {start_element:.1f} microseconds of processor time an element here, {start_large:.0f} s at 1e8, whatever p, while
