@@ -12,13 +12,16 @@ module exposed_quads_m
   !> From this share of the mass of a node on, what else is there weighs about half or less of it.
   real(wp), parameter :: main_share = 0.66_wp
 
+  !> An element with less of the mass of a node is no neighbour there.
+  real(wp), parameter :: slight_share = 0.1_wp
+
 contains
 
   !> Shares of exposed quads in what elements weigh at their nodes (masses of *ELEMENT_MASS only
   !> allow larger steps), 0 in all other elements and, but for round-off, at nodes that a
   !> support, a prescribed motion or a rigid body holds. A quad is exposed that has the main share
-  !> of two nodes; above a Poisson's ratio of 0.4 also that of one, where every element around it
-  !> has one too (four quads in a block: 0.94 L/c and less).
+  !> of two nodes, or half of three; above a Poisson's ratio of 0.4 also the main share of one,
+  !> where every element around it has one too (four quads in a block: 0.94 L/c and less).
   pure function find_exposed(model, is_left) result(shares)
     type(model_t), intent(in) :: model
     logical, intent(in) :: is_left(:)  !! (n_element) elements that have not eroded
@@ -41,15 +44,18 @@ contains
         end associate
       end do
     end do
-    call hold_nodes(model, mass)
     do i = 1, model%mesh%n_element
       if (.not. is_left(i)) cycle
       associate (nodes => model%mesh%element_nodes(:, i))
-        shares(:, i) = shares(:, i)/mass(nodes)
-        if (.not. any(shares(:, i) > main_share)) is_surrounded(nodes) = .false.
+        if (any(shares(:, i) > main_share*mass(nodes))) cycle
+        do k = 1, 4
+          if (shares(k, i) > slight_share*mass(nodes(k))) is_surrounded(nodes(k)) = .false.
+        end do
       end associate
     end do
+    call hold_nodes(model, mass)
     do i = 1, model%mesh%n_element
+      if (is_left(i)) shares(:, i) = shares(:, i)/mass(model%mesh%element_nodes(:, i))
       if (.not. is_exposed(model, i, shares(:, i), is_surrounded)) shares(:, i) = 0.0_wp
     end do
   end function find_exposed
@@ -100,12 +106,12 @@ contains
     logical, intent(in) :: is_surrounded(:)  !! (n_node) by elements with a main share
 
     is_exposed = .false.
-    if (.not. any(shares > main_share)) return
+    if (.not. (any(shares > main_share) .or. count(shares > 0.5_wp) > 2)) return
     associate (nodes => model%mesh%element_nodes(:, i), &
       part => model%parts(model%mesh%element_part(i)))
       if (nodes(4) == nodes(3) .or. model%sections(part%section)%is_full &
         .or. model%materials(part%material)%is_rigid) return
-      is_exposed = count(shares > main_share) > 1
+      is_exposed = count(shares > main_share) > 1 .or. count(shares > 0.5_wp) > 2
       associate (law => model%materials(part%material))
         if (law%shear < (law%bulk + 4.0_wp*law%shear/3.0_wp)/6.0_wp) &
           is_exposed = is_exposed .or. all(is_surrounded(nodes))

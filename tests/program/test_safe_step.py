@@ -65,11 +65,15 @@ def test_bulk_viscosity_of_one_free_square(slideline, tmp_path, form, points, nu
 
 
 @pytest.mark.parametrize("nu, n_x, n_y, dense, ratio", [
-    (0.49, 2, 2, range(4), 1.0), (0.3, 5, 5, [12], 0.01), (0.45, 5, 5, [12], 0.1), (0.49, 6, 2, range(6, 12), 1.0 / 3.0)])
+    (0.49, 2, 2, range(4), 1.0), (0.3, 5, 5, [12], 0.01), (0.45, 5, 5, [12], 0.1), (0.45, 5, 5, [12], 0.2),
+    (0.49, 6, 2, range(6, 12), 1.0 / 3.0), (0.499, 4, 4, [5, 6, 9, 10], 0.02), (0.49, 2, 2, "pinned", 1.0)])
 def test_dense_among_light_keeps_its_energy(slideline, tmp_path, nu, n_x, n_y, dense, ratio):
-    """Four free squares, a dense square in foam, a dense strip on foam, of one speed of sound: L/c is above their stable step."""
+    """Four squares, free or with a pinned corner, dense ones in foam, a dense strip on foam, of one speed of sound."""
     deck = Deck("dense").control(200.0).part(1).part(2)
     deck.elastic(1.0, 1.0, nu, 1).elastic(ratio, ratio, nu, 2)
+    if dense == "pinned":
+        deck.fix([1], x=1, y=1)
+        dense = range(4)
     coordinates, quads = grid(n_x, n_y, n_x, n_y)
     deck.add("*NODE", *[(i + 1, *x) for i, x in enumerate(coordinates)])
     deck.add("*ELEMENT_SHELL", *[(i + 1, 1 if i in dense else 2, *[n + 1 for n in quad]) for i, quad in enumerate(quads)])
