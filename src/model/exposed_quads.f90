@@ -12,6 +12,9 @@ module exposed_quads_m
   !> From this share of the mass of a node on, what else is there weighs about half or less of it.
   real(wp), parameter :: main_share = 0.66_wp
 
+  !> More than half: round-off is not to choose in strips and at straight edges of regular meshes.
+  real(wp), parameter :: half_share = 0.51_wp
+
   !> An element with less of the mass of a node is no neighbour there.
   real(wp), parameter :: slight_share = 0.1_wp
 
@@ -20,8 +23,8 @@ contains
   !> Shares of exposed quads in what elements weigh at their nodes (masses of *ELEMENT_MASS only
   !> allow larger steps), 0 in all other elements and, but for round-off, at nodes that a
   !> support, a prescribed motion or a rigid body holds. A quad is exposed that has the main share
-  !> of two nodes, or half of three; above a Poisson's ratio of 0.4 also the main share of one,
-  !> where every element around it has one too (four quads in a block: 0.94 L/c and less).
+  !> of two nodes, or more than half of three; above a Poisson's ratio of 0.4 also the main share of
+  !> one, where every element around it has one too (four quads in a block: 0.94 L/c and less).
   pure function find_exposed(model, is_left) result(shares)
     type(model_t), intent(in) :: model
     logical, intent(in) :: is_left(:)  !! (n_element) elements that have not eroded
@@ -106,12 +109,12 @@ contains
     logical, intent(in) :: is_surrounded(:)  !! (n_node) by elements with a main share
 
     is_exposed = .false.
-    if (.not. (any(shares > main_share) .or. count(shares > 0.5_wp) > 2)) return
+    if (.not. (any(shares > main_share) .or. count(shares > half_share) > 2)) return
     associate (nodes => model%mesh%element_nodes(:, i), &
       part => model%parts(model%mesh%element_part(i)))
       if (nodes(4) == nodes(3) .or. model%sections(part%section)%is_full &
         .or. model%materials(part%material)%is_rigid) return
-      is_exposed = count(shares > main_share) > 1 .or. count(shares > 0.5_wp) > 2
+      is_exposed = count(shares > main_share) > 1 .or. count(shares > half_share) > 2
       associate (law => model%materials(part%material))
         if (law%shear < (law%bulk + 4.0_wp*law%shear/3.0_wp)/6.0_wp) &
           is_exposed = is_exposed .or. all(is_surrounded(nodes))
