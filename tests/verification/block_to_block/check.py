@@ -16,7 +16,6 @@ from chain import Blocks, solve  # noqa: E402
 from slideline_tools.scenes import block, block_grids  # noqa: E402
 
 WIDTH, PENALTY, N_SLAVE, N_MASTER = 10.0, 1.0e6, 51, 50
-TOLERANCE = 1.0e-8
 
 
 def chain_of(*springs):

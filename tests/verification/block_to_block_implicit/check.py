@@ -17,7 +17,6 @@ from implicit_chain import solve  # noqa: E402
 from slideline_tools.scenes import block, block_grids  # noqa: E402
 
 WIDTH, PENALTY, N_SLAVE, N_MASTER = 10.0, 1.0e6, 51, 50
-TOLERANCE = 1.0e-8
 SECTION = "         1        13       1.0         1\n"
 ITERATION = re.compile(r"^step to (\S+) iteration (\d+): energy ratio (\S+),", re.M)
 

@@ -11,9 +11,7 @@ from patch_layouts import load_edges, lines
 
 YOUNG, RHO, PRESSURE, SOFT = 1.0e6, 1000.0, 1.0, 1.0e7
 FAIL = sorted(set(TYPES) - set(PASS_PATCH) - {6})
-ROUND_OFF = 1.0e-13
 PULL, DAMPING = 0.01, 20.0  # of the bars, m/s^2 and 1/s
-TILT = 1.0e-6  # faces turn by strains of p/E
 
 
 def blocks(title, meshes, form=13, points=4, implicit=True, every=(1.0, 1.0, 1.0)):

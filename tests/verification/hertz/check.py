@@ -22,7 +22,6 @@ FINEST, REFINED = 3, (5, 7)
 FEW = (7,)  # of the latter, and of the implicit ones on the second mesh, where not in full
 TWO_MESHES = (2, 7)  # explicit, where not in full
 MODULUS = lines.effective_modulus(STEEL, ALUMINIUM)
-CLOSED_FORM, ON_SPRINGS = "Hertz (1881)", "integral equation with the penalty as springs"
 
 
 @functools.cache

@@ -15,8 +15,7 @@ import cases  # noqa: E402
 import driver  # noqa: E402
 import eos  # noqa: E402
 
-N_STEP, SEEDS, TOLERANCE = 60, (1, 2, 3), 1.0e-8
-SOURCE = "independent driver"
+N_STEP, SEEDS = 60, (1, 2, 3)
 REFUSALS = ("this material is not available in slideline", "equations of state are not available in slideline")
 
 

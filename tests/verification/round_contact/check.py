@@ -21,7 +21,6 @@ RADII = {"disc": 0.0, "ring": 0.5}
 MESHES = {"5/4": (lines(5), lines(4)), "7/5 graded": (lines(7, 0.35), lines(5, -0.3)),
           "2/7 graded": (lines(2), lines(7, 0.3))}
 SLOPE = np.tan(np.radians(20.0))
-TOLERANCE = 1.0e-9
 
 
 def areas(r, length=None):
