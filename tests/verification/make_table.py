@@ -78,7 +78,7 @@ def with_rows(page, cases, reports):
 
     def section(found):
         rows = "".join(f"| [{name}](../tests/verification/{name}/README.md) | {case['title']} | {case['against']} | "
-                       f"{stand.get(name, '  |  | ')} |\n" for name, case in cases.items() if case["topic"] == found[1])
+                       f"{stand.get(name, '- | - | -')} |\n" for name, case in cases.items() if case["topic"] == found[1])
         return f"## {found[1]}\n\n{found[2]}{rows}"
 
     if reports:
