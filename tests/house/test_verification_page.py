@@ -31,7 +31,7 @@ SHARED = named(ROOT / "tools" / "slideline_tools") | named(ROOT / "input") | {
 
 def check(error, tolerance, kind="rel", passed=True):
     return {"quantity": "x | y", "expected": 1.0, "found": 1.0 + error, "error": error, "tolerance": tolerance, "kind": kind,
-            "passed": passed}
+            "source": "Lame", "passed": passed}
 
 
 def report(*checks):
@@ -71,7 +71,7 @@ def test_figures_are_filled_in():
 
 def test_all_checks_of_a_case():
     text = all_checks(report(check(2.0, 1.0, passed=False)))
-    assert "| x \\| y | 1 | 3 | 2 | 1 | rel | FAIL |" in text
+    assert "| x \\| y | Lame | 1 | 3 | 2 | 1 | rel | FAIL |" in text
 
 
 def test_checks_find_their_entries(tmp_path):

@@ -24,8 +24,8 @@ LEGEND = """
 `error` is relative for kind `rel` (arrays: largest difference over largest expected value, the worst entry shown) and
 absolute for kind `abs`; `min` and `max` are bounds on what was found.
 
-| quantity | expected | found | error | tolerance | kind | verdict |
-|---|---|---|---|---|---|---|
+| quantity | source | expected | found | error | tolerance | kind | verdict |
+|---|---|---|---|---|---|---|---|
 """
 
 
@@ -49,8 +49,8 @@ def all_checks(report):
     def cell(text):
         return text.replace("|", "\\|").replace("\n", " ")
 
-    lines = [f"| {cell(check['quantity'])} | {number(check['expected'])} | {number(check['found'])} | {check['error']:.2g} | "
-             f"{check['tolerance']:.2g} | {check['kind']} | {'pass' if check['passed'] else 'FAIL'} |"
+    lines = [f"| {cell(check['quantity'])} | {cell(check['source'])} | {number(check['expected'])} | {number(check['found'])} | "
+             f"{check['error']:.2g} | {check['tolerance']:.2g} | {check['kind']} | {'pass' if check['passed'] else 'FAIL'} |"
              for check in report["checks"]]
     if report["reported"]:
         lines += ["\nReported, not judged:\n", "| quantity | found | note |", "|---|---|---|"]
