@@ -16,7 +16,7 @@ from make_table import all_checks, figures, read_cases, with_rows  # noqa: E402
 PAGE = (ROOT / "doc" / "verification.md").read_text(encoding="utf-8")
 CASES, FOLDER = read_cases(), ROOT / "tests" / "verification"
 MOST_LINES = 60
-KEYS = {"tolerance", "kind", "source", "full"}
+KEYS = {"tolerance", "scale", "kind", "source", "full"}
 
 
 def named(folder):
@@ -77,11 +77,12 @@ def test_all_checks_of_a_case():
 def test_checks_find_their_entries(tmp_path):
     run = run_case.Run("hertz", None, tmp_path)
     run.quantities = {"round*: force": {"tolerance": 0.5, "kind": "abs"}, "force": {"tolerance": 0.1, "source": "F"},
-                      "width of *": {"tolerance": "two cells"}, "[a] meets": {}, "order": {"full": True}}
+                      "width of *": {"tolerance": "two cells"}, "arc": {"tolerance": 0.1, "scale": "s"},
+                      "[a] meets": {}, "order": {"full": True}}
     assert run.check("round, type 2: force", 1.4, 1.0) and not run.check("plane, round: force", 1.4, 1.0)
-    assert run.check("plane: force", 1.4, 1.0, scale=5.0) and run.true("a: [a] meets", True) and not run.true("[a] meets", False)
+    assert run.check("arc", 1.4, 1.0, scale=5.0) and run.true("a: [a] meets", True) and not run.true("[a] meets", False)
     assert run.check("plane: width of a", 2.0, 1.0, tol=1.0) and run.records[1]["source"] == "F"
-    for quantity, words in (("moment", {}), ("width of a", {}), ("force", {"tol": 0.1})):
+    for quantity, words in (("moment", {}), ("width of a", {}), ("force", {"tol": 0.1}), ("force", {"scale": 2.0}), ("arc", {})):
         with pytest.raises((LookupError, ValueError), match=quantity):
             run.check(quantity, 1.0, 1.0, **words)
     assert run.unused() == []

@@ -12,6 +12,7 @@ case.toml what is run and what each check is judged against (Run.entry):
     [quantity]                          # tolerance 0, kind "rel" where left out; full: of full runs alone
     "order of the *" = {tolerance = 0.1, kind = "abs", source = "second order"}
     "half width" = {tolerance = "words, where the case computes it", full = true}
+    "force" = {tolerance = 0.5, scale = "words for what it is times"}
 
 With `--full` (or SLIDELINE_FULL=1) it runs every combination and the longest
 runs; without, as in CI, a covering design of them
@@ -201,19 +202,19 @@ class Run:
         return [name for name, entry in self.quantities.items()
                 if name not in self.used and (self.is_full or not entry.get("full"))]
 
-    def check(self, quantity, found, expected, tol=None, kind=None, source=None, scale=1.0):
+    def check(self, quantity, found, expected, tol=None, kind=None, source=None, scale=None):
         """Compare and record. Arrays: largest difference, relative to the largest expected.
 
-        The tolerance of case.toml times `scale`, or `tol` where case.toml has words for it.
+        The tolerance is that of case.toml, times `scale`, or `tol`, where case.toml has words for them.
         kind: rel, abs, or one of the bounds min (found >= expected - tol) and max.
         """
         if self.quantities:
             entry = self.entry(quantity)
             kind, source = entry.get("kind", "rel"), entry.get("source", "")
             tolerance = entry.get("tolerance", 0.0)
-            if isinstance(tolerance, str) == (tol is None):
-                raise ValueError(f"{quantity}: tolerance in case.toml or, where that has words, in check.py")
-            tol = float(scale * tolerance if tol is None else tol)
+            if isinstance(tolerance, str) == (tol is None) or ("scale" in entry) == (scale is None):
+                raise ValueError(f"{quantity}: tol and scale in check.py only where case.toml has words for them")
+            tol = float((1.0 if scale is None else scale) * tolerance if tol is None else tol)
         return self._compare(quantity, found, expected, tol, kind or "rel", source or "")
 
     def _compare(self, quantity, found, expected, tol, kind, source):
