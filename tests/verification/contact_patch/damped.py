@@ -117,7 +117,7 @@ def check_inclined(run, kind, matching):
     for side, ids in zip(("slave", "master"), sides):
         found, wanted = force[ids - 1], consistent_forces(place[ids - 1], load)
         if kind in PASS_PATCH or matching:
-            run.check(f"{name}: nodal forces of a hydrostatic state on the {side} side", found, wanted)
+            run.check(f"{name}: nodal forces on the {side} side", found, wanted)
         else:
             run.report(f"{name}: max |p/p0 - 1| on the {side} side",
                        np.max(np.linalg.norm(found - wanted, axis=1) / np.linalg.norm(wanted, axis=1)))

@@ -105,7 +105,7 @@ def check_slope(run, kind, exchanged=False, slope=np.radians(30.0), friction=0.5
     weight = mass * GRAVITY * np.sin(slope)
     run.check(f"{name}: acceleration", np.polyfit(time[late], speed[late], 1)[0], weight / mass / (1.0 + share))
     expected = weight * share / (1.0 + share)
-    run.check(f"{name}: mean friction when it rolls", -np.mean(along[late]), expected)
+    run.check(f"{name}: friction", -np.mean(along[late]), expected)
     run.check(f"{name}: normal force", np.mean(across[late]), mass * GRAVITY * np.cos(slope))
     late = time > 0.6
     run.check(f"{name}: creep", 1.0 - np.mean(rim[late] / speed[late]), brush(expected, mass * GRAVITY * np.cos(slope), friction))
@@ -126,7 +126,7 @@ def check_begins(run, kind, friction=0.2, speed=1.0):
     line = np.polyfit(time[slides], (moved - rim)[slides], 1)
     run.check(f"{name}: begins to roll", -line[1] / line[0], begins)
     run.check(f"{name}: friction while it slides", -np.sum(along[slides]), friction * np.sum(across[slides]))
-    run.check(f"{name}: dissipated until it rolls", result.table("glstat")["friction"][-1],
+    run.check(f"{name}: dissipated", result.table("glstat")["friction"][-1],
               0.5 * mass * speed ** 2 * share / (1.0 + share))
     check_energy(run, name, result)
 
@@ -139,7 +139,7 @@ def check_units(run, kind):
         # kg per mm of depth
         found.append(measured(run.program(deck), 1.0e-3 * mass if small else mass))
     for what, index, factor in (("force along the plate", 1, 1.0e-6), ("normal force", 2, 1.0e-6), ("speed", 3, 1.0)):
-        run.check(f"{TYPES[kind]}: mm, ms, kg, {what}", found[1][index], factor * found[0][index])
+        run.check(f"mm, ms, kg: {what}: {TYPES[kind]}", found[1][index], factor * found[0][index])
 
 
 def check(run):
