@@ -8,7 +8,7 @@ from meshes import Deck, grid_quads
 YOUNG, POISSON, RHO, FRICTION = 1.3e11, 0.2, 7800.0, 1.0
 SIDE, CELLS = 0.04, 32
 ABOVE, ASIDE = 5.0e7, 15.0e7
-KINDS, STIFF_KINDS = tuple(TYPES), (4, 6, 7)
+STIFF_KINDS = (4, 6, 7)
 #: N/m per contact node: a strip of SIDE/100 of the plate's own material.
 PENALTY = 1.0e2 * YOUNG / CELLS
 #: Places on the contact side, m, and u_x there, m: mean of codes as GRECO gives it, and code_aster's own values.
@@ -43,13 +43,14 @@ def plate(kind, steps=20, stiffer=1.0):
 
 
 def check(run):
-    for kind, stiffer in [(kind, 1.0) for kind in KINDS] + [(kind, 10.0) for kind in (STIFF_KINDS if run.is_full else STIFF_KINDS[-1:])]:
+    stiff = STIFF_KINDS if run.is_full else STIFF_KINDS[-1:]
+    for kind, stiffer in [*((kind, 1.0) for kind in TYPES), *((kind, 10.0) for kind in stiff)]:
         deck, row = plate(kind, stiffer=stiffer)
         result = run.program(deck)
         points = result.points("Points")
         moved = np.interp(PLACES, points[0, row - 1, 0], (points[-1] - points[0])[row - 1, 0])
         name = TYPES[kind] + (", stiff springs" if stiffer > 1.0 else "")
-        run.check(f"{name}: u_x of the contact side", moved, CODES, 0.02, "rel", "mean of codes, GRECO (code_aster V6.04.128)")
-        run.check(f"{name}: u_x of the contact side, one code", moved, ONE_CODE, 0.01, "rel", "code_aster V6.04.128")
+        run.check(f"{name}: u_x of the contact side", moved, CODES)
+        run.check(f"{name}: u_x of the contact side, one code", moved, ONE_CODE)
         force = result.table("rcforc").where(side="slave")
-        run.check(f"{name}: normal force", force["fy"][-1], ABOVE * SIDE, 1e-6, "rel", "balance")
+        run.check(f"{name}: normal force", force["fy"][-1], ABOVE * SIDE)

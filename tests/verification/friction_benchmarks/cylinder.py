@@ -1,17 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""The cylinder on a block of the contact benchmarks of NAFEMS, with friction and without."""
-import pathlib
-import sys
-
+"""NAFEMS: a cylinder on a block, with friction and without."""
 import numpy as np
 
 from contact_types import TYPES
 from meshes import Deck
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
-
-from slideline_tools.scenes.hertz import graded  # noqa: E402
-from slideline_tools.studies import line_contact  # noqa: E402
+from slideline_tools.scenes.hertz import graded
+from slideline_tools.studies import line_contact
 
 #: mm, N, MPa, t; of the half model.
 RADIUS, WIDTH, HEIGHT, LOAD = 50.0, 100.0, 200.0, 35.0e3 / 2.0
@@ -79,18 +73,15 @@ def answer(run, kind, friction):
 
 def check(run):
     half_width, peak = line_contact.hertz(2.0 * LOAD, RADIUS, line_contact.effective_modulus(STEEL, ALUMINIUM))
-    run.check("Hertz of the data: largest pressure", peak, 3585.4, 1e-4, source="NAFEMS")
-    run.check("Hertz of the data: half width", half_width, 6.2146, 1e-4, source="NAFEMS")
     for kind, name in TYPES.items():
         sink, _, result = answer(run, kind, FRICTION)
-        run.check(f"{name}, mu {FRICTION:g}: sink of the block's top", sink, np.mean(TOLD), 0.015, source="NAFEMS, two programs")
+        run.check(f"{name}, mu {FRICTION:g}: sink of the block's top", sink, np.mean(TOLD))
         if kind in SMOOTH:
             smooth, profile, _ = answer(run, kind, 0.0)
-            run.check(f"{name}, mu 0: half width", profile.half_width, half_width, 0.01, source="Hertz (1881)")
-            run.check(f"{name}, mu 0: largest pressure", profile.peak, peak, 0.01, source="Hertz (1881)")
+            run.check(f"{name}, mu 0: half width", profile.half_width, half_width)
+            run.check(f"{name}, mu 0: largest pressure", profile.peak, peak)
             run.report(f"{name}: what friction takes off the sink, of it", 1.0 - sink / smooth)
-        force = result.table("rcforc").where(side="slave")
-        run.check(f"{name}: load", force["fy"][-1], LOAD, 1e-9)
+        run.check(f"{name}: load", result.table("rcforc").where(side="slave")["fy"][-1], LOAD)
         energies = result.table("glstat")
-        run.check(f"{name}: total / external work", energies["total"][-1] / energies["external_work"][-1], 1.0, 1e-3)
-        run.check(f"{name}: friction dissipates", energies["friction"][-1], 0.0, -1e-6 * energies["external_work"][-1], "min")
+        run.check(f"{name}: total / external work", energies["total"][-1] / energies["external_work"][-1], 1.0)
+        run.check(f"{name}: friction dissipates", energies["friction"][-1], 0.0, scale=energies["external_work"][-1])

@@ -1,18 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Steady sliding flutters: growth rate and frequency against complex eigenvalues, on a thin plate and a thick one."""
-import pathlib
-import sys
-
 import numpy as np
 
 from contact_types import TYPES
-from meshes import Deck, card
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
-
-from slideline_tools.decks import Grid, spaced  # noqa: E402
-from slideline_tools.studies.stability.eigen import Model  # noqa: E402
-from slideline_tools.studies.stability.springs import springs  # noqa: E402
+from meshes import Deck
+from slideline_tools.decks import Grid, spaced
+from slideline_tools.studies.stability.eigen import Model
+from slideline_tools.studies.stability.springs import springs
 
 YOUNG, POISSON, RHO, HOURGLASS = 1.0e9, 0.3, 1000.0, 0.1
 CELL, BLOCK_ROWS = 0.1, 3
@@ -70,19 +64,6 @@ class Scene:
         shape[self.model.free] = np.real(found / found[np.abs(found).argmax()])
         return float(rates[fastest]), float(turn), shape.reshape(-1, 2)
 
-    def pair(self, friction):
-        """The two frictionless modes that share in the growing motion most: their frequencies, rad/s, what part of it they
-        are, and the rate, 1/s, of those two alone."""
-        root = np.sqrt(self.mass)
-        symmetric = root[:, None] * self.matrix(0.0) / root
-        squares, modes = np.linalg.eigh(0.5 * (symmetric + symmetric.T))
-        full = modes.T @ (root[:, None] * self.matrix(friction) / root) @ modes
-        values, vectors = np.linalg.eig(full)
-        share = np.abs(vectors[:, np.argmax(np.abs(np.sqrt(values.astype(complex)).imag))]) ** 2
-        two = np.argsort(-share)[:2]
-        alone = np.linalg.eigvals(full[np.ix_(two, two)]).astype(complex)
-        return np.sqrt(squares[two]), share[two].sum() / share.sum(), np.abs(np.sqrt(alone).imag).max()
-
     def highest(self):
         """Highest frequency without friction, rad/s."""
         return np.sqrt(np.linalg.eigvals(self.matrix(0.0)).real.max())
@@ -119,10 +100,7 @@ def deck(scene, friction, shape, rate):
     text.add("*LOAD_NODE_POINT", *loads).add("*DAMPING_GLOBAL", (4, 0.0))
     text.add("*CONTACT_2D_SLIDELINE", (-3, -4, scene.kind, 4, scene.penalty, friction),
              (0.0, 1.0e20, 1))
-    text.output(glstat=end / 50, nodout=2.0 * scene.step)
-    # Eight nodes a card.
-    nodes = [int(node) for node in upper.lower]
-    return text.add("*DATABASE_HISTORY_NODE", *[card(nodes[k:k + 8]) for k in range(0, len(nodes), 8)]), begin
+    return text.output(glstat=end / 50, nodout=2.0 * scene.step, nodes=[int(node) for node in upper.lower]), begin
 
 
 def speeds(result, begin):
@@ -161,19 +139,9 @@ def check_growth(run, kind, rows, ratio, friction):
     name = f"{plate}, penalty {ratio:g} K L/A, mu {friction:g}: {TYPES[kind]}"
     text, begin = deck(scene, friction, shape, rate)
     found, turns = growth(*speeds(run.program(text), begin), omega)
-    run.check(f"{name}: growth rate, 1/s", found, rate, 0.05, source="eigenvalues of M^-1 (K + S - mu S turned)")
-    run.check(f"{name}: frequency, rad/s", turns, omega, 0.01, source="the same")
+    run.check(f"{name}: growth rate, 1/s", found, rate)
+    run.check(f"{name}: frequency, rad/s", turns, omega)
     run.report(f"{name}: rate over the highest frequency", found / scene.highest())
-    return scene
-
-
-def check_why(run, scene, friction):
-    """Two modes of almost the same frequency make it."""
-    rate = scene.motion(friction)[0]
-    (one, two), share, alone = scene.pair(friction)
-    run.check(f"thin plate, mu {friction:g}: rate of two modes alone over that of all", alone, rate, 0.02)
-    run.report(f"thin plate, mu {friction:g}: their frequencies, one over the other", max(one, two) / min(one, two))
-    run.report(f"thin plate, mu {friction:g}: their part of the motion", share)
 
 
 def check_without_friction(run, kind):
@@ -184,15 +152,15 @@ def check_without_friction(run, kind):
     _, across = speeds(run.program(text), begin)
     quarter = len(across) // 4
     early, late = (np.mean(rows ** 2) for rows in (across[:quarter], across[-quarter:]))
-    run.check(f"mu 0: {TYPES[kind]}: speeds at the end over those after the kick", np.sqrt(late / early), 1.1, 0.0, "max")
+    run.check(f"mu 0: {TYPES[kind]}: speeds at the end over those after the kick", np.sqrt(late / early), 1.1)
 
 
 def check(run):
-    thin = {kind: check_growth(run, kind, 1, 1.0, 0.3) for kind in TYPES}
+    for kind in TYPES:
+        check_growth(run, kind, 1, 1.0, 0.3)
     check_growth(run, 7, 1, 1.0, 0.1)
     for ratio in (0.1, 10.0):
         check_growth(run, 7, 1, ratio, 0.3)
     for friction in (0.3, 0.5):
         check_growth(run, 7, 6, 1.0, friction)
     check_without_friction(run, 7)
-    check_why(run, thin[7], 0.3)
