@@ -1,20 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Bring the figures of doc/verification.md up to date from the results of the runs.
+"""Write the rows of doc/verification.md from case.toml of each case and from the results of the runs.
 
 `make_table.py --results DIR`, where DIR holds the <case>.json files left by run_case.py
-(`ctest -L verification`; SLIDELINE_FULL=1 runs every combination). What a case is and against what it is
-judged is written by hand in the row of the case; this script fills in the last three cells.
-All checks of a case stand below its README on the site (tools/docs/site_source.py).
+(`ctest -L verification`; SLIDELINE_FULL=1 runs every combination). A case without results keeps its figures, the last
+three cells. All checks of a case stand below its README on the site (tools/docs/site_source.py).
 """
 import argparse
 import json
 import pathlib
 import re
 import sys
+import tomllib
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-ROW = re.compile(r"^(\| \[(\w+)\]\([^)]*\) \| .* \| .* \|) [^|]* \| [^|]* \| [^|]* \|$", re.M)
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+ROW = re.compile(r"^\| \[(\w+)\]\(.*\| ([^|]* \| [^|]* \| [^|]*) \|$", re.M)
+SECTION = re.compile(r"^## (.+)\n\n(\| case .*\n\|---.*\n)((?:\| \[.*\n)*)", re.M)
 COUNT = re.compile(r"^\d+ cases with \d+ checks.*$", re.M)
 LEGEND = """
 ## All checks
@@ -31,6 +33,11 @@ def read_reports(folder):
     """{case: report} of the <case>.json files in a folder."""
     reports = (json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("*.json")))
     return {report["case"]: report for report in reports}
+
+
+def read_cases():
+    """{case: content of its case.toml}."""
+    return {path.parent.name: tomllib.loads(path.read_text(encoding="utf-8")) for path in sorted(HERE.glob("*/case.toml"))}
 
 
 def number(value):
@@ -64,27 +71,36 @@ def figures(report):
     return f"{len(checks)} | {error:.2g} | {tolerance:.2g}"
 
 
-def with_figures(page, reports):
-    """The page with the figures of these reports in the rows of their cases."""
-    checks = [check["passed"] for report in reports.values() for check in report["checks"]]
-    how = "in full" if all(report["full"] for report in reports.values()) else "with covering designs, as in CI"
-    page = COUNT.sub(f"{len(reports)} cases with {len(checks)} checks, {sum(checks)} passed, run {how}.", page)
-    return ROW.sub(lambda row: f"{row[1]} {figures(reports[row[2]])} |" if row[2] in reports else row[0], page)
+def with_rows(page, cases, reports):
+    """The page with a row for each case in the section of its topic, figures from `reports` or as they were."""
+    stand = {row[1]: row[2] for row in ROW.finditer(page)}
+    stand |= {case: figures(report) for case, report in reports.items()}
+
+    def section(found):
+        rows = "".join(f"| [{name}](../tests/verification/{name}/README.md) | {case['title']} | {case['against']} | "
+                       f"{stand.get(name, '  |  | ')} |\n" for name, case in cases.items() if case["topic"] == found[1])
+        return f"## {found[1]}\n\n{found[2]}{rows}"
+
+    if reports:
+        checks = [check["passed"] for report in reports.values() for check in report["checks"]]
+        how = "in full" if all(report["full"] for report in reports.values()) else "with covering designs, as in CI"
+        page = COUNT.sub(f"{len(reports)} cases with {len(checks)} checks, {sum(checks)} passed, run {how}.", page)
+    return SECTION.sub(section, page)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--results", required=True, type=pathlib.Path)
+    parser.add_argument("--results", type=pathlib.Path, help="without them the figures stay")
     parser.add_argument("--page", type=pathlib.Path, default=ROOT / "doc" / "verification.md")
     options = parser.parse_args()
-    reports = read_reports(options.results)
-    page = options.page.read_text(encoding="utf-8")
-    missing = set(reports) - {row[2] for row in ROW.finditer(page)}
-    if missing or not reports:
-        print(f"{options.page}: no row for {', '.join(sorted(missing))}" if reports else f"no results in {options.results}",
-              file=sys.stderr)
+    reports, cases = read_reports(options.results) if options.results else {}, read_cases()
+    page = with_rows(options.page.read_text(encoding="utf-8"), cases, reports)
+    missing = (set(cases) | set(reports)) - {row[1] for row in ROW.finditer(page)}
+    if missing or options.results and not reports:
+        print(f"{options.page}: no row for {', '.join(sorted(missing))}: topic of its case.toml" if missing
+              else f"no results in {options.results}", file=sys.stderr)
         return 1
-    options.page.write_text(with_figures(page, reports), encoding="utf-8")
+    options.page.write_text(page, encoding="utf-8")
     return 0
 
 

@@ -2,7 +2,17 @@
 # SPDX-License-Identifier: MIT
 """Run one verification case: `run_case.py CASE --program EXE --work DIR`.
 
-The case is the folder CASE beside this file; its check.py holds `check(run)`.
+The case is the folder CASE beside this file; its check.py holds `check(run)`, its
+case.toml what is run and what each check is judged against (Run.entry):
+
+    title = "bar at a wall"             # row and section (topic) of doc/verification.md
+    against = "waves; momentum"
+    topic = "Contact"
+    decks = ["bar_deck: what it is"]    # functions that make decks, or files
+    [quantity]                          # tolerance 0, kind "rel" where left out; full: of full runs alone
+    "order of the *" = {tolerance = 0.1, kind = "abs", source = "second order"}
+    "half width" = {tolerance = "words, where the case computes it", full = true}
+
 With `--full` (or SLIDELINE_FULL=1) it runs every combination and the longest
 runs; without, as in CI, a covering design of them
 (`run.cover`) and what else `run.is_full` leaves. Tolerances are the same.
@@ -15,6 +25,7 @@ only if at least one check ran and all passed.
 import argparse
 import csv
 import collections
+import fnmatch
 import importlib.util
 import itertools
 import json
@@ -24,6 +35,7 @@ import pathlib
 import shutil
 import subprocess
 import sys
+import tomllib
 import traceback
 
 import h5py
@@ -135,6 +147,10 @@ class Run:
         self.work = work / case
         self.records = []
         self.reported = []
+        description = self.folder / "case.toml"
+        self.quantities = (tomllib.loads(description.read_text(encoding="utf-8"))["quantity"]
+                           if description.exists() else {})
+        self.used = set()
         self._n_run = 0
         shutil.rmtree(self.work, ignore_errors=True)
         self.work.mkdir(parents=True)
@@ -170,11 +186,37 @@ class Run:
         return [tuple(choice[k] for choice, k in zip(values, row))
                 for row in covering([len(choice) for choice in values], strength)]
 
-    def check(self, quantity, found, expected, tol, kind="rel", source=""):
+    def entry(self, quantity):
+        """Entry of a check in `[quantity]` of case.toml: the first whose name, * for any text, fits what stands behind the
+        last ": " of the check's name, or all of it where the entry has a ": "."""
+        part = quantity.rsplit(": ", 1)[-1]
+        for name, entry in self.quantities.items():
+            if fnmatch.fnmatchcase(quantity if ": " in name else part, name.replace("[", "[[]")):
+                self.used.add(name)
+                return entry
+        raise LookupError(f"{quantity}: no entry in {self.case}/case.toml")
+
+    def unused(self):
+        """Entries of case.toml that no check has asked for, but for those of full runs where this is none."""
+        return [name for name, entry in self.quantities.items()
+                if name not in self.used and (self.is_full or not entry.get("full"))]
+
+    def check(self, quantity, found, expected, tol=None, kind=None, source=None, scale=1.0):
         """Compare and record. Arrays: largest difference, relative to the largest expected.
 
+        The tolerance of case.toml times `scale`, or `tol` where case.toml has words for it.
         kind: rel, abs, or one of the bounds min (found >= expected - tol) and max.
         """
+        if self.quantities:
+            entry = self.entry(quantity)
+            kind, source = entry.get("kind", "rel"), entry.get("source", "")
+            tolerance = entry.get("tolerance", 0.0)
+            if isinstance(tolerance, str) == (tol is None):
+                raise ValueError(f"{quantity}: tolerance in case.toml or, where that has words, in check.py")
+            tol = float(scale * tolerance if tol is None else tol)
+        return self._compare(quantity, found, expected, tol, kind or "rel", source or "")
+
+    def _compare(self, quantity, found, expected, tol, kind, source):
         found, expected = np.asarray(found, dtype=float), np.asarray(expected, dtype=float)
         try:
             difference = found - expected
@@ -213,7 +255,9 @@ class Run:
 
     def true(self, quantity, condition, source=""):
         """A yes-or-no check."""
-        return self.check(quantity, 1.0 if condition else 0.0, 1.0, 0.0, "abs", source)
+        if self.quantities:
+            source = self.entry(quantity).get("source", "")
+        return self._compare(quantity, 1.0 if condition else 0.0, 1.0, 0.0, "abs", source)
 
     def report(self, quantity, value, note=""):
         """A figure for the table that is not judged."""
@@ -254,6 +298,8 @@ def main():
         case = load_case(options.case)
         if options.seed is None:
             case.check(run)
+            if run.unused():
+                raise LookupError(f"{options.case}/case.toml: no check asks for " + ", ".join(run.unused()))
         else:
             case.sweep(run, options.seed, options.count)
     except Exception:  # the case fails, with the reason on record

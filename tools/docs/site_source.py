@@ -3,7 +3,8 @@
 
 FOLDER/pages gets the Markdown of the repository (links and names of files turned to what they are
 on the site) and the generated keyword pages; FOLDER/mkdocs.yml the settings with the navigation.
-The page of a verification case ends with all its checks, where its results are in build/release/verification.
+The page of a verification case begins with the title of its case.toml and ends with all its checks, where its results are
+in build/release/verification.
 """
 import json
 import os
@@ -17,7 +18,7 @@ import keyword_pages
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "verification"))
 
-from make_table import all_checks, read_reports  # noqa: E402
+from make_table import all_checks, read_cases, read_reports  # noqa: E402
 
 RESULTS = ROOT / "build/release/verification"
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)\s]+)\)")
@@ -145,8 +146,9 @@ def make(build):
     made = [f"keywords/{keyword.file}" for keyword in keywords]
     sources = {**{page: (folder / page, "doc/keywords.md") for page in made},
                **{page: (ROOT / source, source) for source, page in pages.items()}}
+    titles = {f"cases/{name}.md": f"# {name}: {case['title']}\n\n" for name, case in read_cases().items()}
     for page, (path, source) in sources.items():
-        turned = turn_links(path.read_text(encoding="utf-8"), source if page not in made else
+        turned = turn_links(titles.get(page, "") + path.read_text(encoding="utf-8"), source if page not in made else
                             f"doc/{page}", page, {**pages, **{f"doc/{name}": name for name in
                                                   [*made, "keywords/index.md"]}}, names)
         (folder / page).parent.mkdir(parents=True, exist_ok=True)

@@ -44,19 +44,18 @@ def check_beams(run):
         result = run.program(deck, name=f"couple_{n}")
         moved = result.points("displacement")[-1]
         run.check(f"couple, {name}: turn of the end", (moved[n, 0] - moved[-1, 0]) / height,
-                  couple * length / rigidity, 1e-6, source="M L (1 - nu^2)/(E I)")
-        run.check(f"couple, {name}: deflection", moved[-1, 1], 0.5 * couple * length ** 2 / rigidity, 1e-6,
-                  source="M L^2/2")
+                  couple * length / rigidity)
+        run.check(f"couple, {name}: deflection", moved[-1, 1],
+                  0.5 * couple * length ** 2 / rigidity)
         energies = result.table("glstat")
         run.check(f"couple, {name}: energy is that of hourglass control", energies["hourglass"][-1],
-                  0.5 * couple ** 2 * length / rigidity, 1e-6, source="M^2 L/2, none at the centres")
+                  0.5 * couple ** 2 * length / rigidity)
         deck, moment = beam(n, length, height, poisson, "shear")
         force = moment / length
         moved = run.program(deck, name=f"shear_{n}").points("displacement")[-1]
         expected = force * length ** 3 / (3.0 * rigidity) * (1.0 - 0.25 / n ** 2) \
             + 2.0 * (1.0 + poisson) * force * length / (YOUNG * height)
-        run.check(f"shear, {name}: deflection", 0.5 * (moved[n, 1] + moved[-1, 1]), expected, 1e-6,
-                  source="F L^3/3 (1 - 1/(4 n^2)) + F L/(G h)")
+        run.check(f"shear, {name}: deflection", 0.5 * (moved[n, 1] + moved[-1, 1]), expected)
 
 
 def check_cook(run):
@@ -73,9 +72,9 @@ def check_cook(run):
         moved = run.program(deck.output(plot=1.0), name=f"cook_{n}").points("displacement")[-1]
         found.append(1.0e7 * float(moved[(xi == 1.0) & (eta == 0.5), 1][0]))
     run.report("Cook's membrane, 4 x 4: deflection", found[0], "full integration 18.3")
-    run.check("Cook's membrane, 8 x 8 and 16 x 16: deflection to second order", found[2] + (found[2] - found[1]) / 3.0,
-              23.96, 2e-3, source="converged, literature")
-    run.check("Cook's membrane, 16 x 16: deflection", found[2], 23.96, 1e-2, source="the same")
+    run.check("Cook's membrane, 8 x 8 and 16 x 16: deflection to second order",
+              found[2] + (found[2] - found[1]) / 3.0, 23.96)
+    run.check("Cook's membrane, 16 x 16: deflection", found[2], 23.96)
 
 
 def check_patch(run):
@@ -92,11 +91,11 @@ def check_patch(run):
         result = run.program(deck.output(plot=1.0, glstat=1.0), name=f"patch_{elform}")
         name = "round patch" if elform == 15 else "plane patch"
         run.check(f"{name}: inner node / largest displacement",
-                  np.abs(result.points("displacement")[-1][4, :2] - moved[4]).max() / np.abs(moved).max(), 0.0, 3e-8,
-                  "abs", "linear (the strain squared is 1e-15)")
+                  np.abs(result.points("displacement")[-1][4, :2] - moved[4]).max()
+                  / np.abs(moved).max(), 0.0)
         energies = result.table("glstat")
-        run.check(f"{name}: hourglass / internal energy", energies["hourglass"][-1] / energies["internal"][-1],
-                  0.0, 1e-12, "abs", "none")
+        run.check(f"{name}: hourglass / internal energy",
+                  energies["hourglass"][-1] / energies["internal"][-1], 0.0)
 
 
 def energy_ratios(result):
@@ -115,15 +114,13 @@ def check_newton(run):
     deck.fix(nodes[[0, 11]], x=1, y=1)
     loaded(deck, [(nodes[10], 2, 200.0), (nodes[21], 2, 200.0)])
     result = run.program(deck.output(plot=0.1, glstat=0.1))
-    run.check("bent far: deflection / length", result.points("displacement")[-1][10, 1] / 10.0, 0.6, 0.0, "min",
-              "far")
+    run.check("bent far: deflection / length", result.points("displacement")[-1][10, 1] / 10.0, 0.6)
     ratios = energy_ratios(result)
     orders = np.log(ratios[2:]) / np.log(ratios[1:-1])
     fast = [k for k in range(len(orders)) if 1e-26 < ratios[k + 2] and ratios[k + 1] < 1e-3]
-    run.check("bent far: order of the last iterations", max(orders[k] for k in fast) if fast else 0.0, 1.7, 0.0,
-              "min", "Newton")
-    run.check("bent far: energy ratio", result.table("glstat")["energy_ratio"][-1], 1.0, 2e-2, "abs",
-              "trapezoidal work of ten steps")
+    run.check("bent far: order of the last iterations",
+              max(orders[k] for k in fast) if fast else 0.0, 1.7)
+    run.check("bent far: energy ratio", result.table("glstat")["energy_ratio"][-1], 1.0)
 
 
 def check_hinge(run):
@@ -146,11 +143,10 @@ def check_hinge(run):
     middle = 0.5 * (energies["time"][-1] + energies["time"][-6]) * curvature
     hinge = 2.0 / np.sqrt(3.0) * yield_stress * height ** 2 / 4.0
     own = quality * YOUNG / (1.0 - POISSON ** 2) * height ** 3 / 12.0 / 16.0 * middle
-    run.check("plastic hinge: moment", moment, hinge + own, 1e-2,
-              source="2/sqrt(3) sY h^2/4 + QM E I/(16 (1 - nu^2)) curvature")
+    run.check("plastic hinge: moment", moment, hinge + own)
     run.report("plastic hinge: share of the layers' own bending", own / hinge)
     run.check("plastic hinge: work of hourglass control", energies["hourglass"][-1],
-              0.5 * own / middle * curvature ** 2 * length, 1e-2, source="elastic")
+              0.5 * own / middle * curvature ** 2 * length)
 
 
 def check_tube(run):
@@ -170,13 +166,13 @@ def check_tube(run):
     result = run.program(deck.output(plot=1.0, glstat=1.0))
     moved = result.points("displacement")[-1]
     deflection = 0.5 * (moved[:-1:2, 0] + moved[1::2, 0])
-    run.check("tube: radial displacement of the loaded end", deflection[0], size / (2.0 * beta ** 3 * rigidity), 1e-2,
-              source="Q/(2 beta^3 D), Timoshenko & Woinowsky-Krieger 1959")
+    run.check("tube: radial displacement of the loaded end", deflection[0],
+              size / (2.0 * beta ** 3 * rigidity))
     exact = size / (2.0 * beta ** 3 * rigidity) * np.exp(-beta * z) * np.cos(beta * z)
-    run.check("tube: largest error of the wave", np.abs(deflection - exact).max() / exact[0], 0.0, 1e-2, "abs", "same")
+    run.check("tube: largest error of the wave", np.abs(deflection - exact).max() / exact[0], 0.0)
     energies = result.table("glstat")
-    run.check("tube: internal and hourglass energy", energies["internal"][-1] + energies["hourglass"][-1],
-              energies["external_work"][-1], 1e-6, source="work of the load")
+    run.check("tube: internal and hourglass energy",
+              energies["internal"][-1] + energies["hourglass"][-1], energies["external_work"][-1])
 
 
 def check_vibration(run):
@@ -205,9 +201,9 @@ def check_vibration(run):
     rotary = height ** 2 / 4.0 / length ** 2 * 4.648  # lumped masses lie at the faces
     shear = height ** 2 / 12.0 / length ** 2 * 4.648 * 2.0 * (1.0 + POISSON) / (1.0 - POISSON ** 2)
     run.check("explicit beam: frequency of the first bending mode", 0.5 / np.diff(crossing).mean(),
-              frequency / np.sqrt(1.0 + rotary + shear), 4e-3, source="Euler-Bernoulli, shear and rotary inertia")
+              frequency / np.sqrt(1.0 + rotary + shear))
     energies = result.table("glstat")
-    run.check("explicit beam: energy ratio", energies["energy_ratio"], 1.0, 2e-3, "abs", "balance")
+    run.check("explicit beam: energy ratio", energies["energy_ratio"], 1.0)
 
 
 def check_full(run):
@@ -218,9 +214,9 @@ def check_full(run):
         results[points] = run.program(deck, name=f"points_{points}")
     moved = {points: result.points("displacement")[-1] for points, result in results.items()}
     for points, name in ((None, "NIP blank"), (2, "NIP 2")):
-        run.check(f"{name} without IHQ 6: displacement", moved[points], moved[4], 0.0, "abs", "NIP 4")
+        run.check(f"{name} without IHQ 6: displacement", moved[points], moved[4])
         log = (results[points].folder / f"{results[points].job}.log").read_text()
-        run.check(f"{name} without IHQ 6: warnings", log.count("whose NIP is not 4 as NIP 4"), 1, 0.0, "abs", "one")
+        run.check(f"{name} without IHQ 6: warnings", log.count("whose NIP is not 4 as NIP 4"), 1)
 
 
 def check(run):

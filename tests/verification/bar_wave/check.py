@@ -47,35 +47,29 @@ def check_load(run, load):
         exact = np.where(centre < SOUND * time[-1], -STRESS, 0.0)
         errors.append(np.mean(np.abs(stress[-1] - exact)) / STRESS)
         run.report(f"{load}: mean stress error / rho c v, {n} elements", errors[-1])
-    run.check(f"{load}: order of the mean error", run.order(1.0 / np.array(n_elements), errors), 0.5,
-              0.1, "abs", "a jump with a dispersive tail: 1/2")
+    run.check(f"{load}: order of the mean error", run.order(1.0 / np.array(n_elements), errors),
+              0.5)
     for place in (0.25, 0.5, 0.7):
         k = int(place * n)
         run.check(f"{load}: arrival at {centre[k]:.3f} m", arrival(time, stress[:, k]),
-                  centre[k] / SOUND, 0.015, source="x/c")
+                  centre[k] / SOUND)
     # the two arrivals' difference is free of the start
-    run.check(f"{load}: wave speed",
-              (centre[140] - centre[40]) / (arrival(time, stress[:, 140])
-                                            - arrival(time, stress[:, 40])), SOUND, 5e-3,
-              source="sqrt(E/rho)")
+    run.check(f"{load}: wave speed", (centre[140] - centre[40])
+              / (arrival(time, stress[:, 140]) - arrival(time, stress[:, 40])), SOUND)
     behind = centre < 0.6 * LENGTH
-    run.check(f"{load}: stress behind the front", stress[-1, behind].mean(), -STRESS, 5e-3,
-              source="rho c v")
+    run.check(f"{load}: stress behind the front", stress[-1, behind].mean(), -STRESS)
     velocity = result.points("velocity")[-1, :n + 1, 0]
-    run.check(f"{load}: velocity behind the front", velocity[:int(0.6 * n)].mean(), SPEED, 5e-3,
-              source="p/(rho c)")
+    run.check(f"{load}: velocity behind the front", velocity[:int(0.6 * n)].mean(), SPEED)
     area = LENGTH / n
     energy = result.table("glstat")
     run.check(f"{load}: external work", energy["external_work"][-1],
-              RHO * SOUND * SPEED ** 2 * area * END_TIME, 1e-2, source="rho c v^2 t")
-    run.check(f"{load}: energy ratio", energy["energy_ratio"][40:], 1.0, 1e-2, "abs",
-              "balance, past the first fifth")
+              RHO * SOUND * SPEED ** 2 * area * END_TIME)
+    run.check(f"{load}: energy ratio", energy["energy_ratio"][40:], 1.0)
     momentum = result.table("matsum")
-    run.check(f"{load}: momentum", momentum["momentum_x"][-1], STRESS * area * END_TIME, 1e-2,
-              source="stress x time")
+    run.check(f"{load}: momentum", momentum["momentum_x"][-1], STRESS * area * END_TIME)
     if load == "pressure":
         run.check("pressure: momentum is the impulse at all times", momentum["momentum_x"],
-                  STRESS * area * momentum["time"], 1e-11, source="p A t, central difference")
+                  STRESS * area * momentum["time"])
 
 
 def check_viscosity(run):
@@ -86,17 +80,16 @@ def check_viscosity(run):
     peaks = [np.max(-result.cells("stress")[..., 0]) / STRESS for result in (plain, viscous)]
     run.report("bulk viscosity off: largest stress / rho c v", peaks[0])
     run.report("bulk viscosity Q2 0.3: largest stress / rho c v", peaks[1])
-    run.check("bulk viscosity: overshoot left / overshoot without", (peaks[1] - 1.0)
-              / (peaks[0] - 1.0), 0.5, 0.0, "max", "that is what it is for")
+    run.check("bulk viscosity: overshoot left / overshoot without",
+              (peaks[1] - 1.0) / (peaks[0] - 1.0), 0.5)
     behind = (np.arange(n) + 0.5) * LENGTH / n < 0.6 * LENGTH
-    run.check("bulk viscosity: stress behind the front", viscous.cells("stress")[-1, behind, 0].mean(),
-              -STRESS, 1e-2, source="rho c v")
+    run.check("bulk viscosity: stress behind the front",
+              viscous.cells("stress")[-1, behind, 0].mean(), -STRESS)
     energy = viscous.table("glstat")
-    run.check("bulk viscosity: energy ratio", energy["energy_ratio"][40:], 1.0, 1e-2, "abs", "balance")
-    run.check("bulk viscosity: dissipated energy never falls", np.diff(energy["viscous"]), 0.0, 0.0,
-              "min", "second law")
-    run.check("bulk viscosity: dissipated / total energy", energy["viscous"][-1] / energy["total"][-1],
-              1e-3, 0.0, "min", "so that the balance means something")
+    run.check("bulk viscosity: energy ratio", energy["energy_ratio"][40:], 1.0)
+    run.check("bulk viscosity: dissipated energy never falls", np.diff(energy["viscous"]), 0.0)
+    run.check("bulk viscosity: dissipated / total energy",
+              energy["viscous"][-1] / energy["total"][-1], 1e-3)
 
 
 def check(run):

@@ -31,9 +31,7 @@ def check(run):
     for kind, name in TYPES.items():
         result = run.program(jaws(kind), name=f"type{kind}")
         body = result.table("matsum").where(part=3)
-        run.check(f"{name}: momentum at the start", body["momentum_y"][0], MOMENTUM, 1e-12,
-                  source="m v")
+        run.check(f"{name}: momentum at the start", body["momentum_y"][0], MOMENTUM)
         run.check(f"{name}: momentum after the bounce / m v", body["momentum_y"][-1] / MOMENTUM,
-                  -1.0, 0.1, "abs", "elastic impact; a fifth of the energy may stay in vibrations")
-        run.check(f"{name}: energy ratio", result.table("glstat")["energy_ratio"], 1.0, 0.01, "abs",
-                  "balance")
+                  -1.0)
+        run.check(f"{name}: energy ratio", result.table("glstat")["energy_ratio"], 1.0)

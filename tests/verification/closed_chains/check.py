@@ -46,12 +46,11 @@ def check_bodies(run, kinds, seed):
     velocity = result.points("velocity")[..., :2]
     size = np.sum(mass) * SPEED / 3.0
     momentum = np.einsum("n,tnk->tk", mass, velocity)
-    run.check(f"{name}: momentum, drift / |p|", (momentum - momentum[0]) / size, 0.0, 1e-12, "abs",
-              "no outer load")
+    run.check(f"{name}: momentum, drift / |p|", (momentum - momentum[0]) / size, 0.0)
     turning = angular_momentum(mass, position, velocity)
     if all(kind in MOMENT_FREE for kind in kinds):
         run.check(f"{name}: angular momentum, drift / (|p| x 1 m)", (turning - turning[0]) / size,
-                  0.0, 1e-11, "abs", "no outer moment")
+                  0.0)
     else:
         run.report(f"{name}: angular momentum, drift / (|p| x 1 m)",
                    np.max(np.abs(turning - turning[0])) / size, "VTS-PPT among them")
@@ -60,18 +59,15 @@ def check_bodies(run, kinds, seed):
         slave = forces.where(interface=number, side="slave")
         master = forces.where(interface=number, side="master")
         peak = np.max(np.hypot(slave["fx"], slave["fy"]))
-        run.check(f"{name}: interface {number}: peak force", peak, 100.0, 0.0, "min",
-                  "so that the checks mean something")
+        run.check(f"{name}: interface {number}: peak force", peak, 100.0)
         for axis in ("fx", "fy"):
             run.check(f"{name}: interface {number}: (slave + master {axis}) / peak",
-                      (slave[axis] + master[axis]) / peak, 0.0, 1e-13, "abs", "third law")
+                      (slave[axis] + master[axis]) / peak, 0.0)
     energy = result.table("glstat")
-    run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0, 0.005, "abs", "balance")
+    run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0)
     run.check(f"{name}: contact energy / initial energy, at least",
-              energy["contact"] / energy["total"][0], -0.2, 0.0, "min",
-              "corners that meet corners: a band, not a law")
-    run.check(f"{name}: contact energy at the start", energy["contact"][0], 0.0, 0.0, "abs",
-              "no overlap at time zero")
+              energy["contact"] / energy["total"][0], -0.2)
+    run.check(f"{name}: contact energy at the start", energy["contact"][0], 0.0)
     run.report(f"{name}: contact energy at the end / initial energy",
                energy["contact"][-1] / energy["total"][0])
 

@@ -21,35 +21,30 @@ def check_type(run, kind):
     result = run.program(run.root / "input" / "collision" / "collision.k", f"ctype={kind}",
                          "p:dtforc=1.0e-7", name=f"type{kind}")
     energy = result.table("glstat")
-    run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0, 0.01, "abs", "balance")
-    run.check(f"{name}: kinetic energy at the start", energy["kinetic"][0],
-              0.5 * MASS * SPEED ** 2, 1e-12, source="m v^2/2")
-    run.check(f"{name}: hourglass / internal energy at the end", energy["hourglass"][-1]
-              / energy["internal"][-1], 0.0, 0.1, "abs", "customary limit of 10 %")
+    run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0)
+    run.check(f"{name}: kinetic energy at the start", energy["kinetic"][0], 0.5 * MASS * SPEED ** 2)
+    run.check(f"{name}: hourglass / internal energy at the end",
+              energy["hourglass"][-1] / energy["internal"][-1], 0.0)
     forces = result.table("rcforc")
     slave, master = forces.where(side="slave"), forces.where(side="master")
     peak = np.max(np.abs(slave["fy"]))
     for axis in ("fx", "fy"):
-        run.check(f"{name}: (slave + master {axis}) / peak force", (slave[axis] + master[axis]) / peak,
-                  0.0, 1e-12, "abs", "third law")
+        run.check(f"{name}: (slave + master {axis}) / peak force",
+                  (slave[axis] + master[axis]) / peak, 0.0)
     projectile = result.table("matsum").where(part=2)
-    run.check(f"{name}: mass of the projectile", projectile["mass"], MASS, 1e-12, source="rho A")
+    run.check(f"{name}: mass of the projectile", projectile["mass"], MASS)
     run.check(f"{name}: momentum change of the projectile", trapezoid(slave["fy"], slave["time"]),
-              projectile["momentum_y"][-1] - projectile["momentum_y"][0], 1e-8,
-              source="impulse of the contact force")
+              projectile["momentum_y"][-1] - projectile["momentum_y"][0])
     run.check(f"{name}: it rebounds: change of momentum / initial momentum",
-              (projectile["momentum_y"][-1] - projectile["momentum_y"][0]) / (MASS * abs(SPEED)), 1.0,
-              0.0, "min", "the plate throws it back")
+              (projectile["momentum_y"][-1] - projectile["momentum_y"][0]) / (MASS * abs(SPEED)),
+              1.0)
     state = int(np.argmin(np.abs(result.times - 0.7e-3)))
     plate = result.cells("part_id")[state].ravel() == 1
     strain = result.cells("plastic_strain")[state].ravel()
-    run.check(f"{name}: largest plastic strain at 0.7 ms", strain[plate].max(), 0.24, 0.04, "abs",
-              "scene description: about 0.24; a band for the type and mesh")
-    run.check(f"{name}: plastic strain in the elastic projectile", strain[~plate].max(), 0.0, 0.0,
-              "abs")
+    run.check(f"{name}: largest plastic strain at 0.7 ms", strain[plate].max(), 0.24)
+    run.check(f"{name}: plastic strain in the elastic projectile", strain[~plate].max(), 0.0)
     inside = result.points("contact_force")[..., :2].sum(axis=1)
-    run.check(f"{name}: nodal contact forces add up to nothing / peak", inside / peak, 0.0, 1e-12,
-              "abs", "third law")
+    run.check(f"{name}: nodal contact forces add up to nothing / peak", inside / peak, 0.0)
     run.report(f"{name}: energy ratio furthest from 1",
                1.0 + max(energy["energy_ratio"] - 1.0, key=abs))
     run.report(f"{name}: mean velocity of the projectile at 1 ms",

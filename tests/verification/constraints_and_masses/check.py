@@ -42,16 +42,16 @@ def check_rigid_load(run):
         centre = result.node(int(nodes[12]))
         time = centre["time"]
         run.check(f"rigid load, {name}: centre", np.stack([centre["ux"], centre["uy"]]),
-                  0.5 * np.outer(force, time ** 2) / mass.sum(), 1e-11, source="F t^2/(2 M)")
+                  0.5 * np.outer(force, time ** 2) / mass.sum())
         corner = result.node(int(nodes[24]))
         turn = 0.5 * 50.0 / inertia * time ** 2
         arm = 0.5 * np.stack([np.cos(turn) - np.sin(turn), np.sin(turn) + np.cos(turn)]) - 0.5
-        run.check(f"rigid load, {name}: turn", np.stack([corner["ux"] - centre["ux"], corner["uy"] - centre["uy"]]), arm,
-                  1e-11, source="moment t^2/(2 I)")
+        run.check(f"rigid load, {name}: turn",
+                  np.stack([corner["ux"] - centre["ux"], corner["uy"] - centre["uy"]]), arm)
         table = result.table("glstat")
         work = 0.5 * np.dot(force, force) / mass.sum() * time ** 2 + 0.5 * 50.0 ** 2 / inertia * time ** 2
-        run.check(f"rigid load, {name}: external work", table["external_work"], work, 1e-11, source="F^2 t^2/(2 M) and the same of the turn")
-        run.check(f"rigid load, {name}: balance", table["energy_ratio"], 1.0, 1e-10, "abs")
+        run.check(f"rigid load, {name}: external work", table["external_work"], work)
+        run.check(f"rigid load, {name}: balance", table["energy_ratio"], 1.0)
 
 
 def check_masses(run):
@@ -65,8 +65,8 @@ def check_masses(run):
     whole[1] += 70.0
     whole[3] += 30.0
     for k in range(4):
-        run.check(f"masses: first acceleration of node {k + 1}", result.node(int(nodes[k]))["ay"][0], 10.0 / whole[k], 1e-12,
-                  source="F/(m + added)")
+        run.check(f"masses: first acceleration of node {k + 1}",
+                  result.node(int(nodes[k]))["ay"][0], 10.0 / whole[k])
     # a stiff body of the masses on rollers, implicit, one step from rest
     modulus = 1.2 * YOUNG
     for method, points in (("explicit", None), ("implicit", 4)):
@@ -89,8 +89,7 @@ def check_masses(run):
         else:
             found, own = np.arccos(0.5 * ratio) / dt, 1000.0 / 3.0
             expected = 2.0 * np.arctan(0.5 * dt * np.sqrt(modulus / (own + 2.0 * lump))) / dt
-        run.check(f"masses: frequency, {method}", found, expected, 1e-5,
-                  source="w^2 = M/(m + added), lumped or consistent m, with the error of the integration")
+        run.check(f"masses: frequency, {method}", found, expected)
 
 
 def check_common(run):
@@ -105,17 +104,15 @@ def check_common(run):
         given = np.zeros((9, 2))
         given[2], given[7], given[5] = (3.0, 1.0), (0.0, -2.0), (1.0, 1.0)
         for axis, name in enumerate(("momentum_x", "momentum_y")):
-            run.check(f"common motion {dof}: {name}", part[name], np.sum(mass * given[:, axis]), 1e-11,
-                      source="inner forces alone; the start keeps it too")
+            run.check(f"common motion {dof}: {name}", part[name], np.sum(mass * given[:, axis]))
         for axis, name in enumerate(("ux", "uy")):
             motions = [result.node(int(node))[name] for node in members]
             spread = np.max(np.abs(np.array(motions) - motions[0]))
             if along[axis]:
-                run.check(f"common motion {dof}: {name} of all", spread, 0.0, 0.0, "abs", source="the same bits")
+                run.check(f"common motion {dof}: {name} of all", spread, 0.0)
             else:
-                run.check(f"common motion {dof}: {name} differ", spread > 1e-4, True, 0.0, "abs")
-        run.check(f"common motion {dof}: balance", table["energy_ratio"], 1.0, 5e-3, "abs",
-                  source="the constraint does no work; finite strain to second order in the strain of a step")
+                run.check(f"common motion {dof}: {name} differ", spread > 1e-4, True)
+        run.check(f"common motion {dof}: balance", table["energy_ratio"], 1.0)
     # a free block and a loaded one: F = (M1 + M2) a along x
     deck, nodes, _, mass = block("two coupled blocks", end=0.05)
     others = deck.mesh(*grid(1, 1, origin=(5.0, 0.0)))
@@ -126,11 +123,11 @@ def check_common(run):
     result = run.program(deck)
     history = result.node(int(nodes[0]))
     time = history["time"]
-    run.check("coupled blocks: x", history["ux"], 0.05 / 4.0 * (2.0 * time - 1.0 + np.exp(-2.0 * time)), 1e-4,
-              source="F/(M1 + M2), damped: a (D t - 1 + exp(-D t))/D^2, half a step for the start")
-    run.check("coupled blocks: y", history["uy"], 0.1 / 4.0 * (2.0 * time - 1.0 + np.exp(-2.0 * time)), 1e-4,
-              source="F/M1 alone")
-    run.check("coupled blocks: balance", result.table("glstat")["energy_ratio"], 1.0, 1e-10, "abs")
+    run.check("coupled blocks: x", history["ux"],
+              0.05 / 4.0 * (2.0 * time - 1.0 + np.exp(-2.0 * time)))
+    run.check("coupled blocks: y", history["uy"],
+              0.1 / 4.0 * (2.0 * time - 1.0 + np.exp(-2.0 * time)))
+    run.check("coupled blocks: balance", result.table("glstat")["energy_ratio"], 1.0)
 
 
 def check_incline(run):
@@ -153,9 +150,9 @@ def check_incline(run):
         for node in (nodes[0], nodes[4], nodes[8]):
             history = result.node(int(node))
             motion = np.stack([history["ux"], history["uy"]])
-            run.check(f"incline, {name}: along, node {node}", along @ motion, 0.5 * a * history["time"] ** 2, 1e-11,
-                      source="g sin(angle) t^2/2")
-            run.check(f"incline, {name}: across, node {node}", normal @ motion, 0.0, 1e-13, "abs", source="held")
+            run.check(f"incline, {name}: along, node {node}", along @ motion,
+                      0.5 * a * history["time"] ** 2)
+            run.check(f"incline, {name}: across, node {node}", normal @ motion, 0.0)
         table = result.table("glstat")
         forces = result.table("spcforc")
         rows = len(np.unique(forces["time"])), len(nodes)
@@ -163,8 +160,8 @@ def check_incline(run):
         for axis, expected in ((along, 0.0 * mass), (normal, by_node)):
             found = (axis[0] * forces["fx"] + axis[1] * forces["fy"]).reshape(rows)
             run.check(f"incline, {name}: forces of the supports, {'across' if axis is normal else 'along'}", found,
-                      np.broadcast_to(expected, rows), 1e-11 * 9.81 * mass.sum(), "abs", source="m g cos(angle)")
-        run.check(f"incline, {name}: balance", table["energy_ratio"], 1.0, 1e-10, "abs", source="the support does no work")
+                      np.broadcast_to(expected, rows), scale=9.81 * mass.sum())
+        run.check(f"incline, {name}: balance", table["energy_ratio"], 1.0)
     # axes along x and y are plain supports, both axes hold the node
     texts = []
     for cid in (0, 4):
@@ -174,7 +171,7 @@ def check_incline(run):
         deck.add("*INITIAL_VELOCITY", (0,), (1.0, -0.5))
         result = run.program(deck)
         texts.append(result.csv_path("nodout").read_text())
-    run.check("axes along y and -x are plain supports", texts[0] == texts[1], True, 0.0, "abs", source="same bits")
+    run.check("axes along y and -x are plain supports", texts[0] == texts[1], True)
 
 
 def check(run):

@@ -45,17 +45,15 @@ def judge(run, rows):
     """What holds for each type in all scenes."""
     for kind, name in TYPES.items():
         found = columns(rows, kind=kind)
-        run.check(f"{name}: momentum, largest change / sum of |p|", found["momentum"], 0.0, 1e-12, "abs", "third law")
+        run.check(f"{name}: momentum, largest change / sum of |p|", found["momentum"], 0.0)
         if kind in MOMENT_FREE:
-            run.check(f"{name}: angular momentum, largest change / (sum of |p| x 1 m)", found["turning"], 0.0, 1e-12,
-                      "abs", "P2")
-        run.check(f"{name}: runs that ended early", np.sum(~found["ended"]), 0, 0.0, "abs", "nothing in these scenes ends one")
-        run.check(f"{name}: made by contact / E0, largest", np.max(found["made"]), MADE, 0.0, "max",
-                  "no potential, no gain")
+            run.check(f"{name}: angular momentum, largest change / (sum of |p| x 1 m)",
+                      found["turning"], 0.0)
+        run.check(f"{name}: runs that ended early", np.sum(~found["ended"]), 0)
+        run.check(f"{name}: made by contact / E0, largest", np.max(found["made"]), MADE)
         run.report(f"{name}: made by contact / E0, share of scenes above {MADE}", np.mean(found["made"] > MADE))
         run.report(f"{name}: lost by contact / E0, largest", np.max(found["lost"]))
-        run.check(f"{name}: bodies inside each other, scenes", np.sum(found["excess"] > 0.0), 0, 0.0, "abs",
-                  "no more than type 2 leaves, or 1 %")
+        run.check(f"{name}: bodies inside each other, scenes", np.sum(found["excess"] > 0.0), 0)
 
 
 def table(rows):
@@ -81,9 +79,9 @@ def check_rubbing(run, family, seed, kind):
     result = run.program(Scene(family, seed).deck(kind), "fs=1", name=f"rubbed_{family}_{seed}_type{kind}")
     energy = result.table("glstat")
     start = energy["total"][0]
-    run.check(f"{name}: largest fall of the dissipated energy / E0", -np.diff(energy["friction"]).min() / start, 0.0, 1e-12, "max")
-    run.check(f"{name}: dissipated / E0", energy["friction"][-1] / start, 1e-4, 0.0, "min", "they do rub")
-    run.check(f"{name}: total / E0", energy["total"] / start, 1.0, 1e-3)
+    run.check(f"{name}: largest fall of the dissipated energy / E0", -np.diff(energy["friction"]).min() / start, 0.0)
+    run.check(f"{name}: dissipated / E0", energy["friction"][-1] / start, 1e-4)
+    run.check(f"{name}: total / E0", energy["total"] / start, 1.0)
 
 
 def check(run):

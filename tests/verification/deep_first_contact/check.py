@@ -64,14 +64,12 @@ def check_fast(run, kind):
         force = result.table("rcforc").where(side="slave")["fy"]
         if caught:
             run.check(f"{label}: force after the first step", force[1],
-                      uniform_force(kind, SOFT, depth, 0.6, 7, 0.1), 1e-9, source="caught, k g")
-            run.check(f"{label}: released by the log", n_released(result), 0, 0, "abs")
+                      uniform_force(kind, SOFT, depth, 0.6, 7, 0.1))
+            run.check(f"{label}: released by the log", n_released(result), 0)
         else:
-            run.check(f"{label}: largest force", np.max(np.abs(force)), 0.0, 0.0, "abs",
-                      "limit 0.025 m: released, no force until it has been outside")
-            run.check(f"{label}: released by the log", n_released(result), 1, 0, "min", "counted")
-            run.check(f"{label}: energy ratio", result.table("glstat")["energy_ratio"], 1.0, 1e-12,
-                      "abs", "nothing happens")
+            run.check(f"{label}: largest force", np.max(np.abs(force)), 0.0)
+            run.check(f"{label}: released by the log", n_released(result), 1)
+            run.check(f"{label}: energy ratio", result.table("glstat")["energy_ratio"], 1.0)
 
 
 # --- a body that slides under the surface beside the end of the chain -------------------------------
@@ -99,21 +97,21 @@ def check_sliding_under(run, kind):
         force = result.table("rcforc").where(side="slave")
         created = -energy["contact"][-1]
         start = energy["kinetic"][0]
-        run.check(f"{label}: energy ratio", energy["energy_ratio"], 1.0, 0.01, "abs", "balance")
+        run.check(f"{label}: energy ratio", energy["energy_ratio"], 1.0)
         if depth > limit:
-            run.check(f"{label}: largest force", np.max(np.abs(np.stack([force["fx"], force["fy"]]))),
-                      0.0, 0.0, "abs", "released")
-            run.check(f"{label}: released by the log", n_released(result), 1, 0, "min", "counted")
-            run.check(f"{label}: energy created / kinetic energy", created / start, 0.0, 1e-14, "abs")
+            run.check(f"{label}: largest force",
+                      np.max(np.abs(np.stack([force["fx"], force["fy"]]))), 0.0)
+            run.check(f"{label}: released by the log", n_released(result), 1)
+            run.check(f"{label}: energy created / kinetic energy", created / start, 0.0)
             continue
         # Nobody has put any energy into the springs: what they return is lent, half a per cent of the kinetic energy,
         # and a hundredth of that as slack (theory, 6.1).
-        run.check(f"{label}: points that are caught", force["n_active"].max(), 1, 0, "min", "caught")
-        run.check(f"{label}: contact has ended", force["n_active"][-1], 0, 0, "abs")
-        run.check(f"{label}: energy created / kinetic energy", created / start, 0.005 * 1.01, 1e-5, "max",
-                  "contact returns no more than it took")
-        run.true(f"{label}: the log warns of forces that are limited again and again", "again and again: contact forces limited"
-                 in " ".join((result.folder / f"{result.job}.log").read_text().split()))
+        run.check(f"{label}: points that are caught", force["n_active"].max(), 1)
+        run.check(f"{label}: contact has ended", force["n_active"][-1], 0)
+        run.check(f"{label}: energy created / kinetic energy", created / start, 0.005 * 1.01)
+        run.true(f"{label}: the log warns of forces that are limited again and again",
+                 "again and again: contact forces limited" in " ".join((result.folder
+                                                                        / f"{result.job}.log").read_text().split()))
 
 
 # --- overlap at the birth of an interface -----------------------------------------------------------
@@ -134,16 +132,15 @@ def check_birth(run, kind):
         result = run.program(late_birth(kind, depth, search))
         force = result.table("rcforc").where(side="slave")
         before = force["fy"][force["time"] < 0.0095]
-        run.check(f"{label}: force before birth", before, 0.0, 0.0, "abs")
+        run.check(f"{label}: force before birth", before, 0.0)
         at_birth = force["fy"][np.argmax(force["time"] > 0.0095)]
         if depth > (search or 0.5 * CELL):
-            run.check(f"{label}: largest force", np.max(np.abs(force["fy"])), 0.0, 0.0, "abs",
-                      "released")
-            run.check(f"{label}: released by the log", n_released(result), 1, 0, "min", "counted")
+            run.check(f"{label}: largest force", np.max(np.abs(force["fy"])), 0.0)
+            run.check(f"{label}: released by the log", n_released(result), 1)
         else:
             run.check(f"{label}: force at birth", at_birth,
-                      uniform_force(kind, 100.0, depth, 0.6, 7, CELL), 1e-9, source="caught, k g")
-            run.check(f"{label}: released by the log", n_released(result), 0, 0, "abs")
+                      uniform_force(kind, 100.0, depth, 0.6, 7, CELL))
+            run.check(f"{label}: released by the log", n_released(result), 0)
 
 
 def check(run):

@@ -44,8 +44,8 @@ def check_bent(run):
     deck.add("*DEFINE_CURVE", (1, 2), (0.0, WEIGHT), (1.0e3, WEIGHT)).add("*LOAD_BODY_X", (1, 1.0))
     deck.add("*CONTROL_DYNAMIC_RELAXATION", (50, 1e-6))
     table = run.program(deck.output(glstat=0.01)).table("glstat")
-    run.check("bent: hourglass energy at time zero, viscous form", table["hourglass"][0], 0.0, 0.0, "abs", "dissipated before the run")
-    run.check("bent: internal energy is there", table["internal"][0], 1e-5, 0.0, "min")
+    run.check("bent: hourglass energy at time zero, viscous form", table["hourglass"][0], 0.0)
+    run.check("bent: internal energy is there", table["internal"][0], 1e-5)
 
 
 def check(run):
@@ -53,24 +53,23 @@ def check(run):
         deck, nodes = column(f"weight in both phases, {name}", 2, (50, 1e-9), points)
         result = run.program(deck)
         table = result.table("glstat")
-        run.check(f"{name}: displacement at time zero", first(result, nodes, "uy"), settled(nodes), 2e-4,
-                  source="rho g (L y - y^2/2)/M; what is left of the motion, and the strain itself")
-        run.check(f"{name}: velocity at time zero", first(result, nodes, "vy"), 0.0, 0.0, "abs", source="the run begins at rest")
+        run.check(f"{name}: displacement at time zero", first(result, nodes, "uy"), settled(nodes))
+        run.check(f"{name}: velocity at time zero", first(result, nodes, "vy"), 0.0)
         stress = result.cells("stress")[0][:, 1]
         middle = LENGTH * (np.arange(N) + 0.5) / N
-        run.check(f"{name}: stress at time zero", stress, -RHO * WEIGHT * (LENGTH - middle), 2e-4, source="weight above")
+        run.check(f"{name}: stress at time zero", stress, -RHO * WEIGHT * (LENGTH - middle))
         energy = 0.5 * (RHO * WEIGHT) ** 2 * LENGTH ** 3 / 3.0 / MODULUS * LENGTH / N * (1.0 - 1.0 / (4.0 * N ** 2))
-        run.check(f"{name}: internal energy at time zero", table["internal"][0], energy, 3e-4, source="integral of sigma^2/(2 M), stress by element")
-        run.check(f"{name}: it stays at rest", np.max(table["kinetic"]), 1e-3 * energy, 0.0, "max", source="equilibrium")
+        run.check(f"{name}: internal energy at time zero", table["internal"][0], energy)
+        run.check(f"{name}: it stays at rest", np.max(table["kinetic"]), 1e-3 * energy)
         log = (result.folder / f"{result.job}.log").read_text()
         run.true(f"{name}: the log tells of it", "dynamic relaxation: " in log)
     # a weight of relaxation alone: the column springs up, its energy is that of time zero
     deck, nodes = column("weight that is taken away", 1, (50, 1e-9))
     result = run.program(deck)
     table, top = result.table("glstat"), result.node(int(nodes[-1]))
-    run.check("released: first acceleration of the top", top["ay"][0], WEIGHT, 2e-3, source="g")
-    run.check("released: balance", table["energy_ratio"], 1.0, 2e-3, "abs", source="no work from outside")
-    run.check("released: it swings to the other side", np.max(top["uy"]) / -settled(nodes)[-1], 0.9, 0.0, "min")
+    run.check("released: first acceleration of the top", top["ay"][0], WEIGHT)
+    run.check("released: balance", table["energy_ratio"], 1.0)
+    run.check("released: it swings to the other side", np.max(top["uy"]) / -settled(nodes)[-1], 0.9)
     check_bent(run)
     # a weight of the run alone, and IDRFLG -999, change nothing
     plain, _ = column("plain", 0)
@@ -79,4 +78,4 @@ def check(run):
     run.true("without the phase the bits are the same", texts[0] == texts[1])
     deck, nodes = column("asked for without a curve", 0, (50, 1e-9, None, 0.02, None, None, None, 1))
     result = run.program(deck)
-    run.check("weight of the run alone: nothing at time zero", first(result, nodes, "uy"), 0.0, 0.0, "abs")
+    run.check("weight of the run alone: nothing at time zero", first(result, nodes, "uy"), 0.0)

@@ -97,12 +97,11 @@ def check_cycle(run, name, law, nip=None, implicit=False):
     name += ", implicit" if implicit else ""
     strain, q, p = closed_cycle(result.times, CYCLE)
     stress = result.cells("stress")[:, 1 if implicit else 0, :]
-    run.check(f"{name}: deviator over the cycle", stress[:, 0] - stress[:, 1], q, 1e-6,
-              source="sigma(p) + 3G p = 2G e on each leg")
-    run.check(f"{name}: mean stress over the cycle", stress[:, :3].sum(axis=1) / 3.0, BULK * strain, 1e-6)
+    run.check(f"{name}: deviator over the cycle", stress[:, 0] - stress[:, 1], q)
+    run.check(f"{name}: mean stress over the cycle", stress[:, :3].sum(axis=1) / 3.0, BULK * strain)
     run.check(f"{name}: plastic strain over the cycle",
-              result.cells("plastic_strain")[:, 1 if implicit else 0].ravel(), p, 1e-6)
-    run.true(f"{name}: every segment was walked", p[-1] > STRAINS[-1], "plastic strain at the end")
+              result.cells("plastic_strain")[:, 1 if implicit else 0].ravel(), p)
+    run.true(f"{name}: every segment was walked", p[-1] > STRAINS[-1])
     return result
 
 
@@ -113,9 +112,8 @@ def check_shear(run):
     far = np.append(STRAINS, 1.0)
     p = np.maximum(0.0, np.interp(np.sqrt(3.0) * SHEAR * gamma, yield_stress(far) + 3.0 * SHEAR * far, far))
     tau = SHEAR * (gamma - np.sqrt(3.0) * p)
-    run.check("shear stress through the segments", result.cells("stress")[:, 0, 3], tau, 3e-3,
-              source="sigma(p) + 3G p = sqrt(3) G g, small shear")
-    run.check("plastic strain in shear", result.cells("plastic_strain")[:, 0].ravel(), p, 3e-3)
+    run.check("shear stress through the segments", result.cells("stress")[:, 0, 3], tau)
+    run.check("plastic strain in shear", result.cells("plastic_strain")[:, 0].ravel(), p)
 
 
 def check_bilinear(run):
@@ -134,8 +132,8 @@ def check_bilinear(run):
             job = f"bilinear_{kind.split()[0].strip(',')}_{name.split()[0].strip(',')}"
             found = run.program(element(path, moved, law, nip, every=4), name=job)
             for field in ("stress", "plastic_strain"):
-                run.check(f"{field} of {name} beside MAT_PLASTIC_KINEMATIC, {kind}", found.cells(field),
-                          other.cells(field), 1e-12, source="the same law")
+                run.check(f"{field} of {name} beside MAT_PLASTIC_KINEMATIC, {kind}",
+                          found.cells(field), other.cells(field))
 
 
 def check_rate(run, name, law, expected, moved=(1, 3), n_step=100):
@@ -150,8 +148,7 @@ def check_rate(run, name, law, expected, moved=(1, 3), n_step=100):
     flows = np.diff(p) > 1e-9
     run.true(f"{name}: flow in most steps", flows.sum() > 0.5 * len(flows))
     run.check(f"{name}: yield stress over rates {rate[flows].min():.2g} to {rate[flows].max():.2g}",
-              mises[1:][flows], expected(rate[flows], p[1:][flows]), 1e-9,
-              source="sqrt(D:D) of the prescribed motion")
+              mises[1:][flows], expected(rate[flows], p[1:][flows]))
 
 
 def by_table(rate, p):

@@ -63,18 +63,17 @@ def check_cycle(run, name, points=None):
     stress = result.cells("stress")[:, 0, :]
     mean = BULK * strain
     expected = np.stack([mean + 2.0 * q / 3.0, mean - q / 3.0, mean - q / 3.0], -1)
-    run.check(f"{name}: deviator over the cycle", stress[:, 0] - stress[:, 1], q, 1e-6,
-              source="piecewise linear")
-    run.check(f"{name}: stress over the cycle", stress[:, :3], expected, 1e-6)
-    run.check(f"{name}: plastic strain over the cycle", result.cells("plastic_strain")[:, 0].ravel(),
-              p, 1e-6, source="dp = 2 G d(eps)/(3 G + H)")
+    run.check(f"{name}: deviator over the cycle", stress[:, 0] - stress[:, 1], q)
+    run.check(f"{name}: stress over the cycle", stress[:, :3], expected)
+    run.check(f"{name}: plastic strain over the cycle",
+              result.cells("plastic_strain")[:, 0].ravel(), p)
     check_reversal(run, name, time, stress, result.cells("plastic_strain")[:, 0].ravel(),
                    2.0 * YIELD + 2.0 * beta * hardening * np.interp(1.0, time, p), beta)
     dissipated = YIELD * p[-1]
     if tangent == 0.0:
         stored = 0.5 * BULK * strain[-1] ** 2 + q[-1] ** 2 / (6.0 * SHEAR)
         run.check(f"{name}: internal energy", result.table("glstat")["internal"][-1],
-                  dissipated + stored, 2e-2, source="dissipation + stored, small strain")
+                  dissipated + stored)
 
 
 def check_reversal(run, name, time, stress, plastic, elastic_range, beta):
@@ -85,10 +84,10 @@ def check_reversal(run, name, time, stress, plastic, elastic_range, beta):
     one_step = abs(q[turn + 1] - q[turn])
     run.check(f"{name}: elastic range after reversal / yield stress",
               (q[turn] - q[flow - 1] + 0.5 * one_step) / YIELD, elastic_range / YIELD,
-              0.55 * one_step / YIELD, "abs", "2 (sigma_Y + beta H p): Bauschinger effect")
+              tol=0.55 * one_step / YIELD)
     if beta == 0.0:
         run.true(f"{name}: reverse yield below the stress reached",
-                 abs(q[flow - 1]) < q[turn] - one_step, "Bauschinger effect")
+                 abs(q[flow - 1]) < q[turn] - one_step)
 
 
 def check_shear(run, name):
@@ -101,12 +100,11 @@ def check_shear(run, name):
     plastic = np.maximum(0.0, gamma - limit / SHEAR)
     tau = np.minimum(SHEAR * gamma, limit) + plastic * SHEAR * hardening / (hardening + 3.0 * SHEAR)
     stress = result.cells("stress")[:, 0, :]
-    run.check(f"{name}: shear stress", stress[:, 3], tau, 1e-3, source="sigma_Y/sqrt(3) + H g/3")
+    run.check(f"{name}: shear stress", stress[:, 3], tau)
     run.check(f"{name}: plastic strain in shear", result.cells("plastic_strain")[-1, 0].item(),
-              plastic[-1] * np.sqrt(3.0) * SHEAR / (hardening + 3.0 * SHEAR), 1e-3)
+              plastic[-1] * np.sqrt(3.0) * SHEAR / (hardening + 3.0 * SHEAR))
     if tangent == 0.0:
-        run.check(f"{name}: shear yield stress", stress[-1, 3], limit, 1e-4,
-                  source="sigma_Y/sqrt(3)")
+        run.check(f"{name}: shear yield stress", stress[-1, 3], limit)
 
 
 def check(run):

@@ -31,11 +31,9 @@ def check(run):
     result = run.program(sheared_element(1.0e-3, 50))
     gamma = 1.0e-3 * result.times
     found = result.cells("stress")[:, 0, :]
-    run.check("shear stress at 0.001", found[:, 3], SHEAR * gamma, 1e-6, source="G gamma")
-    run.check("mean stress at 0.001 / G", found[:, :3].mean(axis=1) / SHEAR, 0.0, 1e-15, "abs",
-              "J = 1")
-    run.check("energy at 0.001", result.table("glstat")["internal"][-1],
-              0.5 * SHEAR * 1.0e-6, 1e-5, source="G gamma^2/2")
+    run.check("shear stress at 0.001", found[:, 3], SHEAR * gamma)
+    run.check("mean stress at 0.001 / G", found[:, :3].mean(axis=1) / SHEAR, 0.0)
+    run.check("energy at 0.001", result.table("glstat")["internal"][-1], 0.5 * SHEAR * 1.0e-6)
 
     n_steps, errors, finals = (100, 200, 400, 800), [], []
     for n_step in n_steps:
@@ -47,19 +45,15 @@ def check(run):
         run.report(f"largest stress error / G, {n_step} steps to shear 3", errors[-1])
     order = run.order(1.0 / np.array(n_steps), errors)
     run.report("order in the step", order)
-    run.check("order in the step", order, 2.0, 0.05, "min", "increments turned by the half step")
-    run.check("stress to shear 3, 800 steps", found, expected, 1e-5,
-              source="Jaumann rate: G sin, G (1 - cos)")
+    run.check("order in the step", order, 2.0)
+    run.check("stress to shear 3, 800 steps", found, expected)
     limit = (2.0 ** round(order) * finals[-1] - finals[-2]) / (2.0 ** round(order) - 1.0)
-    run.check("stress to shear 3, step to zero", limit, expected, 1e-4,
-              source="extrapolated from 400 and 800 steps")
-    run.check("mean stress at shear 3 / G", found[:, :3].mean(axis=1) / SHEAR, 0.0, 1e-12, "abs",
-              "simple shear keeps the area")
+    run.check("stress to shear 3, step to zero", limit, expected)
+    run.check("mean stress at shear 3 / G", found[:, :3].mean(axis=1) / SHEAR, 0.0)
     check_full(run, found)
 
 
 def check_full(run, expected):
     """With full integration all four points shear alike: the stress is that of one point."""
     result = run.program(sheared_element(3.0, 800, 4))
-    run.check("full integration: stress to shear 3", result.cells("stress")[:, 0, :], expected,
-              1e-12, source="one point")
+    run.check("full integration: stress to shear 3", result.cells("stress")[:, 0, :], expected)

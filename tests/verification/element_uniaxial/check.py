@@ -35,7 +35,7 @@ def midstep_sum(stretch, n_step):
     return np.sum(2.0 * (lam[1:] - lam[:-1]) / (lam[1:] + lam[:-1]))
 
 
-def check_stretch(run, stretch, tolerance, points=None):
+def check_stretch(run, stretch, points=None):
     n_steps, errors = (50, 100), []
     case = f"stretch to {stretch}" + FORMS[points]
     for n_step in n_steps:
@@ -44,23 +44,18 @@ def check_stretch(run, stretch, tolerance, points=None):
         expected = log_strain_stress(now)
         found = result.cells("stress")[:, 0, :]
         errors.append(abs(found[-1, 0] - found[-1, 1] - 2.0 * SHEAR * np.log(stretch)))
-    run.check(f"stress, {case}", found, expected, tolerance,
-              source="logarithmic strain")
+    run.check(f"stress, {case}", found, expected)
     run.check(f"xx - yy, {case}, mid-step sum", found[-1, 0] - found[-1, 1],
-              2.0 * SHEAR * midstep_sum(stretch, n_steps[-1]), 1e-11,
-              source="sum of 2 (b - a)/(b + a)")
-    run.check(f"mean stress, {case}", found[:, :3].mean(axis=1),
-              BULK * np.log(now), 1e-12, source="K ln J")
-    run.check(f"plot pressure, {case}", result.cells("pressure")[:, 0].ravel(),
-              -BULK * np.log(now), 1e-12, source="minus a third of the trace")
+              2.0 * SHEAR * midstep_sum(stretch, n_steps[-1]))
+    run.check(f"mean stress, {case}", found[:, :3].mean(axis=1), BULK * np.log(now))
+    run.check(f"plot pressure, {case}", result.cells("pressure")[:, 0].ravel(), -BULK * np.log(now))
     run.check(f"plot mises, {case}", result.cells("mises")[:, 0].ravel(),
-              2.0 * SHEAR * np.abs(np.log(now)), tolerance, source="2 G |ln lambda|")
+              2.0 * SHEAR * np.abs(np.log(now)))
     if abs(stretch - 1.0) > 0.1:
-        run.check(f"order in the step, {case}",
-                  run.order(1.0 / np.array(n_steps), errors), 2.0, 0.1, "abs", "mid-step rule")
+        run.check(f"order in the step, {case}", run.order(1.0 / np.array(n_steps), errors), 2.0)
         internal = stretch * np.log(stretch) - stretch + 1.0
         run.check(f"internal energy, {case}", result.table("glstat")["internal"][-1],
-                  (BULK + 4.0 * SHEAR / 3.0) * internal, 1e-3, source="integral of sigma d lambda")
+                  (BULK + 4.0 * SHEAR / 3.0) * internal)
 
 
 def check_patch(run, name, quads, points=None):
@@ -82,25 +77,22 @@ def check_patch(run, name, quads, points=None):
     result = run.program(deck, name=name.replace(",", "").replace(" ", "_"))
     expected = log_strain_stress(1.0 + rate[0, 0] * result.times)
     found = result.cells("stress")
-    run.check(f"patch of {name}: stress of all elements", found, expected[:, None, :] + 0.0 * found,
-              1e-5, source="uniform field")
+    run.check(f"patch of {name}: stress of all elements", found, expected[:, None, :] + 0.0 * found)
     spread = np.max(np.abs(found - found.mean(axis=1, keepdims=True)))
-    run.check(f"patch of {name}: spread between elements / stress", spread / np.max(np.abs(expected)),
-              0.0, 1e-11, "abs", "patch test")
+    run.check(f"patch of {name}: spread between elements / stress",
+              spread / np.max(np.abs(expected)), 0.0)
     moved = result.points("displacement")[-1, 4, :2]
-    run.check(f"patch of {name}: displacement of the free node", moved, velocity[4], 1e-11,
-              source="affine motion")
-    run.check(f"patch of {name}: mass", result.table("matsum")["mass"], RHO, 1e-13,
-              source="rho times the unit square")
+    run.check(f"patch of {name}: displacement of the free node", moved, velocity[4])
+    run.check(f"patch of {name}: mass", result.table("matsum")["mass"], RHO)
 
 
 def check(run):
     quads = distorted_patch()[1]
     halves = [half for a, b, c, d in quads for half in ((a, b, c, c), (a, c, d, d))]
     for points in FORMS:
-        check_stretch(run, 1.001, 1e-8, points)
-        check_stretch(run, 1.5, 1e-5, points)
-        check_stretch(run, 0.6, 2e-5, points)
+        check_stretch(run, 1.001, points)
+        check_stretch(run, 1.5, points)
+        check_stretch(run, 0.6, points)
         check_patch(run, "quads", quads, points)
         check_patch(run, "triangles", halves, points)
         check_patch(run, "quads and triangles", quads[:2] + halves[4:], points)

@@ -53,25 +53,23 @@ def one_end():
     return SPEED * (np.arange(N + 1) == 0)
 
 
-def sums(run, name, energy, tolerance):
+def sums(run, name, energy):
     """The balance, and how it follows from the columns."""
     parts = ("kinetic", "internal", "hourglass", "viscous", "damping", "contact", "leapfrog")
     scale = np.max(np.abs(energy["total"]))
-    run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0, tolerance, "abs",
-              "v(n-1/2).M v(n+1/2)/2 + U is constant")
+    run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0)
     run.check(f"{name}: total over the sum of the columns", energy["total"] / scale,
-              sum(energy[part] for part in parts) / scale, 1e-14, "abs", "sum of all energies")
+              sum(energy[part] for part in parts) / scale)
 
 
 def check_kicks(run):
     for name, speeds in (("shortest wave", highest()), ("one kicked end", one_end())):
         deck, nodes = bar(name)
         energy = run.program(kick(deck, nodes, speeds)).table("glstat")
-        sums(run, name, energy, 1e-3)
+        sums(run, name, energy)
         old = (energy["total"] - energy["leapfrog"]) / energy["total"][0]
         run.report(f"{name}: largest ratio with the mean velocities alone", np.max(old))
-        run.check(f"{name}: the mean velocities alone would not do", float(np.max(old) > 1.5), 1.0, 0.0,
-                  "abs", "what leapfrog is for")
+        run.check(f"{name}: the mean velocities alone would not do", float(np.max(old) > 1.5), 1.0)
 
 
 def check_endeng(run):
@@ -81,7 +79,7 @@ def check_endeng(run):
     place = deck.lines.index("*CONTROL_TERMINATION") + 1
     deck.lines[place] = deck.lines[place].rstrip(",") + ",0,0.0,5.0"
     result = run.program(deck, name="endeng")
-    run.check("ENDENG 5: exit status", result.status, 0, 0.0, "abs", "sound")
+    run.check("ENDENG 5: exit status", result.status, 0)
 
 
 def check_loads(run):
@@ -90,13 +88,13 @@ def check_loads(run):
     deck, nodes = bar("pulled end")
     deck.curve(1, [(0.0, 1.0), (1.0, 1.0)])
     deck.add("*LOAD_NODE_POINT", *[(int(node), 1, 1, 1.0e-2) for node in nodes[[N, -1]]])
-    sums(run, "pulled end", run.program(deck).table("glstat"), 1e-3)
+    sums(run, "pulled end", run.program(deck).table("glstat"))
     # gravity
     deck, nodes = bar("gravity")
     deck.curve(1, [(0.0, 1.0e-3), (1.0, 1.0e-3)])
     deck.add("*LOAD_BODY_X", (1,))
     deck.fix(nodes[[0, N + 1]], x=1)
-    sums(run, "gravity, one end held", run.program(deck).table("glstat"), 1e-3)
+    sums(run, "gravity, one end held", run.program(deck).table("glstat"))
     # one end driven
     for kind, points in ((0, [(0.0, SPEED), (1.0, SPEED)]), (2, [(0.0, 0.0), (1.0, SPEED)])):
         deck, nodes = bar(f"driven end, {kind}")
@@ -104,15 +102,15 @@ def check_loads(run):
         for node in nodes[[0, N + 1]]:
             deck.prescribe(node, 1, kind, 1)
         sums(run, f"end driven by {'velocity' if kind == 0 else 'displacement'}",
-             run.program(deck).table("glstat"), 1e-3)
+             run.program(deck).table("glstat"))
     # damping, of each mode
     for name, speeds in (("shortest wave", highest()), ("one kicked end", one_end())):
         deck, nodes = bar(f"{name}, damped")
         kick(deck, nodes, speeds).add("*DAMPING_GLOBAL", (0, 0.05 / STEP))
         energy = run.program(deck).table("glstat")
-        sums(run, f"{name}, damped", energy, 1e-3)
+        sums(run, f"{name}, damped", energy)
         left = energy["damping"][-1] / energy["total"][0]
-        run.check(f"{name}, damped: all is dissipated", left, 1.0, 1e-2, "abs", "end of the motion")
+        run.check(f"{name}, damped: all is dissipated", left, 1.0)
 
 
 def check_exact(run):
@@ -121,7 +119,7 @@ def check_exact(run):
     deck.curve(1, [(0.0, 1.0), (1.0, 1.0)])
     deck.add("*LOAD_BODY_X", (1,))
     kick(deck, nodes, np.full(N + 1, 0.3))
-    sums(run, "flight under gravity", run.program(deck).table("glstat"), 1e-11)
+    sums(run, "flight under gravity", run.program(deck).table("glstat"))
     # a force that grows, damping of D dt = 0.5 that is there at time zero, and damping that grows
     for name, loads, damping in (("a force that grows", (0.0, 1.0e3), None), ("damped, loaded at time zero", (1.0, 1.0), (0, 0.5)),
                                  ("damping that grows", (1.0, 1.0e3), (2, 1.0))):
@@ -132,7 +130,7 @@ def check_exact(run):
             deck.curve(2, [(0.0, 0.05 / STEP), (end, 0.5 / STEP)])
             deck.add("*DAMPING_GLOBAL", (damping[0], damping[1] / STEP if damping[0] == 0 else 1.0))
         kick(deck, nodes, np.full(N + 1, 0.3))
-        sums(run, f"flight, {name}", run.program(deck).table("glstat"), 1e-11)
+        sums(run, f"flight, {name}", run.program(deck).table("glstat"))
 
 
 def check_walls_and_rigid(run):
@@ -140,17 +138,17 @@ def check_walls_and_rigid(run):
     deck, nodes = bar("wall")
     deck.add("*INITIAL_VELOCITY", (1,), (SPEED, 0.0)).node_set(1, nodes)
     deck.add("*RIGIDWALL_PLANAR", (1, 0, 0, 0.0), (1.0 + 1.0e-8, 0.0, 0.0, 0.0, 0.0, 0.0))
-    sums(run, "bar against a rigid wall", run.program(deck).table("glstat"), 1e-3)
+    sums(run, "bar against a rigid wall", run.program(deck).table("glstat"))
     # damped as strongly as here, what the mean of v(0) and v(1/2) says of the first cycle is a tenth of a node's energy
     deck, nodes = bar("wall, damped")
     deck.add("*INITIAL_VELOCITY", (1,), (SPEED, 0.0)).node_set(1, nodes).add("*DAMPING_GLOBAL", (0, 0.5 / STEP))
     deck.add("*RIGIDWALL_PLANAR", (1, 0, 0, 0.0), (1.0, 0.0, 0.0, 0.0, 0.0, 0.0))
-    sums(run, "damped bar, at a rigid wall from time zero", run.program(deck).table("glstat"), 1e-5)
+    sums(run, "damped bar, at a rigid wall from time zero", run.program(deck).table("glstat"))
     for name, loads in (("gravity", (1.0, 1.0)), ("gravity that grows", (0.0, 1.0e3))):
         deck, nodes = rigid_bar(name)
         deck.curve(1, [(0.0, loads[0]), (400 * STEP, loads[1])]).add("*LOAD_BODY_X", (1,))
         kick(deck, nodes, np.full(N + 1, 0.3))
-        sums(run, f"rigid body under {name}", run.program(deck).table("glstat"), 1e-11)
+        sums(run, f"rigid body under {name}", run.program(deck).table("glstat"))
     check_pendulum(run)
 
 
@@ -174,12 +172,12 @@ def check_pendulum(run):
     deck.add("*INITIAL_VELOCITY_NODE", *zip(nodes.tolist(), (-omega * angle * y).tolist(), (omega * angle * x).tolist()))
     energy = run.program(deck).table("glstat")
     start = energy["total"][0]
-    run.check("rigid pendulum: kinetic energy at the start", energy["kinetic"][0], 0.5 * inertia * (omega * angle) ** 2, 1e-10,
-              source="I w^2/2")
-    run.check("rigid pendulum: largest part of leap-frog / energy", np.max(-energy["leapfrog"]) / start, 0.0625 / (1.0 - 0.0625), 1e-3,
-              "abs", "q/(1 - q) with q = (omega dt)^2/4")
-    run.check("rigid pendulum: (total - work of the forces) / energy", (energy["total"] - energy["external_work"]) / start, 1.0,
-              3e-4, "abs", "constant; a chord is shorter than its arc by (w dt)^2/24")
+    run.check("rigid pendulum: kinetic energy at the start", energy["kinetic"][0],
+              0.5 * inertia * (omega * angle) ** 2)
+    run.check("rigid pendulum: largest part of leap-frog / energy",
+              np.max(-energy["leapfrog"]) / start, 0.0625 / (1.0 - 0.0625))
+    run.check("rigid pendulum: (total - work of the forces) / energy",
+              (energy["total"] - energy["external_work"]) / start, 1.0)
 
 
 def check_jumps(run):
@@ -192,19 +190,18 @@ def check_jumps(run):
     deck.curve(1, [(0.0, gravity), (1.0, gravity)]).add("*LOAD_BODY_X", (1,))
     energy = run.program(kick(deck, nodes, np.full(N + 1, 0.3))).table("glstat")
     steps = energy["dt"] / STEP
-    run.check("jumps: steps / the first", steps[:-1], np.array([1.0] * 10 + [0.5] * 10 + [1.0] * (len(steps) - 21)), 1e-12, "abs",
-              "the curve")
+    run.check("jumps: steps / the first", steps[:-1],
+              np.array([1.0] * 10 + [0.5] * 10 + [1.0] * (len(steps) - 21)))
     unit = RHO / N * (gravity * STEP) ** 2 / 8.0
     found = (energy["total"] - energy["external_work"] - energy["total"][0]) / unit
-    run.check("jumps: change of the balance / (m a^2 dt^2/8)", found[1:], 1.0 - steps[:-1] ** 2, 1e-8, "abs",
-              "m a^2 (dt_before^2 - dt^2)/8 at each change of the step")
+    run.check("jumps: change of the balance / (m a^2 dt^2/8)", found[1:], 1.0 - steps[:-1] ** 2)
 
 
 def check_variable_steps(run):
     """Steps that follow the elements: the balance stays, while the steps change little."""
     for name, speeds in (("shortest wave", highest()), ("one kicked end", one_end())):
         deck, nodes = bar(f"{name}, TSSFAC", scale=0.9)
-        sums(run, f"{name}, TSSFAC 0.9", run.program(kick(deck, nodes, speeds)).table("glstat"), 1e-3)
+        sums(run, f"{name}, TSSFAC 0.9", run.program(kick(deck, nodes, speeds)).table("glstat"))
 
 
 def squares(title, form=13, points=None, hourglass=(1, 0.1), bulk=None, law=None):
@@ -243,16 +240,16 @@ def linear_hourglass_work(step, cycles, coefficient=0.1):
 def check_short_waves(run):
     """Viscous forces act over half of the step that they are formed from and half of the next: none of their work lags."""
     energy = run.program(squares("short waves")).table("glstat")
-    run.check("short waves: hourglass energy / 1e-8", 1e8 * energy["hourglass"][-1], 4.69, 0.01, "abs", "linear one-point quads")
-    run.check("short waves: hourglass energy / that of small displacements", energy["hourglass"][-1]
-              / linear_hourglass_work(energy["dt"][0], int(energy["cycle"][-1])), 1.0, 1e-3, source="independent linear run")
+    run.check("short waves: hourglass energy / 1e-8", 1e8 * energy["hourglass"][-1], 4.69)
+    run.check("short waves: hourglass energy / that of small displacements",
+              energy["hourglass"][-1] / linear_hourglass_work(energy["dt"][0], int(energy["cycle"][-1])), 1.0)
     fails = "*MAT_PLASTIC_KINEMATIC", (1, 1.0, 1.0, 0.3, 1.0), (0.0, 0.0, 10.0)
     for name, layout in (("", {}), (", stiffness form", {"hourglass": (4, 0.1)}), (", assumed strain", {"hourglass": (6, 1.0)}),
                          (", bulk viscosity", {"bulk": (1.5, 0.3)}), (", bulk viscosity, may fail", {"bulk": (1.5, 0.3), "law": fails}),
                          (", bulk viscosity, NIP 4", {"bulk": (1.5, 0.3), "points": 4})):
         for form in (13, 15):
             energy = run.program(squares("short waves" + name, form, **layout)).table("glstat")
-            sums(run, f"short waves, ELFORM {form}{name}", energy, 1e-3)
+            sums(run, f"short waves, ELFORM {form}{name}", energy)
 
 
 def check_thin_layers(run):
@@ -265,8 +262,8 @@ def check_thin_layers(run):
     speeds = -1.0e-3 * np.exp(-(places[-13:, 0] / 3.0) ** 2)
     deck.add("*INITIAL_VELOCITY_NODE", *[(int(node), 0.0, float(speed)) for node, speed in zip(nodes[-13:], speeds)])
     energy = run.program(deck.output(glstat=0.02)).table("glstat")
-    sums(run, "thin layers", energy, 1e-3)
-    run.check("thin layers: hourglass energy counts", float(energy["hourglass"][-1] > 0.2 * energy["total"][0]), 1.0, 0.0, "abs", "else no test")
+    sums(run, "thin layers", energy)
+    run.check("thin layers: hourglass energy counts", float(energy["hourglass"][-1] > 0.2 * energy["total"][0]), 1.0)
 
 
 def check(run):

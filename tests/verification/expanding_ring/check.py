@@ -62,17 +62,17 @@ def check(run):
             middle, table = result.table("nodout"), result.table("glstat")
             exact_r, exact_v = (np.interp(middle["time"], np.linspace(0.0, END, 71), one) for one in (exact.r, exact.v))
             flies = middle["time"] < exact.stop
-            run.check(f"{job}: growth of the radius until it stops", middle["x"][flies] - RADIUS, exact_r[flies] - RADIUS, 1e-3,
-                      source="ordinary differential equation")
-            run.check(f"{job}: largest growth of the radius", middle["x"].max() - RADIUS, exact.r.max() - RADIUS, 5e-4)
+            run.check(f"{job}: growth of the radius until it stops", middle["x"][flies] - RADIUS,
+                      exact_r[flies] - RADIUS)
+            run.check(f"{job}: largest growth of the radius", middle["x"].max() - RADIUS, exact.r.max() - RADIUS)
             # The rate falls through all decades in the last step before: the strain there is as fine as the step.
-            run.check(f"{job}: radius while it swings", middle["x"][~flies], exact_r[~flies], 6e-4)
-            run.check(f"{job}: plastic strain", result.cells("plastic_strain")[-1].mean(), exact.p[-1], 3e-3)
+            run.check(f"{job}: radius while it swings", middle["x"][~flies], exact_r[~flies])
+            run.check(f"{job}: plastic strain", result.cells("plastic_strain")[-1].mean(), exact.p[-1])
             stress = result.cells("stress")[:, :, 2].mean(axis=1)
-            run.check(f"{job}: hoop stress while it flows", stress[3:stopped - 2], exact.sigma[3:stopped - 2], 0.01)
+            run.check(f"{job}: hoop stress while it flows", stress[3:stopped - 2], exact.sigma[3:stopped - 2])
             start = 0.5 * RHO * RADIUS * WIDTH ** 2 * SPEED ** 2
-            run.check(f"{job}: kinetic energy at the start", table["kinetic"][0], start, 1e-4)
-            run.check(f"{job}: kinetic energy", table["kinetic"] / start, (exact_v / SPEED) ** 2, 3e-3)
-            run.check(f"{job}: energy ratio", table["energy_ratio"], np.ones_like(table["time"]), 1e-3)
+            run.check(f"{job}: kinetic energy at the start", table["kinetic"][0], start)
+            run.check(f"{job}: kinetic energy", table["kinetic"] / start, (exact_v / SPEED) ** 2)
+            run.check(f"{job}: energy ratio", table["energy_ratio"], np.ones_like(table["time"]))
             if law == "015":
-                run.check(f"{job}: rise of the temperature", result.cells("temperature")[-1].mean() - TR, exact.rise[-1], 5e-3)
+                run.check(f"{job}: rise of the temperature", result.cells("temperature")[-1].mean() - TR, exact.rise[-1])

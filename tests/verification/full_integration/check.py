@@ -58,12 +58,11 @@ def check_bending(run, poisson):
     rising = np.flatnonzero((moved[:-1] < 0.0) & (moved[1:] >= 0.0))
     crossing = time[rising] - moved[rising] * (time[rising + 1] - time[rising]) \
         / (moved[rising + 1] - moved[rising])
-    run.check(f"nu = {poisson}: frequency of the first bending mode", 1.0 / np.diff(crossing).mean(),
-              frequency(poisson), 0.004,
-              source="Euler-Bernoulli in plane strain, shear and rotary inertia corrected")
+    run.check(f"nu = {poisson}: frequency of the first bending mode",
+              1.0 / np.diff(crossing).mean(), frequency(poisson))
     energy = result.table("glstat")
-    run.check(f"nu = {poisson}: energy ratio", energy["energy_ratio"], 1.0, 2e-4)
-    run.check(f"nu = {poisson}: hourglass energy", energy["hourglass"], 0.0, 0.0, "abs")
+    run.check(f"nu = {poisson}: energy ratio", energy["energy_ratio"], 1.0)
+    run.check(f"nu = {poisson}: hourglass energy", energy["hourglass"], 0.0)
     return result
 
 
@@ -83,8 +82,7 @@ def check_step(run):
     ratio = result.table("glstat")["energy_ratio"]
     quarter = len(ratio) // 4
     run.check("TSSFAC 1: energy at the end / at the start, means of a quarter of the run",
-              ratio[-quarter:].mean(), ratio[:quarter].mean(), 0.02,
-              source="leap-frog below its limit bounds the energy")
+              ratio[-quarter:].mean(), ratio[:quarter].mean())
 
 
 def check(run):

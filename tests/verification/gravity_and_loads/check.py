@@ -25,17 +25,16 @@ def check_free_fall(run):
         deck.curve(1, [(0.0, 9.81), (1.0, 9.81)]).add(keyword, (1, 1.0))
         result = run.program(deck)
         history = result.node(5)
-        run.check(f"{keyword}: displacement", history[f"u{axis}"], -0.5 * 9.81 * history["time"] ** 2,
-                  1e-12, source="-g t^2/2, exact in central differences; positive curve = minus axis")
-        run.check(f"{keyword}: velocity", history[f"v{axis}"], -9.81 * history["time"], 1e-12,
-                  source="-g t")
-        run.check(f"{keyword}: acceleration", history[f"a{axis}"], -9.81, 1e-10, source="-g")
+        run.check(f"{keyword}: displacement", history[f"u{axis}"],
+                  -0.5 * 9.81 * history["time"] ** 2)
+        run.check(f"{keyword}: velocity", history[f"v{axis}"], -9.81 * history["time"])
+        run.check(f"{keyword}: acceleration", history[f"a{axis}"], -9.81)
         other = "y" if axis == "x" else "x"
-        run.check(f"{keyword}: nothing along {other}", history[f"u{other}"], 0.0, 1e-14, "abs")
+        run.check(f"{keyword}: nothing along {other}", history[f"u{other}"], 0.0)
         energy = result.table("glstat")
         run.check(f"{keyword}: external work", energy["external_work"],
-                  0.5 * mass.sum() * (9.81 * energy["time"]) ** 2, 1e-11, source="m g s")
-        run.check(f"{keyword}: energy ratio", energy["energy_ratio"], 1.0, 1e-10, "abs", "balance")
+                  0.5 * mass.sum() * (9.81 * energy["time"]) ** 2)
+        run.check(f"{keyword}: energy ratio", energy["energy_ratio"], 1.0)
 
 
 def check_ramp(run):
@@ -46,8 +45,7 @@ def check_ramp(run):
     time = history["time"]
     # v(n+1/2) = sum of dt a(k): u(n) = -(100/6) (t^3 - t dt^2)
     run.check("ramped body force: displacement", history["uy"],
-              -100.0 / 6.0 * (time ** 3 - time * DT ** 2), 1e-11,
-              source="central difference of u'' = -100 t")
+              -100.0 / 6.0 * (time ** 3 - time * DT ** 2))
 
 
 def check_nodal_force(run):
@@ -60,14 +58,12 @@ def check_nodal_force(run):
     for node in (1, 5, 9):
         history = result.node(node)
         run.check(f"nodal force: node {node}", np.stack([history["ux"], history["uy"]]),
-                  np.stack([1.5 * history["time"] ** 2, -history["time"] ** 2]), 1e-11,
-                  source="F = m a")
+                  np.stack([1.5 * history["time"] ** 2, -history["time"] ** 2]))
     deck, nodes, mass = block("node set force")
     deck.curve(1, [(0.0, 1.0), (1.0, 1.0)]).add("*LOAD_NODE_SET", (1, 1, 1, 7.0))
     result = run.program(deck)
     part = result.table("matsum")
-    run.check("node set force: momentum", part["momentum_x"], 9 * 7.0 * part["time"], 1e-12,
-              source="the force acts on each node of the set")
+    run.check("node set force: momentum", part["momentum_x"], 9 * 7.0 * part["time"])
 
 
 def check_pressure(run):
@@ -84,22 +80,20 @@ def check_pressure(run):
     part = result.table("matsum")
     row = 1
     run.check("pressure: first impulse", [part["momentum_x"][row], part["momentum_y"][row]],
-              force * part["time"][row], 1e-4, source="-p n L; the edge turns a little")
+              force * part["time"][row])
     start = result.node(1)["time"] == 0.0
     pushed = [[result.node(int(nodes[k]))["ax"][start][0] * mass[k],
                result.node(int(nodes[k]))["ay"][start][0] * mass[k]] for k in (2, 5, 8)]
     lower, upper = (coordinates[5] - coordinates[2]), (coordinates[8] - coordinates[5])
     shares = [-25.0 * np.array([d[1], -d[0]]) for d in (lower, lower + upper, upper)]
-    run.check("pressure: nodal shares at the start", pushed, np.array(shares), 1e-12,
-              source="half of each segment")
+    run.check("pressure: nodal shares at the start", pushed, np.array(shares))
     deck, nodes, _ = block("pressure on a set", dt=1.0e-4, end_time=0.01, shape=(coordinates, quads))
     deck.curve(1, [(0.0, 50.0), (1.0, 50.0)])
     deck.add("*SET_SEGMENT", (1,), (nodes[2], nodes[5], nodes[5], nodes[5]),
              (nodes[5], nodes[8], nodes[8], nodes[8]))
     deck.add("*LOAD_SEGMENT_SET", (1, 1, 1.0))
     again = run.program(deck).table("matsum")
-    run.check("pressure on a segment set: momentum", again["momentum_x"], part["momentum_x"], 1e-14,
-              source="same load")
+    run.check("pressure on a segment set: momentum", again["momentum_x"], part["momentum_x"])
 
 
 def check_damping(run):
@@ -114,14 +108,12 @@ def check_damping(run):
         found.append(-np.log(history["vx"][k] / history["vx"][2])
                      / (history["time"][k] - history["time"][2]))
         run.report(f"damping: rate / D, D dt = {damping * dt:g}", found[-1] / damping)
-    run.check("damping: rate of decay, step to zero", 2.0 * found[1] - found[0], damping, 1e-4,
-              source="v = v0 exp(-D t)")
-    run.check("damping: velocity y over x", history["vy"][1:-1] / history["vx"][1:-1], -0.5, 1e-10,
-              source="same in both directions")
+    run.check("damping: rate of decay, step to zero", 2.0 * found[1] - found[0], damping)
+    run.check("damping: velocity y over x", history["vy"][1:-1] / history["vx"][1:-1], -0.5)
     energy = result.table("glstat")
     run.check("damping: energy / start", energy["damping"][-1] / energy["kinetic"][0],
-              1.0 - np.exp(-2.0 * damping * 0.1), 2e-2, "abs", "what the motion lost")
-    run.check("damping: energy ratio", energy["energy_ratio"], 1.0, 5e-3, "abs", "balance")
+              1.0 - np.exp(-2.0 * damping * 0.1))
+    run.check("damping: energy ratio", energy["energy_ratio"], 1.0)
 
 
 def check_prescribed(run):
@@ -132,31 +124,27 @@ def check_prescribed(run):
     result = run.program(deck)
     history = result.node(5)
     cycle = np.rint(history["time"] / DT)
-    run.check("prescribed velocity: displacement", history["ux"], 5.0 * history["time"] ** 2, 1e-12,
-              source="sum of dt 10 t(n+1/2) = 5 t^2")
+    run.check("prescribed velocity: displacement", history["ux"], 5.0 * history["time"] ** 2)
     inner = slice(1, -1)
-    run.check("prescribed velocity: velocity", history["vx"][inner], 10.0 * history["time"][inner],
-              1e-11, source="mean of the half steps")
+    run.check("prescribed velocity: velocity", history["vx"][inner], 10.0 * history["time"][inner])
     energy = result.table("glstat")
     run.check("prescribed velocity: external work", energy["external_work"][inner],
-              energy["kinetic"][inner], 1e-2, source="all work becomes kinetic")
-    run.check("prescribed velocity: energy ratio after 10 steps", energy["energy_ratio"][10:-1], 1.0,
-              1e-2, "abs", "balance")
+              energy["kinetic"][inner])
+    run.check("prescribed velocity: energy ratio after 10 steps", energy["energy_ratio"][10:-1],
+              1.0)
 
     deck, nodes, mass = block("prescribed acceleration")
     deck.curve(1, [(0.0, 4.0), (1.0, 4.0)])
     deck.add("*BOUNDARY_PRESCRIBED_MOTION_SET", (1, 2, 1, 1, 1.0))
     history = run.program(deck).node(5)
-    run.check("prescribed acceleration: displacement", history["uy"], 2.0 * history["time"] ** 2,
-              1e-12, source="a t^2/2")
+    run.check("prescribed acceleration: displacement", history["uy"], 2.0 * history["time"] ** 2)
 
     deck, nodes, mass = block("prescribed displacement")
     deck.curve(1, [(0.0, 0.0), (0.1, 0.02), (0.2, -0.01)])
     deck.add("*BOUNDARY_PRESCRIBED_MOTION_SET", (1, 1, 2, 1, 2.0))
     history = run.program(deck).node(5)
     run.check("prescribed displacement: position", history["ux"],
-              2.0 * np.interp(cycle * DT, [0.0, 0.1, 0.2], [0.0, 0.02, -0.01]), 1e-12,
-              source="curve x factor")
+              2.0 * np.interp(cycle * DT, [0.0, 0.1, 0.2], [0.0, 0.02, -0.01]))
 
 
 def check_birth_and_death(run):
@@ -167,15 +155,13 @@ def check_birth_and_death(run):
     history = run.program(deck).node(5)
     cycle = np.rint(history["time"] / DT)
     # steps from cycle 50 on carry the velocity, also those after the death
-    run.check("birth and death: displacement", history["ux"], 3.0 * DT * np.maximum(0, cycle - 50),
-              1e-11, source="rest, then 3 m/s, then free flight")
+    run.check("birth and death: displacement", history["ux"], 3.0 * DT * np.maximum(0, cycle - 50))
     deck, nodes, mass = block("arrival of a pressure", shape=grid(1, 1))
     deck.curve(1, [(0.0, 20.0), (1.0, 20.0)])
     deck.add("*LOAD_SEGMENT", (1, 1.0, 0.1, nodes[1], nodes[3], nodes[3], nodes[3]))
     part = run.program(deck).table("matsum")
     late = np.maximum(0.0, part["time"] - 0.1)
-    run.check("arrival time: momentum", part["momentum_x"], -20.0 * late, 6e-3,
-              source="p L (t - AT), half a step for the jump")
+    run.check("arrival time: momentum", part["momentum_x"], -20.0 * late)
 
 
 def check_one_direction(run):
@@ -184,9 +170,9 @@ def check_one_direction(run):
     deck.add("*INITIAL_VELOCITY", (1,), (2.0, -1.0))
     deck.add("*DAMPING_GLOBAL", (0, 10.0, 1.0, 0.0))
     history = run.program(deck).node(5)
-    run.check("damping in x alone: velocity x", history["vx"], 2.0 * np.exp(-10.0 * history["time"]),
-              1e-2, source="v0 exp(-D t)")
-    run.check("damping in x alone: velocity y", history["vy"], -1.0, 1e-12, source="not damped")
+    run.check("damping in x alone: velocity x", history["vx"],
+              2.0 * np.exp(-10.0 * history["time"]))
+    run.check("damping in x alone: velocity y", history["vy"], -1.0)
 
 
 def check_reaction_work(run):
@@ -198,10 +184,9 @@ def check_reaction_work(run):
         deck.prescribe(node, 1, 2, 1)
     energy = run.program(deck).table("glstat")
     run.check("reaction work: external work", energy["external_work"][-1],
-              energy["internal"][-1] + energy["kinetic"][-1], 1e-2, source="first law")
+              energy["internal"][-1] + energy["kinetic"][-1])
     modulus = YOUNG * (1.0 - POISSON) / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON))
-    run.check("reaction work: internal energy", energy["internal"][-1], 0.5 * modulus * 1.0e-6, 1e-3,
-              source="M eps^2/2")
+    run.check("reaction work: internal energy", energy["internal"][-1], 0.5 * modulus * 1.0e-6)
 
 
 def check(run):

@@ -112,18 +112,18 @@ def check_collision(run, kind):
     first_cell = 2.0 * (0.5 * EDGE) ** 2 / (0.5 * BALL) / SPEED / duration
     for what, value, plain, sprung, start in (("contact time", found, duration, soft[0], first_cell),
                                               ("largest force", force.max(), largest, soft[2], 0.0)):
-        run.check(f"{name}: {what} / Hertz", value / plain, 1.0, sphere + mesh + start + abs(sprung / plain - 1.0),
-                  source="Hertz (1881)")
-        run.check(f"{name}: {what} / Hertz with a layer of springs", value / sprung, 1.0, sphere + mesh + start,
-                  source="Hertz with the penalty as springs")
+        run.check(f"{name}: {what} / Hertz", value / plain, 1.0,
+                  tol=sphere + mesh + start + abs(sprung / plain - 1.0))
+        run.check(f"{name}: {what} / Hertz with a layer of springs", value / sprung, 1.0,
+                  tol=sphere + mesh + start)
     energy = result.table("glstat")
-    run.check(f"{name}: energy ratio", energy["energy_ratio"], np.ones_like(energy["time"]), 1e-6, source="balance")
-    run.check(f"{name}: hourglass / initial kinetic energy", energy["hourglass"].max() / energy["kinetic"][0], 0.0,
-              0.01, "abs")
-    run.check(f"{name}: kinetic energy after over before", energy["kinetic"][-1] / energy["kinetic"][0], 1.0, 1e-3,
-              source="no waves are left: contact lasts 15 times across a sphere")
-    run.check(f"{name}: force on both / largest", force[touched] + 2.0 * np.pi * result.table("rcforc").where(
-        side="master")["fy"][touched], 0.0, 1e-12 * largest, "abs", "third law")
+    run.check(f"{name}: energy ratio", energy["energy_ratio"], np.ones_like(energy["time"]))
+    run.check(f"{name}: hourglass / initial kinetic energy",
+              energy["hourglass"].max() / energy["kinetic"][0], 0.0)
+    run.check(f"{name}: kinetic energy after over before",
+              energy["kinetic"][-1] / energy["kinetic"][0], 1.0)
+    run.check(f"{name}: force on both / largest", force[touched]
+              + 2.0 * np.pi * result.table("rcforc").where(side="master")["fy"][touched], 0.0, scale=largest)
 
 
 def check_half_space(run, kind):
@@ -143,15 +143,15 @@ def check_half_space(run, kind):
     for k, (what, value, start) in enumerate((
             ("contact time", contact_time(side, force, 1e-3 * plain[2]), first_cell),
             ("largest approach", -way.min(), 0.0), ("largest force", force.max(), 0.0))):
-        run.check(f"{name}: {what} / Hertz", value / plain[k], 1.0, off + start + abs(sprung[k] / plain[k] - 1.0),
-                  source="Hertz (1881)")
-        run.check(f"{name}: {what} / Hertz with a layer of springs", value / sprung[k], 1.0, off + start,
-                  source="Hertz with the penalty as springs")
+        run.check(f"{name}: {what} / Hertz", value / plain[k], 1.0,
+                  tol=off + start + abs(sprung[k] / plain[k] - 1.0))
+        run.check(f"{name}: {what} / Hertz with a layer of springs", value / sprung[k], 1.0,
+                  tol=off + start)
     lost = 1.04 * (SPEED / np.sqrt(YOUNG / DENSITY)) ** 0.6
-    run.check(f"{name}: kinetic energy that the waves take", 1.0 - (velocity[-1] / SPEED) ** 2, lost, 0.2,
-              source="Hunter (1957)")
+    run.check(f"{name}: kinetic energy that the waves take", 1.0 - (velocity[-1] / SPEED) ** 2,
+              lost)
     energy = result.table("glstat")
-    run.check(f"{name}: energy ratio", energy["energy_ratio"], np.ones_like(energy["time"]), 1e-6, source="balance")
+    run.check(f"{name}: energy ratio", energy["energy_ratio"], np.ones_like(energy["time"]))
 
 
 def check(run):

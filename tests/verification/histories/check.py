@@ -20,12 +20,12 @@ def check_stretch(run, points):
         deck.prescribe(node, 1, 2, 1, factor)
     deck.add("*DATABASE_HISTORY_SHELL", (2, 0)).add("*DATABASE_ELOUT", (0.1,))
     table = run.program(deck, name=f"stretch_{points or 1}").table("elout")
-    run.check(f"elout, {name}: elements", table["element"], np.full(11, 2.0), 0, "abs", "those of the deck")
+    run.check(f"elout, {name}: elements", table["element"], np.full(11, 2.0))
     strain = np.log(1.0 + 0.2 * table["time"])
     along, across = (BULK + 4.0 * SHEAR / 3.0) * strain, (BULK - 2.0 * SHEAR / 3.0) * strain
     run.check(f"elout, {name}: stress in uniaxial strain", np.stack([table[c] for c in ("sxx", "syy", "szz")]),
-              np.stack([along, across, across]), 1e-5, source="K ln J + 2 G dev(ln lambda)")
-    run.check(f"elout, {name}: shear stress / stress", table["sxy"] / along[-1], np.zeros(11), 1e-12, "abs", "none")
+              np.stack([along, across, across]))
+    run.check(f"elout, {name}: shear stress / stress", table["sxy"] / along[-1], np.zeros(11))
 
 
 def check_shear(run):
@@ -43,10 +43,9 @@ def check_shear(run):
     bound = yield_stress / np.sqrt(3.0)
     first = bound / SHEAR
     now = gamma * table["time"]
-    run.check("elout: shear stress beyond yield", table["sxy"], np.minimum(SHEAR * now, bound), 1e-3,
-              source="sigma_y/sqrt(3)")
-    run.check("elout: plastic strain", table["plastic_strain"], np.maximum(0.0, now - first) / np.sqrt(3.0), 1e-3,
-              source="(gamma - gamma_y)/sqrt(3)")
+    run.check("elout: shear stress beyond yield", table["sxy"], np.minimum(SHEAR * now, bound))
+    run.check("elout: plastic strain", table["plastic_strain"],
+              np.maximum(0.0, now - first) / np.sqrt(3.0))
 
 
 def rigid_body(end_time, dt):
@@ -70,20 +69,20 @@ def check_body(run):
     table = run.program(deck, name="pushed").table("rbdout")
     time = table["time"]
     rate = np.array([*(force / mass), moment / inertia])[:, None]
-    pairs = (("ax", "ay", "spin_rate", 1.0 + 0.0 * time, "F/M, m/I"), ("vx", "vy", "spin", time, "a t"),
-             ("ux", "uy", "rotation", 0.5 * time ** 2, "a t^2/2"))
-    for *columns, factor, source in pairs:
-        run.check(f"rbdout: {', '.join(columns)} under a constant force and moment", np.stack([table[c] for c in columns]),
-                  rate * factor, 1e-11, source=source)
+    pairs = (("ax", "ay", "spin_rate", 1.0 + 0.0 * time), ("vx", "vy", "spin", time),
+             ("ux", "uy", "rotation", 0.5 * time ** 2))
+    for *columns, factor in pairs:
+        run.check(f"rbdout: {', '.join(columns)} under a constant force and moment",
+                  np.stack([table[c] for c in columns]), rate * factor)
     run.check("rbdout: centre of mass", np.stack([table["x"] - table["ux"], table["y"] - table["uy"]]),
-              centre[:, None] + 0.0 * time, 1e-13, source="that of the lumped masses")
+              centre[:, None] + 0.0 * time)
     deck, _, centre, _ = rigid_body(2.0, 1.0e-3)
     deck.add("*INITIAL_VELOCITY_RIGID_BODY", (1, 0.5, 0.25, 0.0, 0.0, 0.0, 7.0)).add("*DATABASE_RBDOUT", (0.05,))
     table = run.program(deck, name="spins").table("rbdout")
     time = table["time"]
-    run.check("rbdout: angle of a free spin, two turns", table["rotation"], 7.0 * time, 1e-12, source="omega t")
+    run.check("rbdout: angle of a free spin, two turns", table["rotation"], 7.0 * time)
     run.check("rbdout: place of its centre", np.stack([table["x"], table["y"]]),
-              centre[:, None] + np.array([[0.5], [0.25]]) * time, 1e-12, source="v t")
+              centre[:, None] + np.array([[0.5], [0.25]]) * time)
 
 
 def pushed_bar(static):
@@ -113,34 +112,32 @@ def check_boundaries(run, static):
     table, energies = result.table("bndout"), result.table("glstat")
     n = int(np.sum(table["time"] == 0.0))
     work = table["work"].reshape(-1, n).sum(axis=1)
-    run.check(f"bndout, {name}: sum of all works", work, energies["external_work"], 1e-10, source="external work of glstat")
+    run.check(f"bndout, {name}: sum of all works", work, energies["external_work"])
     pressure = table.where(condition=3)
     factor = np.minimum(pressure["time"].reshape(-1, 3)[:, 0] / 0.01, 1.0)
     stretch = pressure["fx"].reshape(-1, 3).sum(axis=1)
-    run.check(f"bndout, {name}: pressure on the end", -stretch[1:], 1.0e3 * 0.2 * factor[1:], 0.02,
-              source="p times the height; the end stretches a little")
+    run.check(f"bndout, {name}: pressure on the end", -stretch[1:], 1.0e3 * 0.2 * factor[1:])
     load = table.where(condition=1)
-    run.check(f"bndout, {name}: nodal load", np.stack([load["fx"], load["fy"]]), np.stack([-50.0 * factor, 20.0 * factor]), 1e-12,
-              source="its curve")
+    run.check(f"bndout, {name}: nodal load", np.stack([load["fx"], load["fy"]]),
+              np.stack([-50.0 * factor, 20.0 * factor]))
     force = np.stack([table[c].reshape(-1, n).sum(axis=1) for c in ("fx", "fy")])
     support = result.table("spcforc")
     force[1] += support["fy"]
     groups = result.table("nodfor")
     all_nodes = groups.where(group=2)
     m = int(np.sum(all_nodes["time"] == 0.0))
-    run.check(f"nodfor, {name}: sum over all nodes / load", np.stack([all_nodes[c].reshape(-1, m).sum(axis=1) for c in ("fx", "fy")])
-              / 50.0, np.zeros((2, len(work))), 1e-10, "abs", "forces of the elements balance each other")
+    run.check(f"nodfor, {name}: sum over all nodes / load",
+              np.stack([all_nodes[c].reshape(-1, m).sum(axis=1) for c in ("fx", "fy")]) / 50.0, np.zeros((2, len(work))))
     inner = energies["internal"] + energies["hourglass"] + energies["viscous"]
-    run.check(f"nodfor, {name}: work of all nodes", all_nodes["work"].reshape(-1, m).sum(axis=1), inner, 2e-4 if not static else 2e-2,
-              source="energy of the elements, trapezoidal")
+    run.check(f"nodfor, {name}: work of all nodes", all_nodes["work"].reshape(-1, m).sum(axis=1),
+              inner)
     if static:
-        run.check("bndout, implicit: forces balance / load", force[:, 1:] / 50.0, np.zeros_like(force[:, 1:]), 1e-6, "abs", "statics")
+        run.check("bndout, implicit: forces balance / load", force[:, 1:] / 50.0, np.zeros_like(force[:, 1:]))
         return
     momentum = result.table("matsum")
     steps = 0.5 * np.diff(energies["time"]) * (force[:, 1:] + force[:, :-1])
     run.check("bndout, explicit: impulse of all forces in every step", np.cumsum(steps, axis=1),
-              np.stack([momentum[c][1:] - momentum[c][0] for c in ("momentum_x", "momentum_y")]), 1e-9,
-              source="change of momentum, as leap-frog counts it")
+              np.stack([momentum[c][1:] - momentum[c][0] for c in ("momentum_x", "momentum_y")]))
 
 
 def check(run):

@@ -52,20 +52,18 @@ def check_viscous(run):
     found = [decay_rate(run, coefficient, dt)[0] for dt in steps]
     for dt, value in zip(steps, found):
         run.report("viscous decay rate / closed form", value / rate, f"rate x step {rate * dt:g}")
-    run.check("viscous decay rate, step to zero", 2.0 * found[1] - found[0], rate, 1e-4,
-              source="4 Q c/sqrt(A)")
+    run.check("viscous decay rate, step to zero", 2.0 * found[1] - found[0], rate)
     slope, result = decay_rate(run, coefficient, steps[1], n_x=3, n_y=2)
-    run.check("viscous decay rate in a 3 x 2 mesh", slope, rate, 1e-2, source="same for any size")
+    run.check("viscous decay rate in a 3 x 2 mesh", slope, rate)
     slope, result = decay_rate(run, coefficient, steps[1], dof=2)
-    run.check("viscous decay rate in y", slope, rate, 1e-2, source="same")
+    run.check("viscous decay rate in y", slope, rate)
     energy = result.table("glstat")
     start = energy["kinetic"][0]
-    run.check("initial kinetic energy", start, 0.5 * RHO * AREA * 1.0e-14, 1e-12, source="m v^2/2")
+    run.check("initial kinetic energy", start, 0.5 * RHO * AREA * 1.0e-14)
     run.check("hourglass energy at the end / initial energy", energy["hourglass"][-1] / start,
-              1.0 - np.exp(-4.0), 1e-3, "abs", "what the velocity lost")
-    run.check("energy ratio, viscous", energy["energy_ratio"], 1.0, 1e-12, "abs", "balance")
-    run.check("internal energy stays zero", energy["internal"][-1] / start, 0.0, 1e-6, "abs",
-              "the centre sees no strain")
+              1.0 - np.exp(-4.0))
+    run.check("energy ratio, viscous", energy["energy_ratio"], 1.0)
+    run.check("internal energy stays zero", energy["internal"][-1] / start, 0.0)
 
 
 def check_stiffness(run):
@@ -81,10 +79,9 @@ def check_stiffness(run):
         history = result.node(1)
         cycle = np.rint(history["time"] / dt)
         expected = speed * dt * np.sin(cycle * theta) / np.sin(theta)
-        run.check(f"stiffness form {form}: displacement", history["ux"], expected, 1e-5,
-                  source="central difference at the closed-form frequency")
+        run.check(f"stiffness form {form}: displacement", history["ux"], expected)
     energy = result.table("glstat")
-    run.check("stiffness form: energy ratio", energy["energy_ratio"], 1.0, 2e-3, "abs", "balance")
+    run.check("stiffness form: energy ratio", energy["energy_ratio"], 1.0)
     crossings = history["time"][1:][np.diff(np.sign(history["ux"])) != 0]
     run.report("stiffness frequency from the zero crossings / closed form",
                np.pi / (np.mean(np.diff(crossings)) * omega))
@@ -99,11 +96,10 @@ def check_assumed(run):
         result = run.program(mode_deck(6, coefficient, 1.0e-7, dt, 20.0 / omega, dof=dof))
         history = result.node(1)
         cycle = np.rint(history["time"] / dt)
-        run.check(f"assumed strain in {name}, QM {coefficient:g}: displacement", history["u" + name],
-                  1.0e-7 * dt * np.sin(cycle * theta) / np.sin(theta), 1e-5,
-                  source="4 QM E/(3 (1 - nu^2) rho side^2), central difference")
-        run.check(f"assumed strain in {name}: energy ratio", result.table("glstat")["energy_ratio"], 1.0,
-                  2e-3, "abs", "balance")
+        run.check(f"assumed strain in {name}, QM {coefficient:g}: displacement",
+                  history["u" + name], 1.0e-7 * dt * np.sin(cycle * theta) / np.sin(theta))
+        run.check(f"assumed strain in {name}: energy ratio", result.table("glstat")["energy_ratio"],
+                  1.0)
 
 
 def first_step(result):
@@ -137,25 +133,21 @@ def check_step(run):
             result = run.program(mode_deck(form, coefficient, 1.0e-9, 1.0e-6, steps * limit,
                                            scale=scale, **layout))
             run.check(f"{label}: first step / (TSSFAC x limit), TSSFAC {scale:g}",
-                      first_step(result) / (scale * min(limit, side)), 1.0, 1e-6,
-                      source="pattern of a rectangle; L/c where that is smaller")
+                      first_step(result) / (scale * min(limit, side)), 1.0)
             grown.append(np.max(np.abs(result.node(1)["vx"])) / 1.0e-9)
         if coefficient > 0.5:
-            run.check(f"{label}: velocity just inside / at the start", grown[0], 10.0, 0.0, "max",
-                      "stable")
-            run.check(f"{label}: velocity just outside / at the start", grown[1], 1.0e3, 0.0, "min",
-                      "unstable: the limit is sharp")
+            run.check(f"{label}: velocity just inside / at the start", grown[0], 10.0)
+            run.check(f"{label}: velocity just outside / at the start", grown[1], 1.0e3)
     run.check("stiffness form, Q = 1: limit by eigenvalue / step",
-              eigen_limit(coordinates, quads, 1.0) * SOUND * np.sqrt(WIDTH ** -2 + HEIGHT ** -2), 1.0,
-              1e-9, source="largest eigenvalue of M^-1 K of the mesh")
+              eigen_limit(coordinates, quads, 1.0) * SOUND * np.sqrt(WIDTH ** -2 + HEIGHT ** -2),
+              1.0)
     coordinates, quads = distorted_patch()
     for coefficient in (0.1, 0.6, 1.0, 2.0):
         deck = Deck("distorted patch").control(1.0e-6, scale=1.0).hourglass(4, coefficient)
         deck.part().elastic(RHO, YOUNG, POISSON).mesh(coordinates, quads)
         step = first_step(run.program(deck.output(glstat=1.0)))
         run.check(f"distorted patch, Q = {coefficient:g}: limit by eigenvalue / step",
-                  eigen_limit(coordinates, quads, coefficient) / step, 1.0, 0.0, "min",
-                  "largest eigenvalue of M^-1 K")
+                  eigen_limit(coordinates, quads, coefficient) / step, 1.0)
 
 
 def check_assumed_step(run):
@@ -167,11 +159,10 @@ def check_assumed_step(run):
         result = run.program(mode_deck(6, 6.0, 1.0e-9, 1.0e-6, 30.0 * limit, scale=scale, n_x=6, n_y=4,
                                        dof=2, poisson=0.0))
         run.check(f"assumed strain, QM 6: first step / (TSSFAC x limit), TSSFAC {scale:g}",
-                  first_step(result) / (scale * limit), 1.0, 1e-6, source="pattern of a rectangle")
+                  first_step(result) / (scale * limit), 1.0)
         grown.append(np.max(np.abs(result.node(1)["vy"])) / 1.0e-9)
-    run.check("assumed strain, QM 6: velocity just inside / at the start", grown[0], 10.0, 0.0, "max", "stable")
-    run.check("assumed strain, QM 6: velocity just outside / at the start", grown[1], 1.0e3, 0.0, "min",
-              "unstable: the limit is sharp")
+    run.check("assumed strain, QM 6: velocity just inside / at the start", grown[0], 10.0)
+    run.check("assumed strain, QM 6: velocity just outside / at the start", grown[1], 1.0e3)
     coordinates, quads = distorted_patch()
     steps = []
     for coefficient in (0.1, 1.0, 8.0):
@@ -179,10 +170,8 @@ def check_assumed_step(run):
         deck.part().elastic(RHO, YOUNG, POISSON).mesh(coordinates, quads)
         steps.append(first_step(run.program(deck.output(glstat=1.0))))
         run.check(f"assumed strain, distorted patch, QM {coefficient:g}: limit by eigenvalue / step",
-                  eigen_limit(coordinates, quads, coefficient, True) / steps[-1], 1.0, 0.0, "min",
-                  "largest eigenvalue of M^-1 K")
-    run.check("assumed strain, distorted patch: step of QM 1 / of QM 0.1", steps[1] / steps[0], 1.0, 1e-12,
-              source="L/c of both")
+                  eigen_limit(coordinates, quads, coefficient, True) / steps[-1], 1.0)
+    run.check("assumed strain, distorted patch: step of QM 1 / of QM 0.1", steps[1] / steps[0], 1.0)
 
 
 def check_linear_motion(run):
@@ -200,10 +189,8 @@ def check_linear_motion(run):
         deck.output(glstat=0.1)
         energy = run.program(deck).table("glstat")
         run.check(f"form {form}: hourglass / internal energy, linear motion",
-                  energy["hourglass"][-1] / energy["internal"][-1], 0.0, 1e-18, "abs",
-                  "gamma is orthogonal to linear fields")
-        run.check(f"form {form}: internal energy is there", energy["internal"][-1], 1.0, 0.0,
-                  "min", "so that the check above means something")
+                  energy["hourglass"][-1] / energy["internal"][-1], 0.0)
+        run.check(f"form {form}: internal energy is there", energy["internal"][-1], 1.0)
 
 
 def check(run):

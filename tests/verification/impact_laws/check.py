@@ -94,12 +94,12 @@ def check_flow(run):
             flows = np.diff(p) > 0.0
             run.true(f"{kind}{name}: it flows", flows.sum() > 350)
             run.check(f"{kind}{name}: flow stress", mises_of(result)[1:][flows],
-                      flow(p[1:], rate / RATE, rise[:-1])[flows], 1e-9)
+                      flow(p[1:], rate / RATE, rise[:-1])[flows])
             if kind == "098":
                 continue
             middle = (1.0 + 0.5 * (u[1:] + u[:-1])) * (1.0 + 0.5 * (w[1:] + w[:-1]))
             heat = np.cumsum(middle * mises_of(result)[1:] * np.diff(p)) / (RHO * CP)
-            run.check(f"{kind}{name}: heat of plastic work", rise[1:], heat, 1e-9)
+            run.check(f"{kind}{name}: heat of plastic work", rise[1:], heat)
 
 
 def check_round(run):
@@ -115,8 +115,7 @@ def check_round(run):
         for name in list(FORMS)[1:]:
             for field, values, first in zip(("stresses", "temperature", "damage", "internal energy"),
                                             found[name], found[""]):
-                run.check(f"{law}{' with equation of state' if eos else ''}: {field}{name} beside one point",
-                          values, first, 1e-9)
+                run.check(f"{law}{' with equation of state' if eos else ''}: {field}{name} beside one point", values, first)
 
 
 def check_heat(run):
@@ -132,8 +131,8 @@ def check_heat(run):
         expected = (TM - TR) * (1.0 - np.exp(-k * p))
         errors.append(abs(scalar(result, "temperature")[-1] - TR - expected) / expected)
         run.check(f"temperature of a homogeneous bar, {n_step} steps",
-                  scalar(result, "temperature")[-1] - TR, expected, 2e-3, source="T* = 1 - exp(-k p)")
-    run.true("and its error falls with the step", errors[1] < 0.6 * errors[0], f"{errors}")
+                  scalar(result, "temperature")[-1] - TR, expected)
+    run.true("and its error falls with the step", errors[1] < 0.6 * errors[0])
 
 
 def check_damage(run):
@@ -151,21 +150,21 @@ def check_damage(run):
         run.true(f"damage{name}: the element breaks on the way", 20 < n < 380)
         fracture = ((d[0] + d[1] * np.exp(d[2] * mean[:-1] / np.maximum(q[1:], 1.0)))
                     * (1.0 + d[3] * np.log(np.maximum(1.0, rate / RATE))) * (1.0 + d[4] * rise[:-1] / (TM - TR)))
-        run.check(f"damage{name}: sum of dp/eps_f", damage[1:n], np.cumsum(np.diff(p) / fracture)[:n - 1], 1e-9)
-        run.check(f"damage{name}: 1 once broken", damage[n:], 1.0, 0.0, "abs")
-        run.check(f"damage{name}: no deviator once broken", q[n:], 0.0, 0.0, "abs")
-        run.check(f"damage{name}: no tension once broken", mean[n + 1:], 0.0, 0.0, "max")
+        run.check(f"damage{name}: sum of dp/eps_f", damage[1:n], np.cumsum(np.diff(p) / fracture)[:n - 1])
+        run.check(f"damage{name}: 1 once broken", damage[n:], 1.0)
+        run.check(f"damage{name}: no deviator once broken", q[n:], 0.0)
+        run.check(f"damage{name}: no tension once broken", mean[n + 1:], 0.0)
         run.true(f"damage{name}: tension before", mean[n - 1] > 0.0)
         check_balance(run, result, f"damage{name}")
 
 
-def check_balance(run, result, name, tolerance=2e-4):
+def check_balance(run, result, name):
     """What the sides do is what the element keeps, beside its motion."""
     table = result.table("glstat")
     moving = table["kinetic"] + table["leapfrog"] - table["external_work"]
     held = table["internal"] + (table["eroded"] if "eroded" in table else 0.0)
     kept = held - held[1]
-    run.check(f"{name}: internal energy is the work of the sides", kept[1:], moving[1] - moving[1:], tolerance)
+    run.check(f"{name}: internal energy is the work of the sides", kept[1:], moving[1] - moving[1:])
 
 
 def check_failure(run):
@@ -181,13 +180,14 @@ def check_failure(run):
             p = scalar(result, "plastic_strain")
             n = int(np.argmax(p >= 0.02))
             run.true(f"FAIL of {law}{name}: it fails on the way", 20 < n < 390)
-            run.check(f"FAIL of {law}{name}: no stress", result.cells("stress")[n:, 0], 0.0, 0.0, "abs")
-            run.check(f"FAIL of {law}{name}: plastic strain stays", p[n:], p[n], 0.0, "abs")
+            run.check(f"FAIL of {law}{name}: no stress", result.cells("stress")[n:, 0], 0.0)
+            run.check(f"FAIL of {law}{name}: plastic strain stays", p[n:], p[n])
             run.true(f"FAIL of {law}{name}: there was stress", mises_of(result)[n - 1] > 0.9 * A)
-            check_balance(run, result, f"FAIL of {law}{name}", 5e-3)
+            check_balance(run, result, f"FAIL of {law}{name}")
             log = (result.folder / f"{result.job}.log").read_text()
-            run.true(f"FAIL of {law}{name}: the element leaves the mesh", result.cells("eroded")[n:].min() > 0.5
-                     and result.cells("eroded")[n - 1].max() < 0.5 and "1 elements have left the mesh" in log)
+            run.true(f"FAIL of {law}{name}: the element leaves the mesh",
+                     result.cells("eroded")[n:].min() > 0.5 and result.cells("eroded")[n - 1].max() < 0.5
+                     and "1 elements have left the mesh" in log)
 
 
 def check_gas(run):
@@ -199,12 +199,11 @@ def check_gas(run):
             "*EOS_LINEAR_POLYNOMIAL", (1, 0.0, 0.0, 0.0, 0.0, gamma - 1.0, gamma - 1.0, 0.0),
             (p0 / (gamma - 1.0), 1.0)), path, eos=1, n_step=n_step), name=f"gas_{n_step}")
         expected = p0 * (1.0 + path[1]) ** -gamma
-        run.check(f"adiabatic compression, {n_step} steps", scalar(result, "pressure"), expected, 1e-4,
-                  source="p v^gamma constant")
+        run.check(f"adiabatic compression, {n_step} steps", scalar(result, "pressure"), expected)
         errors.append(np.abs(scalar(result, "pressure") - expected).max())
         energy = result.table("glstat")["internal"]
-        run.check(f"energy of the gas, {n_step} steps", energy, expected * (1.0 + path[1]) / (gamma - 1.0), 1e-4)
-    run.check("order of the energy", np.log2(errors[0] / errors[1]), 2.0, 0.05, "abs")
+        run.check(f"energy of the gas, {n_step} steps", energy, expected * (1.0 + path[1]) / (gamma - 1.0))
+    run.check("order of the energy", np.log2(errors[0] / errors[1]), 2.0)
 
 
 def hugoniot_free(v, gamma=GAMMA, s=(S1, 0.0, 0.0)):
@@ -247,8 +246,7 @@ def check_isentrope(run):
         result = run.program(element(lambda deck: gruneisen(deck.add("*MAT_NULL", (1, RHO)), s=s, energy=2.0e8),
                                      (np.zeros(401), w), form, 1), name=f"isentrope_{form[0]}_{form[1] or 1}")
         expected, _ = isentrope(1.0 + w, 2.0e8, lambda v: hugoniot_free(np.asarray(v), s=s))
-        run.check(f"isentropic compression and release{name}", scalar(result, "pressure"), expected, 1e-5,
-                  source="dE = -p dv")
+        run.check(f"isentropic compression and release{name}", scalar(result, "pressure"), expected)
     c = (1.0e9, 120.0e9, 90.0e9, 40.0e9, 1.5, 1.2, 0.4)
 
     def polynomial(v):
@@ -258,7 +256,7 @@ def check_isentrope(run):
     result = run.program(element(lambda deck: deck.add("*MAT_NULL", (1, RHO)).add(
         "*EOS_LINEAR_POLYNOMIAL", (1, *c), (3.0e8, 1.0)), (np.zeros(401), w), eos=1), name="polynomial")
     expected, _ = isentrope(1.0 + w, 3.0e8, polynomial)
-    run.check("isentrope of the polynomial", scalar(result, "pressure"), expected, 1e-5, source="dE = -p dv")
+    run.check("isentrope of the polynomial", scalar(result, "pressure"), expected)
 
 
 def check_spall(run):
@@ -271,20 +269,20 @@ def check_spall(run):
         mean, q = -scalar(result, "pressure"), mises_of(result)
         largest = result.cells("stress")[:, 0, :3].max(axis=1)
         if spall == 1:
-            run.check("least pressure", mean.max(), 2.0e9, 1e-12)
+            run.check("least pressure", mean.max(), 2.0e9)
             run.true("least pressure: the deviator stays", q[-1] > A)
             continue
         watched = largest if spall == 2 else mean
         n = int(np.argmax(watched > 2.0e9))
         run.true(f"spall {spall}: it breaks on the way", 20 < n < 380)
-        run.check(f"spall {spall}: it stands till then", q[:n].argmin(), 0, 0.0, "abs")
-        run.check(f"spall {spall}: mean stress at the break", mean[n], 2.0e9 - (2.0 / 3.0 * q[n] if spall == 2 else 0.0),
-                  mean[n] - mean[n - 1], "abs", source="one step at most beyond the limit")
+        run.check(f"spall {spall}: it stands till then", q[:n].argmin(), 0)
+        run.check(f"spall {spall}: mean stress at the break", mean[n],
+                  2.0e9 - (2.0 / 3.0 * q[n] if spall == 2 else 0.0), tol=mean[n] - mean[n - 1])
         broke[spall] = n
-        run.check(f"spall {spall}: nothing behind", result.cells("stress")[n + 1:, 0, :3], 0.0, 0.0, "abs")
-    run.check("the largest stress breaks before the mean one", broke[3] - broke[2], 3, 0, "min")
+        run.check(f"spall {spall}: nothing behind", result.cells("stress")[n + 1:, 0, :3], 0.0)
+    run.check("the largest stress breaks before the mean one", broke[3] - broke[2], 3)
     fluid = run.program(element(lambda deck: gruneisen(deck.add("*MAT_NULL", (1, RHO, -1.0e8))), path, eos=1), name="cavity")
-    run.check("fluid: least pressure", -scalar(fluid, "pressure")[-1], 1.0e8, 1e-12)
+    run.check("fluid: least pressure", -scalar(fluid, "pressure")[-1], 1.0e8)
 
 
 def check_viscous(run):
@@ -293,7 +291,7 @@ def check_viscous(run):
     result = run.program(element(lambda deck: gruneisen(deck.add("*MAT_NULL", (1, RHO, 0.0, 50.0))), (u, w), eos=1),
                          name="viscous")
     rate = equivalent_rate(u, w, END / 400)
-    run.check("deviator of a viscous fluid", mises_of(result)[1:], 3.0 * 50.0 * rate, 1e-9, source="3 mu eps_dot")
+    run.check("deviator of a viscous fluid", mises_of(result)[1:], 3.0 * 50.0 * rate)
 
 
 def check_piston(run):
@@ -319,18 +317,18 @@ def check_piston(run):
     middle = 0.5 * (x[1:] + x[:-1])
     behind = (middle > u * end + 0.15 * length) & (middle < 0.9 * shock * end)
     run.true("piston: a plateau of elements", behind.sum() > 30)
-    run.check("piston: pressure behind the front", pressure[behind], np.full(behind.sum(), RHO * shock * u), 0.01,
-              source="rho0 U u")
-    run.check("piston: volume behind the front", np.diff(x)[behind] * n / length, np.full(behind.sum(), 1.0 - u / shock),
-              0.01, source="1 - u/U")
+    run.check("piston: pressure behind the front", pressure[behind],
+              np.full(behind.sum(), RHO * shock * u))
+    run.check("piston: volume behind the front", np.diff(x)[behind] * n / length,
+              np.full(behind.sum(), 1.0 - u / shock))
     a, b = hugoniot_free(np.diff(x) * n / length)
     run.check("piston: energy behind the front", ((pressure - a) / b)[behind],
-              np.full(behind.sum(), 0.5 * RHO * u ** 2), 0.01, source="rho0 u^2/2")
+              np.full(behind.sum(), 0.5 * RHO * u ** 2))
     front = middle[np.argmax(pressure < 0.5 * RHO * shock * u)]
-    run.check("piston: place of the front", front, shock * end, 0.01, source="U t")
+    run.check("piston: place of the front", front, shock * end)
     table = result.table("glstat")
     total = table["kinetic"] + table["internal"] + table["hourglass"] + table["viscous"] + table["leapfrog"]
-    run.check("piston: balance", total - total[0], table["external_work"], 1e-3)
+    run.check("piston: balance", total - total[0], table["external_work"])
 
 
 def check(run):

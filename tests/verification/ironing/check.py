@@ -68,16 +68,16 @@ def check_down(run, kind, press=120.0):
     result = run.program(ironing(kind, press))
     force = result.table("rcforc").where(side="slave")
     time = force["time"] / (press * UNIT)
-    for what, column, expected, tolerance in (("vertical", "fy", DOWN, 0.05), ("horizontal", "fx", -ASIDE, 0.08)):
+    for what, column, expected in (("vertical", "fy", DOWN), ("horizontal", "fx", -ASIDE)):
         ratio = np.interp(TIMES, time, force[column]) / expected
-        run.check(f"{TYPES[kind]}: {what} force on the way down, mean of six depths", np.mean(ratio), 1.0, tolerance,
-                  source="another program with another contact (B)")
+        run.check(f"{TYPES[kind]}: {what} force on the way down, mean of six depths",
+                  np.mean(ratio), 1.0)
     energies = result.table("glstat")
-    run.check(f"{TYPES[kind]}: kinetic / internal energy at the end", energies["kinetic"][-1] / energies["internal"][-1],
-              0.0, 5e-3, "max", "quasi-static")
+    run.check(f"{TYPES[kind]}: kinetic / internal energy at the end",
+              energies["kinetic"][-1] / energies["internal"][-1], 0.0)
     balance = energies["total"] - energies["external_work"]
-    run.check(f"{TYPES[kind]}: total - external work", np.ptp(balance), 0.0, 1e-5 * energies["internal"].max(), "max",
-              "leap-frog keeps it")
+    run.check(f"{TYPES[kind]}: total - external work", np.ptp(balance), 0.0,
+              scale=energies["internal"].max())
 
 
 def along(result, press, slide):
@@ -107,8 +107,8 @@ def check_along(run, kind, press=150.0, slide=600.0):
     energies = result.table("glstat")
     scale = energies["internal"].max()
     balance = energies["total"] - energies["external_work"]
-    run.check(f"{name}: total - external work", np.ptp(balance), 0.0, 1e-3 * scale, "max", "leap-frog keeps it")
-    run.check(f"{name}: largest fall of the dissipated energy", -np.diff(energies["friction"]).min(), 0.0, 1e-9 * scale, "max")
+    run.check(f"{name}: total - external work", np.ptp(balance), 0.0, scale=scale)
+    run.check(f"{name}: largest fall of the dissipated energy", -np.diff(energies["friction"]).min(), 0.0, scale=scale)
     return np.mean(down), np.mean(aside), roughness(way, aside)
 
 
@@ -119,5 +119,5 @@ def check(run):
         return
     found = np.array([check_along(run, kind) for kind in THROUGH])
     for what, values in zip(("vertical", "horizontal"), found.T):
-        run.check(f"types 3 to 7, along: mean {what} force over that of all", values / np.mean(values), 1.0, 0.05, source="each other")
+        run.check(f"types 3 to 7, along: mean {what} force over that of all", values / np.mean(values), 1.0)
     run.true("the horizontal force is smoothest with type 7", np.argmin(found[:, 2]) == len(found) - 1)

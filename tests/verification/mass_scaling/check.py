@@ -36,13 +36,12 @@ def check_sums(run):
             ("DT2MS > 0", 1.0, np.sum(masses * ((target / steps) ** 2 - 1.0)))):
         result = run.program(strip(name, sign * target))
         table = result.table("glstat")
-        run.check(f"{name}: added mass at the start", table["added_mass"][0], expected, 1e-12,
-                  source="sum of m_e ((DT2MS c/L)^2 - 1)")
-        run.check(f"{name}: the step", table["dt"], 0.9 * target, 1e-12, source="TSSFAC |DT2MS|")
-        run.check(f"{name}: mass of the part", result.table("matsum")["mass"][0], masses.sum() + expected, 1e-12,
-                  source="own and added mass")
-    run.check("without it there is no column", "added_mass" in run.program(strip("off", 0.0)).table("glstat"), False,
-              0.0, "abs")
+        run.check(f"{name}: added mass at the start", table["added_mass"][0], expected)
+        run.check(f"{name}: the step", table["dt"], 0.9 * target)
+        run.check(f"{name}: mass of the part", result.table("matsum")["mass"][0],
+                  masses.sum() + expected)
+    run.check("without it there is no column",
+              "added_mass" in run.program(strip("off", 0.0)).table("glstat"), False)
 
 
 def check_fall(run):
@@ -55,13 +54,13 @@ def check_fall(run):
         result = run.program(deck)
         for node in (1, 4, 10):
             history = result.node(node)
-            run.check(f"{name}: fall of node {node}", history["uy"], 3.0 * history["time"]
-                      - 4.905 * history["time"] ** 2, 1e-11, source="v t - g t^2/2: all forces are in proportion to the masses")
+            run.check(f"{name}: fall of node {node}", history["uy"],
+                      3.0 * history["time"] - 4.905 * history["time"] ** 2)
         table = result.table("glstat")
-        run.check(f"{name}: masses were added", table["added_mass"][0] > 1.0, True, 0.0, "abs")
-        run.check(f"{name}: kinetic energy of parts and of all", result.table("matsum")["kinetic"], table["kinetic"],
-                  1e-12, source="both of the scaled masses")
-        run.check(f"{name}: balance", table["energy_ratio"], 1.0, 1e-10, "abs", source="m g h of the scaled masses")
+        run.check(f"{name}: masses were added", table["added_mass"][0] > 1.0, True)
+        run.check(f"{name}: kinetic energy of parts and of all", result.table("matsum")["kinetic"],
+                  table["kinetic"])
+        run.check(f"{name}: balance", table["energy_ratio"], 1.0)
 
 
 def check_stability(run):
@@ -73,13 +72,13 @@ def check_stability(run):
             deck.add("*CONTROL_TERMINATION", (0.3,))
             deck.fix([1, 6], x=1, y=1).add("*INITIAL_VELOCITY", (0,), (0.02, 0.01))
             table = run.program(deck).table("glstat")
-            run.check(f"{points} points, sign {sign:g}: balance over {table['cycle'][-1]:.0f} steps",
-                      table["energy_ratio"], 1.0, 2e-3, "abs", source="stable at TSSFAC |DT2MS|")
+            run.check(f"{points} points, sign {sign:g}: balance over {table['cycle'][-1]:.0f} steps", table["energy_ratio"],
+                      1.0)
     deck = strip("ringing, no mass added", 0.0, scale=0.9 * target / own_steps().min())
     deck.add("*CONTROL_TERMINATION", (0.3,))
     deck.fix([1, 6], x=1, y=1).add("*INITIAL_VELOCITY", (0,), (0.02, 0.01))
-    run.check("without mass the same step ends the run", run.program(deck, expect_status=None).status, 2, 0.0, "abs",
-              source="omega dt up to 8")
+    run.check("without mass the same step ends the run",
+              run.program(deck, expect_status=None).status, 2)
 
 
 def check_growth(run):
@@ -92,11 +91,10 @@ def check_growth(run):
         deck.prescribe(node, 1, 0, 1)
     deck.fix([1, 6], x=1)
     table = run.program(deck).table("glstat")
-    run.check("growth: step", table["dt"], 0.9 * target, 1e-12, source="kept by more mass")
+    run.check("growth: step", table["dt"], 0.9 * target)
     run.check("growth: mass grows", np.all(np.diff(table["added_mass"]) >= 0.0)
-              and table["added_mass"][-1] > 1.2 * table["added_mass"][0], True, 0.0, "abs")
-    run.check("growth: balance", table["energy_ratio"][-1], 1.0, 0.01, "abs",
-              source="kinetic energy of the new mass is external work")
+              and table["added_mass"][-1] > 1.2 * table["added_mass"][0], True)
+    run.check("growth: balance", table["energy_ratio"][-1], 1.0)
 
 
 def pair(mass_step, stays, most=0.0):
@@ -120,22 +118,23 @@ def check_contact(run):
     target = 0.07 / SPEED
     result = run.program(pair(-target, 1), name="contact")
     table, second, force = result.table("glstat"), result.table("matsum").where(part=2), result.table("rcforc").where(side="master")
-    run.check("contact: the first step", table["dt"][0], 0.5 * target, 1e-12, source="TSSFAC |DT2MS|")
-    run.check("contact: they meet and part", force["n_active"][-1] == 0 and second["momentum_x"][-1] > 3.0 * second["mass"][-1], True, 0.0, "abs")
+    run.check("contact: the first step", table["dt"][0], 0.5 * target)
+    run.check("contact: they meet and part", force["n_active"][-1] == 0 and second["momentum_x"][-1] > 3.0 * second["mass"][-1],
+              True)
     steps = np.diff(table["time"])
     impulse = np.concatenate([[0.0], np.cumsum(0.5 * steps * (force["fx"][1:] + force["fx"][:-1]))])
-    run.check("contact: momentum of the scaled masses", second["momentum_x"] - second["momentum_x"][0], impulse, 1e-10,
-              source="impulse of the contact force")
-    run.check("contact: balance", table["energy_ratio"], 1.0, 1e-3, "abs")
+    run.check("contact: momentum of the scaled masses",
+              second["momentum_x"] - second["momentum_x"][0], impulse)
+    run.check("contact: balance", table["energy_ratio"], 1.0)
     for most in (0.0, 1.01):
         start = table["added_mass"][0] / (second["mass"][0] * 2.0 - table["added_mass"][0])
         result = run.program(pair(-target, 0, most * 100.0 * start), name=f"endmas_{most:g}", expect_status=2 if most else 0)
         grown = result.table("glstat")["added_mass"]
         if most:
-            run.check("ENDMAS: what was added up to the last row", grown[-1], most * table["added_mass"][0], 0.0, "max")
+            run.check("ENDMAS: what was added up to the last row", grown[-1], most * table["added_mass"][0])
             run.true("ENDMAS: it ends the run by name", "of ENDMAS" in result.stderr)
         else:
-            run.check("and without it more is added", grown[-1], 1.02 * table["added_mass"][0], 0.0, "min")
+            run.check("and without it more is added", grown[-1], 1.02 * table["added_mass"][0])
 
 
 def check(run):

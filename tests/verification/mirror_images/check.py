@@ -78,7 +78,7 @@ def judge(run, kind, penalty=SOFT, is_closed=False):
     largest = np.max(np.abs(sums[:, 1]))
     allowed = np.array([tied(*state, sides) for state in zip(force, places)])
     run.check(f"{name}: sideways force beyond that of nodes on nodes / largest force",
-              np.max(np.abs(sums[:, 0]) - allowed) / largest, ROUND_OFF, 0.0, "max", "symmetry")
+              np.max(np.abs(sums[:, 0]) - allowed) / largest, ROUND_OFF)
     run.report(f"{name}: largest sideways force / largest force",
                np.max(np.abs(sums[:, 0])) / largest)
 
@@ -93,7 +93,7 @@ def judge_images(run, deck):
     largest = np.max(np.abs(moved[""]))
     for name in ("mirror image", "FREQ 1"):
         run.check(f"{deck.stem}, {name}: difference of displacements / largest",
-                  np.max(np.abs(moved[name] - moved[""])) / largest, ALIKE, 0.0, "max", "symmetry")
+                  np.max(np.abs(moved[name] - moved[""])) / largest, ALIKE)
 
 
 def check(run):

@@ -43,26 +43,22 @@ def check_type(run, kind):
     parts = result.table("matsum")
     for axis, wanted in (("x", 0.5 * moving), ("y", -moving)):
         total = sum(parts.where(part=p)[f"momentum_{axis}"] for p in (1, 2))
-        run.check(f"{name}: total momentum {axis}, drift / |p|", (total - wanted) / size, 0.0, 1e-12,
-                  "abs", "no outer load")
+        run.check(f"{name}: total momentum {axis}, drift / |p|", (total - wanted) / size, 0.0)
     forces = result.table("rcforc")
     slave, master = forces.where(side="slave"), forces.where(side="master")
     peak = np.max(np.hypot(slave["fx"], slave["fy"]))
-    run.check(f"{name}: the blocks touched: peak force", peak, 1000.0, 0.0, "min",
-              "so that the checks mean something")
+    run.check(f"{name}: the blocks touched: peak force", peak, 1000.0)
     for axis in ("fx", "fy"):
-        run.check(f"{name}: (slave + master {axis}) / peak force", (slave[axis] + master[axis]) / peak,
-                  0.0, 1e-13, "abs", "third law")
+        run.check(f"{name}: (slave + master {axis}) / peak force",
+                  (slave[axis] + master[axis]) / peak, 0.0)
     contact = result.points("contact_force")[..., :2]
-    run.check(f"{name}: sum of nodal contact forces / peak force", contact.sum(axis=1) / peak, 0.0,
-              1e-13, "abs", "third law")
+    run.check(f"{name}: sum of nodal contact forces / peak force", contact.sum(axis=1) / peak, 0.0)
     position = result.points("Points")[..., :2]
     moment = np.sum(position[..., 0] * contact[..., 1] - position[..., 1] * contact[..., 0], axis=1)
     found = angular_momentum(mass, position, result.points("velocity")[..., :2])
     if kind in MOMENT_FREE:
-        run.check(f"{name}: moment of the contact forces / (peak force x 1 m)", moment / peak, 0.0,
-                  1e-12, "abs", "P2: points lie on the line of action")
-        run.check(f"{name}: angular momentum", found, found[0], 1e-11, source="no outer moment")
+        run.check(f"{name}: moment of the contact forces / (peak force x 1 m)", moment / peak, 0.0)
+        run.check(f"{name}: angular momentum", found, found[0])
     else:
         run.report(f"{name}: moment of the contact forces / (peak force x 1 m)",
                    np.max(np.abs(moment)) / peak, "portion centres on a bent master")
@@ -70,13 +66,12 @@ def check_type(run, kind):
                    np.max(np.abs(found / found[0] - 1.0)))
     change = parts.where(part=1)["momentum_y"]
     run.check(f"{name}: change of momentum is the impulse / |p|",
-              (change[-1] - change[0] - trapezoid(slave["fy"], slave["time"])) / size, 0.0, 2e-3,
-              "abs", "trapezoid over the output times")
+              (change[-1] - change[0] - trapezoid(slave["fy"], slave["time"])) / size, 0.0)
     energy = result.table("glstat")
-    run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0, 0.01, "abs", "balance")
+    run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0)
     columns = ("kinetic", "internal", "hourglass", "viscous", "damping", "contact", "leapfrog")
     run.check(f"{name}: columns add up to the total", sum(energy[c] for c in columns),
-              energy["total"], 1e-12, source="definition")
+              energy["total"])
     run.report(f"{name}: energy ratio furthest from 1",
                1.0 + max(energy["energy_ratio"] - 1.0, key=abs))
 

@@ -58,29 +58,23 @@ def check_conservation(run, name, kind, result, mass, n_above):
     moving = mass[:n_above].sum()
     size = moving * np.linalg.norm(VELOCITY)
     momentum = np.einsum("n,tnk->tk", mass, velocity)
-    run.check(f"{name}: total momentum, drift / |p|", (momentum - moving * VELOCITY) / size, 0.0,
-              1e-12, "abs", "no outer load; masses from the mesh")
+    run.check(f"{name}: total momentum, drift / |p|", (momentum - moving * VELOCITY) / size, 0.0)
     forces = result.table("rcforc")
     slave, master = forces.where(side="slave"), forces.where(side="master")
     peak = np.max(np.hypot(slave["fx"], slave["fy"]))
     # The block stops within about a quarter of its slowest period: a force of that order.
-    run.check(f"{name}: the blocks touched: peak force", peak, 1000.0, 0.0, "min",
-              "so that the checks mean something")
-    run.check(f"{name}: contact has ended", slave["n_active"][-1], 0.0, 0.0, "abs",
-              "so that the spin is final")
+    run.check(f"{name}: the blocks touched: peak force", peak, 1000.0)
+    run.check(f"{name}: contact has ended", slave["n_active"][-1], 0.0)
     for axis in ("fx", "fy"):
         run.check(f"{name}: (slave + master {axis}) / peak force",
-                  (slave[axis] + master[axis]) / peak, 0.0, 1e-13, "abs", "third law")
-    run.check(f"{name}: sum of nodal contact forces / peak force", contact.sum(axis=1) / peak, 0.0,
-              1e-13, "abs", "third law")
+                  (slave[axis] + master[axis]) / peak, 0.0)
+    run.check(f"{name}: sum of nodal contact forces / peak force", contact.sum(axis=1) / peak, 0.0)
     found = angular_momentum(mass, position, velocity)
     moment = np.sum(position[..., 0] * contact[..., 1] - position[..., 1] * contact[..., 0], axis=1)
     drift, moment = (found - found[0]) / abs(found[0]), moment / (peak * SIZE[0])
     if kind in MOMENT_FREE:
-        run.check(f"{name}: angular momentum, drift / initial", drift, 0.0, 1e-11, "abs",
-                  "no outer moment")
-        run.check(f"{name}: moment of the contact forces / (peak force x width)", moment, 0.0, 1e-12,
-                  "abs", "points lie on the line of action")
+        run.check(f"{name}: angular momentum, drift / initial", drift, 0.0)
+        run.check(f"{name}: moment of the contact forces / (peak force x width)", moment, 0.0)
     else:
         run.report(f"{name}: angular momentum, largest drift / initial", np.max(np.abs(drift)),
                    "portion centres on a bent master: no moment balance")
@@ -94,33 +88,27 @@ def check_motion(run, name, angle, result, mass, n_above):
     first = int(np.argmax(forces["n_active"] > 0))
     contact = np.hypot(*np.moveaxis(result.points("contact_force")[..., :2], -1, 0))
     share = contact[first, 0] / contact[first, :n_above].sum()
-    run.check(f"{name}: share of the lowest corner in the first force", share, 0.5, 0.0, "min",
-              "the corner hits first")
+    run.check(f"{name}: share of the lowest corner in the first force", share, 0.5)
     position = result.points("Points")[..., :2]
     velocity = result.points("velocity")[..., :2]
     turning = np.array([spin(mass[:n_above], x[:n_above], v[:n_above])
                         for x, v in zip(position, velocity)])
-    run.check(f"{name}: spin before the impact", turning[:first], 0.0, 1e-12, "abs",
-              "no spin given")
+    run.check(f"{name}: spin before the impact", turning[:first], 0.0)
     # A frictionless blow -J n at the corner: omega = x J / I, x of the corner from the centre.
     corner = position[first, 0] - mass[:n_above] @ position[first, :n_above] / mass[:n_above].sum()
     strongest = turning[np.argmax(np.abs(turning))]
     run.check(f"{name}: strongest spin, in the sense of a blow at the corner",
-              strongest * np.sign(corner[0]), 1.0, 0.0, "min",
-              "rad/s; omega = x J / I with J of half the momentum gives more than 2")
+              strongest * np.sign(corner[0]), 1.0)
     if angle >= 20.0:  # at small angles the other corner follows and takes the spin away again
-        run.check(f"{name}: spin left after the impact", turning[-1] * np.sign(corner[0]), 1.0, 0.0,
-                  "min", "rad/s, the same sense")
+        run.check(f"{name}: spin left after the impact", turning[-1] * np.sign(corner[0]), 1.0)
     run.report(f"{name}: spin left after the impact", turning[-1], "rad/s")
 
 
 def check_energy(run, name, result):
     energy = result.table("glstat")
-    run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0, 0.005, "abs",
-              "total with contact and hourglass energy over the initial energy")
+    run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0)
     run.check(f"{name}: contact energy left / initial energy",
-              energy["contact"][-1] / energy["total"][0], 0.0, 0.05, "abs",
-              "springs give back what they took: what is left was lost or created")
+              energy["contact"][-1] / energy["total"][0], 0.0)
     run.report(f"{name}: energy ratio furthest from 1",
                1.0 + max(energy["energy_ratio"] - 1.0, key=abs))
     run.report(f"{name}: contact energy left / initial energy",
@@ -136,7 +124,7 @@ def check_symmetry(run):
                        for result, side in ((other, "master"), (plain, "slave")))
     for axis in ("fx", "fy"):
         run.check(f"{TYPES[3]}, {angle:g} degrees, slave and master exchanged: {axis}", found[axis],
-                  expected[axis], 1e-9, source="same run with the sides exchanged")
+                  expected[axis])
 
 
 def check(run):

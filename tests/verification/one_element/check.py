@@ -15,8 +15,7 @@ import cases  # noqa: E402
 import driver  # noqa: E402
 import eos  # noqa: E402
 
-N_STEP, SEEDS, TOLERANCE = 60, (1, 2, 3), 1.0e-8
-SOURCE = "independent driver"
+N_STEP, SEEDS = 60, (1, 2, 3)
 REFUSALS = ("this material is not available in slideline", "equations of state are not available in slideline")
 
 
@@ -101,7 +100,7 @@ def go_through(run, case, seeds, is_round):
         scales = [scale_of(wanted, quantity) for _, wanted in pairs]
         run.check(f"{case.name}, {shape}: {quantity}",
                   [found[quantity] / scale for (found, _), scale in zip(pairs, scales)],
-                  [wanted[quantity] / scale for (_, wanted), scale in zip(pairs, scales)], TOLERANCE, "abs", SOURCE)
+                  [wanted[quantity] / scale for (_, wanted), scale in zip(pairs, scales)])
     return reached
 
 
@@ -127,9 +126,9 @@ def check_rubber(run, name, law):
         energy[i, j] = (ends[0] - ends[1]) / 2.0e-5
     ratio = np.linalg.det(gradient)
     run.check(f"driver, {name}: stress is the derivative of the energy",
-              ratio * law.stress(gradient @ gradient.T, ratio), energy @ gradient.T, 1e-8, source="differences")
-    run.check(f"driver, {name}: no stress at rest", law.stress(np.eye(3), 1.0) / law.stress(np.eye(3), 0.9)[0, 0], 0.0,
-              1e-14, "abs")
+              ratio * law.stress(gradient @ gradient.T, ratio), energy @ gradient.T)
+    run.check(f"driver, {name}: no stress at rest",
+              law.stress(np.eye(3), 1.0) / law.stress(np.eye(3), 0.9)[0, 0], 0.0)
 
 
 def check_eos(run):
@@ -139,8 +138,7 @@ def check_eos(run):
     mu = 1.0 / v - 1.0
     wanted = 8930.0 * 3940.0 ** 2 * mu * (1.0 + mu) / (1.0 - 0.49 * mu) ** 2
     found = [a + b * 0.5 * p * (1.0 - x) for x, p in zip(v, wanted) for a, b in [metal.parts(x)]]
-    run.check("driver, Gruneisen: pressure with the energy of the Hugoniot", found, wanted, 1e-13,
-              source="U = c + s u and the jump conditions")
+    run.check("driver, Gruneisen: pressure with the energy of the Hugoniot", found, wanted)
     gas, errors = eos.LinearPolynomial((0.0, 0.0, 0.0, 0.0, 0.4, 0.4, 0.0)), []
     for n in (50, 100):
         energy, v = 2.5e5, np.linspace(1.0, 0.5, n + 1)
@@ -148,10 +146,10 @@ def check_eos(run):
         for before, after in zip(v[:-1], v[1:]):
             pressure, energy = eos.pressure_step(gas, pressure, energy, before, after, 0.0)
         errors.append(abs(pressure / (1.0e5 * 0.5 ** -1.4) - 1.0))
-    run.check("driver, polynomial: adiabatic compression of a gas", errors[-1], 0.0, 1e-4, "abs", "p V^1.4")
+    run.check("driver, polynomial: adiabatic compression of a gas", errors[-1], 0.0)
     run.check("driver, sound speed of a gas", eos.sound_speed(gas, 1.2, 0.0, 1.3e5, 2.6e5, 0.8),
-              (1.4 * 1.3e5 * 0.8 / 1.2) ** 0.5, 1e-14, source="c^2 = 1.4 p/density")
-    run.check("driver, energy equation: order", run.order(np.array([2.0, 1.0]), errors), 2.0, 0.02, "min")
+              (1.4 * 1.3e5 * 0.8 / 1.2) ** 0.5)
+    run.check("driver, energy equation: order", run.order(np.array([2.0, 1.0]), errors), 2.0)
 
 
 def sweep(run, seed, count):

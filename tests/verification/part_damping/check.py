@@ -62,14 +62,14 @@ def check_rigid_motion(run):
         result = run.program(deck)
         one, two, table = result.node(1), result.node(5), result.table("glstat")
         inner = slice(1, -1)
-        run.check(f"{method}: part 1: velocity x", one["vx"][inner], 2.0 * np.exp(-20.0 * one["time"][inner]), 2e-6,
-                  source="v exp(-SF LCID STX t)")
-        run.check(f"{method}: part 1: velocity y", one["vy"], -1.0, 1e-12, source="STY = 0")
-        run.check(f"{method}: part 2: velocity", two["vx"][inner], 2.0 * np.exp(-200.0 * two["time"][inner] ** 2), 2e-4,
-                  source="v exp(-integral of the curve)")
+        run.check(f"{method}: part 1: velocity x", one["vx"][inner],
+                  2.0 * np.exp(-20.0 * one["time"][inner]))
+        run.check(f"{method}: part 1: velocity y", one["vy"], -1.0)
+        run.check(f"{method}: part 2: velocity", two["vx"][inner],
+                  2.0 * np.exp(-200.0 * two["time"][inner] ** 2))
         lost = 0.5 * RHO * (4.0 * (1.0 - np.exp(-40.0 * 0.1)) + 5.0 * (1.0 - np.exp(-400.0 * 0.01)))
-        run.check(f"{method}: what damping has taken", table["damping"][-1], lost, 1e-4, source="kinetic energy that is gone")
-        run.check(f"{method}: balance", table["energy_ratio"], 1.0, 1e-12, "abs", source="the sum that each method keeps")
+        run.check(f"{method}: what damping has taken", table["damping"][-1], lost)
+        run.check(f"{method}: balance", table["energy_ratio"], 1.0)
 
 
 def check_lumps(run):
@@ -89,9 +89,9 @@ def check_lumps(run):
         history = result.node(1)
         rates = 0.5 * part + all_masses * np.array([1.0, 0.5])
         for name, start, rate in zip(("vx", "vy"), (2.0, -1.0), rates):
-            run.check(f"{method}, masses on nodes: {name}", history[name][1:-1], start * np.exp(-rate * history["time"][1:-1]),
-                      5e-5, source="the mean of both rates, D on top")
-        run.check(f"{method}, masses on nodes: balance", result.table("glstat")["energy_ratio"], 1.0, 1e-12, "abs")
+            run.check(f"{method}, masses on nodes: {name}", history[name][1:-1],
+                      start * np.exp(-rate * history["time"][1:-1]))
+        run.check(f"{method}, masses on nodes: balance", result.table("glstat")["energy_ratio"], 1.0)
 
 
 def check_order(run):
@@ -104,8 +104,8 @@ def check_order(run):
         result = run.program(deck.output(glstat=end, nodout=end, nodes=[1]))
         errors.append(result.node(1)["vx"][-1] - 2.0 * np.exp(-5.0 * end - 20.0 * end ** 2))
     errors = np.array(errors)
-    run.check("implicit: order in the step", np.log2(errors[:-1] / errors[1:]), 2.0, 0.1, "abs", source="v exp(-integral of the curve)")
-    run.check("implicit: error of 40 steps", abs(errors[-1]), 0.0, 1e-3, "abs")
+    run.check("implicit: order in the step", np.log2(errors[:-1] / errors[1:]), 2.0)
+    run.check("implicit: error of 40 steps", abs(errors[-1]), 0.0)
 
 
 def check_drag(run):
@@ -122,8 +122,8 @@ def check_drag(run):
     result = run.program(deck.output(glstat=dt))
     table, rows = result.table("glstat"), result.table("bndout")
     force = rows["fx"].reshape(-1, 2).sum(1)
-    run.check("drag: force", force[-20:].mean(), damping * 3.0 * RHO * speed, 1e-4, source="D m V")
-    run.check("drag: balance", table["external_work"], table["total"], 1e-8, source="trapezoidal work of all forces")
+    run.check("drag: force", force[-20:].mean(), damping * 3.0 * RHO * speed)
+    run.check("drag: balance", table["external_work"], table["total"])
 
 
 def check_oscillator(run):
@@ -138,9 +138,9 @@ def check_oscillator(run):
     found = rate_and_frequency(history["time"], history["ux"])
     square = 2.0 * SPEED ** 2
     run.check("oscillator: amplification of a step", np.sort_complex(found).view(float),
-              np.sort_complex(roots(square, dt, damping)).view(float), 1e-6, source="leap-frog of u'' + D u' + w^2 u")
-    run.check("oscillator: decay", -np.log(np.abs(found[0])) / dt, 0.5 * damping, 1e-4, source="exp(-D t/2)")
-    run.check("oscillator: balance", result.table("glstat")["energy_ratio"], 1.0, 1e-8, "abs")
+              np.sort_complex(roots(square, dt, damping)).view(float))
+    run.check("oscillator: decay", -np.log(np.abs(found[0])) / dt, 0.5 * damping)
+    run.check("oscillator: balance", result.table("glstat")["energy_ratio"], 1.0)
 
 
 def check_share(run):
@@ -169,13 +169,10 @@ def check_share(run):
             square = 2.0 * modulus / RHO
         expected = roots(square, dt, retardation=share * own)
         run.check(f"{name}: amplification of a step", np.sort_complex(found).view(float),
-                  np.sort_complex(expected).view(float), 2e-5 if form == 13 else 2e-2,
-                  source="leap-frog with beta = COEF times the element's step")
+                  np.sort_complex(expected).view(float))
         if form == 13 and points is None:
-            run.check("one point: step in the log", damped, (np.sqrt(1.04) - 0.2) / SPEED, 1e-6,
-                      source="L/c (sqrt(1 + COEF^2) - COEF)")
-        run.check(f"{name}: balance", result.table("glstat")["energy_ratio"], 1.0, 1e-7, "abs",
-                  source="trapezoidal work")
+            run.check("one point: step in the log", damped, (np.sqrt(1.04) - 0.2) / SPEED)
+        run.check(f"{name}: balance", result.table("glstat")["energy_ratio"], 1.0)
 
 
 def check_time(run):
@@ -189,14 +186,13 @@ def check_time(run):
     found = rate_and_frequency(history["time"], history["ux"])
     square = 2.0 * SPEED ** 2
     run.check("time: amplification of a step", np.sort_complex(found).view(float),
-              np.sort_complex(roots(square, dt, retardation=beta)).view(float), 1e-6, source="as above")
-    run.check("time: decay", -np.log(np.abs(found[0])) / dt, 0.5 * beta * square, 3e-3, source="beta w^2/2")
+              np.sort_complex(roots(square, dt, retardation=beta)).view(float))
+    run.check("time: decay", -np.log(np.abs(found[0])) / dt, 0.5 * beta * square)
     table = result.table("glstat")
-    run.check("time: balance", table["energy_ratio"], 1.0, 1e-7, "abs")
+    run.check("time: balance", table["energy_ratio"], 1.0)
     w, end = np.sqrt(square), table["time"][-1]
     run.check("time: work of damping", table["damping"][-1],
-              beta * square * (0.5 * end + 0.25 * np.sin(2.0 * w * end) / w) * 500.0e-12, 1e-2,
-              source="integral of beta k v^2, v = v0 cos w t; damping takes 1 % meanwhile")
+              beta * square * (0.5 * end + 0.25 * np.sin(2.0 * w * end) / w) * 500.0e-12)
 
 
 def check_stability(run):
@@ -206,9 +202,8 @@ def check_stability(run):
         text = deck.text().replace("*CONTROL_TIMESTEP\n0.0,0.9,0,0.0,0.0,9001", "*CONTROL_TIMESTEP\n0.0,0.9")
         text = text.replace("*END", "*DAMPING_PART_STIFFNESS\n1,0.25\n*INITIAL_VELOCITY_NODE\n2,0.0001,0.0002\n*END")
         table = run.program(text).table("glstat")
-        run.check(f"{points or 1} points: kinetic energy falls", table["kinetic"][-1] < 0.9 * table["kinetic"][0], True, 0.0, "abs")
-        run.check(f"{points or 1} points: balance", table["energy_ratio"], 1.0, 1e-5, "abs",
-                  source="the work of the mean of two steps' viscous stresses, in the fastest modes too")
+        run.check(f"{points or 1} points: kinetic energy falls", table["kinetic"][-1] < 0.9 * table["kinetic"][0], True)
+        run.check(f"{points or 1} points: balance", table["energy_ratio"], 1.0)
 
 
 def check(run):

@@ -80,15 +80,15 @@ def check_plateau(run):
         x = result.points("Points")[-1][:n + 1, 0]
         found = np.diff(x) * n / (FLYER + TARGET)
         run.true(f"{name}: a plateau of elements", flat.sum() > 40)
-        run.check(f"{name}: stress of the plateau", -result.cells("stress")[-1][flat, 0], np.full(flat.sum(), stress), 0.01,
-                  source="jumps of mass, momentum, energy")
-        run.check(f"{name}: volume of the plateau", found[flat], np.full(flat.sum(), volume), 0.002)
+        run.check(f"{name}: stress of the plateau", -result.cells("stress")[-1][flat, 0],
+                  np.full(flat.sum(), stress))
+        run.check(f"{name}: volume of the plateau", found[flat], np.full(flat.sum(), volume))
         front = place[len(place) - 1 - np.argmax(-result.cells("stress")[-1][::-1, 0] > 0.55 * stress)]
-        run.check(f"{name}: place of the shock", front, speed * end, 0.03)
+        run.check(f"{name}: place of the shock", front, speed * end)
         if yield_stress < 2.0e6:
-            run.check(f"{name}: Hugoniot's stress", stress, RHO * (SPEED + S1 * u) * u, 1e-3, source="rho0 (C + S1 u) u")
+            run.check(f"{name}: Hugoniot's stress", stress, RHO * (SPEED + S1 * u) * u)
         table = result.table("glstat")
-        run.check(f"{name}: energy ratio", table["energy_ratio"], np.ones_like(table["time"]), 2e-3)
+        run.check(f"{name}: energy ratio", table["energy_ratio"], np.ones_like(table["time"]))
 
 
 def pull_back(limit):
@@ -122,10 +122,10 @@ class Impact:
 
     def check_whole(self):
         """Without spall: the jump to twice the velocity of the plateau."""
-        self.run.check(f"{self.name}: a cut-off that is not reached: nothing breaks", self.result.cells("damage")[-1], 0.0, 0.0, "abs")
+        self.run.check(f"{self.name}: a cut-off that is not reached: nothing breaks", self.result.cells("damage")[-1], 0.0)
         flat = (self.time > self.arrival + 0.05e-6) & (self.time < self.arrival + 0.15e-6)
-        self.run.check(f"{self.name}: velocity of the rear side", self.whole[flat], np.full(flat.sum(), self.velocity), 0.01,
-                       source="twice that of the plateau")
+        self.run.check(f"{self.name}: velocity of the rear side", self.whole[flat],
+                       np.full(flat.sum(), self.velocity))
 
     def check_spall(self, spall):
         """Fall of the rear side until the pulse of the spall is half up, and the place of the break."""
@@ -134,7 +134,7 @@ class Impact:
         broken = np.flatnonzero(result.cells("damage")[-1].ravel() >= 1.0)
         self.run.true(f"{name}: it breaks", broken.size > 0)
         depth = sum(self.thick) - (broken.max() + 1) / N * 1e-3         # of the break below the rear side
-        self.run.check(f"{name}: depth", depth, self.thick[0], 0.1e-3, "abs", source="as far from the rear side as the flyer is thick")
+        self.run.check(f"{name}: depth", depth, self.thick[0])
         start = int(np.argmax(when > self.arrival + 1.5 * self.thick[0] / SPEED))
         lowest = start + int(np.argmin(velocity[start:]))
         middle = 0.5 * (velocity[lowest] + self.velocity)
@@ -142,11 +142,11 @@ class Impact:
         half = np.interp(middle, velocity[after - 1:after + 1], when[after - 1:after + 1])
         fall = self.velocity - np.interp(half, self.time, self.whole)
         left = np.sqrt(1.0 - depth / sum(self.thick))
-        self.run.check(f"{name}: pull-back", fall, left * pull_back(self.limit), 0.04,
-                       source="2 integral of dp/(rho c) along the isentrope, the tail overtaken by the pulse")
-        self.run.check(f"{name}: lowest velocity as written", velocity[lowest], self.velocity - pull_back(self.limit), 0.0, "min")
-        self.run.check(f"{name}: what is left flies on", velocity[after + 40:].max(), self.velocity, 0.02)
-        self.run.true(f"{name}: the log tells of it", "points fail: the first" in (result.folder / f"{result.job}.log").read_text())
+        self.run.check(f"{name}: pull-back", fall, left * pull_back(self.limit))
+        self.run.check(f"{name}: lowest velocity as written", velocity[lowest], self.velocity - pull_back(self.limit))
+        self.run.check(f"{name}: what is left flies on", velocity[after + 40:].max(), self.velocity)
+        self.run.true(f"{name}: the log tells of it",
+                      "points fail: the first" in (result.folder / f"{result.job}.log").read_text())
 
 
 def check_spall(run):

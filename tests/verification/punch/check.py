@@ -68,14 +68,14 @@ def check_punch(run, kind, friction):
     energy = result.table("glstat")
     move, stress = result.points("displacement")[-1], result.cells("stress")[-1]
     force = result.table("rcforc").where(side="slave")["fy"][-1]
-    run.check(f"{name}: kinetic / internal energy", energy["kinetic"][-1] / energy["internal"][-1], 0.0, 1e-8, "abs",
-              "at rest")
-    run.check(f"{name}: contact force per radian", force, 0.5 * PRESSURE * EDGE ** 2, 1e-3, source="equilibrium")
+    run.check(f"{name}: kinetic / internal energy", energy["kinetic"][-1] / energy["internal"][-1],
+              0.0)
+    run.check(f"{name}: contact force per radian", force, 0.5 * PRESSURE * EDGE ** 2)
     below = (high.shape[0] - 1) * (high.shape[1] - 1) + (low.shape[0] - 2) * (low.shape[1] - 1)
     sink, axial = move[low[-1, 0] - 1, 1], 0.5 * (stress[0, 1] + stress[below, 1])
-    run.check(f"{name}: sink of the axis, mm", sink, INDEPENDENT[friction][0], 0.01, source="independent.py")
-    run.check(f"{name}: axial stress on the axis, mean of both sides, MPa", axial, INDEPENDENT[friction][1], 0.06,
-              source="independent.py")
+    run.check(f"{name}: sink of the axis, mm", sink, INDEPENDENT[friction][0])
+    run.check(f"{name}: axial stress on the axis, mean of both sides, MPa", axial,
+              INDEPENDENT[friction][1])
     for what, value, (low_end, high_end) in zip(("sink", "axial stress"), (sink, axial), TOLD[friction]):
         nearest = min(max(value, low_end), high_end)
         run.report(f"{name}: {what} over the nearest told", value / nearest, f"{low_end:g} to {high_end:g}")
@@ -89,4 +89,4 @@ def check(run):
             continue
         free = check_punch(run, kind, 0.0)
         run.check(f"{TYPES[kind]}: what friction takes off the sink, mm", rubbed - free,
-                  INDEPENDENT[FRICTION][0] - INDEPENDENT[0.0][0], 0.1, source="independent.py")
+                  INDEPENDENT[FRICTION][0] - INDEPENDENT[0.0][0])

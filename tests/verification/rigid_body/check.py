@@ -74,18 +74,17 @@ def check_spin(run):
     flight = centre + time[:, None] * start
     expected = turned(coordinates, centre, spin * time) + (flight - centre)[:, None, :]
     run.check("spin: places of all nodes / size, 1e6 steps, 111 turns", place[:-1] / 2.0,
-              expected[:-1] / 2.0, 1e-7, "abs", "turned about the centre of mass")
+              expected[:-1] / 2.0)
     sides = np.linalg.norm(place - np.roll(place, 1, axis=1), axis=2)
-    run.check("spin: distances between nodes after 1e6 steps", sides, np.broadcast_to(
-        sides[0], sides.shape), 1e-12, source="rigid")
+    run.check("spin: distances between nodes after 1e6 steps", sides,
+              np.broadcast_to(sides[0], sides.shape))
     energy = result.table("glstat")
     kinetic = 0.5 * mass * start @ start + 0.5 * inertia * spin ** 2
-    run.check("spin: kinetic energy", energy["kinetic"], kinetic, 1e-11,
-              source="M v^2/2 + I w^2/2, closed form of the lumped masses")
+    run.check("spin: kinetic energy", energy["kinetic"], kinetic)
     part = result.table("matsum")
-    run.check("spin: mass", part["mass"], 3.0 * RHO, 1e-13, source="rho x 3 squares")
+    run.check("spin: mass", part["mass"], 3.0 * RHO)
     run.check("spin: momentum", np.stack([part["momentum_x"], part["momentum_y"]]),
-              np.broadcast_to((mass * start)[:, None], (2, len(part["mass"]))), 1e-11, source="M v")
+              np.broadcast_to((mass * start)[:, None], (2, len(part["mass"]))))
 
 
 def check_mass(run):
@@ -98,8 +97,7 @@ def check_mass(run):
         energy = run.program(deck).table("glstat")["kinetic"][0]
         mass, cell = RHO * width * height, 1.0 / n
         inertia = mass / 12.0 * (width ** 2 + height ** 2 + 4.0 * cell ** 2)
-        run.check(f"inertia of a rectangle, cells {cell:g}", 2.0 * energy / spin ** 2, inertia, 1e-13,
-                  source="M (a^2 + b^2 + 4 h^2)/12: trapezoidal rule")
+        run.check(f"inertia of a rectangle, cells {cell:g}", 2.0 * energy / spin ** 2, inertia)
         run.report(f"inertia of a rectangle, cells {cell:g}: over the continuum's",
                    inertia / (mass / 12.0 * (width ** 2 + height ** 2)))
 
@@ -122,15 +120,12 @@ def check_torque(run):
     time, place, _ = paths(result, nodes)
     torque = -2.0 * pressure * 1.0 * 0.5
     angle = 0.5 * torque / inertia * time ** 2
-    run.check("torque: places of all nodes", place, turned(coordinates, centre, angle), 1e-10, "abs",
-              "angle T t^2/(2 I), exact in central differences")
+    run.check("torque: places of all nodes", place, turned(coordinates, centre, angle))
     run.report("torque: angle at the end, rad", angle[-1])
     energy = result.table("glstat")
-    run.check("torque: kinetic energy", energy["kinetic"], 0.5 * (torque * time) ** 2 / inertia, 1e-10,
-              source="T^2 t^2/(2 I)")
-    run.check("torque: external work", energy["external_work"], torque * angle, 1e-5,
-              source="T x angle, second order in the step")
-    run.check("torque: energy ratio", energy["energy_ratio"][1:], 1.0, 1e-5, "abs", "balance")
+    run.check("torque: kinetic energy", energy["kinetic"], 0.5 * (torque * time) ** 2 / inertia)
+    run.check("torque: external work", energy["external_work"], torque * angle)
+    run.check("torque: energy ratio", energy["energy_ratio"][1:], 1.0)
 
 
 def check_held(run):
@@ -146,11 +141,10 @@ def check_held(run):
         time, place, _ = paths(result, nodes)
         free = np.array([hold[0] not in (1, 4, 6, 7), hold[0] not in (2, 4, 5, 7)])
         fall = -0.5 * g * time[:, None] ** 2 * np.array([1.0, 2.0]) * free
-        run.check(f"gravity, {name}: places", place, coordinates + fall[:, None, :], 1e-11, "abs",
-                  "-g t^2/2 where not held")
+        run.check(f"gravity, {name}: places", place, coordinates + fall[:, None, :])
         energy = result.table("glstat")
-        run.check(f"gravity, {name}: external work", energy["external_work"] + 1.0, 3.0 * RHO * g
-                  * -(fall @ np.array([1.0, 2.0])) + 1.0, 1e-11, source="weight x fall")
+        run.check(f"gravity, {name}: external work", energy["external_work"] + 1.0,
+                  3.0 * RHO * g * -(fall @ np.array([1.0, 2.0])) + 1.0)
     mass, centre, inertia = body_of(*shape)
     damping, spin = 5.0, 3.0
     for factors, name in (((1.0, 1.0), "both"), ((1.0, 0.0), "x")):
@@ -159,11 +153,11 @@ def check_held(run):
         deck.add("*DAMPING_GLOBAL", (0, damping, *factors))
         result = run.program(deck)
         energy = result.table("glstat")
-        run.check(f"damping in {name}: energy ratio", energy["energy_ratio"], 1.0, 3e-3, "abs", "balance")
+        run.check(f"damping in {name}: energy ratio", energy["energy_ratio"], 1.0)
         part = result.table("matsum")
         for axis, factor in zip("xy", factors):
             run.check(f"damping in {name}: momentum along {axis}", part[f"momentum_{axis}"],
-                      mass * np.exp(-factor * damping * part["time"]), 3e-3, source="M v exp(-D t)")
+                      mass * np.exp(-factor * damping * part["time"]))
 
 
 def springs(kind, fixed_turn, dt=1.0e-3, damping=0.0):
@@ -194,12 +188,9 @@ def check_springs(run):
         result = run.program(deck)
         history = result.node(block[0])
         expected = -rest * (1.0 - np.cos(frequency * history["time"]))
-        run.check(f"{name}: fall of a rigid block on springs", history["uy"], expected, 1e-6,
-                  source="mass on springs, central differences")
-        run.check(f"{name}: no turn", result.node(block[-1])["ux"] - history["ux"], 0.0, 1e-9 * rest,
-                  "abs", "symmetric")
-        run.check(f"{name}: energy ratio", result.table("glstat")["energy_ratio"][5:], 1.0, 2e-3, "abs",
-                  "balance")
+        run.check(f"{name}: fall of a rigid block on springs", history["uy"], expected)
+        run.check(f"{name}: no turn", result.node(block[-1])["ux"] - history["ux"], 0.0, scale=rest)
+        run.check(f"{name}: energy ratio", result.table("glstat")["energy_ratio"][5:], 1.0)
 
 
 def check_contact_mass(run):
@@ -211,8 +202,7 @@ def check_contact_mass(run):
     time = history["time"]
     expected = -rest * (1.0 - np.exp(-share * frequency * time) * (
         np.cos(swing * time) + share * frequency / swing * np.sin(swing * time)))
-    run.check("damped contact: fall of a rigid block on springs", history["uy"], expected, 2e-3,
-              source="mass on springs with VDC per cent of critical damping")
+    run.check("damped contact: fall of a rigid block on springs", history["uy"], expected)
     _, _, _, rest, _ = springs(2, True)
     limit = np.sqrt(rest / 9.81)
     for factor in (0.99, 1.01):
@@ -220,7 +210,7 @@ def check_contact_mass(run):
             result = run.program(springs(2, turns, factor * limit)[0])
             said = "its penalty demands" in (result.folder / f"{result.job}.log").read_text()
             run.true(f"step of {factor} of the limit, turn {'held' if turns else 'free'}: warning",
-                     said == (factor > 1.0 or not turns), "sqrt(M/K), where springs open and close; a free turn takes a part of it")
+                     said == (factor > 1.0 or not turns))
 
 
 def pressed(kind, variant, young=YOUNG, free=False):
@@ -257,13 +247,12 @@ def check_pressed(run):
         for variant in ("rigid", "nodal"):
             found[variant] = run.program(pressed(kind, variant))
         forces = {key: result.table("rcforc")["fy"] for key, result in found.items()}
-        run.check(f"{name}: force of the pressed block", forces["rigid"], forces["nodal"], 1e-12,
-                  source="all nodes of the die prescribed")
+        run.check(f"{name}: force of the pressed block", forces["rigid"], forces["nodal"])
         for column in ("external_work", "kinetic", "contact"):
             one, other = (found[key].table("glstat")[column] for key in ("rigid", "nodal"))
-            run.check(f"{name}: {column}, rigid die", one, other, 1e-10, source="nodes prescribed")
-        run.check(f"{name}: energy ratio, rigid die", found["rigid"].table("glstat")["energy_ratio"][1:],
-                  1.0, 2e-2, "abs", "balance")
+            run.check(f"{name}: {column}, rigid die", one, other)
+        run.check(f"{name}: energy ratio, rigid die",
+                  found["rigid"].table("glstat")["energy_ratio"][1:], 1.0)
 
 
 def check_stiff(run):
@@ -275,8 +264,8 @@ def check_stiff(run):
         impulse = np.abs(np.sum(table["fy"]) - np.sum(rigid_force)) / np.abs(np.sum(rigid_force))
         errors.append(impulse)
         run.report(f"elastic die {factor:g} times as stiff: impulse less than under the rigid die", impulse)
-    run.check("elastic die: difference falls with its compliance, order", run.order(
-        [1.0 / factor for factor in moduli], errors), 1.0, 0.15, "abs", "series of compliances")
+    run.check("elastic die: difference falls with its compliance, order",
+              run.order([1.0 / factor for factor in moduli], errors), 1.0)
 
 
 def check_turned_die(run):
@@ -312,16 +301,12 @@ def check_turned_die(run):
         deck.output(glstat=10 * dt, rcforc=10 * dt)
         results[variant] = run.program(deck)
     tables = [results[key].table("rcforc").where(side="slave") for key in ("rigid", "nodal")]
-    run.check("turning die: contact force x", tables[0]["fx"], tables[1]["fx"], 1e-8,
-              source="each node on its circle")
-    run.check("turning die: contact force y", tables[0]["fy"], tables[1]["fy"], 1e-8,
-              source="each node on its circle")
+    run.check("turning die: contact force x", tables[0]["fx"], tables[1]["fx"])
+    run.check("turning die: contact force y", tables[0]["fy"], tables[1]["fy"])
     energies = [results[key].table("glstat") for key in ("rigid", "nodal")]
     for energy, key in zip(energies, ("rigid", "node by node")):
-        run.check(f"turning die, {key}: energy ratio", energy["energy_ratio"][2:], 1.0, 5e-3, "abs",
-                  "balance: the torque's work is counted")
-    run.check("turning die: internal energy", energies[0]["internal"], energies[1]["internal"], 1e-8,
-              source="each node on its circle")
+        run.check(f"turning die, {key}: energy ratio", energy["energy_ratio"][2:], 1.0)
+    run.check("turning die: internal energy", energies[0]["internal"], energies[1]["internal"])
 
 
 def check_impact(run):
@@ -345,19 +330,16 @@ def check_impact(run):
         start = parts[0]["momentum_x"][0]
         for axis, expected in (("x", start), ("y", 0.0)):
             total = parts[0][f"momentum_{axis}"] + parts[1][f"momentum_{axis}"]
-            run.check(f"{name}: momentum {axis} of both / initial", total / start,
-                      expected / start, 1e-11, "abs", "constant")
-        run.check(f"{name}: energy ratio", result.table("glstat")["energy_ratio"], 1.0, 5e-3, "abs",
-                  "balance")
-        run.check(f"{name}: momentum given / initial", parts[1]["momentum_x"][-1] / start, 0.2, 0.0,
-                  "min", "they have met")
+            run.check(f"{name}: momentum {axis} of both / initial", total / start, expected / start)
+        run.check(f"{name}: energy ratio of the impact", result.table("glstat")["energy_ratio"], 1.0)
+        run.check(f"{name}: momentum given / initial", parts[1]["momentum_x"][-1] / start, 0.2)
         first = result.points("Points")[:, :25, :2]
         sides = np.linalg.norm(np.diff(first, axis=1), axis=2)
-        run.check(f"{name}: shape of the rigid block", sides, np.broadcast_to(sides[0], sides.shape),
-                  1e-12, source="rigid")
+        run.check(f"{name}: shape of the rigid block", sides,
+                  np.broadcast_to(sides[0], sides.shape))
         stress = np.abs(result.cells("stress"))
-        run.check(f"{name}: stress in the rigid block / in the elastic one", stress[:, :16].max()
-                  / stress.max(), 0.0, 0.0, "abs", "carries none")
+        run.check(f"{name}: stress in the rigid block / in the elastic one",
+                  stress[:, :16].max() / stress.max(), 0.0)
 
 
 def check_attached(run):
@@ -386,11 +368,10 @@ def check_attached(run):
     deck.output(glstat=1.0e-3, nodout=1.0e-3, nodes=[tip])
     result = run.program(deck)
     history = result.node(tip)
-    run.check("body on a bar: velocity of the body over three periods / start", history["vx"] / speed,
-              np.cos(omega * history["time"]), 5e-3, "abs", "z tan z = m/M")
-    run.check("body on a bar: body stays level", history["uy"] * omega / speed, 0.0, 1e-9, "abs", "symmetric")
-    run.check("body on a bar: energy ratio", result.table("glstat")["energy_ratio"], 1.0, 5e-3, "abs",
-              "balance")
+    run.check("body on a bar: velocity of the body over three periods / start",
+              history["vx"] / speed, np.cos(omega * history["time"]))
+    run.check("body on a bar: body stays level", history["uy"] * omega / speed, 0.0)
+    run.check("body on a bar: energy ratio", result.table("glstat")["energy_ratio"], 1.0)
 
 
 def check_threads(run):
@@ -408,7 +389,7 @@ def check_threads(run):
         deck.output(glstat=1.0e-3, matsum=1.0e-3, rcforc=1.0e-3)
         result = run.program(deck, f"ncpu={n_thread}", name=f"threads{n_thread}")
         found.append([result.csv_path(name).read_bytes() for name in ("glstat", "matsum", "rcforc")])
-    run.true("same bits with one and three threads", found[0] == found[1], "fixed order of sums")
+    run.true("same bits with one and three threads", found[0] == found[1])
 
 
 def check(run):

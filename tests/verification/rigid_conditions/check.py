@@ -47,8 +47,7 @@ def check_codes(run):
         time, place = places(run.program(deck), nodes)
         path = time[:, None] * start + 0.5 * time[:, None] ** 2 * np.array([*g, 0.0])
         free = [axis not in directions for axis in "xyz"]
-        run.check(f"CON1 = CON2 = {code}: places of all nodes", place, expected(path * free), 1e-11, "abs",
-                  f"v t + g t^2/2, held: {directions or 'nothing'}")
+        run.check(f"CON1 = CON2 = {code}: places of all nodes", place, expected(path * free))
 
 
 def check_driven(run):
@@ -68,14 +67,12 @@ def check_driven(run):
             time, place = places(result, nodes)
             path = time[:, None] * np.array(first)
             path[:, axis] = 0.5 * rate * time ** 2
-            run.check(f"DOF {dof} by {kind}: places of all nodes", place, expected(path), 1e-11, "abs",
-                      "a t^2/2 in the driven one, v t in the others: exact in central differences")
+            run.check(f"DOF {dof} by {kind}: places of all nodes", place, expected(path))
             energy = result.table("glstat")
             inertia = (MASS, MASS, INERTIA)[axis]
             run.check(f"DOF {dof} by {kind}: external work", energy["external_work"][-1],
-                      0.5 * inertia * (rate * time[-1]) ** 2, 1e-4, source="M v^2/2 or I w^2/2")
-            run.check(f"DOF {dof} by {kind}: energy ratio", energy["energy_ratio"][2:], 1.0, 1e-4, "abs",
-                      "balance")
+                      0.5 * inertia * (rate * time[-1]) ** 2)
+            run.check(f"DOF {dof} by {kind}: energy ratio", energy["energy_ratio"][2:], 1.0)
 
 
 def check_start(run):
@@ -95,11 +92,10 @@ def check_start(run):
             deck.add(*card)
         result = run.program(deck)
         time, place = places(result, nodes)
-        run.check(f"velocity {name}: places of all nodes", place, expected(time[:, None] * velocity), 1e-11,
-                  "abs", "v t, w t")
+        run.check(f"velocity {name}: places of all nodes", place,
+                  expected(time[:, None] * velocity))
         run.check(f"velocity {name}: kinetic energy", result.table("glstat")["kinetic"],
-                  0.5 * MASS * velocity[:2] @ velocity[:2] + 0.5 * INERTIA * velocity[2] ** 2, 1e-11,
-                  source="M v^2/2 + I w^2/2")
+                  0.5 * MASS * velocity[:2] @ velocity[:2] + 0.5 * INERTIA * velocity[2] ** 2)
 
 
 def check(run):

@@ -49,17 +49,14 @@ def check(run):
         errors.append(np.max(np.abs(stress[N_LOAD:] - expected)) / size)
         run.report(f"stress error over the turn / mises, {n_turn} steps", errors[-1],
                    f"{360.0 / n_turn:g} degrees a step")
-        run.check(f"number of states, {n_turn} steps", len(stress), N_LOAD + n_turn + 1, 0, "abs")
-    run.check("stress before the turn, xx - yy", first[0] - first[1],
-              2.0 * SHEAR * np.log(STRETCH), 1e-5, source="logarithmic strain")
-    run.check("stress over the turn, 1 degree a step", errors[2], 0.0, 1e-10, "abs",
-              "sigma = R sigma_0 R^T: the mid-step update turns rigidly without error")
-    run.check("stress over the turn, 4 degrees a step", errors[0], 0.0, 1e-10, "abs", "same")
+        run.check(f"number of states, {n_turn} steps", len(stress), N_LOAD + n_turn + 1)
+    run.check("stress before the turn, xx - yy", first[0] - first[1], 2.0 * SHEAR * np.log(STRETCH))
+    run.check("stress over the turn, 1 degree a step", errors[2], 0.0)
+    run.check("stress over the turn, 4 degrees a step", errors[0], 0.0)
     quarter = 3 * n_turns[-1] // 4
-    run.check("quarter turn swaps xx and yy", stress[N_LOAD + quarter, 0], first[1], 1e-9)
+    run.check("quarter turn swaps xx and yy", stress[N_LOAD + quarter, 0], first[1])
     energy = result.table("glstat")["internal"]
-    run.check("internal energy does not change in the turn", energy[-1],
-              energy[N_LOAD], 1e-10, source="no work in a rigid turn")
+    run.check("internal energy does not change in the turn", energy[-1], energy[N_LOAD])
     check_full(run)
 
 
@@ -69,9 +66,8 @@ def check_full(run, n_turn=90):
     stress = result.cells("stress")[N_LOAD:, 0, :4]
     expected = turned(stress[0], 2.0 * np.pi * np.arange(n_turn + 1) / n_turn)
     run.check("full integration: stress before the turn, xx - yy", stress[0, 0] - stress[0, 1],
-              2.0 * SHEAR * np.log(STRETCH), 1e-5, source="logarithmic strain")
-    run.check("full integration: stress over the turn", stress, expected, 1e-10,
-              source="sigma = R sigma_0 R^T")
+              2.0 * SHEAR * np.log(STRETCH))
+    run.check("full integration: stress over the turn", stress, expected)
     energy = result.table("glstat")["internal"]
     run.check("full integration: internal energy does not change in the turn", energy[-1],
-              energy[N_LOAD], 1e-10, source="no work in a rigid turn")
+              energy[N_LOAD])

@@ -47,32 +47,30 @@ def check_bar(run, name, angle, shift):
     run.true(f"{name}: number of the wall", np.all(force["wall"] == 7))
     plateau = (force["time"] > 0.1 * CONTACT) & (force["time"] < 0.9 * CONTACT)
     expected = RHO * WAVE * SPEED * HEIGHT
-    run.check(f"{name}: mean force on the plateau", np.mean(force["normal_force"][plateau]), expected, 5e-3,
-              source="rho c v H")
-    run.check(f"{name}: impulse", force["impulse"][-1], 2.0 * MASS * SPEED, 1e-2, source="2 m v")
+    run.check(f"{name}: mean force on the plateau", np.mean(force["normal_force"][plateau]),
+              expected)
+    run.check(f"{name}: impulse", force["impulse"][-1], 2.0 * MASS * SPEED)
     half = force["impulse"][np.searchsorted(force["time"], 0.5 * CONTACT)]
-    run.check(f"{name}: impulse at half of the contact", half, MASS * SPEED, 2e-2, source="m v")
-    run.check(f"{name}: time of contact", 2.0 * MASS * SPEED / np.mean(force["normal_force"][plateau]), CONTACT,
-              5e-3, source="2 L/c")
+    run.check(f"{name}: impulse at half of the contact", half, MASS * SPEED)
+    run.check(f"{name}: time of contact",
+              2.0 * MASS * SPEED / np.mean(force["normal_force"][plateau]), CONTACT)
     late = force["time"] > 1.1 * CONTACT
-    run.check(f"{name}: force after the rebound", np.mean(force["normal_force"][late]) / expected, 0.0, 2e-2, "abs",
-              "the bar has left")
+    run.check(f"{name}: force after the rebound", np.mean(force["normal_force"][late]) / expected,
+              0.0)
     run.check(f"{name}: direction of the force", np.stack([force["fx"], force["fy"]], -1),
-              force["normal_force"][:, None] * normal, 1e-12)
+              force["normal_force"][:, None] * normal)
     momentum = result.table("matsum")
     rebound = (momentum["momentum_x"][-1] * normal[0] + momentum["momentum_y"][-1] * normal[1]) / MASS
-    run.check(f"{name}: velocity of the rebound", rebound, SPEED, 1e-2, source="v")
+    run.check(f"{name}: velocity of the rebound", rebound, SPEED)
     balance = (momentum["momentum_x"] * normal[0] + momentum["momentum_y"] * normal[1]) + MASS * SPEED
-    run.check(f"{name}: change of momentum is the impulse", balance[-1], force["impulse"][-1], 1e-10,
-              source="momentum balance")
+    run.check(f"{name}: change of momentum is the impulse", balance[-1], force["impulse"][-1])
     energies = result.table("glstat")
-    run.check(f"{name}: energy ratio", energies["energy_ratio"], np.ones_like(energies["time"]), 1e-3)
-    run.check(f"{name}: energy lost in the wall is the external work", energies["external_work"][-1],
-              force["work"][-1], 1e-12)
+    run.check(f"{name}: energy ratio", energies["energy_ratio"], np.ones_like(energies["time"]))
+    run.check(f"{name}: energy lost in the wall is the external work",
+              energies["external_work"][-1], force["work"][-1])
     # The nodes on the wall stop at once: half an element of the bar loses its energy, once.
     lost = 0.5 * (RHO * HEIGHT * 0.5 * LENGTH / N) * SPEED ** 2
-    run.check(f"{name}: energy lost in the wall", -force["work"][-1], lost, 1e-9,
-              source="kinetic energy of the nodes that touch")
+    run.check(f"{name}: energy lost in the wall", -force["work"][-1], lost)
     return 1.0 - rebound / SPEED
 
 
@@ -86,7 +84,7 @@ def check_order(run, last):
     missing.append(last)
     for k in (1, 2):
         run.check(f"order of the rebound velocity, {25 * 2 ** k} to {50 * 2 ** k} elements",
-                  np.log2(missing[k - 1] / missing[k]), 2.0 / 3.0, 0.1, "abs", "width of a front: n^(1/3) elements")
+                  np.log2(missing[k - 1] / missing[k]), 2.0 / 3.0)
 
 
 def check_touching(run):
@@ -105,16 +103,15 @@ def check_touching(run):
     result = run.program(deck, name="touching")
     node, force = result.node(int(nodes[0])), result.table("rwforc")
     flight = gap - SPEED * node["time"]
-    run.check("flight to the wall", node["y"][:8], flight[:8], 1e-12)
-    run.check("nodes end on the wall", node["y"][8:11], np.zeros(3), 1e-15, "abs")
-    run.check("nothing passes the wall", node["y"].min(), 0.0, 1e-15, "min")
-    run.check("free along the wall", node["vx"], np.full_like(node["vx"], 0.5), 1e-9)
+    run.check("flight to the wall", node["y"][:8], flight[:8])
+    run.check("nodes end on the wall", node["y"][8:11], np.zeros(3))
+    run.check("nothing passes the wall", node["y"].min(), 0.0)
+    run.check("free along the wall", node["vx"], np.full_like(node["vx"], 0.5))
     mass = lumped_mass(coordinates, quads, RHO)[:2].sum()
-    run.check("force of the impact", force["normal_force"][7], 0.7 * mass * SPEED / dt, 1e-9,
-              source="m dv/dt, dv = 0.7 v in the first step")
+    run.check("force of the impact", force["normal_force"][7], 0.7 * mass * SPEED / dt)
     momentum = result.table("matsum")
-    run.check("change of momentum is the impulse, at all times", momentum["momentum_y"] + RHO * SPEED, force["impulse"],
-              1e-12, source="momentum balance")
+    run.check("change of momentum is the impulse, at all times",
+              momentum["momentum_y"] + RHO * SPEED, force["impulse"])
 
 
 def check_corner(run):
@@ -137,13 +134,13 @@ def check_corner(run):
     result = run.program(deck, name="corner")
     node, force = result.node(int(nodes[0])), result.table("rwforc")
     early = force["time"] < 50 * dt
-    run.true("both walls push", all(np.all(force["normal_force"][early & (force["wall"] == k)] > 0.0)
-                                    for k in (1, 2)))
+    run.true("both walls push", all(np.all(force["normal_force"][early & (force["wall"] == k)]
+                                           > 0.0) for k in (1, 2)))
     for k in (0, 1):
-        run.check(f"wall {k + 1} is not passed", np.min(node["x"] * normals[k][0] + node["y"] * normals[k][1]),
-                  0.0, 1e-15, "min")
+        run.check(f"wall {k + 1} is not passed",
+                  np.min(node["x"] * normals[k][0] + node["y"] * normals[k][1]), 0.0)
     first = node["time"] < 50 * dt
-    run.check("the corner node rests", np.hypot(node["x"], node["y"])[first], np.zeros(first.sum()), 1e-15, "abs")
+    run.check("the corner node rests", np.hypot(node["x"], node["y"])[first], np.zeros(first.sum()))
 
 
 def check_times(run):
@@ -164,9 +161,9 @@ def check_times(run):
     run.true("no force before and after", np.all(force["normal_force"][~there] == 0.0))
     node = result.node(int(nodes[0]))
     behind = (node["time"] > 11.5 * dt) & (node["time"] < 20.5 * dt)
-    run.check("a node behind the wall goes no further", np.ptp(node["y"][behind]), 0.0, 1e-15, "abs")
-    run.true("warned of nodes behind the wall", "start behind the wall" in result.stderr + (
-        result.folder / "times.log").read_text())
+    run.check("a node behind the wall goes no further", np.ptp(node["y"][behind]), 0.0)
+    run.true("warned of nodes behind the wall",
+             "start behind the wall" in result.stderr + (result.folder / "times.log").read_text())
 
 
 def check_restart(run):

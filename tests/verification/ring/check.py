@@ -59,16 +59,12 @@ def check(run):
         stress_errors.append(np.sqrt(np.mean((hoop - wanted) ** 2) / np.mean(wanted ** 2)))
         run.report(f"{n_r} x {n_t}: hoop stress error, root mean square", stress_errors[-1])
     sizes = [1.0 / n_r for n_r, _ in meshes]
-    run.check("order of the displacement", run.order(sizes, errors), 2.0, 0.3, "abs",
-              "bilinear quads")
-    run.check("order of the hoop stress at the centres", run.order(sizes, stress_errors), 2.0, 0.4,
-              "abs", "the centre is the superconvergent point")
-    run.check("displacement of the inner face, finest mesh", radial[::n_r + 1], exact[::n_r + 1], 5e-3,
-              source="Lame")
-    run.check("hoop stress, finest mesh", hoop, wanted, 1e-2, source="Lame")
+    run.check("order of the displacement", run.order(sizes, errors), 2.0)
+    run.check("order of the hoop stress at the centres", run.order(sizes, stress_errors), 2.0)
+    run.check("displacement of the inner face, finest mesh", radial[::n_r + 1], exact[::n_r + 1])
+    run.check("hoop stress, finest mesh", hoop, wanted)
     energy = result.table("glstat")
-    run.check("kinetic / internal energy at the end", energy["kinetic"][-1] / energy["internal"][-1],
-              0.0, 1e-8, "abs", "at rest")
+    run.check("kinetic / internal energy at the end",
+              energy["kinetic"][-1] / energy["internal"][-1], 0.0)
     run.check("internal energy", energy["internal"][-1] + energy["hourglass"][-1],
-              0.5 * PRESSURE * lame_displacement(INNER) * INNER * 0.5 * np.pi, 2e-2,
-              source="half of pressure x opening")
+              0.5 * PRESSURE * lame_displacement(INNER) * INNER * 0.5 * np.pi)

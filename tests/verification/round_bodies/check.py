@@ -50,25 +50,24 @@ def check_tube(run):
     errors, full, sizes = [], [], (5, 10, 20)
     for n in sizes:
         r, found, exact, result = tube(run, n, 1)
-        run.check(f"tube of {n}: radial displacement of all nodes", found, exact, 1e-8, source="Lame (1852)")
+        run.check(f"tube of {n}: radial displacement of all nodes", found, exact)
         centre = 0.5 * (r[:n] + r[1:n + 1])
         hoop = result.cells("stress")[-1][:n, 2] / PRESSURE
         errors.append(np.abs(hoop - (1.0 + (OUTER / centre) ** 2) / 3.0).max())
         strain = result.cells("hoop_strain")[-1][:n]
         run.check(f"tube of {n}: hoop strain of the elements", strain,
-                  0.5 * (exact[:n] + exact[1:n + 1]) / centre, 1e-7, source="mean displacement over mean radius")
+                  0.5 * (exact[:n] + exact[1:n + 1]) / centre)
         r, found, exact, result = tube(run, n, 4)
         full.append(np.abs(found / exact - 1.0).max())
-    run.check("tube: error of the hoop stress in the elements", errors[-1], 0.0, 3e-3, "abs", "Lame (1852)")
-    run.check("tube: order of the hoop stress", run.order(1.0 / np.array(sizes), errors), 2.0, 0.15, "abs",
-              "second order")
+    run.check("tube: error of the hoop stress in the elements", errors[-1], 0.0)
+    run.check("tube: order of the hoop stress", run.order(1.0 / np.array(sizes), errors), 2.0)
     for points in (1, 4):
         r, found, exact, result = tube(run, 20, points, "triangles")
-        run.check(f"tube of triangles, {points} point(s): radial displacement", found / exact, np.ones_like(exact), 2e-3,
-                  source="Lame (1852)")
-    run.check("tube, 2x2 points: radial displacement", full[-1], 0.0, 1e-3, "abs", "Lame (1852)")
-    run.check("tube, 2x2 points: order of the radial displacement", run.order(1.0 / np.array(sizes), full), 2.0, 0.15,
-              "abs", "second order")
+        run.check(f"tube of triangles, {points} point(s): radial displacement", found / exact,
+                  np.ones_like(exact))
+    run.check("tube, 2x2 points: radial displacement", full[-1], 0.0)
+    run.check("tube, 2x2 points: order of the radial displacement",
+              run.order(1.0 / np.array(sizes), full), 2.0)
 
 
 def sphere(n):
@@ -101,8 +100,8 @@ def check_sphere(run, points):
         radial = np.sum(found * coordinates, axis=1) / place
         errors.append(np.abs(radial / exact - 1.0).max())
         run.true(f"{name}: nodes on the axis keep to it, {n}", np.all(found[coordinates[:, 0] == 0.0, 0] == 0.0))
-    run.check(f"{name}: largest error of the radial displacement", errors[-1], 0.0, 5e-3, "abs", "Lame (1852)")
-    run.check(f"{name}: order", run.order(1.0 / np.array(sizes), errors), 2.0, 0.3, "abs", "second order")
+    run.check(f"{name}: largest error of the radial displacement", errors[-1], 0.0)
+    run.check(f"{name}: order", run.order(1.0 / np.array(sizes), errors), 2.0)
 
 
 def phase_velocity(poisson, number):
@@ -147,7 +146,7 @@ def bar_frequency(run, n, number, guess):
     interval = 2.0 * np.pi / guess / 100.0
     result = run.program(deck.output(nodout=interval, glstat=interval, nodes=[middle]), name=f"bar_{n}")
     energies = result.table("glstat")
-    run.check(f"bar of {n}: energy ratio", energies["energy_ratio"], np.ones_like(energies["time"]), 1e-4)
+    run.check(f"bar of {n}: energy ratio", energies["energy_ratio"], np.ones_like(energies["time"]))
     node = result.node(middle)
 
     def rest(frequency):
@@ -162,11 +161,11 @@ def check_bar(run):
     number, sizes = 0.5, (4, 8, 16)
     expected = np.sqrt(YOUNG / RHO) * number * phase_velocity(POISSON, number)
     run.check("bar: exact speed against Rayleigh's", phase_velocity(POISSON, number),
-              1.0 / np.sqrt(1.0 + 0.5 * (POISSON * number) ** 2), 5e-4, source="Love (1892)")
+              1.0 / np.sqrt(1.0 + 0.5 * (POISSON * number) ** 2))
     found = [bar_frequency(run, n, number, expected) for n in sizes]
-    run.check("bar: frequency", found[-1], expected, 1e-4, source="Pochhammer and Chree")
-    run.check("bar: order of the frequency", run.order(1.0 / np.array(sizes), expected - np.array(found)), 2.0, 0.3,
-              "abs", "second order")
+    run.check("bar: frequency", found[-1], expected)
+    run.check("bar: order of the frequency",
+              run.order(1.0 / np.array(sizes), expected - np.array(found)), 2.0)
 
 
 def volumes(places, quads):
@@ -181,35 +180,31 @@ def check_taylor(run):
     edge, end = result.node(11), result.node(1101)
     for time, radius, length in ((12.0, 5.38, 29.705), (40.0, 7.07, 24.564)):
         run.check(f"Taylor bar: radius at {time:g} microseconds, mm",
-                  1e3 * np.interp(time * 1e-6, edge["time"], edge["x"]), radius, 0.02, "abs", "another program")
+                  1e3 * np.interp(time * 1e-6, edge["time"], edge["x"]), radius)
         run.check(f"Taylor bar: length at {time:g} microseconds, mm",
-                  1e3 * np.interp(time * 1e-6, end["time"], end["y"]), length, 0.02, "abs", "another program")
-    run.check("Taylor bar: final radius, mm", 1e3 * edge["x"][-1], 7.16, 0.03, "abs",
-              "another program; converged codes 7.22 to 7.24")
-    run.check("Taylor bar: final length, mm", 1e3 * end["y"][-1], 21.425, 0.02, "abs",
-              "another program; converged codes 21.42 to 21.43")
-    run.check("Taylor bar: largest plastic strain", result.cells("plastic_strain")[-1].max(), 3.2, 0.15, "abs",
-              "another program")
+                  1e3 * np.interp(time * 1e-6, end["time"], end["y"]), length)
+    run.check("Taylor bar: final radius, mm", 1e3 * edge["x"][-1], 7.16)
+    run.check("Taylor bar: final length, mm", 1e3 * end["y"][-1], 21.425)
+    run.check("Taylor bar: largest plastic strain", result.cells("plastic_strain")[-1].max(), 3.2)
     _, quads = grid(10, 100)
     quads = np.array(quads)
     start = np.array([(3.2e-3 * i / 10, 32.4e-3 * j / 100) for j in range(101) for i in range(11)])
     now = start + result.points("displacement")[-1][:, :2]
     ratio = volumes(now, quads) / volumes(start, quads)
-    run.check("Taylor bar: volume of every element", ratio, np.ones(1000), 0.01, source="plastic flow keeps volume")
+    run.check("Taylor bar: volume of every element", ratio, np.ones(1000))
     energies = result.table("glstat")
-    run.check("Taylor bar: energy ratio", energies["energy_ratio"], np.ones_like(energies["time"]), 1e-3)
+    run.check("Taylor bar: energy ratio", energies["energy_ratio"], np.ones_like(energies["time"]))
     mass = 8930.0 * 0.5 * 3.2e-3 ** 2 * 32.4e-3
     run.check("Taylor bar: energy at the start, per radian",
-              energies["total"][0] + 0.5 * (mass / 200.0) * 227.0 ** 2, 0.5 * mass * 227.0 ** 2, 1e-9,
-              source="the row of nodes on the wall stands still")
+              energies["total"][0] + 0.5 * (mass / 200.0) * 227.0 ** 2, 0.5 * mass * 227.0 ** 2)
     free = re.sub(r"\*BOUNDARY_SPC_SET\n.*\n.*\n",
                   "*RIGIDWALL_PLANAR\n         0\n       0.0       0.0       0.0       0.0       1.0       0.0\n", text)
     let_go = run.program(free, name="wall")
     run.report("Taylor bar on a wall that lets go: final radius, mm", 1e3 * let_go.node(11)["x"][-1],
                "its edge lifts off")
     run.report("Taylor bar on a wall that lets go: edge above the wall, mm", 1e3 * let_go.node(11)["y"][-1])
-    run.check("Taylor bar on a wall that lets go: nothing behind it", let_go.points("displacement")[-1][:11, 1].min(),
-              0.0, 1e-12, "min")
+    run.check("Taylor bar on a wall that lets go: nothing behind it",
+              let_go.points("displacement")[-1][:11, 1].min(), 0.0)
 
 
 def check_rates(run):
@@ -240,9 +235,9 @@ def check_rates(run):
         stress = result.cells("stress")[-1]
         name = f"upset at a constant rate, {points} point(s)"
         run.check(f"{name}: axial less radial stress", stress[:, 1] - stress[:, 0],
-                  -yield_stress * (1.0 + (size / slow) ** (1.0 / power)), 1e-9, source="Cowper and Symonds")
-        run.check(f"{name}: hoop less radial stress", stress[:, 2] - stress[:, 0], 0.0, 1e-9, "abs", "equal rates")
-        run.check(f"{name}: shear stress", stress[:, 3], 0.0, 1e-9, "abs", "none")
+                  -yield_stress * (1.0 + (size / slow) ** (1.0 / power)))
+        run.check(f"{name}: hoop less radial stress", stress[:, 2] - stress[:, 0], 0.0)
+        run.check(f"{name}: shear stress", stress[:, 3], 0.0)
 
 
 def check_ring(run):
@@ -265,11 +260,11 @@ def check_ring(run):
             name = f"pushed ring, {points} point(s)" + (", cylinder" if share else "")
             moved = result.points("displacement")[-1][:, 0]
             run.check(f"{name}: radial displacement", moved[::2].mean() if share is None else moved[1::2].mean(),
-                      free * (share or 1.0), 1e-4, source="F R/(E A), thick 0.002 R")
+                      free * (share or 1.0))
             if share is not None:
                 wall = result.table("rwforc")
-                run.check(f"{name}: force on the cylinder, per radian", np.abs(wall["fx"][-1]), force * (1.0 - share),
-                          1e-4, source="what the hoop does not carry")
+                run.check(f"{name}: force on the cylinder, per radian", np.abs(wall["fx"][-1]),
+                          force * (1.0 - share))
 
 
 def check(run):

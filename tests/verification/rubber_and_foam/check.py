@@ -125,7 +125,7 @@ def check_stress(run):
                 wanted = np.array([expected[0, 0], expected[1, 1], expected[2, 2], expected[0, 1]])
                 where = f"{law.name}{name}, {case}"
                 if case == "rotation":
-                    run.check(f"{where}: stress over G", found / law.shear, 0.0, 1e-13, "abs")
+                    run.check(f"{where}: stress over G", found / law.shear, 0.0)
                     continue
                 if case == "small":
                     e = small * 0.5 * (strain + strain.T)
@@ -133,11 +133,11 @@ def check_stress(run):
                     hoop = e[0, 0] if form[0] == 15 else 0.0
                     p = lame * (e[0, 0] + e[1, 1] + hoop)
                     wanted = p + 2.0 * law.shear * np.array([e[0, 0], e[1, 1], hoop, e[0, 1] - 0.5 * p / law.shear])
-                    run.check(f"{where}: stress", found, wanted, 1e-6, source="Hooke")
+                    run.check(f"{where}: stress", found, wanted)
                     continue
-                run.check(f"{where}: stress", found, wanted, 1e-10, source="W of principal stretches")
+                run.check(f"{where}: stress", found, wanted)
                 size = 1.5 if form[0] == 15 else volume_of(form)
-                run.check(f"{where}: energy", energy.where(part=part)["internal"][-1], w * size, 1e-10, source="W")
+                run.check(f"{where}: energy", energy.where(part=part)["internal"][-1], w * size)
 
 
 def volume_of(form):
@@ -234,9 +234,8 @@ def check_step(run):
                 now = corners @ np.array(f).T
                 limit = 2.0 / largest_frequency(law, corners, now, form) if name else wave_step(law, now, f)
                 found = table["dt"][row] / limit
-                run.check(f"{law.name}{name}, {case}: step over that of the element", found, 1.0, 1e-6, "max",
-                          source="second derivative of the energy")
-                run.check(f"{law.name}{name}, {case}: step is no smaller than need be", found, 0.3, 0.0, "min")
+                run.check(f"{law.name}{name}, {case}: step over that of the element", found, 1.0)
+                run.check(f"{law.name}{name}, {case}: step is no smaller than need be", found, 0.3)
 
 
 def check_vibration(run):
@@ -261,10 +260,9 @@ def check_vibration(run):
                 total = sum(table[key] for key in ("kinetic", "leapfrog", "internal", "hourglass"))
                 run.true(f"{law.name}{name}, scale {scale}: it swings far", table["internal"].max() > 0.5 * total[0])
                 errors.append(np.sqrt(np.mean((total / total[0] - 1.0) ** 2)))
-            run.check(f"{law.name}{name}: error of the energy", errors[-1], 0.0, 4e-3, "abs")
+            run.check(f"{law.name}{name}: error of the energy", errors[-1], 0.0)
             if len(scales) > 1:
-                run.check(f"{law.name}{name}: its order", run.order(np.array(scales), errors), 2.0, 0.3, "min",
-                          source="leap-frog")
+                run.check(f"{law.name}{name}: its order", run.order(np.array(scales), errors), 2.0)
 
 
 def tube(law, pressure, inner, outer, n=400):
@@ -313,7 +311,7 @@ def check_newton(run, result, name):
     rows = [(int(k), float(ratio)) for k, ratio in re.findall(r"iteration (\d+): energy ratio (\S+),", log)]
     ends = [(one[1], two[1]) for one, two, three in zip(rows, rows[1:], rows[2:] + [(1, 0.0)]) if three[0] == 1]
     run.true(f"{name}: Newton's method converges as it does with an exact tangent",
-             len(ends) >= 4 and all(last < before ** 1.6 for before, last in ends), f"{ends}")
+             len(ends) >= 4 and all(last < before ** 1.6 for before, last in ends))
 
 
 def check_tube(run):
@@ -339,8 +337,8 @@ def check_tube(run):
             errors.append(np.abs(u / exact - 1.0).max())
             table = result.table("glstat")
             run.report(f"{law.name}, tube of {n} quads: displacement inside", float(u[0]), f"exact {exact[0]}")
-        run.check(f"{law.name}, tube: error of the displacements", errors[-1], 0.0, 2e-3, "abs", source="dP/dR quadrature")
-        run.check(f"{law.name}, tube: order", run.order(1.0 / np.array(sizes), errors), 2.0, 0.3, "abs")
+        run.check(f"{law.name}, tube: error of the displacements", errors[-1], 0.0)
+        run.check(f"{law.name}, tube: order", run.order(1.0 / np.array(sizes), errors), 2.0)
 
 
 def check_tension(run):
@@ -361,13 +359,13 @@ def check_tension(run):
             middle = 0.5 * (low + high)
             low, high = (low, middle) if law.kirchhoff([middle, 1.8, 1.0])[0] > 0.0 else (middle, high)
         wanted = law.kirchhoff([low, 1.8, 1.0]) / (1.8 * low)
-        run.check(f"{law.name}, tension: stress", result.cells("stress")[-1][:, 1], np.full(4, wanted[1]), 1e-8,
-                  source="stress across 0")
-        run.check(f"{law.name}, tension: stress out of the plane", result.cells("stress")[-1][:, 2], np.full(4, wanted[2]),
-                  1e-7, source="stress across 0")
-        run.check(f"{law.name}, tension: side stretch", 1.0 + result.points("displacement")[-1][8, 0], low, 1e-8)
+        run.check(f"{law.name}, tension: stress", result.cells("stress")[-1][:, 1],
+                  np.full(4, wanted[1]))
+        run.check(f"{law.name}, tension: stress out of the plane", result.cells("stress")[-1][:, 2],
+                  np.full(4, wanted[2]))
+        run.check(f"{law.name}, tension: side stretch", 1.0 + result.points("displacement")[-1][8, 0], low)
         energy = result.table("glstat")
-        run.check(f"{law.name}, tension: energy", energy["internal"][-1], law.energy([low, 1.8, 1.0]), 1e-8, source="W")
+        run.check(f"{law.name}, tension: energy", energy["internal"][-1], law.energy([low, 1.8, 1.0]))
 
 
 def check_foam(run):
@@ -386,14 +384,13 @@ def check_foam(run):
         result = run.program(driven(foam(), [motion], form, outputs=40, n_step=n), name=f"foam_{form[0]}_{form[1] or 1}")
         step = n // 40
         found = result.cells("stress")[:, 0, :4]
-        run.check(f"foam{name}: stress along the axis", found[:, 1], stress[::step], 1e-6, source="curve")
+        run.check(f"foam{name}: stress along the axis", found[:, 1], stress[::step])
         crushed = slice(4, 20)
-        run.check(f"foam{name}: stress where it is crushed", found[crushed, 1], -np.interp(1.0 - v[::step][crushed], *CRUSH),
-                  1e-12, source="curve")
-        run.check(f"foam{name}: stress across over E", found[:, [0, 2, 3]] / YOUNG, 0.0, 1e-6, "abs")
+        run.check(f"foam{name}: stress where it is crushed", found[crushed, 1],
+                  -np.interp(1.0 - v[::step][crushed], *CRUSH))
+        run.check(f"foam{name}: stress across over E", found[:, [0, 2, 3]] / YOUNG, 0.0)
         size = 1.5 if form[0] == 15 else volume_of(form)
-        run.check(f"foam{name}: energy", result.table("matsum")["internal"], size * area[::step], 1e-5,
-                  source="area under the path")
+        run.check(f"foam{name}: energy", result.table("matsum")["internal"], size * area[::step])
 
 
 def check_isotropic_crush(run):
@@ -401,7 +398,7 @@ def check_isotropic_crush(run):
     result = run.program(driven(foam(0.3), [uniform([[0.8, 0.0], [0.0, 0.8]])], (15, 4)), name="foam_pressed")
     volume = (1.0 - 0.2 * np.linspace(0.0, 1.0, 11)[2:]) ** 3
     run.check("foam: pressure of uniform pressing", result.cells("pressure")[2:, 0].ravel(),
-              np.interp(1.0 - volume, *CRUSH), 1e-9, source="curve")
+              np.interp(1.0 - volume, *CRUSH))
 
 
 def check(run):

@@ -31,10 +31,9 @@ def check_two_bodies(run, kind):
                                   0 if kind == 1 else 1, friction)
         both = run.program(deck)
         name = f"type {kind}, two {'rings' if is_round else 'bodies'}, friction {friction}"
-        run.check(f"{name}: energy in the springs, most / initial", np.max(both.table("glstat")["contact"])
-                  / both.table("glstat")["total"][0], 0.01, 0.0, "min", "so that the next check means something")
-        run.check(f"{name}: velocities", both.points("velocity"), pair.points("velocity"), 1.0e-12, "rel",
-                  "the interfaces (1, 2) and (2, 1) at half the penalty (type 3: (1, 2))")
+        run.check(f"{name}: energy in the springs, most / initial",
+                  np.max(both.table("glstat")["contact"]) / both.table("glstat")["total"][0], 0.01)
+        run.check(f"{name}: velocities", both.points("velocity"), pair.points("velocity"))
 
 
 def check_names(run, kind):
@@ -47,11 +46,11 @@ def check_names(run, kind):
         result = run.program(deck)
         found.append(result.points("velocity")[-1, :, :2].reshape(9, -1, 2))
     run.check(f"type {kind}, nine bodies: energy in the springs at the end",
-              result.table("glstat")["contact"][-1], 1.0, 0.0, "min", "so that the next checks mean something")
-    run.check(f"type {kind}, nine bodies: in another order", found[1], found[0][order], 1.0e-9, "rel", "order is no force")
-    run.check(f"type {kind}, nine bodies: mirrored", found[2] * [-1.0, 1.0], found[0], 1.0e-9, "rel", "mirror image")
-    run.check(f"type {kind}, nine bodies: walked and numbered otherwise", found[3][:, ::-1], found[0], 1.0e-9, "rel",
-              "names are no force")
+              result.table("glstat")["contact"][-1], 1.0)
+    run.check(f"type {kind}, nine bodies: in another order", found[1], found[0][order])
+    run.check(f"type {kind}, nine bodies: mirrored", found[2] * [-1.0, 1.0], found[0])
+    run.check(f"type {kind}, nine bodies: walked and numbered otherwise", found[3][:, ::-1],
+              found[0])
 
 
 def check_patch(run, kind):
@@ -63,7 +62,7 @@ def check_patch(run, kind):
             error = scenes.patch_error(result, blocks, pressure, 0.3 * pressure if friction else 0.0)
             name = f"type {kind}, patch {layout}, friction {friction}: tractions of both sides"
             if kind in PASS_PATCH:
-                run.check(name, error, 0.0, 1.0e-9, "abs", "uniform")
+                run.check(name, error, 0.0)
             else:
                 run.report(name, error)
 
@@ -75,14 +74,14 @@ def check_discs(run, kind):
         error = scenes.disc_error(result, blocks, 1.0e-4)
         name = f"type {kind}, patch of discs {layout}: axial tractions of both sides"
         if kind in PASS_PATCH:
-            run.check(name, error, 0.0, 1.0e-9, "abs", "uniform")
+            run.check(name, error, 0.0)
         else:
             run.report(name, error)
 
 
-def check_energy(run, name, result, most=0.01):
+def check_energy(run, name, result):
     table = result.table("glstat")
-    run.check(f"{name}: energy ratio", table["energy_ratio"], 1.0, most, "abs", "balance")
+    run.check(f"{name}: energy ratio", table["energy_ratio"], 1.0)
     return table
 
 
@@ -91,13 +90,13 @@ def check_fork(run, kind):
     result = run.program(deck)
     name = f"type {kind}, U"
     table = check_energy(run, name, result)
-    run.check(f"{name}: most energy in the springs / initial", np.max(table["contact"]) / table["total"][0], 0.05, 0.0, "min",
-              "the arms meet")
-    run.check(f"{name}: energy in the springs at the end / most", table["contact"][-1] / np.max(table["contact"]), 0.0, 0.05,
-              "abs", "given back")
+    run.check(f"{name}: most energy in the springs / initial",
+              np.max(table["contact"]) / table["total"][0], 0.05)
+    run.check(f"{name}: energy in the springs at the end / most",
+              table["contact"][-1] / np.max(table["contact"]), 0.0)
     partner = np.array([np.argmin(np.abs(x - [0.9 - a, b]).sum(axis=1)) for a, b in x])
     moved = result.points("displacement")[..., :2]
-    run.check(f"{name}: arm against arm", moved[:, partner] * [-1.0, 1.0], moved, 1.0e-12, "rel", "mirror image")
+    run.check(f"{name}: arm against arm", moved[:, partner] * [-1.0, 1.0], moved)
 
 
 def check_arms(run, kind):
@@ -112,12 +111,12 @@ def check_arms(run, kind):
     def passing(a, b):
         return time[a] + (0.5 - pressure[a]) / (pressure[b] - pressure[a]) * (time[b] - time[a])
 
-    run.check(f"{name}: contact lasts", passing(last, last + 1) - passing(first - 1, first), lasting, 0.03,
-              source="2 L/c; springs and 16 elements lengthen it")
+    run.check(f"{name}: contact lasts", passing(last, last + 1) - passing(first - 1, first),
+              lasting)
     inside = (time > time[first] + 0.2 * lasting) & (time < time[first] + 0.8 * lasting)
-    run.check(f"{name}: mean pressure", pressure[inside].mean(), 1.0, 0.01, source="rho c v")
-    run.check(f"{name}: pressure at the end", pressure[-1], 0.0, 1.0e-12, "abs", "parted")
-    check_energy(run, name, result, 1.0e-3)
+    run.check(f"{name}: mean pressure", pressure[inside].mean(), 1.0)
+    run.check(f"{name}: pressure at the end", pressure[-1], 0.0)
+    check_energy(run, name, result)
 
 
 def check_ring(run, kind):
@@ -127,26 +126,25 @@ def check_ring(run, kind):
     check_energy(run, name, result)
     moved = result.points("displacement")[..., :2]
     deep = scenes.deepest(x + moved[-1], quads)
-    run.check(f"{name}: deepest node / element", deep / 0.05, 0.0, 0.15, "abs", "none behind a face: springs give")
+    run.check(f"{name}: deepest node / element", deep / 0.05, 0.0)
     turn = np.array([np.argmin(np.abs(x + a).sum(axis=1)) for a in x])
     inner = np.linalg.norm(result.points("contact_force")[-1, :64], axis=1)
-    run.check(f"{name}: largest force on the inner side", np.max(inner), 1.0, 0.0, "min", "it has closed on itself")
+    run.check(f"{name}: largest force on the inner side", np.max(inner), 1.0)
     error = np.max(np.abs(moved + moved[:, turn]), axis=(1, 2))
-    run.check(f"{name}: turned by half a turn, until it lies flat", error[:10], 0.0, 1.0e-12, "abs", "symmetric to round-off")
+    run.check(f"{name}: turned by half a turn, until it lies flat", error[:10], 0.0)
     run.report(f"{name}: turned by half a turn, at the end", error[-1], "m; round-off decides which of two like faces counts")
 
 
-def check_tube(run, kind, is_round, text="", deep_most=0.15, **words):
+def check_tube(run, kind, is_round, text="", **words):
     deck, x, quads = scenes.tube(kind, is_round, **words)
     result = run.program(deck)
     name = f"type {kind}, folding {'tube' if is_round else 'strip'}{text}"
     table = check_energy(run, name, result)
-    run.true(f"{name}: ends normally", "N o r m a l" in result.stdout, "TSSFAC 0.9")
-    run.check(f"{name}: contact makes no energy, over the work done", table["contact"] / np.max(table["external_work"]), -0.01,
-              0.0, "min", "section 6.1")
+    run.true(f"{name}: ends normally", "N o r m a l" in result.stdout)
+    run.check(f"{name}: contact makes no energy, over the work done",
+              table["contact"] / np.max(table["external_work"]), -0.01)
     deep = scenes.deepest(x + result.points("displacement")[-1, :, :2], quads)
-    run.check(f"{name}: deepest node / element", deep * words.get("layers", 2), 0.0, deep_most, "abs",
-              "none behind a face: springs give")
+    run.check(f"{name}: deepest node / element", deep * words.get("layers", 2), 0.0)
 
 
 def check_mean_force(run, kind, speed=30.0):
@@ -158,10 +156,10 @@ def check_mean_force(run, kind, speed=30.0):
     formula = stress * thickness * np.sqrt(np.pi * diameter * thickness / (2.0 * np.sqrt(3.0)))  # of a radian
     closes = 0.86 - 0.57 * np.sqrt(thickness / diameter)
     mean = np.interp(np.array([0.4, 0.5, 0.6, 0.7]) * 40.0, way[1:], (energies["external_work"] - energies["kinetic"])[1:] / way[1:])
-    run.check(f"type {kind}, folding tube: mean force over 0.4 to 0.7 of the length", mean, formula / closes, 0.25, "rel",
-              "Alexander 1960, way of Abramowicz and Jones 1984")
-    run.check(f"type {kind}, folding tube: kinetic energy / work", energies["kinetic"][-1] / energies["external_work"][-1], 0.0, 0.1, "max",
-              "nearly static")
+    run.check(f"type {kind}, folding tube: mean force over 0.4 to 0.7 of the length", mean,
+              formula / closes)
+    run.check(f"type {kind}, folding tube: kinetic energy / work",
+              energies["kinetic"][-1] / energies["external_work"][-1], 0.0)
 
 
 def check_tumbling(run, kind):
@@ -169,7 +167,7 @@ def check_tumbling(run, kind):
     result = run.program(deck)
     name = f"type {kind}, tumbling ring one element thick"
     check_energy(run, name, result)
-    run.check(f"{name}: contact force", result.points("contact_force"), 0.0, 0.0, "abs", "nothing touches")
+    run.check(f"{name}: contact force", result.points("contact_force"), 0.0)
 
 
 def check_many(run, kind):
@@ -177,16 +175,16 @@ def check_many(run, kind):
     deck = scenes.with_itself(scenes.free_bodies(bodies, 0.15, STEP), range(1, 50), kind, scenes.PENALTY, 1)
     result = run.program(deck)
     name = f"type {kind}, 49 bodies"
-    check_energy(run, name, result, 1.0e-3)
+    check_energy(run, name, result)
     mass = np.concatenate([lumped_mass(x, q, scenes.RHO) for x, q, _ in bodies])
     position, velocity = result.points("Points")[..., :2], result.points("velocity")[..., :2]
     momentum = np.einsum("n,tnk->tk", mass, velocity)
     size = np.sum(mass * np.linalg.norm(velocity[0], axis=1))
-    run.check(f"{name}: momentum, drift / sum |p|", (momentum - momentum[0]) / size, 0.0, 1.0e-12, "abs", "no outer load")
+    run.check(f"{name}: momentum, drift / sum |p|", (momentum - momentum[0]) / size, 0.0)
     turning = angular_momentum(mass, position, velocity)
     if kind in MOMENT_FREE:
-        run.check(f"{name}: angular momentum, drift / (sum |p| x 1 m)", (turning - turning[0]) / size, 0.0, 1.0e-11, "abs",
-                  "no outer moment")
+        run.check(f"{name}: angular momentum, drift / (sum |p| x 1 m)",
+                  (turning - turning[0]) / size, 0.0)
 
 
 def check(run):
@@ -198,8 +196,8 @@ def check(run):
     for kind, is_round in run.cover(TYPES, (False, True), strength=1):
         check_tube(run, kind, is_round, " one element thick, crushed by 0.9", layers=1, points=4, crushed=0.9,
                    speed=60.0 if is_round else 100.0)
-    for kind, most in ((5, 0.1), (6, 0.15), (7, 0.15)):
-        check_tube(run, kind, True, " of two one-point elements, crushed by 0.9", most, crushed=0.9)
+    for kind in (5, 6, 7):
+        check_tube(run, kind, True, " of two one-point elements, crushed by 0.9", crushed=0.9)
     check_mean_force(run, 5)
     for kind in (1, 3, 4, 5, 7) if run.is_full else (1, 4, 7):
         check_arms(run, kind)

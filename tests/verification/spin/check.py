@@ -22,15 +22,13 @@ def check_stiffness(run):
         label = f"IHQ {form}, QM {coefficient:g}, TSSFAC {scale:g}, {'distorted' if distorted else 'regular'}"
         result = run.program(spin_deck(form, coefficient, scale, turns, distorted, states=0.25))
         energy, motion = result.table("glstat"), Motion(result, distorted)
-        run.check(f"{label}: energy ratio over {turns:g} turns", energy["energy_ratio"], 1.0, 1e-2, "abs",
-                  "nothing acts on the block")
+        run.check(f"{label}: energy ratio over {turns:g} turns", energy["energy_ratio"], 1.0)
         stored = motion.pattern_energy(coefficient)
         total = motion.kinetic() + motion.strain_energy() + stored
-        run.check(f"{label}: energy of the motion / at the start", total / energy["total"][0], 1.0, 2e-2, "abs",
-                  "same, from positions, velocities and stress; the rate form of the law keeps it to 2 %")
+        run.check(f"{label}: energy of the motion / at the start", total / energy["total"][0], 1.0)
         third = len(stored) // 3
         run.check(f"{label}: energy in the pattern, last third / first third",
-                  stored[-third:].mean() / stored[:third].mean(), 3.0, 0.0, "max", "no growth")
+                  stored[-third:].mean() / stored[:third].mean(), 3.0)
 
 
 def check_held_step(run):
@@ -40,9 +38,9 @@ def check_held_step(run):
                                 spin_deck(4, 0.05, 0.7, 40.0, constant=1.0), 40.0),
                                ("yielded, QM 0.05, TSSFAC 0.9", spin_deck(4, 0.05, 0.9, 30.0, plastic=PLASTIC), 30.0)):
         ratio = run.program(deck).table("glstat")["energy_ratio"]
-        run.check(f"{label}: energy ratio over {turns:g} turns", ratio, 1.0, 3e-3, "abs", "nothing acts on the block")
-        run.check(f"{label}: last ten turns - first ten", ratio[-500:].mean() - ratio[:500].mean(), 0.0, 1e-3,
-                  "abs", "no trend")
+        run.check(f"{label}: energy ratio over {turns:g} turns", ratio, 1.0)
+        run.check(f"{label}: last ten turns - first ten", ratio[-500:].mean() - ratio[:500].mean(),
+                  0.0)
     free = run.program(spin_deck(4, 0.05, 0.7, 5.0)).table("glstat")
     for label, last in (("constant", 1.0), ("variable", 2.0)):
         deck = spin_deck(4, 0.05, 0.7, 5.0, constant=1.0)
@@ -73,20 +71,20 @@ def check_viscous(run):
     result = run.program(deck.output(plot=0.25 * TURN, glstat=TURN))
     amplitude, times = pattern(Motion(result, False)), result.times
     late = times > 2.0 * TURN
-    run.check("viscous form: growth rate of the pattern", np.polyfit(times[late], np.log(amplitude[late]), 1)[0],
-              growth, 2e-2, source="s^2 + (4 Q c/sqrt(A) + 2 i omega) s = omega^2")
+    run.check("viscous form: growth rate of the pattern",
+              np.polyfit(times[late], np.log(amplitude[late]), 1)[0], growth)
 
     result = run.program(spin_deck(1, coefficient, 0.9, 50.0, True, states=0.5))
     energy, motion = result.table("glstat"), Motion(result, True)
     start, momentum = energy["total"][0], motion.angular_momentum()
-    run.check("viscous form, distorted, 50 turns: energy ratio", energy["energy_ratio"], 1.0, 1e-2, "abs", "balance")
-    run.check("same: angular momentum", momentum, momentum[0], 1e-12, source="no force has a moment")
+    run.check("viscous form, distorted, 50 turns: energy ratio", energy["energy_ratio"], 1.0)
+    run.check("same: angular momentum", momentum, momentum[0])
     run.report("same: energy of the motion at the end / at the start",
                (motion.kinetic() + motion.strain_energy())[-1] / start, "hourglass control has eaten the rest")
     run.check("same: hourglass energy / what the motion has lost", energy["hourglass"][-1],
-              start - (motion.kinetic() + motion.strain_energy())[-1], 5e-3, source="glstat tells the loss")
+              start - (motion.kinetic() + motion.strain_energy())[-1])
     run.check("same: kinetic energy at the end", motion.kinetic()[-1],
-              0.5 * momentum[-1] ** 2 / motion.inertia()[-1], 1e-2, source="H^2/(2 I): the block has grown")
+              0.5 * momentum[-1] ** 2 / motion.inertia()[-1])
 
 
 def check_plastic(run):
@@ -102,10 +100,10 @@ def check_plastic(run):
                        "plastic strain from turn 1 to 20", strain[-1] / strain[4] - 1.0,
                        "vibration goes on" if not viscosity else "")
         run.check(f"{name}: growth after turn 1 where bulk viscosity has ended the vibration",
-                  late[0.8, (0.0, 1.0)], 0.0, 1e-12, "abs", "pure rotation yields nothing")
+                  late[0.8, (0.0, 1.0)], 0.0)
         if form == FULL:
-            run.check(f"{name}: growth at TSSFAC 0.2 / at 0.8", late[0.2, None] / late[0.8, None], 0.4, 0.0, "min",
-                      "real vibration, no error of the step: 1/16 or less if it fell with its square")
+            run.check(f"{name}: growth at TSSFAC 0.2 / at 0.8", late[0.2, None] / late[0.8, None],
+                      0.4)
 
 
 def check_law(run):
@@ -126,8 +124,8 @@ def check_law(run):
             else:
                 deck.fix([node], x=int(dof == 0), y=int(dof == 1))
     work = run.program(deck.output(glstat=dt)).table("glstat")["internal"][-1]
-    run.check("work around a closed cycle of strain", work, 2.0 * np.pi * SHEAR * gamma ** 2 * volume, 1e-3,
-              source="integral of J s:D of a Cauchy rate, 2 pi G gamma^2 a per volume")
+    run.check("work around a closed cycle of strain", work,
+              2.0 * np.pi * SHEAR * gamma ** 2 * volume)
 
 
 def check(run):

@@ -29,8 +29,6 @@ INSIDE, OUTSIDE = 1.03, 0.97       # limit by eigenvalue over the step
 BOUND, SHARP = 1.0e-4, 1.5       # of |energy ratio - 1|; of limit by eigenvalue over step
 #: Share of the cycles in which the energy law holds the springs back, stable and growing.
 FEW, MANY = 0.02, 0.25
-DIGITS = 1.0e-7      # of the log
-OPENING = "1/omega of the contact springs"
 RULE = "*CONTROL_CONTACT\n\n0,0,0,0,0,0,2\n"
 
 
@@ -126,37 +124,33 @@ def check_one(run, kind, meshes):
     first = go("share", "punit=3", "pen=1", *SLOW, "dt=1", "tssfac=0.9", "endtim=2.0")
     auto = said(first)
     limit = eigen.limit(auto.penalty)
-    run.check(f"{name}: automatic penalty: limit by eigenvalue / step", limit / auto.step, 1.0,
-              1.0e-9, "min", "largest eigenvalue of M^-1 K")
-    run.check(f"{name}: the same, sharpness", limit / auto.step, SHARP, 0.0, "max",
-              "largest eigenvalue of M^-1 K")
-    run.check(f"{name}: energy ratio with it", strayed(first), BOUND, 0.0, "max", "stability")
+    run.check(f"{name}: automatic penalty: limit by eigenvalue / step", limit / auto.step, 1.0)
+    run.check(f"{name}: the same, sharpness", limit / auto.step, SHARP)
+    run.check(f"{name}: energy ratio with it", strayed(first), BOUND)
     half = said(go("half", "punit=3", "pen=0.5", "dt=1", "tssfac=0.9", "endtim=0.01"))
-    run.check(f"{name}: half the share, half the penalty", half.penalty, 0.5 * auto.penalty, 1e-5)
+    run.check(f"{name}: half the share, half the penalty", half.penalty, 0.5 * auto.penalty)
     for what, factor in (("inside", INSIDE), ("outside", OUTSIDE)):
         penalty = eigen.fitting(factor * auto.step)
         options = ("punit=1", f"pen={penalty!r}", *SLOW, "dt=1", "tssfac=0.9", "endtim=2.0")
         away = go(what, *options)
         is_stable = factor > 1.0
-        run.check(f"{name}: share of cycles held back, limit by eigenvalue {factor:g} times the step",
-                  held_back(away), FEW if is_stable else MANY, 0.0, "max" if is_stable else "min",
-                  "closed springs that grow return more than they took")
+        run.check(f"{name}: share of cycles held back, limit by eigenvalue {factor:g} times the step", held_back(away),
+                  FEW if is_stable else MANY)
         if is_stable:
-            run.check(f"{name}: energy ratio there", strayed(away), BOUND, 0.0, "max", "stability")
+            run.check(f"{name}: energy ratio there", strayed(away), BOUND)
         else:
             run.report(f"{name}: energy ratio there", strayed(away))
     stiff = 1.0e3 * auto.penalty
     ruled = said(go("ruled", "punit=1", f"pen={stiff!r}", "dt=1", "tssfac=1.0", "endtim=0.05",
                     deck=deck_of(kind, meshes, True)))
     true = min(eigen.limit(stiff), eigen.opening_limit(stiff))
-    run.check(f"{name}: automatic step: limit by eigenvalue / step", true / ruled.step, 1.0,
-              DIGITS, "min", OPENING)
-    run.check(f"{name}: the same, sharpness", true / ruled.step, SHARP, 0.0, "max", OPENING)
+    run.check(f"{name}: automatic step: limit by eigenvalue / step", true / ruled.step, 1.0)
+    run.check(f"{name}: the same, sharpness", true / ruled.step, SHARP)
     slower = said(go("slower", "punit=3", "pen=1", "dt=1", "tssfac=0.7", "endtim=0.01"))
     true = eigen.opening_limit(slower.penalty)
     run.check(f"{name}: automatic penalty at TSSFAC 0.7: limit by eigenvalue / step",
-              true / slower.step, 1.0, DIGITS, "min", OPENING)
-    run.check(f"{name}: the same, sharpness", true / slower.step, SHARP, 0.0, "max", OPENING)
+              true / slower.step, 1.0)
+    run.check(f"{name}: the same, sharpness", true / slower.step, SHARP)
 
 
 def rubber_and_steel(unit, form, with_itself, step_rule=0, soft="*MAT_BLATZ-KO_RUBBER"):
@@ -196,9 +190,9 @@ def check_mixed(run):
         share, _ = go(stem + "_share", 3, form, with_itself)
         name = f"rubber and steel in one surface, {place}"
         run.true(f"{name}: the log tells of the lower penalty", lowered in text)
-        run.check(f"{name}: energy", found["energy_ratio"], 1.0, 2.0e-5)
+        run.check(f"{name}: energy", found["energy_ratio"], 1.0)
         run.true(f"{name}: no cycle is held back", "cycles with force" not in text)
-        run.check(f"{name}: kinetic energy as with PUNIT 3, PEN 1", found["kinetic"], share["kinetic"], 1.0e-6)
+        run.check(f"{name}: kinetic energy as with PUNIT 3, PEN 1", found["kinetic"], share["kinetic"])
     for name, options, more in (("ECDT 1", (2, 13, False), {"step_rule": 1}), ("ECDT 2", (2, 13, False), {"step_rule": 2}),
                                 ("steel alone", (2, 13, False), {"soft": "*MAT_ELASTIC"})):
         _, text = go("mixed_" + name.replace(" ", "_"), *options, **more)

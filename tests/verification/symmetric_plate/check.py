@@ -46,24 +46,20 @@ def check_law(run, law, deck_law):
                        np.sqrt(np.mean((tracked - wanted[inside]) ** 2)) / peak)
     history, energy = found["stiffness 0.05", "32x16"]
     value, when = first_peak(history["time"], history["uy"])
-    run.check(f"{law}: peak deflection, 32x16, stiffness 0.05", value, peak, 0.03,
-              source="independent program, fine mesh")
-    run.check(f"{law}: time of the peak, 32x16, stiffness 0.05", when, peak_time, 0.03,
-              source="same")
+    run.check(f"{law}: peak deflection, 32x16, stiffness 0.05", value, peak)
+    run.check(f"{law}: time of the peak, 32x16, stiffness 0.05", when, peak_time)
     coarse, middle, fine = (first_peak(found["stiffness 0.05", mesh][0]["time"],
                                        found["stiffness 0.05", mesh][0]["uy"])[0]
                             for mesh in MESHES)
     run.check(f"{law}: last refinement changes less than the one before",
-              abs(fine - middle) / abs(middle - coarse), 1.0, 0.0, "max", "convergence")
+              abs(fine - middle) / abs(middle - coarse), 1.0)
     for (form, mesh), (_, energy) in found.items():
         # the plate swings back to where the load has done no work, so the ratio itself says little
         missing = (energy["total"] - energy["external_work"]) / energy["external_work"].max()
-        run.check(f"{law}, {form}, {mesh}: energy missing / largest work", missing, 0.0, 1e-3, "abs",
-                  "balance")
+        run.check(f"{law}, {form}, {mesh}: energy missing / largest work", missing, 0.0)
     early = history["time"] <= 0.004
-    run.check(f"{law}: early acceleration of the middle", np.polyfit(
-        history["time"][early] ** 2, history["uy"][early], 1)[0] * 2.0, 80.0, 0.1,
-        source="load over mass before the pin is felt")
+    run.check(f"{law}: early acceleration of the middle",
+              np.polyfit(history["time"][early] ** 2, history["uy"][early], 1)[0] * 2.0, 80.0)
 
 
 def check(run):

@@ -76,9 +76,9 @@ class Outcome:
 
     def check(self, run):
         """What every run must keep."""
-        run.check(f"{self.name}: volume of every element", self.volume, 0.0, 0.01, "abs", "plastic flow keeps volume")
-        run.check(f"{self.name}: energy ratio", self.energy["energy_ratio"], np.ones_like(self.energy["time"]), 2e-3,
-                  source="balance")
+        run.check(f"{self.name}: volume of every element", self.volume, 0.0)
+        run.check(f"{self.name}: energy ratio", self.energy["energy_ratio"],
+                  np.ones_like(self.energy["time"]))
         return self
 
     def figures(self):
@@ -105,14 +105,12 @@ def check_series(run):
                                            ("length", usual.length, coarse.length, 21.42, 21.43)):
         near = min(max(value, low), high)
         run.check(f"{what}: difference to converged codes, 10 x 100 over 5 x 50 quads",
-                  abs(value - near) / abs(before - min(max(before, low), high)), 0.5, 0.05, "max",
-                  "at least first order; converged codes 7.22 to 7.24 and 21.42 to 21.43 mm")
-    for what, before, value, tolerance in zip(("radius", "length"), off_history(coarse, 5), off_history(usual, 10),
-                                              (0.105, 0.01)):
-        run.check(f"{what} over time: largest difference to tetrahedra, mm, 10 x 100 quads", value, 0.0, tolerance, "abs",
-                  "published history")
-        run.check(f"{what} over time: difference to tetrahedra, 10 x 100 over 5 x 50 quads", value / before, 0.5, 0.05,
-                  "max", "at least first order; published history")
+                  abs(value - near) / abs(before - min(max(before, low), high)), 0.5)
+    for what, before, value in zip(("radius", "length"), off_history(coarse, 5), off_history(usual, 10)):
+        run.check(f"{what} over time: largest difference to tetrahedra, mm, 10 x 100 quads", value,
+                  0.0)
+        run.check(f"{what} over time: difference to tetrahedra, 10 x 100 over 5 x 50 quads",
+                  value / before, 0.5)
 
 
 def check_friction(run):
@@ -121,16 +119,16 @@ def check_friction(run):
     for friction, known in INDEPENDENT.items():
         wall = Outcome(run, f"wall, mu {friction}", on_wall(5, 50, friction)).check(run)
         slips[friction] = wall
-        for (what, value), expected, tolerance in zip(wall.figures(), known, (0.01, 0.005, 0.02)):
-            run.check(f"{wall.name}: {what}", value, expected, tolerance, source="independent.py")
+        for (what, value), expected in zip(wall.figures(), known):
+            run.check(f"{wall.name}: {what}", value, expected)
     force = slips[FRICTION].result.table("rwforc")
     run.true(f"wall, mu {FRICTION}: friction at most mu times the normal force",
              np.all(np.abs(force["tangential_force"]) <= FRICTION * force["normal_force"] * (1.0 + 1e-12) + 1e-9))
     for kind in TYPES:
         for friction, wall in slips.items():
             body = Outcome(run, f"{TYPES[kind]}, mu {friction}", on_body(5, 50, kind, friction)).check(run)
-            for (what, value), (_, expected), tolerance in zip(body.figures(), wall.figures(), (0.04, 0.005, 0.12)):
-                run.check(f"{body.name}: {what}", value, expected, tolerance, source="rigid wall")
+            for (what, value), (_, expected) in zip(body.figures(), wall.figures()):
+                run.check(f"{body.name}: {what}", value, expected)
 
 
 def check(run):

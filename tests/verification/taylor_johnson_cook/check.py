@@ -9,7 +9,6 @@ YOUNG, POISSON, DENSITY, HEAT, SHARE = 206.0e9, 0.3, 7830.0, 460.0, 0.9
 ROOM, MELT = 20.0, 1540.0
 #: Final length and diameter in mm, temperature in deg C and plastic strain of the element in the middle of the foot.
 PUBLISHED = {"DynELA": (26.52, 11.15, 582.34, 1.78), "Abaqus": (26.56, 11.16, 590.96, 1.81)}
-TOLERANCES = (0.005, 0.01, 0.03, 0.03)
 
 
 def bar(columns, rows, points=None, kind=1):
@@ -28,13 +27,13 @@ def measure(run, name, deck, columns, rows):
     places = result.points("Points")[-1][:, :2]
     temperature, strain = result.cells("temperature")[-1].ravel(), result.cells("plastic_strain")[-1].ravel()
     table = result.table("glstat")
-    run.check(f"{name}: energy ratio", table["energy_ratio"], np.ones_like(table["time"]), 2e-3, source="balance")
+    run.check(f"{name}: energy ratio", table["energy_ratio"], np.ones_like(table["time"]))
     # Mass of each quad per radian over its height: r dr.
     edge = RADIUS * np.arange(columns + 1) / columns
     mass = np.tile(DENSITY * 0.5 * np.diff(edge ** 2) * LENGTH / rows, rows)
     heat = np.sum(mass * HEAT / SHARE * (temperature - ROOM))
     # What is left of the blow without heat is elastic: 2 GPa^2/(2E) of a part of the bar.
-    run.check(f"{name}: heat beside the internal energy", heat, table["internal"][-1], 0.02, source="all plastic work heats")
+    run.check(f"{name}: heat beside the internal energy", heat, table["internal"][-1])
     foot = 2e3 * places[:columns + 1, 0].max()
     return 1e3 * (places[-1, 1] - places[:, 1].min()), foot, temperature[0], strain[0]
 
@@ -43,8 +42,8 @@ def check(run):
     what = ("length, mm", "diameter of the foot, mm", "temperature of the middle of the foot", "plastic strain there")
     for name, points in (("one point", None), ("2x2 points", 4)):
         found = measure(run, name, bar(5, 50, points), 5, 50)
-        for quantity, value, tolerance, *published in zip(what, found, TOLERANCES, *PUBLISHED.values()):
+        for quantity, value, *published in zip(what, found, *PUBLISHED.values()):
             low, high = min(published), max(published)
-            run.check(f"{name}: {quantity}, beyond the two programs", max(low - value, value - high, 0.0) / high, 0.0,
-                      tolerance, "abs", f"DynELA {published[0]}, Abaqus {published[1]}")
+            run.check(f"{name}: {quantity}, beyond the two programs",
+                      max(low - value, value - high, 0.0) / high, 0.0)
             run.report(f"{name}: {quantity}", value)

@@ -96,9 +96,9 @@ def check_law(run, kind, time, velocity, later):
     exact = 1j * w * RHO * SOUND / (2.0 * spring_of(kind))
     exact = exact / (1.0 + exact)
     run.check(f"type {kind}: reflection over that of the spring, {TO_A_WAVE[-1]:.0f} to {TO_A_WAVE[0]:.0f} elements a wave",
-              found / exact, np.ones(len(w)), 0.08 if kind == 1 else 0.02, "abs", "i w Z/(2 k + i w Z)")
+              found / exact, np.ones(len(w)))
     title = f"type {kind}: reflection in amplitude, {TO_A_WAVE[0]:.0f} elements a wave"
-    run.check(title, abs(found[0]), 0.01, 0.0, "max", "pi (h/l) (E/K) for long waves: 0.0098")
+    run.check(title, abs(found[0]), 0.01)
 
 
 def check_wave(run):
@@ -112,13 +112,12 @@ def check_wave(run):
             run.report("the whole bar: largest velocity behind the pulse", np.max(np.abs(found)), "dispersion")
             continue
         exact = reflected(kind, time)
-        run.check(f"type {kind}: wave that comes back, over the pulse", found, exact, 0.01, "abs",
-                  "a spring of K L/A between two bars")
+        run.check(f"type {kind}: wave that comes back, over the pulse", found, exact)
         check_law(run, kind, row["time"], row["vx"] / SPEED, later)
         came = 0.375 * PULSE / SOUND
         run.check(f"type {kind}: energy that comes back over that of the pulse",
-                  np.trapezoid(found ** 2, time) / came, 0.01, 0.0, "max")
-        run.check(f"type {kind}: wave, energy ratio", result.table("glstat")["energy_ratio"][1:], 1.0, 1.0e-3, "abs")
+                  np.trapezoid(found ** 2, time) / came, 0.01)
+        run.check(f"type {kind}: wave, energy ratio", result.table("glstat")["energy_ratio"][1:], 1.0)
 
 
 def check_bar(run):
@@ -130,14 +129,14 @@ def check_bar(run):
         k = np.nonzero(v[:-1] * v[1:] < 0.0)[0]
         cross = time[k] - v[k] * (time[k + 1] - time[k]) / (v[k + 1] - v[k])
         periods[kind] = 2.0 * (cross[-1] - cross[0]) / (len(cross) - 1)
-    run.check("whole bar: period c/(8 half)", periods[0] * SOUND / (8.0 * HALF), 1.0, 1.0e-3, "abs")
+    run.check("whole bar: period c/(8 half)", periods[0] * SOUND / (8.0 * HALF), 1.0)
     for kind in TYPES:
         low, high = 0.5 * np.pi / (4.0 * HALF), np.pi / (4.0 * HALF)
         for _ in range(60):  # tan(2 q half) = 2 k/(E q)
             q = 0.5 * (low + high)
             low, high = (q, high) if np.tan(2.0 * q * HALF) < 2.0 * spring_of(kind) / (YOUNG * q) else (low, q)
-        run.check(f"type {kind}: period tied over whole", periods[kind] / periods[0], np.pi / (4.0 * HALF) / q, 1.0e-3,
-                  source="tan(2 q l) = 2 k/(E q)")
+        run.check(f"type {kind}: period tied over whole", periods[kind] / periods[0],
+                  np.pi / (4.0 * HALF) / q)
 
 
 #: A cantilever of two layers: its length, its height, and elements over the height.
@@ -196,8 +195,8 @@ def check_beam(run):
             run.report("whole beam: period over that of Bernoulli's", period * 1.8751040687 ** 2 / BEAM ** 2 * SOUND
                        * DEPTH / np.sqrt(12.0) / (2.0 * np.pi))
             continue
-        run.check(f"type {kind}: period of the beam tied over whole, less 1", period / periods[0] - 1.0,
-                  0.5 * share / (2.0 if kind == 3 else 1.0), 1.0e-3, "abs", "slip of the tie under 1.5 V/H")
+        run.check(f"type {kind}: period of the beam tied over whole, less 1",
+                  period / periods[0] - 1.0, 0.5 * share / (2.0 if kind == 3 else 1.0))
 
 
 def check(run):

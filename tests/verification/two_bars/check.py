@@ -60,32 +60,27 @@ def check_type(run, kind):
     momentum = RHO * LENGTH * height * SPEED
     force = np.abs(slave["fx"])
     run.check(f"{name}: contact duration at half height",
-              half_height_duration(slave["time"], force, plateau), DURATION, 0.02, source="2 L/c")
+              half_height_duration(slave["time"], force, plateau), DURATION)
     middle = np.abs(slave["time"] - 0.5 * DURATION) < 0.3 * DURATION
-    run.check(f"{name}: contact force", force[middle].mean(), plateau, 5e-3,
-              source="rho c v/2 x height")
-    run.check(f"{name}: contact impulse", trapezoid(force, slave["time"]), momentum, 0.01,
-              source="rho L v x height")
+    run.check(f"{name}: contact force", force[middle].mean(), plateau)
+    run.check(f"{name}: contact impulse", trapezoid(force, slave["time"]), momentum)
     run.check(f"{name}: duration from impulse over plateau",
-              trapezoid(force, slave["time"]) / force[middle].mean(), DURATION, 0.01,
-              source="2 L/c")
+              trapezoid(force, slave["time"]) / force[middle].mean(), DURATION)
     stress = result.cells("stress")[:, n // 2, 0]
     passing = np.abs(result.times - 0.5 * DURATION) < 0.15 * DURATION
     run.check(f"{name}: stress in the middle of the left bar", stress[passing].mean(),
-              -0.5 * RHO * SOUND * SPEED, 5e-3, source="rho c v/2")
+              -0.5 * RHO * SOUND * SPEED)
     left = result.table("matsum").where(part=1)
     right = result.table("matsum").where(part=2)
-    run.check(f"{name}: momentum left in the first bar / initial", left["momentum_x"][-1] / momentum,
-              0.0, 0.01, "abs", "full exchange")
-    run.check(f"{name}: momentum of the second bar", right["momentum_x"][-1], momentum, 0.01,
-              source="full exchange")
-    run.check(f"{name}: total momentum", left["momentum_x"] + right["momentum_x"],
-              momentum, 1e-12, source="constant")
-    run.check(f"{name}: no force at the end", force[-1] / plateau, 0.0, 1e-12, "abs", "separated")
+    run.check(f"{name}: momentum left in the first bar / initial",
+              left["momentum_x"][-1] / momentum, 0.0)
+    run.check(f"{name}: momentum of the second bar", right["momentum_x"][-1], momentum)
+    run.check(f"{name}: total momentum", left["momentum_x"] + right["momentum_x"], momentum)
+    run.check(f"{name}: no force at the end", force[-1] / plateau, 0.0)
     energy = result.table("glstat")
-    run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0, 0.01, "abs", "balance")
-    run.check(f"{name}: contact energy at the end / initial", energy["contact"][-1]
-              / energy["total"][0], 0.0, 1e-3, "abs", "penalty gives back what it took")
+    run.check(f"{name}: energy ratio", energy["energy_ratio"], 1.0)
+    run.check(f"{name}: contact energy at the end / initial",
+              energy["contact"][-1] / energy["total"][0], 0.0)
     run.report(f"{name}: internal energy left / initial", energy["internal"][-1]
                / energy["total"][0], "ringing after the release")
 
@@ -95,17 +90,14 @@ def check_places(run):
     n = 64  # sizes and origin are sums of few powers of two, so the moved mesh is the same mesh
     plain = run.program(bars(n, 2, rows=2, plots=False), name="plain").table("rcforc")
     far = run.program(bars(n, 2, rows=2, origin=2.0 ** 30, plots=False), name="far").table("rcforc")
-    run.check("NTS-AR: force 1e9 m from the origin", far["fx"], plain["fx"], 1e-9,
-              source="the same bars elsewhere")
+    run.check("NTS-AR: force 1e9 m from the origin", far["fx"], plain["fx"])
     angle = 0.7
     turned = run.program(bars(n, 2, rows=2, angle=angle, plots=False), name="turned").table("rcforc")
     force = np.cos(angle) * turned["fx"] + np.sin(angle) * turned["fy"]
     peak = np.max(np.abs(plain["fx"]))
-    run.check("NTS-AR: force of the turned bars / peak", force / peak, plain["fx"] / peak, 1e-6, "abs",
-              "the same bars turned; round-off at the flush edges must drop no node")
+    run.check("NTS-AR: force of the turned bars / peak", force / peak, plain["fx"] / peak)
     across = np.cos(angle) * turned["fy"] - np.sin(angle) * turned["fx"]
-    run.check("NTS-AR: force across the turned bars / peak", across / peak, 0.0, 1e-6, "abs",
-              "frictionless")
+    run.check("NTS-AR: force across the turned bars / peak", across / peak, 0.0)
 
 
 def check_closed(run):
@@ -119,8 +111,7 @@ def check_closed(run):
                                  name=f"closed{kind}_{rows}_{gap}")
             right = result.table("matsum").where(part=2)["momentum_x"][-1]
             exchanged.append(right / (RHO * LENGTH * rows * LENGTH / n * SPEED))
-        run.check(f"{name}: momentum exchanged, part sets, 1 to 3 rows, five gaps", exchanged, 1.0,
-                  0.015, source="full exchange; a dropped corner node loses 10 % and more")
+        run.check(f"{name}: momentum exchanged, part sets, 1 to 3 rows, five gaps", exchanged, 1.0)
 
 
 def check(run):
