@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Contact patch tests of discs and rings, flat and conical; a shaft in a hub; Newton's method with friction."""
 import itertools
-import re
 
 import numpy as np
 
@@ -21,14 +20,6 @@ def round_deck(title, end, step, parts=1):
     for part in range(1, parts + 1):
         deck.part(part, section=1)
     return deck
-
-
-def energy_ratios(result):
-    """Energy ratios of the iterations of each step, from the log."""
-    log = (result.folder / f"{result.job}.log").read_text()
-    rows = re.findall(r"iteration (\d+): energy ratio (\S+),", log)
-    starts = [k for k, row in enumerate(rows) if row[0] == "1"] + [len(rows)]
-    return [np.array([float(row[1]) for row in rows[a:b]]) for a, b in zip(starts, starts[1:])]
 
 
 def patch_deck(title, meshes, poisson, size, inner, columns):
@@ -56,7 +47,7 @@ def flat_errors(run, kind, layout, body, poisson, penalty):
               for ids, sign in ((upper[0], 1.0), (lower[2], -1.0))]
     stress = result.cells("stress")[-1]
     errors.append(max(np.max(np.abs(stress[:, 1] + 1.0)), np.max(np.abs(stress[:, [0, 2, 3]]))))
-    return (*errors, len(energy_ratios(result)[-1]))
+    return (*errors, len(result.newton()[-1]))
 
 
 def check_flat(run, kind):
@@ -176,10 +167,10 @@ def check_sinking(run, kind, friction):
     deck.node_set(1, upper[0]).node_set(2, lower[2]).fix(lower[0], x=1, y=1)
     deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, kind, 4, 1.0e6, friction), (0.0, 1.0e20, 0))
     result = run.program(deck)
-    orders = [np.log(b) / np.log(a) for ratios in energy_ratios(result) for a, b in zip(ratios, ratios[1:])
+    orders = [np.log(b) / np.log(a) for step in result.newton() for a, b in zip(step[:, 0], step[1:, 0])
               if 1e-10 < a < 1e-3 and b > 1e-26]
     name = f"{TYPES[kind]}, ring on a cone, mu {friction}"
-    run.report(f"{name}: iterations", sum(len(one) for one in energy_ratios(result)))
+    run.report(f"{name}: iterations", sum(map(len, result.newton())))
     run.check(f"{name}: order of Newton's method, median of {len(orders)}", np.median(orders), 1.7)
 
 
