@@ -54,10 +54,58 @@ def load_edges(deck, ids):
                                 for a, b in zip(ids[:-1].tolist(), ids[1:].tolist())])
 
 
-def consistent_forces(x, pressure):
-    """Half of each neighbouring segment of a chain (body on the left), normal to it inwards."""
-    half = 0.5 * pressure * np.diff(x, axis=0)[:, ::-1] * [-1.0, 1.0]
+def inclined_patch(deck, ids, kind, penalty, load):
+    """The inclined blocks under the load of curve 1 (its end value `load`) on every outer face: a hydrostatic state.
+    `ids` of upper and lower block; returns slave and master."""
+    upper, lower = ids
+    n_lower = round(np.sqrt(len(lower))) - 1
+    slave, *upper_faces = outer_chains(upper, 5)
+    *lower_faces, left = outer_chains(lower, n_lower)
+    master = lower_faces.pop()
+    for chain in (*upper_faces, *lower_faces, left):
+        load_edges(deck, chain)
+    deck.node_set(1, slave).node_set(2, master).fix([lower[0]], x=1, y=1).fix([lower[n_lower]], y=1)
+    # p / eps_hat, eps_hat = eps / mean segment; half of it in two passes (exact if meshes match).
+    gap = load / (penalty * 5.0 * np.cos(np.arctan(SLOPE))) / (2.0 if kind == 3 else 1.0)
+    # The top left corner's u_x in the hydrostatic state, so that the pin holds nothing.
+    deck.prescribe(upper_faces[1][-1], 1, 2, 1, gap * np.sin(np.arctan(SLOPE)) / load)
+    deck.contact(1, 2, kind, penalty, gauss=4)
+    return slave, master
+
+
+def edge_forces(x, stress):
+    """Nodal forces of a uniform stress on the edges of a chain, the body on its left."""
+    edge = np.diff(x, axis=0)
+    half = 0.5 * np.stack([edge[:, 1], -edge[:, 0]], axis=1) @ stress
     total = np.zeros_like(x)
     total[:-1] += half
     total[1:] += half
     return total
+
+
+def consistent_forces(x, pressure):
+    """Half of each neighbouring segment of a chain (body on the left), normal to it inwards."""
+    return edge_forces(x, -pressure * np.eye(2))
+
+
+def block_forces(x, columns, stress, keep):
+    """Nodal forces of a stress on the outer edges in `keep` of a structured block (0 bottom, 1 right, 2 top, 3 left)."""
+    rows, total = np.arange(len(x)).reshape(-1, columns), np.zeros_like(x)
+    chains = rows[0], rows[:, -1], rows[-1, ::-1], rows[::-1, 0]
+    for k in keep:
+        total[chains[k]] += edge_forces(x[chains[k]], stress)
+    return total
+
+
+def hat_loads(place, value):
+    """Integrals of the hat functions of nodes at `place` with a function that is linear between its nodal values."""
+    length, total = np.diff(place), np.zeros(len(place))
+    total[:-1] += length * (2.0 * value[:-1] + value[1:]) / 6.0
+    total[1:] += length * (value[:-1] + 2.0 * value[1:]) / 6.0
+    return total
+
+
+def ring_areas(x):
+    """Integrals of r by the hat functions of the nodes of a chain."""
+    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(x, axis=0), axis=1))])
+    return hat_loads(arc, x[:, 0])

@@ -33,6 +33,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -116,6 +117,13 @@ class Result:
             values = self._read("VTKHDF/Points")
             return values.reshape((len(self.times), -1, 3))
         return self._stacked("PointData", name)
+
+    def newton(self):
+        """Iterations of each implicit step, from the log, as rows (energy ratio, |R| over its round-off)."""
+        log = (self.folder / f"{self.job}.log").read_text()
+        rows = re.findall(r"iteration (\d+): energy ratio (\S+), \|R\| (\S+) \(round-off (\S+)\)", log)
+        values = np.array([(float(ratio), float(size) / float(floor)) for _, ratio, size, floor in rows])
+        return np.split(values, [k for k, row in enumerate(rows) if row[0] == "1"][1:])
 
     def cells(self, name):
         """Cell field as (state, element[, component])."""
@@ -272,7 +280,7 @@ class Run:
 
 
 def load_case(case):
-    sys.path.insert(0, str(HERE))
+    sys.path[:0] = [str(HERE / case), str(HERE)]
     spec = importlib.util.spec_from_file_location(f"check_{case}", HERE / case / "check.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)

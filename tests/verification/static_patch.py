@@ -40,6 +40,21 @@ class Blocks:
         middle = [self.bottom[len(self.bottom) // 2], self.top[len(self.top) // 2]]
         return np.unique(np.concatenate([2 * self.bottom + 1, 2 * np.array(middle)]))
 
+    def put(self, deck, rho, *materials, points=None, shift=(0.0, 0.0)):
+        """Both meshes as parts 1 (moved by `shift`) and 2, their (young, poisson) and the node sets 1 and 2 of the
+        interface; returns the ids of all nodes, those of the upper block first."""
+        for part, material in enumerate(materials, 1):
+            deck.part(part, points=points).elastic(rho, *material, part)
+        ids = np.concatenate([deck.mesh(self.upper + shift, self.upper_quads, part=1),
+                              deck.mesh(self.lower, self.lower_quads, part=2)])
+        deck.node_set(1, ids[self.slave]).node_set(2, ids[self.master][::-1])
+        return ids
+
+    def hang(self, deck, ids):
+        """Hold what `fixed` names."""
+        held = self.fixed()
+        return deck.fix(ids[held[held % 2 == 0] // 2], x=1).fix(ids[held[held % 2 == 1] // 2], y=1)
+
 
 def block_grid(lines, bottom, rows=None):
     """Unit block with columns at the lines."""

@@ -6,7 +6,7 @@ from meshes import Deck
 from slideline_tools.decks import Grid, spaced
 from slideline_tools.scenes.hertz import CYLINDER_CELL, GRADED_CELLS, PENALTY, hertz_grids
 
-FRICTION, POISSON, RHO = 0.3, 0.3, 7850.0
+YOUNG, POISSON, RHO, FRICTION = 2.1e11, 0.3, 7850.0, 0.3
 #: Increments of a way, each of which takes one unit of time.
 INCREMENTS = 4
 #: Ways of the top aside, m, in full and else.
@@ -35,9 +35,9 @@ class Scene:
         return 1.0 + np.arange(len(self.ways))
 
 
-def cylinder_on_block(is_full):
-    """The scene of cattaneo_mindlin on its coarse mesh."""
-    return Scene(hertz_grids(1)[:2], 2.1e11, 3.0e-5, CYLINDER_WAYS[is_full], PENALTY, CYLINDER_CELL, GRADED_CELLS)
+def cylinder_on_block(is_full, level=1):
+    """The cylinder and block of the Hertz scene, N_r = `level`, both of steel."""
+    return Scene(hertz_grids(level)[:2], YOUNG, 3.0e-5, CYLINDER_WAYS[is_full], PENALTY, CYLINDER_CELL, GRADED_CELLS * level)
 
 
 def block_on_block(is_full):
@@ -49,7 +49,7 @@ def block_on_block(is_full):
 
 
 def slideline_deck(scene, kind):
-    """The deck; elements count from 1, those of the lower body first."""
+    """The deck and the slave nodes; elements count from 1, those of the lower body first."""
     deck = Deck(f"a body led down and aside, type {kind}")
     step = 1.0 / INCREMENTS
     deck.add("*CONTROL_TERMINATION", (float(len(scene.ways)),)).add("*CONTROL_IMPLICIT_GENERAL", (1, step))
@@ -67,8 +67,8 @@ def slideline_deck(scene, kind):
     deck.curve(2, [(0.0, 0.0), *zip(scene.times.tolist(), scene.ways)])
     for node in top:
         deck.prescribe(node, 2, 2, 1).prescribe(node, 1, 2, 2)
-    deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, kind, 4, scene.penalty, FRICTION))
-    return deck.output(plot=1.0, glstat=1.0, rcforc=1.0)
+    deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, kind, 4, scene.penalty / (2.0 if kind == 3 else 1.0), FRICTION))
+    return deck.output(plot=1.0, glstat=1.0, rcforc=1.0), slave
 
 
 def calculix_deck(scene):

@@ -125,7 +125,7 @@ of Kang, Lee & Shin (2023). The upper block is the slave. Type 6 has 4 points. T
 damping until exp(-{surviving:g}) of the motion is left, with the stiffness form of hourglass control (0.1). Decks:
 `slideline-tools make-deck patch --mesh 7/5 --penalty 1e4` and the like; those of 1 MN/m are in `input/patch`, but
 for 2 / 7. The static solution of types 1, 2, 3 and 6 is checked by an independent computation in
-`tests/verification/contact_patch_explicit`, and so is an inclined interface.
+`tests/verification/contact_patch`, and so is an inclined interface.
 
 Largest deviation |p/p0 - 1| of the nodal pressure (contact force over half the neighbouring segments) on the
 slave side / on the master side in per cent, by the penalty eps in N/m. The stiffness of a 1 m x 1 m block is
