@@ -156,10 +156,9 @@ class Run:
         self.work = work / case
         self.records = []
         self.reported = []
-        description = self.folder / "case.toml"
-        self.quantities = (tomllib.loads(description.read_text(encoding="utf-8"))["quantity"]
-                           if description.exists() else {})
+        self.quantities = tomllib.loads((self.folder / "case.toml").read_text(encoding="utf-8"))["quantity"]
         self.used = set()
+        self.is_partial = False
         self._n_run = 0
         shutil.rmtree(self.work, ignore_errors=True)
         self.work.mkdir(parents=True)
@@ -205,25 +204,30 @@ class Run:
                 return entry
         raise LookupError(f"{quantity}: no entry in {self.case}/case.toml")
 
+    def leave_out(self, reason):
+        """Part of the case cannot run here, so that entries of case.toml may stay unused."""
+        self.is_partial = True
+        self.report("left out", 0.0, reason)
+
     def unused(self):
         """Entries of case.toml that no check has asked for, but for those of full runs where this is none."""
+        if self.is_partial:
+            return []
         return [name for name, entry in self.quantities.items()
                 if name not in self.used and (self.is_full or not entry.get("full"))]
 
-    def check(self, quantity, found, expected, tol=None, kind=None, source=None, scale=None):
+    def check(self, quantity, found, expected, scale=None, tol=None):
         """Compare and record. Arrays: largest difference, relative to the largest expected.
 
         The tolerance is that of case.toml, times `scale`, or `tol`, where case.toml has words for them.
-        kind: rel, abs, or one of the bounds min (found >= expected - tol) and max.
+        kind of case.toml: rel, abs, or one of the bounds min (found >= expected - tolerance) and max.
         """
-        if self.quantities:
-            entry = self.entry(quantity)
-            kind, source = entry.get("kind", "rel"), entry.get("source", "")
-            tolerance = entry.get("tolerance", 0.0)
-            if isinstance(tolerance, str) == (tol is None) or ("scale" in entry) == (scale is None):
-                raise ValueError(f"{quantity}: tol and scale in check.py only where case.toml has words for them")
-            tol = float((1.0 if scale is None else scale) * tolerance if tol is None else tol)
-        return self._compare(quantity, found, expected, tol, kind or "rel", source or "")
+        entry = self.entry(quantity)
+        tolerance = entry.get("tolerance", 0.0)
+        if isinstance(tolerance, str) == (tol is None) or ("scale" in entry) == (scale is None):
+            raise ValueError(f"{quantity}: tol and scale in check.py only where case.toml has words for them")
+        tol = float((1.0 if scale is None else scale) * tolerance if tol is None else tol)
+        return self._compare(quantity, found, expected, tol, entry.get("kind", "rel"), entry.get("source", ""))
 
     def _compare(self, quantity, found, expected, tol, kind, source):
         found, expected = np.asarray(found, dtype=float), np.asarray(expected, dtype=float)
@@ -262,11 +266,9 @@ class Run:
               flush=True)
         return passed
 
-    def true(self, quantity, condition, source=""):
+    def true(self, quantity, condition):
         """A yes-or-no check."""
-        if self.quantities:
-            source = self.entry(quantity).get("source", "")
-        return self._compare(quantity, 1.0 if condition else 0.0, 1.0, 0.0, "abs", source)
+        return self._compare(quantity, 1.0 if condition else 0.0, 1.0, 0.0, "abs", self.entry(quantity).get("source", ""))
 
     def report(self, quantity, value, note=""):
         """A figure for the table that is not judged."""
@@ -280,7 +282,7 @@ class Run:
 
 
 def load_case(case):
-    sys.path[:0] = [str(HERE / case), str(HERE)]
+    sys.path[:0] = [str(HERE / case), str(HERE), str(HERE.parents[1] / "tools")]
     spec = importlib.util.spec_from_file_location(f"check_{case}", HERE / case / "check.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)

@@ -1,19 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Two soft blocks with non-matching meshes pressed together, explicit: all contact types."""
 import dataclasses
-import pathlib
-import sys
 
 import numpy as np
 
+import plane
+from chain import Blocks, solve
 from contact_types import PASS_PATCH, TYPES
-
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parents[2] / "tools")]
-
-import plane  # noqa: E402
-from chain import Blocks, solve  # noqa: E402
-from slideline_tools.scenes import block, block_grids  # noqa: E402
+from slideline_tools.scenes import block, block_grids
 
 WIDTH, PENALTY, N_SLAVE, N_MASTER = 10.0, 1.0e6, 51, 50
 

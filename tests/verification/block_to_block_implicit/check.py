@@ -9,8 +9,7 @@ import numpy as np
 
 from contact_types import PASS_PATCH, TYPES
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parent / "block_to_block"), str(HERE.parents[2] / "tools")]
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "block_to_block"))
 
 from chain import Blocks, solve as solve_explicit  # noqa: E402
 from implicit_chain import solve  # noqa: E402

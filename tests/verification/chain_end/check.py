@@ -1,17 +1,13 @@
 # SPDX-License-Identifier: MIT
 """A slave chain that slides over the end of the master chain and comes back; a master shorter than it; a slave that
 starts just beyond the end."""
-import pathlib
 import re
-import sys
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
-
-from contact_types import TYPES  # noqa: E402
-from meshes import Deck, grid  # noqa: E402
-from slideline_tools.studies.stability_shapes.study import Case, deck_of  # noqa: E402
+from contact_types import TYPES
+from meshes import Deck, grid
+from slideline_tools.studies.stability_shapes.study import Case, deck_of
 
 RHO, YOUNG, POISSON, GRAVITY = 1000.0, 1.0e7, 0.3, 10.0
 WIDTH, HEIGHT, CELL = 0.6, 0.3, 0.1

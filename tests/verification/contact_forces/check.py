@@ -3,17 +3,13 @@
 import dataclasses
 import itertools
 import re
-import sys
-from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-
-from contact_types import TYPES  # noqa: E402
-from reference import Rule  # noqa: E402
-from scenes import Pair, Scene, random_pair, random_wedge  # noqa: E402
-from sliding import STRETCHES, largest_jump, masters, rigid_line, sliding_scene  # noqa: E402
+from contact_types import TYPES
+from reference import Rule
+from scenes import Pair, Scene, random_pair, random_wedge
+from sliding import STRETCHES, largest_jump, masters, rigid_line, sliding_scene
 
 PENALTY = 1.0e5
 POINTS = range(1, 11)

@@ -3,15 +3,11 @@
 import concurrent.futures
 import csv
 import os
-import pathlib
-import sys
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-
-from contact_types import MOMENT_FREE, TYPES  # noqa: E402
-from scene import FAMILIES, Scene, measure  # noqa: E402
+from contact_types import MOMENT_FREE, TYPES
+from scene import FAMILIES, Scene, measure
 
 #: Most energy that contact may make, over E0.
 MADE = 0.02

@@ -98,10 +98,9 @@ def check_level(run, kind, friction, whole=False):
     result = run.program(deck)
     node = result.node(int(nodes[4]))
     ramp = 0.5 * speed * RAMP - slowing * RAMP ** 2 / 24.0 + speed * lag(kind)
-    run.check(f"{name}: way", node["ux"][-1], 0.5 * speed ** 2 / slowing + ramp, scale=2.5 if kind is WALL else 1.0)
+    run.check(f"{name}: way", node["ux"][-1], 0.5 * speed ** 2 / slowing + ramp)
     time, tangential, normal = check_balance(run, name, result, friction)
-    run.check(f"{name}: dissipated", result.table("glstat")["friction"][-1], 0.5 * MASS * speed ** 2,
-              scale=20.0 if kind is WALL else 1.0)
+    run.check(f"{name}: dissipated", result.table("glstat")["friction"][-1], 0.5 * MASS * speed ** 2)
     slides = (time > RAMP) & (time < (0.8 if kind is WALL else 0.9) * speed / slowing)
     run.check(f"{name}: friction{' is mu times the normal force' if kind is WALL else ''}", tangential[slides],
               friction * normal[slides])
@@ -142,7 +141,7 @@ def check_stop(run):
     result = run.program(deck)
     node = result.node(int(nodes[4]))
     ramp = 0.5 * speed * RAMP - slowing * RAMP ** 2 / 24.0
-    run.check("stop: way", node["ux"][-1], 0.5 * speed ** 2 / slowing + ramp, scale=2.5)
+    run.check("stop: way", node["ux"][-1], 0.5 * speed ** 2 / slowing + ramp)
     stays = node["time"] > 1.3 * (speed / slowing + RAMP)
     run.check("stop: it stays", np.ptp(node["ux"][stays]), 0.0, scale=node["ux"][-1])
     check_balance(run, "stop", result, friction)
@@ -208,7 +207,7 @@ def check_speeds(run, kind):
         # Two passes: the master nodes below have their share too, now more of them, now less.
         expected = (50.0 * WIDTH * (2.0 if kind == 3 else 1.0) if card_3
                     else (0.1 + 0.4 * np.exp(-2.0 * speed)) * MASS * GRAVITY)
-        run.check(f"{name}: mean friction", np.mean(tangential[time > 0.1]), expected, scale=5.0 if kind == 3 and card_3 else 1.0)
+        run.check(f"{name}: mean friction", np.mean(tangential[time > 0.1]), expected)
 
 
 def hit(run, friction, slide, angle=0.0, speed=2.0, steps=40, dt=1.0e-6):

@@ -1,20 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Hertz line contact: half width and largest pressure, all types, two or three meshes for some."""
 import functools
-import pathlib
-import sys
 
 import numpy as np
 
 from contact_types import PASS_PATCH, TYPES
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
-
-from slideline_tools.scenes import hertz, hertz_grids  # noqa: E402
-from slideline_tools.scenes.common import ALUMINIUM, STEEL  # noqa: E402
-from slideline_tools.scenes.hertz import (BLOCK_CELL, CYLINDER_CELL, PENALTY,  # noqa: E402
+from slideline_tools.scenes import hertz, hertz_grids
+from slideline_tools.scenes.common import ALUMINIUM, STEEL
+from slideline_tools.scenes.hertz import (BLOCK_CELL, CYLINDER_CELL, PENALTY,
                                           RADIUS)
-from slideline_tools.studies import line_contact as lines  # noqa: E402
+from slideline_tools.studies import line_contact as lines
 
 LEVELS = (1, 2)
 STATIC = (2, 5, 7)  # types with the implicit method too

@@ -5,8 +5,7 @@ import sys
 
 import numpy as np
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent / "hertz_spheres"), str(HERE.parents[2] / "tools")]
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "hertz_spheres"))
 
 import spheres  # noqa: E402
 from contact_types import TYPES  # noqa: E402

@@ -1,17 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Two spheres pressed on each other: Hertz, all contact types."""
-import pathlib
-import sys
-
 import numpy as np
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parents[2] / "tools")]
-
-import spheres  # noqa: E402
-from contact_types import PASS_PATCH, TYPES  # noqa: E402
-from meshes import Deck, grid_quads  # noqa: E402
-from slideline_tools.scenes.hertz import graded  # noqa: E402
+import spheres
+from contact_types import PASS_PATCH, TYPES
+from meshes import Deck, grid_quads
+from slideline_tools.scenes.hertz import graded
 
 # Pressed: R 50 and 50, contact radius 1; the bodies are cut at SIZE. Waves run 1 length in 1 time.
 YOUNG, POISSON, RHO, RADIUS, SIZE = 2.0e4, 0.3, 2.0e4, 50.0, 10.0

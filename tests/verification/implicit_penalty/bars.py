@@ -70,9 +70,9 @@ def plateau(table, share=1.0):
     return inside.mean() / (share * RHO * SOUND * SPEED * HEIGHT), np.sqrt(np.mean((inside / inside.mean() - 1.0)**2))
 
 
-def check_momentum(run, name, result, scale=1.0):
+def check_momentum(run, name, result):
     total = sum(result.table("matsum").where(part=part)["momentum_x"] for part in (1, 2))
-    run.check(f"{name}: momentum / initial", np.ptp(total) / total[0], 0.0, scale=scale)
+    run.check(f"{name}: momentum / initial", np.ptp(total) / total[0], 0.0)
 
 
 def check_bars(run):
@@ -86,7 +86,7 @@ def check_bars(run):
         forces[name] = slave["fx"]
         kept = (table["kinetic"] + table["internal"] + table["hourglass"])[-1] / energy
         run.check(f"bars, {name}: energy kept", kept, 1.0 - 0.25 / N)
-        check_plateau(run, f"bars, {name}", result, 0.5, 1.0, 0.2)
+        check_plateau(run, f"bars, {name}", result, 0.5)
         run.check(f"bars, {name}: impulse", trapezoid(np.abs(slave["fx"]), slave["time"]),
                   result.table("matsum").where(part=2)["momentum_x"][-1])
     other = run.program(bars(0.9, RIGID, 0.0, outlines=True)).table("rcforc").where(side="slave")["fx"]
@@ -98,18 +98,18 @@ def check_bars(run):
     run.check("unlike bars: force of both sides / largest", np.abs(slave + master).max() / np.abs(slave).max(), 0.0)
 
 
-def check_plateau(run, name, result, share, scale, energy):
+def check_plateau(run, name, result, share):
     mean, deviation = plateau(result.table("rcforc").where(side="slave"), share)
-    run.check(f"{name}: force / plateau", mean, 1.0, scale=scale)
+    run.check(f"{name}: force / plateau", mean, 1.0)
     run.check(f"{name}: rms of the force about it", deviation, 0.0)
-    run.check(f"{name}: energy ratio", result.table("glstat")["energy_ratio"][-1], 1.0, scale=energy)
+    run.check(f"{name}: energy ratio", result.table("glstat")["energy_ratio"][-1], 1.0)
 
 
 def check_held(run):
     for name, scale, penalty, led in (("held", 0.9, RIGID, False), ("held", 0.995, DEFAULT, False), ("led", 0.9, DEFAULT, True),
                                       ("led", 0.995, RIGID, True)):
         result = run.program(bar_at_wall(scale, penalty, led))
-        check_plateau(run, f"bar and {name} element, {scale} L/c, PEN {penalty:g}", result, 1.0, 1.5, 1.0)
+        check_plateau(run, f"bar and {name} element, {scale} L/c, PEN {penalty:g}", result, 1.0)
 
 
 def check_rigid(run):
@@ -125,10 +125,10 @@ def check_rigid(run):
         expected = impedance * SPEED * np.exp(-decay * force["time"])
         inside = (force["time"] > 0.1 * LENGTH / SOUND) & (force["time"] < 1.4 * LENGTH / SOUND)
         off = np.sqrt(np.mean((np.abs(force["fx"]) - expected)[inside]**2)) / impedance / SPEED
-        run.check(f"{name}: force / (rho c v), rms of the difference", off, 0.0, scale=1.0 if penalty == RIGID else 2.5)
+        run.check(f"{name}: force / (rho c v), rms of the difference", off, 0.0)
         run.check(f"{name}: energy ratio", result.table("glstat")["energy_ratio"][-1], 1.0)
         if not held:
-            check_momentum(run, name, result, 10.0)
+            check_momentum(run, name, result)
     # No row moves a bar that is held: the body alone does, and the end of the bar stops it.
     deck = rigid_body(RIGID, (1, 1), False, False).fix(range(1, 2 * (N + 1) + 1), x=1, y=1)
     kinetic = run.program(deck).table("glstat")["kinetic"]

@@ -2,16 +2,14 @@
 """The collision as a full model, its own mirror image: what force there is across the line of symmetry. Random
 bodies, their mirror images, and the same with a search in every cycle: alike to round-off."""
 import pathlib
-import sys
 
 import numpy as np
 
+import images
 from contact_types import TYPES
 from meshes import Deck, grid_quads
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE))
-import images  # noqa: E402  (beside this file)
 
 ALUMINIUM, STEEL = (2700.0, 69.0e9, 0.33), (7850.0, 210.0e9, 0.3)
 YIELD, SPEED, GAP = 276.0e6, 80.0, 0.5e-3

@@ -2,18 +2,14 @@
 """One element along random motions beside an independent driver in Python (README.md)."""
 import functools
 import json
-import pathlib
 import subprocess
-import sys
 
 import numpy as np
 
+import cases
+import driver
+import eos
 from meshes import Deck
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-import cases  # noqa: E402
-import driver  # noqa: E402
-import eos  # noqa: E402
 
 N_STEP, SEEDS = 60, (1, 2, 3)
 REFUSALS = ("this material is not available in slideline", "equations of state are not available in slideline")

@@ -1,16 +1,10 @@
 # SPDX-License-Identifier: MIT
 """A punch with a rounded edge on a foundation (NAFEMS), without and with friction, all contact types."""
-import pathlib
-import sys
-
 import numpy as np
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parents[2] / "tools")]
-
-from contact_types import TYPES  # noqa: E402
-from meshes import Deck, grid_quads  # noqa: E402
-from slideline_tools.scenes.hertz import graded  # noqa: E402
+from contact_types import TYPES
+from meshes import Deck, grid_quads
+from slideline_tools.scenes.hertz import graded
 
 # mm, MPa; the density makes a wave run 100 mm in 1 in the punch.
 STEEL, SOFT, POISSON, PRESSURE = 210.0e3, 70.0e3, 0.3, 100.0

@@ -5,8 +5,7 @@ import sys
 
 import numpy as np
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent / "block_to_block"), str(HERE.parents[2] / "tools")]
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "block_to_block"))
 
 import static_patch  # noqa: E402
 from chain import Blocks, solve  # noqa: E402

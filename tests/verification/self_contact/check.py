@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Contact of part sets with themselves: all types, plane and round, explicit and static."""
-import sys
-
 import numpy as np
 
-sys.path.insert(0, __file__.rsplit("/", 1)[0])
-import scenes  # noqa: E402
-import static_patch  # noqa: E402
-from contact_types import MOMENT_FREE, PASS_PATCH, TYPES  # noqa: E402
-from meshes import angular_momentum, lumped_mass  # noqa: E402
-from patch_layouts import MESHES  # noqa: E402
+import scenes
+import static_patch
+from contact_types import MOMENT_FREE, PASS_PATCH, TYPES
+from meshes import angular_momentum, lumped_mass
+from patch_layouts import MESHES
 
 STEP = 2.0e-4
 

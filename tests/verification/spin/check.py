@@ -1,14 +1,9 @@
 # SPDX-License-Identifier: MIT
 """A free block that spins: hourglass control neither feeds it nor, with stiffness, eats it; plastic strain in it."""
-import pathlib
-import sys
-
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-
-from meshes import Deck, grid  # noqa: E402
-from scene import (FULL, N_X, OMEGA, POISSON, RHO, SHEAR, SOUND, TURN, YOUNG, HEIGHT, N_Y, Motion,  # noqa: E402
+from meshes import Deck, grid
+from scene import (FULL, N_X, OMEGA, POISSON, RHO, SHEAR, SOUND, TURN, YOUNG, HEIGHT, N_Y, Motion,
                    block_mesh, spin, spin_deck)
 
 PLASTIC = (1.0e5, 1.0e6, 1.0)  # yield stress, tangent modulus, isotropic: the bending yields in its first quarter

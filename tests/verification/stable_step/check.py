@@ -11,8 +11,7 @@ import sys
 
 import numpy as np
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent / "contact_forces"), str(HERE.parents[2] / "tools")]
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "contact_forces"))
 
 from contact_types import TYPES  # noqa: E402
 from meshes import Deck, grid  # noqa: E402
