@@ -30,8 +30,7 @@ def disc():
 
 
 def rolling(kind, friction, slope, speed, end, way, exchanged=False, small=False, vdc=0.0):
-    """Rigid disc on a rigid plate, gravity turned by `slope`. `small`: mm, ms and kg
-    instead of SI units."""
+    """Rigid disc on a rigid plate, gravity turned by `slope`. `small`: mm, ms and kg instead of SI units."""
     length, time = (1.0e3, 1.0e3) if small else (1.0, 1.0)
     deck = Deck(f"rigid disc on a plate, type {kind}")
     deck.control(end * time, dt=STEP * time)
@@ -44,7 +43,7 @@ def rolling(kind, friction, slope, speed, end, way, exchanged=False, small=False
         deck.add("*MAT_RIGID", (part, RHO / length ** 3, 1.0e9 / (length * time ** 2), 0.3), (1, *hold), (0.0,))
     nodes = deck.mesh(points * length, quads, part=1)
     plate, plate_quads = grid(round(way / 0.05), 1, way, 0.2, (-0.5, -0.2))
-    plate = deck.mesh(plate * length, plate_quads, part=2)
+    deck.mesh(plate * length, plate_quads, part=2)
     deck.add("*SET_PART_LIST", (11,), (1,)).add("*SET_PART_LIST", (12,), (2,))
     sides = (12, 11) if exchanged else (11, 12)
     deck.curve(1, [(0.0, 1.0), (1.0e6 * time, 1.0)])
@@ -64,8 +63,8 @@ def rolling(kind, friction, slope, speed, end, way, exchanged=False, small=False
 
 
 def brush(force, normal, friction):
-    """Creep (1 - rim speed/speed) of a disc that rolls steadily on springs: shear grows with the way s from
-    the leading edge, eps times the integral of creep + (s - a)^2/(2 R^2), since the rim moves on a circle, until it meets mu p; then it slides. `normal` = eps (4/3) sink a."""
+    """Creep (1 - rim speed/speed) of a disc that rolls steadily on springs: shear grows with the way s from the leading edge, eps
+    times the integral of creep + (s - a)^2/(2 R^2), since the rim moves on a circle, until it meets mu p; then it slides."""
     half_width = (1.5 * RADIUS * normal / PENALTY) ** (1.0 / 3.0)
     way = np.linspace(0.0, 2.0 * half_width, 2001)
     limit = friction * PENALTY * way * (2.0 * half_width - way) / (2.0 * RADIUS)
