@@ -64,10 +64,6 @@ class Scene:
         shape[self.model.free] = np.real(found / found[np.abs(found).argmax()])
         return float(rates[fastest]), float(turn), shape.reshape(-1, 2)
 
-    def highest(self):
-        """Highest frequency without friction, rad/s."""
-        return np.sqrt(np.linalg.eigvals(self.matrix(0.0)).real.max())
-
 
 def deck(scene, friction, shape, rate):
     """Mass damping brings steady sliding, fades out, then comes the kick. Returns the deck and the time of the kick."""
@@ -141,7 +137,6 @@ def check_growth(run, kind, rows, ratio, friction):
     found, turns = growth(*speeds(run.program(text), begin), omega)
     run.check(f"{name}: growth rate, 1/s", found, rate)
     run.check(f"{name}: frequency, rad/s", turns, omega)
-    run.report(f"{name}: rate over the highest frequency", found / scene.highest())
 
 
 def check_without_friction(run, kind):

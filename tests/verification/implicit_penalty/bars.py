@@ -39,7 +39,7 @@ def bars(scale, penalty, gap=0.0, other=(N, 1), young=YOUNG, outlines=False):
 
 
 def bar_at_wall(scale, penalty, led):
-    """The same against one element that is held, or is led into the bar."""
+    """The bar against one element that is held, or is led into it."""
     deck = start("a bar and what is held", 1.3 * DURATION, scale)
     bar = deck.mesh(*grid(N, 1, LENGTH, HEIGHT, (-LENGTH, 0.0)), part=1)
     wall = deck.mesh(*grid(1, 1, HEIGHT, HEIGHT), part=2)
