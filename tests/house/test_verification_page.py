@@ -49,7 +49,8 @@ def test_case_is_described(case):
     text = (FOLDER / case / "README.md").read_text(encoding="utf-8")
     assert not text.startswith("#") and text.count("\n") <= MOST_LINES
     assert set(CASES[case]) == {"title", "against", "topic", "decks", "quantity"}
-    assert all(set(entry) <= KEYS and entry.get("kind") in (None, "abs", "min", "max") for entry in CASES[case]["quantity"].values())
+    for name, entry in CASES[case]["quantity"].items():
+        assert name.strip("*: ") and set(entry) <= KEYS and entry.get("kind") in (None, "abs", "min", "max")
     makers = {deck.partition(":")[0] for deck in CASES[case]["decks"]}
     assert makers and makers <= NAMED
 
