@@ -3,7 +3,7 @@
 import numpy as np
 
 import element
-from contact_types import MOMENT_FREE, TYPES
+from contact_types import TYPES
 from element import LENGTH, RHO, YOUNG, implicit
 from meshes import grid, trapezoid
 
