@@ -4,6 +4,7 @@ import pathlib
 import re
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from slideline_tools import UserError
@@ -77,11 +78,11 @@ def test_added_points_are_the_active_ones_beyond_the_touching_nodes(tmp_path):
 
 def timing_rows(steps):
     """Three runs of every variant, the last one disturbed; `steps` = seconds by type."""
-    return [{"state": "finished", "scene": scene, "level": level, "type": ctype, "elements": 1.0,
+    return pd.DataFrame([{"state": "finished", "scene": scene, "level": level, "type": ctype, "elements": 1.0,
              "element_calls": 1, "computing": 20.0, "load": 1.0, "contact": factor * (a + m + b),
              "search": factor * a, "pairing": factor * m, "force": factor * b}
             for factor in (1.0, 0.9, 50.0) for scene, levels in claims.LEVELS.items()
-            for level in levels for ctype, (a, m, b) in steps.items()]
+            for level in levels for ctype, (a, m, b) in steps.items()])
 
 
 def test_time_claims_follow_the_medians():
@@ -126,10 +127,10 @@ def test_the_cheapest_remedy_is_the_same_by_both_publications(ratios):
     """They had type 5 as the cheapest in 2 and in 4 of 7 cases."""
     rows = [{"state": "finished", "scene": scene, "level": level, "type": ctype, "elements": 1.0,
              "element_calls": 1, "computing": 9.0, "contact": ratio, "search": ratio, "pairing": 0.0,
-             "force": 1e-12}
+             "force": 1e-12, "load": 1.0}
             for scene, types in ratios.items() for ctype, column in (types | {2: types[1], 7: types[6]}).items()
             for level, ratio in enumerate(column, start=1)]
-    texts = claims.time_texts(*(claims.Times(rows, scene) for scene in claims.LEVELS))
+    texts = claims.time_texts(*(claims.Times(pd.DataFrame(rows), scene) for scene in claims.LEVELS))
     assert texts["cheap"] == "partly"
     assert re.fullmatch(r"1[.][12]. in the sliding \(type 3\), 0[.]9. in the collision \(type 3\)", texts["cheapest"])
 

@@ -5,13 +5,14 @@ import re
 
 import conftest
 import numpy as np
+import pandas as pd
 import pytest
 
 from slideline_tools import UserError, scenes
 from slideline_tools.histories import History
 from slideline_tools.studies import __main__ as command
 from slideline_tools.studies.framework.job import Options
-from slideline_tools.studies.framework.table import read_rows
+from slideline_tools.studies.framework.table import records
 from slideline_tools.studies.simplify import (compare as simplify_compare, decks as simplify_decks, page as simplify_page,
                                               study as simplify, texts as simplify_texts)
 from slideline_tools.studies.simplify.figures import Runs, small_share
@@ -122,11 +123,11 @@ def test_median_and_share_of_processor_time():
     def run(processor, total, contact):
         return {"state": "finished", "variant": "a", "level": 1, "processor_seconds": processor,
                 "total": total, "contact": contact, "elements": 0.5 * total, "load": 1.0}
-    runs = Runs([run(1.0, 10.0, 4.0), run(3.0, 10.0, 2.0), run(2.0, 20.0, 2.0)])
+    runs = Runs(pd.DataFrame([run(1.0, 10.0, 4.0), run(3.0, 10.0, 2.0), run(2.0, 20.0, 2.0)]))
     assert runs.seconds("a", 1) == 2.0 and runs.rounds == 3
     assert runs.seconds("a", 1, "elements") == pytest.approx(1.0)
     assert runs.seconds("a", 1, "contact") == pytest.approx(2.0 * 8.0 / 40.0)
-    short = Runs([run(1.0, 10.0, 4.0), run(1.0, 10.0, 0.1)])
+    short = Runs(pd.DataFrame([run(1.0, 10.0, 4.0), run(1.0, 10.0, 0.1)]))
     assert short.seconds("a", 1, "contact") == 0.1
 
 
@@ -136,7 +137,7 @@ def test_a_saving_within_the_scatter_says_so(seconds, expected):
     """Quartiles 4 % apart."""
     rows = [{"state": "finished", "variant": name, "level": 1, "processor_seconds": middle * factor}
             for name, middle in (("more", 1.0), ("less", seconds)) for factor in (0.98, 1.0, 1.02, 0.98, 1.02)]
-    runs = Runs(rows)
+    runs = Runs(pd.DataFrame(rows))
     assert runs.spread == pytest.approx(0.04)
     assert simplify_texts.saving_text(runs, 1, "more", "less") == expected
 
@@ -183,7 +184,7 @@ def short_study(tmp_path_factory):
 
 def first_rows(folder):
     """The first run of each variant."""
-    return {row["variant"]: row for row in read_rows(folder / "simplify.csv") if row["repeat"] == 1}
+    return {row["variant"]: row for row in records(pd.read_csv(folder / "simplify.csv")) if row["repeat"] == 1}
 
 
 def test_asleep_and_awake_give_the_same_bits(short_study):

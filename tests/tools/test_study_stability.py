@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from slideline_tools.contact_types import ALL_TYPES
@@ -271,12 +272,12 @@ def test_limits_of_springs_and_elements():
     """Stiff springs rule alone, soft ones do not; half of 2/omega where they open and close."""
     scene = SCENES["block"]
     row = {"scene": "block", "type": 2, "kind": "limit", "penalty": 1.0e9, "element_limit": 0.5}
-    found, = stability.derive([row], None)
+    found, = stability.derive(pd.DataFrame([row]), None).to_dict("records")
     alone = scene.limit(2, 1.0e9, False) / 0.5
     assert found["spring_limit"] == pytest.approx(alone)
     assert found["both_limits"] == found["opening_limit"] == pytest.approx(0.5 * alone)
     assert 0.9 * alone < found["true_limit"] < alone
-    soft, = stability.derive([{**row, "penalty": 1.0}], None)
+    soft, = stability.derive(pd.DataFrame([{**row, "penalty": 1.0}]), None).to_dict("records")
     assert soft["both_limits"] == soft["true_limit"] < 1e-2 * soft["opening_limit"]
     assert scene.limit(2, 4.0e9, False) == pytest.approx(0.5 * scene.limit(2, 1.0e9, False))
 

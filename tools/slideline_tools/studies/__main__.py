@@ -12,11 +12,11 @@ import sys
 from slideline_tools import UserError, counting
 from slideline_tools.contact_types import ALL_TYPES, SERIES, parse_series
 from slideline_tools.studies.framework import everything, registry
-from slideline_tools.studies.framework.job import Options, file_digest, interleave, part_of
+from slideline_tools.studies.framework.job import Options, file_digest, interleave, part_of, write_whole
 from slideline_tools.studies.framework.pages import made_by, program_source
 from slideline_tools.studies.framework.progress import Progress
 from slideline_tools.studies.framework.runner import Sweep
-from slideline_tools.studies.framework.table import FAILED, MISSING, rows_of, write_rows
+from slideline_tools.studies.framework.table import FAILED, MISSING, table_of
 
 DONE, UNUSABLE, STOPPED = 0, 2, 4
 EVERYTHING = "all"
@@ -117,20 +117,20 @@ def held(folder, shared):
 def collect(study, jobs, sweep, doc, publish=False):
     """Table, charts and page; UserError where runs of several processors are to be published."""
     folder = sweep.folder
-    rows = rows_of(study, jobs, sweep)
+    table = table_of(study, jobs, sweep)
     if study.derive:
-        rows = study.derive(rows, folder)
-    write_rows(folder / f"{study.name}.csv", rows)
-    count = {state: sum(row["state"] == state for row in rows) for state in (FAILED, MISSING)}
-    print(f"wrote {folder / study.name}.csv: {len(rows)} runs"
+        table = study.derive(table, folder)
+    write_whole(folder / f"{study.name}.csv", table.to_csv(index=False))
+    count = {state: int((table["state"] == state).sum()) for state in (FAILED, MISSING)}
+    print(f"wrote {folder / study.name}.csv: {len(table)} runs"
           + "".join(f", {number} {state}" for state, number in count.items() if number))
-    study.chart(rows, folder)
+    study.chart(table, folder)
     if study.page:
-        processors = sorted({row["processor"] for row in rows if "processor" in row})
+        processors = sorted(set(table["processor"].dropna()))
         if publish and len(processors) > 1:
             raise UserError(f"runs of several processors are not published together: {'; '.join(processors)}")
         with made_by(program_source(sweep.program), "; ".join(processors)):
-            study.page(rows, doc)
+            study.page(table, doc)
 
 
 def perform_all(wanted):

@@ -11,15 +11,17 @@ import re
 import sys
 
 import numpy as np
+import pandas as pd
 
-from slideline_tools import UserError
+from slideline_tools import UserError, counting
 from slideline_tools.plots import PAGE_WIDTH, STYLE, mark_cut, plt
 from slideline_tools.scenes import block_grids
 from slideline_tools.studies.block import (N_MASTER, N_SLAVE, UNIFORM, half_segments, line_style,
                                            read_pressures)
 from slideline_tools.studies.common import (colour, label, markdown_table, save_small, study_main,
                                             write_page)
-from slideline_tools.studies.framework.counted import counted_row, instruction_section
+from slideline_tools.studies.framework.counted import instruction_section
+from slideline_tools.studies.framework.table import COUNTED
 
 METHODS = ("implicit", "explicit")
 FIRST_STEPS, MOST_ITERATIONS = 5, 3
@@ -177,10 +179,10 @@ def pressure_figure(runs):
 
 def count_section(folder, types):
     """Retired instructions of both methods."""
-    rows = [row for method in METHODS for ctype in types
-            for row in counted_row(folder / f"{method}_{ctype}" / "counted", scene=method, level=1, type=ctype,
-                                   shortened=COUNTED_OPTION)]
-    return "\n" + instruction_section(rows, {method: method.capitalize() for method in METHODS})
+    runs = {(method, ctype): folder / f"{method}_{ctype}" / "counted" for method in METHODS for ctype in types}
+    rows = [{"scene": method, "level": 1, "type": ctype, "shortened": COUNTED_OPTION, "state": COUNTED,
+             **counting.columns(path)} for (method, ctype), path in runs.items() if (path / counting.COUNTS).exists()]
+    return "\n" + instruction_section(pd.DataFrame(rows, columns=None if rows else ["state", "scene", "level"]), {method: method.capitalize() for method in METHODS})
 
 
 def write(folder, doc, _levels, types):

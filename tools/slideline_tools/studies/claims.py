@@ -11,6 +11,7 @@ import pathlib
 import sys
 
 import numpy as np
+import pandas as pd
 
 from slideline_tools import UserError
 from slideline_tools.histories import read_csv
@@ -18,7 +19,6 @@ from slideline_tools.scenes import block_grids
 from slideline_tools.studies import block, sliding
 from slideline_tools.studies.common import TYPES, write_page
 from slideline_tools.studies.framework.rules import COST_FACTOR, between, least, share_verdict
-from slideline_tools.studies.framework.table import read_rows
 from slideline_tools.studies.framework.times import Times
 from slideline_tools.studies.speed_accuracy.front import geometric_mean
 
@@ -266,7 +266,10 @@ def write(folder, times, doc):
               for level in LEVELS["sliding"]]
     texts.update(point_texts(np.concatenate(normal),
                              added_points(folder / "claims" / "exchanged")))
-    rows = read_rows(times)
+    try:
+        rows = pd.read_csv(times)
+    except OSError as problem:
+        raise UserError(f"cannot read {times}: {problem}") from problem
     texts.update(time_texts(*(Times(rows, scene) for scene in LEVELS)))
     texts["summary"] = "\n".join(f"| {text} | {texts[name]} |" for text, name in CLAIMS)
     write_page(doc, "claims", PAGE.format(**texts))

@@ -34,8 +34,13 @@ def marker(ctype):
     return IMPLICIT_LOOKS[ctype][1] if ctype in IMPLICIT_LOOKS else MARKERS[ctype - 1]
 
 
-def markdown_table(names, rows):
-    """Lines of a Markdown table; a number is printed with 4 digits, any other value as it is."""
+def markdown_table(names, rows=None):
+    """Lines of a Markdown table from a `pandas.DataFrame`, or from names and rows.
+
+    A real number is printed with 4 digits, any other value as it is, a missing one as nothing.
+    """
+    if rows is None:
+        names, rows = list(names.columns), names.itertuples(index=False)
     lines = ["| " + " | ".join(names) + " |", "|" + "---|" * len(names)]
     lines += ["| " + " | ".join(cell(value) for value in row) + " |" for row in rows]
     return "\n".join(lines)
@@ -43,6 +48,8 @@ def markdown_table(names, rows):
 
 def cell(value):
     """Text of one value: text and integers as they are, other numbers with 4 digits."""
+    if value is None or value != value:
+        return ""
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 

@@ -106,7 +106,7 @@ def measure(job, folder):
 
 def times_of(rows):
     """{scene: Times} of the scenes that have finished runs."""
-    done = {row["scene"] for row in finished(rows)}
+    done = set(finished(rows)["scene"])
     return {name: Times(rows, name) for name in SCENES if name in done}
 
 
@@ -330,8 +330,8 @@ def page(rows, doc):
     if not all_times:
         raise UserError("no finished runs of type 1")
     save_small(page_figure(all_times), doc / "pictures" / "paper_tables.png", lines=True)
-    processors = sorted({row["processor"] for row in finished(rows)})
-    quick = any(row["quick"] for row in rows)
+    processors = sorted(set(finished(rows)["processor"]))
+    quick = rows["quick"].any()
     write_page(doc, "paper_tables", PAGE.format(
         counts=instruction_section(rows, {name: scene.title for name, scene in SCENES.items()}),
         quick=QUICK if quick else "", processor="; ".join(processors),

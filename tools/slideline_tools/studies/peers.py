@@ -11,6 +11,8 @@ import pathlib
 import statistics
 import sys
 
+import pandas as pd
+
 from slideline_tools import UserError
 from slideline_tools.plots import PAGE_WIDTH, plt
 from slideline_tools.studies.common import markdown_table, page_main, save_small, write_page
@@ -128,7 +130,7 @@ def read_counts(path):
     """{(scene, elements, program, element or contact): instructions} and who counted them; {} where nobody could."""
     rows = read_table(path) if path.exists() else []
     counts = {(row["scene"], row["elements"], row["program"], row["what"]): float(row["instructions"]) for row in rows}
-    words = who_counted([{**row, "state": COUNTED} for row in rows])
+    words = who_counted(pd.DataFrame(rows, columns=[*rows[0]] if rows else ["counted_by"]).assign(state=COUNTED))
     return counts, words + " The other programs are counted as they came." * bool(rows)
 
 

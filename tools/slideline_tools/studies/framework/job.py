@@ -9,6 +9,8 @@ import os
 import pathlib
 from typing import Callable, Mapping, Optional, Sequence, Union
 
+import pandas as pd
+
 from slideline_tools.contact_types import ALL_TYPES
 
 
@@ -82,20 +84,20 @@ class Study:
     """A sweep and what is made of it.
 
     `jobs(options)`         the list of jobs of one round, without repeats
-    `measure(job, folder)`  columns read from one finished run; {} if there is nothing to read
-    `chart(rows, folder)`   draws the charts into `folder` (see `charts.save`)
-    `derive(rows, folder)`  optional: the rows with columns that need several runs, whose results
-                            are in folder/runs/<row["run"]>
-    `page(rows, doc)`       optional: writes DOC/studies/<name>.md and DOC/pictures/*
+    `measure(job, folder)`   columns read from one finished run; {} if there is nothing to read
+    `chart(table, folder)`   draws the charts into `folder` (see `charts.save`)
+    `derive(table, folder)`  optional: the table (see table.py) with columns that need several runs, whose
+                             results are in folder/runs/RUN, RUN the name in column `run`
+    `page(table, doc)`       optional: writes DOC/studies/<name>.md and DOC/pictures/*
     `levels`, `types`, `repeats` and `quick_...`: used where the user names none.
     """
 
     name: str
     jobs: Callable[[Options], Sequence[Job]]
     measure: Callable[[Job, pathlib.Path], Mapping]
-    chart: Callable[[list, pathlib.Path], None]
-    derive: Optional[Callable[[list, pathlib.Path], list]] = None
-    page: Optional[Callable[[list, pathlib.Path], None]] = None
+    chart: Callable[[pd.DataFrame, pathlib.Path], None]
+    derive: Optional[Callable[[pd.DataFrame, pathlib.Path], pd.DataFrame]] = None
+    page: Optional[Callable[[pd.DataFrame, pathlib.Path], None]] = None
     levels: Sequence[int] = (1,)
     types: Sequence[int] = ALL_TYPES
     repeats: int = 1

@@ -2,7 +2,7 @@
 """Medians over the runs of the study simplify, and how its figures are printed."""
 import numpy as np
 
-from slideline_tools.studies.framework.table import counted, finished, grouped
+from slideline_tools.studies.framework.table import counted, finished, records
 from slideline_tools.studies.framework.times import quartile_distance
 
 
@@ -14,9 +14,11 @@ class Runs:
     """
 
     def __init__(self, rows):
-        done = finished(rows)
-        self.groups = grouped(done, "variant", "level")
-        self.counts = {(row["variant"], row["level"]): row["instructions"] for row in counted(rows)}
+        done = records(finished(rows))
+        self.groups = {}
+        for row in done:
+            self.groups.setdefault((row["variant"], row["level"]), []).append(row)
+        self.counts = {(row["variant"], row["level"]): row["instructions"] for row in records(counted(rows))}
         self.levels = sorted({row["level"] for row in done})
         timed = [group for group in self.groups.values() if len(group) > 1]
         self.rounds = min((len(group) for group in timed), default=1)

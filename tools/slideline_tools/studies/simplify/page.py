@@ -5,7 +5,7 @@ from slideline_tools.plots import COLOURS, PAGE_WIDTH, plt
 from slideline_tools.studies.common import TYPES, label, markdown_table, save_small, write_page
 from slideline_tools.studies.framework.charts import save, styled
 from slideline_tools.studies.framework.counted import who_counted
-from slideline_tools.studies.framework.table import finished
+from slideline_tools.studies.framework.table import finished, records
 from slideline_tools.studies.simplify import texts
 from slideline_tools.studies.simplify.figures import Runs, duration, megabytes, percent, \
     small_share
@@ -154,9 +154,9 @@ def page(rows, doc):
         raise UserError("no finished runs of the collision")
     with styled():
         save_small(draw(runs, levels[-1]), doc / "pictures" / "simplify.png", lines=True)
-    done, last = finished(rows), levels[-1]
+    done, last = records(finished(rows)), levels[-1]
     write_page(doc, "simplify", texts.PAGE.format(
-        quick=texts.QUICK if any(row["quick"] for row in rows) else "",
+        quick=texts.QUICK if rows["quick"].any() else "",
         processor="; ".join(sorted({row["processor"] for row in done})),
         counted=who_counted(rows), rounds=runs.rounds, spread=percent(runs.spread), load=f"{runs.load:.1f}",
         overviews="\n\n".join(f"N_r = {level}:\n\n{overview(runs, level)}" for level in levels),

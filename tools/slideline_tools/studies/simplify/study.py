@@ -13,13 +13,15 @@ import pathlib
 import re
 from typing import Callable, Sequence
 
+import pandas as pd
+
 from slideline_tools import UserError, scenes
 from slideline_tools.histories import read_csv
 from slideline_tools.scenes.common import STEEL
 from slideline_tools.studies.framework.counted import counted_job
 from slideline_tools.studies.framework.job import ALL_TYPES, Job, Study
 from slideline_tools.studies.framework.runner import RECORD
-from slideline_tools.studies.framework.table import finished
+from slideline_tools.studies.framework.table import FINISHED, records
 from slideline_tools.studies.framework.times import phases
 from slideline_tools.studies.simplify import decks
 from slideline_tools.studies.simplify.compare import comparison, cycle_counts, memory
@@ -173,7 +175,8 @@ PAIRS = {  # variant: (the variant it is compared with, factor on the forces of 
 
 def derive(rows, folder):
     """Columns that compare the first run of a variant with that of another, see PAIRS; memory."""
-    first = {(row["variant"], row["level"]): row for row in finished(rows) if row["repeat"] == 1}
+    rows = records(rows)
+    first = {(row["variant"], row["level"]): row for row in rows if row["state"] == FINISHED and row["repeat"] == 1}
     runs = folder / "runs"
     for (name, level), row in first.items():
         row.update(memory(runs / row["run"]))
@@ -186,7 +189,7 @@ def derive(rows, folder):
                                   1.0, same_mesh=False))
         if name == "collision_every_row":
             row.update(cycle_counts(runs / row["run"]))
-    return rows
+    return pd.DataFrame(rows)
 
 
 STUDY = Study("simplify", jobs, measure, chart, derive=derive, page=page, levels=(1, 2),

@@ -6,7 +6,7 @@ import numpy as np
 
 from slideline_tools.contact_types import in_order
 from slideline_tools.studies.framework.rules import RUN_FACTOR
-from slideline_tools.studies.framework.table import finished
+from slideline_tools.studies.framework.table import FINISHED, records
 from slideline_tools.studies.framework.times import Times
 from slideline_tools.studies.speed_accuracy.scenes import SCENES
 
@@ -82,13 +82,13 @@ def cheapest(points, cost, key, target):
 
 def swept_rows(rows):
     """The finished runs that were timed."""
-    return [row for row in finished(rows) if row["role"] == "sweep"]
+    return rows[(rows["state"] == FINISHED) & (rows["role"] == "sweep")]
 
 
 def times_of(rows):
     """{scene: Times} of the scenes with finished runs."""
     rows = swept_rows(rows)
-    there = {row["scene"] for row in rows}
+    there = set(rows["scene"])
     return {name: Times(rows, name) for name in SCENES if name in there}
 
 
@@ -97,7 +97,7 @@ def points_of(rows, times):
     points = {}
     for name, found in times.items():
         first = {}
-        for row in swept_rows(rows):
+        for row in records(swept_rows(rows)):
             if row["scene"] == name:
                 first.setdefault(row["type"], {}).setdefault(row["level"], row)
         points[name] = [make_point(SCENES[name], row, found) for ctype in in_order(first)

@@ -9,7 +9,7 @@ from slideline_tools.studies.common import label, markdown_table, save_small, wr
 from slideline_tools.studies.framework.charts import styled
 from slideline_tools.studies.framework.counted import instruction_section
 from slideline_tools.studies.framework.rules import COST_FACTOR, ERROR_FACTOR, RUN_FACTOR
-from slideline_tools.studies.framework.table import finished
+from slideline_tools.studies.framework.table import finished, records
 from slideline_tools.studies.speed_accuracy.advice import (Overview, advice, overall_table,
                                                           target_table)
 from slideline_tools.studies.speed_accuracy.charts import scene_figure
@@ -160,7 +160,7 @@ def reference_table(rows):
     """What the references are and how far they are known."""
     lines = []
     for name, scene in SCENES.items():
-        mine = [row for row in finished(rows) if row["scene"] == name]
+        mine = [row for row in records(finished(rows)) if row["scene"] == name]
         for measure in scene.measures:
             for reference in (REFERENCE_TYPE, HARD):
                 known = [row for row in mine if f"{measure.key}_floor" in row
@@ -190,7 +190,7 @@ def short_text(times):
 
 def load_text(rows):
     """How busy the machine was, where the runs say so."""
-    loads = [row["load"] for row in rows if "load" in row]
+    loads = rows["load"].dropna().tolist()
     return f"; load of the machine before a run {np.median(loads):.1f} (median)" if loads else ""
 
 
@@ -209,8 +209,8 @@ def page(rows, doc):
     swept = swept_rows(rows)
     write_page(doc, "speed_accuracy", PAGE.format(
         advice=advice(over), overall=overall_table(over), targets=target_table(over),
-        processor="; ".join(sorted({row["processor"] for row in swept})),
-        build="; ".join(sorted({row["build"] for row in swept})),
+        processor="; ".join(sorted(set(swept["processor"]))),
+        build="; ".join(sorted(set(swept["build"]))),
         rounds=min(found.rounds for found in times.values()),
         spread=100.0 * np.max([found.spread for found in times.values()]),
         short=short_text(times), load=load_text(swept), gain=100.0 * GAIN, tie=100.0 * TIE,

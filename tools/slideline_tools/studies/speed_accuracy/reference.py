@@ -6,6 +6,7 @@ a penalty is judged as an interface with these springs, an implicit one as an in
 finest levels by Richardson's extrapolation.
 """
 import numpy as np
+import pandas as pd
 
 from slideline_tools.contact_types import HARD, IMPLICIT_PENALTIES
 from slideline_tools.histories import read_csv
@@ -13,7 +14,7 @@ from slideline_tools.results import read
 from slideline_tools.scenes import collision_grids
 from slideline_tools.scenes.common import ALUMINIUM
 from slideline_tools.studies import sliding as sliding_study
-from slideline_tools.studies.framework.table import finished
+from slideline_tools.studies.framework.table import FINISHED, records
 from slideline_tools.studies.speed_accuracy.scenes import SCENES
 
 REFERENCE_TYPE = 7
@@ -122,8 +123,9 @@ def reference_levels(rows, scene, reference):
 def add_errors(rows, folder):
     """Columns <key>, <key>_floor and <key>_order of every measure against a reference, for the
     runs on coarser meshes than the reference's; and <key>_springs, how far the two references are apart."""
+    rows = records(rows)
     for scene, read_outcome in OUTCOMES.items():
-        mine = [row for row in finished(rows) if row["scene"] == scene]
+        mine = [row for row in rows if row["state"] == FINISHED and row["scene"] == scene]
         levels = {one: found for one in (REFERENCE_TYPE, HARD) if (found := reference_levels(mine, scene, one))}
         mine = [row for row in mine if reference_series(row["type"]) in levels]
         outcomes = {}
@@ -139,7 +141,7 @@ def add_errors(rows, folder):
             soft, hard = finest
             for row in mine:
                 row.update({f"{key}_springs": DISTANCES[key](soft[key], hard[key], hard[key]) for key in hard})
-    return rows
+    return pd.DataFrame(rows)
 
 
 def judge_by(rows, outcomes, chain):

@@ -9,11 +9,13 @@ from __future__ import annotations
 import re
 
 import numpy as np
+import pandas as pd
 
 from slideline_tools import UserError
 from slideline_tools.contact_types import ALL_TYPES, IMPLICIT
 from slideline_tools.studies.framework.charts import save, styled
 from slideline_tools.studies.framework.job import Job, Study
+from slideline_tools.studies.framework.table import records
 from slideline_tools.studies.stability import measures
 from slideline_tools.studies.stability.failing import keep_failing
 from slideline_tools.studies.stability.page import NO_COMPLIANCE, draw_maps, write_maps_page
@@ -105,6 +107,7 @@ def derive(rows, folder):
     """The limits by eigenvalue beside the program's: of all that stays closed, 2/omega of the contact
     springs alone, half of it for springs that open and close, and the smaller of the first and the last."""
     del folder
+    rows = records(rows)
     for row in rows:
         if row["kind"] == "limit" and "penalty" in row:
             scene = SCENES[row["scene"]]
@@ -113,7 +116,7 @@ def derive(rows, folder):
             row["true_limit"], row["spring_limit"] = limits
             row["opening_limit"] = 0.5 * limits[1]
             row["both_limits"] = min(row["true_limit"], row["opening_limit"])
-    return rows
+    return pd.DataFrame(rows)
 
 
 def mark_below(rows):
@@ -134,6 +137,7 @@ def mark_below(rows):
 
 def chart(rows, folder):
     """Maps of each scene; decks of failing cells."""
+    rows = records(rows)
     keep_failing(rows, folder)
     mark_below(rows)
     for name in SCENES:
@@ -145,7 +149,7 @@ def chart(rows, folder):
 
 def page(rows, doc):
     """doc/studies/stability.md and its pictures."""
-    write_maps_page(mark_below(rows), doc)
+    write_maps_page(mark_below(records(rows)), doc)
 
 
 STUDY = Study("stability", jobs, measure, chart, derive, page, types=(*ALL_TYPES, IMPLICIT))
