@@ -104,7 +104,7 @@ def basis_table(times):
             "a slave node and step of type 1, ns": 1e9 * found["contact"][1] / (nodes * found["steps"][1]) if nodes else None,
             "the paper's, microseconds": 1e6 * one.seconds / (nodes * one.steps) if nodes else None,
             "share of contact": between(100.0 * found["share"], "{:.1f}") + " %",
-            "whole run over that with type 1": between(found["whole_ratio"]),
+            "whole run with type 7 over type 1": found["whole_ratio"].get(7),
             "M of type 5 over contact of type 1": f"{found['pairing_ratio'][5]:.2f}" if 5 in found.index else "",
             "rounds": found["rounds"].min(), "quartiles apart": f"{100.0 * found['spread'].max():.0f} %"})
     return markdown_table(pd.DataFrame(rows))
