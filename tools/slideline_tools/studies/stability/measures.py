@@ -71,8 +71,8 @@ def cut_share(log):
     return int(found[-1][0]) / int(found[-1][1]) if found else 0.0
 
 
-def measure_run(folder, jobid, scene):
-    """All measures of one run and its verdict."""
+def measure_cell(folder, jobid, scene):
+    """All measures of a run and its verdict; one that is stable by the energy law alone is limited."""
     tables = {name: read_csv(folder / f"{jobid}.{name}.csv")
               for name in ("glstat", "rcforc", "sleout", "contact")}
     drift, created = energies(tables["glstat"], tables["sleout"])
@@ -80,4 +80,7 @@ def measure_run(folder, jobid, scene):
                 "swings": swings(tables["rcforc"]), "uneven": unevenness(tables["contact"])}
     reached = tables["glstat"]["time"][-1] >= 0.99 * scene.end
     verdict = judge(0 if reached else 2, measures, scene.side, scene.approach, scene.is_uniform)
-    return {**measures, "verdict": VERDICTS[verdict]}
+    cut = cut_share((folder / f"{jobid}.log").read_text(encoding="utf-8"))
+    if verdict == STABLE and cut > CUT_SHARE:
+        verdict = LIMITED
+    return {**measures, "verdict": VERDICTS[verdict], "cut": cut}
