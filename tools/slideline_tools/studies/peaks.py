@@ -41,11 +41,6 @@ class Peaks:
         """Number of peaks."""
         return len(self.sizes)
 
-    @property
-    def typical(self):
-        """Median size of the peaks, 0 without any."""
-        return float(np.median(self.sizes)) if self.count else 0.0
-
 
 def running(reduce, values, count):
     """`reduce` (np.median, np.mean) over `count` samples about each; the ends are repeated."""

@@ -8,30 +8,25 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import importlib.util
-import pathlib
-import sys
 from typing import Callable, Sequence
 
 import numpy as np
 
-from slideline_tools import UserError, scenes
+from slideline_tools import scenes
 from slideline_tools.contact_types import HARD, IMPLICIT, IMPLICIT_PENALTIES
 from slideline_tools.histories import read_csv
-from slideline_tools.results import read
 from slideline_tools.scenes.hertz import BLOCK_CELL, CYLINDER_CELL, PENALTY as HERTZ_PENALTY
 from slideline_tools.scenes.patch import patch, patch_grids
 from slideline_tools.studies import block as block_study
 from slideline_tools.studies import hertz as hertz_study
 from slideline_tools.studies import sliding as sliding_study
-from slideline_tools.studies.patch import LAYOUTS
+from slideline_tools.studies.common import verification
+from slideline_tools.studies.patch import LAYOUTS, sides
 
-CHAIN = pathlib.Path(__file__).resolve().parents[4] / "tests/verification/block_to_block/chain.py"
 BLOCK_STEP, BLOCK_END = 1.0e-4, 0.2  # s; a tenth of the deck's step, for a time to measure
 SLIDING_STEP = 40.0e-9  # s at level 1
 TWO_PASS = 3
 ROUND_OFF = 1.0e-9
-AT_REST = 1.0e-16  # kinetic over internal energy
 FINITE_STRAIN = 1.0e-3  # what Hertz's closed form leaves out here: its relative size is that of the strains
 
 
@@ -136,13 +131,6 @@ def patch_deck(level):
     return patch(penalty=1.0e6 / level, grids=patch_level(level))
 
 
-def nodal_pressure(results, nodes, x):
-    """Contact force of nodes over the length that each stands for, at the last state."""
-    row = {int(node): k for k, node in enumerate(results.point_field("node_id")[-1])}
-    force = results.point_field("contact_force")[-1][[row[int(node)] for node in nodes], 1]
-    return np.abs(force) / block_study.half_segments(x)
-
-
 def largest_deviation(sides, exact):
     """max |p/p0 - 1| over the pressures of both sides."""
     return max(float(np.abs(pressure / exact - 1.0).max()) for pressure in sides)
@@ -150,13 +138,7 @@ def largest_deviation(sides, exact):
 
 def judge_patch(folder, level, _series):
     """Deviation from the uniform pressure of 1 Pa, at rest."""
-    energy = read_csv(folder / "patch.glstat.csv")
-    if not energy["kinetic"][-1] <= AT_REST * energy["internal"][-1]:
-        raise UserError(f"{folder}: not at rest at the end")
-    results, (lower, upper) = read(folder / "patch.vtkhdf"), patch_level(level)
-    return {"pressure_error": largest_deviation(
-        [nodal_pressure(results, nodes, grid.points[:, 0, 0])
-         for nodes, grid in ((upper.lower, upper), (lower.upper[::-1], lower))], 1.0)}
+    return {"pressure_error": largest_deviation([pressure for _, pressure in sides(folder, patch_level(level))], 1.0)}
 
 
 # ---- block -------------------------------------------------------------------------------------
@@ -173,16 +155,9 @@ def block_penalty(level):
     return block_study.PENALTY / level
 
 
-@functools.lru_cache(maxsize=None)
 def chain_module():
     """The separate one-dimensional solution."""
-    try:
-        spec = importlib.util.spec_from_file_location("block_chain", CHAIN)
-        module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-    except OSError as problem:
-        raise UserError(f"cannot read {CHAIN}: {problem}") from problem
-    return module
+    return verification("block_to_block", "chain")
 
 
 @functools.lru_cache(maxsize=None)
@@ -215,12 +190,12 @@ def judge_block(folder, level, series):
 
 # ---- Hertz, sliding, collision -----------------------------------------------------------------
 
-def judge_hertz(folder, level, series):
+def judge_hertz(folder, _level, _series):
     """Distance of the nodal pressures from Hertz's ellipse, and of a and p0 from Hertz's. (Its layer of springs
     is not judged here.)"""
-    run = hertz_study.Run(folder, level, 7 if series in IMPLICIT_PENALTIES else series)
-    return {"profile_error": run.inside, "half_width_error": abs(run.half_width - 1.0),
-            "peak_error": abs(run.peak - 1.0)}
+    found = hertz_study.measure(folder)
+    return {"profile_error": found["inside"], "half_width_error": abs(found["half_width"] - 1.0),
+            "peak_error": abs(found["peak"] - 1.0)}
 
 
 def sliding_options(level):
