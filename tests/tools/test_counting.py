@@ -172,7 +172,7 @@ def test_counted_jobs_are_rows_of_their_own(tmp_path, monkeypatch):
 
     found, before = rows("first")
     assert table.finished(found)["run"].tolist() == ["a"]
-    row, = table.records(table.counted(found))
+    row, = table.counted(found).to_dict("records")
     assert (row["instructions"], row["contact_instructions"], row["shortened"]) == (1000, 300, "endtim=1")
     _, after = rows("second")
     assert after["a"] == before["a"] and after["a_counted"]["fingerprint"] != before["a_counted"]["fingerprint"]

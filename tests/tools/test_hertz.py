@@ -9,7 +9,7 @@ from slideline_tools import UserError, scenes
 from slideline_tools.scenes.common import ALUMINIUM, STEEL
 from slideline_tools.scenes.hertz import BLOCK_CELL, CYLINDER_CELL, RADIUS, graded
 from slideline_tools.studies import hertz
-from slideline_tools.studies import line_contact as lines
+from slideline_tools.studies.hertz import lines
 from test_decks import Model, areas
 
 

@@ -8,10 +8,11 @@ import numpy as np
 from contact_types import TYPES
 from meshes import Deck
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parent / "hertz"), str(HERE.parents[2] / "tools")]
 
+import line_contact  # noqa: E402
 from slideline_tools.scenes.hertz import graded  # noqa: E402
-from slideline_tools.studies import line_contact  # noqa: E402
 
 #: mm, N, MPa, t; of the half model.
 RADIUS, WIDTH, HEIGHT, LOAD = 50.0, 100.0, 200.0, 35.0e3 / 2.0

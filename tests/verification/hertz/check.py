@@ -8,13 +8,14 @@ import numpy as np
 
 from contact_types import PASS_PATCH, TYPES
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[2] / "tools")]
 
+import line_contact as lines  # noqa: E402
 from slideline_tools.scenes import hertz, hertz_grids  # noqa: E402
 from slideline_tools.scenes.common import ALUMINIUM, STEEL  # noqa: E402
 from slideline_tools.scenes.hertz import (BLOCK_CELL, CYLINDER_CELL, PENALTY,  # noqa: E402
                                           RADIUS)
-from slideline_tools.studies import line_contact as lines  # noqa: E402
 
 LEVELS = (1, 2)
 STATIC = (2, 5, 7)  # types with the implicit method too

@@ -15,12 +15,11 @@ from slideline_tools.histories import read_csv
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.scenes import hertz, sliding
 from slideline_tools.scenes.hertz import BLOCK_CELL, CYLINDER_CELL, PENALTY, RADIUS
-from slideline_tools.studies import line_contact as lines
 from slideline_tools.studies import sliding as sliding_study
 from slideline_tools.studies.common import colour, label, markdown_table, marker, save_small, verification, write_page
 from slideline_tools.studies.framework.job import Job, Study
 from slideline_tools.studies.framework.table import finished
-from slideline_tools.studies.hertz import MODULUS, order
+from slideline_tools.studies.hertz import MODULUS, lines, order
 from slideline_tools.studies.ironing import forces_along, ironing, roughness
 
 LEVELS = {"hertz": (1, 2, 3), "spheres": (1, 2), "sliding": (1,), "ironing": (1, 2)}

@@ -6,8 +6,9 @@ from slideline_tools import UserError
 from slideline_tools.histories import read_csv
 from slideline_tools.scenes.common import ALUMINIUM, STEEL
 from slideline_tools.scenes.hertz import END, RADIUS
-from slideline_tools.studies import line_contact as lines
+from slideline_tools.studies.common import verification
 
+lines = verification("hertz", "line_contact")  # closed form, and what nodal pressures amount to
 MODULUS = lines.effective_modulus(STEEL, ALUMINIUM)
 
 

@@ -7,7 +7,7 @@ import hashlib
 import json
 import os
 import pathlib
-from typing import Callable, Mapping, Optional, Sequence, Union
+from typing import Callable, Mapping, Optional, Sequence
 
 import pandas as pd
 
@@ -29,7 +29,7 @@ class Job:
     """One run of the program.
 
     `name`      unique in the study; names the folder of the run
-    `deck`      text of the deck, or its file; without *INCLUDE
+    `deck`      text of the deck, without *INCLUDE
     `jobid`     stem of the result files
     `options`   further arguments of the program, for example ("ctype=5", "p:dtplot=1")
     `labels`    columns of its row that say what it is, for example scene, level, type
@@ -46,7 +46,7 @@ class Job:
     """
 
     name: str
-    deck: Union[str, pathlib.Path]
+    deck: str
     jobid: str = "run"
     options: Sequence[str] = ()
     labels: Mapping[str, object] = dataclasses.field(default_factory=dict)
@@ -65,16 +65,9 @@ class Job:
         """Folder of the run below `runs`; the same whatever number of repeats is asked for."""
         return self.name if self.repeat == 1 else f"{self.name}.{self.repeat}"
 
-    @property
-    def deck_text(self):
-        """The whole deck."""
-        if isinstance(self.deck, pathlib.Path):
-            return self.deck.read_text(encoding="utf-8")
-        return self.deck
-
     def fingerprint(self, program):
         """Changes with the deck, the options, the environment and the program (its `file_digest`)."""
-        parts = [self.deck_text, self.jobid, list(self.options), sorted(self.environment.items()),
+        parts = [self.deck, self.jobid, list(self.options), sorted(self.environment.items()),
                  self.limit, program] + ["counted"] * self.counted
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
@@ -85,10 +78,11 @@ class Study:
 
     `jobs(options)`         the list of jobs of one round, without repeats
     `measure(job, folder)`   columns read from one finished run; {} if there is nothing to read
-    `chart(table, folder)`   draws the charts into `folder` (see `charts.save`)
+    `chart(table, folder)`   draws the pictures into `folder`
     `derive(table, folder)`  optional: the table (see table.py) with columns that need several runs, whose
                              results are in folder/runs/RUN, RUN the name in column `run`
-    `page(table, doc)`       optional: writes DOC/studies/<name>.md and DOC/pictures/*
+    `page(table, doc)`       optional: writes DOC/studies/<name>.md; pictures that it shows as ../pictures/NAME.png are
+                             those that `chart` has drawn
     `levels`, `types`, `repeats` and `quick_...`: used where the user names none.
     """
 

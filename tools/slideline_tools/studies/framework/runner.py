@@ -92,7 +92,7 @@ class Run:
         shutil.rmtree(self.folder, ignore_errors=True)
         self.folder.mkdir(parents=True)
         deck = self.folder / f"{job.jobid}.k"
-        deck.write_text(job.deck_text, encoding="utf-8")
+        deck.write_text(job.deck, encoding="utf-8")
         self.record = {"fingerprint": sweep.fingerprint(job), "name": job.name, "processor": processor(),
                        "load": os.getloadavg()[0], "command": sweep.command(job, deck)}
         self.spent_before = processor_seconds()

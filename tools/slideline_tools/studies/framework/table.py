@@ -44,13 +44,3 @@ def finished(table):
 def counted(table):
     """The runs whose instructions were counted."""
     return table[table["state"] == COUNTED]
-
-
-def records(table):
-    """The rows as dicts without their missing cells."""
-    return [{name: whole(value) for name, value in row.items() if value == value} for row in table.to_dict("records")]
-
-
-def whole(value):
-    """An integer that pandas has made a float, since others of its column are missing."""
-    return int(value) if isinstance(value, float) and value.is_integer() else value
