@@ -197,7 +197,7 @@ def test_time_to_go():
     shown.known(Job("a", ""), {"seconds": 10.0, "status": 0})
     shown.known(Job("b", ""), {"seconds": 30.0, "status": 0})
     shown.start([Job("b", "", repeat=2), Job("c", "", alone=True), Job("d", "", cost=3.0)], 2)
-    assert shown.to_go() == 30.0 / 2 + 20.0 + 3 * 20.0 / 2
+    assert shown.to_go() == 20.0 / 2 + 20.0 + 3 * 20.0 / 2
     assert [span(x) for x in (10.0, 300.0, 7200.0)] == [
         "about 10 s", "about 5 min", "about 2.0 h"]
 

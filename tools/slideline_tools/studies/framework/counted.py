@@ -17,26 +17,17 @@ def counted_job(job, options=()):
                                once=True, counted=True, limit=None, cost=50.0 * job.cost)
 
 
-def whole(number):
-    """An integer with its thousands apart."""
-    return f"{number:,}".replace(",", " ")
-
-
-def instruction_table(table, base=1):
-    """Instructions of each type, in millions, and over those of type `base`; of contact where it can be told apart.
+def instruction_table(table):
+    """Instructions of each type, in millions, and over those of type 1; of contact where it can be told apart.
 
     `table`: counted runs of one scene and mesh.
     """
     runs = table.set_index("type").loc[in_order(table["type"])]
     lines = pd.DataFrame({"type": [label(ctype) for ctype in runs.index]}, index=runs.index)
-    parts = [("whole run", "instructions", f"over type {base}")]
-    if "contact_instructions" in runs and runs["contact_instructions"].notna().all():
-        parts.append(("contact", "contact_instructions", f"contact over type {base}"))
-    for title, column, over in parts:
-        lines[f"{title}, millions"] = (1e-6 * runs[column]).map("{:.1f}".format)
-        lines[over] = (runs[column] / runs[column][base]).map("{:.3f}".format) if base in runs.index else ""
-    if len(parts) > 1:
-        lines["share of contact"] = (100.0 * runs["contact_instructions"] / runs["instructions"]).map("{:.1f} %".format)
+    for title, column in (("whole run", "instructions"), ("contact", "contact_instructions")):
+        if column in runs and runs[column].notna().all():
+            lines[f"{title}, millions"] = (1e-6 * runs[column]).map("{:.1f}".format)
+            lines[f"{title} over type 1"] = (runs[column] / runs[column].get(1)).map("{:.3f}".format) if 1 in runs.index else ""
     return markdown_table(lines)
 
 

@@ -8,18 +8,18 @@ LINE_EVERY = 1.0  # seconds between lines that are not on a terminal
 
 
 class Progress:
-    """Counts finished runs and guesses the time to go from runs of the same name, else from the cost."""
+    """Counts finished runs and guesses the time to go from their seconds and costs."""
 
     def __init__(self, stream=None):
         self.stream = stream or sys.stdout
-        self.seconds, self.costs = {}, {}  # measured seconds and expected cost by job name
+        self.seconds = self.cost = 0.0  # measured and expected, of the finished runs
         self.left, self.total, self.finished, self.failed = [], 0, 0, 0
         self.parallel, self.shown = 1, 0.0
 
     def known(self, job, record):
         """A run that has finished before."""
-        self.seconds.setdefault(job.name, []).append(record["seconds"])
-        self.costs[job.name] = job.cost
+        self.seconds += record["seconds"]
+        self.cost += job.cost
         self.failed += record["status"] != 0
         self.finished += 1
 
@@ -60,9 +60,7 @@ class Progress:
 
     def to_go(self):
         """Seconds to go."""
-        means = {name: sum(values) / len(values) for name, values in self.seconds.items()}
-        unit = sum(means.values()) / sum(self.costs.values())
-        return sum(means.get(job.name, unit * job.cost) / (1 if job.alone else self.parallel) for job in self.left)
+        return self.seconds / self.cost * sum(job.cost / (1 if job.alone else self.parallel) for job in self.left)
 
 
 def span(seconds):
