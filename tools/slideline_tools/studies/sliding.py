@@ -50,7 +50,7 @@ def measure(folder, level, ctype):
     time, force = vertical_force(folder)
     found = force_peaks(time, force, level)
     wave = peaks.waviness(time, force, travel(time), SEGMENT / level, WINDOW_SHARE * crossing_time(level), judged_interval())
-    return {"peaks": found.count, "largest": found.largest, "rms": found.rms, "waviness": wave,
+    return {"peaks": len(found.sizes), "largest": found.largest, "rms": found.rms, "waviness": wave,
             **(point_counts(added_points(folder)) if ctype == 5 else {})}
 
 
