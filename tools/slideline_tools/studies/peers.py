@@ -11,9 +11,8 @@ import sys
 import pandas as pd
 
 from slideline_tools import UserError
-from slideline_tools.plots import PAGE_WIDTH, plt
+from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.studies.common import markdown_table, page_main, save_small, write_page
-from slideline_tools.studies.framework.charts import styled
 from slideline_tools.studies.framework.counted import who_counted
 from slideline_tools.studies.framework.table import COUNTED
 
@@ -167,7 +166,7 @@ def write(folder, doc):
     elements = read_runs(folder, "elements", "element", "ns", "2x2 points, large strain")
     collision = read_runs(folder, "collision", "contact", "ns", "type 2")
     contact = read_runs(folder, "contact", "contact", "processor_seconds", "type 5", 1.0e3)
-    with styled():
+    with plt.rc_context(STYLE):
         save_small(step_figure(elements), doc / "pictures" / "peers.png", lines=True)
     ends = elements.groupby("elements")["free_side"]
     write_page(doc, "peers", PAGE.format(

@@ -47,7 +47,7 @@ PAGES = {  # quick ones first; `chooses` reads what `speed_accuracy` wrote
     "paper": study("paper", "paper", "paper.study"),
     "stability": study("stability", "stability", "stability.study"),
     "speed_accuracy": study("speed_accuracy", "speed-accuracy", "speed_accuracy.study"),
-    "chooses": Page("choosing", ("tools/batch/chooses.sh",)),
+    "chooses": study("choosing", "chooses", "chooses"),
     "simplify": study("simplify", "simplify", "simplify.study", ALL),
     "scale": Page("scale", ("tools/batch/scale.sh", "--publish"), ("parallel",)),
     "peers": Page("peers", ("tests/lab/bench/peers/run.sh", "--publish")),

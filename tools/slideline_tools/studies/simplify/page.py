@@ -3,9 +3,8 @@
 import pandas as pd
 
 from slideline_tools import UserError
-from slideline_tools.plots import COLOURS, PAGE_WIDTH, plt
+from slideline_tools.plots import COLOURS, PAGE_WIDTH, STYLE, plt
 from slideline_tools.studies.common import TYPES, label, markdown_table, save_small, write_page
-from slideline_tools.studies.framework.charts import save, styled
 from slideline_tools.studies.framework.counted import who_counted
 from slideline_tools.studies.framework.table import counted, finished
 from slideline_tools.studies.framework.times import quartile_distance
@@ -116,11 +115,11 @@ def draw(runs, level):
 
 
 def chart(table, folder):
-    """The savings of each level."""
+    """The savings on the finest mesh."""
     runs = medians_of(table)
-    for level in runs.index.unique("level"):
-        with styled():
-            save(draw(runs, level), folder, f"savings_{level}")
+    if len(runs):
+        with plt.rc_context(STYLE):
+            save_small(draw(runs, runs.index.unique("level").max()), folder / "simplify.png", lines=True)
 
 
 # ---- tables ------------------------------------------------------------------------------------
@@ -197,13 +196,11 @@ def sliding_table(runs):
 
 
 def page(table, doc):
-    """doc/studies/simplify.md and its picture."""
+    """DOC/studies/simplify.md."""
     runs = medians_of(table)
     if "collision" not in runs.index:
         raise UserError("no finished runs of the collision")
     levels = sorted(runs.loc["collision"].index)
-    with styled():
-        save_small(draw(runs, levels[-1]), doc / "pictures" / "simplify.png", lines=True)
     write_page(doc, "simplify", PAGE.format(
         spread=percent(runs["spread"].median()), counted=who_counted(table), level=levels[-1],
         steps="\n\n".join(step_table(runs, level) for level in levels),

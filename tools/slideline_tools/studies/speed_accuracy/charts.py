@@ -4,9 +4,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from slideline_tools.plots import PAGE_WIDTH, plt
-from slideline_tools.studies.common import colour, label, marker
-from slideline_tools.studies.framework.charts import save, styled
+from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
+from slideline_tools.studies.common import colour, label, marker, save_small
 from slideline_tools.studies.speed_accuracy.points import COSTS, errors_of, front, named, points_of
 from slideline_tools.studies.speed_accuracy.scenes import SCENES
 
@@ -59,7 +58,7 @@ def plain_ticks(axis):
 
 
 def scene_figure(name, errors):
-    """A row of panels for each measure, a column for each cost; call it within `styled()`."""
+    """A row of panels for each measure, a column for each cost."""
     titles = {measure.key: measure.title for measure in SCENES[name].measures}
     groups = errors.groupby("measure", sort=False)
     figure, panels = plt.subplots(len(groups), len(COSTS), squeeze=False, sharey="row",
@@ -86,5 +85,5 @@ def sorted_types(rows):
 def chart(table, folder):
     """One figure for each scene."""
     for name, errors in errors_of(points_of(table)).groupby("scene", sort=False):
-        with styled():
-            save(scene_figure(name, errors), folder, f"{name}_speed_accuracy")
+        with plt.rc_context({**STYLE, "savefig.dpi": 110}):
+            save_small(scene_figure(name, errors), folder / f"speed_accuracy_{name}.png", lines=True)

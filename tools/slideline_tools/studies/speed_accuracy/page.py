@@ -4,18 +4,15 @@ import pandas as pd
 
 from slideline_tools import UserError
 from slideline_tools.contact_types import HARD, IMPLICIT
-from slideline_tools.plots import plt
-from slideline_tools.studies.common import label, markdown_table, save_small, write_page
-from slideline_tools.studies.framework.charts import styled
+from slideline_tools.studies.common import label, markdown_table, write_page
 from slideline_tools.studies.framework.counted import instruction_section
 from slideline_tools.studies.framework.rules import RUN_FACTOR, between, least
 from slideline_tools.studies.framework.table import finished
-from slideline_tools.studies.speed_accuracy.charts import scene_figure, sorted_types
+from slideline_tools.studies.speed_accuracy.charts import sorted_types
 from slideline_tools.studies.speed_accuracy.points import COSTS, errors_of, geometric, over, points_of
 from slideline_tools.studies.speed_accuracy.reference import REFERENCE_TYPE, reference_series
 from slideline_tools.studies.speed_accuracy.scenes import SCENES
 
-SHOWN = ("hertz", "collision")  # scenes whose charts the page shows
 COMPARED = {"profile_error": "Hertz profile", "force_error": "sliding force",
             "roughness": "sliding roughness", "total_work_error": "plastic work"}
 TARGETS = (0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 0.0003)
@@ -169,21 +166,18 @@ def scene_section(name, points, errors):
     cells = seconds["contact"] + " / " + seconds["computing"] + " s; " + cells + " %"
     rows = cells.unstack("level", fill_value="").rename(index=label, columns="N_r = {}".format)
     named = "; ".join(title_of(name, key).split(": ")[1] for key in errors["measure"].unique())
-    return (f"## {SCENES[name].title}\n\nContact / computing time, and errors in per cent "
+    return (f"## {SCENES[name].title}\n\n![Error over cost](../pictures/speed_accuracy_{name}.png)"
+            f"\n\nContact / computing time, and errors in per cent "
             f"({named}):\n\n" + markdown_table(rows.reset_index()))
 
 
 def page(table, doc):
-    """doc/studies/speed_accuracy.md and its pictures."""
+    """DOC/studies/speed_accuracy.md."""
     points = points_of(table)
     if points.empty:
         raise UserError("no finished runs")
     errors = errors_of(points)
     by_scene = dict(list(errors.groupby("scene", sort=False)))
-    for name in set(SHOWN) & set(by_scene):
-        with styled(), plt.rc_context({"savefig.dpi": 110}):
-            save_small(scene_figure(name, by_scene[name]),
-                       doc / "pictures" / f"speed_accuracy_{name}.png", lines=True)
     write_page(doc, "speed_accuracy", PAGE.format(
         build="; ".join(sorted(set(points["build"]))), rounds=points["rounds"].min(),
         spread=points["spread"].max(), overall=overall_table(points, errors),

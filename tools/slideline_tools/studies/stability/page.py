@@ -6,9 +6,8 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
 from slideline_tools.contact_types import IMPLICIT, in_order
-from slideline_tools.plots import PAGE_WIDTH, plt
+from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.studies.common import label, markdown_table, save_small, write_page
-from slideline_tools.studies.framework.charts import save, styled
 from slideline_tools.studies.framework.rules import between
 from slideline_tools.studies.stability.measures import BLOWN_UP, CHATTERING, STABLE, VERDICTS
 from slideline_tools.studies.stability.scenes import SCENES
@@ -99,7 +98,7 @@ def draw_limit(axes, rows, name, line, steps):
 
 
 def draw_maps(table):
-    """All types in columns, scenes in rows; call it within `styled()`."""
+    """All types in columns, scenes in rows."""
     cells = cells_of(table)
     types, names = in_order(cells["type"]), [name for name in SCENES if name in set(cells["scene"])]
     figure, panels = plt.subplots(len(names), len(types), squeeze=False, sharex="col",
@@ -123,10 +122,9 @@ def draw_maps(table):
 
 
 def chart(table, folder):
-    """The maps of each scene."""
-    for name, rows in cells_of(table).groupby("scene"):
-        with styled():
-            save(draw_maps(table[table["scene"] == name]), folder, f"maps_{name}")
+    """The maps of all scenes."""
+    with plt.rc_context(STYLE):
+        save_small(draw_maps(table), folder / "stability.png", lines=True)
 
 
 # ---- tables ------------------------------------------------------------------------------------
@@ -180,9 +178,7 @@ def depth_table(table):
 
 
 def page(table, doc):
-    """doc/studies/stability.md and doc/pictures/stability.png."""
-    with styled():
-        save_small(draw_maps(table), doc / "pictures" / "stability.png", lines=True)
+    """DOC/studies/stability.md."""
     cells = below(table[table["type"] != IMPLICIT])
     bad = cells["verdict"].isin([VERDICTS[BLOWN_UP], VERDICTS[CHATTERING]])
     write_page(doc, "stability", PAGE.format(
