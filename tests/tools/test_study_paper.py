@@ -108,7 +108,7 @@ def test_added_points_are_the_active_ones_beyond_the_touching_nodes(tmp_path):
         "time,interface,side,n_active\n0,1,slave,0\n0,1,master,0\n"
         "1,1,slave,1\n1,1,master,1\n2,1,slave,5\n2,1,master,5\n")
     assert sliding.added_points(tmp_path).tolist() == [[1, 0], [2, 3]]
-    assert sliding.point_counts(np.array([[1, 0], [2, 3], [4, 2]])) == {"states": 3, "states_above": 1, "nodes_above": 2}
+    assert sliding.point_counts(np.array([[1, 0], [2, 2], [4, 2]])) == {"states": 3, "states_above": 1, "nodes_above": 2}
 
 
 def test_a_markdown_table_has_four_digits_and_nothing_for_what_is_missing():
