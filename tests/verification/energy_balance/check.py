@@ -1,14 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The balance of a sound run is constant, however short the waves in it: TSSFAC 0.9, no contact."""
-import pathlib
-import sys
-
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
-
-from meshes import Deck, grid  # noqa: E402
-from slideline_tools.studies.stability.eigen import quad_stiffness  # noqa: E402
+from eigen import quad_stiffness
+from meshes import Deck, grid
 
 RHO, YOUNG = 1000.0, 1.0e7
 SOUND = np.sqrt(YOUNG / RHO)

@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Hourglass forces: decay rate, frequency, stable step, and no force on linear motion."""
-import pathlib
 import re
-import sys
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
-
-from meshes import Deck, distorted_patch, grid, lumped_mass, moduli  # noqa: E402
-from slideline_tools.studies.stability.eigen import quad_stiffness  # noqa: E402
+from eigen import quad_stiffness
+from meshes import Deck, distorted_patch, grid, lumped_mass, moduli
 
 RHO, YOUNG, POISSON = 1000.0, 1.0e6, 0.3
 _, _, WAVE_MODULUS = moduli(YOUNG, POISSON)

@@ -6,13 +6,13 @@ import sys
 import numpy as np
 
 from contact_types import TYPES
+from eigen import Model
 from meshes import Deck, card
+from springs import springs
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
 
 from slideline_tools.decks import Grid, spaced  # noqa: E402
-from slideline_tools.studies.stability.eigen import Model  # noqa: E402
-from slideline_tools.studies.stability.springs import springs  # noqa: E402
 
 YOUNG, POISSON, RHO, HOURGLASS = 1.0e9, 0.3, 1000.0, 0.1
 CELL, BLOCK_ROWS = 0.1, 3

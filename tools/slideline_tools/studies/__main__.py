@@ -49,7 +49,7 @@ def build_parser():
     parser.add_argument("--publish", action="store_true", help="write the page and its pictures "
                         "into results/doc instead of results/study-NAME/doc")
     parser.add_argument("--folder", type=pathlib.Path, help="instead of results/study-NAME")
-    parser.add_argument("--program", type=pathlib.Path, help="default: $SLIDELINE or build/release/slideline")
+    parser.add_argument("--program", type=pathlib.Path, help="default: $SLIDELINE or that of the build")
     return parser
 
 
@@ -165,9 +165,9 @@ def perform(wanted):
         raise UserError("a quick study is not published")
     study = pages.load(wanted.name)
     program = pathlib.Path(wanted.program or os.environ.get("SLIDELINE")
-                           or ROOT / "build" / "release" / "slideline").resolve()
+                           or ROOT / "build" / study.build / "slideline").resolve()
     if not program.is_file():
-        raise UserError(f"no program {program}; build it with tools/build.sh release")
+        raise UserError(f"no program {program}; build it with tools/build.sh {study.build}")
     jobs, counted = with_counter(planned(study, wanted), wanted)
     sweep = Sweep(folder, program, file_digest(program), counted)
     chosen = part_of_text(jobs, wanted.part) if wanted.part else jobs

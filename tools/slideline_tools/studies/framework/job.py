@@ -33,6 +33,7 @@ class Job:
     `jobid`     stem of the result files
     `options`   further arguments of the program, for example ("ctype=5", "p:dtplot=1")
     `labels`    columns of its row that say what it is, for example scene, level, type
+    `launcher`  words before the program, for example ("mpirun", "-n", "4")
     `environment` variables set for it
     `group`     jobs of a group run on one machine, since they are compared in time
     `alone`     a timing job: nothing else runs beside it, whatever -j says
@@ -50,6 +51,7 @@ class Job:
     jobid: str = "run"
     options: Sequence[str] = ()
     labels: Mapping[str, object] = dataclasses.field(default_factory=dict)
+    launcher: Sequence[str] = ()
     environment: Mapping[str, str] = dataclasses.field(default_factory=dict)
     group: str = ""
     alone: bool = False
@@ -68,7 +70,7 @@ class Job:
     def fingerprint(self, program):
         """Changes with the deck, the options, the environment and the program (its `file_digest`)."""
         parts = [self.deck, self.jobid, list(self.options), sorted(self.environment.items()),
-                 self.limit, program] + ["counted"] * self.counted
+                 self.limit, program, *self.launcher] + ["counted"] * self.counted
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
 
@@ -84,6 +86,7 @@ class Study:
     `page(table, doc)`       optional: writes DOC/studies/<name>.md; pictures that it shows as ../pictures/NAME.png are
                              those that `chart` has drawn
     `levels`, `types`, `repeats` and `quick_...`: used where the user names none.
+    `build`                  whose program it takes, of build/<build>
     """
 
     name: str
@@ -93,10 +96,11 @@ class Study:
     derive: Optional[Callable[[pd.DataFrame, pathlib.Path], pd.DataFrame]] = None
     page: Optional[Callable[[pd.DataFrame, pathlib.Path], None]] = None
     levels: Sequence[int] = (1,)
-    types: Sequence[int] = ALL_TYPES
+    types: Sequence = ALL_TYPES
     repeats: int = 1
     quick_levels: Sequence[int] = (1,)
     quick_repeats: int = 1
+    build: str = "release"
 
 
 def interleave(jobs, rounds):

@@ -49,7 +49,7 @@ PAGES = {  # quick ones first; `chooses` reads what `speed_accuracy` wrote
     "speed_accuracy": study("speed_accuracy", "speed-accuracy", "speed_accuracy.study"),
     "chooses": study("choosing", "chooses", "chooses"),
     "simplify": study("simplify", "simplify", "simplify.study", ALL),
-    "scale": Page("scale", ("tools/batch/scale.sh", "--publish"), ("parallel",)),
+    "scale": study("scale", "scale", "scale.study", ("parallel",)),
     "peers": Page("peers", ("tests/lab/bench/peers/run.sh", "--publish")),
     "speed_laws": Page("speed", ("tests/lab/bench/laws.sh", "--publish"), ("material",)),
     "speed": Page("speed", ("tests/lab/bench/run.sh", "--publish"), ALL),

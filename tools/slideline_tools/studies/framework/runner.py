@@ -57,7 +57,7 @@ class Sweep:
         words = [f"i={deck}", f"d={folder}", f"jobid={job.jobid}", *job.options]
         if job.counted:
             return [sys.executable, "-m", "slideline_tools.counting", folder, str(self.counted), *words]
-        return [str(self.program), *words]
+        return [*job.launcher, str(self.program), *words]
 
     def run(self, jobs, parallel, progress, retry=False):
         """Run what has no record yet; `retry`: what has failed too. `progress`: see progress.py."""

@@ -6,9 +6,35 @@ that this gives are held against those that the program counts.
 """
 import numpy as np
 
+from slideline_tools.decks import Grid, spaced
+
 TILE = 512        # elements at most
 CURVE_BITS = 16   # the Hilbert curve has 2^16 cells along each axis
 SLOT_BYTES = 16   # two forces
+
+
+def ring_mesh(around, across):
+    """Nodes and quads of a ring of radii 0.8 to 1."""
+    angle = 2.0 * np.pi * np.arange(around) / around
+    radius = np.linspace(0.8, 1.0, across + 1)
+    points = np.stack([np.outer(np.cos(angle), radius), np.outer(np.sin(angle), radius)], axis=-1)
+    node = np.arange(around * (across + 1)).reshape(around, across + 1)
+    after = np.roll(node, -1, axis=0)
+    quads = np.stack([node[:, :-1], node[:, 1:], after[:, 1:], after[:, :-1]], axis=-1)
+    return points.reshape(-1, 2), quads.reshape(-1, 4)
+
+
+def grid_mesh(columns, rows, width, height):
+    """Nodes and quads of a rectangle."""
+    grid = Grid(spaced((0.0, width, columns)), spaced((0.0, height, rows)), first_node=0)
+    return grid.points.reshape(-1, 2), grid.quads.reshape(-1, 4)
+
+
+MESHES = {  # one body without contact each
+    "square": lambda: grid_mesh(200, 200, 1.0, 1.0),
+    "bar": lambda: grid_mesh(1600, 25, 64.0, 1.0),
+    "ring": lambda: ring_mesh(1000, 40),
+}
 
 
 def hilbert_distance(x, y):

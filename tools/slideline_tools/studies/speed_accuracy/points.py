@@ -35,7 +35,7 @@ def errors_of(points):
                 floor = mine.get(f"{measure.key}_floor", measure.known)
                 found.append(mine[[*VARIANT, *COSTS]].assign(
                     measure=measure.key, error=mine[measure.key], floor=floor))
-    errors = pd.concat(found).dropna(subset="error").fillna({"floor": 0.0})
+    errors = pd.concat(found, ignore_index=True).dropna(subset="error").fillna({"floor": 0.0})
     errors["judged"] = errors[["error", "floor"]].max(axis=1)
     errors["resolved"] = errors["error"] > errors["floor"]
     return errors

@@ -13,8 +13,7 @@ from slideline_tools import scenes
 from slideline_tools.scenes.common import ALUMINIUM, STEEL
 from slideline_tools.scenes.patch import patch_grids
 from slideline_tools.scenes.sliding import sliding_grids
-from slideline_tools.studies.stability.eigen import Model
-from slideline_tools.studies.stability.springs import springs
+from slideline_tools.studies.common import verification
 
 SAMPLES, STATES = 300, 4    # rows of histories and states in a run
 HOURGLASS = 0.1             # stiffness form in all scenes
@@ -52,7 +51,7 @@ class Scene:
     def model(self):
         """The mesh at rest."""
         grids, materials = zip(*self.parts)
-        model = Model(grids, *([m[name] for m in materials] for name in ("young", "poisson", "rho")),
+        model = verification(".", "eigen").Model(grids, *([m[name] for m in materials] for name in ("young", "poisson", "rho")),
                       HOURGLASS)
         for grid, face, directions in self.fixed:
             for direction in directions:
@@ -67,8 +66,8 @@ class Scene:
         both, found = np.concatenate([slave, master]), []
         for shift in self.shifts:
             full = np.zeros((len(self.model.x),) * 2)
-            full[np.ix_(both, both)] = springs(ctype, self.model.x[slave, 0] + shift,
-                                               self.model.x[master, 0])
+            full[np.ix_(both, both)] = verification(".", "springs").springs(
+                ctype, self.model.x[slave, 0] + shift, self.model.x[master, 0])
             found.append(full)
         return found
 
