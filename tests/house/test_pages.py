@@ -31,6 +31,15 @@ def version():
     return int(found[1]), int(found[2])
 
 
+def is_behind(quoted, text):
+    """Why a page of doc/studies is behind the code, or ''."""
+    origin = pages.ORIGIN.search(text)
+    if not origin:
+        return "it does not name the source it was made from"
+    sources = {folder for page in pages.PAGES.values() if page.quoted == quoted for folder in page.sources}
+    return f"its sources have changed since {origin['source']}" * (origin["digest"] != pages.digest(sources))
+
+
 def commands(name):
     """What makes the figures of a page."""
     return [" ".join(page.command) for page in pages.PAGES.values() if page.quoted == name]
@@ -40,7 +49,7 @@ def judge(texts, allowed, now):
     """What is wrong: `texts` {page: text}, `allowed` as of `allowances`, `now` the version."""
     trouble = []
     for name, text in texts.items():
-        behind = pages.is_behind(name, text)
+        behind = is_behind(name, text)
         if behind and name not in allowed:
             trouble.append(f"{name}.md is behind the code ({behind}): make its figures anew "
                            f"({', '.join(commands(name))}), or allow it in doc/studies/README.md")

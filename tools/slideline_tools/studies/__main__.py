@@ -65,10 +65,7 @@ def planned(study, wanted):
     unknown = [one for one in options.types if one not in (*ALL_TYPES, *study.types)]
     if unknown:
         raise UserError(f"study {study.name} has no series {', '.join(unknown)}")
-    try:
-        jobs = interleave(study.jobs(options), options.repeats)
-    except ValueError as problem:
-        raise UserError(f"study {study.name}: {problem}") from problem
+    jobs = interleave(study.jobs(options), options.repeats)
     jobs = [job for job in jobs if fnmatch.fnmatchcase(job.name, wanted.only or "*")]
     if not jobs:
         raise UserError("no runs")
@@ -114,31 +111,33 @@ def held(folder, shared):
 
 
 def collect(study, jobs, sweep, doc, publish):
-    """Table, charts and page; UserError where runs of several processors are to be published."""
+    """Table, pictures and page; UserError where runs of several processors are to be published."""
     folder = sweep.folder
     table = table_of(study, jobs, sweep)
     if study.derive:
         table = study.derive(table, folder)
     write_whole(folder / f"{study.name}.csv", table.to_csv(index=False))
-    count = {state: int((table["state"] == state).sum()) for state in (FAILED, MISSING)}
+    count = table["state"].value_counts()
     print(f"wrote {folder / study.name}.csv: {len(table)} runs"
-          + "".join(f", {number} {state}" for state, number in count.items() if number))
+          + "".join(f", {count[state]} {state}" for state in (FAILED, MISSING) if state in count))
     study.chart(table, folder)
     if study.page:
         processors = sorted(set(table["processor"].dropna()))
         if publish and len(processors) > 1:
             raise UserError(f"runs of several processors are not published together: {'; '.join(processors)}")
         study.page(table, doc)
-        name = study.name.replace("-", "_")
-        path = doc / "studies" / f"{name}.md"
-        text = pages.with_origin(name, path.read_text(encoding="utf-8"), pages.program_source(sweep.program),
-                                 "; ".join(processors))
-        path.write_text(text, encoding="utf-8")
-        for picture in re.findall(r"\(\.\./(pictures/\S+\.png)\)", text):  # those that `chart` has drawn
-            drawn = folder / pathlib.PurePath(picture).name
-            if drawn.exists():
-                (doc / picture).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy(drawn, doc / picture)
+        finish_page(study.name.replace("-", "_"), doc, folder, pages.program_source(sweep.program), "; ".join(processors))
+
+
+def finish_page(name, doc, folder, source, processors):
+    """The page gets the line of its origin, and the pictures that it shows from the folder of the study."""
+    path = doc / "studies" / f"{name}.md"
+    text = pages.with_origin(name, path.read_text(encoding="utf-8"), source, processors)
+    path.write_text(text, encoding="utf-8")
+    (doc / "pictures").mkdir(exist_ok=True)
+    for picture in re.findall(r"\(\.\./pictures/(\S+\.png)\)", text):
+        if (folder / picture).exists():
+            shutil.copy(folder / picture, doc / "pictures")
 
 
 def print_runs(jobs, sweep):

@@ -20,12 +20,13 @@ from slideline_tools.studies.common import colour, label, markdown_table, marker
 from slideline_tools.studies.framework.job import Job, Study
 from slideline_tools.studies.framework.table import finished
 from slideline_tools.studies.hertz import MODULUS, lines, order
-from slideline_tools.studies.ironing import forces_along, ironing, roughness
 
 LEVELS = {"hertz": (1, 2, 3), "spheres": (1, 2), "sliding": (1,), "ironing": (1, 2)}
 TITLES = {"hertz": "Hertz, cylinder on block", "spheres": "Hertz, spheres", "sliding": "sliding", "ironing": "ironing"}
 CLOSED = ("hertz", "spheres")
 COSTS = {"hertz": 0.3, "spheres": 1.0, "sliding": 2.0, "ironing": 4.0}
+#: Ironing: UNITs of the ways down and along, way along, the part of it that is judged; the deck of the verification case.
+PRESS, DRAW, ALONG, JUDGED = 150.0, 240.0, 4.0, (1.0, 3.9)
 TOLD = re.compile(r"stress behind it differ by +([\d.E+-]+) %")
 
 
@@ -33,10 +34,14 @@ def deck_of(scene, level):
     """Text of a deck; the type comes from the command line."""
     if scene == "sliding":
         return sliding(level)
+    every = 1.0
     if scene == "ironing":
-        return ironing(5, level)
-    text = hertz(level) if scene == "hertz" else verification("hertz_spheres").pressed(5, level, False).text()
-    return text.replace("*END", "*DATABASE_SLEOUT\n1.0,\n*END")
+        case = verification("ironing")
+        text = case.ironing(5, PRESS, DRAW, penalty=1.0e10 * level, level=level, reach=ALONG).text()
+        every = (PRESS + DRAW) * case.UNIT / 500.0
+    else:
+        text = hertz(level) if scene == "hertz" else verification("hertz_spheres").pressed(5, level, False).text()
+    return text.replace("*END", f"*DATABASE_SLEOUT\n{every:.17g},\n*END")
 
 
 def jobs(options):
@@ -65,7 +70,7 @@ def measure(job, folder):
     if scene == "sliding":
         error = sliding_study.force_peaks(*sliding_study.vertical_force(folder), level).rms
     else:
-        error = roughness(forces_along(folder, scene)[1], level)[0]
+        error = ironing_roughness(folder, level)
     return {"estimate": float(found[1]) / 100.0, "error": float(error)}
 
 
@@ -102,6 +107,17 @@ def sphere_error(folder, ctype):
     half, peak = check.spheres.hertz(2.0 * np.pi * force, 0.5 * check.RADIUS, check.MODULUS)
     wide, high = check.spheres.layer(check.MODULUS / (half * check.PENALTY * (2.0 if ctype == 3 else 1.0)))[:2]
     return distance(pressure, lines.ellipse(r, half * wide, peak * high), lines.ellipse(r, half, peak), area)
+
+
+def ironing_roughness(folder, level):
+    """Of the vertical force along the slab."""
+    case = verification("ironing")
+    force = read_csv(folder / "ironing.rcforc.csv").where(side="slave")
+    way = ALONG * (force["time"] / case.UNIT - PRESS) / DRAW
+    if way[-1] < JUDGED[1]:
+        raise UserError(f"{folder}: ended before the way did")
+    keep = (way >= JUDGED[0]) & (way <= JUDGED[1])
+    return case.roughness(way[keep], force["fy"][keep], cell=0.2 / level)
 
 
 # ---- picture and page --------------------------------------------------------------------------

@@ -63,11 +63,6 @@ def load(name):
     return importlib.import_module(f"slideline_tools.studies.{STUDIES[name]}").STUDY
 
 
-def sources_of(quoted):
-    """Folders of src that a page of doc/studies speaks of."""
-    return tuple(sorted({folder for page in PAGES.values() if page.quoted == quoted for folder in page.sources}))
-
-
 ORIGIN = re.compile(r"^Made from source `(?P<source>\S+)` on (?P<processor>.+); digest of what it speaks of "
                     r"`(?P<digest>[0-9a-f]{12})`\.$", re.MULTILINE)
 
@@ -112,13 +107,3 @@ def with_origin(name, text, source=None, processors=None):
         rest = rest.lstrip("\n").partition("\n")[2]
     return (f"{title}\n\nMade from source `{source or program_source()}` on {processors or processor()}; "
             f"digest of what it speaks of `{digest(PAGES[name].sources)}`.\n\n{rest.lstrip()}")
-
-
-def is_behind(quoted, text):
-    """Why a page of doc/studies is behind the code, or ''."""
-    origin = ORIGIN.search(text)
-    if not origin:
-        return "it does not name the source it was made from"
-    if origin["digest"] != digest(sources_of(quoted)):
-        return f"its sources have changed since {origin['source']}"
-    return ""

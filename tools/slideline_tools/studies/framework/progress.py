@@ -8,7 +8,7 @@ LINE_EVERY = 1.0  # seconds between lines that are not on a terminal
 
 
 class Progress:
-    """Counts finished runs and guesses the time to go from their seconds and costs."""
+    """Counts runs and guesses the time to go from the seconds and costs of those that have finished."""
 
     def __init__(self, stream=None):
         self.stream = stream or sys.stdout
@@ -18,8 +18,7 @@ class Progress:
 
     def known(self, job, record):
         """A run that has finished before."""
-        self.seconds += record["seconds"]
-        self.cost += job.cost
+        self.seconds, self.cost = self.seconds + record["seconds"], self.cost + job.cost
         self.failed += record["status"] != 0
         self.finished += 1
 
@@ -38,7 +37,9 @@ class Progress:
             self.line(f"{job.folder_name} failed: {record['message']}")
         if self.stream.isatty() or time.monotonic() - self.shown > LINE_EVERY or not self.left:
             self.shown = time.monotonic()
-            self.line(f"{self.state()}; {job.folder_name} took {record['seconds']:.3g} s", stays=not self.left)
+            text = f"{self.finished} of {self.total} runs" + f", {self.failed} failed" * bool(self.failed)
+            text += f", {span(self.to_go())} to go" * bool(self.left)
+            self.line(f"{text}; {job.folder_name} took {record['seconds']:.3g} s", stays=not self.left)
 
     def killed(self, job):
         """A run that was ended from outside: no result."""
@@ -50,13 +51,7 @@ class Progress:
         if self.stream.isatty():
             width = shutil.get_terminal_size().columns - 1
             text = "\r" + (text if stays else text[:width]).ljust(width)
-        self.stream.write(text + ("\n" if stays or not self.stream.isatty() else ""))
-        self.stream.flush()
-
-    def state(self):
-        """'12 of 84 runs, 1 failed, about 3 min to go'."""
-        text = f"{self.finished} of {self.total} runs" + f", {self.failed} failed" * bool(self.failed)
-        return text + (f", {span(self.to_go())} to go" if self.left else "")
+        print(text, end="\n" if stays or not self.stream.isatty() else "", file=self.stream, flush=True)
 
     def to_go(self):
         """Seconds to go."""
@@ -67,6 +62,4 @@ def span(seconds):
     """A length of time in words."""
     if seconds < 90.0:
         return f"about {max(1, round(seconds))} s"
-    if seconds < 5400.0:
-        return f"about {round(seconds / 60.0)} min"
-    return f"about {seconds / 3600.0:.1f} h"
+    return f"about {round(seconds / 60.0)} min" if seconds < 5400.0 else f"about {seconds / 3600.0:.1f} h"

@@ -9,9 +9,8 @@ import pandas as pd
 
 from slideline_tools import scenes
 from slideline_tools.contact_types import TYPES
-from slideline_tools.plots import COLOURS, PAGE_WIDTH, plt
+from slideline_tools.plots import COLOURS, PAGE_WIDTH, STYLE, plt
 from slideline_tools.studies.common import label, markdown_table
-from slideline_tools.studies.framework.charts import styled
 from slideline_tools.studies.framework.rules import between
 from slideline_tools.studies.framework.times import LETTERS, contact_times, over_type_1
 
@@ -133,7 +132,7 @@ def draw_bars(axes, times, scene, level):
 def cost_figure(times):
     """Bars of each scene on its coarsest mesh."""
     first = {scene: level for scene, level, _ in reversed(times.index)}
-    with styled():
+    with plt.rc_context(STYLE):
         figure, panels = plt.subplots(2, 2, figsize=(PAGE_WIDTH + 1.0, 6.0), layout="constrained")
         for axes in panels.flat[len(first):]:
             axes.set_axis_off()
