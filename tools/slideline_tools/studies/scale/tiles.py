@@ -100,27 +100,3 @@ def traffic(slots, owner, n):
     pairs = np.unique(sender * n + needs % n)
     np.add.at(messages, pairs // n, 1)
     return messages, sent
-
-
-def tile_graph(slots, n_tile):
-    """(starts, neighbours, common nodes) of the tiles, in the rows that METIS takes."""
-    nodes, touching = slots
-    found = []
-    for shift in range(1, np.bincount(nodes).max()):
-        same = np.flatnonzero(nodes[shift:] == nodes[:-shift])
-        found += [touching[same] * n_tile + touching[same + shift], touching[same + shift] * n_tile + touching[same]]
-    edges, weights = np.unique(np.concatenate(found), return_counts=True)
-    starts = np.searchsorted(edges // n_tile, np.arange(n_tile + 1))
-    return starts, edges % n_tile, weights
-
-
-def metis(slots, sizes, n):
-    """The process of each tile by METIS, weighted by elements and common nodes; None where pymetis is not installed."""
-    try:
-        import pymetis  # of the study alone
-    except ImportError:
-        return None
-    starts, neighbours, weights = tile_graph(slots, len(sizes))
-    _, owner = pymetis.part_graph(n, xadj=starts.tolist(), adjncy=neighbours.tolist(), vweights=sizes.tolist(),
-                                  eweights=weights.tolist())
-    return np.array(owner)
