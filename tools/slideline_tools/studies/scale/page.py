@@ -156,8 +156,8 @@ def draw(seen, constants):
     left.set(xlabel="elements of a process", ylabel="bytes a step, fullest process")
     for elements, colour in zip(SIZES, ("#0072b2", "#d55e00", "#009e73")):
         for contact, style in ((False, "-"), (True, "--")):
-            right.semilogx(POWERS, [efficiency(elements, ranks, "fast", constants, contact)
-                                    for ranks in POWERS], style, base=2, color=colour, linewidth=1.2,
+            found = [efficiency(elements, ranks, "fast", constants, contact) for ranks in POWERS]
+            right.semilogx(POWERS, found, style, base=2, color=colour, linewidth=1.2,
                            label=None if contact else power(elements))
     right.set(xlabel="processes", ylabel="predicted efficiency", ylim=(0.0, 1.05))
     right.legend(title="elements (with contact: dashed)", fontsize=7)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Tiles of a mesh as the program cuts them, and what processes that share them send each other in a step.
+"""Tiles of a mesh as the program cuts them, and what processes that share them send in a step.
 
-The same as src/model/layout_building.f90 and src/solve/explicit/rank_shares.f90 for one part and no contact; the bytes
-that this gives are held against those that the program counts.
+The same as src/model/layout_building.f90 and src/solve/explicit/rank_shares.f90 for one part and no
+contact; the bytes that this gives are held against those that the program counts.
 """
 import numpy as np
 
@@ -82,11 +82,11 @@ def ranges(sizes, n):
 
 
 def traffic(slots, owner, n):
-    """(messages, bytes) that each of n processes sends in a step; `owner` is the process of each tile."""
+    """(messages, bytes) that each of n processes sends in a step; `owner`: process of each tile."""
     nodes, touching = slots
     ranks = owner[touching]
     messages, sent = np.zeros(n, dtype=int), np.zeros(n, dtype=int)
-    # Pairs of slots of one node: they stand side by side, and a node has at most as many as elements meet in it.
+    # Pairs of slots of one node stand side by side; it has at most as many as elements meet in it.
     found = []
     for shift in range(1, np.bincount(nodes).max()):
         same = nodes[shift:] == nodes[:-shift]
