@@ -86,7 +86,7 @@ def known_errors(folder):
         for one in scene.measures:
             floor = mine.get(f"{one.key}_floor", pd.Series(one.known, mine.index)).fillna(one.known)
             judged = (100.0 * pd.concat([mine[one.key], floor], axis=1).max(axis=1))
-            errors[name][one.title] = {ctype: float(f"{error:.2g}") for ctype, error in judged.items()}
+            errors[name][one.title] = judged.map(lambda error: float(f"{error:.2g}")).to_dict()
     return errors
 
 
@@ -134,7 +134,8 @@ def page(table, doc):
         shown["over the front"] = runs["over_front"].map("{:.3f}".format)
         shown["for each error alone"] = runs["alone"]
         shown["over its type"] = runs["over_type"].map("{:+.2%}".format)
-    write_page(doc, "chooses", PAGE.format(counted=who_counted(table), choices=markdown_table(shown)))
+    write_page(doc, "chooses", PAGE.format(counted=who_counted(table),
+                                           choices=markdown_table(shown)))
 
 
 STUDY = Study("chooses", jobs, measure, lambda table, folder: None, derive, page)

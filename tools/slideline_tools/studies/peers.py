@@ -127,7 +127,7 @@ def contact_table(runs, counts):
 
 
 def size(value):
-    """A relative error; those that CalculiX's seven digits can not tell from none by their bound."""
+    """A relative error; what seven digits can not tell from none by their bound."""
     if value != value:
         return "refused"
     return f"{value:.1e}" if abs(value) >= 1.0e-6 else "< 1e-6"

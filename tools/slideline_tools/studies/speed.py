@@ -19,7 +19,8 @@ IN_MEMORY = 20000  # elements: from there on a model is larger than the caches o
 AT_ONCE = ", 2 runs at once"
 FILE_GOALS = {"reading": "at most 3 s", "peak over steps": "at most 1.5",
               "steps": "at most 250", "states over plain file": "at least 0.5"}
-STYLES = {("elastic", 1): "-o", ("elastic", 2): "--o", ("yielding", 1): "-s", ("yielding", 2): "--s"}
+STYLES = {("elastic", 1): "-o", ("elastic", 2): "--o",
+          ("yielding", 1): "-s", ("yielding", 2): "--s"}
 
 PAGE = """# Speed
 
@@ -192,7 +193,7 @@ def speed_chart(bench, path):
                                              figsize=(PAGE_WIDTH + 1.5, 4.2))
         for (case, threads), rows in steps[~steps["at_once"]].groupby(["case", "threads"]):
             left.plot(rows["size"], rows["median"], STYLES[case, threads], markersize=3,
-                      color=colour(threads), label=f"{case}, {threads} thread" + "s" * (threads > 1))
+                      color=colour(1 + (case == "yielding")), label=f"{case}, {threads} threads")
         for ctype in TYPES:
             rows = contact[contact["type"] == ctype]
             right.plot(rows["size"], rows["median"], "-o", markersize=3, color=colour(ctype),

@@ -29,11 +29,9 @@ PAGE = """# Many processes
 
 {counted}
 
-## Ranges of the curve or METIS
+## Cut
 
 {cuts}
-
-{verdict}
 
 ## Predicted efficiency
 
@@ -52,34 +50,25 @@ Contact over elements on 1,024 processes: {shares}.
 
 # ---- tiles -------------------------------------------------------------------------------------
 
-def cut_rows(name, points, quads, counts):
-    """What a mesh sends on some numbers of processes, by ranges of the curve and by METIS."""
-    of_quads = tiles.tiles_of(points, quads)
-    slots, sizes = tiles.slots_of(quads, of_quads), np.bincount(of_quads)
-    for ranks in counts:
-        for way, cut in (("ranges", tiles.ranges(sizes, ranks)),
-                         ("METIS", tiles.metis(slots, sizes, ranks))):
-            if cut is not None:
-                messages, sent = tiles.traffic(slots, cut, ranks)
-                load = np.bincount(cut, sizes, ranks)
-                yield (name, len(quads), ranks, way, messages.mean(), messages.max(), sent.mean(),
-                       sent.max(), load.max() / load.mean())
-
-
 @functools.lru_cache(maxsize=1)
 def all_cuts():
-    """A row for each mesh, number of processes and way; the large square is cut and not run."""
+    """What each mesh sends by its tiles; the large square is cut and not run."""
+    plans = [(name, mesh(), POWERS[:6]) for name, mesh in tiles.MESHES.items()]
+    plans.append(("large square", tiles.grid_mesh(1000, 1000, 1.0, 1.0), (64, 256, 1024)))
     rows = []
-    for name, mesh in tiles.MESHES.items():
-        rows += cut_rows(name, *mesh(), POWERS[1:6])
-    rows += cut_rows("large square", *tiles.grid_mesh(1000, 1000, 1.0, 1.0), (64, 256, 1024))
-    return pd.DataFrame(rows, columns=["scene", "elements", "ranks", "way", *SENT, "load"])
+    for name, (points, quads), counts in plans:
+        of_quads = tiles.tiles_of(points, quads)
+        slots, sizes = tiles.slots_of(quads, of_quads), np.bincount(of_quads)
+        for ranks in counts:
+            messages, sent = tiles.traffic(slots, tiles.ranges(sizes, ranks), ranks)
+            rows.append((name, len(quads), ranks, messages.mean(), messages.max(), sent.mean(),
+                         sent.max()))
+    return pd.DataFrame(rows, columns=["scene", "elements", "ranks", *SENT])
 
 
 def counted_table(runs, cuts):
     """What the program has counted, and whether the tiles of the mesh say the same."""
-    ways = cuts[cuts["way"] == "ranges"].drop(columns=["elements", "way", "load"])
-    both = runs[runs["ranks"] > 1].merge(ways, how="left", on=["scene", "ranks"],
+    both = runs[runs["ranks"] > 1].merge(cuts, how="left", on=["scene", "elements", "ranks"],
                                          suffixes=("", "_cut"))
     apart = pd.concat([(both[name] - both[f"{name}_cut"]).abs() for name in SENT], axis=1)
     same = (apart < 0.0051).all(axis=1).map({True: "yes", False: "no"})
@@ -87,26 +76,11 @@ def counted_table(runs, cuts):
     return markdown_table(shown.assign(**{"as tiles say": same.where(apart.notna().all(axis=1))}))
 
 
-def cut_verdict(cuts):
-    """What METIS sends and how long a step takes with it, over ranges of the curve."""
-    latency, bandwidth = NETWORKS["fast"]
-    step = (1e-9 * STEP_NS * cuts["elements"] / cuts["ranks"] * cuts["load"]
-            + cuts["most_messages"] * latency + cuts["most_bytes"] / bandwidth)
-    ways = cuts.assign(step=step).pivot(index=["scene", "ranks"], columns="way",
-                                        values=["bytes", "step"])
-    if "METIS" not in cuts["way"].values:
-        return "METIS is not compared: pip install pymetis."
-    over = {name: (ways[name]["METIS"] / ways[name]["ranges"]).median() for name in ("bytes", "step")}
-    return (f"METIS sends {over['bytes']:.2f} times the bytes (median); a step takes "
-            f"{over['step']:.2f} times as long on the fast network, by the model.")
-
-
 # ---- the model ---------------------------------------------------------------------------------
 
 def seen_sends(runs, cuts):
     """All that was counted or cut with a tile for each process, with the column `share`."""
-    seen = pd.concat([runs[(runs["ranks"] > 1) & (runs["scene"] != "collision")],
-                      cuts[cuts["way"] == "ranges"]])
+    seen = pd.concat([runs[(runs["ranks"] > 1) & (runs["scene"] != "collision")], cuts])
     seen = seen.assign(share=seen["elements"] / seen["ranks"])
     return seen[seen["share"] >= tiles.TILE]
 
@@ -182,8 +156,8 @@ def draw(seen, constants):
     left.set(xlabel="elements of a process", ylabel="bytes a step, fullest process")
     for elements, colour in zip(SIZES, ("#0072b2", "#d55e00", "#009e73")):
         for contact, style in ((False, "-"), (True, "--")):
-            right.semilogx(POWERS, [efficiency(elements, ranks, "fast", constants, contact)
-                                    for ranks in POWERS], style, base=2, color=colour, linewidth=1.2,
+            found = [efficiency(elements, ranks, "fast", constants, contact) for ranks in POWERS]
+            right.semilogx(POWERS, found, style, base=2, color=colour, linewidth=1.2,
                            label=None if contact else power(elements))
     right.set(xlabel="processes", ylabel="predicted efficiency", ylim=(0.0, 1.05))
     right.legend(title="elements (with contact: dashed)", fontsize=7)
@@ -205,6 +179,6 @@ def page(table, doc):
     constants = constants_of(seen_sends(runs, cuts))
     shares = ", ".join(f"{contact_share(one):.2f} at {power(one)} elements" for one in SIZES)
     write_page(doc, "scale", PAGE.format(
-        counted=counted_table(runs, cuts), cuts=markdown_table(cuts), verdict=cut_verdict(cuts),
+        counted=counted_table(runs, cuts), cuts=markdown_table(cuts),
         messages=constants[0], factor=constants[1], predicted=predicted_table(constants),
         limits=limit_table(constants), shares=shares))

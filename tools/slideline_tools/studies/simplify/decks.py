@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Decks of the study simplify: scenes with more than they need, made from the scenes as they are."""
+"""Decks of the study simplify: scenes with more than they need."""
 import numpy as np
 
 from slideline_tools.decks import Deck, field
@@ -57,7 +57,8 @@ def mirror(grid, part):
     quads = np.stack([of_left[1:, :-1], of_left[:-1, :-1], of_left[:-1, 1:], of_left[1:, 1:]],
                      axis=-1)
     # As written for the half model and in comma form: a minus sign would cost a digit.
-    places = [[float(field(x, NODE_WIDTH)) for x in point] for point in grid.points[1:].reshape(-1, 2)]
+    places = [[float(field(x, NODE_WIDTH)) for x in point]
+              for point in grid.points[1:].reshape(-1, 2)]
     lines = [f"{number},{-x!r},{y!r}" for number, (x, y) in zip(of_left[1:].ravel(), places)]
     return "\n".join(["*NODE", *lines]) + "\n" + written(
         ("quads", MIRRORED + grid.element.ravel(), part, quads.reshape(-1, 4)))

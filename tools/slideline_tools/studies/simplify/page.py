@@ -119,7 +119,8 @@ def chart(table, folder):
     runs = medians_of(table)
     if len(runs):
         with plt.rc_context(STYLE):
-            save_small(draw(runs, runs.index.unique("level").max()), folder / "simplify.png", lines=True)
+            finest = runs.index.unique("level").max()
+            save_small(draw(runs, finest), folder / "simplify.png", lines=True)
 
 
 # ---- tables ------------------------------------------------------------------------------------

@@ -86,4 +86,5 @@ def chart(table, folder):
     """One figure for each scene."""
     for name, errors in errors_of(points_of(table)).groupby("scene", sort=False):
         with plt.rc_context({**STYLE, "savefig.dpi": 110}):
-            save_small(scene_figure(name, errors), folder / f"speed_accuracy_{name}.png", lines=True)
+            save_small(scene_figure(name, errors), folder / f"speed_accuracy_{name}.png",
+                       lines=True)

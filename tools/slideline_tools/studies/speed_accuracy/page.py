@@ -9,7 +9,8 @@ from slideline_tools.studies.framework.counted import instruction_section
 from slideline_tools.studies.framework.rules import RUN_FACTOR, between, least
 from slideline_tools.studies.framework.table import finished
 from slideline_tools.studies.speed_accuracy.charts import sorted_types
-from slideline_tools.studies.speed_accuracy.points import COSTS, errors_of, geometric, over, points_of
+from slideline_tools.studies.speed_accuracy.points import (COSTS, errors_of, geometric, over,
+                                                           points_of)
 from slideline_tools.studies.speed_accuracy.reference import REFERENCE_TYPE, reference_series
 from slideline_tools.studies.speed_accuracy.scenes import SCENES
 
@@ -74,8 +75,8 @@ def moment_text(value):
 def overall_table(points, errors, base=1, types=None):
     """A row for each type: times and errors over those of `base`, exactness and net moment."""
     rows = pd.DataFrame(index=sorted_types(points) if types is None else types)
-    failed = errors[errors["measure"] == "pressure_error"].groupby("type", observed=True)["resolved"]
-    rows["exact pressure"] = failed.any().map({True: "no", False: "yes"})
+    pressure = errors[errors["measure"] == "pressure_error"].groupby("type", observed=True)
+    rows["exact pressure"] = pressure["resolved"].any().map({True: "no", False: "yes"})
     for cost, title in COSTS.items():
         by_scene = geometric(over(points, cost, base), [points["type"], points["scene"]])
         of_type = by_scene.groupby(level="type", observed=True)
@@ -113,7 +114,8 @@ def target_cell(rows):
     if rows.empty:
         return "-"
     alike = rows.loc[least(dict(rows["computing"]), RUN_FACTOR)]
-    parts = [" ".join(map(str, same["type"])) + f"/{level}" for level, same in alike.groupby("level")]
+    parts = [" ".join(map(str, same["type"])) + f"/{level}"
+             for level, same in alike.groupby("level")]
     return f"{', '.join(parts)}, {rows['computing'].min():.2g} s"
 
 
@@ -131,10 +133,10 @@ def reference_table(table):
     """What the references are and how far they are known."""
     runs, lines = finished(table), []
     for name, scene in SCENES.items():
-        for key in (one.key for one in scene.measures if one.referenced):
+        for key in (one.key for one in scene.measures if f"{one.key}_floor" in runs):
+            mine = runs[runs["scene"] == name].dropna(subset=f"{key}_floor")
             for series in (REFERENCE_TYPE, HARD):
-                known = runs[(runs["scene"] == name) & (runs["type"].map(reference_series) == series)]
-                known = known[known.get(f"{key}_floor", known["level"] * float("nan")).notna()]
+                known = mine[mine["type"].map(reference_series) == series]
                 if len(known):
                     lines.append(reference_cells(title_of(name, key), known.iloc[0], key, series))
     return markdown_table(["reference", "type", "meshes, the last is the reference", "order",
@@ -150,7 +152,7 @@ def reference_cells(title, row, key, series):
 
 
 def percent(row):
-    """An error in per cent; in brackets if it is not resolved, by its bound if that is round-off."""
+    """An error in per cent; in brackets, or by its bound, if it is not resolved."""
     if row.resolved:
         return f"{100.0 * row.error:.2g}"
     if row.floor < 1e-6:

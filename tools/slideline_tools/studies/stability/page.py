@@ -172,9 +172,9 @@ def depth_table(table):
     cells = below(table)
     cells = cells[(cells["scene"] == "block") & (cells["verdict"] != VERDICTS[BLOWN_UP])]
     depths = cells["depth"] / SCENES["block"].approach
-    found = depths.groupby([cells["type"], cells["decade"]]).max().unstack().map("{:.2f}".format)
-    found = found.reindex(in_order(found.index)).rename(index=label, columns="1e{:+.1f}".format).replace("nan", "")
-    return markdown_table(found.reset_index())
+    found = depths.groupby([cells["type"], cells["decade"]]).max().map("{:.2f}".format)
+    table = found.unstack(fill_value="").reindex(in_order(found.index.levels[0]))
+    return markdown_table(table.rename(index=label, columns="1e{:+.1f}".format).reset_index())
 
 
 def page(table, doc):

@@ -63,7 +63,8 @@ def limit_job(stem, deck, words, labels):
     """One cycle with ECDT 2, whose log tells the program's limit."""
     end = ("tssfac=1", f"endtim={LIMIT_TIME:g}")
     return Job(f"{stem}_limit", deck.replace("*CONTROL_ENERGY", RULE), labels["scene"],
-               (*words, *common(SCENES[labels["scene"]]), *end), {**labels, "kind": "limit"}, cost=0.1)
+               (*words, *common(SCENES[labels["scene"]]), *end), {**labels, "kind": "limit"},
+               cost=0.1)
 
 
 def map_job(stem, deck, words, labels, step):
