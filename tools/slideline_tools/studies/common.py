@@ -10,14 +10,15 @@ import sys
 from PIL import Image
 
 from slideline_tools import UserError
-from slideline_tools.contact_types import HARD, IMPLICIT, SERIES, TYPES  # noqa: F401 (others take TYPES from here)
+from slideline_tools.contact_types import HARD, IMPLICIT, SERIES, TYPES
 from slideline_tools.plots import COLOURS, MARKERS, plt
 from slideline_tools.prose import wrapped
 from slideline_tools.studies.framework.pages import with_origin
 
 LARGEST_PICTURE = 100_000
 VERIFICATION = pathlib.Path(__file__).resolve().parents[3] / "tests" / "verification"
-IMPLICIT_LOOKS = {IMPLICIT: ("#e6007e", "X"), HARD: ("#111111", "*")}  # colour and marker
+#: Colour and marker of each type and series, the same in every picture.
+LOOKS = {**{ctype: (COLOURS[ctype - 1], MARKERS[ctype - 1]) for ctype in TYPES}, IMPLICIT: ("#e6007e", "X"), HARD: ("#111111", "*")}
 
 
 def label(ctype):
@@ -26,13 +27,13 @@ def label(ctype):
 
 
 def colour(ctype):
-    """The colour of a contact type, the same in every picture."""
-    return IMPLICIT_LOOKS[ctype][0] if ctype in IMPLICIT_LOOKS else COLOURS[ctype - 1]
+    """The colour of a contact type."""
+    return LOOKS[ctype][0]
 
 
 def marker(ctype):
     """Its marker, where points of types are told apart by shape too."""
-    return IMPLICIT_LOOKS[ctype][1] if ctype in IMPLICIT_LOOKS else MARKERS[ctype - 1]
+    return LOOKS[ctype][1]
 
 
 def markdown_table(names, rows=None):

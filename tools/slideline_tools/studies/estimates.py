@@ -22,9 +22,8 @@ from slideline_tools.studies.framework.table import finished
 from slideline_tools.studies.hertz import MODULUS, lines, order
 
 LEVELS = {"hertz": (1, 2, 3), "spheres": (1, 2), "sliding": (1,), "ironing": (1, 2)}
-TITLES = {"hertz": "Hertz, cylinder on block", "spheres": "Hertz, spheres", "sliding": "sliding", "ironing": "ironing"}
+TITLES = {"hertz": "cylinder on block", "spheres": "spheres", "sliding": "sliding", "ironing": "ironing"}
 CLOSED = ("hertz", "spheres")
-COSTS = {"hertz": 0.3, "spheres": 1.0, "sliding": 2.0, "ironing": 4.0}
 #: Ironing: UNITs of the ways down and along, way along, the part of it that is judged; the deck of the verification case.
 PRESS, DRAW, ALONG, JUDGED = 150.0, 240.0, 4.0, (1.0, 3.9)
 TOLD = re.compile(r"stress behind it differ by +([\d.E+-]+) %")
@@ -51,7 +50,7 @@ def jobs(options):
         for level in (level for level in LEVELS[scene] if level in options.levels):
             deck = deck_of(scene, level)
             listed += [Job(f"{scene}_{level}_type_{ctype}", deck, scene, (f"ctype={ctype}", "ncpu=1"),
-                           {"scene": scene, "level": level, "type": ctype}, cost=COSTS[scene] * level ** 3)
+                           {"scene": scene, "level": level, "type": ctype}, cost=level ** 3)
                        for ctype in options.types]
     return listed
 
@@ -144,15 +143,15 @@ def chart(table, folder):
 
 PAGE = """# How good the estimate of contact is
 
-Tables of `tools/study.sh estimates`. Each interface tells how far contact pressure and the stress of the elements behind differ
-([theory](../theory/contact.md#81-how-good-the-answer-is-runcontact_judging-runrows_behind)): the *estimate*, column `estimate` of
-sleout; of sliding and ironing that of all instants written. N_r divides the cells of the coarsest mesh. All types have the same PEN.
+Tables of `tools/study.sh estimates`: the [estimate](../theory/contact.md#81-how-good-the-answer-is-runcontact_judging-runrows_behind),
+of sliding and ironing that of all instants written. N_r divides the cells of the coarsest mesh. All types have the same PEN.
 
 ![estimate over error](../pictures/estimates.png)
 
-The thin line is where both are the same. Error of the closed forms: `sqrt(sum (p - q)^2 a / sum p0^2 a)` over all slave nodes, q the
-ellipse of Hertz for the force of the run, widened and lowered by the springs of the penalty, p0 without them. Spheres: the deck of the
-verification case `hertz_spheres`. Roughness of sliding and ironing: standard deviation of the vertical force from its trend over its mean.
+The thin line is where both are the same. Error of a cylinder on a block and of spheres (decks of `make-deck hertz` and of
+`tests/verification/hertz_spheres`): `sqrt(sum (p - q)^2 a / sum p0^2 a)` over all slave nodes, q the ellipse of Hertz for the force of
+the run, widened and lowered by the springs of the penalty, p0 without them. Of sliding and ironing: standard deviation of the
+vertical force from its trend, over its mean.
 
 Estimates, %:
 
@@ -176,20 +175,17 @@ def table_of(runs, name):
 def reading(runs):
     """Estimate over error, order of the estimate in the mesh, agreement of the ranks, in words."""
     closed, others = (runs[runs["scene"].isin(CLOSED) == flag] for flag in (True, False))
-    words = []
-    if len(closed):
-        over = closed["error"] / closed["estimate"]
-        words.append(f"- With a closed form the error is {over.min():.1f} to {over.max():.1f} times the estimate, "
-                     f"{np.exp(np.log(over).mean()):.1f} times in the geometric mean.")
-    orders = pd.Series([order(1.0 / same["level"], same["estimate"]) for _, same in closed.groupby(["scene", "type"])]).dropna()
-    if len(orders):
-        words.append(f"- The estimate falls with the mesh in {(orders > 0.0).sum()} of {len(orders)} cases, at an order of "
-                     f"{orders[orders > 0.0].mean():.2f} in the mean where it does.")
-    if len(others):
-        ranks = [same["estimate"].rank().corr(same["error"].rank()) for _, same in others.groupby(["scene", "level"])]
-        words.append(f"- In sliding and ironing the ranks of estimate and roughness on one mesh agree with a coefficient of "
-                     f"{np.mean(ranks):.2f} (1: the same order).")
-    return "\n".join(words)
+    over = closed["error"] / closed["estimate"]
+    orders = pd.Series([order(1.0 / same["level"], same["estimate"]) for _, same in closed.groupby(["scene", "type"])],
+                       dtype=float).dropna()
+    ranks = [same["estimate"].rank().corr(same["error"].rank()) for _, same in others.groupby(["scene", "level"])]
+    words = ((over, f"With a closed form the error is {over.min():.1f} to {over.max():.1f} times the estimate, "
+              f"{np.exp(np.log(over).mean()):.1f} times in the geometric mean."),
+             (orders, f"The estimate falls with the mesh in {(orders > 0.0).sum()} of {len(orders)} cases, at an order of "
+              f"{orders[orders > 0.0].mean():.2f} in the mean where it does."),
+             (ranks, "In sliding and ironing the ranks of estimate and roughness on one mesh agree with a coefficient of "
+              f"{np.sum(ranks) / max(len(ranks), 1):.2f} (1: the same order)."))
+    return "\n".join(f"- {text}" for figures, text in words if len(figures))
 
 
 def page(table, doc):

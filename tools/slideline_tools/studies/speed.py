@@ -11,9 +11,9 @@ import sys
 import pandas as pd
 
 from slideline_tools import UserError
+from slideline_tools.contact_types import TYPES
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
-from slideline_tools.studies.common import (TYPES, colour, label, markdown_table, page_main,
-                                            save_small, write_page)
+from slideline_tools.studies.common import colour, label, markdown_table, page_main, save_small, write_page
 
 IN_MEMORY = 20000  # elements: from there on a model is larger than the caches of a core
 AT_ONCE = ", 2 runs at once"
