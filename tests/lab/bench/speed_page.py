@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The figures of doc/studies/speed.md, from the table of tests/lab/bench/run.sh.
 
-    python -m slideline_tools.studies.speed FOLDER DOC
+    speed_page.py FOLDER DOC
 
 FOLDER holds bench.csv and machine.json; the page goes to DOC/studies, its picture to DOC/pictures.
 """
