@@ -9,13 +9,14 @@ import pandas as pd
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "lab" / "bench"))
+sys.path[:0] = [str(ROOT / "tests" / "lab" / "bench"), str(ROOT / "tests" / "lab" / "bench" / "peers")]
 
 import measuring  # noqa: E402
+import peers_page as peers  # noqa: E402
 import search  # noqa: E402
+import speed_page as speed  # noqa: E402
 from slideline_tools import UserError  # noqa: E402
 from slideline_tools.contact_types import ALL_TYPES  # noqa: E402
-from slideline_tools.studies import peers, speed  # noqa: E402
 
 STEP = measuring.Variant("step", "elastic", 4000, 1, "ns/element")
 

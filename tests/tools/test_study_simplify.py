@@ -85,7 +85,7 @@ def test_awake_adds_one_card_that_asks_for_a_search_each_cycle():
 
 
 def test_plastic_law_has_the_elastic_numbers():
-    deck = simplify.plastic_hertz(1)
+    deck = simplify_decks.plastic_hertz(scenes.hertz(1))
     assert "MAT_ELASTIC" not in deck and deck.count("*MAT_PLASTIC_KINEMATIC") == 2
     law = cards(deck, "MAT_PLASTIC_KINEMATIC", (10,) * 7)
     assert [row[4] for row in law[::2]] == [simplify_decks.UNREACHABLE] * 2

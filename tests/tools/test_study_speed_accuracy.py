@@ -9,7 +9,7 @@ import pytest
 
 from slideline_tools import UserError
 from slideline_tools.contact_types import ALL_TYPES, SERIES
-from slideline_tools.studies import __main__ as command, block
+from slideline_tools.studies import __main__ as command, block, chooses
 from slideline_tools.studies.common import verification
 from slideline_tools.studies.framework.job import Options, interleave
 from slideline_tools.studies.speed_accuracy import page as pages, points as fronts, reference, scenes, study
@@ -218,6 +218,24 @@ def test_charts(tmp_path, plain_pictures):
     table = made_table(ALL_TYPES)
     study.chart(table[table["scene"] == "block"], tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["speed_accuracy_block.png"]
+
+
+def test_choice_of_the_program_over_the_front(tmp_path):
+    """CTYPE 0 takes type 5 between the blocks, exact as type 4, which takes 400 instructions; its files are not quite the same."""
+    (tmp_path / "study-speed-accuracy").mkdir()
+    made_table().to_csv(tmp_path / "study-speed-accuracy/speed-accuracy.csv", index=False)
+    runs = [{"run": f"block_{ctype}_none", "scene": "block", "type": ctype, "target": "none", "state": "finished"} for ctype in range(8)]
+    table = pd.DataFrame(runs + [{**row, "run": f"{row['run']}_counted", "state": "counted",
+                                  "instructions": 100.0 * row["type"] or 520.0} for row in runs])
+    table.loc[table["run"] == "block_0_none", "chosen"] = 5
+    for name, text in (("block_0_none", "1"), ("block_5_none", "2")):
+        (tmp_path / "study-chooses/runs" / name).mkdir(parents=True)
+        (tmp_path / "study-chooses/runs" / name / "run.rcforc.csv").write_text(text)
+    found = chooses.derive(table, tmp_path / "study-chooses").set_index("run").loc["block_0_none"]
+    assert found["over_front"] == pytest.approx(1.3) and found["over_type"] == pytest.approx(0.04)
+    assert found["alone"] == "1.300" and found["same_files"] == False  # noqa: E712
+    with pytest.raises(UserError, match="run tools/study.sh speed-accuracy"):
+        chooses.derive(table, tmp_path / "nowhere")
 
 
 # ---- with the program --------------------------------------------------------------------------

@@ -17,6 +17,7 @@ from slideline_tools.studies.common import label, markdown_table, write_page
 from slideline_tools.studies.framework.counted import counted_job, who_counted
 from slideline_tools.studies.framework.job import Job, Study
 from slideline_tools.studies.framework.table import counted, finished
+from slideline_tools.studies.speed_accuracy.points import errors_of
 from slideline_tools.studies.speed_accuracy.scenes import SCENES, node_penalty
 
 CUT = {"patch": "endtim=0.4", "block": "endtim=0.05", "hertz": "endtim=5.0e-6",
@@ -72,22 +73,17 @@ def measure(one, folder):
 
 
 def known_errors(folder):
-    """{scene: {measure: {type: error in per cent with two digits}}} of the coarsest mesh."""
+    """{scene: [{type: error in per cent with two digits} of each measure]}, coarsest mesh."""
     path = folder.with_name(folder.name.replace("chooses", "speed-accuracy")) / "speed-accuracy.csv"
     if not path.exists():
         raise UserError(f"{path} is missing: run tools/study.sh speed-accuracy")
     runs = finished(pd.read_csv(path))
     runs = runs[(runs["role"] == "sweep") & (runs["level"] == 1) & (runs["repeat"] == 1)]
     runs = runs[runs["type"].astype(str).isin(map(str, ALL_TYPES))]
-    errors = {}
-    for name, scene in SCENES.items():
-        mine = runs[runs["scene"] == name].astype({"type": int}).set_index("type")
-        errors[name] = {}
-        for one in scene.measures:
-            floor = mine.get(f"{one.key}_floor", pd.Series(one.known, mine.index)).fillna(one.known)
-            judged = (100.0 * pd.concat([mine[one.key], floor], axis=1).max(axis=1))
-            errors[name][one.title] = judged.map(lambda error: float(f"{error:.2g}")).to_dict()
-    return errors
+    errors = errors_of(runs.astype({"type": int}))
+    errors["judged"] = (100.0 * errors["judged"]).map(lambda error: float(f"{error:.2g}"))
+    return {name: [dict(zip(same["type"], same["judged"])) for _, same in rows.groupby("measure", sort=False)]
+            for name, rows in errors.groupby("scene")}
 
 
 def over_front(cost, chosen, costs, errors):
@@ -111,7 +107,7 @@ def derive(table, folder):
     counts = counted(table).set_index(["scene", "type", "target"])["instructions"].to_dict()
     for run in finished(table[table["type"] == 0]).itertuples():
         costs = {ctype: counts.get((run.scene, ctype, "none")) for ctype in ALL_TYPES}
-        cost, known = counts.get((run.scene, 0, run.target)), errors[run.scene].values()
+        cost, known = counts.get((run.scene, 0, run.target)), errors[run.scene]
         row = {"run": run.run, "same_files": same_files(folder / "runs", run)}
         if cost and all(costs.values()):
             row["over_type"] = cost / costs[run.chosen] - 1.0

@@ -90,6 +90,11 @@ def plastic_projectile(deck):
     return plastic_instead(deck, 2, STEEL)
 
 
+def plastic_hertz(deck):
+    """The Hertz scene both of whose bodies have a plastic law that never yields."""
+    return plastic_instead(plastic_instead(deck, 2, STEEL), 1, ELASTIC_ALUMINIUM)
+
+
 def wider_collision(level):
     """The collision with a projectile a little wider, so that no two nodes face each other."""
     projectile = collision_grids(level)[1]

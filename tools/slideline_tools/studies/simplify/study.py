@@ -6,6 +6,7 @@ die, contact search in each cycle and asleep, plastic and elastic law, much and 
 decks.py makes the decks, compare.py compares results.
 """
 import dataclasses
+import functools
 import json
 import re
 from typing import Callable, Sequence
@@ -14,7 +15,6 @@ import pandas as pd
 
 from slideline_tools import UserError, scenes
 from slideline_tools.histories import read_csv
-from slideline_tools.scenes.common import STEEL
 from slideline_tools.studies.framework.counted import counted_job
 from slideline_tools.studies.framework.job import ALL_TYPES, Job, Study
 from slideline_tools.studies.framework.runner import RECORD
@@ -43,61 +43,32 @@ class Variant:
     cost: float = 0.15
 
 
-def collision_awake(level):
-    """With a search of all contact nodes in each cycle."""
-    return decks.awake(scenes.collision(level))
-
-
-def plastic_projectile(level):
-    """With a plastic law in the projectile."""
-    return decks.plastic_projectile(scenes.collision(level))
-
-
-def collision_too_much(level):
-    """The full model with both."""
-    return decks.awake(decks.plastic_projectile(decks.full_collision(level)))
-
-
-def wider_awake(level):
-    """A projectile no two of whose nodes face others, searched for in each cycle."""
-    return decks.awake(decks.wider_collision(level))
-
-
-def sliding_rigid(level):
-    """The sliding of a rigid die."""
-    return scenes.sliding(level, rigid_die=True)
-
-
-def sliding_awake(level):
-    """The sliding with a search in each cycle."""
-    return decks.awake(scenes.sliding(level))
-
-
-def plastic_hertz(level):
-    """Both bodies of the Hertz scene with a plastic law that never yields."""
-    deck = decks.plastic_instead(scenes.hertz(level), 2, STEEL)
-    return decks.plastic_instead(deck, 1, decks.ELASTIC_ALUMINIUM)
+def made(scene, *changes):
+    """The deck of a scene by level, with changes of its text."""
+    return lambda level: functools.reduce(lambda deck, change: change(deck), changes, scene(level))
 
 
 def variants():
     """All variants by name."""
-    lean, full, awake = scenes.collision, decks.full_collision, collision_awake
+    lean, full, awake = scenes.collision, decks.full_collision, made(scenes.collision, decks.awake)
+    wider, rigid_die = decks.wider_collision, functools.partial(scenes.sliding, rigid_die=True)
     listed = {
         "collision": Variant("collision", lean),
         "collision_full": Variant("collision", full, cost=0.25),
-        "collision_plastic_projectile": Variant("collision", plastic_projectile),
+        "collision_plastic_projectile": Variant("collision", made(lean, decks.plastic_projectile)),
         "collision_no_states": Variant("collision", lean, (NO_STATES,)),
         "collision_force_alone": Variant("collision", lean, (NO_STATES, NO_HISTORIES)),
         "collision_no_output": Variant("collision", lean, (NO_STATES, NO_HISTORIES, NO_FORCE)),
-        "collision_too_much": Variant("collision", collision_too_much, cost=0.3),
-        "collision_wider_type_3": Variant("collision", decks.wider_collision, ("ctype=3",),
-                                          once=True),
-        "collision_wider_awake_type_3": Variant("collision", wider_awake, ("ctype=3",), once=True),
+        "collision_too_much": Variant(
+            "collision", made(full, decks.plastic_projectile, decks.awake), cost=0.3),
+        "collision_wider_type_3": Variant("collision", wider, ("ctype=3",), once=True),
+        "collision_wider_awake_type_3": Variant("collision", made(wider, decks.awake),
+                                                ("ctype=3",), once=True),
         "hertz": Variant("hertz", scenes.hertz),
-        "hertz_plastic": Variant("hertz", plastic_hertz),
+        "hertz_plastic": Variant("hertz", made(scenes.hertz, decks.plastic_hertz)),
         "sliding": Variant("sliding", scenes.sliding, turns=1, cost=1.2),
-        "sliding_rigid": Variant("sliding", sliding_rigid, turns=1, cost=1.0),
-        "sliding_awake": Variant("sliding", sliding_awake, turns=1, cost=1.6),
+        "sliding_rigid": Variant("sliding", rigid_die, turns=1),
+        "sliding_awake": Variant("sliding", made(scenes.sliding, decks.awake), turns=1, cost=1.6),
     }
     for ctype in ALL_TYPES:
         words, once = (f"ctype={ctype}",), ctype not in TIMED_TYPES

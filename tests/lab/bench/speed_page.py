@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The figures of doc/studies/speed.md, from the table of tests/lab/bench/run.sh.
 
-    python -m slideline_tools.studies.speed FOLDER DOC
+    speed_page.py FOLDER DOC
 
 FOLDER holds bench.csv and machine.json; the page goes to DOC/studies, its picture to DOC/pictures.
 """
@@ -152,6 +152,7 @@ def contact_table(bench):
     keys = ["scene", "type", "size"]
     points = of_contact(bench, "ns/point").set_index(keys)["over_yardstick"]
     nodes = of_contact(bench, "ns/slave node").join(points, keys, rsuffix="_point")
+    nodes = nodes[nodes["scene"].isin(["flat", "crown"])]
     table = by_size(nodes, ["scene", "type"],
                     lambda row: f"{row.median:.1f} ({row.over_yardstick_point:.2f} K)")
     table["type"] = table["type"].map(label)
@@ -167,7 +168,7 @@ def search_table(bench):
 def file_table(bench):
     """Memory, reading and writing beside their goals."""
     rows = bench[bench["part"].isin(["memory", "input", "output"])]
-    found = [f"{value:.3g} {unit}" for value, unit in zip(rows["median"], rows["unit"])]
+    found = [f"{value:.3g} {unit}" for value, unit in zip(rows["median"], rows["unit"].fillna(""))]
     return markdown_table(rows[["part", "case", "size"]].assign(
         median=found, goal=rows["case"].map(FILE_GOALS)))
 

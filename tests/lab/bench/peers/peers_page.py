@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The figures of doc/studies/peers.md, from the tables of tests/lab/bench/peers/run.sh.
 
-    python -m slideline_tools.studies.peers FOLDER DOC
+    peers_page.py FOLDER DOC
 
 FOLDER holds elements.csv, collision.csv, contact.csv and versions.txt, and counts.csv where
 instructions could be counted.
