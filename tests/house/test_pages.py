@@ -31,6 +31,15 @@ def version():
     return int(found[1]), int(found[2])
 
 
+def is_behind(quoted, text):
+    """Why a page of doc/studies is behind the code, or ''."""
+    origin = pages.ORIGIN.search(text)
+    if not origin:
+        return "it does not name the source it was made from"
+    sources = {folder for page in pages.PAGES.values() if page.quoted == quoted for folder in page.sources}
+    return f"its sources have changed since {origin['source']}" * (origin["digest"] != pages.digest(sources))
+
+
 def commands(name):
     """What makes the figures of a page."""
     return [" ".join(page.command) for page in pages.PAGES.values() if page.quoted == name]
@@ -40,7 +49,7 @@ def judge(texts, allowed, now):
     """What is wrong: `texts` {page: text}, `allowed` as of `allowances`, `now` the version."""
     trouble = []
     for name, text in texts.items():
-        behind = pages.is_behind(name, text)
+        behind = is_behind(name, text)
         if behind and name not in allowed:
             trouble.append(f"{name}.md is behind the code ({behind}): make its figures anew "
                            f"({', '.join(commands(name))}), or allow it in doc/studies/README.md")
@@ -59,12 +68,10 @@ def test_every_page_has_its_figures_and_every_study_its_page():
     assert set(written()) == {page.quoted for page in pages.PAGES.values()}
     readme = (STUDIES / "README.md").read_text(encoding="utf-8")
     assert all(f"[{name}]({name}.md)" in readme for name in written())
-    for name, page in pages.PAGES.items():
+    for page in pages.PAGES.values():
         assert (ROOT / page.command[0]).exists()
         assert pathlib.PurePath(page.command[0]).name in readme + written()[page.quoted]
         assert set(page.sources) <= {path.name for path in (ROOT / "src").iterdir()}
-        order = list(pages.PAGES)
-        assert all(order.index(other) < order.index(name) for other in page.after)
 
 
 def test_pages_keep_up_with_the_code():
@@ -75,8 +82,7 @@ def test_pages_keep_up_with_the_code():
 @pytest.fixture
 def fresh():
     """A page made from the sources as they are."""
-    with pages.made_by("0123456789ab", "a processor, 2 logical cores"):
-        return pages.with_origin("stability", "# Hertz\n\nText.\n")
+    return pages.with_origin("stability", "# Hertz\n\nText.\n", "0123456789ab", "a processor, 2 logical cores")
 
 
 def test_a_page_that_is_behind_is_noticed(fresh):
@@ -109,7 +115,6 @@ def test_the_digest_is_that_of_the_code_and_not_of_its_comments(tmp_path):
 
 
 def test_the_line_of_origin_is_replaced_and_not_repeated(fresh):
-    with pages.made_by("ba9876543210", "another"):
-        again = pages.with_origin("stability", fresh)
+    again = pages.with_origin("stability", fresh, "ba9876543210", "another")
     assert again.count("Made from source") == 1 and "`ba9876543210` on another;" in again
     assert again.endswith("\n\nText.\n") and again.startswith("# Hertz\n\nMade from")

@@ -59,20 +59,13 @@ def test_help_is_the_head_of_the_script(tree, name, word):
 
 
 def test_help_may_follow_other_words(tree):
-    done = ask(tree, "tools/batch/patch.sh", "static", "--help")
+    done = ask(tree, "tools/batch/run_folder.sh", "decks", "--help")
     assert done.returncode == 0 and done.stdout.startswith("usage")
 
 
 def test_what_follows_the_deck_goes_to_the_program(tree):
     done = ask(tree, "tools/run.sh", "absent.k", "--help")
     assert done.returncode == 1 and "absent.k" in done.stderr
-
-
-def test_claims_without_results_names_what_to_run(tree):
-    done = ask(tree, "tools/batch/claims.sh")
-    assert done.returncode == 2 and not (tree / "build").exists()
-    for command in ("tools/batch/block.sh", "tools/batch/sliding.sh", "tools/study.sh paper-tables"):
-        assert f"  {command}\n" in done.stderr
 
 
 def test_help_of_studies_comes_from_the_studies_where_they_are_installed(tree, tmp_path):

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 
+import pandas as pd
 import pytest
 
 from slideline_tools import UserError, counting, scenes
@@ -167,25 +168,25 @@ def test_counted_jobs_are_rows_of_their_own(tmp_path, monkeypatch):
     def rows(digest):
         sweep = runner.Sweep(tmp_path / "sweep", plain, "one", (pathlib.Path("other"), digest))
         sweep.run(jobs, 1, Progress())
-        return table.rows_of(study, jobs, sweep), {job.name: sweep.record(job) for job in jobs}
+        return table.table_of(study, jobs, sweep), {job.name: sweep.record(job) for job in jobs}
 
     found, before = rows("first")
-    assert [row["run"] for row in table.finished(found)] == ["a"]
-    row, = table.counted(found)
+    assert table.finished(found)["run"].tolist() == ["a"]
+    row, = table.counted(found).to_dict("records")
     assert (row["instructions"], row["contact_instructions"], row["shortened"]) == (1000, 300, "endtim=1")
     _, after = rows("second")
     assert after["a"] == before["a"] and after["a_counted"]["fingerprint"] != before["a_counted"]["fingerprint"]
 
 
 def rows_of_types(**contact):
-    return [{"state": table.COUNTED, "scene": "s", "level": 1, "type": ctype, "instructions": total, "shortened": "endtim=1",
+    return pd.DataFrame([{"state": table.COUNTED, "scene": "s", "level": 1, "type": ctype, "instructions": total, "shortened": "endtim=1",
              "counted_by": counting.CALLGRIND, **({"contact_instructions": part} if contact else {})}
-            for ctype, total, part in ((1, 10_000_000, 1_000_000), (5, 11_000_000, 2_000_000))]
+            for ctype, total, part in ((1, 10_000_000, 1_000_000), (5, 11_000_000, 2_000_000))])
 
 
 def test_tables_of_instructions():
     text = counted.instruction_section(rows_of_types(contact=True), {"s": "Scene"})
-    assert "| 5 NTS-mAR | 11.0 | 1.100 | 2.0 | 2.000 | 18.2 % |" in text
+    assert "| 5 NTS-mAR | 11.0 | 1.100 | 2.0 | 2.000 |" in text
     assert "Counted by callgrind, x86-64-v3" in text and "Cut short: s (endtim=1)." in text
     assert "| 5 NTS-mAR | 11.0 | 1.100 |\n" in counted.instruction_table(rows_of_types()) + "\n"
-    assert "No instructions were counted" in counted.instruction_section([], {})
+    assert "No instructions were counted" in counted.instruction_section(rows_of_types()[:0], {})

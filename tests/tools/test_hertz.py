@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: MIT
 """The Hertz scene and study: mesh, closed form, penalty layer, measures of a pressure profile."""
-import subprocess
-
 import numpy as np
+import pandas as pd
 import pytest
 
-from slideline_tools import scenes
+from slideline_tools import UserError, scenes
 from slideline_tools.scenes.common import ALUMINIUM, STEEL
 from slideline_tools.scenes.hertz import BLOCK_CELL, CYLINDER_CELL, RADIUS, graded
+from slideline_tools.studies import __main__ as command
 from slideline_tools.studies import hertz
-from slideline_tools.studies import line_contact as lines
+from slideline_tools.studies.hertz import lines
 from test_decks import Model, areas
 
 
@@ -141,12 +141,16 @@ def test_order_of_an_error_in_proportion_to_the_square():
     assert np.isnan(hertz.order([1.0], [0.1]))  # a page of one mesh has no order
 
 
-def test_a_run_lies_on_hertz_with_springs(slideline, tmp_path):
-    deck = tmp_path / "hertz.k"
-    deck.write_text(scenes.hertz(2, 7), encoding="ascii")
-    finished = subprocess.run([slideline, f"i={deck}", f"d={tmp_path}", "jobid=hertz"], capture_output=True, text=True, check=False)
-    assert finished.returncode == 0, finished.stdout + finished.stderr
-    run = hertz.Run(tmp_path, 2, 7)
-    assert run.half_width == pytest.approx(run.layer.half_width, rel=0.01)
-    assert run.peak == pytest.approx(run.layer.peak, rel=0.01)
-    assert run.segments == pytest.approx(2.0 * run.hertz[0] / CYLINDER_CELL)
+def test_a_run_lies_near_hertz_and_tells_its_estimate(slideline, tmp_path, plain_pictures):
+    """Figures of doc/studies/choosing.md. Hertz with the springs of the penalty: tests/verification/hertz."""
+    assert command.main(["estimates", "--quick", "--types", "5", "--only", "hertz*", "--program", slideline, "--folder",
+                         str(tmp_path)]) == 0
+    row, = pd.read_csv(tmp_path / "estimates.csv").to_dict("records")
+    assert row["estimate"] == pytest.approx(0.01992, rel=0.02) and row["error"] == pytest.approx(0.03335, rel=0.02)
+    assert "| 5 NTS-mAR | 1.99" in (tmp_path / "doc/studies/estimates.md").read_text()
+    folder = tmp_path / "runs" / row["run"]
+    found = hertz.measure(folder)
+    assert found["half_width"] == pytest.approx(1.031, abs=0.002) and found["peak"] == pytest.approx(0.971, abs=0.002)
+    (folder / "hertz.glstat.csv").write_text("time,cycle\n0,0\n1e-6,9\n")
+    with pytest.raises(UserError, match="did not reach its end"):
+        hertz.measure(folder)

@@ -35,10 +35,3 @@ def test_meshes_cover_the_metre_and_do_not_match(layout):
 def test_uneven_lines_keep_the_ends():
     assert np.array_equal(uneven_lines(5, 0.0), even_lines(5))
     assert np.ptp(np.diff(uneven_lines(5, 0.3))) > 0.1
-
-
-def test_names_and_percentages():
-    assert patch.deck_name("5_4", 1.0e6) == "5_4_1e06"
-    assert patch.percent(1e-12) == "< 1e-7"
-    assert patch.percent(0.12345) == "12"
-    assert patch.percent(3.66) == "366"

@@ -34,9 +34,8 @@ def judged(time, force, threshold=THRESHOLD, window=WINDOW):
 
 def test_smooth_oscillation_has_no_peaks():
     found = judged(sampled(), smooth(sampled()))
-    assert found.count == 0
+    assert len(found.sizes) == 0
     assert found.largest < 0.2 * THRESHOLD
-    assert found.typical == 0.0
 
 
 # The first crest of sin(2 pi t / w) exp(-t / w): at tan(2 pi t / w) = 2 pi.
@@ -47,7 +46,7 @@ CREST = np.sin(np.arctan(2 * np.pi)) * np.exp(-np.arctan(2 * np.pi) / (2 * np.pi
 def test_ringing_is_one_peak_each_at_any_sampling_that_sees_it(interval):
     time = sampled(interval)
     found = judged(time, smooth(time) + spikes(time, 0.02))
-    assert found.count == len(SPIKES)
+    assert len(found.sizes) == len(SPIKES)
     assert np.allclose(found.times, SPIKES, atol=0.006)
     assert found.sizes == pytest.approx(0.02 * CREST, rel=0.15)
     assert found.largest == found.sizes.max()
@@ -57,28 +56,28 @@ def test_sizes_follow_the_height():
     time = sampled()
     small = judged(time, smooth(time) + spikes(time, 0.01))
     large = judged(time, smooth(time) + spikes(time, 0.04))
-    assert small.count == large.count == len(SPIKES)
-    assert large.typical / small.typical == pytest.approx(4.0, rel=0.1)
+    assert len(small.sizes) == len(large.sizes) == len(SPIKES)
+    assert np.median(large.sizes) / np.median(small.sizes) == pytest.approx(4.0, rel=0.1)
 
 
 def test_peaks_below_the_threshold_do_not_count_but_are_seen():
     time = sampled()
     found = judged(time, smooth(time) + spikes(time, 0.004))
-    assert found.count == 0
+    assert len(found.sizes) == 0
     assert found.largest == pytest.approx(0.004 * CREST, rel=0.2)
 
 
 def test_step_leaves_half_its_height():
     time = sampled()
     found = judged(time, MEAN * (1.0 + 0.03 * (time > 2.0)))
-    assert found.count == 1
+    assert len(found.sizes) == 1
     assert found.sizes * found.mean == pytest.approx(0.5 * 0.03 * MEAN, rel=0.05)
 
 
 def test_peaks_outside_the_interval_are_not_judged():
     time = sampled()
     force = smooth(time) + spikes(time, 0.02)
-    assert abrupt_peaks(time, force, WINDOW, THRESHOLD, (1.5, 3.5)).count == 3
+    assert len(abrupt_peaks(time, force, WINDOW, THRESHOLD, (1.5, 3.5)).sizes) == 3
 
 
 def test_rms_of_a_fast_oscillation():

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""The study of scale: tiles and what processes send each other, against counts by hand; the page from tables."""
-import csv
-import re
-
+"""The study of scale: tiles and what processes send each other, against counts by hand; the page from a table."""
 import numpy as np
+import pandas as pd
 import pytest
 
-from slideline_tools import UserError
-from slideline_tools.studies.scale import page as scale, tiles as scale_tiles
-from slideline_tools.studies.scale.runs import COSTS, NAMES, grid_mesh, ring_mesh
+from slideline_tools.studies.framework.job import Options
+from slideline_tools.studies.scale import page as scale, study, tiles as scale_tiles
+from slideline_tools.studies.scale.tiles import grid_mesh, ring_mesh
 
 
 def strip(columns=2048):
@@ -52,14 +50,6 @@ def test_ranges_are_even_as_far_as_tiles_allow():
     assert scale.load_of(10 ** 6, 64) == pytest.approx(31 / (1954 / 64))
 
 
-def test_graph_of_tiles_has_both_ways_of_each_edge():
-    slots, sizes = strip()
-    starts, neighbours, weights = scale_tiles.tile_graph(slots, len(sizes))
-    assert len(neighbours) == 14 and np.all(weights == 3)
-    pairs = {(a, b) for a in range(8) for b in neighbours[starts[a]:starts[a + 1]]}
-    assert all((b, a) in pairs and abs(a - b) == 1 for a, b in pairs)
-
-
 def test_a_ring_is_closed():
     points, quads = ring_mesh(12, 2)
     corners = points[quads]
@@ -74,44 +64,30 @@ def test_efficiency_is_one_where_nothing_is_exchanged_and_falls(monkeypatch):
     assert scale.efficiency(512 * 64, 64, "free", (4, 4.0), False) == pytest.approx(1.0)
     by_ranks = [scale.efficiency(10 ** 7, n, "fast", (4, 4.0), False) for n in (2, 16, 256, 1024)]
     assert by_ranks == sorted(by_ranks, reverse=True) and by_ranks[-1] < 1.0
-    assert scale.efficiency(10 ** 7, 256, "fast", (4, 4.0), True) < by_ranks[2]
     # All compute the contact: no more than one over its share.
     share = 1e-9 * scale.CONTACT_NS * (10 ** 7 / 2) ** 0.5
     one = 1e-9 * scale.STEP_NS * 10 ** 7 + share
     assert scale.efficiency(10 ** 7, 1024, "free", (4, 4.0), True) < one / (1024 * share)
 
 
-@pytest.fixture
-def small(monkeypatch):
-    """A strip alone, and no large mesh."""
-    monkeypatch.setattr(scale, "MESHES", {"strip": lambda: grid_mesh(2048, 2, 204.8, 0.2)})
-    monkeypatch.setattr(scale, "LARGE", 64)
+def test_jobs_and_what_the_log_counts(tmp_path):
+    job = next(job for job in study.jobs(Options(quick=True)) if job.name == "collision_4")
+    assert job.launcher == ("mpirun", "--oversubscribe", "-n", "4") and job.labels["elements"] == 15360
+    (tmp_path / "run.log").write_text("exchange: 4 processes; a cycle, mean (most): messages 2.00 (3), bytes 2860.00 (3584), calls "
+                                      "of all 2.00 (2), bytes by them 4544.00 (4544); besides\n")
+    found = study.measure(job, tmp_path)
+    assert [found[name] for name in ("messages", "most_messages", "bytes", "most_bytes", "bytes_to_all")] == [2, 3, 2860, 3584, 4544]
 
 
-def table(path, most=96.0):
-    """runs.csv as the program would count for the strip, but for the most bytes."""
-    rows = [["strip", 4096, 4, 10, 1.5, 2, 72, most, 1, 72, "", ""]]
-    rows += [[scene, n * n, 1, cycles, 0, 0, 0, 0, 0, 0, n * n * (1e-6 + 1e-8 * cycles), 0.3 * n * n]
-             for scene, n in COSTS.items() for cycles in (20, 220)]
-    with path.open("w", newline="") as stream:
-        csv.writer(stream).writerows([NAMES, *rows])
-
-
-def test_page(small, tmp_path):
-    table(tmp_path / "runs.csv")
-    scale.write(tmp_path, tmp_path / "doc")
-    text = " ".join((tmp_path / "doc/studies/scale.md").read_text().split())  # lines end where they are full
-    assert "all 1 runs of" in text and "Not what" not in text
-    assert "| strip | 4096 | 4 | 1.50 (2) | 72 (96) | 72 |" in text
-    assert "a step took 10 ns" in text and "it: 1.0 microseconds" in text and "here 307 bytes an element" in text
-    assert re.search(r"two bodies in contact, 1e8 elements: predicted to keep 80 % on \d+ processes", text)
-    assert (tmp_path / "doc/pictures/scale.png").exists()
-
-
-def test_counts_that_the_tiles_do_not_explain_are_told(small, tmp_path):
-    table(tmp_path / "runs.csv", 95.0)
-    scale.write(tmp_path, tmp_path / "doc")
-    text = " ".join((tmp_path / "doc/studies/scale.md").read_text().split())
-    assert "**Not what the tiles" in text
-    with pytest.raises(UserError, match="scale.sh"):
-        scale.write(tmp_path / "nowhere", tmp_path / "doc")
+@pytest.mark.parametrize("most, told", [(96.0, "yes"), (95.0, "no")])
+def test_page_says_whether_the_tiles_explain_the_counts(monkeypatch, tmp_path, plain_pictures, most, told):
+    """A strip on four processes sends 96 bytes from those in the middle."""
+    monkeypatch.setattr(scale_tiles, "MESHES", {"strip": lambda: grid_mesh(2048, 2, 204.8, 0.2)})
+    scale.all_cuts.cache_clear()
+    table = pd.DataFrame([{"scene": "strip", "elements": 4096, "ranks": 4, "state": "finished", "messages": 1.5,
+                           "most_messages": 2, "bytes": 72, "most_bytes": most, "bytes_to_all": 80}])
+    scale.page(table, tmp_path)
+    scale.chart(table, tmp_path)
+    scale.all_cuts.cache_clear()
+    assert f"| strip | 4096 | 4 | 1.5 | 2 | 72 | {most:g} | 80 | {told} |" in (tmp_path / "studies/scale.md").read_text()
+    assert (tmp_path / "scale.png").exists()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The sweeps of `tools/study.sh`, with a small program in place of slideline."""
-import csv
+import dataclasses
 import io
 import json
 import os
@@ -10,11 +10,12 @@ import subprocess
 import sys
 import time
 
+import pandas as pd
 import pytest
 
 from slideline_tools import UserError
 from slideline_tools.studies import __main__ as command
-from slideline_tools.studies.framework import progress, registry, runner, table
+from slideline_tools.studies.framework import pages, runner, table
 from slideline_tools.studies.framework.job import Job, Options, Study, interleave, part_of
 from slideline_tools.studies.framework.progress import Progress, span
 
@@ -43,7 +44,7 @@ def deck(value, wait=0.0):
 
 def measure(job, folder):
     try:
-        return {"value": int((folder / "result.txt").read_text())}
+        return {"value": int((folder / "result.txt").read_text()), "third": 1.0 / 3.0}
     except ValueError as problem:
         raise UserError(str(problem)) from problem
 
@@ -68,7 +69,9 @@ class Bench:
                 if line.startswith("begin")]
 
     def rows(self, jobs):
-        return table.rows_of(Study("tiny", None, measure, None), jobs, self.sweep())
+        """The rows of the table, without their empty cells."""
+        found = table.table_of(Study("tiny", None, measure, None), jobs, self.sweep()).to_dict("records")
+        return [{name: value for name, value in row.items() if value == value} for row in found]
 
 
 @pytest.fixture
@@ -184,30 +187,19 @@ def test_parts_cover_all_and_keep_groups_together():
         job.folder_name for job in jobs)
 
 
-def test_table_comes_back_as_written(tmp_path):
-    rows = [{"run": "a", "level": 1, "x": 0.1, "message": ""}, {"run": "b", "y": 1.0 / 3.0}]
-    table.write_rows(tmp_path / "t.csv", rows)
-    assert table.read_rows(tmp_path / "t.csv") == [
-        {"run": "a", "level": 1, "x": 0.1}, {"run": "b", "y": 1.0 / 3.0}]
-    with open(tmp_path / "t.csv", newline="") as stream:
-        assert next(csv.reader(stream)) == ["run", "level", "x", "message", "y"]
-
-
-def test_medians_and_groups():
-    rows = [{"type": k % 2, "x": float(k)} for k in range(6)]
-    groups = table.grouped(rows, "type")
-    assert {key: table.median(same, "x") for key, same in groups.items()} == {(0,): 2.0, (1,): 3.0}
+def test_a_table_keeps_all_digits(bench, tiny):
+    assert tiny() == 0
+    assert pd.read_csv(bench.folder / "tiny.csv")["third"].tolist() == [1.0 / 3.0] * 4
 
 
 def test_time_to_go():
     shown = Progress()
-    assert shown.to_go() is None
     shown.known(Job("a", ""), {"seconds": 10.0, "status": 0})
     shown.known(Job("b", ""), {"seconds": 30.0, "status": 0})
     shown.start([Job("b", "", repeat=2), Job("c", "", alone=True), Job("d", "", cost=3.0)], 2)
-    assert shown.to_go() == 30.0 / 2 + 20.0 + 3 * 20.0 / 2
-    assert [span(x) for x in (None, 10.0, 300.0, 7200.0)] == [
-        "an unknown time", "about 10 s", "about 5 min", "about 2.0 h"]
+    assert shown.to_go() == 20.0 / 2 + 20.0 + 3 * 20.0 / 2
+    assert [span(x) for x in (10.0, 300.0, 7200.0)] == [
+        "about 10 s", "about 5 min", "about 2.0 h"]
 
 
 class Terminal(io.StringIO):
@@ -215,9 +207,8 @@ class Terminal(io.StringIO):
         return True
 
 
-def test_one_updating_line_on_a_terminal_and_plain_lines_elsewhere(bench, monkeypatch):
+def test_one_renewed_line_on_a_terminal_and_plain_lines_elsewhere(bench, monkeypatch):
     monkeypatch.setenv("COLUMNS", "60")
-    monkeypatch.setattr(progress, "SHOW_EVERY", 0.0)
     jobs = [Job("a", deck(1), "a"), Job("b", deck(2), "b", ("fail=2",)), Job("c", deck(3), "c")]
     terminal, pipe = Terminal(), io.StringIO()
     bench.sweep().run(jobs, 1, Progress(terminal))
@@ -257,8 +248,8 @@ def tiny(bench, tmp_path, monkeypatch):
     (tmp_path / "tiny_study.py").write_text(STUDY_FILE)
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.delitem(sys.modules, "tiny_study", raising=False)
-    monkeypatch.setattr(registry, "load", lambda name: __import__("tiny_study").STUDY)
-    monkeypatch.setitem(registry.STUDIES, "tiny", "tiny")
+    monkeypatch.setattr(pages, "load", lambda name: __import__("tiny_study").STUDY)
+    monkeypatch.setitem(pages.STUDIES, "tiny", "tiny")
 
     def run(*arguments):
         return command.main(["tiny", "--program", str(bench.program), "--folder",
@@ -268,16 +259,15 @@ def tiny(bench, tmp_path, monkeypatch):
 
 def test_command_writes_table_and_chart(tiny, bench):
     assert tiny() == 0
-    rows = table.read_rows(bench.folder / "tiny.csv")
-    assert [row["value"] for row in rows] == [10, 11, 20, 21]
-    assert {row["state"] for row in rows} == {"finished"}
+    rows = pd.read_csv(bench.folder / "tiny.csv")
+    assert rows["value"].tolist() == [10, 11, 20, 21] and set(rows["state"]) == {"finished"}
     assert (bench.folder / "chart.svg").read_text() == "4"
     assert json.loads((bench.folder / "runs/t1_0/job.json").read_text())["status"] == 0
 
 
 def test_command_options(tiny, bench, capsys):
     assert tiny("--types", "2", "--quick") == 0
-    assert [row["value"] for row in table.read_rows(bench.folder / "tiny.csv")] == [20]
+    assert pd.read_csv(bench.folder / "tiny.csv")["value"].tolist() == [20]
     assert tiny("--only", "t1*", "--list") == 0
     assert capsys.readouterr().out.splitlines()[-2:] == ["to run    t1_0", "to run    t1_1"]
     assert tiny("--part", "0/2") == 0 and tiny("--part", "1/2", "-j", "2") == 0
@@ -286,10 +276,27 @@ def test_command_options(tiny, bench, capsys):
 
 
 @pytest.mark.parametrize("arguments", [("--part", "2/2"), ("--part", "x"), ("-j", "0"),
-                                       ("--repeats", "0"), ("--only", "nothing"), ("--types", "7i")])
+                                       ("--repeats", "0"), ("--only", "nothing"), ("--types", "7i"),
+                                       ("--quick", "--publish")])
 def test_command_refuses(tiny, capsys, arguments):
     assert tiny(*arguments) == 2
     assert capsys.readouterr().err.startswith("study: ")
+
+
+def test_pictures_of_the_page_are_those_that_the_chart_has_drawn(tiny, bench, monkeypatch):
+    def chart(_, folder):
+        (folder / "a.png").write_text("picture")
+
+    def page(_, doc):
+        (doc / "studies").mkdir(parents=True)
+        (doc / "studies" / "tiny.md").write_text("# Tiny\n\n![a](../pictures/a.png)\n")
+
+    made = dataclasses.replace(pages.load("tiny"), chart=chart, page=page)
+    monkeypatch.setattr(pages, "load", lambda name: made)
+    monkeypatch.setitem(pages.PAGES, "tiny", pages.Page("paper", ()))
+    assert tiny() == 0
+    assert (bench.folder / "doc/pictures/a.png").read_text() == "picture"
+    assert pages.ORIGIN.search((bench.folder / "doc/studies/tiny.md").read_text())["source"] == "unknown"
 
 
 def test_one_command_at_a_time(tiny, bench, capsys):
@@ -306,9 +313,9 @@ sys.path[:0] = {paths!r}
 import tiny_study
 tiny_study.WAIT = 0.6
 from slideline_tools.studies import __main__ as command
-from slideline_tools.studies.framework import registry
-registry.load = lambda name: tiny_study.STUDY
-registry.STUDIES["tiny"] = "tiny"
+from slideline_tools.studies.framework import pages
+pages.load = lambda name: tiny_study.STUDY
+pages.STUDIES["tiny"] = "tiny"
 sys.exit(command.main(["tiny", "--program", {program!r}, "--folder", {folder!r}, "-j", "1"]))
 """
 
@@ -351,12 +358,12 @@ def test_goes_on_after_a_kill(bench, tmp_path, how, status):
     assert done.returncode == 0, done.stderr
     assert "1 of 4 runs have finished before" in done.stdout
     assert len(begun(bench.log)) == 2 + 3
-    assert [row["value"] for row in table.read_rows(bench.folder / "tiny.csv")] == [10, 11, 20, 21]
+    assert pd.read_csv(bench.folder / "tiny.csv")["value"].tolist() == [10, 11, 20, 21]
 
 
 def test_every_study_of_the_registry_has_unique_runs():
-    for name in registry.STUDIES:
-        study = registry.load(name)
+    for name in pages.STUDIES:
+        study = pages.load(name)
         assert study.name == name
         quick = study.jobs(Options(tuple(study.quick_levels), tuple(study.types), True, 1))
         assert interleave(quick, 1)

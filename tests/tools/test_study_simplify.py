@@ -5,16 +5,14 @@ import re
 
 import conftest
 import numpy as np
+import pandas as pd
 import pytest
 
 from slideline_tools import UserError, scenes
 from slideline_tools.histories import History
 from slideline_tools.studies import __main__ as command
 from slideline_tools.studies.framework.job import Options
-from slideline_tools.studies.framework.table import read_rows
-from slideline_tools.studies.simplify import (compare as simplify_compare, decks as simplify_decks, page as simplify_page,
-                                              study as simplify, texts as simplify_texts)
-from slideline_tools.studies.simplify.figures import Runs, small_share
+from slideline_tools.studies.simplify import compare, decks as simplify_decks, page as pages, study as simplify
 
 LEVEL = 2
 
@@ -87,7 +85,7 @@ def test_awake_adds_one_card_that_asks_for_a_search_each_cycle():
 
 
 def test_plastic_law_has_the_elastic_numbers():
-    deck = simplify.plastic_hertz(1)
+    deck = simplify_decks.plastic_hertz(scenes.hertz(1))
     assert "MAT_ELASTIC" not in deck and deck.count("*MAT_PLASTIC_KINEMATIC") == 2
     law = cards(deck, "MAT_PLASTIC_KINEMATIC", (10,) * 7)
     assert [row[4] for row in law[::2]] == [simplify_decks.UNREACHABLE] * 2
@@ -108,48 +106,32 @@ def force(times, values):
 
 def test_force_distance_by_hand():
     one, other = force([0., 1., 2.], [0., 3., 0.]), force([0., 1., 2.], [0., 4., 0.])
-    found = simplify_compare.force_distance(one, other, 0.5)
+    found = compare.force_distance(one, other, 0.5)
     assert found["force_error"] == pytest.approx(0.5) and found["impulse_error"] == pytest.approx(0.5)
-    assert simplify_compare.force_distance(one, force([0., 2.], [0., 0.]), 1.0) == {}
+    assert compare.force_distance(one, force([0., 2.], [0., 0.]), 1.0) == {}
 
 
-def test_common_entities():
-    rows, others = simplify_compare.common(np.array([5, 7, 9]), np.array([9, 4, 5]))
-    assert rows.tolist() == [0, 2] and others.tolist() == [2, 0]
+def test_medians_and_shares_of_processor_time():
+    def table(*runs):
+        rows = [dict(zip(("processor_seconds", "total", "contact"), run)) for run in runs]
+        return pd.DataFrame(rows).assign(state="finished", variant="a", level=1, elements=5.0, nodes=0.0, input=0.0,
+                                         computing=10.0)
 
-
-def test_median_and_share_of_processor_time():
-    def run(processor, total, contact):
-        return {"state": "finished", "variant": "a", "level": 1, "processor_seconds": processor,
-                "total": total, "contact": contact, "elements": 0.5 * total, "load": 1.0}
-    runs = Runs([run(1.0, 10.0, 4.0), run(3.0, 10.0, 2.0), run(2.0, 20.0, 2.0)])
-    assert runs.seconds("a", 1) == 2.0 and runs.rounds == 3
-    assert runs.seconds("a", 1, "elements") == pytest.approx(1.0)
-    assert runs.seconds("a", 1, "contact") == pytest.approx(2.0 * 8.0 / 40.0)
-    short = Runs([run(1.0, 10.0, 4.0), run(1.0, 10.0, 0.1)])
-    assert short.seconds("a", 1, "contact") == 0.1
-
-
-@pytest.mark.parametrize("seconds, expected", [
-    (0.97, "3 % (no more than times scatter)"), (0.90, "10 %")])
-def test_a_saving_within_the_scatter_says_so(seconds, expected):
-    """Quartiles 4 % apart."""
-    rows = [{"state": "finished", "variant": name, "level": 1, "processor_seconds": middle * factor}
-            for name, middle in (("more", 1.0), ("less", seconds)) for factor in (0.98, 1.0, 1.02, 0.98, 1.02)]
-    runs = Runs(rows)
-    assert runs.spread == pytest.approx(0.04)
-    assert simplify_texts.saving_text(runs, 1, "more", "less") == expected
+    runs = pages.medians_of(table((1.0, 10.0, 4.0), (3.0, 10.0, 2.0), (2.0, 20.0, 2.0))).loc["a", 1]
+    assert runs["seconds"] == 2.0 and runs["elements"] == pytest.approx(2.0 * 15.0 / 40.0)
+    assert runs["contact"] == pytest.approx(2.0 * 8.0 / 40.0) and runs["output"] == pytest.approx(2.0 * 10.0 / 40.0)
+    assert runs["spread"] == pytest.approx(0.5)
+    assert pages.medians_of(table((1.0, 10.0, 4.0), (1.0, 10.0, 0.1))).loc[("a", 1), "contact"] == 0.1
 
 
 def test_differences_in_words():
-    assert [small_share(value) for value in (None, 0.0, 0.0123, 2e-13)] \
-        == ["", "the same", "1.2 %", "2e-13"]
+    assert [pages.small_share(value) for value in (None, 0.0, 0.0123, 2e-13)] == ["", "the same", "1.2 %", "2e-13"]
 
 
 def test_all_that_is_compared_is_run():
-    names = set(simplify.variants()) | {"sliding_rigid"}
+    names = set(simplify.variants())
     assert set(simplify.PAIRS) | {other for other, _ in simplify.PAIRS.values()} <= names
-    assert {name for step in simplify_page.STEPS for name in step[1:]} <= names
+    assert {name for step in pages.STEPS for name in step[1:]} <= names
 
 
 def test_types_that_are_not_asked_for_do_not_run():
@@ -169,21 +151,21 @@ def short_study(tmp_path_factory):
 
     def shortened(options):
         return [simplify.dataclasses.replace(job, options=(
-                    *(word for word in job.options if not word.startswith("endtim")),
-                    "endtim=1.5e-5" if "early" in job.name else "endtim=2.5e-5"))
+                    *job.options, "endtim=2.5e-5"))
                 for job in original(options) if job.labels["variant"].startswith("collision")]
 
     with pytest.MonkeyPatch.context() as patch:
         conftest.draw_plainly(patch)
         study = simplify.dataclasses.replace(simplify.STUDY, jobs=shortened)
-        patch.setattr(command.registry, "load", lambda _: study)
+        patch.setattr(command.pages, "load", lambda _: study)
         assert command.main(["simplify", "--quick", "--repeats", "1", "--folder", str(folder)]) == 0
     return folder
 
 
 def first_rows(folder):
     """The first run of each variant."""
-    return {row["variant"]: row for row in read_rows(folder / "simplify.csv") if row["repeat"] == 1}
+    table = pd.read_csv(folder / "simplify.csv")
+    return table[table["repeat"] == 1].set_index("variant").to_dict("index")
 
 
 def test_asleep_and_awake_give_the_same_bits(short_study):
@@ -210,17 +192,13 @@ def test_elastic_law_changes_no_field(short_study):
     assert rows["collision_no_states"]["bytes"] < rows["collision"]["bytes"]
 
 
-def test_page_has_every_section(short_study):
+def test_page(short_study):
     page = (short_study / "doc" / "studies" / "simplify.md").read_text(encoding="utf-8")
     assert "{" not in page and "nan" not in page
-    for title in re.findall("^## .*", simplify_texts.PAGE, re.MULTILINE):
-        assert title in page
+    lines = [line for line in page.splitlines() if line.startswith("| search asleep: collision |")]
+    assert len(lines) == 1 and lines[0].count("same bits") == 3
+    assert len(re.findall(r"^\| [1-7] .*\| yes \|$", page, re.MULTILINE)) == 7
     assert (short_study / "doc" / "pictures" / "simplify.png").stat().st_size < 100_000
-
-
-def test_memory_of_a_program_that_is_not_there(tmp_path):
-    (tmp_path / "job.json").write_text('{"command": ["/nowhere/program", "d=x"]}')
-    assert simplify_compare.memory(tmp_path) == {}
 
 
 def test_log_without_a_limit(tmp_path):

@@ -6,18 +6,19 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.decks import Grid
 from slideline_tools.histories import History, HistoryError, energy_made
+from slideline_tools.studies.common import verification
 from slideline_tools.studies.framework.job import Options
-from slideline_tools.studies.stability import measures, page as stability_page, study as stability
-from slideline_tools.studies.stability.eigen import Model, quad_stiffness
-from slideline_tools.studies.stability.failing import keep_failing
+from slideline_tools.studies.stability import measures, page as pages, study as stability
 from slideline_tools.studies.stability.scenes import SCENES
-from slideline_tools.studies.stability.springs import springs
 
+springs = verification(".", "springs").springs
+Model, quad_stiffness = verification(".", "eigen").Model, verification(".", "eigen").quad_stiffness
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "tests" / "verification" / "contact_forces"
 SLAVE, MASTER = np.array([0.1, 0.31, 0.55, 0.9]), np.array([0.0, 0.2, 0.45, 0.62, 0.7, 1.0])
@@ -103,139 +104,44 @@ def test_verdicts(change, status, verdict):
         assert measures.judge(0, {**good, **change}, 0.2, np.inf, False) == measures.STABLE
 
 
-def test_rows_below_the_limit():
-    row = {"scene": "patch", "type": 1}
-    rows = [{**row, "kind": "limit", "decade": x, "program_limit": y} for x, y in ((0.0, 0.8), (2.0, 0.2))]
-    rows += [{**row, "kind": "map", "decade": 1.0, "step": step, "verdict": "blown up"}
-             for step in (0.4, 0.6, 0.7)]
-    assert [r.get("below_limit") for r in stability.mark_below(rows)[2:]] == [True, False, False]
+def table_of(*rows):
+    """Cells (type, decade, step, verdict, depth) and limits (type, decade, limit) of the blocks."""
+    table = pd.DataFrame([{"scene": "block", "type": row[0], "decade": row[1],
+                           **({"kind": "limit", "program_limit": row[2]} if len(row) == 3 else
+                              dict(zip(("kind", "step", "verdict", "depth"), ("map", *row[2:]))))} for row in rows])
+    return stability.with_below(table).assign(both_limits=table["program_limit"])
 
 
-def cells_with_decks(folder):
-    """Rows of every kind of cell, two meshes among them, and their run folders."""
-    head = "*KEYWORD\n*TITLE\ncell {}\n"
-    mesh = "*NODE\n$ nid x y\n1,0.0,{}\n*ELEMENT_SHELL\n1,1,1,2,3,4\n"
-    rows = []
-    for number, (step, decade, verdict) in enumerate((
-            (0.4, 1.0, "blown up"), (0.6, 1.0, "blown up"), (0.4, 2.0, "blown up"), (0.7, 1.0, "stable"),
-            (0.2, -4.0, "penetrating"), (0.2, -3.5, "penetrating"), (0.2, 0.0, None), (0.2, 0.5, ""))):
-        row = {"scene": "patch", "type": 1, "kind": "map", "decade": decade, "step": step,
-               "run": f"cell_{number}", "state": "finished"}
-        if verdict:
-            row["verdict"] = verdict
-        elif verdict is None:
-            row["state"] = "failed"
-        rows.append(row)
-        run = folder / "runs" / row["run"]
-        run.mkdir(parents=True)
-        (run / "patch.k").write_text("*KEYWORD\n&pen\n*END\n")
-        (run / "patch.effective.k").write_text(
-            head.format(number) + mesh.format(float(number == 4)) + "*CONTROL_ENERGY\n2\n*NODE\n9,9.0,9.0\n*END\n")
-    return rows
+def made_table():
+    """Type 7, and implicit penalty, which is stable below L/c from 1 on."""
+    rows = [(7, -2.0, 1.0), (7, 2.0, 0.3)]
+    for ctype, decades in ((7, (-2.0, 0.0, 2.0)), ("7i", (-2.0, 0.0, 2.0, pages.NO_COMPLIANCE))):
+        rows += [(ctype, decade, step, "blown up" if step > 1.0 else "penetrating" if decade < 0.0 else "stable", 0.12)
+                 for decade in decades for step in (0.2, 0.995, 1.2)]
+    return table_of(*rows)
 
 
-def test_every_failing_cell_has_its_deck(tmp_path):
-    rows = cells_with_decks(tmp_path)
-    stale = tmp_path / "failing" / "of_another_time.k"
-    stale.parent.mkdir()
-    stale.write_text("")
-    assert keep_failing(rows, tmp_path) == 6
-    names = sorted(path.name for path in (tmp_path / "failing").glob("cell_*.k"))
-    assert names == ["cell_0_blown_up.k", "cell_1_blown_up.k", "cell_2_blown_up.k", "cell_4_penetrating.k",
-                     "cell_5_penetrating.k", "cell_6_not_measured.k"]
-    assert not stale.exists()
-    assert len(list((tmp_path / "failing").glob("mesh_*.k"))) == 2
-    text = (tmp_path / "failing" / "cell_1_blown_up.k").read_text()
-    included = re.search(r"\*INCLUDE\n(mesh_\w+\.k)\n", text).group(1)
-    assert text == f"*KEYWORD\n*TITLE\ncell 1\n*INCLUDE\n{included}\n*CONTROL_ENERGY\n2\n*END\n"
-    assert (tmp_path / "failing" / included).read_text() == (
-        "*KEYWORD\n*NODE\n$ nid x y\n1,0.0,0.0\n*ELEMENT_SHELL\n1,1,1,2,3,4\n*NODE\n9,9.0,9.0\n*END\n")
+def test_cells_below_the_limit():
+    found = table_of((1, 0.0, 0.8), (1, 2.0, 0.2), *((1, 1.0, step, "blown up", 0.1) for step in (0.4, 0.6, 0.7)))
+    assert found["below_limit"].tolist()[2:] == [True, False, False]
+    mine = made_table().query("type == '7i'")
+    assert (mine["below_limit"] == (mine["step"] < 1.0)).all()
 
 
-def test_deck_of_a_failing_cell_runs_to_the_same_bits(slideline, tmp_path):
-    scene = SCENES["block"]
-    run = tmp_path / "runs" / "cell"
-    run.mkdir(parents=True)
-    (run / "block.k").write_text(scene.deck(2))
-    subprocess.run([slideline, "i=block.k", "d=.", "ctype=2", "punit=2", "pen=1e5", "dt=1e3", "tssfac=0.7",
-                    "endtim=0.05", *scene.options], cwd=run, capture_output=True, check=False)
-    keep_failing([{"run": "cell", "verdict": "blown up"}], tmp_path)
-    subprocess.run([slideline, "i=cell_blown_up.k", "d=again"], cwd=tmp_path / "failing",
-                   capture_output=True, check=False)
-    again = tmp_path / "failing" / "again" / "cell_blown_up.glstat.csv"
-    assert again.read_bytes() == (run / "block.glstat.csv").read_bytes()
-
-
-def test_texts_on_soft_penalties_follow_the_cells():
-    def cell(ctype, decade, verdict, depth, below=True):
-        return {"type": ctype, "kind": "map", "decade": decade, "verdict": verdict,
-                "depth": depth, **({"below_limit": True} if below else {})}
-
-    rows = [cell(1, -0.5, "penetrating", 0.2), cell(1, 0.5, "penetrating", 0.18),
-            cell(2, -0.5, "penetrating", 0.2), cell(2, 0.5, "stable", 0.06),
-            cell(2, 0.5, "blown up", 0.9, below=False), cell(5, -0.5, "stable", 0.03),
-            cell(5, 0.5, "stable", 0.04), cell(5, 0.5, "stable", 0.06),
-            cell(5, 1.0, "blown up", 0.9)]
-    assert stability_page.smallest_penalties({"block": rows}) == \
-        "Block 0.3 (type 5), 3 (type 2), none (type 1)"
-    assert stability_page.good_decades(rows, 5) == [-0.5, 0.5]
-    table = stability_page.depth_table(rows, 0.24).splitlines()
-    assert table[0] == "| type | 0.3 | 1 | 3 | 10 |"
-    assert table[2:] == ["| 1 NTS | 0.83 |  | 0.75 |  |", "| 2 NTS-AR | 0.83 |  | 0.25 |  |",
-                         "| 5 NTS-mAR | 0.12 |  | 0.25 |  |"]
-
-
-def test_jobs_are_unique_and_complete():
-    jobs = stability.jobs(Options(types=(1, 7)))
-    maps = len(stability.DECADES) * len(stability.STEPS)
-    assert len({job.name for job in jobs}) == len(jobs) == 2 * len(SCENES) * (maps + 7)
-
-
-def test_jobs_of_implicit_penalty():
-    """A map of its own: PEN on K L/A, no compliance last, steps up to just below L/c, no limit to ask for."""
-    jobs = stability.jobs(Options(types=(7, "7i")))
-    mine = [job for job in jobs if job.labels["type"] == "7i"]
-    assert {job.labels["kind"] for job in mine} == {"map"} and len({job.name for job in jobs}) == len(jobs)
-    assert len(mine) == len(SCENES) * (len(stability.DECADES) + 1) * len(stability.IMPLICIT_STEPS)
-    assert 0.995 in stability.IMPLICIT_STEPS and len(stability.IMPLICIT_STEPS) == len(stability.STEPS)
-    pens = {job.labels["decade"]: [word for word in job.options if word.startswith("p:pen=")] for job in mine}
-    assert pens[0.0] == ["p:pen=1"] and pens[stability_page.NO_COMPLIANCE] == ["p:pen=-1"]
-    assert all("punit=4" in job.options for job in mine)
-
-
-def implicit_rows():
-    """A small map of type 7 and of implicit penalty, which is stable below L/c from 1 on."""
-    rows = [{"scene": "block", "type": 7, "kind": "limit", "decade": x, "program_limit": y, "both_limits": y, "true_limit": y}
-            for x, y in ((-2.0, 1.0), (2.0, 0.3))]
-    for ctype, decades in ((7, (-2.0, 0.0, 2.0)), ("7i", (-2.0, 0.0, 2.0, stability_page.NO_COMPLIANCE))):
-        for decade in decades:
-            for step in (0.2, 0.995, 1.2):
-                verdict = "blown up" if step > 1.0 else "penetrating" if decade < 0.0 else "stable"
-                rows.append({"scene": "block", "type": ctype, "kind": "map", "decade": decade, "step": step,
-                             "verdict": verdict, "depth": 0.1})
-    return rows
-
-
-def test_implicit_penalty_below_the_limit_of_the_elements():
-    rows = stability.mark_below(implicit_rows())
-    mine = [row for row in rows if row["type"] == "7i"]
-    assert all(row["below_limit"] == (row["step"] < 1.0) for row in mine)
-    by_scene = {"block": rows}
-    assert stability_page.implicit_text(by_scene) == \
-        "Block stable from 1e+0.0 to no compliance, 0 of 8 cells blew up or chattered"
-    assert "7i" not in stability_page.limit_table(by_scene)
-    assert "| Block | 7i PUNIT 4 | 8 | 6 | 0 | 0 | 0 | 2 | 0 | 4 | 0 |" in stability_page.count_table(by_scene)
-    assert stability_page.blown_text(by_scene) == "no cell of these maps"
-    mine[3]["verdict"] = "blown up"  # at 1, step 0.2
-    assert stability_page.blown_text(by_scene) == "Block type 7i (1 cell)"
-    assert stability_page.implicit_text(by_scene) == \
-        "Block stable from 1e+2.0 to no compliance, 1 of 8 cells blew up or chattered"
+def test_page(tmp_path):
+    pages.page(made_table(), tmp_path)
+    text = (tmp_path / "studies/stability.md").read_text()
+    assert "| 7 segmented mortar | 1.00 |" in text and "Of 4 cells of the types by number 0 blew up" in text
+    assert "| block | 7i PUNIT 4 | 6 | 0 | 0 | 0 | 2 | 0 |" in text
+    assert "| 7i PUNIT 4 | 1e+0.0 to no compliance |" in text and "| 7 segmented mortar | 0.50 | 0.50 | 0.50 |" in text
+    pages.page(table_of((1, 0.0, 0.8), (1, 0.0, 0.2, "stable", 0.1), (1, 0.0, 0.4, "blown up", 0.1)), tmp_path)
+    text = (tmp_path / "studies/stability.md").read_text()
+    assert "Of 2 cells of the types by number 1 blew up" in text and "| 1 NTS | none |" in text
 
 
 def test_map_of_implicit_penalty_shows_each_cell(plain_pictures):
     """Without compliance stands apart at the right; the steps are its own."""
-    figure = stability_page.draw_maps({"block": stability.mark_below(implicit_rows())})
-    axes = figure.axes[1]
+    axes = pages.draw_maps(made_table()).axes[1]
     assert axes.get_title() == "7i PUNIT 4"
     cells, apart = axes.get_images()
     assert cells.get_array().shape == (3, 3) and apart.get_array().shape == (3, 1)
@@ -244,39 +150,41 @@ def test_map_of_implicit_penalty_shows_each_cell(plain_pictures):
     assert [text.get_text() for text in axes.get_yticklabels()] == ["0.2", "0.995", "1.2"]
 
 
-@pytest.mark.parametrize("pen, step, verdict", [
-    ("1e4", 0.995, "stable"), ("-1", 0.995, "stable"), ("1e-2", 0.5, "penetrating"), ("10", 1.2, "blown up")])
-def test_implicit_cells_with_the_program(slideline, tmp_path, pen, step, verdict):
-    scene = SCENES["patch"]
-    (tmp_path / "run.k").write_text(scene.deck(7))
-    subprocess.run([slideline, "i=run.k", "d=.", "ctype=7", "punit=4", f"p:pen={pen}", "dt=1e3",
-                    f"tssfac={step}", f"endtim={scene.end}", *scene.options],
-                   cwd=tmp_path, capture_output=True, check=False)
-    assert stability.measure_cell(tmp_path, "run", scene)["verdict"] == verdict
+def test_jobs_are_unique_and_complete():
+    """A limit for each full decade; implicit penalty: no compliance last, steps up to just below L/c, no limit to ask for."""
+    jobs = stability.jobs(Options(types=(1, 7, "7i")))
+    mine = [job for job in jobs if job.labels["type"] == "7i"]
+    maps = len(stability.DECADES) * len(stability.STEPS)
+    assert len({job.name for job in jobs}) == len(jobs) == len(mine) + 2 * len(SCENES) * (maps + 7)
+    assert len(mine) == len(SCENES) * (len(stability.DECADES) + 1) * len(stability.IMPLICIT_STEPS)
+    pens = {job.labels["decade"]: [word for word in job.options if word.startswith("p:pen=")] for job in mine}
+    assert pens[0.0] == ["p:pen=1"] and pens[pages.NO_COMPLIANCE] == ["p:pen=-1"]
+    assert all("punit=4" in job.options and job.labels["kind"] == "map" for job in mine)
 
 
-@pytest.mark.parametrize("pen, step, verdict", [
-    ("10", 0.5, "stable"), ("10", 1.2, "blown up"), ("1e-2", 0.5, "penetrating"),
-    ("1e4", 0.5, "limited")])
-def test_cells_with_the_program(slideline, tmp_path, pen, step, verdict):
-    scene = SCENES["patch"]
-    (tmp_path / "run.k").write_text(scene.deck(2))
-    subprocess.run([slideline, "i=run.k", "d=.", "ctype=2", "punit=2", f"pen={pen}", "dt=1e3",
-                    f"tssfac={step}", f"endtim={scene.end}", *scene.options],
-                   cwd=tmp_path, capture_output=True, check=False)
-    assert stability.measure_cell(tmp_path, "run", scene)["verdict"] == verdict
+@pytest.mark.parametrize("ctype, decade, step, verdict", [
+    ("7i", 4.0, 0.995, "stable"), ("7i", pages.NO_COMPLIANCE, 0.995, "stable"), ("7i", -2.0, 0.5, "penetrating"),
+    ("7i", 1.0, 1.2, "blown up"), (2, 0.0, 0.5, "stable"), (2, 0.0, 1.2, "blown up"), (2, -2.0, 0.5, "penetrating"),
+    (2, 4.0, 0.5, "limited"), (2, 0.0, None, 0.84), (3, 0.0, None, 0.55)])
+def test_cells_and_limits_with_the_program(slideline, tmp_path, ctype, decade, step, verdict):
+    """Verdicts of the patch; the program's limit over L/c where there is no step."""
+    job = next(job for job in stability.jobs(Options(types=(ctype,))) if job.labels["scene"] == "patch"
+               and job.labels["decade"] == decade and job.labels.get("step") == step)
+    (tmp_path / "run.k").write_text(job.deck)
+    subprocess.run([slideline, "i=run.k", "d=.", "jobid=patch", *job.options], cwd=tmp_path, capture_output=True, check=False)
+    found = stability.measure(job, tmp_path)
+    assert found.get("verdict") == verdict or found["program_limit"] == pytest.approx(verdict, abs=0.05)
 
 
 def test_limits_of_springs_and_elements():
     """Stiff springs rule alone, soft ones do not; half of 2/omega where they open and close."""
     scene = SCENES["block"]
-    row = {"scene": "block", "type": 2, "kind": "limit", "penalty": 1.0e9, "element_limit": 0.5}
-    found, = stability.derive([row], None)
+    row = {"scene": "block", "type": 2, "kind": "limit", "element_limit": 0.5}
+    table = stability.with_limits(pd.DataFrame([{**row, "penalty": 1.0e9}, {**row, "penalty": 1.0}]))
+    stiff, soft = table.to_dict("records")
     alone = scene.limit(2, 1.0e9, False) / 0.5
-    assert found["spring_limit"] == pytest.approx(alone)
-    assert found["both_limits"] == found["opening_limit"] == pytest.approx(0.5 * alone)
-    assert 0.9 * alone < found["true_limit"] < alone
-    soft, = stability.derive([{**row, "penalty": 1.0}], None)
+    assert stiff["spring_limit"] == pytest.approx(alone) and 0.9 * alone < stiff["true_limit"] < alone
+    assert stiff["both_limits"] == stiff["opening_limit"] == pytest.approx(0.5 * alone)
     assert soft["both_limits"] == soft["true_limit"] < 1e-2 * soft["opening_limit"]
     assert scene.limit(2, 4.0e9, False) == pytest.approx(0.5 * scene.limit(2, 1.0e9, False))
 

@@ -4,7 +4,7 @@
     build/venv/bin/python tools/docs/figures.py [--program build/release/slideline]
 
 writes doc/pictures/collision.png, draw.png, first_deck.svg, first_model.png,
-first_stress.png, first_history.png and contact_points.svg.
+first_stress.png, first_history.png, contact_points.svg and taylor.png.
 """
 import argparse
 import pathlib
@@ -230,6 +230,7 @@ def main():
         collision(program, pathlib.Path(folder))
         first_deck(program, pathlib.Path(folder))
         contact_points(program, pathlib.Path(folder))
+        taylor(run(program, ROOT / "input/taylor/taylor.k", pathlib.Path(folder)), PICTURES / "taylor.png")
 
 
 if __name__ == "__main__":

@@ -17,19 +17,20 @@ import time
 
 import elements
 from slideline_tools.scenes import collision, collision_grids
-from slideline_tools.studies.scale import runs
+from slideline_tools.studies.scale import study
+from slideline_tools.studies.scale.tiles import grid_mesh
 
 LEVEL, BLOCK = 20, 100000  # of the collision, 96,000 elements, and elements of the block
 FIRST_TOUCH = 1250         # cycles until the bodies touch
 LARGE = 1000               # side of the square for memory
 WAYS = ("threads", "processes")
-ENVIRONMENT = {**os.environ, **runs.ENVIRONMENT}
+ENVIRONMENT = {**os.environ, **study.ENVIRONMENT}
 
 
 def write_decks(folder, cycles):
     """{scene: (words of the command line, elements)}."""
     (folder / "collision.k").write_text(collision(LEVEL, 5), encoding="ascii")
-    end = (FIRST_TOUCH + cycles) * runs.STEP / LEVEL
+    end = (FIRST_TOUCH + cycles) * study.STEP / LEVEL
     return {"collision": (["i=collision.k", f"p:endtim={end}"], sum(grid.element.size for grid in collision_grids(LEVEL))),
             "block": (["i=block.k"], elements.write_deck(folder / "block.k", BLOCK, False, cycles))}
 
@@ -94,7 +95,7 @@ def follow(launcher):
 
 def turning(side):
     """A square that turns, so that no tile rests."""
-    text = runs.body(*runs.grid_mesh(side, side, 1.0, 1.0), "square")
+    text = study.body(*grid_mesh(side, side, 1.0, 1.0), "square")
     return text.rsplit("*END", 1)[0] + "*INITIAL_VELOCITY_GENERATION\n1,2,1.0\n0.0,0.0\n*END\n"
 
 

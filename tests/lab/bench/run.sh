@@ -30,4 +30,4 @@ if command -v valgrind >/dev/null; then
 fi
 "$root/build/venv/bin/python" "$root/tests/lab/bench/bench.py" --build "$root/build/release" --out "$out" \
   ${counted:+--counted "$counted"} "$@"
-MPLBACKEND=Agg "$root/build/venv/bin/python" -m slideline_tools.studies.speed "$out" "$doc"
+MPLBACKEND=Agg "$root/build/venv/bin/python" "$root/tests/lab/bench/speed_page.py" "$out" "$doc"

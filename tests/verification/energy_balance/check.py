@@ -2,8 +2,8 @@
 """The balance of a sound run is constant, however short the waves in it: TSSFAC 0.9, no contact."""
 import numpy as np
 
+from eigen import quad_stiffness
 from meshes import Deck, grid
-from slideline_tools.studies.stability.eigen import quad_stiffness
 
 RHO, YOUNG = 1000.0, 1.0e7
 SOUND = np.sqrt(YOUNG / RHO)

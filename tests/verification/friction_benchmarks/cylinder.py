@@ -4,8 +4,8 @@ import numpy as np
 
 from contact_types import TYPES
 from meshes import Deck
+import hertz_line
 from slideline_tools.scenes.hertz import graded
-from slideline_tools.studies import line_contact
 
 #: mm, N, MPa, t; of the half model.
 RADIUS, WIDTH, HEIGHT, LOAD = 50.0, 100.0, 200.0, 35.0e3 / 2.0
@@ -67,12 +67,12 @@ def answer(run, kind, friction):
     rows = result.table("contact")
     rows = rows.where(time=rows["time"].max())
     x, length, pressure = (rows[key][np.isin(rows["node"], foot)] for key in ("x", "length", "pressure"))
-    profile = line_contact.measure(np.concatenate([-x, x]), np.tile(length, 2), np.tile(pressure, 2))
+    profile = hertz_line.measure(np.concatenate([-x, x]), np.tile(length, 2), np.tile(pressure, 2))
     return result.node(middle)["uy"][-1], profile, result
 
 
 def check(run):
-    half_width, peak = line_contact.hertz(2.0 * LOAD, RADIUS, line_contact.effective_modulus(STEEL, ALUMINIUM))
+    half_width, peak = hertz_line.hertz(2.0 * LOAD, RADIUS, hertz_line.effective_modulus(STEEL, ALUMINIUM))
     for kind, name in TYPES.items():
         sink, _, result = answer(run, kind, FRICTION)
         run.check(f"{name}, mu {FRICTION:g}: sink of the block's top", sink, np.mean(TOLD))

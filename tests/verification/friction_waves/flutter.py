@@ -3,10 +3,10 @@
 import numpy as np
 
 from contact_types import TYPES
+from eigen import Model
 from meshes import Deck
 from slideline_tools.decks import Grid, spaced
-from slideline_tools.studies.stability.eigen import Model
-from slideline_tools.studies.stability.springs import springs
+from springs import springs
 
 YOUNG, POISSON, RHO, HOURGLASS = 1.0e9, 0.3, 1000.0, 0.1
 CELL, BLOCK_ROWS = 0.1, 3

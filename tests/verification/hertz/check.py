@@ -5,11 +5,11 @@ import functools
 import numpy as np
 
 from contact_types import PASS_PATCH, TYPES
+import hertz_line as lines
 from slideline_tools.scenes import hertz, hertz_grids
 from slideline_tools.scenes.common import ALUMINIUM, STEEL
 from slideline_tools.scenes.hertz import (BLOCK_CELL, CYLINDER_CELL, PENALTY,
                                           RADIUS)
-from slideline_tools.studies import line_contact as lines
 
 LEVELS = (1, 2)
 STATIC = (2, 5, 7)  # types with the implicit method too

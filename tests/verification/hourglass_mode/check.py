@@ -4,8 +4,8 @@ import re
 
 import numpy as np
 
+from eigen import quad_stiffness
 from meshes import Deck, distorted_patch, grid, lumped_mass, moduli
-from slideline_tools.studies.stability.eigen import quad_stiffness
 
 RHO, YOUNG, POISSON = 1000.0, 1.0e6, 0.3
 _, _, WAVE_MODULUS = moduli(YOUNG, POISSON)

@@ -19,7 +19,7 @@ DOWN = np.array([9.454e7, 1.3456e8, 1.7840e8, 2.2557e8, 2.7555e8, 3.2990e8])
 ASIDE = np.array([1.836e7, 2.668e7, 3.599e7, 4.608e7, 5.689e7, 6.902e7])
 
 
-def die_mesh(columns=12, rows=6):
+def die_mesh(columns, rows):
     """Straight columns between the arc of radius 0.75 about (0.8, 0.95) and y = 1.4."""
     x = np.linspace(0.2, 1.4, columns + 1)
     foot = 0.95 - np.sqrt(0.75 ** 2 - (x - 0.8) ** 2)
@@ -27,17 +27,18 @@ def die_mesh(columns=12, rows=6):
     return np.array([(a, b + s * (1.4 - b)) for s in share for a, b in zip(x, foot)]), grid_quads(columns, rows)
 
 
-def ironing(kind, press=150.0, slide=0.0, exchanged=False, friction=FRICTION, penalty=PENALTY, scale=0.3):
-    """Down by 1 in `press`, then along by 10 in `slide` UNITs."""
+def ironing(kind, press=150.0, slide=0.0, exchanged=False, friction=FRICTION, penalty=PENALTY, scale=0.3, level=2, reach=10.0):
+    """Down by 1 in `press`, then along by `reach` in `slide` UNITs; level 2 has the example's mesh."""
     deck = Deck(f"ironing, type {kind}").control((press + slide) * UNIT, scale=scale).hourglass(4, 0.05)
     for part, rho in ((1, 10.0 * RHO), (2, RHO)):
         deck.part(part).elastic(rho, YOUNG[part - 1], POISSON, part)
-    die = deck.mesh(*die_mesh(), part=1)
-    slab = deck.mesh(*grid(120, 30, 12.0, 4.0, (0.0, -4.0)), part=2)
-    deck.fix(slab[:121], x=1, y=1)
-    rows = die.reshape(-1, 13)
+    across = 60 * level + 1
+    die = deck.mesh(*die_mesh(6 * level, 3 * level), part=1)
+    slab = deck.mesh(*grid(across - 1, 15 * level, 12.0, 4.0, (0.0, -4.0)), part=2)
+    deck.fix(slab[:across], x=1, y=1)
+    rows = die.reshape(-1, 6 * level + 1)
     # The foot and, since the die goes in deeper than the foot is high, both sides.
-    deck.node_set(1, [*rows[-2:0:-1, 0], *rows[0], *rows[1:-1, -1]]).node_set(2, slab[-121:][::-1]).node_set(3, die[-13:])
+    deck.node_set(1, [*rows[-2:0:-1, 0], *rows[0], *rows[1:-1, -1]]).node_set(2, slab[-across:][::-1]).node_set(3, rows[-1])
     # A steady speed, but for the first hundredths of each way.
     soft = 0.04
 
@@ -50,10 +51,10 @@ def ironing(kind, press=150.0, slide=0.0, exchanged=False, friction=FRICTION, pe
     deck.curve(1, [*ramp(0.0, press, -1.0), (2.0 * (press + slide) * UNIT, -1.0)])
     motions = [(3, 2, 2, 1, 1.0)]
     if slide:
-        deck.curve(2, [(0.0, 0.0), *ramp(press, slide, 10.0), (2.0 * (press + slide) * UNIT, 10.0)])
+        deck.curve(2, [(0.0, 0.0), *ramp(press, slide, reach), (2.0 * (press + slide) * UNIT, reach)])
         motions.append((3, 1, 2, 2, 1.0))
     else:
-        deck.fix(die[-13:], x=1)
+        deck.fix(rows[-1], x=1)
     deck.add("*BOUNDARY_PRESCRIBED_MOTION_SET", *motions)
     deck.add("*DAMPING_GLOBAL", (0, 0.3 / UNIT))
     passes = 2.0 if kind == 3 else 1.0
@@ -88,9 +89,9 @@ def along(result, press, slide):
     return way[keep], force["fy"][keep], -force["fx"][keep]
 
 
-def roughness(way, force):
+def roughness(way, force, cell=0.1):
     """Standard deviation from the running mean over one element of the slab, over the mean."""
-    rows = round(0.1 / np.mean(np.diff(way)))
+    rows = round(cell / np.mean(np.diff(way)))
     running = np.convolve(force, np.full(rows, 1.0 / rows), "valid")
     inner = force[rows // 2:rows // 2 + len(running)]
     return np.std(inner - running) / np.mean(force)

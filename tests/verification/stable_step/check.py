@@ -14,10 +14,10 @@ import numpy as np
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "contact_forces"))
 
 from contact_types import TYPES  # noqa: E402
+from eigen import Model  # noqa: E402
 from meshes import Deck, grid  # noqa: E402
 from reference import Chain, Rule, contact_forces  # noqa: E402
 from slideline_tools.scenes import block, block_grids  # noqa: E402
-from slideline_tools.studies.stability.eigen import Model  # noqa: E402
 
 MESHES = ((7, 5), (5, 8))
 YOUNG, RHO, HOURGLASS = 1.0e6, 1000.0, 0.1

@@ -6,30 +6,31 @@ import fcntl
 import fnmatch
 import os
 import pathlib
+import re
+import shutil
 import signal
 import sys
 
 from slideline_tools import UserError, counting
 from slideline_tools.contact_types import ALL_TYPES, SERIES, parse_series
-from slideline_tools.studies.framework import everything, registry
-from slideline_tools.studies.framework.job import Options, file_digest, interleave, part_of
-from slideline_tools.studies.framework.pages import made_by, program_source
+from slideline_tools.studies.framework import everything, pages
+from slideline_tools.studies.framework.job import Options, file_digest, interleave, part_of, write_whole
 from slideline_tools.studies.framework.progress import Progress
 from slideline_tools.studies.framework.runner import Sweep
-from slideline_tools.studies.framework.table import FAILED, MISSING, rows_of, write_rows
+from slideline_tools.studies.framework.table import FAILED, MISSING, table_of
 
 DONE, UNUSABLE, STOPPED = 0, 2, 4
 EVERYTHING = "all"
-ROOT = pathlib.Path(__file__).resolve().parents[3]
+ROOT = pages.ROOT
 
 
 def build_parser():
     parser = argparse.ArgumentParser(
-        prog="tools/study.sh", description="Run a study: a sweep of runs, its table and charts.",
+        prog="tools/study.sh", description="Run a study: a sweep of runs, its table, charts and page.",
         epilog="A study that was stopped or killed goes on with the same command. Exit status: "
                "0 done (failed runs are results too), 2 unusable, 4 stopped on request.")
-    parser.add_argument("name", choices=[*registry.STUDIES, EVERYTHING], metavar="NAME",
-                        help=", ".join(registry.STUDIES) + f"; {EVERYTHING}: all of them and the batches, from one "
+    parser.add_argument("name", choices=[*pages.STUDIES, EVERYTHING], metavar="NAME",
+                        help=", ".join(pages.STUDIES) + f"; {EVERYTHING}: all of them and the rest of doc/studies, from one "
                         "program on one machine (hours), into results/all")
     parser.add_argument("--levels", type=int, nargs="+", help="refinement levels")
     parser.add_argument("--types", type=parse_series, nargs="+", choices=SERIES,
@@ -44,12 +45,11 @@ def build_parser():
     parser.add_argument("--retry", action="store_true", help="run anew what has failed before")
     parser.add_argument("--list", action="store_true", help="print the runs and do nothing")
     parser.add_argument("--part", metavar="I/N", help="run only part I (0 to N-1) of N, no table")
-    parser.add_argument("--collect", action="store_true", help="no runs: table and charts alone")
+    parser.add_argument("--collect", action="store_true", help="no runs: table, charts and page alone")
     parser.add_argument("--publish", action="store_true", help="write the page and its pictures "
                         "into results/doc instead of results/study-NAME/doc")
     parser.add_argument("--folder", type=pathlib.Path, help="instead of results/study-NAME")
-    parser.add_argument("--program", type=pathlib.Path,
-                        help="default: $SLIDELINE or build/release/slideline")
+    parser.add_argument("--program", type=pathlib.Path, help="default: $SLIDELINE or that of the build")
     return parser
 
 
@@ -65,12 +65,8 @@ def planned(study, wanted):
     unknown = [one for one in options.types if one not in (*ALL_TYPES, *study.types)]
     if unknown:
         raise UserError(f"study {study.name} has no series {', '.join(unknown)}")
-    try:
-        jobs = interleave(study.jobs(options), options.repeats)
-    except ValueError as problem:
-        raise UserError(f"study {study.name}: {problem}") from problem
-    if wanted.only:
-        jobs = [job for job in jobs if fnmatch.fnmatchcase(job.name, wanted.only)]
+    jobs = interleave(study.jobs(options), options.repeats)
+    jobs = [job for job in jobs if fnmatch.fnmatchcase(job.name, wanted.only or "*")]
     if not jobs:
         raise UserError("no runs")
     return jobs
@@ -91,15 +87,15 @@ def with_counter(jobs, wanted):
         return [job for job in jobs if not job.counted], None
 
 
-def part_numbers(text):
-    """(index, count) of 'I/N'."""
+def part_of_text(jobs, text):
+    """The jobs of part 'I/N'."""
     try:
         index, count = (int(word) for word in text.split("/"))
     except ValueError:
         raise UserError(f"--part {text}: expected I/N") from None
     if not 0 <= index < count:
         raise UserError(f"--part {text}: I must be 0 to N-1")
-    return index, count
+    return part_of(jobs, index, count)
 
 
 @contextlib.contextmanager
@@ -114,60 +110,68 @@ def held(folder, shared):
         yield
 
 
-def collect(study, jobs, sweep, doc, publish=False):
-    """Table, charts and page; UserError where runs of several processors are to be published."""
+def collect(study, jobs, sweep, doc, publish):
+    """Table, pictures and page; UserError where runs of several processors are to be published."""
     folder = sweep.folder
-    rows = rows_of(study, jobs, sweep)
+    table = table_of(study, jobs, sweep)
     if study.derive:
-        rows = study.derive(rows, folder)
-    write_rows(folder / f"{study.name}.csv", rows)
-    count = {state: sum(row["state"] == state for row in rows) for state in (FAILED, MISSING)}
-    print(f"wrote {folder / study.name}.csv: {len(rows)} runs"
-          + "".join(f", {number} {state}" for state, number in count.items() if number))
-    study.chart(rows, folder)
+        table = study.derive(table, folder)
+    write_whole(folder / f"{study.name}.csv", table.to_csv(index=False))
+    count = table["state"].value_counts()
+    print(f"wrote {folder / study.name}.csv: {len(table)} runs"
+          + "".join(f", {count[state]} {state}" for state in (FAILED, MISSING) if state in count))
+    study.chart(table, folder)
     if study.page:
-        processors = sorted({row["processor"] for row in rows if "processor" in row})
+        processors = sorted(set(table["processor"].dropna()))
         if publish and len(processors) > 1:
             raise UserError(f"runs of several processors are not published together: {'; '.join(processors)}")
-        with made_by(program_source(sweep.program), "; ".join(processors)):
-            study.page(rows, doc)
+        study.page(table, doc)
+        finish_page(study.name.replace("-", "_"), doc, folder, pages.program_source(sweep.program), "; ".join(processors))
 
 
-def perform_all(wanted):
-    """Every page."""
-    folder = (wanted.folder or ROOT / "results" / "all").resolve()
-    others = [name for name in ("levels", "types", "quick", "repeats", "retry", "list", "part", "collect", "publish", "program")
-              if getattr(wanted, name)]
-    if others:
-        raise UserError(f"{EVERYTHING} takes no {', '.join('--' + name for name in others)}")
-    with held(folder, shared=False):
-        everything.make_all(folder, wanted.only)
+def finish_page(name, doc, folder, source, processors):
+    """The page gets the line of its origin, and the pictures that it shows from the folder of the study."""
+    path = doc / "studies" / f"{name}.md"
+    text = pages.with_origin(name, path.read_text(encoding="utf-8"), source, processors)
+    path.write_text(text, encoding="utf-8")
+    (doc / "pictures").mkdir(exist_ok=True)
+    for picture in re.findall(r"\(\.\./pictures/(\S+\.png)\)", text):
+        if (folder / picture).exists():
+            shutil.copy(folder / picture, doc / "pictures")
+
+
+def print_runs(jobs, sweep):
+    """The state of each run."""
+    for job in jobs:
+        record = sweep.record(job)
+        state = "to run" if record is None else "failed" if record["status"] else "finished"
+        print(f"{state:<9} {job.folder_name}")
 
 
 def perform(wanted):
-    if wanted.name == EVERYTHING:
-        perform_all(wanted)
-        return
-    study = registry.load(wanted.name)
     results = pathlib.Path(os.environ.get("SLIDELINE_RESULTS") or ROOT / "results")
-    folder = wanted.folder or results / f"study-{study.name}{'-quick' * wanted.quick}"
-    folder = folder.resolve()
+    folder = (wanted.folder or results / (EVERYTHING if wanted.name == EVERYTHING
+                                          else f"study-{wanted.name}{'-quick' * wanted.quick}")).resolve()
+    if wanted.name == EVERYTHING:
+        others = [name for name, value in vars(wanted).items() if name not in ("name", "only", "folder")
+                  and value != build_parser().get_default(name)]
+        if others:
+            raise UserError(f"{EVERYTHING} takes no {', '.join(others)}")
+        with held(folder, shared=False):
+            everything.make_all(folder, wanted.only)
+        return
+    if wanted.quick and wanted.publish:
+        raise UserError("a quick study is not published")
+    study = pages.load(wanted.name)
     program = pathlib.Path(wanted.program or os.environ.get("SLIDELINE")
-                           or ROOT / "build" / "release" / "slideline").resolve()
+                           or ROOT / "build" / study.build / "slideline").resolve()
     if not program.is_file():
-        raise UserError(f"no program {program}; build it with tools/build.sh release")
-    jobs = planned(study, wanted)
-    jobs, counted = with_counter(jobs, wanted)
+        raise UserError(f"no program {program}; build it with tools/build.sh {study.build}")
+    jobs, counted = with_counter(planned(study, wanted), wanted)
     sweep = Sweep(folder, program, file_digest(program), counted)
-    if wanted.part:
-        chosen = part_of(jobs, *part_numbers(wanted.part))
-    else:
-        chosen = jobs
+    chosen = part_of_text(jobs, wanted.part) if wanted.part else jobs
     if wanted.list:
-        for job in chosen:
-            record = sweep.record(job)
-            state = "to run" if record is None else "failed" if record["status"] else "finished"
-            print(f"{state:<9} {job.folder_name}")
+        print_runs(chosen, sweep)
         return
     with held(folder, shared=bool(wanted.part)):
         if not wanted.collect:

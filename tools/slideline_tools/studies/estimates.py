@@ -1,305 +1,198 @@
 # SPDX-License-Identifier: MIT
-"""What a run says of how good its contact is, beside how good it is: estimate over error of every type and mesh.
+"""How good the estimate of contact is: what a run tells, beside what it errs by, for every type and mesh.
 
-    python -m slideline_tools.studies.estimates decks FOLDER
-    python -m slideline_tools.studies.estimates page FOLDER DOC [--types ...]
-
-`decks` writes the decks and prints their names SCENE_LEVEL; each is run with every type into FOLDER/SCENE_LEVEL_type_T
-as job SCENE. The page goes to DOC/studies, its picture to DOC/pictures.
+Contact of a cylinder with a block and of two spheres has closed forms; for sliding and ironing, which have none, the
+roughness of the force stands for the error.
 """
-import dataclasses
-import functools
-import importlib.util
-import pathlib
 import re
-import sys
 
 import numpy as np
+import pandas as pd
 
 from slideline_tools import UserError
+from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.histories import read_csv
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.scenes import hertz, sliding
 from slideline_tools.scenes.hertz import BLOCK_CELL, CYLINDER_CELL, PENALTY, RADIUS
-from slideline_tools.studies import hertz as hertz_study
-from slideline_tools.studies import line_contact as lines
-from slideline_tools.studies import peaks
 from slideline_tools.studies import sliding as sliding_study
-from slideline_tools.studies.common import (colour, decks_and_page_main, label, marker, markdown_table, save_small,
-                                            write_page)
-from slideline_tools.studies.ironing import forces_along, ironing, roughness
+from slideline_tools.studies.common import colour, label, markdown_table, marker, save_small, verification, write_page
+from slideline_tools.studies.framework.job import Job, Study
+from slideline_tools.studies.framework.table import finished
+from slideline_tools.studies.hertz import MODULUS, lines, order
 
-VERIFICATION = pathlib.Path(__file__).resolve().parents[3] / "tests" / "verification"
 LEVELS = {"hertz": (1, 2, 3), "spheres": (1, 2), "sliding": (1,), "ironing": (1, 2)}
-TITLES = {"hertz": "Hertz, cylinder on block", "spheres": "Hertz, spheres", "sliding": "sliding", "ironing": "ironing"}
+TITLES = {"hertz": "cylinder on block", "spheres": "spheres", "sliding": "sliding", "ironing": "ironing"}
+CLOSED = ("hertz", "spheres")
+#: Ironing: UNITs of the ways down and along, way along, the part of it that is judged; the deck of the verification case.
+PRESS, DRAW, ALONG, JUDGED = 150.0, 240.0, 4.0, (1.0, 3.9)
 TOLD = re.compile(r"stress behind it differ by +([\d.E+-]+) %")
-ROUGH = re.compile(r"the force is rough by +([\d.E+-]+) %")
-
-
-@functools.lru_cache(maxsize=None)
-def case(name):
-    """The check of a verification case, as a module; `spheres` is its module of closed forms."""
-    sys.path.insert(0, str(VERIFICATION))
-    try:
-        spec = importlib.util.spec_from_file_location(f"round_{name}", VERIFICATION / name / "check.py")
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-        return module
-    except OSError as problem:
-        raise UserError(f"cannot read {VERIFICATION / name}: {problem}") from problem
-    finally:
-        sys.path.remove(str(VERIFICATION))
 
 
 def deck_of(scene, level):
     """Text of a deck; the type comes from the command line."""
-    if scene == "hertz":
-        text = hertz(level)
-    elif scene == "spheres":
-        text = case("hertz_spheres").pressed(5, level, False).text()
-    elif scene == "sliding":
+    if scene == "sliding":
         return sliding(level)
+    every = 1.0
+    if scene == "ironing":
+        case = verification("ironing")
+        text = case.ironing(5, PRESS, DRAW, penalty=1.0e10 * level, level=level, reach=ALONG).text()
+        every = (PRESS + DRAW) * case.UNIT / 500.0
     else:
-        return ironing(5, level)
-    return text.replace("*END", "*DATABASE_SLEOUT\n1.0,\n*END")
+        text = hertz(level) if scene == "hertz" else verification("hertz_spheres").pressed(5, level, False).text()
+    return text.replace("*END", f"*DATABASE_SLEOUT\n{every:.17g},\n*END")
 
 
-def write_decks(folder):
-    """One deck for each scene and mesh; prints their names."""
-    for scene, levels in LEVELS.items():
-        for level in levels:
-            (folder / f"{scene}_{level}.k").write_text(deck_of(scene, level), encoding="utf-8")
-            print(f"{scene}_{level}")
+def jobs(options):
+    """Every scene, mesh and type; the quick study has the coarsest mesh of the closed forms alone."""
+    listed = []
+    for scene in CLOSED if options.quick else LEVELS:
+        for level in (level for level in LEVELS[scene] if level in options.levels):
+            deck = deck_of(scene, level)
+            listed += [Job(f"{scene}_{level}_type_{ctype}", deck, scene, (f"ctype={ctype}", "ncpu=1"),
+                           {"scene": scene, "level": level, "type": ctype}, cost=level ** 3)
+                       for ctype in options.types]
+    return listed
 
 
 # ---- measures ----------------------------------------------------------------------------------
 
-@dataclasses.dataclass
-class Row:
-    """One run: what it tells, and what it errs by."""
-
-    scene: str
-    level: int
-    ctype: int
-    estimate: float
-    error: float
-    springs: float = np.nan     # energy of springs over that of rows
-    soft_error: float = np.nan  # error against Hertz without springs
-    rough: float = np.nan       # roughness as told, over the mean force
-
-
-def norm_of(difference, area):
-    """Root of the integral of a square over a surface."""
-    return np.sqrt(np.sum(difference ** 2 * area))
+def measure(job, folder):
+    """`estimate` and `error`, as shares of one."""
+    scene, level, ctype = (job.labels[name] for name in ("scene", "level", "type"))
+    if scene in CLOSED:
+        error = line_error(folder, level, ctype) if scene == "hertz" else sphere_error(folder, ctype)
+        return {"estimate": float(last(folder / f"{scene}.sleout.csv")["estimate"][0]), "error": error}
+    found = TOLD.search((folder / f"{scene}.log").read_text(encoding="utf-8"))
+    if not found:
+        raise UserError(f"{folder}: the log tells no estimate")
+    if scene == "sliding":
+        error = sliding_study.force_peaks(*sliding_study.vertical_force(folder), level).rms
+    else:
+        error = ironing_roughness(folder, level)
+    return {"estimate": float(found[1]) / 100.0, "error": float(error)}
 
 
-def judge_line(folder, level, ctype):
-    """Profile of a line contact against Hertz on the springs of the penalty, and on rigid ones."""
-    nodes = last(folder, "hertz", "contact")
-    x, area, pressure = nodes["x"], nodes["length"], nodes["pressure"]
-    force = lines.measure(x, area, pressure).force
-    half, peak = lines.hertz(force, RADIUS, hertz_study.MODULUS)
-    cells = (CYLINDER_CELL / level, BLOCK_CELL / level)
-    layer = lines.layer_profile(hertz_study.MODULUS / half / lines.layer_stiffness(ctype, PENALTY, *cells))
-    size = norm_of(lines.ellipse(x, half, peak), area)
-    return [norm_of(pressure - lines.ellipse(x, half * wide, peak * high), area) / size
-            for wide, high in ((layer.half_width, layer.peak), (1.0, 1.0))]
-
-
-def judge_spheres(folder, ctype):
-    """The same between spheres."""
-    check = case("hertz_spheres")
-    nodes = last(folder, "spheres", "contact")
-    r, area, pressure = nodes["x"], nodes["length"], nodes["pressure"]
-    force = check.spheres.measure(r, area, pressure).force
-    half, peak = check.spheres.hertz(2.0 * np.pi * force, 0.5 * check.RADIUS, check.MODULUS)
-    soft = check.spheres.layer(check.MODULUS / (half * check.PENALTY * (2.0 if ctype == 3 else 1.0)))
-
-    def profile(wide, high):
-        return high * peak * np.sqrt(np.clip(1.0 - (r / (wide * half)) ** 2, 0.0, None))
-
-    return [norm_of(pressure - profile(*factors), area) / norm_of(profile(1.0, 1.0), area)
-            for factors in ((soft[0], soft[1]), (1.0, 1.0))]
-
-
-def last(folder, scene, name):
+def last(path):
     """The rows of the last instant of a table."""
-    rows = read_csv(folder / f"{scene}.{name}.csv")
+    rows = read_csv(path)
     if not len(rows):
-        raise UserError(f"{folder}: {name} has no rows")
+        raise UserError(f"{path} has no rows")
     return rows.where(time=rows["time"][-1])
 
 
-def told(folder, scene, pattern):
-    """A percentage of the log, as a share."""
-    found = pattern.search((folder / f"{scene}.log").read_text(encoding="utf-8"))
-    if not found:
-        raise UserError(f"{folder}: the log tells no estimate")
-    return float(found[1]) / 100.0
+def distance(pressure, exact, size, area):
+    """Root of the integral of the squared difference over a surface, over that of `size`."""
+    return float(np.sqrt(np.sum((pressure - exact) ** 2 * area) / np.sum(size ** 2 * area)))
 
 
-def sliding_roughness(folder, level):
-    """Of the vertical force while sliding, without its trend."""
-    rows = read_csv(folder / "sliding.rcforc.csv").where(side="slave")
-    return peaks.abrupt_peaks(rows["time"], rows["fy"], sliding_study.WINDOW_SHARE * sliding_study.crossing_time(level),
-                              sliding_study.THRESHOLD, sliding_study.judged_interval()).rms
+def line_error(folder, level, ctype):
+    """Profile of a line contact against Hertz on the springs of the penalty."""
+    nodes = last(folder / "hertz.contact.csv")
+    x, area, pressure = nodes["x"], nodes["length"], nodes["pressure"]
+    half, peak = lines.hertz(lines.measure(x, area, pressure).force, RADIUS, MODULUS)
+    stiffness = lines.layer_stiffness(ctype, PENALTY, CYLINDER_CELL / level, BLOCK_CELL / level)
+    layer = lines.layer_profile(MODULUS / half / stiffness)
+    return distance(pressure, lines.ellipse(x, half * layer.half_width, peak * layer.peak),
+                    lines.ellipse(x, half, peak), area)
 
 
-def judge(folder, scene, level, ctype):
-    """One run."""
-    if scene in ("hertz", "spheres"):
-        end = last(folder, scene, "sleout")
-        error, soft = judge_line(folder, level, ctype) if scene == "hertz" else judge_spheres(folder, ctype)
-        return Row(scene, level, ctype, float(end["estimate"][0]), error,
-                   float(end["stored"][0] / end["row_energy"][0]), soft)
-    if scene == "sliding":
-        error = sliding_roughness(folder, level)
-    else:
-        error = roughness(forces_along(folder, scene)[1], level)[0]
-    return Row(scene, level, ctype, told(folder, scene, TOLD), float(error), rough=told(folder, scene, ROUGH))
+def sphere_error(folder, ctype):
+    """The same between spheres."""
+    check = verification("hertz_spheres")
+    nodes = last(folder / "spheres.contact.csv")
+    r, area, pressure = nodes["x"], nodes["length"], nodes["pressure"]
+    force = check.spheres.measure(r, area, pressure).force
+    half, peak = check.spheres.hertz(2.0 * np.pi * force, 0.5 * check.RADIUS, check.MODULUS)
+    wide, high = check.spheres.layer(check.MODULUS / (half * check.PENALTY * (2.0 if ctype == 3 else 1.0)))[:2]
+    return distance(pressure, lines.ellipse(r, half * wide, peak * high), lines.ellipse(r, half, peak), area)
 
 
-# ---- page --------------------------------------------------------------------------------------
-
-def table_of(rows, scene):
-    """All runs of a scene."""
-    mine = [row for row in rows if row.scene == scene]
-    if scene in ("hertz", "spheres"):
-        return markdown_table(
-            ["type", "N_r", "estimate, %", "error of the profile on springs, %", "estimate / error", "error against Hertz, %",
-             "springs / rows"],
-            [[label(row.ctype), row.level, 100 * row.estimate, 100 * row.error, f"{row.estimate / row.error:.2f}",
-              100 * row.soft_error, f"{row.springs:.2f}"] for row in mine])
-    return markdown_table(["type", "N_r", "estimate, %", "roughness as told, %", "roughness measured, %"],
-                          [[label(row.ctype), row.level, 100 * row.estimate, 100 * row.rough, 100 * row.error] for row in mine])
+def ironing_roughness(folder, level):
+    """Of the vertical force along the slab."""
+    case = verification("ironing")
+    force = read_csv(folder / "ironing.rcforc.csv").where(side="slave")
+    way = ALONG * (force["time"] / case.UNIT - PRESS) / DRAW
+    if way[-1] < JUDGED[1]:
+        raise UserError(f"{folder}: ended before the way did")
+    keep = (way >= JUDGED[0]) & (way <= JUDGED[1])
+    return case.roughness(way[keep], force["fy"][keep], cell=0.2 / level)
 
 
-def order_table(rows):
-    """Order in the mesh of estimate and error."""
-    lines_of = []
-    for scene in ("hertz", "spheres"):
-        for ctype in dict.fromkeys(row.ctype for row in rows):
-            mine = [row for row in rows if (row.scene, row.ctype) == (scene, ctype)]
-            sizes = [1.0 / row.level for row in mine]
-            lines_of.append([TITLES[scene], label(ctype),
-                             *(f"{hertz_study.order(sizes, values):.2f}" for values in
-                               ([row.estimate for row in mine], [row.error for row in mine]))])
-    return markdown_table(["scene", "type", "order of the estimate", "order of the error"], lines_of)
+# ---- picture and page --------------------------------------------------------------------------
 
-
-def chart(rows):
+def chart(table, folder):
     """Estimate over error, a panel for each scene."""
-    style = {**STYLE, "figure.dpi": 110, "savefig.dpi": 110, "lines.linewidth": 0.8}
-    with plt.rc_context(style):
+    runs = finished(table)
+    with plt.rc_context({**STYLE, "figure.dpi": 110, "savefig.dpi": 110, "lines.linewidth": 0.8}):
         figure, panels = plt.subplots(2, 2, layout="constrained", figsize=(PAGE_WIDTH + 1.0, 6.4))
         for axes, scene in zip(panels.flat, LEVELS):
-            mine = [row for row in rows if row.scene == scene]
-            for ctype in dict.fromkeys(row.ctype for row in mine):
-                points = [(100 * row.error, 100 * row.estimate) for row in mine if row.ctype == ctype]
-                axes.plot(*zip(*points), color=colour(ctype), marker=marker(ctype), markersize=5, label=label(ctype))
-            reach = [100 * value for row in mine for value in (row.error, row.estimate)]
-            axes.plot([min(reach), max(reach)], [min(reach), max(reach)], color="black", linewidth=0.5)
+            mine = 100.0 * runs[runs["scene"] == scene].set_index("type")[["error", "estimate"]]
+            for ctype in dict.fromkeys(mine.index):
+                axes.plot(*mine.loc[[ctype]].to_numpy().T, color=colour(ctype), marker=marker(ctype), markersize=5,
+                          label=label(ctype))
+            if len(mine):
+                reach = [mine.to_numpy().min(), mine.to_numpy().max()]
+                axes.plot(reach, reach, color="black", linewidth=0.5)
             axes.set(xscale="log", yscale="log", title=TITLES[scene], ylabel="estimate, %",
-                     xlabel="error of the profile, %" if scene in ("hertz", "spheres") else "roughness of the force, %")
+                     xlabel="error of the profile, %" if scene in CLOSED else "roughness of the force, %")
             axes.grid(True, which="both", linewidth=0.3, color="#bbbbbb")
         figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
-        return figure
+        save_small(figure, folder / "estimates.png", lines=True)
 
 
 PAGE = """# How good the estimate of contact is
 
-This page and its picture are written by `tools/batch/estimates.sh`: do not edit it.
-
-Each interface tells how far contact pressure and the stress of the elements behind differ
-([theory](../theory/contact.md#81-how-good-the-answer-is-runcontact_judging-runrows_behind)): the *estimate*, column `estimate` of sleout
-and in words in the log. Here it stands beside what is wrong. N_r divides the cells of the coarsest mesh. All decks give every type the same
-PEN; type 6 has 4 Gauss points (sliding: 6).
+Tables of `tools/study.sh estimates`: the [estimate](../theory/contact.md#81-how-good-the-answer-is-runcontact_judging-runrows_behind),
+of sliding and ironing that of all instants written. N_r divides the cells of the coarsest mesh. All types have the same PEN.
 
 ![estimate over error](../pictures/estimates.png)
 
-The thin line is where both are the same. Points of a type are joined from mesh to mesh.
+The thin line is where both are the same. Error of a cylinder on a block and of spheres (decks of `make-deck hertz` and of
+`tests/verification/hertz_spheres`): `sqrt(sum (p - q)^2 a / sum p0^2 a)` over all slave nodes, q the ellipse of Hertz for the force of
+the run, widened and lowered by the springs of the penalty, p0 without them. Of sliding and ironing: standard deviation of the
+vertical force from its trend, over its mean.
 
-## Cylinder on block
+Estimates, %:
 
-`slideline-tools make-deck hertz`, at rest. Error: `sqrt(sum (p - q)^2 a / sum p0^2 a)` over all slave nodes, q the ellipse of Hertz for the force of the run, widened and lowered
-by the springs of the penalty , p0 without them; the column after it with p0 for q, so that the softness of the penalty counts.
+{estimates}
 
-{hertz}
+Errors, %:
 
-## Spheres
-
-The deck of the verification case `hertz_spheres`, both spheres elastic; errors as above, by area.
-
-{spheres}
-
-## Order in the mesh
-
-Slope of log over log.
-
-{orders}
-
-## Sliding and ironing
-
-There is no closed form. The force should be smooth: roughness as [sliding](sliding.md) measures it (r.m.s. without the trend, over the mean), and as
-`slideline_tools/studies/ironing.py` does for the vertical force of ironing. The estimate is that of all instants written. *As told* is the roughness of the
-log, between the instants that are written (plot states and rows of sleout), which are far apart here.
-
-{sliding}
-
-{ironing}
+{errors}
 
 {reading}
 """
 
 
-READING = """## What this says
-
-- Where there is a closed form the estimate is {least:.2f} to {most:.2f} of the error, {mean:.2f} in the geometric mean: it is no bound: the error of the profile
-  is {low:.1f} to {high:.1f} times as large. Part of the error is where contact ends, which the estimate does not see: a node more or less in contact is in
-  equilibrium too. On the meshes of Hertz the error itself does not fall steadily (types 1 to 5), while the estimate does.
-- It falls with the mesh in {falling} of {number} cases, at an order of {order:.2f} in the mean where it does.
-- What a type that fails the patch test adds on finer meshes it sees: between spheres it does not fall with types 1 and 2, while it does with the others.
-- In sliding and ironing it puts smooth types before rough ones, much as the measured roughness does: the ranks of all runs with the same mesh agree with a coefficient of {ranks:.2f}
-  (1: the same order). Where a type loses the soft slab (types 1 and 2 in ironing) it says so in tens of per cent.
-- *As told*, roughness between outputs counts what the force really does between them too. It compares types at the same interval of output and says nothing by itself.
-"""
+def table_of(runs, name):
+    """A column of every run in per cent: types in rows, scenes and meshes in columns."""
+    wide = 100.0 * runs.pivot(index="type", columns=["scene", "level"], values=name)
+    wide.columns = [f"{TITLES[scene]}, N_r {level}" for scene, level in wide.columns]
+    return markdown_table(wide.reset_index().assign(type=[label(ctype) for ctype in wide.index]))
 
 
-def rank_agreement(pairs):
-    """Spearman's coefficient of pairs of figures."""
-    first, second = (np.argsort(np.argsort(column)) for column in zip(*pairs))
-    return float(np.corrcoef(first, second)[0, 1])
+def reading(runs):
+    """Estimate over error, order of the estimate in the mesh, agreement of the ranks, in words."""
+    closed, others = (runs[runs["scene"].isin(CLOSED) == flag] for flag in (True, False))
+    over = closed["error"] / closed["estimate"]
+    orders = pd.Series([order(1.0 / same["level"], same["estimate"]) for _, same in closed.groupby(["scene", "type"])],
+                       dtype=float).dropna()
+    ranks = [same["estimate"].rank().corr(same["error"].rank()) for _, same in others.groupby(["scene", "level"])]
+    words = ((over, f"With a closed form the error is {over.min():.1f} to {over.max():.1f} times the estimate, "
+              f"{np.exp(np.log(over).mean()):.1f} times in the geometric mean."),
+             (orders, f"The estimate falls with the mesh in {(orders > 0.0).sum()} of {len(orders)} cases, at an order of "
+              f"{orders[orders > 0.0].mean():.2f} in the mean where it does."),
+             (ranks, "In sliding and ironing the ranks of estimate and roughness on one mesh agree with a coefficient of "
+              f"{np.sum(ranks) / max(len(ranks), 1):.2f} (1: the same order)."))
+    return "\n".join(f"- {text}" for figures, text in words if len(figures))
 
 
-def reading(rows):
-    """What the figures say, with the figures."""
-    closed = [row for row in rows if row.scene in ("hertz", "spheres")]
-    shares = np.array([row.estimate / row.error for row in closed])
-    orders = []
-    for scene, ctype in dict.fromkeys((row.scene, row.ctype) for row in closed):
-        mine = [row for row in closed if (row.scene, row.ctype) == (scene, ctype)]
-        orders.append(hertz_study.order([1.0 / row.level for row in mine], [row.estimate for row in mine]))
-    falling = [one for one in orders if one > 0.0]
-    ranks = [rank_agreement([(row.estimate, row.error) for row in rows if (row.scene, row.level) == which])
-             for which in dict.fromkeys((row.scene, row.level) for row in rows if row not in closed)]
-    return READING.format(least=shares.min(), most=shares.max(), mean=float(np.exp(np.log(shares).mean())),
-                          low=1.0 / shares.max(), high=1.0 / shares.min(),
-                          falling=len(falling), number=len(orders), order=float(np.mean(falling)),
-                          ranks=float(np.mean(ranks)))
+def page(table, doc):
+    """DOC/studies/estimates.md."""
+    runs = finished(table)
+    write_page(doc, "estimates", PAGE.format(estimates=table_of(runs, "estimate"), errors=table_of(runs, "error"),
+                                             reading=reading(runs)))
 
 
-def write(folder, doc, types):
-    """Read the runs below `folder`, write page and picture."""
-    rows = [judge(folder / f"{scene}_{level}_type_{ctype}", scene, level, ctype)
-            for scene, levels in LEVELS.items() for ctype in types for level in levels]
-    save_small(chart(rows), doc / "pictures" / "estimates.png", lines=True)
-    write_page(doc, "estimates", PAGE.format(orders=order_table(rows), reading=reading(rows),
-                                             **{scene: table_of(rows, scene) for scene in LEVELS}).rstrip() + "\n")
-
-
-def main(arguments=None):
-    return decks_and_page_main(__doc__, write_decks, write, arguments)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+STUDY = Study("estimates", jobs, measure, chart, page=page, levels=(1, 2, 3), types=ALL_TYPES)

@@ -1,39 +1,28 @@
 # SPDX-License-Identifier: MIT
-"""Hertz line contact: half width, peak pressure and profile of a run over the closed form, order of an error."""
+"""The Hertz scene: half width, largest pressure and profile of a run over the closed form; order of an error."""
 import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.histories import read_csv
 from slideline_tools.scenes.common import ALUMINIUM, STEEL
-from slideline_tools.scenes.hertz import BLOCK_CELL, CYLINDER_CELL, END, PENALTY, RADIUS
-from slideline_tools.studies import line_contact as lines
+from slideline_tools.scenes.hertz import END, RADIUS
+from slideline_tools.studies.common import verification
 
-JOB = "hertz"
+lines = verification(".", "hertz_line")  # closed form, and what nodal pressures amount to
 MODULUS = lines.effective_modulus(STEEL, ALUMINIUM)
 
 
-class Run:
-    """One run at rest: nodal pressures of the slave, and their profile over that of Hertz."""
-
-    def __init__(self, folder, level, ctype, exchanged=False, penalty=PENALTY):
-        self.level, self.ctype = level, ctype
-        nodes, energy = (read_csv(folder / f"{JOB}.{name}.csv") for name in ("contact", "glstat"))
-        if not len(energy) or energy["time"][-1] < END * (1.0 - 1e-6):
-            raise UserError(f"{folder}: the run did not reach its end")
-        nodes = nodes.where(time=nodes["time"][-1])
-        self.x, self.pressure = nodes["x"], nodes["pressure"]
-        found = lines.measure(self.x, nodes["length"], self.pressure)
-        self.force = found.force
-        self.hertz = lines.hertz(found.force, RADIUS, MODULUS)
-        self.half_width = found.half_width / self.hertz[0]
-        self.peak = found.peak / self.hertz[1]
-        self.inside, self.anywhere = lines.deviation(self.x, self.pressure, *self.hertz)
-        cells = (BLOCK_CELL, CYLINDER_CELL) if exchanged else (CYLINDER_CELL, BLOCK_CELL)
-        self.segments = self.hertz[0] * level / cells[0]
-        self.softness = MODULUS / self.hertz[0] / lines.layer_stiffness(
-            ctype, penalty, *(cell / level for cell in cells))
-        self.layer = lines.layer_profile(self.softness)
-        self.kinetic = float(energy["kinetic"][-1] / energy["internal"][-1])
+def measure(folder):
+    """`half_width` and `peak` of the nodal pressures at rest over those of Hertz, `inside` the largest distance from his
+    ellipse inside 0.8 of it, over its peak."""
+    nodes, energy = (read_csv(folder / f"hertz.{name}.csv") for name in ("contact", "glstat"))
+    if not len(energy) or energy["time"][-1] < END * (1.0 - 1e-6):
+        raise UserError(f"{folder}: the run did not reach its end")
+    nodes = nodes.where(time=nodes["time"][-1])
+    found = lines.measure(nodes["x"], nodes["length"], nodes["pressure"])
+    half_width, peak = lines.hertz(found.force, RADIUS, MODULUS)
+    inside, _ = lines.deviation(nodes["x"], nodes["pressure"], half_width, peak)
+    return {"half_width": found.half_width / half_width, "peak": found.peak / peak, "inside": inside}
 
 
 def order(sizes, errors):

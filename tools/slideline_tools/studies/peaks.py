@@ -8,53 +8,32 @@ of height s leaves s/2) and fast ringing. An abrupt peak is a place where |r| ex
 share of the mean force; places closer than half a window to each other are one peak, since a
 structure that was hit once rings for a while.
 """
-import dataclasses
+import typing
 
 import numpy as np
+import pandas as pd
 
 from slideline_tools import UserError
 
 FEWEST_SAMPLES = 8
 PER_SEGMENT = 101
-CHUNK = 4096
 
 
-@dataclasses.dataclass
-class Peaks:
-    """The abrupt peaks of one history.
+class Peaks(typing.NamedTuple):
+    """The abrupt peaks of one history."""
 
-    `mean`     mean force in the judged interval, unit of the force
-    `times`    (n,) when |r| of each peak is largest
-    `sizes`    (n,) that largest |r| over the mean force
-    `largest`  largest |r| in the judged interval over the mean force, a peak or not
-    `rms`      root mean square of r in the judged interval over the mean force
-    """
-
-    mean: float
-    times: np.ndarray
-    sizes: np.ndarray
-    largest: float
-    rms: float
-
-    @property
-    def count(self):
-        """Number of peaks."""
-        return len(self.sizes)
-
-    @property
-    def typical(self):
-        """Median size of the peaks, 0 without any."""
-        return float(np.median(self.sizes)) if self.count else 0.0
+    mean: float        # mean force in the judged interval, unit of the force
+    times: np.ndarray  # (n,) when |r| of each peak is largest
+    sizes: np.ndarray  # (n,) that largest |r| over the mean force
+    largest: float     # largest |r| in the judged interval over the mean force, a peak or not
+    rms: float         # root mean square of r in the judged interval over the mean force
 
 
-def running(reduce, values, count):
-    """`reduce` (np.median, np.mean) over `count` samples about each; the ends are repeated."""
+def running(name, values, count):
+    """The `mean` or `median` over `count` samples about each; the ends are repeated."""
     half = count // 2
-    padded = np.pad(np.asarray(values, dtype=float), half, mode="edge")
-    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * half + 1)
-    # In chunks: the windows of a long history do not fit into memory at once.
-    return np.concatenate([reduce(windows[start:start + CHUNK], axis=1)
-                           for start in range(0, len(windows), CHUNK)])
+    windows = pd.Series(np.pad(values, half, mode="edge")).rolling(2 * half + 1)
+    return getattr(windows, name)().to_numpy()[2 * half:]
 
 
 def sample_count(time, window):
@@ -72,7 +51,7 @@ def sample_count(time, window):
 def trend(time, force, window):
     """The smooth part of a history, sampled as the history."""
     count = sample_count(time, window)
-    return running(np.mean, running(np.median, force, count), count)
+    return running("mean", running("median", force, count), count)
 
 
 def abrupt_peaks(time, force, window, threshold, interval=None):
@@ -107,7 +86,7 @@ def waviness(time, force, travel, length, window, interval):
     judged = (even >= np.interp(interval[0], time, travel)) \
         & (even <= np.interp(interval[1], time, travel))
     wave = np.interp(even, travel, smooth)
-    rest = (wave - running(np.mean, wave, PER_SEGMENT))[judged]
+    rest = (wave - running("mean", wave, PER_SEGMENT))[judged]
     return float(np.sqrt(np.mean(rest ** 2)) / np.mean(wave[judged]))
 
 

@@ -35,4 +35,4 @@ python=$root/build/venv/bin/python
 counted=$("$python" -m slideline_tools.counting) || echo "instructions are not counted" >&2
 "$python" "$root/tests/lab/bench/peers/run.py" ${counted:+--counted "$counted"} --program "$program" \
   --peers "$venv/bin/python" --out "$out" "$@"
-"$python" -m slideline_tools.studies.peers "$out" "$doc"
+MPLBACKEND=Agg "$python" "$root/tests/lab/bench/peers/peers_page.py" "$out" "$doc"

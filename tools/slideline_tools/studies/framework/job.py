@@ -7,7 +7,9 @@ import hashlib
 import json
 import os
 import pathlib
-from typing import Callable, Mapping, Optional, Sequence, Union
+from typing import Callable, Mapping, Optional, Sequence
+
+import pandas as pd
 
 from slideline_tools.contact_types import ALL_TYPES
 
@@ -27,10 +29,11 @@ class Job:
     """One run of the program.
 
     `name`      unique in the study; names the folder of the run
-    `deck`      text of the deck, or its file; without *INCLUDE
+    `deck`      text of the deck, without *INCLUDE
     `jobid`     stem of the result files
     `options`   further arguments of the program, for example ("ctype=5", "p:dtplot=1")
     `labels`    columns of its row that say what it is, for example scene, level, type
+    `launcher`  words before the program, for example ("mpirun", "-n", "4")
     `environment` variables set for it
     `group`     jobs of a group run on one machine, since they are compared in time
     `alone`     a timing job: nothing else runs beside it, whatever -j says
@@ -44,10 +47,11 @@ class Job:
     """
 
     name: str
-    deck: Union[str, pathlib.Path]
+    deck: str
     jobid: str = "run"
     options: Sequence[str] = ()
     labels: Mapping[str, object] = dataclasses.field(default_factory=dict)
+    launcher: Sequence[str] = ()
     environment: Mapping[str, str] = dataclasses.field(default_factory=dict)
     group: str = ""
     alone: bool = False
@@ -63,17 +67,10 @@ class Job:
         """Folder of the run below `runs`; the same whatever number of repeats is asked for."""
         return self.name if self.repeat == 1 else f"{self.name}.{self.repeat}"
 
-    @property
-    def deck_text(self):
-        """The whole deck."""
-        if isinstance(self.deck, pathlib.Path):
-            return self.deck.read_text(encoding="utf-8")
-        return self.deck
-
     def fingerprint(self, program):
         """Changes with the deck, the options, the environment and the program (its `file_digest`)."""
-        parts = [self.deck_text, self.jobid, list(self.options), sorted(self.environment.items()),
-                 self.limit, program] + ["counted"] * self.counted
+        parts = [self.deck, self.jobid, list(self.options), sorted(self.environment.items()),
+                 self.limit, program, *self.launcher] + ["counted"] * self.counted
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
 
@@ -82,25 +79,28 @@ class Study:
     """A sweep and what is made of it.
 
     `jobs(options)`         the list of jobs of one round, without repeats
-    `measure(job, folder)`  columns read from one finished run; {} if there is nothing to read
-    `chart(rows, folder)`   draws the charts into `folder` (see `charts.save`)
-    `derive(rows, folder)`  optional: the rows with columns that need several runs, whose results
-                            are in folder/runs/<row["run"]>
-    `page(rows, doc)`       optional: writes DOC/studies/<name>.md and DOC/pictures/*
+    `measure(job, folder)`   columns read from one finished run; {} if there is nothing to read
+    `chart(table, folder)`   draws the pictures into `folder`
+    `derive(table, folder)`  optional: the table (see table.py) with columns that need several runs, whose
+                             results are in folder/runs/RUN, RUN the name in column `run`
+    `page(table, doc)`       optional: writes DOC/studies/<name>.md; pictures that it shows as ../pictures/NAME.png are
+                             those that `chart` has drawn
     `levels`, `types`, `repeats` and `quick_...`: used where the user names none.
+    `build`                  whose program it takes, of build/<build>
     """
 
     name: str
     jobs: Callable[[Options], Sequence[Job]]
     measure: Callable[[Job, pathlib.Path], Mapping]
-    chart: Callable[[list, pathlib.Path], None]
-    derive: Optional[Callable[[list, pathlib.Path], list]] = None
-    page: Optional[Callable[[list, pathlib.Path], None]] = None
+    chart: Callable[[pd.DataFrame, pathlib.Path], None]
+    derive: Optional[Callable[[pd.DataFrame, pathlib.Path], pd.DataFrame]] = None
+    page: Optional[Callable[[pd.DataFrame, pathlib.Path], None]] = None
     levels: Sequence[int] = (1,)
-    types: Sequence[int] = ALL_TYPES
+    types: Sequence = ALL_TYPES
     repeats: int = 1
     quick_levels: Sequence[int] = (1,)
     quick_repeats: int = 1
+    build: str = "release"
 
 
 def interleave(jobs, rounds):

@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Tables of the studies: what makes each, which sources it speaks of, and the page of doc/studies that quotes it.
+"""The studies by name, and their tables: what makes each, which sources it speaks of, the page of doc/studies that quotes it.
 
-Made tables (all levels, types and counts, with their pictures) go to results/doc and are kept with releases; pages of
+Made tables (all levels and types, with their pictures) go to results/doc and are kept with releases; pages of
 doc/studies are written and quote them. Both name in the third line the source and the processor they were made from, and
 the digest of those sources. Where the digest is another today a page is behind the code; that has to be allowed openly,
 in doc/studies/README.md (tests/house/test_pages.py).
 """
 from __future__ import annotations
 
-import contextlib
-import contextvars
 import dataclasses
 import hashlib
+import importlib
 import os
 import pathlib
 import re
@@ -27,48 +26,41 @@ ALL = (*CONTACT, "deck", "output")
 
 @dataclasses.dataclass(frozen=True)
 class Page:
-    """`quoted`: page of doc/studies; `command`: what makes it, from the top of the tree; `sources`: folders of src; `after`:
-    those whose results it reads."""
+    """Tables: `quoted` by a page of doc/studies, made by a `command` from the top of the tree, of `sources`, folders of src.
+
+    `module`: of slideline_tools.studies, with the `STUDY` that tools/study.sh runs.
+    """
 
     quoted: str
     command: tuple
     sources: tuple = CONTACT
-    after: tuple = ()
+    module: str = ""
 
 
-def study(quoted, name, sources=CONTACT):
+def study(quoted, name, module, sources=CONTACT):
     """Tables of tools/study.sh."""
-    return Page(quoted, ("tools/study.sh", name, "--publish"), sources)
+    return Page(quoted, ("tools/study.sh", name, "--publish"), sources, module)
 
 
-def batch(quoted, name, *words, after=(), sources=CONTACT):
-    """Tables of a script in tools/batch."""
-    return Page(quoted, (f"tools/batch/{name}.sh", *words), sources, after)
-
-
-PAGES = {  # quick ones first
-    "patch_test": batch("paper", "patch"),
-    "block_to_block": batch("paper", "block"),
-    "block_to_block_implicit": batch("paper", "block_implicit", after=("block_to_block",)),
-    "collision": batch("paper", "collision"),
-    "sliding": batch("paper", "sliding"),
-    "estimates": batch("choosing", "estimates"),
-    "paper_tables": study("paper", "paper-tables"),
-    "claims": batch("paper", "claims", after=("block_to_block", "sliding", "collision", "paper_tables")),
-    "stability": study("stability", "stability"),
-    "speed_accuracy": study("speed_accuracy", "speed-accuracy"),
-    "chooses": batch("choosing", "chooses", after=("speed_accuracy",)),
-    "simplify": study("simplify", "simplify", ALL),
-    "scale": batch("scale", "scale", "--publish", sources=("parallel",)),
+PAGES = {  # quick ones first; `chooses` reads what `speed_accuracy` wrote
+    "estimates": study("choosing", "estimates", "estimates"),
+    "paper": study("paper", "paper", "paper.study"),
+    "stability": study("stability", "stability", "stability.study"),
+    "speed_accuracy": study("speed_accuracy", "speed-accuracy", "speed_accuracy.study"),
+    "chooses": study("choosing", "chooses", "chooses"),
+    "simplify": study("simplify", "simplify", "simplify.study", ALL),
+    "scale": study("scale", "scale", "scale.study", ("parallel",)),
     "peers": Page("peers", ("tests/lab/bench/peers/run.sh", "--publish")),
     "speed_laws": Page("speed", ("tests/lab/bench/laws.sh", "--publish"), ("material",)),
     "speed": Page("speed", ("tests/lab/bench/run.sh", "--publish"), ALL),
 }
 
+STUDIES = {page.command[1]: page.module for page in PAGES.values() if page.module}
 
-def sources_of(quoted):
-    """Folders of src that a page of doc/studies speaks of."""
-    return tuple(sorted({folder for page in PAGES.values() if page.quoted == quoted for folder in page.sources}))
+
+def load(name):
+    """The `Study` of that name."""
+    return importlib.import_module(f"slideline_tools.studies.{STUDIES[name]}").STUDY
 
 
 ORIGIN = re.compile(r"^Made from source `(?P<source>\S+)` on (?P<processor>.+); digest of what it speaks of "
@@ -105,35 +97,13 @@ def program_source(program=None):
     return told[1] if told else "unknown"
 
 
-MAKER = contextvars.ContextVar("MAKER", default=(None, None))
+def with_origin(name, text, source=None, processors=None):
+    """The text of a page with the line of its origin below its title, in place of an older one.
 
-
-@contextlib.contextmanager
-def made_by(source, processors):
-    """Pages written inside are made from this source on these processors; elsewhere from the program of the release
-    build, or what $SLIDELINE names, on this machine."""
-    token = MAKER.set((source, processors))
-    try:
-        yield
-    finally:
-        MAKER.reset(token)
-
-
-def with_origin(name, text):
-    """The text of a page with the line of its origin below its title, in place of an older one."""
-    source, processors = MAKER.get()
+    Without `source` and `processors`: the program of the release build, or what $SLIDELINE names, and this machine.
+    """
     title, _, rest = text.partition("\n")
     if ORIGIN.match(rest.lstrip("\n")):
         rest = rest.lstrip("\n").partition("\n")[2]
     return (f"{title}\n\nMade from source `{source or program_source()}` on {processors or processor()}; "
             f"digest of what it speaks of `{digest(PAGES[name].sources)}`.\n\n{rest.lstrip()}")
-
-
-def is_behind(quoted, text):
-    """Why a page of doc/studies is behind the code, or ''."""
-    origin = ORIGIN.search(text)
-    if not origin:
-        return "it does not name the source it was made from"
-    if origin["digest"] != digest(sources_of(quoted)):
-        return f"its sources have changed since {origin['source']}"
-    return ""

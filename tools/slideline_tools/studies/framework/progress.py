@@ -1,26 +1,24 @@
 # SPDX-License-Identifier: MIT
-"""Says how far a sweep is: one updating line on a terminal, plain lines elsewhere."""
+"""Says how far a sweep is: on a terminal one line that is renewed, elsewhere a line now and then."""
 import shutil
 import sys
 import time
 
-LINE_EVERY, SHOW_EVERY = 1.0, 0.2  # seconds between plain lines, between updates
+LINE_EVERY = 1.0  # seconds between lines that are not on a terminal
 
 
 class Progress:
-    """Counts finished runs and guesses the time to go from runs of the same name, else from the cost."""
+    """Counts runs and guesses the time to go from the seconds and costs of those that have finished."""
 
     def __init__(self, stream=None):
         self.stream = stream or sys.stdout
-        self.updating = self.stream.isatty()
-        self.seconds, self.costs = {}, {}  # measured seconds and expected cost by job name
+        self.seconds = self.cost = 0.0  # measured and expected, of the finished runs
         self.left, self.total, self.finished, self.failed = [], 0, 0, 0
         self.parallel, self.shown = 1, 0.0
 
     def known(self, job, record):
         """A run that has finished before."""
-        self.seconds.setdefault(job.name, []).append(record["seconds"])
-        self.costs[job.name] = job.cost
+        self.seconds, self.cost = self.seconds + record["seconds"], self.cost + job.cost
         self.failed += record["status"] != 0
         self.finished += 1
 
@@ -37,60 +35,31 @@ class Progress:
         self.known(job, record)
         if record["status"] != 0:
             self.line(f"{job.folder_name} failed: {record['message']}")
-        if not self.updating and (time.monotonic() - self.shown > LINE_EVERY or not self.left):
+        if self.stream.isatty() or time.monotonic() - self.shown > LINE_EVERY or not self.left:
             self.shown = time.monotonic()
-            self.line(f"{self.state()}; {job.folder_name} took {record['seconds']:.3g} s")
+            text = f"{self.finished} of {self.total} runs" + f", {self.failed} failed" * bool(self.failed)
+            text += f", {span(self.to_go())} to go" * bool(self.left)
+            self.line(f"{text}; {job.folder_name} took {record['seconds']:.3g} s", stays=not self.left)
 
     def killed(self, job):
         """A run that was ended from outside: no result."""
         self.left.remove(job)
         self.line(f"{job.folder_name} was killed; the same command runs it anew")
 
-    def show(self, running):
-        """What runs now, on a terminal."""
-        if self.updating and running and time.monotonic() - self.shown > SHOW_EVERY:
-            self.shown = time.monotonic()
-            text = f"{self.state()}: {', '.join(job.folder_name for job in running)}"
+    def line(self, text, stays=True):
+        """One line; one that does not stay is overwritten by the next on a terminal."""
+        if self.stream.isatty():
             width = shutil.get_terminal_size().columns - 1
-            self.stream.write("\r" + text[:width].ljust(width))
-            self.stream.flush()
-
-    def end(self):
-        """Leave the updating line."""
-        if self.updating and self.total:
-            self.line(self.state())
-
-    def line(self, text):
-        """One line that stays."""
-        if self.updating:
-            self.stream.write("\r" + text.ljust(shutil.get_terminal_size().columns - 1) + "\n")
-        else:
-            self.stream.write(text + "\n")
-        self.stream.flush()
-
-    def state(self):
-        """'12 of 84 runs, 1 failed, about 3 min to go'."""
-        text = f"{self.finished} of {self.total} runs"
-        if self.failed:
-            text += f", {self.failed} failed"
-        return text + (f", {span(self.to_go())} to go" if self.left else "")
+            text = "\r" + (text if stays else text[:width]).ljust(width)
+        print(text, end="\n" if stays or not self.stream.isatty() else "", file=self.stream, flush=True)
 
     def to_go(self):
-        """Seconds to go, or None if no run has finished yet."""
-        if not self.seconds:
-            return None
-        means = {name: sum(values) / len(values) for name, values in self.seconds.items()}
-        unit = sum(means.values()) / sum(self.costs.values())
-        return sum(means.get(job.name, unit * job.cost) / (1 if job.alone else self.parallel)
-                   for job in self.left)
+        """Seconds to go."""
+        return self.seconds / self.cost * sum(job.cost / (1 if job.alone else self.parallel) for job in self.left)
 
 
 def span(seconds):
     """A length of time in words."""
-    if seconds is None:
-        return "an unknown time"
     if seconds < 90.0:
         return f"about {max(1, round(seconds))} s"
-    if seconds < 5400.0:
-        return f"about {round(seconds / 60.0)} min"
-    return f"about {seconds / 3600.0:.1f} h"
+    return f"about {round(seconds / 60.0)} min" if seconds < 5400.0 else f"about {seconds / 3600.0:.1f} h"

@@ -8,12 +8,12 @@ seconds that the run would have taken had its element loop run at the median pac
 import numpy as np
 
 from slideline_tools import UserError
-from slideline_tools.contact_types import in_order
 from slideline_tools.histories import read_csv
-from slideline_tools.studies.framework.table import finished, grouped
+from slideline_tools.studies.framework.table import finished
 
 STEPS = ("search", "pairing", "force")
 LETTERS = {"search": "A search", "pairing": "M pairing", "force": "B force"}
+VARIANT = ["scene", "level", "type"]
 
 
 def phases(path):
@@ -33,68 +33,30 @@ def phases(path):
     return row
 
 
-def pace(row):
-    """Seconds of one pass over the elements."""
-    return row["elements"] / row["element_calls"]
+def contact_times(table):
+    """Medians of the finished runs, a row for each (scene, level, type) in order of appearance.
 
-
-class Times:
-    """Medians of one scene: `seconds[level][type]` = {column: median of the corrected seconds};
-    "contact" is the sum of the medians of the steps.
-
-    `points[level][type]`: contact points under pressure at most, '' where the rows do not tell.
-    `steps[level]`: time steps (explicit runs). `rounds`: fewest runs of a variant; `spread`: largest distance of the quartiles of the contact
-    time over its median; `pace_spread`: the same of the uncorrected pace; `load`:
-    median of the load of the machine.
+    Columns: the corrected seconds of the `STEPS`, of `contact` (their sum) and of `computing`; `rounds`, how many runs;
+    `spread`, the distance of the quartiles of the contact time over its median; `steps`, time steps of an explicit run.
     """
+    runs = finished(table)
+    pace = runs["elements"] / runs["element_calls"]
+    correction = pace.groupby([runs["scene"], runs["level"]]).transform("median") / pace
+    corrected = runs[[*STEPS, "contact", "computing"]].mul(correction, axis=0)
+    groups = corrected.groupby([runs[name] for name in VARIANT], sort=False)
+    times = groups.median()
+    # So that the steps add up to what is printed as their sum.
+    times["contact"] = times[list(STEPS)].sum(axis=1)
+    times["rounds"] = groups.size()
+    times["spread"] = groups["contact"].agg(quartile_distance)
+    times["steps"] = runs.groupby(VARIANT, sort=False)["element_calls"].first().astype(int) - 1
+    return times
 
-    COLUMNS = (*STEPS, "contact", "computing")
 
-    def __init__(self, rows, scene):
-        """`rows` with the columns scene, level, type and those of `phases`."""
-        rows = [row for row in finished(rows) if row["scene"] == scene]
-        if not rows:
-            raise UserError(f"no timing runs of the scene {scene}")
-        self.scene, self.seconds, self.steps, self.points = scene, {}, {}, {}
-        spreads, paces, counts = [], [], []
-        for (level,), same_level in grouped(rows, "level").items():
-            usual = np.median([pace(row) for row in same_level])
-            self.seconds[level], self.steps[level] = {}, same_level[0]["element_calls"] - 1
-            self.points[level] = {row["type"]: row.get("points", "") for row in same_level}
-            groups = grouped(same_level, "type")
-            for ctype in in_order(row["type"] for row in same_level):
-                runs = groups[ctype,]
-                factors = np.array([usual / pace(run) for run in runs])
-                values = {name: factors * [run[name] for run in runs] for name in self.COLUMNS}
-                middle = {name: float(np.median(column)) for name, column in values.items()}
-                # So that the steps add up to what is printed as their sum.
-                middle["contact"] = sum(middle[step] for step in STEPS)
-                self.seconds[level][ctype] = middle
-                spreads.append(quartile_distance(values["contact"]))
-                paces.append(quartile_distance(1.0 / factors))
-                counts.append(len(runs))
-        self.load = float(np.median([row.get("load", np.nan) for row in rows]))
-        self.rounds, self.spread, self.pace_spread = min(counts), max(spreads), max(paces)
-
-    @property
-    def levels(self):
-        return list(self.seconds)
-
-    def has(self, level, ctype):
-        """Whether there is a finished run of this variant and of type 1 to compare it with."""
-        return {1, ctype} <= set(self.seconds.get(level, {}))
-
-    def ratio(self, level, ctype, name="contact"):
-        """Time of a type over the whole contact time of type 1."""
-        return self.seconds[level][ctype][name] / self.seconds[level][1]["contact"]
-
-    def computing_ratio(self, level, ctype):
-        """Time of the whole computation of a type over that of type 1."""
-        return self.seconds[level][ctype]["computing"] / self.seconds[level][1]["computing"]
-
-    def share(self, level, ctype):
-        """Contact time over the time of computing."""
-        return self.seconds[level][ctype]["contact"] / self.seconds[level][ctype]["computing"]
+def over_type_1(times, column="contact", base="contact"):
+    """A column of `contact_times` over what type 1 takes of `base` in the same scene and level; nan where that has not run."""
+    is_type_1 = times.index.get_level_values("type") == 1
+    return times[column] / times[base].where(is_type_1).groupby(level=["scene", "level"]).transform("max")
 
 
 def quartile_distance(values):

@@ -1,14 +1,40 @@
 # SPDX-License-Identifier: MIT
-"""Tiles of a mesh as the program cuts them, and what processes that share them send each other in a step.
+"""Tiles of a mesh as the program cuts them, and what processes that share them send in a step.
 
-The same as src/model/layout_building.f90 and src/solve/explicit/rank_shares.f90 for one part and no contact; the bytes
-that this gives are held against those that the program counts.
+The same as src/model/layout_building.f90 and src/solve/explicit/rank_shares.f90 for one part and no
+contact; the bytes that this gives are held against those that the program counts.
 """
 import numpy as np
+
+from slideline_tools.decks import Grid, spaced
 
 TILE = 512        # elements at most
 CURVE_BITS = 16   # the Hilbert curve has 2^16 cells along each axis
 SLOT_BYTES = 16   # two forces
+
+
+def ring_mesh(around, across):
+    """Nodes and quads of a ring of radii 0.8 to 1."""
+    angle = 2.0 * np.pi * np.arange(around) / around
+    radius = np.linspace(0.8, 1.0, across + 1)
+    points = np.stack([np.outer(np.cos(angle), radius), np.outer(np.sin(angle), radius)], axis=-1)
+    node = np.arange(around * (across + 1)).reshape(around, across + 1)
+    after = np.roll(node, -1, axis=0)
+    quads = np.stack([node[:, :-1], node[:, 1:], after[:, 1:], after[:, :-1]], axis=-1)
+    return points.reshape(-1, 2), quads.reshape(-1, 4)
+
+
+def grid_mesh(columns, rows, width, height):
+    """Nodes and quads of a rectangle."""
+    grid = Grid(spaced((0.0, width, columns)), spaced((0.0, height, rows)), first_node=0)
+    return grid.points.reshape(-1, 2), grid.quads.reshape(-1, 4)
+
+
+MESHES = {  # one body without contact each
+    "square": lambda: grid_mesh(200, 200, 1.0, 1.0),
+    "bar": lambda: grid_mesh(1600, 25, 64.0, 1.0),
+    "ring": lambda: ring_mesh(1000, 40),
+}
 
 
 def hilbert_distance(x, y):
@@ -56,11 +82,11 @@ def ranges(sizes, n):
 
 
 def traffic(slots, owner, n):
-    """(messages, bytes) that each of n processes sends in a step; `owner` is the process of each tile."""
+    """(messages, bytes) that each of n processes sends in a step; `owner`: process of each tile."""
     nodes, touching = slots
     ranks = owner[touching]
     messages, sent = np.zeros(n, dtype=int), np.zeros(n, dtype=int)
-    # Pairs of slots of one node: they stand side by side, and a node has at most as many as elements meet in it.
+    # Pairs of slots of one node stand side by side; it has at most as many as elements meet in it.
     found = []
     for shift in range(1, np.bincount(nodes).max()):
         same = nodes[shift:] == nodes[:-shift]
@@ -74,27 +100,3 @@ def traffic(slots, owner, n):
     pairs = np.unique(sender * n + needs % n)
     np.add.at(messages, pairs // n, 1)
     return messages, sent
-
-
-def tile_graph(slots, n_tile):
-    """(starts, neighbours, common nodes) of the tiles, in the rows that METIS takes."""
-    nodes, touching = slots
-    found = []
-    for shift in range(1, np.bincount(nodes).max()):
-        same = np.flatnonzero(nodes[shift:] == nodes[:-shift])
-        found += [touching[same] * n_tile + touching[same + shift], touching[same + shift] * n_tile + touching[same]]
-    edges, weights = np.unique(np.concatenate(found), return_counts=True)
-    starts = np.searchsorted(edges // n_tile, np.arange(n_tile + 1))
-    return starts, edges % n_tile, weights
-
-
-def metis(slots, sizes, n):
-    """The process of each tile by METIS, weighted by elements and common nodes; None where pymetis is not installed."""
-    try:
-        import pymetis  # of the study alone
-    except ImportError:
-        return None
-    starts, neighbours, weights = tile_graph(slots, len(sizes))
-    _, owner = pymetis.part_graph(n, xadj=starts.tolist(), adjncy=neighbours.tolist(), vweights=sizes.tolist(),
-                                  eweights=weights.tolist())
-    return np.array(owner)

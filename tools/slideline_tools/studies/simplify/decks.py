@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Decks of the study simplify: scenes with more than they need, made from the scenes as they are."""
+"""Decks of the study simplify: scenes with more than they need."""
+import functools
+
 import numpy as np
 
 from slideline_tools.decks import Deck, field
@@ -21,11 +23,12 @@ def exchanged(deck, old, new):
 
 
 def written(*calls):
-    """Text of cards: each call is (method of Deck, arguments ...)."""
+    """Text of cards: each call is (method of Deck by name, or function of a Deck, arguments ...)."""
     deck = Deck("")
     start = len(deck.lines)
-    for name, *arguments in calls:
-        getattr(deck, name)(*arguments)
+    for call, *arguments in calls:
+        write = getattr(Deck, call) if isinstance(call, str) else call
+        write(deck, *arguments)
     return "\n".join(deck.lines[start:]) + "\n"
 
 
@@ -57,7 +60,8 @@ def mirror(grid, part):
     quads = np.stack([of_left[1:, :-1], of_left[:-1, :-1], of_left[:-1, 1:], of_left[1:, 1:]],
                      axis=-1)
     # As written for the half model and in comma form: a minus sign would cost a digit.
-    places = [[float(field(x, NODE_WIDTH)) for x in point] for point in grid.points[1:].reshape(-1, 2)]
+    places = [[float(field(x, NODE_WIDTH)) for x in point]
+              for point in grid.points[1:].reshape(-1, 2)]
     lines = [f"{number},{-x!r},{y!r}" for number, (x, y) in zip(of_left[1:].ravel(), places)]
     return "\n".join(["*NODE", *lines]) + "\n" + written(
         ("quads", MIRRORED + grid.element.ravel(), part, quads.reshape(-1, 4)))
@@ -65,12 +69,9 @@ def mirror(grid, part):
 
 def plastic_instead(deck, number, material):
     """The deck with an elastic-plastic law that never yields in place of an elastic one."""
-    new = Deck("")
-    start = len(new.lines)
-    perfectly_plastic(new, number, **material, yield_stress=UNREACHABLE)
-    old = Deck("")
-    elastic(old, number, **material)
-    return exchanged(deck, "\n".join(old.lines[start:]) + "\n", "\n".join(new.lines[start:]) + "\n")
+    law = functools.partial(perfectly_plastic, yield_stress=UNREACHABLE, **material)
+    return exchanged(deck, written((functools.partial(elastic, **material), number)),
+                     written((law, number)))
 
 
 def awake(deck):
@@ -87,6 +88,11 @@ def awake(deck):
 def plastic_projectile(deck):
     """The collision whose steel projectile has a plastic law that never yields."""
     return plastic_instead(deck, 2, STEEL)
+
+
+def plastic_hertz(deck):
+    """The Hertz scene both of whose bodies have a plastic law that never yields."""
+    return plastic_instead(plastic_instead(deck, 2, STEEL), 1, ELASTIC_ALUMINIUM)
 
 
 def wider_collision(level):

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Charts and page of the study simplify."""
-from slideline_tools import UserError
-from slideline_tools.plots import COLOURS, PAGE_WIDTH, plt
-from slideline_tools.studies.common import TYPES, label, markdown_table, save_small, write_page
-from slideline_tools.studies.framework.charts import save, styled
-from slideline_tools.studies.framework.counted import who_counted
-from slideline_tools.studies.framework.table import finished
-from slideline_tools.studies.simplify import texts
-from slideline_tools.studies.simplify.figures import Runs, duration, megabytes, percent, \
-    small_share
+"""Chart of the study simplify, and the figures that doc/studies/simplify.md quotes."""
+import pandas as pd
 
-PHASES = ("elements", "nodes", "contact", "output", "input")
+from slideline_tools import UserError
+from slideline_tools.contact_types import TYPES
+from slideline_tools.plots import COLOURS, PAGE_WIDTH, STYLE, plt
+from slideline_tools.studies.common import label, markdown_table, save_small, write_page
+from slideline_tools.studies.framework.counted import who_counted
+from slideline_tools.studies.framework.table import counted, finished
+from slideline_tools.studies.framework.times import quartile_distance
+
+PHASES = ["elements", "nodes", "contact", "output", "input"]
 # What is left out: (title, variant with more, variant with less, variant whose row compares both).
 STEPS = (
     ("half model", "collision_full", "collision", "collision"),
@@ -22,32 +22,91 @@ STEPS = (
     ("elastic law: both Hertz bodies", "hertz_plastic", "hertz", "hertz_plastic"),
     ("no states for pictures", "collision", "collision_no_states", "collision_no_states"),
     ("force history alone", "collision", "collision_force_alone", "collision_force_alone"),
-    ("all but the die: collision", "collision_too_much", "collision_force_alone", "collision_too_much"),
+    ("all but the die: collision", "collision_too_much", "collision_force_alone",
+     "collision_too_much"),
 )
-OUTPUTS = (("as the deck asks", "collision"),
-           ("no states but the first and the last", "collision_no_states"),
-           ("and no histories but the force", "collision_force_alone"),
-           ("and no force", "collision_no_output"))
+OUTPUTS = {"collision": "as the deck asks",
+           "collision_no_states": "no states but the first and the last",
+           "collision_force_alone": "and no histories but the force",
+           "collision_no_output": "and no force"}
+DISTANCES = {"force_error": "force", "displacement_error": "displacement",
+             "strain_shift": "plastic strain"}
+
+PAGE = """# No more than a scene needs
+
+Processor time of the whole run, one thread, medians; quartiles {spread} of it apart (median of the
+variants). {counted}
+
+![Processor time with and without](../pictures/simplify.png)
+
+{steps}
+
+## Half model and search asleep, by type
+
+The half model from the full one; contact searched in each cycle and asleep. N_r = {level}:
+
+{types}
+
+## Output
+
+Collision, N_r = {level}:
+
+{outputs}
+
+## Refinement of the sliding, and the limit of the elements with a rigid die
+
+{sliding}
+"""
+
+
+# ---- medians -----------------------------------------------------------------------------------
+
+def medians_of(table):
+    """A row for each (variant, level): the columns of its first run, `seconds` of the processor
+    (median) and their parts by `PHASES`, `instructions` where they were counted.
+
+    A part is the share that the phase has of the clock over all runs; contact no more than the
+    clock has ever shown, which is better for a short phase.
+    """
+    runs = finished(table).copy()
+    runs["output"] = runs["total"] - runs["computing"] - runs["input"]
+    groups = runs.groupby(["variant", "level"])
+    found = runs.drop_duplicates(["variant", "level"]).set_index(["variant", "level"])
+    found["seconds"] = groups["processor_seconds"].median()
+    parts = groups[PHASES].sum().mul(found["seconds"] / groups["total"].sum(), axis=0)
+    parts["contact"] = pd.concat([parts["contact"], groups["contact"].min()], axis=1).min(axis=1)
+    found[PHASES] = parts
+    found["spread"] = groups["processor_seconds"].agg(quartile_distance).where(groups.size() > 1)
+    counts = counted(table)
+    if len(counts):
+        counts = counts.set_index(["variant", "level"])["instructions"]
+        found["instructions"] = counts.reindex(found.index)
+    return found
+
+
+def steps_of(runs, level):
+    """The steps both of whose variants have run."""
+    return [step for step in STEPS if all((name, level) in runs.index for name in step[1:3])]
 
 
 # ---- chart -------------------------------------------------------------------------------------
 
 def draw(runs, level):
     """Processor time with and without, by phase, over that with."""
-    found = [step for step in STEPS if all(runs.has(name, level) for name in step[1:3])]
+    found = steps_of(runs, level)
     figure, axes = plt.subplots(figsize=(PAGE_WIDTH, 0.52 * len(found) + 1.0),
                                 layout="constrained")
-    for row, (title, more, less, _) in enumerate(found):
-        whole = runs.seconds(more, level)
+    for row, (_, more, less, _) in enumerate(found):
+        whole = runs.loc[(more, level), "seconds"]
         for name, shift in ((more, -0.2), (less, 0.2)):
             foot = 0.0
             for phase, colour in zip(PHASES, COLOURS):
-                width = runs.seconds(name, level, phase) / whole
+                width = runs.loc[(name, level), phase] / whole
                 axes.barh(row + shift, width, 0.36, foot, color=colour,
                           label=phase if row == 0 and name == more else None)
                 foot += width
-        axes.annotate(f"saves {percent(1.0 - runs.seconds(less, level) / whole)}", (1.01, row),
-                      va="center", fontsize=7)
+        saved = percent(1.0 - runs.loc[(less, level), "seconds"] / whole)
+        axes.annotate(f"saves {saved}", (1.01, row), va="center", fontsize=7)
     axes.set_yticks(range(len(found)), [step[0] for step in found])
     axes.invert_yaxis()
     axes.set(xlim=(0.0, 1.17), xlabel="processor time over that of the run with more",
@@ -56,113 +115,96 @@ def draw(runs, level):
     return figure
 
 
-def chart(rows, folder):
-    """The savings of each level."""
-    runs = Runs(rows)
-    for level in runs.levels:
-        with styled():
-            save(draw(runs, level), folder, f"savings_{level}")
+def chart(table, folder):
+    """The savings on the finest mesh."""
+    runs = medians_of(table)
+    if len(runs):
+        with plt.rc_context(STYLE):
+            finest = runs.index.unique("level").max()
+            save_small(draw(runs, finest), folder / "simplify.png", lines=True)
 
 
 # ---- tables ------------------------------------------------------------------------------------
 
-def overview(runs, level):
-    """One row for each step: what it saves and what it costs."""
-    table = []
-    for title, more, less, compared in STEPS:
-        if not (runs.has(more, level) and runs.has(less, level)):
-            continue
-        times = [runs.seconds(name, level) for name in (more, less)]
-        row = runs.first(compared, level)
-        table.append([
-            title, arrow(times, duration), percent(1.0 - times[1] / times[0]),
-            runs.instructions_saved(more, less, level),
-            arrow([runs.seconds(name, level, "contact") for name in (more, less)], duration),
-            arrow([runs.first(name, level).get("memory") for name in (more, less)], megabytes),
-            arrow([runs.first(name, level)["bytes"] for name in (more, less)], megabytes),
-            "same bits" if row.get("same_bits") else small_share(row.get("force_error")),
-            "same bits" if row.get("same_bits") else small_share(row.get("displacement_error")),
-            "same bits" if row.get("same_bits") else small_share(row.get("strain_shift"))])
-    return markdown_table(["left out", "processor time", "saved", "instructions saved", "contact time", "memory, MB",
-                           "results, MB", "force", "displacement", "plastic strain"], table)
+def percent(share, digits=0):
+    """A share in per cent."""
+    return "" if share != share else f"{100.0 * share:.{digits}f} %"
 
 
-def arrow(pair, text):
-    """'with to without'."""
-    return "" if None in pair else f"{text(pair[0])} to {text(pair[1])}"
+def small_share(share):
+    """A difference: 0, per cent, or a power of ten; nothing for none."""
+    if share is None or share != share:
+        return ""
+    if share == 0.0:
+        return "the same"
+    return f"{100.0 * share:.2g} %" if share >= 1.0e-4 else f"{share:.0e}"
 
 
-def sleep_table(runs, level):
-    """For each type: the same bits?, contact time in each cycle searched and asleep."""
-    table = []
+def distances(row):
+    """How far two runs lie apart, by title."""
+    return {title: "same bits" if row.get("same_bits") == 1 else small_share(row.get(key))
+            for key, title in DISTANCES.items()}
+
+
+def step_table(runs, level):
+    """What each step saves and what it costs."""
+    lines = []
+    for title, more, less, compared in steps_of(runs, level):
+        one, other = runs.loc[(more, level)], runs.loc[(less, level)]
+        counts = [row.get("instructions", float("nan")) for row in (other, one)]
+        lines.append({
+            "left out": title, "processor time, s": f"{one.seconds:.3g} to {other.seconds:.3g}",
+            "saved": percent(1.0 - other.seconds / one.seconds),
+            "instructions saved": percent(1.0 - counts[0] / counts[1], 1),
+            "results, MB": f"{1e-6 * one.bytes:.3g} to {1e-6 * other.bytes:.3g}",
+            **distances(runs.loc[(compared, level)])})
+    return f"N_r = {level}:\n\n" + markdown_table(pd.DataFrame(lines))
+
+
+def type_table(runs, level):
+    """For each type: distances of half from full model; contact time searched and asleep."""
+    lines = []
     for ctype in TYPES:
-        asleep = "collision" if ctype == 2 else f"collision_type_{ctype}"
-        awake = f"collision_awake_type_{ctype}"
-        if not (runs.has(asleep, level) and runs.has(awake, level)):
-            continue
-        row = runs.first(awake, level)
-        times = [runs.seconds(name, level, "contact") for name in (awake, asleep)]
-        table.append([label(ctype), duration(times[0]), duration(times[1]),
-                      "yes" if row["same_bits"] else
-                      f"to {small_share(row['displacement_error'])} of the displacement"])
-    return markdown_table(["type", "searched in each cycle", "asleep", "same bits"], table)
-
-
-def symmetry_table(runs, level):
-    """How far half and full model lie apart, by type."""
-    table = []
-    for ctype in TYPES:
-        row = runs.first("collision" if ctype == 2 else f"collision_type_{ctype}", level)
-        if "displacement_error" in row:
-            table.append([label(ctype), *(small_share(row[key]) for key in (
-                "force_error", "displacement_error", "strain_shift"))])
-    return markdown_table(["type", "force", "displacement", "plastic strain"], table)
-
-
-def span_table(runs, level):
-    """Contact time a cycle while the bodies meet and afterwards."""
-    count, table = runs.first("collision_every_row", level), []
-    steps = count["rows"] - 1
-    early = runs.first("collision_early", level)["element_calls"] - 1
-    for title, whole, part in (("searched in each cycle", "collision_awake_type_2",
-                                "collision_early_awake"), ("asleep", "collision",
-                                                           "collision_early")):
-        first, all_of = (runs.seconds(name, level, "contact") for name in (part, whole))
-        last = max(all_of - first, 0.0)
-        table.append([title, f"{1e9 * first / early:.0f} ns", f"{1e9 * last / (steps - early):.0f} ns",
-                      percent(last / all_of)])
-    return markdown_table(["contact", f"a cycle, the first {early}", "a cycle, the others",
-                           "part of the contact time spent in the others"], table)
+        half = ("collision" if ctype == 2 else f"collision_type_{ctype}", level)
+        awake = (f"collision_awake_type_{ctype}", level)
+        if half in runs.index and awake in runs.index:
+            row = runs.loc[awake]
+            lines.append({
+                "type": label(ctype), **distances(runs.loc[half]),
+                "searched, ms": f"{1e3 * row.contact:.3g}",
+                "share of the run": percent(row.contact / row.seconds),
+                "asleep, ms": f"{1e3 * runs.loc[half, 'contact']:.3g}",
+                "share": percent(runs.loc[half, "contact"] / runs.loc[half, "seconds"]),
+                "same bits": "yes" if row.same_bits == 1 else small_share(row.displacement_error)})
+    return markdown_table(pd.DataFrame(lines))
 
 
 def output_table(runs, level):
     """Time and bytes by what is written."""
-    return markdown_table(["written", "processor time", "of it output", "results, MB"], [
-        [title, duration(runs.seconds(name, level)), percent(
-            runs.seconds(name, level, "output") / runs.seconds(name, level)),
-         megabytes(runs.first(name, level)["bytes"])]
-        for title, name in OUTPUTS if runs.has(name, level)])
+    rows = runs.xs(level, level="level").reindex(OUTPUTS).dropna(subset="seconds")
+    return markdown_table(pd.DataFrame({
+        "written": [OUTPUTS[name] for name in rows.index], "processor time, s": rows["seconds"],
+        "of it output": (rows["output"] / rows["seconds"]).map(percent),
+        "results, MB": (1e-6 * rows["bytes"]).map("{:.3g}".format)}))
 
 
-# ---- page --------------------------------------------------------------------------------------
+def sliding_table(runs):
+    """Distances of each mesh from the one before, and the limits of the elements."""
+    rows = runs.loc[["sliding", "sliding_rigid"]] if "sliding_rigid" in runs.index else runs[:0]
+    shown = {"force_error": "force", "impulse_error": "impulse", "strain_error": "largest strain"}
+    told = rows.reindex(columns=list(shown)).map(small_share).rename(columns=shown)
+    limits = (1e9 * rows["element_limit"]).map("{:.0f}".format)
+    return markdown_table(told.assign(**{"L/c of the elements, ns": limits}).reset_index())
 
-def page(rows, doc):
-    """doc/studies/simplify.md and its picture."""
-    runs = Runs(rows)
-    levels = [level for level in runs.levels if runs.has("collision", level)]
-    if not levels:
+
+def page(table, doc):
+    """DOC/studies/simplify.md."""
+    runs = medians_of(table)
+    if "collision" not in runs.index:
         raise UserError("no finished runs of the collision")
-    with styled():
-        save_small(draw(runs, levels[-1]), doc / "pictures" / "simplify.png", lines=True)
-    done, last = finished(rows), levels[-1]
-    write_page(doc, "simplify", texts.PAGE.format(
-        quick=texts.QUICK if any(row["quick"] for row in rows) else "",
-        processor="; ".join(sorted({row["processor"] for row in done})),
-        counted=who_counted(rows), rounds=runs.rounds, spread=percent(runs.spread), load=f"{runs.load:.1f}",
-        overviews="\n\n".join(f"N_r = {level}:\n\n{overview(runs, level)}" for level in levels),
-        level=last, symmetry=texts.symmetry(runs, last),
-        halves=symmetry_table(runs, last), rigid=texts.rigid(runs, levels),
-        sleep=sleep_table(runs, last), exception=texts.exception(runs, last),
-        spans=span_table(runs, last), share=texts.share(runs, last), law=texts.law(runs, last),
-        outputs=output_table(runs, last), output=texts.output(runs, last),
-        together=texts.together(runs, last)).rstrip() + "\n")
+    levels = sorted(runs.loc["collision"].index)
+    write_page(doc, "simplify", PAGE.format(
+        spread=percent(runs["spread"].median()), counted=who_counted(table), level=levels[-1],
+        steps="\n\n".join(step_table(runs, level) for level in levels),
+        types=type_table(runs, levels[-1]), outputs=output_table(runs, levels[-1]),
+        sliding=sliding_table(runs)))

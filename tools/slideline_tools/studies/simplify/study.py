@@ -5,28 +5,26 @@ Pairs of runs, one with more than it needs and one without: full and half model,
 die, contact search in each cycle and asleep, plastic and elastic law, much and little output.
 decks.py makes the decks, compare.py compares results.
 """
-from __future__ import annotations
-
 import dataclasses
+import functools
 import json
-import pathlib
 import re
 from typing import Callable, Sequence
 
+import pandas as pd
+
 from slideline_tools import UserError, scenes
 from slideline_tools.histories import read_csv
-from slideline_tools.scenes.common import STEEL
 from slideline_tools.studies.framework.counted import counted_job
 from slideline_tools.studies.framework.job import ALL_TYPES, Job, Study
 from slideline_tools.studies.framework.runner import RECORD
 from slideline_tools.studies.framework.table import finished
 from slideline_tools.studies.framework.times import phases
 from slideline_tools.studies.simplify import decks
-from slideline_tools.studies.simplify.compare import comparison, cycle_counts, memory
+from slideline_tools.studies.simplify.compare import comparison
 from slideline_tools.studies.simplify.page import STEPS, chart, page
 
 USUAL, TIMED_TYPES = 2, (2, 5)
-BOTH_TOUCH = 0.35e-3  # s; the collision is apart from then on
 NO_STATES, NO_HISTORIES, NO_FORCE = "p:dtplot=1", "p:dthist=1", "p:dtforc=1"
 
 
@@ -45,111 +43,40 @@ class Variant:
     cost: float = 0.15
 
 
-def collision_awake(level):
-    return decks.awake(scenes.collision(level))
-
-
-def collision_too_much(level):
-    return decks.awake(decks.plastic_projectile(decks.full_collision(level)))
-
-
-def sliding_rigid(level):
-    return scenes.sliding(level, rigid_die=True)
-
-
-def plastic_hertz(level):
-    """Both bodies of the Hertz scene with a plastic law that never yields."""
-    deck = decks.plastic_instead(scenes.hertz(level), 2, STEEL)
-    return decks.plastic_instead(deck, 1, decks.ELASTIC_ALUMINIUM)
+def made(scene, *changes):
+    """The deck of a scene by level, with changes of its text."""
+    return lambda level: functools.reduce(lambda deck, change: change(deck), changes, scene(level))
 
 
 def variants():
     """All variants by name."""
+    lean, full, awake = scenes.collision, decks.full_collision, made(scenes.collision, decks.awake)
+    wider, rigid_die = decks.wider_collision, functools.partial(scenes.sliding, rigid_die=True)
     listed = {
-        "collision": Variant("collision", scenes.collision),
-        "collision_full": Variant("collision", decks.full_collision, cost=0.25),
-        "collision_plastic_projectile": Variant(
-            "collision", lambda level: decks.plastic_projectile(scenes.collision(level))),
-        "collision_early": Variant("collision", scenes.collision, (f"endtim={BOTH_TOUCH}",)),
-        "collision_early_awake": Variant("collision", collision_awake, (f"endtim={BOTH_TOUCH}",)),
-        "collision_every_row": Variant("collision", scenes.collision, once=True),
-        "collision_no_states": Variant("collision", scenes.collision, (NO_STATES,)),
-        "collision_force_alone": Variant("collision", scenes.collision, (NO_STATES, NO_HISTORIES)),
-        "collision_no_output": Variant("collision", scenes.collision,
-                                       (NO_STATES, NO_HISTORIES, NO_FORCE)),
-        "collision_too_much": Variant("collision", collision_too_much, cost=0.3),
-        "collision_wider_type_3": Variant("collision", decks.wider_collision, ("ctype=3",),
-                                          once=True),
-        "collision_wider_awake_type_3": Variant(
-            "collision", lambda level: decks.awake(decks.wider_collision(level)), ("ctype=3",),
-            once=True),
+        "collision": Variant("collision", lean),
+        "collision_full": Variant("collision", full, cost=0.25),
+        "collision_plastic_projectile": Variant("collision", made(lean, decks.plastic_projectile)),
+        "collision_no_states": Variant("collision", lean, (NO_STATES,)),
+        "collision_force_alone": Variant("collision", lean, (NO_STATES, NO_HISTORIES)),
+        "collision_no_output": Variant("collision", lean, (NO_STATES, NO_HISTORIES, NO_FORCE)),
+        "collision_too_much": Variant(
+            "collision", made(full, decks.plastic_projectile, decks.awake), cost=0.3),
+        "collision_wider_type_3": Variant("collision", wider, ("ctype=3",), once=True),
+        "collision_wider_awake_type_3": Variant("collision", made(wider, decks.awake),
+                                                ("ctype=3",), once=True),
         "hertz": Variant("hertz", scenes.hertz),
-        "hertz_plastic": Variant("hertz", plastic_hertz),
+        "hertz_plastic": Variant("hertz", made(scenes.hertz, decks.plastic_hertz)),
         "sliding": Variant("sliding", scenes.sliding, turns=1, cost=1.2),
-        "sliding_rigid": Variant("sliding", sliding_rigid, turns=1, cost=1.0),
-        "sliding_awake": Variant("sliding", lambda level: decks.awake(scenes.sliding(level)),
-                                 turns=1, cost=1.6),
+        "sliding_rigid": Variant("sliding", rigid_die, turns=1),
+        "sliding_awake": Variant("sliding", made(scenes.sliding, decks.awake), turns=1, cost=1.6),
     }
     for ctype in ALL_TYPES:
-        once = ctype not in TIMED_TYPES
+        words, once = (f"ctype={ctype}",), ctype not in TIMED_TYPES
+        listed[f"collision_awake_type_{ctype}"] = Variant("collision", awake, words, once=once)
         if ctype != USUAL:
-            listed[f"collision_type_{ctype}"] = Variant(
-                "collision", scenes.collision, (f"ctype={ctype}",), once=once)
-            listed[f"collision_full_type_{ctype}"] = Variant(
-                "collision", decks.full_collision, (f"ctype={ctype}",), once=True)
-        listed[f"collision_awake_type_{ctype}"] = Variant(
-            "collision", collision_awake, (f"ctype={ctype}",), once=once)
+            listed[f"collision_type_{ctype}"] = Variant("collision", lean, words, once=once)
+            listed[f"collision_full_type_{ctype}"] = Variant("collision", full, words, once=True)
     return listed
-
-
-def jobs(options):
-    """Every variant on every level; type 2 unless its options say another. Level 1 is counted too."""
-    wanted = {f"_type_{ctype}" for ctype in options.types}
-    listed = []
-    for level in options.levels:
-        for name, variant in variants().items():
-            if "_type_" in name and not any(name.endswith(one) for one in wanted):
-                continue
-            more = variant.options
-            if name == "collision_every_row":
-                more = (f"p:dtforc={100.0e-9 / level:.17g}",)
-            listed.append(Job(
-                f"{name}_{level}", variant.deck(level), variant.scene, ("ncpu=1", *more),
-                {"variant": name, "level": level, "quick": int(options.quick)},
-                group="all", alone=True, turns=variant.turns, once=variant.once,
-                cost=variant.cost * level ** 2.0))
-    compared = {name for step in STEPS for name in step[1:3]}
-    return listed + [counted_job(job) for job in listed if job.labels["variant"] in compared
-                     and job.labels["level"] == 1 and not options.quick]
-
-
-def measure(job, folder):
-    """Seconds by phase on the clock, processor time of the run, bytes of its results."""
-    record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
-    return {**phases(folder / f"{job.jobid}.timing.csv"),
-            "input": seconds_of(folder / f"{job.jobid}.timing.csv", "input"),
-            "element_limit": element_limit(folder / f"{job.jobid}.log"),
-            "processor_seconds": record["processor_seconds"], "bytes": result_bytes(folder)}
-
-
-def seconds_of(path, phase):
-    """Seconds of one phase on the clock."""
-    table = read_csv(path)
-    return float(table["seconds"][table["phase"] == phase][0])
-
-
-def element_limit(path):
-    """Smallest L/c of the elements at the start, as the log has it, s."""
-    found = re.search(r"smallest L/c of the elements (\S+)", path.read_text(encoding="utf-8"))
-    if not found:
-        raise UserError(f"{path}: no limit of the elements")
-    return float(found[1])
-
-
-def result_bytes(folder):
-    """Bytes of the results file and the histories."""
-    return sum(path.stat().st_size for path in pathlib.Path(folder).iterdir()
-               if path.suffix == ".vtkhdf" or path.name.endswith(".csv"))
 
 
 PAIRS = {  # variant: (the variant it is compared with, factor on the forces of the latter)
@@ -171,22 +98,55 @@ PAIRS = {  # variant: (the variant it is compared with, factor on the forces of 
 }
 
 
-def derive(rows, folder):
-    """Columns that compare the first run of a variant with that of another, see PAIRS; memory."""
-    first = {(row["variant"], row["level"]): row for row in finished(rows) if row["repeat"] == 1}
-    runs = folder / "runs"
-    for (name, level), row in first.items():
-        row.update(memory(runs / row["run"]))
-        other, factor = PAIRS.get(name, ("", 1.0))
-        if (other, level) in first:
-            row["compared_with"] = other
-            row.update(comparison(runs / row["run"], runs / first[other, level]["run"], factor))
-        if name == "sliding" and ("sliding", level - 1) in first:
-            row.update(comparison(runs / row["run"], runs / first["sliding", level - 1]["run"],
-                                  1.0, same_mesh=False))
-        if name == "collision_every_row":
-            row.update(cycle_counts(runs / row["run"]))
-    return rows
+def jobs(options):
+    """Every variant on every level; type 2 unless its options say another. Level 1 is counted."""
+    wanted = tuple(f"_type_{ctype}" for ctype in options.types)
+    chosen = {name: variant for name, variant in variants().items()
+              if "_type_" not in name or name.endswith(wanted)}
+    listed = [Job(f"{name}_{level}", variant.deck(level), variant.scene,
+                  ("ncpu=1", *variant.options), {"variant": name, "level": level},
+                  group="all", alone=True, turns=variant.turns, once=variant.once,
+                  cost=variant.cost * level ** 2.0)
+              for level in options.levels for name, variant in chosen.items()]
+    compared = {name for step in STEPS for name in step[1:3]}
+    return listed + [counted_job(job) for job in listed if job.labels["variant"] in compared
+                     and job.labels["level"] == 1 and not options.quick]
+
+
+def measure(job, folder):
+    """Seconds by phase on the clock, processor time of the run, bytes of its results."""
+    record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
+    timing = read_csv(folder / f"{job.jobid}.timing.csv")
+    return {**phases(folder / f"{job.jobid}.timing.csv"),
+            "input": float(timing["seconds"][timing["phase"] == "input"][0]),
+            "element_limit": element_limit(folder / f"{job.jobid}.log"),
+            "processor_seconds": record["processor_seconds"],
+            "bytes": sum(path.stat().st_size for path in folder.iterdir()
+                         if path.name.endswith((".vtkhdf", ".csv")))}
+
+
+def element_limit(path):
+    """Smallest L/c of the elements at the start, as the log has it, s."""
+    found = re.search(r"smallest L/c of the elements (\S+)", path.read_text(encoding="utf-8"))
+    if not found:
+        raise UserError(f"{path}: no limit of the elements")
+    return float(found[1])
+
+
+def derive(table, folder):
+    """With columns that compare the first run of a variant with that of another, see PAIRS, and
+    the sliding with that on the mesh before."""
+    first = finished(table)
+    first = first[first["repeat"] == 1].set_index(["variant", "level"])["run"]
+    rows = []
+    for (name, level), run in first.items():
+        other, factor = PAIRS.get(name, (name, 1.0))
+        key, same_mesh = ((other, level), True) if other != name else ((name, level - 1), False)
+        if key in first and (same_mesh or name == "sliding"):
+            rows.append({"run": run, **comparison(
+                folder / "runs" / run, folder / "runs" / first[key],
+                variants()[name].scene, factor, same_mesh)})
+    return table.merge(pd.DataFrame(rows), how="left", on="run") if rows else table
 
 
 STUDY = Study("simplify", jobs, measure, chart, derive=derive, page=page, levels=(1, 2),

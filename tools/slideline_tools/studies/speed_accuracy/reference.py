@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Converged references of the study speed-accuracy, their own error, and errors against them.
 
-The reference is the run of type 7 on the finest mesh, that of implicit penalty (PUNIT 4) the one without compliance:
-a penalty is judged as an interface with these springs, an implicit one as an interface with none. Its own error follows from the two or three
-finest levels by Richardson's extrapolation.
+The reference is the run of type 7 on the finest mesh, that of implicit penalty (PUNIT 4) the one
+without compliance: a penalty is judged as an interface with these springs, an implicit one as an
+interface with none. Its own error is extrapolated from its two or three finest levels (Richardson).
 """
 import numpy as np
+import pandas as pd
 
 from slideline_tools.contact_types import HARD, IMPLICIT_PENALTIES
 from slideline_tools.histories import read_csv
@@ -14,6 +15,7 @@ from slideline_tools.scenes import collision_grids
 from slideline_tools.scenes.common import ALUMINIUM
 from slideline_tools.studies import sliding as sliding_study
 from slideline_tools.studies.framework.table import finished
+from slideline_tools.studies.framework.times import VARIANT
 from slideline_tools.studies.speed_accuracy.scenes import SCENES
 
 REFERENCE_TYPE = 7
@@ -53,7 +55,7 @@ def own_error(levels, distances):
 
 # ---- what is compared --------------------------------------------------------------------------
 
-def sliding_force(folder, level):
+def sliding_force(folder):
     """Force at even times of the judged interval (every 2 microseconds), N/m."""
     rows = read_csv(folder / "sliding.rcforc.csv").where(side="slave")
     first, last = sliding_study.judged_interval()
@@ -75,7 +77,7 @@ def plastic_work(results):
     return np.histogram(x.mean(axis=1), edges, weights=work)[0]
 
 
-def collision_outcome(folder, _level):
+def collision_outcome(folder):
     """Plastic work by column and in total, rebound velocity as a share of the speed of impact."""
     rows = read_csv(folder / "collision.matsum.csv").where(part=PROJECTILE)
     rebound = rows["momentum_y"][-1] / rows["mass"][-1]
@@ -85,7 +87,7 @@ def collision_outcome(folder, _level):
 
 
 def force_distance(one, other, reference):
-    """rms of the difference over the mean force."""
+    """Root mean square of the difference over the mean force."""
     return float(np.sqrt(np.mean((one - other) ** 2)) / np.mean(reference))
 
 
@@ -95,6 +97,7 @@ def work_distance(one, other, reference):
 
 
 def plain_distance(one, other, _reference):
+    """The difference."""
     return float(np.abs(one - other)[0])
 
 
@@ -103,56 +106,64 @@ DISTANCES = {"force_error": force_distance, "plastic_error": work_distance,
              "total_work_error": work_distance, "rebound_error": plain_distance}
 
 
-# ---- rows --------------------------------------------------------------------------------------
+# ---- columns -----------------------------------------------------------------------------------
 
 def reference_series(ctype):
     """The series whose finest mesh is the reference of another."""
     return HARD if ctype in IMPLICIT_PENALTIES else REFERENCE_TYPE
 
 
-def reference_levels(rows, scene, reference):
-    """Levels of which the reference is made: those of the full or the quick study."""
-    there = {row["level"] for row in rows if row["type"] == reference}
+def reference_levels(scene, there):
+    """Levels of which the reference is made, of those that are there: of the full or the quick
+    study."""
     for levels in (SCENES[scene].references, SCENES[scene].quick_references):
         if set(levels) <= there:
             return levels
     return ()
 
 
-def add_errors(rows, folder):
-    """Columns <key>, <key>_floor and <key>_order of every measure against a reference, for the
-    runs on coarser meshes than the reference's; and <key>_springs, how far the two references are apart."""
+def add_errors(table, folder):
+    """The table with the columns KEY, KEY_floor and KEY_order of each measure against a reference,
+    where a run is coarser than that, and KEY_springs: how far the two references are apart."""
+    found = []
     for scene, read_outcome in OUTCOMES.items():
-        mine = [row for row in finished(rows) if row["scene"] == scene]
-        levels = {one: found for one in (REFERENCE_TYPE, HARD) if (found := reference_levels(mine, scene, one))}
-        mine = [row for row in mine if reference_series(row["type"]) in levels]
-        outcomes = {}
-        for row in mine:
-            key = (row["type"], row["level"])
-            if key not in outcomes:
-                outcomes[key] = read_outcome(folder / "runs" / row["run"], row["level"])
-        for one, found in levels.items():
-            judge_by([row for row in mine if reference_series(row["type"]) == one], outcomes,
-                     [(one, level) for level in found])
-        finest = [outcomes[one, found[-1]] for one, found in levels.items()]
-        if len(finest) == 2:
-            soft, hard = finest
-            for row in mine:
-                row.update({f"{key}_springs": DISTANCES[key](soft[key], hard[key], hard[key]) for key in hard})
-    return rows
+        runs = finished(table)
+        runs = runs[runs["scene"] == scene].drop_duplicates(VARIANT)
+        outcomes = {(run.type, run.level): read_outcome(folder / "runs" / run.run)
+                    for run in runs.itertuples()}
+        found += [{"scene": scene, **row} for row in errors_of(scene, outcomes)]
+    return table.merge(pd.DataFrame(found), how="left", on=VARIANT) if found else table
 
 
-def judge_by(rows, outcomes, chain):
-    """The columns of rows with one reference; `chain`: (series, level) of its meshes, the finest last."""
-    levels = [level for _, level in chain]
-    for row in rows:
-        row["reference_levels"] = ", ".join(map(str, levels))
-    for key, reference in outcomes[chain[-1]].items():
+def errors_of(scene, outcomes):
+    """The columns of each variant of a scene; `outcomes`: {(type, level): what is compared}."""
+    chains = {}
+    for series in (REFERENCE_TYPE, HARD):
+        levels = reference_levels(scene, {level for ctype, level in outcomes if ctype == series})
+        if levels:
+            chains[series] = [(series, level) for level in levels]
+    for (ctype, level), outcome in outcomes.items():
+        chain = chains.get(reference_series(ctype))
+        if chain:
+            row = against(outcome, level, chain, outcomes)
+            if len(chains) == 2:
+                row.update(springs(*(outcomes[one[-1]] for one in chains.values())))
+            yield {"type": ctype, "level": level, **row}
+
+
+def against(outcome, level, chain, outcomes):
+    """The columns of one variant; `chain`: (series, level) of its reference, the finest last."""
+    levels = [number for _, number in chain]
+    row = {"reference_levels": ", ".join(map(str, levels))}
+    for key, reference in outcomes[chain[-1]].items() if level < levels[-1] else ():
         distance = DISTANCES[key]
-        order, floor = own_error(levels, [distance(outcomes[one][key], outcomes[other][key], reference)
-                                          for one, other in zip(chain[:-1], chain[1:])])
-        for row in rows:
-            if row["level"] >= levels[-1]:
-                continue  # no finer than the run that is judged
-            row[key] = distance(outcomes[row["type"], row["level"]][key], reference, reference)
-            row[f"{key}_floor"], row[f"{key}_order"] = floor, order
+        row[key] = distance(outcome[key], reference, reference)
+        row[f"{key}_order"], row[f"{key}_floor"] = own_error(
+            levels, [distance(outcomes[one][key], outcomes[other][key], reference)
+                     for one, other in zip(chain[:-1], chain[1:])])
+    return row
+
+
+def springs(soft, hard):
+    """How far the reference with springs is from that without."""
+    return {f"{key}_springs": DISTANCES[key](soft[key], hard[key], hard[key]) for key in hard}

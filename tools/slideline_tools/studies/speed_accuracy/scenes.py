@@ -4,45 +4,29 @@
 A scene with a closed form or a separate solution is judged run by run (`judge`). The others are
 judged against a converged reference, see reference.py.
 """
-from __future__ import annotations
-
 import dataclasses
 import functools
-import importlib.util
-import pathlib
-import sys
 from typing import Callable, Sequence
 
 import numpy as np
 
-from slideline_tools import UserError, scenes
+from slideline_tools import scenes
 from slideline_tools.contact_types import HARD, IMPLICIT, IMPLICIT_PENALTIES
 from slideline_tools.histories import read_csv
-from slideline_tools.results import read
 from slideline_tools.scenes.hertz import BLOCK_CELL, CYLINDER_CELL, PENALTY as HERTZ_PENALTY
 from slideline_tools.scenes.patch import patch, patch_grids
 from slideline_tools.studies import block as block_study
 from slideline_tools.studies import hertz as hertz_study
+from slideline_tools.studies import patch as patch_study
 from slideline_tools.studies import sliding as sliding_study
-from slideline_tools.studies.patch import LAYOUTS
+from slideline_tools.studies.common import verification
 
-CHAIN = pathlib.Path(__file__).resolve().parents[4] / "tests/verification/block_to_block/chain.py"
 BLOCK_STEP, BLOCK_END = 1.0e-4, 0.2  # s; a tenth of the deck's step, for a time to measure
 SLIDING_STEP = 40.0e-9  # s at level 1
 TWO_PASS = 3
 ROUND_OFF = 1.0e-9
-AT_REST = 1.0e-16  # kinetic over internal energy
-FINITE_STRAIN = 1.0e-3  # what Hertz's closed form leaves out here: its relative size is that of the strains
-
-
-def sliding_lengths():
-    """(slave, master) mean segment lengths of the sliding at level 1."""
-    die, plate = scenes.sliding_grids(1)[::-1]
-    arc = die.points[:, 0]
-    return np.mean(np.linalg.norm(np.diff(arc, axis=0), axis=1)), 0.036 / (len(plate.lower) - 1)
-
-
-LENGTHS = {"block": (10.0 / 51.0, 10.0 / 50.0), "sliding": sliding_lengths(), "collision": (0.020 / 24.0, 0.025 / 20.0)}
+FINITE_STRAIN = 1.0e-3  # what Hertz's closed form leaves out here: the size of the strains
+NO_STATES = "p:dtplot=1"  # but the first and the last
 
 
 @dataclasses.dataclass(frozen=True)
@@ -69,7 +53,7 @@ class Scene:
     `judge`       (folder, level, series) -> columns
     `levels`, `quick_levels` those that are swept
     `references`, `quick_references` levels of type 7 the reference is made of, the finest last
-    `options`     of the program by level: no states but the first and the last
+    `options`     of the program by level
     `turns`, `cost` as in Job, at level 1; `power`: the cost grows with this power of the level
     """
 
@@ -81,7 +65,7 @@ class Scene:
     measures: Sequence[Measure]
     levels: Sequence[int]
     quick_levels: Sequence[int] = (1,)
-    options: Callable[[int], Sequence[str]] = lambda _: ("p:dtplot=1",)
+    options: Callable[[int], Sequence[str]] = lambda _: (NO_STATES,)
     references: Sequence[int] = ()
     quick_references: Sequence[int] = ()
     turns: int = 1
@@ -118,6 +102,16 @@ def net_moment(results, segment):
     return float(abs(moment) / (pressing * segment))
 
 
+def largest_deviation(sides, exact):
+    """max |p/p0 - 1| over the pressures of both sides."""
+    return max(float(np.abs(pressure / exact - 1.0).max()) for pressure in sides)
+
+
+def energy_error(path):
+    """Largest deviation of the energy ratio from 1."""
+    return float(np.abs(read_csv(path)["energy_ratio"] - 1.0).max())
+
+
 # ---- patch -------------------------------------------------------------------------------------
 
 def divided(lines, level):
@@ -128,82 +122,54 @@ def divided(lines, level):
 
 def patch_level(level):
     """Lower and upper block of the non-uniform 7 / 5 meshes, refined."""
-    _, upper, lower, *_ = LAYOUTS["7_5"]
+    _, upper, lower, *_ = patch_study.LAYOUTS["7_5"]
     return patch_grids(divided(upper, level), divided(lower, level))
 
 
 def patch_deck(level):
+    """The patch test on these meshes."""
     return patch(penalty=1.0e6 / level, grids=patch_level(level))
-
-
-def nodal_pressure(results, nodes, x):
-    """Contact force of nodes over the length that each stands for, at the last state."""
-    row = {int(node): k for k, node in enumerate(results.point_field("node_id")[-1])}
-    force = results.point_field("contact_force")[-1][[row[int(node)] for node in nodes], 1]
-    return np.abs(force) / block_study.half_segments(x)
-
-
-def largest_deviation(sides, exact):
-    """max |p/p0 - 1| over the pressures of both sides."""
-    return max(float(np.abs(pressure / exact - 1.0).max()) for pressure in sides)
 
 
 def judge_patch(folder, level, _series):
     """Deviation from the uniform pressure of 1 Pa, at rest."""
-    energy = read_csv(folder / "patch.glstat.csv")
-    if not energy["kinetic"][-1] <= AT_REST * energy["internal"][-1]:
-        raise UserError(f"{folder}: not at rest at the end")
-    results, (lower, upper) = read(folder / "patch.vtkhdf"), patch_level(level)
-    return {"pressure_error": largest_deviation(
-        [nodal_pressure(results, nodes, grid.points[:, 0, 0])
-         for nodes, grid in ((upper.lower, upper), (lower.upper[::-1], lower))], 1.0)}
+    sides = patch_study.sides(folder, patch_level(level))
+    return {"pressure_error": largest_deviation([pressure for _, pressure in sides], 1.0)}
 
 
 # ---- block -------------------------------------------------------------------------------------
 
 def block_quads(level):
+    """Columns of slave and master."""
     return block_study.N_SLAVE * level, block_study.N_MASTER * level
 
 
 def block_deck(level):
+    """Block-to-block on these meshes."""
     return scenes.block(n_slave=block_quads(level)[0], n_master=block_quads(level)[1])
-
-
-def block_penalty(level):
-    return block_study.PENALTY / level
-
-
-@functools.lru_cache(maxsize=None)
-def chain_module():
-    """The separate one-dimensional solution."""
-    try:
-        spec = importlib.util.spec_from_file_location("block_chain", CHAIN)
-        module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-    except OSError as problem:
-        raise UserError(f"cannot read {CHAIN}: {problem}") from problem
-    return module
 
 
 @functools.lru_cache(maxsize=None)
 def chain_pressure(stiffness, ahead=False):
-    """Last pressure of the chain, Pa; `stiffness` in N/m^2, `ahead`: of springs by the end of the step."""
-    chain = chain_module()
+    """Last pressure of the chain, Pa; `stiffness` in N/m^2, `ahead`: of springs by the end of the
+    step."""
+    chain = verification("block_to_block", "chain")
     return float(chain.solve(chain.Blocks(
         penalty=stiffness, step=BLOCK_STEP, steps=round(BLOCK_END / BLOCK_STEP),
         ahead=ahead)).pressure[-1])
 
 
 def block_springs(level, series):
-    """Stiffness of the interface between the blocks, N/m^2, and whether it acts by the end of the step."""
+    """Stiffness between the blocks, N/m^2, and whether it acts by the end of the step."""
     if series == HARD:
         return np.inf, True
     if series == IMPLICIT:
-        blocks = chain_module().Blocks()
-        return IMPLICIT_PENALTIES[series] * blocks.young / 3.0 / (blocks.height / blocks.layers), True
+        blocks = verification("block_to_block", "chain").Blocks()
+        row = blocks.young / 3.0 / (blocks.height / blocks.layers)
+        return IMPLICIT_PENALTIES[series] * row, True
     penalty = node_penalty(SCENES["block"], level, series)
-    return (block_study.interface_stiffness(series, *block_quads(level)) * penalty
-            / block_study.PENALTY), False
+    stiffness = block_study.interface_stiffness(series, *block_quads(level))
+    return stiffness * penalty / block_study.PENALTY, False
 
 
 def judge_block(folder, level, series):
@@ -215,67 +181,61 @@ def judge_block(folder, level, series):
 
 # ---- Hertz, sliding, collision -----------------------------------------------------------------
 
-def judge_hertz(folder, level, series):
-    """Distance of the nodal pressures from Hertz's ellipse, and of a and p0 from Hertz's. (Its layer of springs
-    is not judged here.)"""
-    run = hertz_study.Run(folder, level, 7 if series in IMPLICIT_PENALTIES else series)
-    return {"profile_error": run.inside, "half_width_error": abs(run.half_width - 1.0),
-            "peak_error": abs(run.peak - 1.0)}
+def judge_hertz(folder, _level, _series):
+    """Distance of the nodal pressures from Hertz's ellipse, and of a from Hertz's. (Its layer of
+    springs is not judged here.)"""
+    found = hertz_study.measure(folder)
+    return {"profile_error": found["inside"], "half_width_error": abs(found["half_width"] - 1.0)}
+
+
+def sliding_lengths():
+    """(slave, master) mean segment lengths of the sliding at level 1."""
+    die, plate = scenes.sliding_grids(1)[::-1]
+    arc = np.diff(die.points[:, 0], axis=0)
+    return np.mean(np.linalg.norm(arc, axis=1)), 0.036 / (len(plate.lower) - 1)
 
 
 def sliding_options(level):
     """Rows of the force as close as the roughness needs them."""
     rows = sliding_study.STEPS_PER_ROW * SLIDING_STEP / level
-    return ("p:dtplot=1", f"p:dtforc={rows:.17g}")
+    return (NO_STATES, f"p:dtforc={rows:.17g}")
 
 
 def judge_sliding(folder, level, _series):
-    """Roughness of the force (see studies/sliding.py), energy error, mean number of points."""
-    rows = read_csv(folder / "sliding.rcforc.csv").where(side="slave")
-    first, last = sliding_study.judged_interval()
-    judged = (rows["time"] >= first) & (rows["time"] <= last)
-    found = sliding_study.peaks.abrupt_peaks(
-        rows["time"], rows["fy"], sliding_study.WINDOW_SHARE * sliding_study.crossing_time(level),
-        sliding_study.THRESHOLD, (first, last))
-    return {"roughness": found.rms, "energy_error": energy_error(folder / "sliding.glstat.csv"),
-            "points": float(np.mean(rows["n_active"][judged]))}
+    """Roughness of the force (see studies/sliding.py)."""
+    found = sliding_study.force_peaks(*sliding_study.vertical_force(folder), level)
+    return {"roughness": found.rms}
 
 
 def judge_collision(folder, _level, _series):
+    """The balance of energy."""
     return {"energy_error": energy_error(folder / "collision.glstat.csv")}
-
-
-def energy_error(path):
-    """Largest deviation of the energy ratio from 1."""
-    return float(np.abs(read_csv(path)["energy_ratio"] - 1.0).max())
 
 
 SCENES = {
     "patch": Scene(
-        "Patch test", patch_deck, lambda level: 1.0e6 / level, (1.0 / 7.0, 1.0 / 5.0),
-        judge_patch,
+        "Patch test", patch_deck, lambda level: 1.0e6 / level, (1.0 / 7.0, 1.0 / 5.0), judge_patch,
         (Measure("pressure_error", "p/p0, largest deviation from 1", ROUND_OFF),),
         levels=(1, 2, 4), quick_levels=(1, 2), options=lambda _: (), turns=3, cost=0.05),
     "block": Scene(
-        "Block-to-block", block_deck, block_penalty, LENGTHS["block"], judge_block,
+        "Block-to-block", block_deck, lambda level: block_study.PENALTY / level,
+        (10.0 / 51.0, 10.0 / 50.0), judge_block,
         (Measure("pressure_error", "p/p1D, largest deviation from 1", ROUND_OFF),),
-        levels=(1, 2, 4), quick_levels=(1, 2), turns=3, cost=0.2, power=1.0,
-        options=lambda _: (f"p:dt={BLOCK_STEP}",)),
+        levels=(1, 2, 4), quick_levels=(1, 2), options=lambda _: (f"p:dt={BLOCK_STEP}",), turns=3,
+        cost=0.2, power=1.0),
     "hertz": Scene(
-        "Hertz", scenes.hertz, lambda _: HERTZ_PENALTY, (CYLINDER_CELL, BLOCK_CELL),
-        judge_hertz,
+        "Hertz", scenes.hertz, lambda _: HERTZ_PENALTY, (CYLINDER_CELL, BLOCK_CELL), judge_hertz,
         (Measure("profile_error", "distance of p from the ellipse over p0", FINITE_STRAIN),
          Measure("half_width_error", "half width, deviation from Hertz", FINITE_STRAIN)),
         levels=(1, 2, 4), cost=0.2),
     "sliding": Scene(
-        "Sliding", scenes.sliding, lambda level: 10.0e9 / level, LENGTHS["sliding"],
-        judge_sliding,
+        "Sliding", scenes.sliding, lambda level: 10.0e9 / level, sliding_lengths(), judge_sliding,
         (Measure("force_error", "force, rms difference over the mean", referenced=True),
          Measure("roughness", "roughness of the force over the mean")),
         levels=(1, 2, 3), options=sliding_options, references=(2, 3, 6), quick_references=(1, 2),
         cost=1.4, power=2.5),
     "collision": Scene(
-        "Collision", scenes.collision, lambda level: 1.0e9 / level, LENGTHS["collision"],
+        "Collision", scenes.collision, lambda level: 1.0e9 / level, (0.020 / 24.0, 0.025 / 20.0),
         judge_collision,
         (Measure("plastic_error", "plastic work by column, difference", referenced=True),
          Measure("total_work_error", "plastic work in total, difference", referenced=True),

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Speed against accuracy: what each contact type, and implicit penalty (PUNIT 4), costs in each scene, and how
-large its error is.
+"""Speed against accuracy: what each contact type, and implicit penalty (PUNIT 4), costs in each
+scene, and how large its error is.
 
 Every run is timed and judged; contact time and computing time are medians over rounds in which all
 variants run in turn. See scenes.py for the scenes and their measures.
@@ -19,29 +19,30 @@ COUNTED_OPTIONS = {"sliding": ("endtim=2.0e-3",)}
 
 
 def jobs(options):
-    """Each scene, level and type; before them, once, the finer meshes of the references. Level 1 is counted too."""
+    """Each scene, level and type; before them, once, the finer meshes of the references. Level 1
+    is counted too."""
     references, listed = [], []
     for name, scene in SCENES.items():
         levels = [level for level in (scene.quick_levels if options.quick else scene.levels)
                   if level in options.levels]
         swept = {(ctype, level) for level in levels for ctype in options.types}
         wanted = scene.quick_references if options.quick else scene.references
-        extra = {(reference_series(ctype), level) for ctype in options.types for level in wanted if levels} - swept
+        extra = {(reference_series(ctype), level) for ctype in options.types
+                 for level in wanted if levels} - swept
         decks = {level: scene.deck(level) for _, level in swept | extra}
         references += [job(name, decks[level], level, ctype, "reference")
                        for ctype in SERIES for level in wanted if (ctype, level) in extra]
         listed += [job(name, decks[level], level, ctype, "sweep")
                    for level in levels for ctype in options.types]
-    counted = [counted_job(one, COUNTED_OPTIONS.get(one.labels["scene"], ())) for one in listed
-               if one.labels["level"] == 1 and not options.quick]
-    return references + listed + counted
+    return references + listed + [
+        counted_job(one, COUNTED_OPTIONS.get(one.labels["scene"], ())) for one in listed
+        if one.labels["level"] == 1 and not options.quick]
 
 
 def job(name, deck, level, ctype, role):
     """One run; `role`: sweep or reference."""
-    scene = SCENES[name]
+    scene, swept = SCENES[name], role == "sweep"
     options = [*contact_options(scene, level, ctype), "ncpu=1", *scene.options(level)]
-    swept = role == "sweep"
     return Job(f"{name}_{level}_type_{ctype}" + ("" if swept else "_reference"), deck, name, options,
                {"scene": name, "level": level, "type": ctype, "role": role}, alone=swept,
                group=f"{name}_{level}", turns=scene.turns if swept else 1, once=not swept,
@@ -49,16 +50,14 @@ def job(name, deck, level, ctype, role):
 
 
 def measure(one, folder):
-    """Seconds by phase, errors that need no reference, the net moment of the contact forces, and how
-    the program was built."""
+    """Seconds by phase, errors that need no reference, the net moment of the contact forces, and
+    how the program was built."""
     level, ctype = one.labels["level"], one.labels["type"]
     scene = SCENES[one.labels["scene"]]
     results = read(folder / f"{one.jobid}.vtkhdf")
-    run, moment = results.run, net_moment(results, scene.lengths[0] / level)
-    return {**phases(folder / f"{one.jobid}.timing.csv"),
-            **scene.judge(folder, level, ctype),
-            **({} if moment is None else {"moment": moment}),
-            "build": f"slideline {run['version']}, {run['build']}"}
+    return {**phases(folder / f"{one.jobid}.timing.csv"), **scene.judge(folder, level, ctype),
+            "moment": net_moment(results, scene.lengths[0] / level),
+            "build": f"slideline {results.run['version']}, {results.run['build']}"}
 
 
 STUDY = Study("speed-accuracy", jobs, measure, chart, derive=add_errors, page=page,

@@ -21,7 +21,7 @@ ENDS = 2                # nodes at each end of the surface that do not count for
 
 
 def energies(glstat, sleout):
-    """(drift, created by contact springs) over the largest energy of the run; infinite where not finite."""
+    """(drift, created by contact) over the largest energy of the run; infinite if not finite."""
     work = glstat["external_work"]
     scale = np.max([np.max(np.abs(glstat["total"])), np.max(np.abs(work)), 1e-300])
     drift = np.max(np.abs(glstat["total"] - glstat["total"][0] - (work - work[0]))) / scale
@@ -66,13 +66,13 @@ def judge(status, measures, side, approach, is_uniform):
 
 
 def cut_share(log):
-    """Share of the cycles with force in which contact forces were limited, as the log tells at its end."""
-    found = re.findall(r"they return no more energy than they took, in (\d+) of (\d+) cycles with force", log)
+    """Share of the cycles with force in which contact forces were limited, as the log tells."""
+    found = re.findall(r"no more energy than they took, in (\d+) of (\d+) cycles with force", log)
     return int(found[-1][0]) / int(found[-1][1]) if found else 0.0
 
 
-def measure_run(folder, jobid, scene):
-    """All measures of one run and its verdict."""
+def measure_cell(folder, jobid, scene):
+    """All measures of a run and its verdict; stable by the energy law alone is limited."""
     tables = {name: read_csv(folder / f"{jobid}.{name}.csv")
               for name in ("glstat", "rcforc", "sleout", "contact")}
     drift, created = energies(tables["glstat"], tables["sleout"])
@@ -80,4 +80,7 @@ def measure_run(folder, jobid, scene):
                 "swings": swings(tables["rcforc"]), "uneven": unevenness(tables["contact"])}
     reached = tables["glstat"]["time"][-1] >= 0.99 * scene.end
     verdict = judge(0 if reached else 2, measures, scene.side, scene.approach, scene.is_uniform)
-    return {**measures, "verdict": VERDICTS[verdict]}
+    cut = cut_share((folder / f"{jobid}.log").read_text(encoding="utf-8"))
+    if verdict == STABLE and cut > CUT_SHARE:
+        verdict = LIMITED
+    return {**measures, "verdict": VERDICTS[verdict], "cut": cut}

@@ -1,98 +1,112 @@
 # SPDX-License-Identifier: MIT
-"""The maps as pictures and the page of the study."""
-from __future__ import annotations
-
+"""The maps as pictures, and the figures that doc/studies/stability.md quotes."""
 import numpy as np
+import pandas as pd
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
 from slideline_tools.contact_types import IMPLICIT, in_order
-from slideline_tools.plots import PAGE_WIDTH, plt
+from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
 from slideline_tools.studies.common import label, markdown_table, save_small, write_page
-from slideline_tools.studies.framework.charts import styled
-from slideline_tools.studies.stability import measures
+from slideline_tools.studies.framework.rules import between
 from slideline_tools.studies.stability.measures import BLOWN_UP, CHATTERING, STABLE, VERDICTS
-from slideline_tools.studies.stability.scenes import FASTER, SCENES
-from slideline_tools.studies.stability.texts import PAGE
+from slideline_tools.studies.stability.scenes import SCENES
 
 NO_COMPLIANCE = 5.0  # decade at which PEN below 0 (PUNIT 4) is drawn
-DEPTH_DECADES = (-0.5, 0.0, 0.5, 1.0)  # penalties of the table of depths
+CELL = ["scene", "type"]
 LIMITS = {  # name of the column: text and line
-    "true_limit": ("limit by eigenvalue", dict(color="black")),
-    "program_limit": ("limit of the program", dict(color="black", linestyle="--")),
-    "spring_limit": ("contact springs: omega dt = 2", dict(color="black", linestyle=":")),
-    "opening_limit": ("contact springs: omega dt = 1", dict(color="black", linestyle="-.")),
-}
+    "true_limit": ("limit by eigenvalue", "-"), "program_limit": ("limit of the program", "--"),
+    "spring_limit": ("contact springs: omega dt = 2", ":"),
+    "opening_limit": ("contact springs: omega dt = 1", "-.")}
 FILLS = ("#d9ead3", "#f6b26b", "#9fc5e8", "#ffe599", "#b4a7d6", "#cc4125")
 
+PAGE = """# Where each type is stable
 
-def of_type(rows, ctype, kind):
-    return [row for row in rows if row["type"] == ctype and row["kind"] == kind]
+![Stability maps](../pictures/stability.png)
+
+## Limit of the program over the smaller of those by eigenvalues
+
+{limits}
+
+## Verdicts below the program's limit
+
+Of {below} cells of the types by number {bad} blew up or chattered.
+
+{verdicts}
+
+## Penalties over K L/A, as powers of ten, at which all steps below the limit are stable
+
+{ranges}
+
+## Deepest slave node over the way that the bodies are driven, below the limit, by penalty
+
+{depths}
+"""
 
 
-def types_of(by_scene):
-    """All types of all scenes."""
-    return in_order(row["type"] for rows in by_scene.values() for row in rows)
+def cells_of(table):
+    """The cells of the maps that have a verdict."""
+    return table[(table["kind"] == "map") & table["verdict"].notna()]
 
 
-def grid_of(rows):
-    """Decades, steps and verdict numbers (step, decade); -1 where nothing has run."""
-    decades = sorted({row["decade"] for row in rows})
-    steps = sorted({row["step"] for row in rows})
-    verdict = np.full((len(steps), len(decades)), -1.0)
-    for row in rows:
-        if "verdict" in row:
-            place = steps.index(row["step"]), decades.index(row["decade"])
-            verdict[place] = VERDICTS.index(row["verdict"])
-    return np.array(decades), steps, np.ma.masked_less(verdict, 0.0)
+def below(table):
+    """Those below the program's limit."""
+    cells = cells_of(table)
+    return cells[cells["below_limit"].astype(bool)]
 
 
-def limits_of(rows, ctype, name):
-    """(decade, limit over L/c) in order."""
-    return sorted((row["decade"], row[name]) for row in of_type(rows, ctype, "limit") if name in row)
-
+# ---- maps --------------------------------------------------------------------------------------
 
 def draw_panel(axes, rows, ctype):
-    """One map: cells by verdict; the limits."""
-    decades, steps, verdict = grid_of(of_type(rows, ctype, "map"))
+    """One map: cells by verdict, and the limits."""
+    mine = rows[rows["type"] == ctype]
+    verdicts = cells_of(mine).pivot(index="step", columns="decade", values="verdict").map(
+        lambda verdict: VERDICTS.index(verdict) if verdict == verdict else np.nan)
+    decades, steps = verdicts.columns.to_numpy(), verdicts.index.to_numpy()
     count = int(np.sum(decades < NO_COMPLIANCE))
     half = 0.5 * (decades[1] - decades[0]) if count > 1 else 0.5
     left, right = decades[0] - half, decades[count - 1] + half
-    draw_cells(axes, verdict[:, :count], left, right)
+    draw_cells(axes, verdicts.iloc[:, :count], left, right)
     if count < len(decades):  # apart from the others, as wide as one of them
-        draw_cells(axes, verdict[:, count:], right + 0.5 * half, right + 2.5 * half)
-        axes.set_xticks([*decades[:count][decades[:count] % 2.0 == 0.0], right + 1.5 * half], None)
-        axes.set_xticklabels([f"{x:g}" for x in axes.get_xticks()[:-1]] + ["<0"])
+        draw_cells(axes, verdicts.iloc[:, count:], right + 0.5 * half, right + 2.5 * half)
+        even = decades[:count][decades[:count] % 2.0 == 0.0]
+        axes.set_xticks([*even, right + 1.5 * half], [*(f"{x:g}" for x in even), "<0"])
         axes.set_xlim(left, right + 2.5 * half)
-    for name, (_, style) in LIMITS.items():
-        points = limits_of(rows, ctype, name)
-        if points:
-            x, limit = map(np.array, zip(*points))
-            dense = np.linspace(x[0], x[-1], 100)
-            level = np.exp(np.interp(dense, x, np.log(limit)))
-            axes.plot(dense, np.interp(level, steps, np.arange(len(steps)), left=np.nan), lw=1.0,
-                      **style)
+    for name, (_, line) in LIMITS.items():
+        draw_limit(axes, mine, name, line, steps)
     axes.set_yticks(range(len(steps)), [f"{step:g}" for step in steps], fontsize=5.5)
     axes.tick_params(axis="x", labelsize=6)
     axes.grid(False)
 
 
-def draw_cells(axes, verdict, left, right):
+def draw_cells(axes, verdicts, left, right):
     """Cells side by side between two places of the axis."""
-    axes.imshow(verdict, origin="lower", aspect="auto", cmap=ListedColormap(FILLS),
+    axes.imshow(np.ma.masked_invalid(verdicts.to_numpy(dtype=float)), origin="lower",
+                aspect="auto", interpolation="nearest", cmap=ListedColormap(FILLS),
                 norm=BoundaryNorm(np.arange(len(VERDICTS) + 1) - 0.5, len(VERDICTS)),
-                extent=(left, right, -0.5, len(verdict) - 0.5), interpolation="nearest")
+                extent=(left, right, -0.5, len(verdicts) - 0.5))
 
 
-def draw_maps(by_scene):
+def draw_limit(axes, rows, name, line, steps):
+    """One limit over the penalty, straight between the penalties that have it."""
+    limits = rows.set_index("decade")[name].dropna().sort_index() if name in rows else ()
+    if len(limits):
+        x = np.linspace(limits.index[0], limits.index[-1], 100)
+        level = np.exp(np.interp(x, limits.index, np.log(limits)))
+        axes.plot(x, np.interp(level, steps, np.arange(len(steps)), left=np.nan), line,
+                  color="black", lw=1.0)
+
+
+def draw_maps(table):
     """All types in columns, scenes in rows."""
-    types = types_of(by_scene)
-    figure, panels = plt.subplots(len(by_scene), len(types), squeeze=False, sharex="col",
-                                  figsize=(PAGE_WIDTH + 2.5, 1.9 * len(by_scene) + 0.6),
+    cells = cells_of(table)
+    types, names = in_order(cells["type"]), [name for name in SCENES if name in set(cells["scene"])]
+    figure, panels = plt.subplots(len(names), len(types), squeeze=False, sharex="col",
+                                  figsize=(PAGE_WIDTH + 2.5, 1.9 * len(names) + 0.6),
                                   layout="constrained")
-    for line, (name, rows) in zip(panels, by_scene.items()):
+    for line, name in zip(panels, names):
         for axes, ctype in zip(line, types):
-            draw_panel(axes, rows, ctype)
+            draw_panel(axes, table[table["scene"] == name], ctype)
             axes.set_title(label(ctype), fontsize=7)
             if ctype == IMPLICIT and axes is not line[0]:
                 axes.yaxis.tick_right()  # its steps are others
@@ -101,150 +115,72 @@ def draw_maps(by_scene):
         line[0].set_ylabel(f"{SCENES[name].title}: step over L/c", fontsize=7)
     figure.supxlabel("log10 of penalty over K L/A of the elements", fontsize=8)
     handles = [Patch(color=fill, label=name) for fill, name in zip(FILLS, VERDICTS)]
-    handles += [plt.Line2D([], [], label=text, **style) for text, style in LIMITS.values()]
+    handles += [plt.Line2D([], [], label=text, linestyle=line, color="black")
+                for text, line in LIMITS.values()]
     figure.legend(handles=handles, loc="outside upper center", ncols=5, fontsize=6)
     return figure
 
 
-def limit_table(by_scene):
+def chart(table, folder):
+    """The maps of all scenes."""
+    with plt.rc_context(STYLE):
+        save_small(draw_maps(table), folder / "stability.png", lines=True)
+
+
+# ---- tables ------------------------------------------------------------------------------------
+
+def by_type(values):
+    """A table of the texts of (scene, type): types in rows, scenes in columns."""
+    table = values.unstack("scene")
+    table = table.reindex(index=in_order(table.index),
+                          columns=[name for name in SCENES if name in table])
+    titles = {name: scene.title for name, scene in SCENES.items()}
+    return markdown_table(table.rename(index=label, columns=titles).reset_index(names="type"))
+
+
+def limit_table(table):
     """Program's limit over that by eigenvalues, smallest to largest over all penalties."""
-    lines = []
-    for ctype in (one for one in types_of(by_scene) if one != IMPLICIT):
-        cells = [label(ctype)]
-        for rows in by_scene.values():
-            ratios = [row["program_limit"] / row["both_limits"]
-                      for row in of_type(rows, ctype, "limit") if "both_limits" in row]
-            cells.append(f"{min(ratios):.2f} to {max(ratios):.2f}" if ratios else "")
-        lines.append(cells)
-    return markdown_table(["type", *(SCENES[name].title for name in by_scene)], lines)
+    ratios = (table["program_limit"] / table["both_limits"]).dropna()
+    return by_type(ratios.groupby([table[name] for name in CELL]).agg(between))
 
 
-def count_table(by_scene):
-    """Verdicts of the cells below the program's limit, and stability above the limit by eigenvalue; that of
-    implicit penalty is L/c."""
-    lines = []
-    for name, rows in by_scene.items():
-        for ctype in in_order(row["type"] for row in rows):
-            cells = [row for row in of_type(rows, ctype, "map") if "verdict" in row]
-            below = [row["verdict"] for row in cells if row.get("below_limit")]
-            true = limits_of(rows, ctype, "true_limit")
-            if ctype == IMPLICIT:
-                true = [(0.0, 1.0)]
-            above = [row["verdict"] for row in cells if true
-                     and row["step"] > 1.001 * np.exp(np.interp(
-                         row["decade"], *zip(*[(x, np.log(y)) for x, y in true])))]
-            lines.append([SCENES[name].title, label(ctype), len(below),
-                          *(below.count(verdict) for verdict in VERDICTS), len(above),
-                          above.count(VERDICTS[STABLE])])
-    return markdown_table(["scene", "type", "cells below the program's limit", *VERDICTS,
-                           "cells above the limit by eigenvalue", "of these stable"], lines)
+def verdict_table(table):
+    """How many cells below the program's limit have each verdict."""
+    cells = below(table)
+    counts = pd.crosstab([cells["scene"], cells["type"].map(label)], cells["verdict"])
+    return markdown_table(counts.reindex(columns=list(VERDICTS), fill_value=0).reset_index())
 
 
-def good_decades(rows, ctype):
-    """Decades of the penalty at which all cells below the program's limit are stable, in order."""
-    below = [row for row in of_type(rows, ctype, "map") if row.get("below_limit")]
-    bad = {row["decade"] for row in below if row["verdict"] != VERDICTS[STABLE]}
-    return sorted({row["decade"] for row in below} - bad)
+def good_penalties(table):
+    """Smallest and largest penalty of (scene, type) with all cells below the limit stable."""
+    cells = below(table)
+    stable = cells["verdict"] == VERDICTS[STABLE]
+    good = stable.groupby([cells[name] for name in [*CELL, "decade"]]).all().reset_index()
+    return good.groupby(CELL)[["decade", "verdict"]].apply(
+        lambda rows: range_text(rows.loc[rows["verdict"], "decade"]))
 
 
-def penalty_text(decade):
-    """'1e+0.5', or that there is no compliance."""
-    return "no compliance" if decade == NO_COMPLIANCE else f"1e{decade:+.1f}"
+def range_text(decades):
+    """'1e-0.5 to no compliance', or 'none'."""
+    texts = ["no compliance" if decade == NO_COMPLIANCE else f"1e{decade:+.1f}"
+             for decade in sorted(decades)]
+    return f"{texts[0]} to {texts[-1]}" if texts else "none"
 
 
-def one_digit(decade):
-    """The penalty at a decade, rounded to a digit: 0.3 for -0.5."""
-    return f"{float(f'{10.0 ** decade:.1g}'):g}"
+def depth_table(table):
+    """Deepest slave node of the blocks, over the way, in cells that do not blow up."""
+    cells = below(table)
+    cells = cells[(cells["scene"] == "block") & (cells["verdict"] != VERDICTS[BLOWN_UP])]
+    depths = cells["depth"] / SCENES["block"].approach
+    found = depths.groupby([cells["type"], cells["decade"]]).max().map("{:.2f}".format)
+    table = found.unstack(fill_value="").reindex(in_order(found.index.levels[0]))
+    return markdown_table(table.rename(index=label, columns="1e{:+.1f}".format).reset_index())
 
 
-def smallest_penalties(by_scene):
-    """The types by their smallest good penalty over K L/A, as a text for each scene."""
-    texts = []
-    for name, rows in by_scene.items():
-        types = {}
-        for ctype in in_order(row["type"] for row in rows):
-            good = good_decades(rows, ctype)
-            types.setdefault(good[0] if good else np.inf, []).append(str(ctype))
-        texts.append(f"{SCENES[name].title} " + ", ".join(
-            f"{'none' if decade == np.inf else one_digit(decade)} "
-            f"(type{'s' if len(same) > 1 else ''} {', '.join(same)})"
-            for decade, same in sorted(types.items())))
-    return "; ".join(texts)
-
-
-def depth_table(rows, approach):
-    """Deepest slave node over `approach` in cells below the program's limit that do not blow up."""
-    cells = [row for row in rows if row.get("below_limit") and row["decade"] in DEPTH_DECADES
-             and row["verdict"] != VERDICTS[BLOWN_UP]]
-    lines = []
-    for ctype in in_order(row["type"] for row in cells):
-        deepest = [max((row["depth"] for row in cells if (row["type"], row["decade"]) ==
-                        (ctype, decade)), default=None) for decade in DEPTH_DECADES]
-        lines.append([label(ctype), *("" if depth is None else f"{depth / approach:.2f}"
-                                      for depth in deepest)])
-    return markdown_table(["type", *map(one_digit, DEPTH_DECADES)], lines)
-
-
-def first_failures(by_scene):
-    """Smallest and largest penalty of each type for which all steps below the program's limit are
-    good, by scene."""
-    lines = []
-    for ctype in types_of(by_scene):
-        cells = [label(ctype)]
-        for rows in by_scene.values():
-            good = good_decades(rows, ctype)
-            cells.append(f"{penalty_text(good[0])} to {penalty_text(good[-1])}" if good else "none")
-        lines.append(cells)
-    return markdown_table(["type", *(SCENES[name].title for name in by_scene)], lines)
-
-
-def failing_below(rows):
-    """How many cells lie below the program's limit, and how many of these blew up or chattered."""
-    below = [row["verdict"] for row in rows if row.get("below_limit")]
-    return len(below), sum(below.count(VERDICTS[verdict]) for verdict in (BLOWN_UP, CHATTERING))
-
-
-def blown_text(by_scene):
-    """The types that blow up below the program's limit, and in how many cells."""
-    parts = []
-    for name, rows in by_scene.items():
-        count = {}
-        for row in rows:
-            if row.get("below_limit") and row["verdict"] == VERDICTS[BLOWN_UP]:
-                count[row["type"]] = count.get(row["type"], 0) + 1
-        if count:
-            parts.append(f"{SCENES[name].title} " + ", ".join(
-                f"type {ctype} ({count[ctype]} cell{'s' * (count[ctype] > 1)})" for ctype in in_order(count)))
-    return "; ".join(parts) if parts else "no cell of these maps"
-
-
-def implicit_text(by_scene):
-    """What became of implicit penalty below L/c, scene by scene."""
-    parts = []
-    for name, rows in by_scene.items():
-        rows = [row for row in rows if row["type"] == IMPLICIT and row.get("below_limit")]
-        if rows:
-            good = good_decades(rows, IMPLICIT)
-            spread = f"stable from {penalty_text(good[0])} to {penalty_text(good[-1])}" if good else "nowhere stable at all steps"
-            count, bad = failing_below(rows)
-            parts.append(f"{SCENES[name].title} {spread}, {bad} of {count} cells blew up or chattered")
-    return "; ".join(parts) if parts else "not run"
-
-
-def write_maps_page(rows, doc):
-    """doc/studies/stability.md and doc/pictures/stability.png."""
-    names = [name for name in SCENES if any(row["scene"] == name and "verdict" in row for row in rows)]
-    by_scene = {name: [row for row in rows if row["scene"] == name] for name in names}
-    with styled():
-        save_small(draw_maps(by_scene), doc / "pictures" / "stability.png", lines=True)
-    below, bad = failing_below(row for row in rows if row["type"] != IMPLICIT)
-    times = ", ".join(f"{SCENES[name].title.lower()} {SCENES[name].end:g} s" for name in names)
+def page(table, doc):
+    """DOC/studies/stability.md."""
+    cells = below(table[table["type"] != IMPLICIT])
+    bad = cells["verdict"].isin([VERDICTS[BLOWN_UP], VERDICTS[CHATTERING]])
     write_page(doc, "stability", PAGE.format(
-        times=times, faster=FASTER, limits=limit_table(by_scene), counts=count_table(by_scene),
-        ranges=first_failures(by_scene), soft=smallest_penalties(by_scene),
-        depths=depth_table(by_scene.get("block", ()), SCENES["block"].approach),
-        ways=f"{SCENES['block'].approach:g} m and {1e3 * SCENES['sliding'].approach:g} mm",
-        n_below=below, n_bad=bad, implicit=implicit_text(by_scene), blown=blown_text(by_scene),
-        **{name: getattr(measures, name) for name in (
-            "ENERGY_DRIFT", "ENERGY_CREATED", "DEPTH_SIDES", "DEPTH_APPROACH", "SWINGS",
-            "UNEVEN", "ENDS", "CUT_SHARE")}))
+        limits=limit_table(table), below=len(cells), bad=bad.sum(), verdicts=verdict_table(table),
+        ranges=by_type(good_penalties(table)), depths=depth_table(table)))

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: MIT
 """The scenes of the stability maps: shortened decks, and the same meshes for the eigenvalue."""
-from __future__ import annotations
-
 import dataclasses
 import functools
 import re
@@ -13,16 +11,15 @@ from slideline_tools import scenes
 from slideline_tools.scenes.common import ALUMINIUM, STEEL
 from slideline_tools.scenes.patch import patch_grids
 from slideline_tools.scenes.sliding import sliding_grids
-from slideline_tools.studies.stability.eigen import Model
-from slideline_tools.studies.stability.springs import springs
+from slideline_tools.studies.common import verification
 
-SAMPLES, STATES = 300, 4    # rows of histories and states in a run
-HOURGLASS = 0.1             # stiffness form in all scenes
+SAMPLES, STATES = 300, 4  # rows of histories and states in a run
+HOURGLASS = 0.1           # stiffness form in all scenes
 SOFT = dict(young=1.0e6, poisson=0.0, rho=1000.0)
-PRESSURE = 2.0e4            # Pa, patch: 2 % of the modulus
-FASTER = 12.0               # the strokes of the sliding scene, times quicker
-PATCH_DAMPING = 18.0        # 1/s
-BLOCK_SPEED = -0.6          # m/s
+PRESSURE = 2.0e4          # Pa, patch: 2 % of the modulus
+FASTER = 12.0             # the strokes of the sliding scene, times quicker
+PATCH_DAMPING = 18.0      # 1/s
+BLOCK_SPEED = -0.6        # m/s
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -34,6 +31,7 @@ class Scene:
     `approach`     how far the bodies are driven together in m
     `is_uniform`   the exact pressure is the same along the interface
     `parts`        grids and materials; `fixed` = (grid, face, directions)
+    `options`      words of the command line
     `shifts`       places of the slave along the master, in m, for the eigenvalue
     """
 
@@ -52,8 +50,8 @@ class Scene:
     def model(self):
         """The mesh at rest."""
         grids, materials = zip(*self.parts)
-        model = Model(grids, *([m[name] for m in materials] for name in ("young", "poisson", "rho")),
-                      HOURGLASS)
+        constants = [[one[name] for one in materials] for name in ("young", "poisson", "rho")]
+        model = verification(".", "eigen").Model(grids, *constants, HOURGLASS)
         for grid, face, directions in self.fixed:
             for direction in directions:
                 model.fix(getattr(grids[grid], face), direction)
@@ -67,69 +65,65 @@ class Scene:
         both, found = np.concatenate([slave, master]), []
         for shift in self.shifts:
             full = np.zeros((len(self.model.x),) * 2)
-            full[np.ix_(both, both)] = springs(ctype, self.model.x[slave, 0] + shift,
-                                               self.model.x[master, 0])
+            full[np.ix_(both, both)] = verification(".", "springs").springs(
+                ctype, self.model.x[slave, 0] + shift, self.model.x[master, 0])
             found.append(full)
         return found
 
     def limit(self, ctype, penalty, with_elements=True):
-        """2/omega with contact everywhere, of elements and springs or of the springs alone; `penalty`
-        in N/m^2."""
-        return min(self.model.limit(penalty * unit, with_elements) for unit in self.unit_springs(ctype))
+        """2/omega with contact everywhere, of elements and springs or of the springs alone;
+        `penalty` in N/m^2."""
+        return min(self.model.limit(penalty * unit, with_elements)
+                   for unit in self.unit_springs(ctype))
 
 
 def with_output(deck, end):
     """The deck with few outputs, and stiffness hourglass control."""
-    deck = re.sub(r"\*DATABASE_[^*]*", "", deck)
+    cards = [(f"DATABASE_{name}", f"{end / SAMPLES!r},") for name in ("GLSTAT", "RCFORC", "SLEOUT")]
+    cards.append(("DATABASE_BINARY_D3PLOT", f"{end / STATES!r},"))
     if "*CONTROL_HOURGLASS" not in deck:
-        deck = deck.replace("*CONTROL_ENERGY", f"*CONTROL_HOURGLASS\n4,{HOURGLASS}\n*CONTROL_ENERGY")
-    row, state = end / SAMPLES, end / STATES
-    return deck.replace("*CONTROL_ENERGY", f"*DATABASE_GLSTAT\n{row!r},\n*DATABASE_RCFORC\n{row!r},\n"
-                        f"*DATABASE_SLEOUT\n{row!r},\n*DATABASE_BINARY_D3PLOT\n{state!r},\n*CONTROL_ENERGY")
+        cards.append(("CONTROL_HOURGLASS", f"4,{HOURGLASS}"))
+    text = "".join(f"*{keyword}\n{card}\n" for keyword, card in cards)
+    deck = re.sub(r"\*DATABASE_[^*]*", "", deck)
+    return deck.replace("*CONTROL_ENERGY", text + "*CONTROL_ENERGY")
 
 
 def scaled_curve(deck, number, abscissa, ordinate):
     """Factors on a curve of the deck, which has none."""
-    ones = "".join(text.rjust(10) for text in (str(number), "0", "1.0", "1.0"))
-    if ones not in deck:
+    def card(*factors):
+        return "".join(text.rjust(10) for text in (str(number), "0", *factors))
+    if card("1.0", "1.0") not in deck:
         raise ValueError(f"no curve {number}")
-    return deck.replace(ones, "".join(text.rjust(10) for text in
-                                      (str(number), "0", f"{abscissa:.6g}", f"{ordinate:.6g}")))
+    return deck.replace(card("1.0", "1.0"), card(f"{abscissa:.6g}", f"{ordinate:.6g}"))
 
 
-def patch_deck(ctype, end):
-    deck = scaled_curve(scenes.patch(ctype), 2, 1.0, PRESSURE)
-    return with_output(deck, end)
+def patch_scene(end=1.5):
+    """The patch test under a hundred times its pressure, damped."""
+    def deck(ctype):
+        return with_output(scaled_curve(scenes.patch(ctype), 2, 1.0, PRESSURE), end)
+    return Scene("Patch", deck, end, 0.2, np.inf, True, [(grid, SOFT) for grid in patch_grids()],
+                 [(0, "lower", (1,))], (f"p:damp={PATCH_DAMPING}",))
 
 
-def sliding_deck(ctype, end):
-    deck = scenes.sliding(1, ctype)
-    for curve in (2, 3):
-        deck = scaled_curve(deck, curve, 1.0 / FASTER, FASTER)
-    return with_output(deck, end)
+def block_scene(end=0.4):
+    """Two blocks driven together."""
+    def deck(ctype):
+        return with_output(scenes.block(ctype), end)
+    return Scene("Block", deck, end, 10.0 / 51.0, -BLOCK_SPEED * end, True,
+                 [(grid, SOFT) for grid in scenes.block_grids()],
+                 [(0, "lower", (1,)), (1, "upper", (1,))], (f"p:v0={BLOCK_SPEED}",))
 
 
-def make_scenes():
-    """All scenes by name."""
-    times = {"patch": 1.5, "block": 0.4, "sliding": 3.0e-4}
-    die, plate = dict(STEEL), {name: ALUMINIUM[name] for name in ("young", "poisson", "rho")}
-    slide = sliding_grids(1)
-    return {
-        "patch": Scene(
-            "Patch", lambda ctype: patch_deck(ctype, times["patch"]), times["patch"], 0.2, np.inf,
-            True, [(grid, SOFT) for grid in patch_grids()], [(0, "lower", (1,))],
-            (f"p:damp={PATCH_DAMPING}",)),
-        "block": Scene(
-            "Block", lambda ctype: with_output(scenes.block(ctype), times["block"]), times["block"],
-            10.0 / 51.0, -BLOCK_SPEED * times["block"], True,
-            [(grid, SOFT) for grid in scenes.block_grids()],
-            [(0, "lower", (1,)), (1, "upper", (1,))], (f"p:v0={BLOCK_SPEED}",)),
-        "sliding": Scene(
-            "Sliding", lambda ctype: sliding_deck(ctype, times["sliding"]), times["sliding"],
-            0.5e-3, 0.15e-3, False, [(slide[0], plate), (slide[1], die)],
-            [(0, "lower", (0, 1)), (1, "upper", (0, 1))], ("p:ihq=4",),
-            (0.0, 0.25e-3)),
-    }
+def sliding_scene(end=3.0e-4):
+    """The sliding die, its strokes quicker."""
+    def deck(ctype):
+        text = scenes.sliding(1, ctype)
+        for curve in (2, 3):
+            text = scaled_curve(text, curve, 1.0 / FASTER, FASTER)
+        return with_output(text, end)
+    plate, die = sliding_grids(1)
+    return Scene("Sliding", deck, end, 0.5e-3, 0.15e-3, False, [(plate, ALUMINIUM), (die, STEEL)],
+                 [(0, "lower", (0, 1)), (1, "upper", (0, 1))], ("p:ihq=4",), (0.0, 0.25e-3))
 
 
-SCENES = make_scenes()
+SCENES = {"patch": patch_scene(), "block": block_scene(), "sliding": sliding_scene()}

@@ -1,12 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Picture of the Taylor bar: first and final shape, beside the radius and length of converged codes, and both over time.
-
-    python -m slideline_tools.studies.taylor FOLDER DOC
-
-FOLDER holds the run of input/taylor/taylor.k as taylor.vtkhdf; the picture goes to DOC/pictures/taylor.png.
-"""
+"""Picture of the Taylor bar: first and final shape, beside the radius and length of converged codes, and both over time."""
 import pathlib
-import sys
 
 import numpy as np
 
@@ -15,7 +9,7 @@ from slideline_tools.histories import read_csv
 from slideline_tools.mirrored import Mirrored
 from slideline_tools.plots import PAGE_WIDTH, STYLE, colour_bar, draw_field, plt
 from slideline_tools.results import read
-from slideline_tools.studies.common import page_main, save_small
+from slideline_tools.studies.common import save_small
 
 #: Final radius of the foot and length in mm of converged codes: tests/verification/taylor_bar.
 CODES = {"radius": (7.22, 7.24), "length": (21.42, 21.43)}
@@ -23,7 +17,7 @@ MM = 1.0e3
 #: Nodes of the deck that radius and length are read from.
 NODES = {"radius": (11, "x"), "length": (1101, "y")}
 #: Both over time by another program: tests/verification/taylor_bar.
-PUBLISHED = pathlib.Path(__file__).resolve().parents[3] / "tests" / "verification" / "taylor_bar" / "published.csv"
+PUBLISHED = pathlib.Path(__file__).resolve().parents[2] / "tests" / "verification" / "taylor_bar" / "published.csv"
 OTHER = "#0b559f"
 
 
@@ -85,11 +79,7 @@ def draw(results, nodes):
         return figure
 
 
-def write(folder, doc):
-    """DOC/pictures/taylor.png."""
-    figure = draw(InMillimetres(read(folder / "taylor.vtkhdf")), read_csv(folder / "taylor.nodout.csv"))
-    save_small(figure, doc / "pictures" / "taylor.png", colours=96)
-
-
-if __name__ == "__main__":
-    sys.exit(page_main(__doc__, write))
+def taylor(results, path):
+    """The picture of the results of input/taylor/taylor.k."""
+    figure = draw(InMillimetres(read(results)), read_csv(results.with_suffix(".nodout.csv")))
+    save_small(figure, path, colours=96)

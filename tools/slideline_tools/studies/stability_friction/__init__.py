@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: MIT
-"""How fast steady sliding flutters, and what damps it."""

@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: MIT
-"""What breaks a contact that penalty and step allow."""
