@@ -170,7 +170,7 @@ def test_cells_and_limits_with_the_program(slideline, tmp_path, ctype, decade, s
     """Verdicts of the patch; the program's limit over L/c where there is no step."""
     job = next(job for job in stability.jobs(Options(types=(ctype,))) if job.labels["scene"] == "patch"
                and job.labels["decade"] == decade and job.labels.get("step") == step)
-    (tmp_path / "run.k").write_text(job.deck_text)
+    (tmp_path / "run.k").write_text(job.deck)
     subprocess.run([slideline, "i=run.k", "d=.", "jobid=patch", *job.options], cwd=tmp_path, capture_output=True, check=False)
     found = stability.measure(job, tmp_path)
     assert found.get("verdict") == verdict or found["program_limit"] == pytest.approx(verdict, abs=0.05)

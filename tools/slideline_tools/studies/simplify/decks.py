@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Decks of the study simplify: scenes with more than they need."""
+import functools
+
 import numpy as np
 
 from slideline_tools.decks import Deck, field
@@ -21,11 +23,12 @@ def exchanged(deck, old, new):
 
 
 def written(*calls):
-    """Text of cards: each call is (method of Deck, arguments ...)."""
+    """Text of cards: each call is (method of Deck by name, or function of a Deck, arguments ...)."""
     deck = Deck("")
     start = len(deck.lines)
-    for name, *arguments in calls:
-        getattr(deck, name)(*arguments)
+    for call, *arguments in calls:
+        write = getattr(Deck, call) if isinstance(call, str) else call
+        write(deck, *arguments)
     return "\n".join(deck.lines[start:]) + "\n"
 
 
@@ -66,12 +69,9 @@ def mirror(grid, part):
 
 def plastic_instead(deck, number, material):
     """The deck with an elastic-plastic law that never yields in place of an elastic one."""
-    new = Deck("")
-    start = len(new.lines)
-    perfectly_plastic(new, number, **material, yield_stress=UNREACHABLE)
-    old = Deck("")
-    elastic(old, number, **material)
-    return exchanged(deck, "\n".join(old.lines[start:]) + "\n", "\n".join(new.lines[start:]) + "\n")
+    law = functools.partial(perfectly_plastic, yield_stress=UNREACHABLE, **material)
+    return exchanged(deck, written((functools.partial(elastic, **material), number)),
+                     written((law, number)))
 
 
 def awake(deck):

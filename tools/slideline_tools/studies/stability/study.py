@@ -5,6 +5,7 @@ The penalty is given over the stiffness K L/A of the elements behind the interfa
 PUNIT 4), the step over the smallest L/c of the elements (TSSFAC, a constant step being refused
 above it).
 """
+import itertools
 import re
 
 import numpy as np
@@ -24,7 +25,7 @@ IMPLICIT_STEPS = (*STEPS[:6], 0.995, *STEPS[7:])  # below L/c, where elements th
 QUICK_IMPLICIT_STEPS = (0.2, 0.995, 1.2)
 STOCK = 0.1          # SLSFAC: PUNIT 2 multiplies K L/A by it
 NO_CURVE = 1.0e3     # s: a constant step that no element allows
-RULE = "*CONTROL_CONTACT\n\n0,0,0,0,0,0,2\n*CONTROL_ENERGY"
+RULE = "*CONTROL_CONTACT\n\n0,0,0,0,0,0,2\n*CONTROL_ENERGY"  # ECDT 2: the log tells the limit
 LIMIT_TIME = 1.0e-9  # s: one cycle
 PATIENCE = 120.0     # s for a run
 IN_LOG = {"penalty": r"per slave node = (\S+)",
@@ -33,58 +34,50 @@ IN_LOG = {"penalty": r"per slave node = (\S+)",
 
 
 def jobs(options):
-    """Each scene and type over penalties and steps, and a cycle a penalty for the limit."""
+    """Each scene and type over penalties and steps, and a cycle a penalty for the limit, which
+    implicit penalty has none of."""
     listed = []
-    decades = QUICK_DECADES if options.quick else DECADES
-    for name, scene in SCENES.items():
-        if options.quick and name == "sliding":
-            continue
-        for ctype in (one for one in options.types if one != IMPLICIT):
-            deck, steps = scene.deck(ctype), QUICK_STEPS if options.quick else STEPS
-            for decade in decades:
-                words = (f"ctype={ctype}", "punit=2", f"pen={10.0 ** decade / STOCK:.10g}")
-                stem = f"{name}_type_{ctype}_pen_1e{decade:+.1f}"
-                labels = {"scene": name, "type": ctype, "decade": float(decade)}
-                if decade == int(decade):
-                    listed.append(limit_job(stem, deck, words, labels))
-                listed += [map_job(stem, deck, words, labels, step) for step in steps]
-        if IMPLICIT in options.types:
-            steps = QUICK_IMPLICIT_STEPS if options.quick else IMPLICIT_STEPS
-            listed += implicit_jobs(name, scene, decades, steps)
+    names = [name for name in SCENES if not (options.quick and name == "sliding")]
+    for name, ctype in itertools.product(names, options.types):
+        scene, is_implicit = SCENES[name], ctype == IMPLICIT
+        deck = scene.deck(7 if is_implicit else ctype)
+        for decade in decades_of(is_implicit, options.quick):
+            words = (*penalty_words(ctype, decade), f"dt={NO_CURVE:g}", "ncpu=1",
+                     *scene.options)
+            stem = f"{name}_type_{ctype}_pen_" + (
+                "none" if decade == NO_COMPLIANCE else f"1e{decade:+.1f}")
+            labels = {"scene": name, "type": ctype, "decade": float(decade)}
+            if decade == int(decade) and not is_implicit:
+                listed.append(Job(
+                    f"{stem}_limit", deck.replace("*CONTROL_ENERGY", RULE), name,
+                    (*words, "tssfac=1", f"endtim={LIMIT_TIME:g}"), {**labels, "kind": "limit"},
+                    cost=0.1))
+            listed += [Job(f"{stem}_dt_{step:g}", deck, name,
+                           (*words, f"tssfac={step:g}", f"endtim={scene.end:g}"),
+                           {**labels, "kind": "map", "step": step}, cost=0.2 / step, limit=PATIENCE)
+                       for step in steps_of(is_implicit, options.quick)]
     return listed
 
 
-def common(scene):
-    """Words of all runs of a scene."""
-    return (f"dt={NO_CURVE:g}", "ncpu=1", *scene.options)
+def decades_of(is_implicit, quick):
+    """The penalties; the last of implicit penalty has no compliance."""
+    decades = QUICK_DECADES if quick else DECADES
+    return (*decades, NO_COMPLIANCE) if is_implicit else decades
 
 
-def limit_job(stem, deck, words, labels):
-    """One cycle with ECDT 2, whose log tells the program's limit."""
-    end = ("tssfac=1", f"endtim={LIMIT_TIME:g}")
-    return Job(f"{stem}_limit", deck.replace("*CONTROL_ENERGY", RULE), labels["scene"],
-               (*words, *common(SCENES[labels["scene"]]), *end), {**labels, "kind": "limit"},
-               cost=0.1)
+def steps_of(is_implicit, quick):
+    """The steps over L/c."""
+    if is_implicit:
+        return QUICK_IMPLICIT_STEPS if quick else IMPLICIT_STEPS
+    return QUICK_STEPS if quick else STEPS
 
 
-def map_job(stem, deck, words, labels, step):
-    """One cell of a map."""
-    scene = SCENES[labels["scene"]]
-    end = (f"tssfac={step:g}", f"endtim={scene.end:g}")
-    return Job(f"{stem}_dt_{step:g}", deck, labels["scene"], (*words, *common(scene), *end),
-               {**labels, "kind": "map", "step": step}, cost=0.2 / step, limit=PATIENCE)
-
-
-def implicit_jobs(name, scene, decades, steps):
-    """The cells of implicit penalty, without compliance last. It has no limit to ask for."""
-    listed, deck = [], scene.deck(7)
-    for decade in (*decades, NO_COMPLIANCE):
+def penalty_words(ctype, decade):
+    """Type and penalty on the command line; PEN below 0 has no compliance."""
+    if ctype == IMPLICIT:
         pen = -1.0 if decade == NO_COMPLIANCE else 10.0 ** decade
-        stem = f"{name}_type_{IMPLICIT}_pen_" + ("none" if pen < 0.0 else f"1e{decade:+.1f}")
-        labels = {"scene": name, "type": IMPLICIT, "decade": float(decade)}
-        words = ("ctype=7", "punit=4", f"p:pen={pen:.10g}")
-        listed += [map_job(stem, deck, words, labels, step) for step in steps]
-    return listed
+        return ("ctype=7", "punit=4", f"p:pen={pen:.10g}")
+    return (f"ctype={ctype}", "punit=2", f"pen={10.0 ** decade / STOCK:.10g}")
 
 
 def measure(job, folder):
