@@ -13,7 +13,8 @@ from vtkmodules.vtkIOLSDyna import vtkLSDynaReader
 
 from slideline_tools.binout import BinoutError, write_binout
 from slideline_tools.d3plot import D3plotError, write_d3plot
-from slideline_tools.finished_run import Run, RunError, part_titles
+from slideline_tools.effective_deck import part_titles
+from slideline_tools.finished_run import Run, RunError
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 #: relative room of single precision

@@ -79,11 +79,10 @@ def add_plot(commands):
 
 
 def plot(options):
-    from slideline_tools import plots
-    results = opened(options)
-    figure = plots.choose_figure(results, options.field, options.state or (), options.scale, options.zoom,
-                                 options.history or (), options.contact, options.zones)
-    plots.save(figure, output(options.output, [results.path]))
+    import slideline_tools
+    slideline_tools.plot(options.results, options.field, *options.state or (), scale=options.scale,
+                         zoom=options.zoom, history=options.history or (), contact=options.contact,
+                         zones=options.zones, mirror=options.mirror, output=options.output)
     print(f"wrote {options.output}")
     return OK
 

@@ -6,6 +6,7 @@ import re
 import numpy as np
 
 from slideline_tools import UserError
+from slideline_tools.effective_deck import interface_titles, part_titles
 from slideline_tools.files import source
 from slideline_tools.histories import TABLES, History, read_csv
 from slideline_tools.results import read
@@ -97,34 +98,3 @@ def find_prefix(path):
         raise RunError(f"{path} holds {'several runs: ' + ', '.join(jobs) if jobs else 'no run'}; "
                        "name a results file")
     return path / jobs[0]
-
-
-def interface_titles(deck):
-    """interface id -> title on the first card of *CONTACT_..._TITLE of a deck."""
-    titles, waits = {}, False
-    for line in deck.splitlines():
-        if line.startswith("*"):
-            waits = bool(re.match(r"\*CONTACT_\w+_TITLE\b", line, re.I))
-        elif waits and not line.startswith("$"):
-            number, title = line.split(",", 1) if "," in line[:20] else (line[:10], line[10:])
-            if number.strip().isdigit():
-                titles[int(number)] = title.strip()
-            waits = False
-    return titles
-
-
-def part_titles(deck):
-    """part id -> heading of the *PART keywords of a deck."""
-    titles, lines = {}, None
-    for line in deck.splitlines():
-        if line.startswith("$"):
-            continue
-        if line.startswith("*"):
-            lines = [] if line.split()[0].rstrip("+-%").upper() == "*PART" else None
-        elif lines is not None:
-            lines.append(line)
-            if len(lines) % 2 == 0:
-                number = re.match(r"\s*(\d+)", line.split(",")[0] if "," in line else line[:20])
-                if number:
-                    titles[int(number.group(1))] = lines[-2].strip()
-    return titles

@@ -160,6 +160,12 @@ def mark_cut(axes, x, y, colour):
                   zorder=5)
 
 
+def line_style(count):
+    """Colour and dashes of the line of that number."""
+    return {"color": COLOURS[count % len(COLOURS)],
+            "linestyle": LINES[count // len(COLOURS) % len(LINES)]}
+
+
 def run_title(results):
     """Title of the deck, or the name of the file."""
     return results.run.get("title") or results.path.name
@@ -225,8 +231,7 @@ def draw_history(axes, results, request):
         for column in columns:
             name = column.replace("_", " ")
             label = f"{history.entity_label(entity)}: {name}" if entity else name
-            axes.plot(rows["time"], drawn(rows, column, history), label=label, color=COLOURS[count % len(COLOURS)],
-                      linestyle=LINES[(count // len(COLOURS)) % len(LINES)])
+            axes.plot(rows["time"], drawn(rows, column, history), label=label, **line_style(count))
             count += 1
     axes.set_xlabel("time")
     axes.margins(x=0.0)
@@ -333,24 +338,6 @@ def report_requests(results):
     elif "nodout" in results.histories and len(results.history("nodout")):
         panels.append(("nodout:uy", "displacement in y"))
     return panels
-
-
-def choose_figure(results, field=None, states=(), scale=1.0, zoom=None, history=(), contact=False, zones=False):
-    """The figure that is asked for: histories, contact pressure, zones of stick and slip, a field, or without any of
-    these a field above the energies and the contact force."""
-    if sum(map(bool, (history, contact, zones))) > 1:
-        raise ResultsError("choose one of history, contact and zones")
-    shown = list(states) or ["-1"]
-    if history:
-        return history_figure(results, list(history))
-    if contact:
-        return contact_figure(results, shown)
-    if zones:
-        from slideline_tools.zones import zones_figure
-        return zones_figure(results, shown)
-    if field or states or zoom:
-        return field_figure(results, field, shown, scale, zoom)
-    return report_figure(results, scale=scale)
 
 
 def save(figure, path):

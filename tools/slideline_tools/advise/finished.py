@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import os
 import pathlib
 
 from slideline_tools import UserError
-from slideline_tools.advise.run_deck import Block, read_blocks
-from slideline_tools.advise.run_log import RunLog, read_log
+from slideline_tools.draw.model import Model, check_deck
 from slideline_tools.files import source
 from slideline_tools.histories import TABLES, History, read_csv
+from slideline_tools.program import find_program
 from slideline_tools.results import Results, ResultsError, read
+from slideline_tools.run_log import RunLog, read_log
 
 OTHER_ENDINGS = (".vtkhdf", ".timing.csv", ".log", ".effective.k")
 # File systems that keep access times the way POSIX says, unless mounted noatime.
@@ -38,7 +40,6 @@ class Finished:
     seconds: dict[str, float]
     tables: dict[str, History]
     results: Results | None
-    blocks: list[Block]
     stamps: dict[str, os.stat_result]
     keeps_access_time: bool
 
@@ -62,6 +63,24 @@ class Finished:
         return self.seconds_of("solver") > 0.0
 
     @property
+    def n_element(self) -> int:
+        """Elements of all parts."""
+        return sum(part.n_element for part in self.log.parts.values())
+
+    @property
+    def deck(self) -> str:
+        """The deck as run; empty where it is not there."""
+        return read_text(f"{self.folder / self.job}.effective.k")
+
+    @functools.cached_property
+    def model(self) -> Model | None:
+        """The deck as run as the program reads it; None where it can not."""
+        try:
+            return check_deck(f"{self.folder / self.job}.effective.k", find_program())
+        except UserError:
+            return None
+
+    @property
     def options(self) -> str:
         """The command line."""
         return self.results.run.get("options", "") if self.results else ""
@@ -81,8 +100,7 @@ def read_run(path) -> Finished:
             folder, job, read_log(read_text(f"{prefix}.log")), read_timing(prefix),
             {name: read_csv(f"{prefix}.{name}.csv") for name in TABLES
              if f".{name}.csv" in stamps},
-            read_states(prefix), read_blocks(read_text(f"{prefix}.effective.k")), stamps,
-            keeps_access_time(folder))
+            read_states(prefix), stamps, keeps_access_time(folder))
     finally:
         put_back(prefix, stamps)
 

@@ -1,62 +1,39 @@
 # SPDX-License-Identifier: MIT
-"""The two surfaces of each interface, from the effective deck and the mesh."""
+"""The two surfaces of each interface as the program walks them, and what their springs allow."""
 from __future__ import annotations
 
-import dataclasses
-
 import numpy as np
-
-from slideline_tools.advise import geometry
-from slideline_tools.advise.run_deck import contact_blocks, sets, whole_number
-
 
 # Types that leave out what hangs over a chain's end; points of the others stand for half a segment
 # beyond it.
 COVERING = (5, 7)
 
 
-@dataclasses.dataclass
 class Surface:
     """Indices of nodes, and of the two ends of each segment (n, 2)."""
 
-    nodes: np.ndarray
-    segments: np.ndarray
+    def __init__(self, segments: np.ndarray) -> None:
+        self.nodes, self.segments = np.unique(segments), segments
 
     def lengths(self, points: np.ndarray) -> np.ndarray:
         """Length of each segment, m."""
-        ends = points[self.segments]
-        return np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        return np.linalg.norm(np.diff(points[self.segments], axis=1)[:, 0], axis=1)
 
 
 def read_surfaces(run) -> dict[int, tuple[Surface, Surface]]:
-    """Slave and master of each interface by its number; those not understood are left out."""
-    blocks = contact_blocks(run.blocks)
-    if run.results is None or len(blocks) != len(run.log.interfaces):
+    """Slave and master of each interface by its number; those that touch themselves are left out."""
+    if run.results is None or run.model is None:
         return {}
+    ids = run.results.point_field("node_id")[0]
+    order = np.argsort(ids)
     found = {}
-    for interface, block in zip(run.log.interfaces.values(), blocks):
-        fields = block.fields(0)
-        try:
-            pair = [read_surface(run, whole_number(field)) for field in fields[:2]]
-        except (KeyError, ValueError):
-            continue
-        if len(pair) == 2 and [len(side.nodes) for side in pair] == [interface.n_slave,
-                                                                     interface.n_master]:
-            found[interface.id] = (pair[0], pair[1])
+    for one in run.model.interfaces:
+        slave, master = (
+            Surface(order[np.searchsorted(ids, run.model.node_ids[side.segments], sorter=order)])
+            for side in (one.slave, one.master))
+        if len(slave.nodes) and len(master.nodes) and not np.isin(slave.nodes, master.nodes).any():
+            found[one.id] = (slave, master)
     return found
-
-
-def read_surface(run, number: int) -> Surface:
-    """A node set in walking order (negative number) or the boundary of a part set."""
-    results = run.results
-    if number < 0:
-        index = {int(node): k for k, node in enumerate(results.point_field("node_id")[0])}
-        nodes = np.array([index[node] for node in sets(run.blocks, "NODE")[-number]])
-        return Surface(np.unique(nodes), np.stack([nodes[:-1], nodes[1:]], axis=1))
-    parts = sets(run.blocks, "PART")[number]
-    edges = geometry.boundary_edges(
-        results.cells[np.isin(results.cell_field("part_id")[0], parts)])
-    return Surface(np.unique(edges), edges)
 
 
 def spring_limit(run, interface, pair: tuple[Surface, Surface], mass: np.ndarray) -> float:
@@ -88,8 +65,7 @@ def spring_limit(run, interface, pair: tuple[Surface, Surface], mass: np.ndarray
 def competence(side) -> np.ndarray:
     """Half of the segments beside each node, m; `side` = lengths, local ends, masses."""
     lengths, ends, mass = side
-    return 0.5 * (np.bincount(ends[:, 0], lengths, len(mass))
-                  + np.bincount(ends[:, 1], lengths, len(mass)))
+    return 0.5 * np.bincount(ends.ravel(), np.repeat(lengths, 2), len(mass))
 
 
 def most_on_nodes(side, s: float, overhang: float, at_equal_distances: bool = False):
@@ -101,8 +77,8 @@ def most_on_nodes(side, s: float, overhang: float, at_equal_distances: bool = Fa
     else:
         share = 0.5 * h + np.where(s <= 2.0 * h, s ** 2 / (8.0 * h), 0.5 * (s - h))
     beside = np.bincount(ends.ravel(), minlength=len(mass))
-    return (overhang * s * (2 - beside) + np.bincount(ends[:, 0], share, len(mass))
-            + np.bincount(ends[:, 1], share, len(mass)))
+    return (overhang * s * (2 - beside)
+            + np.bincount(ends.ravel(), np.repeat(share, 2), len(mass)))
 
 
 def never_near(run, pair: tuple[Surface, Surface], largest: float = 2.0e8) -> float | None:
@@ -114,9 +90,8 @@ def never_near(run, pair: tuple[Surface, Surface], largest: float = 2.0e8) -> fl
     """
     results = run.results
     slave, master = pair
-    spans = np.diff(results.times).max()
     speed = np.linalg.norm(results.point_field("velocity"), axis=2).max()
-    reach = 2.0 * 1.5 * speed * 0.5 * spans
+    reach = 2.0 * 1.5 * speed * 0.5 * np.diff(results.times).max()
     if len(slave.nodes) * len(master.nodes) * len(results.times) > largest:
         return None
     nearest = np.inf
