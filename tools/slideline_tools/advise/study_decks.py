@@ -28,14 +28,11 @@ def deck(waste, level: int = 2) -> str:
     block = Grid(spaced((left * 0.020, 0.020, columns * 24 * level)),
                  spaced((gap, gap + 0.005, 4 * level)), first_node=20001, first_element=20001)
     text = Deck("a collision with more than it needs")
-    text.keyword("CONTROL_TERMINATION")
-    text.card("endtim", END + flight)
+    text.keyword("CONTROL_TERMINATION").card("endtim", END + flight)
     text.constant_step(1, (SHORT_STEP if "short steps" in waste else STEP) / level, 1.0)
-    text.keyword("CONTROL_HOURGLASS")
-    text.card("ihq qh", 4, 0.05)
+    text.keyword("CONTROL_HOURGLASS").card("ihq qh", 4, 0.05)
     if "bulk viscosity" in waste:
-        text.keyword("CONTROL_BULK_VISCOSITY")
-        text.card("q1 q2", 1.5, 1.0e-6)
+        text.keyword("CONTROL_BULK_VISCOSITY").card("q1 q2", 1.5, 1.0e-6)
     often = 1.0e-7 if "written too often" in waste else 2.0e-7
     text.database(glstat=often, matsum=1.0e-6, rcforc=1.0e-6, nodout=1.0e-6,
                   binary_d3plot=1.0e-5)
