@@ -141,7 +141,7 @@ def test_what_is_no_run(tool, tmp_path):
     missing = tool("advise", tmp_path)
     assert missing.returncode == 2 and "timing.csv" in missing.stderr
     (tmp_path / "b.log").write_text("", encoding="ascii")
-    assert "several runs: a, b" in tool("advise", tmp_path).stderr
+    assert "several runs: a.log, b.log" in tool("advise", tmp_path).stderr
 
 
 def test_run_that_failed_gets_no_advice(runs, tmp_path):

@@ -11,9 +11,10 @@ import tempfile
 import numpy as np
 
 from slideline_tools import UserError
-from slideline_tools.advise.finished import endings, find_job, put_back, read_text
+from slideline_tools.advise.finished import put_back, read_text
 from slideline_tools.draw.model import Model, check_deck
-from slideline_tools.histories import TABLES, History, read_csv
+from slideline_tools.files import ENDINGS, TABLES, find_run
+from slideline_tools.histories import History, read_csv
 from slideline_tools.program import find_program
 from slideline_tools.results import Results, ResultsError, read
 from slideline_tools.run_log import RunLog, read_log
@@ -91,31 +92,22 @@ class Gathered:
 
 def gather(path, program=None) -> Gathered:
     """The run whose folder, or any file, is `path`; the access times of its files stay."""
-    folder, job = find_run(pathlib.Path(path))
-    prefix = folder / job
-    stamps = {ending: os.stat(f"{prefix}{ending}") for ending in [*endings(), ".vtkhdf.part"]
+    if not os.path.exists(path):
+        raise UserError(f"{path}: no such folder or file")
+    prefix = find_run(path, ".log", ".vtkhdf")
+    stamps = {ending: os.stat(f"{prefix}{ending}") for ending in [*ENDINGS, ".vtkhdf.part"]
               if os.path.exists(f"{prefix}{ending}")}
     if not stamps:
         raise UserError(f"{prefix}: no file of a run")
     try:
-        return read_all(folder, job, stamps, program)
+        return read_all(prefix, stamps, program)
     finally:
         put_back(prefix, stamps)
 
 
-def find_run(path: pathlib.Path) -> tuple[pathlib.Path, str]:
-    """Folder and job; a folder without a log may still hold one results file."""
-    if not path.exists():
-        raise UserError(f"{path}: no such folder or file")
-    if path.is_dir() and not list(path.glob("*.log")):
-        found = sorted(path.glob("*.vtkhdf"))
-        path = found[0] if len(found) == 1 else path
-    return find_job(path)
-
-
-def read_all(folder: pathlib.Path, job: str, stamps: dict, program) -> Gathered:
+def read_all(prefix: pathlib.Path, stamps: dict, program) -> Gathered:
     """Read what there is, and note what there is not."""
-    prefix, notes = folder / job, []
+    notes: list[str] = []
     log_text = read_text(f"{prefix}.log")
     results = read_results(prefix, stamps, notes)
     tables = {name: table for name in (*TABLES, "timing")
@@ -126,10 +118,10 @@ def read_all(folder: pathlib.Path, job: str, stamps: dict, program) -> Gathered:
                      "as the deck and the tables tell.")
     deck_text = read_text(f"{prefix}.effective.k") or (
         results.run.get("effective_deck", "") if results else "")
-    return Gathered(folder, job, log_text, deck_text, read_log(log_text),
+    return Gathered(prefix.parent, prefix.name, log_text, deck_text, read_log(log_text),
                     read_ending(log_text, tables, results, timing), tables, results, timing,
                     read_model(deck_text, f"{prefix}.effective.k", program, notes),
-                    [(f"{job}{ending}", stamp.st_size) for ending, stamp in stamps.items()], notes)
+                    [(f"{prefix.name}{ending}", stamp.st_size) for ending, stamp in stamps.items()], notes)
 
 
 def read_results(prefix, stamps: dict, notes: list[str]) -> Results | None:
