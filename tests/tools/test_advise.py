@@ -10,10 +10,10 @@ import time
 
 import numpy as np
 import pytest
+import wasteful_decks
 
 from slideline_tools import scenes
-from slideline_tools.advise import (advise, bodies, finished, geometry, outputs, report,
-                                    stepping, study_decks, surfaces, touching)
+from slideline_tools.advise import advise, bodies, finished, geometry, outputs, report, stepping, surfaces, touching
 from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.run_log import read_log
 
@@ -35,7 +35,7 @@ first time step 5.000000E-08, smallest L/c of the elements 6.943311E-08
 
 def run_variant(program, folder, waste, *arguments):
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "deck.k").write_text(study_decks.deck(waste, level=1), encoding="ascii")
+    (folder / "deck.k").write_text(wasteful_decks.deck(waste, level=1), encoding="ascii")
     done = subprocess.run([program, f"i={folder / 'deck.k'}", f"d={folder}", "jobid=run",
                            *arguments], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -49,7 +49,7 @@ def runs(tmp_path_factory):
         pytest.skip("SLIDELINE is not set")
     root = tmp_path_factory.mktemp("advise")
     program = os.environ["SLIDELINE"]
-    return {"all": run_variant(program, root / "all", study_decks.WASTE),
+    return {"all": run_variant(program, root / "all", wasteful_decks.WASTE),
             "none": run_variant(program, root / "none", ()),
             "threads": run_variant(program, root / "threads", (), "ncpu=4", "endtim=1e-5")}
 
@@ -58,7 +58,7 @@ def topics(folder):
     return {item.topic: item for item in advise(folder)[1]}
 
 
-@pytest.mark.parametrize("topic", [name for name in study_decks.WASTE
+@pytest.mark.parametrize("topic", [name for name in wasteful_decks.WASTE
                                    if name != "written too often"])
 def test_finds_what_is_needless_and_not_more(runs, topic):
     assert topic in topics(runs["all"])
@@ -70,7 +70,7 @@ def test_figures_are_those_of_the_deck(runs):
     run = advise(runs["all"])[0]
     # The columns of the block are 20/24 mm wide: the shortest length of all elements.
     assert run.log.element_limit == pytest.approx(20.0e-3 / 24 / 6000.98, rel=1e-3)
-    assert study_decks.SHORT_STEP == pytest.approx(
+    assert wasteful_decks.SHORT_STEP == pytest.approx(
         float(found["short steps"].evidence.split("mean step ")[1].split(";")[0]))
     # Flight of 1e-4 s of 3e-4 s; a third of what is paid per cycle.
     expected = run.seconds_of("loop") + run.seconds_of("output")
@@ -86,7 +86,7 @@ def test_figures_are_those_of_the_deck(runs):
 
 def test_longer_step_is_stable(runs, slideline, tmp_path):
     step = topics(runs["all"])["short steps"].change.split("dt=")[1].rstrip(")")
-    waste = [name for name in study_decks.WASTE if name != "short steps"]
+    waste = [name for name in wasteful_decks.WASTE if name != "short steps"]
     ratio = advise(run_variant(slideline, tmp_path / "long", waste, f"dt={step}"))[0].tables[
         "glstat"]["energy_ratio"]
     assert np.abs(ratio - 1.0).max() < 0.01
@@ -257,7 +257,7 @@ def test_log_of_an_automatic_penalty():
 def test_restart_in_a_folder_of_its_own_says_what_it_lacks(runs, slideline, tmp_path):
     first, second = tmp_path / "first", tmp_path / "second"
     first.mkdir()
-    deck = study_decks.deck((), level=1).replace(
+    deck = wasteful_decks.deck((), level=1).replace(
         "*END", "*DATABASE_BINARY_RUNRSF\n200,\n*END")
     run_scene(first, deck, "jobid=run", "endtim=5e-5")
     done = subprocess.run([slideline, f"r={first / 'run.runrsf.h5'}", f"d={second}"],

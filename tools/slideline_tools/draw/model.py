@@ -33,6 +33,11 @@ class ModelError(UserError):
     """A deck that the program refuses, or a program that cannot be run."""
 
 
+def labelled(kind: str, one) -> str:
+    """What a thing is called: its kind, its number and its title."""
+    return f"{kind} {one.id}" + (f' "{one.title}"' if one.title else "")
+
+
 @dataclasses.dataclass
 class Part:
     """A part with the name of its material law; `held` and `turn_held` of a rigid body alone."""
@@ -50,7 +55,7 @@ class Part:
     @property
     def label(self) -> str:
         """Words for a reader."""
-        return f'part {self.id}' + (f' "{self.title}"' if self.title else "")
+        return labelled("part", self)
 
 
 @dataclasses.dataclass
@@ -64,7 +69,7 @@ class NodeSet:
     @property
     def label(self) -> str:
         """Words for a reader."""
-        return f"set {self.id}" + (f' "{self.title}"' if self.title else "")
+        return labelled("set", self)
 
 
 @dataclasses.dataclass
@@ -83,7 +88,7 @@ class Interface:
     @property
     def label(self) -> str:
         """Words for a reader."""
-        return f"interface {self.id}" + (f' "{self.title}"' if self.title else "") + f" (type {self.ctype})"
+        return f"{labelled('interface', self)} (type {self.ctype})"
 
 
 @dataclasses.dataclass
@@ -127,7 +132,6 @@ class Model:
         self.parts = self._parts(told)
         self.node_sets = {one["id"]: NodeSet(one["id"], one["title"], self.indices(one["nodes"]))
                           for one in told["node_sets"]}
-        self.part_sets = {one["id"]: one["parts"] for one in told["part_sets"]}
         self.interfaces = [Interface(one["id"], one["title"], one["type"], one["formulation"],
                                      one["friction"], one["sliding_friction"],
                                      *(Surface(self.indices(one[side]).reshape(-1, 2)) for side in ("slave", "master")))
@@ -138,7 +142,7 @@ class Model:
         self.fixed = np.zeros((len(self.points), 2), dtype=bool)
         self.fixed[self.indices(told["fixed"]["node"]), np.array(told["fixed"]["direction"], dtype=int) - 1] = True
         self.velocity = self._velocity(told)
-        self.arrows = [*self._motions(told), *self._loads(told)]
+        self.arrows = self._arrows(told)
         self.not_drawn = [words for name, words in NOT_DRAWN.items() if told.get(name)]
 
     def indices(self, nodes: typing.Sequence[int]) -> np.ndarray:
@@ -169,14 +173,11 @@ class Model:
     def _parts(self, told: dict) -> dict[int, Part]:
         """Parts, and how those that are rigid are held."""
         bodies = {one["part"]: one for one in told["rigid_bodies"]}
-        parts = {}
-        for one in told["parts"]:
-            body = bodies.get(one["id"], {})
-            parts[one["id"]] = Part(one["id"], one["title"], one["section"], one["material"], one["law"],
-                                    int(np.sum(self.cell_parts == one["id"])), bool(body),
-                                    (body.get("held_x", False), body.get("held_y", False)),
-                                    body.get("held_turn", False))
-        return parts
+        return {one["id"]: Part(one["id"], one["title"], one["section"], one["material"], one["law"],
+                                int(np.sum(self.cell_parts == one["id"])), bool(body),
+                                (body.get("held_x", False), body.get("held_y", False)),
+                                body.get("held_turn", False))
+                for one in told["parts"] for body in [bodies.get(one["id"], {})]}
 
     def _velocity(self, told: dict) -> np.ndarray:
         """(n_node, 2) at the start: that of its nodes, and of bodies that have one of their own, as far as they are
@@ -193,34 +194,20 @@ class Model:
                                    + spin * np.stack([-arm[:, 1], arm[:, 0]], axis=1))
         return velocity
 
-    def _motions(self, told: dict) -> list[Arrows]:
-        """Prescribed motions of nodes and bodies; those with one curve, factor and direction together."""
+    def _arrows(self, told: dict) -> list[Arrows]:
+        """Prescribed motions and loads; those with one curve, factor and direction together."""
         found = []
-        for (direction, kind, curve, scale), nodes in groups(told["motions"], "node"):
-            size = self.peak(curve, scale)
-            what = f"{QUANTITIES[kind]} of {whom(nodes)} in {DIRECTIONS[direction]}, curve {curve}, peak {size:.4g}"
-            places = self.points[self.indices(nodes)]
-            found.append(Arrows("motion", what, places, along(direction, size, len(places))))
-        for (direction, kind, curve, scale), parts in groups(told.get("body_motions", {}), "part"):
-            size = self.peak(curve, scale)
-            what = (f"{QUANTITIES[kind]} of part {listed(parts)} in {DIRECTIONS[direction]}, curve {curve}, "
-                    f"peak {size:.4g}")
-            places = np.array([self.centre(part) for part in parts])
-            found.append(Arrows("motion", what, places, along(direction, size, len(places))))
-        return found
-
-    def _loads(self, told: dict) -> list[Arrows]:
-        """Loads on nodes, edges, rigid bodies and the whole."""
-        found = []
-        for name, column in (("nodal_loads", "node"), ("rigid_loads", "part")):
-            for (direction, curve, scale), members in groups(told.get(name, {}), column):
+        for name, kind, column in (("motions", "motion", "node"), ("body_motions", "motion", "part"),
+                                   ("nodal_loads", "load", "node"), ("rigid_loads", "load", "part")):
+            for (direction, *quantity, curve, scale), members in groups(told.get(name, {}), column):
                 size = self.peak(curve, scale)
-                on = whom(members) if column == "node" else f"part {listed(members)}"
-                label = (f"load on {on} in {DIRECTIONS[direction]}, curve {curve}, peak {size:.4g}"
-                         + (" on each" if len(members) > 1 else ""))
+                what = f"{QUANTITIES[quantity[0]]} of" if quantity else "load on"
+                on = whom(members) if column == "node" else f"part {', '.join(map(str, members))}"
+                label = (f"{what} {on} in {DIRECTIONS[direction]}, curve {curve}, peak {size:.4g}"
+                         + (" on each" if kind == "load" and len(members) > 1 else ""))
                 places = (self.points[self.indices(members)] if column == "node"
                           else np.array([self.centre(part) for part in members]))
-                found.append(Arrows("load", label, places, along(direction, size, len(places))))
+                found.append(Arrows(kind, label, places, along(direction, size, len(places))))
         pressures = told["pressures"]
         edges = {**{name: pressures[name] for name in ("curve", "scale")},
                  "edge": list(zip(pressures["first"], pressures["second"]))}
@@ -251,11 +238,6 @@ def groups(columns: dict[str, list], member: str = "") -> list[tuple[tuple, list
 def whom(nodes: list[int]) -> str:
     """Nodes in words."""
     return f"node {nodes[0]}" if len(nodes) == 1 else f"{len(nodes)} nodes"
-
-
-def listed(numbers: list[int]) -> str:
-    """A few numbers in words."""
-    return ", ".join(map(str, numbers))
 
 
 def along(direction: int, size: float, count: int) -> np.ndarray:
