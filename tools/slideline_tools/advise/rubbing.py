@@ -6,7 +6,7 @@ import numpy as np
 
 from slideline_tools.advise.report import Advice
 
-STICK, SLIP = 1, 2
+SLIP = 2  # states 1 and 2: stick and slip
 # Friction counts for nothing: largest traction over mu p, and work over the largest energy of the run, below these at so
 # many states in contact.
 NO_TRACTION, NO_WORK, STATES_IN_CONTACT = 0.01, 1.0e-4, 10
