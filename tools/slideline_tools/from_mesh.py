@@ -150,7 +150,7 @@ def deck_of(mesh: PlaneMesh, title: str) -> Deck:
 def add_sets(deck: Deck, mesh: PlaneMesh) -> None:
     """Segment and node sets, with the names of their groups, and what to write to use them."""
     for sid, (name, rows) in enumerate([*mesh.lines.items(), *mesh.nodes.items()], start=1):
-        if name in mesh.lines:
+        if sid <= len(mesh.lines):
             deck.block(f"{name}: edges (segment set {sid}) and their nodes (node set {sid}).")
             deck.keyword("SET_SEGMENT_TITLE", heading(name)).card("sid", sid)
             deck.table("n1 n2", [10, 10], [(a + 1, b + 1) for a, b in rows])
