@@ -16,7 +16,7 @@ from slideline_tools.draw.model import Model, check_deck
 from slideline_tools.files import ENDINGS, TABLES, find_run
 from slideline_tools.histories import History, read_csv
 from slideline_tools.program import find_program
-from slideline_tools.results import Results, ResultsError, read
+from slideline_tools.results import Results, read
 from slideline_tools.run_log import RunLog, read_log
 
 GOES_ON = "goes on from the restart file"
@@ -124,32 +124,34 @@ def read_all(prefix: pathlib.Path, stamps: dict, program) -> Gathered:
                     [(f"{prefix.name}{ending}", stamp.st_size) for ending, stamp in stamps.items()], notes)
 
 
+def attempt(notes: list[str], words: str, make):
+    """What `make` gives; None, and a note with the reason in `words`, where it can not."""
+    try:
+        return make()
+    except UserError as problem:
+        notes.append(words.format(problem))
+        return None
+
+
 def read_results(prefix, stamps: dict, notes: list[str]) -> Results | None:
     """The states; a note where they cannot be read or are none."""
     if ".vtkhdf" not in stamps:
         notes.append("No states: the run ended before it had written the first one."
                      if ".vtkhdf.part" in stamps else "No results file (.vtkhdf).")
         return None
-    try:
-        results = read(f"{prefix}.vtkhdf")
-    except ResultsError as problem:
-        notes.append(f"No states: {problem}.")
-        return None
-    if not results.n_state:
+    results = attempt(notes, "No states: {}.", lambda: read(f"{prefix}.vtkhdf"))
+    if results is not None and not results.n_state:
         notes.append("The results file holds no state.")
     return results
 
 
 def read_table(prefix, name: str, results: Results | None, notes: list[str]) -> History | None:
     """A table from its CSV file, else from the results file."""
-    path = pathlib.Path(f"{prefix}.{name}.csv")
-    try:
-        if path.exists():
-            return read_csv(path)
-        if results is not None and name in results.histories:
-            return results.history(name)
-    except UserError as problem:
-        notes.append(f"{problem}.")
+    path = f"{prefix}.{name}.csv"
+    if os.path.exists(path):
+        return attempt(notes, "{}.", lambda: read_csv(path))
+    if results is not None and name in results.histories:
+        return attempt(notes, "{}.", lambda: results.history(name))
     return None
 
 
@@ -160,12 +162,11 @@ def read_model(text: str, name: str, program, notes: list[str]) -> Model | None:
     with tempfile.TemporaryDirectory() as folder:
         deck = pathlib.Path(folder) / "model.k"
         deck.write_text(text, encoding="utf-8")
-        try:
-            return check_deck(deck, find_program(program))
-        except UserError as problem:
-            words = str(problem).replace(str(deck), name)
-            notes.append(f"The deck as run could not be read: {words}.")
-            return None
+        model = attempt(notes, "The deck as run could not be read: {}.",
+                        lambda: check_deck(deck, find_program(program)))
+        if model is None:
+            notes[-1] = notes[-1].replace(str(deck), name)
+        return model
 
 
 def read_ending(log_text: str, tables: dict[str, History], results: Results | None,

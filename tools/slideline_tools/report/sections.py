@@ -238,11 +238,11 @@ def pressure_rows(chain: History) -> list[list[str]]:
 
 def friction_rows(run: Gathered, number: int, sleout: History | None) -> list[list[str]]:
     """Work that friction of an interface has dissipated: at the end by the log, else by the last
-    row of sleout; none without friction."""
+    row of sleout."""
     one = run.log.interfaces.get(number)
-    work, time, more = one.dissipated if one else None, run.ending.time, ""
-    if work is not None and one.friction:
-        more = f"coefficient {one.friction:g}"
+    work, time, more = None, run.ending.time, ""
+    if one is not None and one.friction and one.dissipated is not None:
+        work, more = one.dissipated, f"coefficient {one.friction:g}"
     elif sleout and "friction" in sleout and np.any(sleout["friction"]):
         work, time = sleout["friction"][-1], sleout["time"][-1]
     return [["frictional work", figures(work, 6), figures(time, 4), more]] if work else []
@@ -312,9 +312,9 @@ def chosen_states(run: Gathered, wanted: list[str]) -> list[int]:
 
 def fields(run: Gathered, names: list[str], states: list[int], scale: float) -> list[Block]:
     """Pictures of fields on the deformed mesh."""
-    if not states:
-        return []
     results = run.results
+    if not states or results is None:
+        return []
     usual = [default_field(results), *(["mises"] if "mises" in results.cell_fields else [])]
     times = " and ".join(f"{results.times[state]:.4g}" for state in states)
     labels = {name: scalar_field(results, name).label for name in names or dict.fromkeys(usual)}
@@ -359,23 +359,21 @@ def curves(history: History, title: str, columns: list[str]) -> list[Block]:
 
 def parts(run: Gathered) -> list[Block]:
     """The parts with what they hold at the end."""
+    known: dict[int, typing.Any] = {**(run.model.parts if run.model else {}), **run.log.parts}
     laws = {number: part.law for number, part in run.model.parts.items()} if run.model else {}
     matsum = run.rows("matsum")
+    sums = ("mass", "kinetic", "internal", "hourglass", "momentum_x", "momentum_y")
     rows = []
-    for number, part in sorted({**(run.model.parts if run.model else {}), **run.log.parts}.items()):
-        last = matsum.where(part=number) if matsum is not None else ()
+    for number, part in sorted(known.items()):
+        last = matsum.where(part=number) if matsum else None
         rows.append([number, part.title, figures(part.n_element), part.material,
                      laws.get(number, ""),
-                     *(figures(last[name][-1], 5) if len(last) else "–"
-                       for name in ("mass", "kinetic", "internal", "hourglass", "momentum_x",
-                                    "momentum_y"))])
-    if not rows:
-        return []
-    head = ["part", "title", "elements", "material", "law", "mass", "kinetic", "internal",
-            "hourglass", "momentum x", "momentum y"]
+                     *(figures(last[name][-1], 5) if last else "–" for name in sums)])
+    head = ["part", "title", "elements", "material", "law",
+            *(name.replace("_", " ") for name in sums)]
     note = ("note", "Energies and momenta are those of the last row of matsum.")
     return [("heading", "Parts"), ("table", Table(head, rows, (2, *range(5, 11)))),
-            *([note] if matsum is not None else [])]
+            *([note] if matsum else [])] if rows else []
 
 
 def materials(run: Gathered) -> list[Block]:
