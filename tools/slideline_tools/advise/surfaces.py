@@ -4,36 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 
+from slideline_tools.draw.surface import Surface
+
 # Types that leave out what hangs over a chain's end; points of the others stand for half a segment
 # beyond it.
 COVERING = (5, 7)
 
 
-class Surface:
-    """Indices of nodes, and of the two ends of each segment (n, 2)."""
-
-    def __init__(self, segments: np.ndarray) -> None:
-        self.nodes, self.segments = np.unique(segments), segments
-
-    def lengths(self, points: np.ndarray) -> np.ndarray:
-        """Length of each segment, m."""
-        return np.linalg.norm(np.diff(points[self.segments], axis=1)[:, 0], axis=1)
-
-
 def read_surfaces(run) -> dict[int, tuple[Surface, Surface]]:
-    """Slave and master of each interface by its number; those that touch themselves are left out."""
-    if run.results is None or run.model is None:
+    """Slave and master of each interface by its number, with the indices of the results; those that
+    touch themselves are left out."""
+    if run.results is None or run.model is None or not np.array_equal(
+            run.results.point_field("node_id")[0], run.model.node_ids):
         return {}
-    ids = run.results.point_field("node_id")[0]
-    order = np.argsort(ids)
-    found = {}
-    for one in run.model.interfaces:
-        slave, master = (
-            Surface(order[np.searchsorted(ids, run.model.node_ids[side.segments], sorter=order)])
-            for side in (one.slave, one.master))
-        if len(slave.nodes) and len(master.nodes) and not np.isin(slave.nodes, master.nodes).any():
-            found[one.id] = (slave, master)
-    return found
+    return {one.id: (one.slave, one.master) for one in run.model.interfaces
+            if len(one.slave.segments) and len(one.master.segments)
+            and not np.isin(one.slave.segments, one.master.segments).any()}
 
 
 def spring_limit(run, interface, pair: tuple[Surface, Surface], mass: np.ndarray) -> float:
@@ -43,8 +29,7 @@ def spring_limit(run, interface, pair: tuple[Surface, Surface], mass: np.ndarray
     contact at time zero: the bound that the program itself warns by (doc/theory/contact.md, 7).
     """
     points = run.results.points[0][:, :2]
-    slave, master = ((side.lengths(points), np.searchsorted(side.nodes, side.segments),
-                      mass[side.nodes]) for side in pair)
+    slave, master = (local(side, points, mass) for side in pair)
     overhang = 0.0 if interface.ctype in COVERING else 0.5
     slave_ratio = interface.slave_penalty * competence(slave)
     master_ratio = interface.slave_penalty * most_on_nodes(master, slave[0].max(), overhang)
@@ -60,6 +45,12 @@ def spring_limit(run, interface, pair: tuple[Surface, Surface], mass: np.ndarray
     stiffest = (slave_ratio / slave[2]).max() + (master_ratio / master[2]).max()
     damping = np.sqrt(1.0 + interface.damping ** 2) - interface.damping
     return float(2.0 / np.sqrt(max(stiffest, 1.0e-300)) * damping)
+
+
+def local(side: Surface, points: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Lengths of the segments, their ends by place among the nodes, and masses of the nodes."""
+    nodes, ends = np.unique(side.segments, return_inverse=True)
+    return side.lengths(points), ends.reshape(-1, 2), mass[nodes]
 
 
 def competence(side) -> np.ndarray:

@@ -19,6 +19,7 @@ import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.draw.surface import Surface
+from slideline_tools.names import counted
 from slideline_tools.program import not_run
 
 DIRECTIONS = {1: "x", 2: "y", 3: "turn about z"}
@@ -202,7 +203,8 @@ class Model:
             for (direction, *quantity, curve, scale), members in groups(told.get(name, {}), column):
                 size = self.peak(curve, scale)
                 what = f"{QUANTITIES[quantity[0]]} of" if quantity else "load on"
-                on = whom(members) if column == "node" else f"part {', '.join(map(str, members))}"
+                on = (f"part {', '.join(map(str, members))}" if column == "part" else
+                      f"{len(members)} nodes" if len(members) > 1 else f"node {members[0]}")
                 label = (f"{what} {on} in {DIRECTIONS[direction]}, curve {curve}, peak {size:.4g}"
                          + (" on each" if kind == "load" and len(members) > 1 else ""))
                 places = (self.points[self.indices(members)] if column == "node"
@@ -214,7 +216,7 @@ class Model:
         for (curve, scale), pairs in groups(edges, "edge"):
             size = self.peak(curve, scale)
             segments = self.indices(np.ravel(pairs)).reshape(-1, 2)
-            label = f"pressure on {len(pairs)} segment{'s' * (len(pairs) > 1)}, curve {curve}, peak {size:.4g}"
+            label = f"pressure on {counted(len(pairs), 'segment')}, curve {curve}, peak {size:.4g}"
             found.append(Arrows("pressure", label, self.points[segments].mean(axis=1),
                                 -size * Surface(segments).normals(self.points)))
         for (direction, curve, scale), _ in groups(told["body_loads"]):
@@ -222,6 +224,11 @@ class Model:
             label = f"body load in {DIRECTIONS[direction]}, curve {curve}, acceleration {size:.4g}"
             middle = 0.5 * (self.points.min(axis=0) + self.points.max(axis=0))
             found.append(Arrows("body", label, middle[None], along(direction, size, 1)))
+        speed = np.linalg.norm(self.velocity, axis=1)
+        if np.any(moving := speed > 0.0):
+            label = (f"initial velocity, largest {speed.max():.4g} "
+                     f"({counted(int(moving.sum()), 'node')})")
+            found.append(Arrows("velocity", label, self.points[moving], self.velocity[moving]))
         return found
 
 
@@ -233,11 +240,6 @@ def groups(columns: dict[str, list], member: str = "") -> list[tuple[tuple, list
         values = dict(zip(columns, row))
         found.setdefault(tuple(values[name] for name in others), []).append(values.get(member))
     return list(found.items())
-
-
-def whom(nodes: list[int]) -> str:
-    """Nodes in words."""
-    return f"node {nodes[0]}" if len(nodes) == 1 else f"{len(nodes)} nodes"
 
 
 def along(direction: int, size: float, count: int) -> np.ndarray:

@@ -228,18 +228,6 @@ def draw_history(canvas: Canvas, model: Model) -> None:
 
 # ---- arrows -------------------------------------------------------------------------------------
 
-def draw_velocity(canvas: Canvas, model: Model) -> None:
-    """Initial velocities on evenly spread nodes."""
-    size = np.linalg.norm(model.velocity, axis=1)
-    moving = np.flatnonzero(size > 0.0)
-    if not len(moving):
-        return
-    picked = spread(model.points[moving], MOST_ARROWS, canvas)
-    label = f"initial velocity, largest {size.max():.4g} ({counted(len(moving), 'node')})"
-    draw_arrows(canvas, Arrows("velocity", label, model.points[moving[picked]],
-                               model.velocity[moving[picked]]), float(size.max()))
-
-
 def spread(places: np.ndarray, most: int, canvas: Canvas) -> np.ndarray:
     """Indices of visible points, one in each cell of a grid of about `most` cells."""
     seen = np.flatnonzero(canvas.visible(places))
@@ -287,6 +275,6 @@ def draw_arrows(canvas: Canvas, arrows: Arrows, largest: float) -> None:
 DRAWERS = (
     ("sets", draw_sets), ("surfaces", draw_surfaces), ("walls", draw_walls),
     ("boundary", draw_boundary), ("motion", draw_of_kind("motion")),
-    ("velocity", draw_velocity), ("loads", draw_of_kind("load", "pressure", "body")),
+    ("velocity", draw_of_kind("velocity")), ("loads", draw_of_kind("load", "pressure", "body")),
     ("history", draw_history),
 )
