@@ -33,25 +33,17 @@ first time step 5.000000E-08, smallest L/c of the elements 6.943311E-08
 """
 
 
-def run_variant(program, folder, waste, *arguments):
+def run_variant(folder, waste, *arguments):
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "deck.k").write_text(wasteful_decks.deck(waste, level=1), encoding="ascii")
-    done = subprocess.run([program, f"i={folder / 'deck.k'}", f"d={folder}", "jobid=run",
-                           *arguments], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return folder
+    return run_scene(folder, wasteful_decks.deck(waste, level=1), "jobid=run", *arguments)
 
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory):
     """Folders: a run with all needless things, one with none, by name."""
-    if "SLIDELINE" not in os.environ:
-        pytest.skip("SLIDELINE is not set")
     root = tmp_path_factory.mktemp("advise")
-    program = os.environ["SLIDELINE"]
-    return {"all": run_variant(program, root / "all", wasteful_decks.WASTE),
-            "none": run_variant(program, root / "none", ()),
-            "threads": run_variant(program, root / "threads", (), "ncpu=4", "endtim=1e-5")}
+    return {"all": run_variant(root / "all", wasteful_decks.WASTE), "none": run_variant(root / "none", ()),
+            "threads": run_variant(root / "threads", (), "ncpu=4", "endtim=1e-5")}
 
 
 def topics(folder):
@@ -84,10 +76,10 @@ def test_figures_are_those_of_the_deck(runs):
     assert touching.long_flight(run) == []  # what is driven may not begin later
 
 
-def test_longer_step_is_stable(runs, slideline, tmp_path):
+def test_longer_step_is_stable(runs, tmp_path):
     step = topics(runs["all"])["short steps"].change.split("dt=")[1].rstrip(")")
     waste = [name for name in wasteful_decks.WASTE if name != "short steps"]
-    ratio = advise(run_variant(slideline, tmp_path / "long", waste, f"dt={step}"))[0].tables[
+    ratio = advise(run_variant(tmp_path / "long", waste, f"dt={step}"))[0].tables[
         "glstat"]["energy_ratio"]
     assert np.abs(ratio - 1.0).max() < 0.01
 
@@ -108,9 +100,9 @@ def test_plate_that_yields_and_bodies_that_touch(slideline, tmp_path):
                                         "long flight", "rigid", "long surface", "dear type"}
 
 
-def test_short_touch_between_rows_is_not_overlooked(slideline, tmp_path):
+def test_short_touch_between_rows_is_not_overlooked(tmp_path):
     """No row of rcforc sees a contact, but the contact energy does: no advice."""
-    folder = run_variant(slideline, tmp_path, ())
+    folder = run_variant(tmp_path, ())
     run = finished.read_run(folder)
     for name in ("n_active", "fx", "fy"):
         run.tables["rcforc"].columns[name][:] = 0

@@ -1,17 +1,26 @@
 # SPDX-License-Identifier: MIT
 """Figures: a field on the deformed mesh, histories, contact pressure along the surface."""
 import contextlib
+import os
+import sys
 import textwrap
 
+import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
-from slideline_tools import headless  # noqa: F401
 from slideline_tools.fields import default_field, largest, scalar_field, without_round_off
 from slideline_tools.results import ResultsError
 from slideline_tools.walls import draw_walls, walls_of
+
+# Pictures go to files, without a window; except in a notebook, and where $MPLBACKEND says otherwise.
+# A notebook sets up its backend with the first figure: within STYLE what that sets would be lost.
+if "IPython" in sys.modules:
+    plt.close(plt.figure())
+elif not os.environ.get("MPLBACKEND"):
+    matplotlib.use("Agg")
 
 STYLE = {
     "figure.dpi": 150, "savefig.dpi": 150, "font.size": 9, "axes.titlesize": 9,
