@@ -121,7 +121,8 @@ def read_all(prefix: pathlib.Path, stamps: dict, program) -> Gathered:
     return Gathered(prefix.parent, prefix.name, log_text, deck_text, read_log(log_text),
                     read_ending(log_text, tables, results, timing), tables, results, timing,
                     read_model(deck_text, f"{prefix}.effective.k", program, notes),
-                    [(f"{prefix.name}{ending}", stamp.st_size) for ending, stamp in stamps.items()], notes)
+                    [(f"{prefix.name}{ending}", stamp.st_size)
+                     for ending, stamp in stamps.items()], notes)
 
 
 def attempt(notes: list[str], words: str, make):

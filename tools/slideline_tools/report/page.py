@@ -62,13 +62,13 @@ class Picture:
 
 
 def picture(figure, words: str, kind: str = "svg") -> Picture:
-    """A figure of matplotlib, which is closed: `svg` for lines, `png` for fields of many elements."""
+    """A figure of matplotlib, which is closed: `svg` for lines, `png` for fields."""
     stream = io.BytesIO()
     width, height = figure.get_size_inches()
     figure.savefig(stream, format=kind, dpi=170, metadata=NO_DATE if kind == "svg" else {})
     plt.close(figure)
-    mime = "image/svg+xml" if kind == "svg" else "image/png"
-    return Picture(f"data:{mime};base64,{base64.b64encode(stream.getvalue()).decode('ascii')}", words,
+    data = base64.b64encode(stream.getvalue()).decode("ascii")
+    return Picture(f"data:image/{'svg+xml' if kind == 'svg' else 'png'};base64,{data}", words,
                    round(96 * width), round(96 * height))
 
 
@@ -76,7 +76,9 @@ def figures(value, digits: int = 5) -> str:
     """A number as a reader wants it; a dash for None."""
     if value is None:
         return "–"
-    return f"{value:,d}".replace(",", " ") if isinstance(value, int) else f"{float(value):.{digits}g}"
+    if isinstance(value, int):
+        return f"{value:,d}".replace(",", " ")
+    return f"{float(value):.{digits}g}"
 
 
 def page(**content) -> str:

@@ -10,8 +10,9 @@ import typing
 
 import numpy as np
 
-from slideline_tools import UserError, advise, plots
-from slideline_tools.advise import report as advice_report
+from slideline_tools import UserError, plots
+from slideline_tools.advise import advise
+from slideline_tools.advise.report import saving_text, select
 from slideline_tools.fields import ROUND_OFF, default_field, scalar_field
 from slideline_tools.histories import History
 from slideline_tools.report import charts
@@ -36,29 +37,22 @@ def all_sections(run: Gathered, names: list[str], states: list[str], scale: floa
     """Those that have something. Fields that were asked for by name must be there; where a table
     lacks a column, the section says so."""
     chosen = chosen_states(run, states)
-    found = [
-        ("summary", "Summary", lambda: summary(run)),
-        ("warnings", "Warnings", lambda: warnings(run)),
-        ("energies", "Energies", lambda: energies(run)),
-        ("contact", "Contact", lambda: contact(run, chosen)),
-        ("walls", "Rigid walls", lambda: walls(run)),
-        ("fields", "Fields", lambda: fields(run, names, chosen, scale)),
-        ("asked", "Nodes, elements, bodies and boundaries", lambda: asked(run)),
-        ("model", "Parts, materials, interfaces", lambda: parts(run) + materials(run)
-         + interfaces(run)),
-        ("timing", "Timing", lambda: timing(run)),
-        ("advice", "What this run did not need", lambda: savings(run)),
-        ("files", "Files, deck, log", lambda: files(run))]
+    found = {"Summary": (summary,), "Warnings": (warnings,), "Energies": (energies,),
+             "Contact": (contact, chosen), "Rigid walls": (walls,),
+             "Fields": (fields, names, chosen, scale),
+             "Nodes, elements, bodies and boundaries": (asked,),
+             "Parts, materials, interfaces": (model,), "Timing": (timing,),
+             "What this run did not need": (advice,), "Files, deck, log": (files,)}
     sections = []
-    for anchor, title, make in found:
+    for title, (make, *more) in found.items():
         try:
-            blocks = make()
+            blocks = make(run, *more)
         except UserError as problem:
-            if anchor == "fields" and names:
+            if make is fields and names:
                 raise
             blocks = [("note", f"This section could not be made: {problem}.")]
         if blocks:
-            sections.append(Section(anchor, title, blocks))
+            sections.append(Section(make.__name__, title, blocks))
     return sections
 
 
@@ -357,6 +351,11 @@ def curves(history: History, title: str, columns: list[str]) -> list[Block]:
 
 # ---- the model ----------------------------------------------------------------------------------
 
+def model(run: Gathered) -> list[Block]:
+    """Parts, materials and interfaces as the program understood them."""
+    return parts(run) + materials(run) + interfaces(run)
+
+
 def parts(run: Gathered) -> list[Block]:
     """The parts with what they hold at the end."""
     known: dict[int, typing.Any] = {**(run.model.parts if run.model else {}), **run.log.parts}
@@ -413,17 +412,17 @@ def timing(run: Gathered) -> list[Block]:
         ("table", Table(["phase", "seconds", "share, %", "calls"], rows, range(1, 4)))]
 
 
-def savings(run: Gathered) -> list[Block]:
+def advice(run: Gathered) -> list[Block]:
     """What the run did not need, where that can be told (see the command advise)."""
     if run.ending.kind != "normal" or run.timing is None:
         return []
     try:
-        finished, found, _ = advise.advise(run.folder / f"{run.job}.log")
+        finished, found, _ = advise(run.folder / f"{run.job}.log")
     except UserError:
         return []
     blocks: list[Block] = []
-    for item in advice_report.select(found, finished.total):
-        saving = advice_report.saving_text(item.seconds, finished.total)
+    for item in select(found, finished.total):
+        saving = saving_text(item.seconds, finished.total)
         blocks += [("heading", item.what),
                    ("table", Table([], [["saving", f"{saving} ({item.basis})"],
                                         ["evidence", item.evidence], ["change", item.change]]))]
