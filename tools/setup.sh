@@ -54,7 +54,7 @@ lacking() {
   command -v ninja >/dev/null || echo "ninja-build: Ninja"
   command -v h5fc >/dev/null || echo "libhdf5-dev: HDF5 with its Fortran interface"
   if ! command -v python3 >/dev/null; then
-    echo "python3: Python, 3.9 or newer"
+    echo "python3: Python, 3.10 or newer"
     echo "python3-venv: Python's virtual environments"
   elif ! python3 -c 'import venv, ensurepip' 2>/dev/null; then
     echo "python3-venv: Python's virtual environments"

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The rules of the house (doc/architecture.md), as tests."""
+import ast
+import graphlib
 import re
 import statistics
 import subprocess
@@ -285,3 +287,18 @@ def test_nothing_is_left_for_later():
              if name.startswith(("src/", "tools/"))
              for number, line in enumerate(text.splitlines(), 1) if word.search(line)]
     assert not wrong
+
+
+def test_modules_of_the_tools_import_each_other_without_circles():
+    """Lazy imports count too; the package itself alone hands out names of its modules."""
+    top = ROOT / "tools"
+    paths = {".".join(path.relative_to(top).with_suffix("").parts).removesuffix(".__init__"): path
+             for path in (top / "slideline_tools").rglob("*.py")}
+    graph = {name: set() for name in paths}
+    for name, path in paths.items():
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("slideline_tools"):
+                graph[name] |= {f"{node.module}.{one.name}" if f"{node.module}.{one.name}" in paths else node.module
+                                for one in node.names} - {name, "slideline_tools"}
+    assert len(graph) > 50
+    graphlib.TopologicalSorter(graph).prepare()

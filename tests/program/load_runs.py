@@ -104,8 +104,9 @@ class Batch:
         self.rounds += 1
         calls = [(["run_folder.sh", *mode.split()], {})]
         if mode == "array":
-            calls = [(["folder_array.sh", "-j", "2"], {"SLURM_ARRAY_TASK_ID": str(k), "SLURM_ARRAY_TASK_COUNT": str(ARRAY),
-                                                        "SLURM_SUBMIT_DIR": str(ROOT)}) for k in range(ARRAY)]
+            calls = [(["slurm.sh", "run_folder.sh", "-j", "2"],
+                      {"SLURM_ARRAY_TASK_ID": str(k), "SLURM_ARRAY_TASK_COUNT": str(ARRAY), "SLURM_SUBMIT_DIR": str(ROOT)})
+                     for k in range(ARRAY)]
         started = []
         for k, (words, more) in enumerate(calls):
             with open(self.said / f"{self.rounds}_{k}.txt", "w") as stream:

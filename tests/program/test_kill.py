@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Runs killed at any moment. SLIDELINE_KILLS=200 makes it long (tools/batch/kill_test.sh)."""
+"""Runs killed at any moment. SLIDELINE_KILLS=200 makes it long (tests/lab/README.md)."""
 import importlib.util
 import os
 

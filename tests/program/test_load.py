@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Batches that are killed and taken up again lose nothing. SLIDELINE_JOBS=1000 makes it long (tools/batch/load_test.sh)."""
+"""Batches that are killed and taken up again lose nothing. SLIDELINE_JOBS=1000 makes it long (tests/lab/README.md)."""
 import os
 
 import load_runs

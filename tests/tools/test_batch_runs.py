@@ -191,12 +191,12 @@ def test_sweep_runs_every_combination(place):
 
 def test_arrays_share_the_work(place, decks):
     for task in range(2):
-        done = call(place, "folder_array.sh", "my decks", SLURM_SUBMIT_DIR=str(ROOT),
+        done = call(place, "slurm.sh", "run_folder.sh", "my decks", SLURM_SUBMIT_DIR=str(ROOT),
                     SLURM_ARRAY_TASK_ID=str(task), SLURM_ARRAY_TASK_COUNT="2")
         assert done.returncode == 0, done.stderr
         there = {path.parent.name for path in (decks / "results").glob("*/told.txt")}
         assert there == ({"first one", "third"} if task == 0 else {"first one", "second", "third"})
-    done = call(place, "folder_array.sh", "--collect", "my decks", SLURM_SUBMIT_DIR=str(ROOT))
+    done = call(place, "slurm.sh", "run_folder.sh", "--collect", "my decks", SLURM_SUBMIT_DIR=str(ROOT))
     assert done.returncode == 1 and len(summary(decks / "results")) == 3
     assert all(len(told(path.parent)) == 1 for path in (decks / "results").glob("*/told.txt"))
 
@@ -209,15 +209,15 @@ printf '%s|' "$@" >launched.txt
     (place / "launch").chmod(0o755)
     (place / "tools").symlink_to(ROOT / "tools")
     words = {"LAUNCH": "./launch -n 8", "SLURM_SUBMIT_DIR": ".", "SLURM_CPUS_PER_TASK": "2"}
-    assert call(place, "ranks_job.sh", "i=one deck.k", "d=out", **words).returncode == 0
+    assert call(place, "slurm.sh", "ranks", "i=one deck.k", "d=out", **words).returncode == 0
     assert (place / "launched.txt").read_text() == f"-n|8|{place / 'the program'}|i=one deck.k|d=out|ncpu=2|"
     (place / "launched.txt").unlink()
-    done = call(place, "ranks_job.sh", "i=one deck.k", program="none", **words)
+    done = call(place, "slurm.sh", "ranks", "i=one deck.k", program="none", **words)
     assert done.returncode == 2 and "no such program" in done.stderr and not (place / "launched.txt").exists()
 
 
 @pytest.mark.parametrize("script, words", [
-    ("run_folder.sh", []), ("run_folder.sh", ["none"]), ("run_folder.sh", ["empty"]),
+    ("slurm.sh", []), ("slurm.sh", ["compare_folder.sh"]), ("run_folder.sh", []), ("run_folder.sh", ["none"]), ("run_folder.sh", ["empty"]),
     ("run_list.sh", ["none", "out"]), ("sweep.sh", ["-o", "out", "none.k", "a=1"]),
     ("sweep.sh", ["-o", "out", "one.k", "a"]), ("sweep.sh", ["one.k", "a=1"]), ("compare_folder.sh", ["none"]),
     ("compare_folder.sh", ["none", "empty"])])

@@ -1,93 +1,73 @@
 # SPDX-License-Identifier: MIT
 """The completion script, in a real bash, and the help that goes with it."""
+import re
+import shlex
 import shutil
 import subprocess
 
 import pytest
 
 from slideline_tools import cli
-from slideline_tools.commands import completion, draw, help_texts
+from slideline_tools.commands import pictures
 
 PARSER = cli.build_parser()
+COMMANDS = PARSER._subparsers._group_actions[0].choices
 
 
-@pytest.fixture(scope="module")
-def script(tmp_path_factory):
-    path = tmp_path_factory.mktemp("completion") / "script.bash"
-    path.write_text(completion.script(PARSER, "bash"))
-    return path
+@pytest.fixture
+def complete(tmp_path, tool):
+    """What bash offers for the last word."""
+    script = tmp_path / "script.bash"
+    script.write_text(tool("completion", "bash").stdout)
+    (tmp_path / "deck.k").touch()
+
+    def offered(*words):
+        program = ('source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); '
+                   'complete -p slideline-tools >/dev/null || exit 9; '
+                   '_shtab_slideline_tools 2>/dev/null; printf "%s\\n" "${COMPREPLY[@]}"')
+        done = subprocess.run([shutil.which("bash"), "-c", program, "bash", script, "slideline-tools", *words],
+                              cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert done.returncode == 0 and not done.stderr, done.stderr
+        return set(done.stdout.split())
+    return offered
 
 
-def complete(script, *words):
-    """What bash offers for the last word, in its own order."""
-    program = ('source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); '
-               'complete -p slideline-tools >/dev/null || exit 9; '
-               '_slideline_tools; printf "%s\\n" "${COMPREPLY[@]}"')
-    done = subprocess.run([shutil.which("bash"), "-u", "-c", program, "bash", script,
-                           "slideline-tools", *words], capture_output=True, text=True, check=False)
-    assert done.returncode == 0 and not done.stderr, done.stderr
-    return done.stdout.split()
-
-
-def test_commands(script):
-    assert set(complete(script, "")) == set(completion.subcommands(PARSER))
-    assert complete(script, "re") == ["report"]
-    assert complete(script, "--v") == ["--version"]
-
-
-def test_options_of_every_command(script):
-    for path, parser in completion.walk(PARSER, ""):
-        expected = {name for action in parser._actions for name in action.option_strings
-                    if name.startswith("--")}
-        assert set(complete(script, *path.split(), "--")) == expected, path
+def test_commands_and_options(complete):
+    assert complete("") == set(COMMANDS) and complete("rep") == {"report"}
+    for name, parser in COMMANDS.items():
+        assert complete(name, "--") == {word for action in parser._actions for word in action.option_strings
+                                        if word.startswith("--")}, name
 
 
 @pytest.mark.parametrize("words, offered", [
-    (["make-deck", "h"], ["hertz"]),
-    (["make-deck", "symmetric_plate", "--hourglass", "s"], ["stiffness"]),
-    (["make-deck", "-o", "x", "hertz", "--l"], ["--level"]),
-    (["plot", "x.vtkhdf", "--field", "plas"], ["plastic_strain"]),
-    (["draw", "--show", ""], list(draw.WHAT)),
-    (["completion", ""], ["bash", "zsh"]),
-    (["plot", ""], []),               # files, by the shell
-    (["report", "run", "-o", ""], []),
+    (["make-deck", "h"], {"hertz"}),
+    (["make-deck", "symmetric_plate", "--hourglass", "s"], {"stiffness"}),
+    (["make-deck", "hertz", "-o", "x", "--l"], {"--level"}),
+    (["plot", "x.vtkhdf", "--field", "plas"], {"plastic_strain"}),
+    (["draw", "x", "--show", ""], set(pictures.WHAT)),
+    (["completion", ""], set(cli.SHELLS)),
+    (["draw", "d"], {"deck.k"}),
+    (["report", "run", "-o", "de"], {"deck.k"}),
 ])
-def test_values(script, words, offered):
-    assert complete(script, *words) == offered
+def test_values(complete, words, offered):
+    assert complete(*words) == offered
 
 
-def test_command(tool):
-    for shell in completion.SHELLS:
-        finished = tool("completion", shell)
-        assert finished.returncode == 0 and "complete -o default" in finished.stdout
-    assert "bashcompinit" in finished.stdout
+def test_zsh(tool):
+    assert tool("completion", "zsh").stdout.startswith("#compdef slideline-tools")
     assert tool("completion", "fish").returncode == 2
 
 
 def test_names_of_draw_are_those_of_the_picture():
     from slideline_tools.draw import picture
-    assert draw.WHAT == picture.WHAT
+    assert pictures.WHAT == picture.WHAT
 
 
-def test_every_command_has_an_example(tool):
-    commands = completion.subcommands(PARSER)
-    assert set(help_texts.EXAMPLES) <= set(commands)
-    for name in help_texts.EXAMPLES:
-        shown = tool(name, "--help").stdout
-        assert f"\n  slideline-tools {name}" in shown or "<(slideline-tools" in shown
-
-
-def test_examples_are_commands_that_exist():
+@pytest.mark.parametrize("name", COMMANDS)
+def test_examples_are_commands_that_exist(name, tool):
     """Every example line parses, up to files that need not be there."""
-    for words in help_texts.EXAMPLES.values():
-        text = words.replace("\\\n", " ")
-        for line in text.splitlines():
-            if line.startswith("  slideline-tools") and "--help" not in line and ">" not in line:
-                arguments = [word.strip('"') for word in line.split("#")[0].split()[1:]]
-                PARSER.parse_args(quoted(line) if '"' in line else arguments)
-
-
-def quoted(line):
-    """The words of a line with quotes."""
-    import shlex
-    return shlex.split(line, comments=True)[1:]
+    lines = re.findall(r"^  slideline-tools (.*)", tool(name, "--help").stdout.replace("\\\n", " "), re.M)
+    assert lines and lines[0].startswith(name)
+    for line in lines:
+        if "--help" not in line:
+            PARSER.parse_args(shlex.split(line.partition(">")[0], comments=True))

@@ -153,7 +153,7 @@ def test_sets_and_conditions(model):
 
 def test_loads_and_motions(model):
     arrows = {one.kind: one for one in model.arrows}
-    assert set(arrows) == {"motion", "load", "pressure", "body"}
+    assert set(arrows) == {"motion", "load", "pressure", "body", "velocity"}
     # The curve peaks at 3*5 = 15; the upper edges of the ring are pushed down.
     np.testing.assert_allclose(arrows["pressure"].places, [[0.5, 3.0], [1.5, 3.0]])
     np.testing.assert_allclose(arrows["pressure"].vectors, [[0.0, -30.0]] * 2)

@@ -13,7 +13,9 @@ from vtkmodules.vtkIOLSDyna import vtkLSDynaReader
 
 from slideline_tools.binout import BinoutError, write_binout
 from slideline_tools.d3plot import D3plotError, write_d3plot
-from slideline_tools.finished_run import Run, RunError, part_titles
+from slideline_tools import UserError
+from slideline_tools.effective_deck import part_titles
+from slideline_tools.finished_run import Run
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 #: relative room of single precision
@@ -338,7 +340,7 @@ def test_what_is_no_run(tool, tmp_path):
     assert tool("binout", tmp_path / "none").returncode == 2
     (tmp_path / "a.glstat.csv").write_text("time\n")
     (tmp_path / "b.glstat.csv").write_text("time\n")
-    with pytest.raises(RunError, match="several runs: a, b"):
+    with pytest.raises(UserError, match="several runs: a.glstat.csv, b.glstat.csv"):
         Run(tmp_path)
     (tmp_path / "one").mkdir()
     (tmp_path / "one" / "c.log").write_text("")

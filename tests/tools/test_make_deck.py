@@ -8,7 +8,7 @@ import re
 import pytest
 
 from slideline_tools import cli, scenes
-from slideline_tools.commands import completion, make_deck
+from slideline_tools.commands import decks
 from slideline_tools.scenes.patch import MESHES, SURFACES
 from test_decks import Model
 
@@ -58,7 +58,7 @@ def test_make_deck_writes_the_committed_deck(tmp_path, tool, words, deck):
 
 
 def scene_parsers():
-    return completion.subcommands(completion.subcommands(cli.build_parser())["make-deck"])
+    return {one.prog.split()[-1]: one for one in cli.parsers(cli.build_parser()) if " make-deck " in one.prog}
 
 
 @pytest.mark.parametrize("name", scene_parsers())
@@ -76,7 +76,8 @@ def test_defaults_that_the_help_names_are_those_of_the_scene(name):
 
 
 def test_names_of_the_meshes():
-    assert make_deck.MESHES == tuple(MESHES) and make_deck.SURFACES == SURFACES
+    choices = {option: words.get("choices") for option, words in decks.OWN_OPTIONS["patch"]}
+    assert choices["--mesh"] == tuple(MESHES) and choices["--surfaces"] == SURFACES
 
 
 def test_make_deck_refuses(tmp_path, tool):

@@ -201,15 +201,3 @@ def test_mypy_knows_the_public_names(tmp_path):
     assert [place for place, _ in errors] == ["typed.py:10", "typed.py:11"], done.stdout
     assert 'incompatible type "int"' in errors[0][1] and 'no attribute "raed"' in errors[1][1], done.stdout
     assert (tools / "slideline_tools" / "py.typed").exists()
-
-
-@pytest.mark.parametrize("line, offered", [
-    ("slideline-tools re", ["report"]), ("slideline-tools make-deck coll", ["collision"]),
-    ("slideline-tools plot x.vtkhdf --field plastic", ["plastic_strain"])])
-def test_argcomplete(tmp_path, line, offered):
-    pytest.importorskip("argcomplete")
-    said = tmp_path / "said"
-    environment = {**os.environ, "_ARGCOMPLETE": "1", "COMP_LINE": line, "COMP_POINT": str(len(line)),
-                   "_ARGCOMPLETE_IFS": "\n", "_ARGCOMPLETE_STDOUT_FILENAME": str(said)}
-    subprocess.run([sys.executable, "-m", "slideline_tools.cli"], env=environment, check=False)
-    assert [word.strip() for word in said.read_text().splitlines()] == offered

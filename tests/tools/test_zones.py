@@ -10,10 +10,10 @@ import pytest
 
 from conftest import ROOT
 from slideline_tools import zones
-from slideline_tools.advise.run_log import read_log
 from slideline_tools.histories import History, read_csv
-from slideline_tools.report import charts, write_report
+from slideline_tools.report import write_report
 from slideline_tools.results import read
+from slideline_tools.run_log import RunLog, read_log
 from test_pictures import assert_picture
 
 EXAMPLE = ROOT / "doc/examples/contact_2d_slideline_friction.k"
@@ -55,12 +55,12 @@ def test_a_time_that_lacks_rows_is_left_out():
 
 
 def test_the_picture_has_the_states_as_shades():
-    figure = charts.zones(table(STATES))
+    figure = zones.zones_figure(table(STATES), [2.0], RunLog())
     quads = figure.axes[0].collections[0]
     assert quads.get_array().reshape(3, 3).tolist() == [[0, 1, 1], [0, 1, 2], [0, 0, 0]]
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["open", "stick", "slip"]
     broken = np.where(np.array(STATES) == 2, 4, STATES)
-    assert charts.zones(table(broken)).legends[0].get_texts()[-1].get_text() == "broken"
+    assert zones.zones_figure(table(broken), [2.0], RunLog()).legends[0].get_texts()[-1].get_text() == "broken"
 
 
 @pytest.mark.parametrize("units", [("", "", ""), (" s/m", " N/m^2", " N m/m"), (" ms/mm", " kN/mm^2", " kN mm per radian")])
@@ -112,8 +112,8 @@ def test_zones_of_a_run_that_slides_and_stops(sliding, tool, tmp_path):
     finished = tool("plot", sliding, "--zones", "--state", "5", "--state", "-1", "--output", path)
     assert finished.returncode == 0, finished.stderr
     assert_picture(path)
-    results = read(sliding / "block.vtkhdf")
-    assert zones.limit_of(results, 1) == (0.5, 0.0) and zones.limit_of(results, 2) is None
+    results, log = read(sliding / "block.vtkhdf"), read_log((sliding / "block.log").read_text())
+    assert zones.limit_of(log, 1) == (0.5, 0.0) and zones.limit_of(log, 2) is None
     _, _, states = zones.state_grid(zones.chains_of(results.history("contact"))[0])
     assert np.all(states[:, 3:9] == 2.0) and np.all(states[:, -1] == 1.0)  # it slides, then it stands
 

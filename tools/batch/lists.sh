@@ -1,11 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Sourced by the scripts beside it: the list of contact types, and what run_folder.sh and sweep.sh check before they write
-# a list for run_list.sh. `root` is the top of the tree.
-
-# all_types: the numbers of all contact types, on one line, after tools/build.sh.
-all_types() {
-  "$root/build/venv/bin/python" -c 'from slideline_tools.contact_types import ALL_TYPES; print(*ALL_TYPES)'
-}
+# Sourced by the scripts beside it: what run_folder.sh and sweep.sh check before they write a list for run_list.sh.
 
 # check_words TEXT...: the lists have a line for each run and tabs between its fields, so that neither may
 # be in a name, a value or an option; other control characters would spoil what is printed.

@@ -72,18 +72,32 @@ def plot(results: Results | Outcome | str | os.PathLike, field: str | None = Non
 
     `field` such as "mises" or "stress:xy" at `states` (numbers, -1 the last, or times as reals);
     `history` such as "glstat:kinetic,internal" or a list of these; `contact` the pressure along the
-    slave surface; `zones` where it sticks and slips; `mirror` with the image in x = 0.
+    slave surface; `zones` where it sticks and slips; `mirror` with the image in x = 0. Without any
+    of these a field above the energies and the contact force.
     """
     from slideline_tools import files, plots
     from slideline_tools.mirrored import Mirrored
     from slideline_tools.program import Outcome
     from slideline_tools.results import Results
+    if sum(map(bool, (history, contact, zones))) > 1:
+        raise UserError("choose one of history, contact and zones")
     if isinstance(results, Outcome):
         results = results.results
     elif not isinstance(results, Results):
         results = read(results)
-    figure = plots.choose_figure(Mirrored(results) if mirror else results, field, states, scale, zoom,
-                                 [history] if isinstance(history, str) else history, contact, zones)
+    run = Mirrored(results) if mirror else results
+    shown = list(states) or ["-1"]
+    if history:
+        figure = plots.history_figure(run, [history] if isinstance(history, str) else list(history))
+    elif contact:
+        figure = plots.contact_figure(run, shown)
+    elif zones:
+        from slideline_tools.zones import zones_of
+        figure = zones_of(run, shown)
+    elif field or states or zoom:
+        figure = plots.field_figure(run, field, shown, scale, zoom)
+    else:
+        figure = plots.report_figure(run, scale=scale)
     if output is not None:
         figure.savefig(files.output(output, [results.path]))
     plots.plt.close(figure)  # a notebook shows what a cell gives; of pyplot's own figures it would show it again

@@ -33,9 +33,7 @@ def animate(results, path, name=None, scale=1.0, rate=12, zoom=None):
         raise ResultsError(f"{results.path}: no states")
     limits = field.limits()
     with plt.rc_context(dict(plots.STYLE, **{"savefig.dpi": PIXELS_PER_INCH})):
-        scratch = plt.figure()
-        zoom = plots.frame(scratch.add_subplot(), results, states, scale, zoom)
-        plt.close(scratch)
+        zoom = plots.window(results, states, scale, zoom)
         height = plots.panel_height(zoom, plots.PAGE_WIDTH - 1.9) + 0.75
         figure, axes = plt.subplots(figsize=(plots.PAGE_WIDTH, height), layout="constrained")
         artist = plots.field_panel(axes, results, field, 0, scale, limits, zoom)

@@ -1,21 +1,22 @@
 # SPDX-License-Identifier: MIT
 """Compare a history table with a reference, column by column and entity by entity.
 
-Each column is judged by five measures (see MEASURES), counts without the impulse. The allowed difference of a value is
-`atol + rtol |reference|`; `atol` is `floor` times the column's maximum in the reference unless
-it is given. Series are compared on the times of the reference, the result being interpolated.
+Each column is judged by five measures (see MEASURES), counts without the impulse. The allowed
+difference of a value is `atol + rtol |reference|`; `atol` is `floor` times the column's maximum in
+the reference unless it is given. Series are compared on the times of the reference, the result being interpolated.
 """
 import dataclasses
+import typing
 
 import numpy as np
 
 from slideline_tools import UserError
-
 from slideline_tools.histories import ENTITY_COLUMNS, INTEGER_COLUMNS, TEXT_COLUMNS
 
 MEASURES = ("values", "peak", "time of peak", "impulse", "final")
 COVERAGE = ("start", "end")  # first and last time: always judged
-WITHOUT_IMPULSE = INTEGER_COLUMNS + ("state",)  # counts and codes: an integral over time says nothing
+#: counts and codes: an integral over time says nothing
+WITHOUT_IMPULSE = INTEGER_COLUMNS + ("state",)
 
 
 class Unusable(UserError):
@@ -42,8 +43,7 @@ class Tolerance:
         return self.floor * largest if self.atol is None else self.atol
 
 
-@dataclasses.dataclass(frozen=True)
-class Check:
+class Check(typing.NamedTuple):
     """One judged number: passed if |difference| <= allowed."""
 
     column: str
@@ -61,17 +61,16 @@ class Check:
     @property
     def ratio(self):
         """Difference over what is allowed: above 1 means failed."""
-        if self.difference == 0.0:
-            return 0.0
-        return self.difference / self.allowed if self.allowed > 0.0 else np.inf
+        with np.errstate(divide="ignore"):
+            return float(np.divide(self.difference, self.allowed)) if self.difference else 0.0
 
 
+@dataclasses.dataclass
 class Report:
     """All checks of one comparison."""
 
-    def __init__(self, name, checks):
-        self.name = name
-        self.checks = checks
+    name: str
+    checks: list
 
     @property
     def passed(self):
@@ -81,9 +80,9 @@ class Report:
         """The worst check of each column and measure over all entities, in order."""
         worst = {}
         for check in self.checks:
-            key = (check.column, check.measure)
-            if key not in worst or check.ratio > worst[key].ratio:
-                worst[key] = check
+            known = worst.setdefault((check.column, check.measure), check)
+            if check.ratio > known.ratio:
+                worst[check.column, check.measure] = check
         return list(worst.values())
 
     def text(self):
@@ -91,20 +90,14 @@ class Report:
         head = (f"{'column':<16}{'measure':<13}{'where':<22}{'result':>14}{'reference':>14}"
                 f"{'difference':>12}{'allowed':>12}{'ratio':>9}")
         lines = [self.name, head, "-" * len(head)]
-        for check in self.worst():
-            verdict = "" if check.passed else "  FAILED"
-            lines.append(f"{check.column:<16}{check.measure:<13}{check.entity:<22}"
-                         f"{check.result:>14.6g}{check.reference:>14.6g}"
-                         f"{check.difference:>12.3g}{check.allowed:>12.3g}"
-                         f"{check.ratio:>9.2g}{verdict}")
+        lines += [f"{one.column:<16}{one.measure:<13}{one.entity:<22}{one.result:>14.6g}"
+                  f"{one.reference:>14.6g}{one.difference:>12.3g}{one.allowed:>12.3g}"
+                  f"{one.ratio:>9.2g}" + ("" if one.passed else "  FAILED")
+                  for one in self.worst()]
         failed = sorted({check.column for check in self.checks if not check.passed})
-        if failed:
-            lines.append(f"failed: {', '.join(failed)}")
-        elif self.checks:
-            lines.append(f"passed: {len(self.checks)} checks")
-        else:
-            lines.append("failed: nothing was compared")
-        return "\n".join(lines)
+        if failed or not self.checks:
+            return "\n".join([*lines, f"failed: {', '.join(failed) or 'nothing was compared'}"])
+        return "\n".join([*lines, f"passed: {len(self.checks)} checks"])
 
 
 def compare(result, reference, columns=None, tolerances=None, default=Tolerance()):
@@ -153,7 +146,12 @@ def require_usable(table, role, columns):
 
 
 def series_checks(column, entity, result, reference, tolerance, atol):
-    """The checks of one column of one entity."""
+    """The checks of one column of one entity.
+
+    Of several nearly equal peaks another one may come out highest: the time of the peak also
+    counts as met if the result is as high as allowed within the allowed time about the peak of
+    the reference.
+    """
     t, y = unique_times(result["time"], result[column])
     t_ref, y_ref = unique_times(reference["time"], reference[column])
     if t[-1] < t_ref[0] or t[0] > t_ref[-1]:
@@ -161,56 +159,28 @@ def series_checks(column, entity, result, reference, tolerance, atol):
                        f"reference {t_ref[0]:g} to {t_ref[-1]:g}")
     span = t_ref[-1] - t_ref[0]
     spare = max(np.max(np.diff(t_ref), initial=0.0), 1.0e-9 * abs(t_ref[-1]))
-    checks = []
-
-    def judge(measure, value, expected, difference, allowed):
-        if measure in tolerance.measures or measure in COVERAGE:
-            checks.append(Check(column, measure, entity, float(value), float(expected),
-                                float(abs(difference)), float(allowed)))
-
-    judge("start", t[0], t_ref[0], t[0] - t_ref[0], spare)
-    judge("end", t[-1], t_ref[-1], t[-1] - t_ref[-1], spare)
-    common = t_ref[(t_ref >= t[0]) & (t_ref <= t[-1])]
-    common = common if common.size else t_ref
+    inside = (t_ref >= t[0]) & (t_ref <= t[-1])
+    common = t_ref[inside] if inside.any() else t_ref
     ours, theirs = np.interp(common, t, y), np.interp(common, t_ref, y_ref)
     allowed = atol + tolerance.rtol * np.abs(theirs)
-    at = worst_index(np.abs(ours - theirs), allowed)
-    judge("values", ours[at], theirs[at], ours[at] - theirs[at], allowed[at])
-    judge_peak(judge, (t, y), (t_ref, y_ref), tolerance, atol, span)
-    if column not in WITHOUT_IMPULSE:
-        impulse, expected = time_integral(t, y), time_integral(t_ref, y_ref)
-        judge("impulse", impulse, expected, impulse - expected,
-              tolerance.rtol * abs(expected) + atol * span)
-    judge("final", y[-1], y_ref[-1], y[-1] - y_ref[-1], atol + tolerance.rtol * abs(y_ref[-1]))
-    return checks
-
-
-def judge_peak(judge, result, reference, tolerance, atol, span):
-    """Height and time of the largest magnitude.
-
-    Of several nearly equal peaks another one may come out highest: the time also counts as met
-    if the result is as high as allowed within the allowed time about the peak of the reference.
-    """
-    (t, y), (t_ref, y_ref) = result, reference
-    at, at_ref = np.argmax(np.abs(y)), np.argmax(np.abs(y_ref))
-    allowed = atol + tolerance.rtol * abs(y_ref[at_ref])
-    judge("peak", y[at], y_ref[at_ref], y[at] - y_ref[at_ref], allowed)
-    slack = tolerance.time * span
-    near = (np.abs(t - t_ref[at_ref]) <= slack) & (np.abs(y - y_ref[at_ref]) <= allowed)
-    late = 0.0 if near.any() else t[at] - t_ref[at_ref]
-    judge("time of peak", t[at], t_ref[at_ref], late, slack)
-
-
-def time_integral(time, values):
-    """Integral over time by the trapezoidal rule."""
-    return float(np.sum(0.5 * (values[1:] + values[:-1]) * np.diff(time)))
-
-
-def worst_index(difference, allowed):
-    """Where the difference is largest in relation to what is allowed."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.where(difference == 0.0, 0.0, difference / allowed)
-    return int(np.argmax(ratio))
+        worst = int(np.argmax(np.nan_to_num(np.abs(ours - theirs) / allowed)))
+    top, top_ref = np.argmax(np.abs(y)), np.argmax(np.abs(y_ref))
+    slack, peak_allowed = tolerance.time * span, atol + tolerance.rtol * abs(y_ref[top_ref])
+    near = np.abs(t - t_ref[top_ref]) <= slack
+    is_met = np.any(near & (np.abs(y - y_ref[top_ref]) <= peak_allowed))
+    found = [("start", t[0], t_ref[0], spare), ("end", t[-1], t_ref[-1], spare),
+             ("values", ours[worst], theirs[worst], allowed[worst]),
+             ("peak", y[top], y_ref[top_ref], peak_allowed),
+             ("time of peak", t_ref[top_ref] if is_met else t[top], t_ref[top_ref], slack)]
+    if column not in WITHOUT_IMPULSE:
+        impulse, expected = np.trapezoid(y, t), np.trapezoid(y_ref, t_ref)
+        found.append(("impulse", impulse, expected, tolerance.rtol * abs(expected) + atol * span))
+    found.append(("final", y[-1], y_ref[-1], atol + tolerance.rtol * abs(y_ref[-1])))
+    return [Check(column, measure, entity, float(value), float(expected),
+                  float(abs(value - expected)), float(limit))
+            for measure, value, expected, limit in found
+            if measure in tolerance.measures or measure in COVERAGE]
 
 
 def unique_times(time, values):

@@ -114,38 +114,32 @@ def titles(run, parts):
 
 
 def global_values(run, parts):
-    """For each state kinetic, internal and total energy, mean velocity, and the sums of parts, from the rows of the
-    history tables at the time of the state; 0 where there is none."""
-    tables = run.tables()
-    whole, sums = tables.get("glstat"), tables.get("matsum")
+    """For each state kinetic, internal and total energy, mean velocity, and the sums of parts, from
+    the rows of the history tables at the time of the state; 0 where there is none."""
+    tables, n = run.tables(), len(parts)
     for time in run.results.times:
-        values = np.zeros(6 + 7 * len(parts))
-        row = row_at(whole, time)
-        if row is not None:
-            columns = ("kinetic", "internal", "total", "velocity_x", "velocity_y")
-            values[:5] = [whole[name][row] if name in whole else 0.0 for name in columns]
+        values = np.zeros(6 + 7 * n)
+        whole = row_at(tables.get("glstat"), time)
+        values[:5] = [whole.get(name, 0.0) for name in ("kinetic", "internal", "total",
+                                                        "velocity_x", "velocity_y")]
         for k, part in enumerate(parts):
-            row = row_at(sums, time, part)
-            if row is None:
-                continue
-            of = {name: sums[name][row] for name in ("kinetic", "internal", "hourglass", "momentum_x", "momentum_y", "mass")}
-            speed = np.array([of["momentum_x"], of["momentum_y"]]) / (of["mass"] or 1.0)
-            n = len(parts)
-            values[[6 + k, 6 + n + k, 6 + 5 * n + k, 6 + 6 * n + k]] = [
-                of["internal"], of["kinetic"], of["mass"], of["hourglass"]]
-            values[6 + 2 * n + 3 * k:][:2] = speed
+            row = row_at(tables.get("matsum"), time, part)
+            for block, name in ((0, "internal"), (1, "kinetic"), (5, "mass"), (6, "hourglass")):
+                values[6 + block * n + k] = row.get(name, 0.0)
+            for axis, name in enumerate(("momentum_x", "momentum_y")):
+                values[6 + 2 * n + 3 * k + axis] = row.get(name, 0.0) / (row.get("mass") or 1.0)
         yield values
 
 
 def row_at(table, time, part=None):
-    """Row of a table at a time (and of a part), None where there is none."""
+    """The row of a table at a time (and of a part) by names, empty where there is none."""
     if table is None or not len(table):
-        return None
+        return {}
     near = np.abs(table["time"] - time) <= 1.0e-9 * max(abs(table["time"][-1]), abs(time))
     if part is not None:
         near &= table["part"] == part
     rows = np.flatnonzero(near)
-    return rows[-1] if len(rows) else None
+    return {name: column[rows[-1]] for name, column in table.columns.items()} if len(rows) else {}
 
 
 def state_words(results, k, global_row):
@@ -159,21 +153,20 @@ def state_words(results, k, global_row):
 
 
 def write_states(path, states, file_limit):
-    """The states into `path`01 and so on, each file closed by its mark; number of states and of files."""
-    count, number, written, stream = 0, 0, 0, None
-    for state in states:
-        if stream is None or written + len(state) > file_limit:
-            if stream is not None:
-                stream.write(END_MARK)
-                stream.close()
-            number, written = number + 1, 0
-            stream = open(output(member(path, number)), "wb")
-        stream.write(state)
+    """The states into `path`01 and so on, each file closed by its mark; number of states and of
+    files."""
+    files, written = [], file_limit + 1
+    for count, state in enumerate(states, start=1):
+        if written + len(state) > file_limit:
+            files.append(output(member(path, len(files) + 1)))
+            written = 0
+        with open(files[-1], "ab") as stream:
+            stream.write(state)
         written += len(state)
-        count += 1
-    stream.write(END_MARK)
-    stream.close()
-    return count, number
+    for file in files:
+        with open(file, "ab") as stream:
+            stream.write(END_MARK)
+    return count, len(files)
 
 
 def padded(values):

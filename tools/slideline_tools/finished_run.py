@@ -1,20 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Find the files of a run from what a user names: its folder, its results file or one of its tables."""
 import pathlib
-import re
 
 import numpy as np
 
-from slideline_tools import UserError
-from slideline_tools.files import source
-from slideline_tools.histories import TABLES, History, read_csv
+from slideline_tools.effective_deck import interface_titles, part_titles
+from slideline_tools.files import TABLES, find_run, source
+from slideline_tools.histories import History, read_csv
 from slideline_tools.results import read
 
 NOT_WRITTEN = ("contact",)  # tables without a branch in the binout
-
-
-class RunError(UserError):
-    """Nothing that could be a run, or several runs."""
 
 
 class Run:
@@ -26,7 +21,7 @@ class Run:
 
     def __init__(self, named):
         """`named`: the folder of a run, its results file, or the path up to the job name."""
-        self.prefix = find_prefix(pathlib.Path(named))
+        self.prefix = find_run(named, ".glstat.csv")
         states = pathlib.Path(f"{self.prefix}.vtkhdf")
         self.results = read(states) if states.exists() else None
 
@@ -83,48 +78,3 @@ def with_further(results, table):
         if any(getattr(values, "ndim", 0) != 1 or len(values) < len(table) for values in further.values()):
             raise ValueError("a column is no list of values as long as its table")
     return History(table.name, table.columns | {name: values[:len(table)] for name, values in further.items()})
-
-
-def find_prefix(path):
-    """Path up to the job name of the run that `path` names."""
-    if not path.is_dir():
-        stem = re.sub(r"\.(vtkhdf|log|effective\.k|[a-z]+\.csv|glstat)$", "", str(path))
-        if any(path.parent.glob(pathlib.Path(stem).name + ".*")):
-            return pathlib.Path(stem)
-        raise RunError(f"no run {path}: name its folder or its results file")
-    jobs = sorted(file.name[:-len(".glstat.csv")] for file in path.glob("*.glstat.csv"))
-    if len(jobs) != 1:
-        raise RunError(f"{path} holds {'several runs: ' + ', '.join(jobs) if jobs else 'no run'}; "
-                       "name a results file")
-    return path / jobs[0]
-
-
-def interface_titles(deck):
-    """interface id -> title on the first card of *CONTACT_..._TITLE of a deck."""
-    titles, waits = {}, False
-    for line in deck.splitlines():
-        if line.startswith("*"):
-            waits = bool(re.match(r"\*CONTACT_\w+_TITLE\b", line, re.I))
-        elif waits and not line.startswith("$"):
-            number, title = line.split(",", 1) if "," in line[:20] else (line[:10], line[10:])
-            if number.strip().isdigit():
-                titles[int(number)] = title.strip()
-            waits = False
-    return titles
-
-
-def part_titles(deck):
-    """part id -> heading of the *PART keywords of a deck."""
-    titles, lines = {}, None
-    for line in deck.splitlines():
-        if line.startswith("$"):
-            continue
-        if line.startswith("*"):
-            lines = [] if line.split()[0].rstrip("+-%").upper() == "*PART" else None
-        elif lines is not None:
-            lines.append(line)
-            if len(lines) % 2 == 0:
-                number = re.match(r"\s*(\d+)", line.split(",")[0] if "," in line else line[:20])
-                if number:
-                    titles[int(number.group(1))] = lines[-2].strip()
-    return titles

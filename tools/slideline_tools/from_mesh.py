@@ -74,11 +74,6 @@ def used_points(mesh) -> np.ndarray:
     return np.unique(np.concatenate(rows)) if rows else np.zeros(0, dtype=int)
 
 
-def group_names(mesh) -> dict[tuple[int, int], str]:
-    """(dimension, number) of a physical group -> its name."""
-    return {(int(value[1]), int(value[0])): name for name, value in mesh.field_data.items()}
-
-
 def heading(name: str) -> str:
     """A name as a line of text: neither a comment nor a keyword."""
     return (f"_{name}" if name[:1] in "$*" else name)[:80]
@@ -89,50 +84,40 @@ def gather(mesh) -> PlaneMesh:
     used = used_points(mesh)
     place = np.full(len(mesh.points), -1)
     place[used] = np.arange(len(used))
-    names = group_names(mesh)
-    points = mesh.points[used, :2]
-    result = PlaneMesh(points, {}, {}, {}, [])
-    if len(used) < len(mesh.points):
-        result.notes.append(f"{counted(len(mesh.points) - len(used), 'point')} of no triangle or quad left out")
-    lines: dict[str, list] = {}
+    names = {(int(value[1]), int(value[0])): name for name, value in mesh.field_data.items()}
+    result = PlaneMesh(mesh.points[used, :2], {}, {}, {}, [])
+    if left := len(mesh.points) - len(used):
+        result.notes.append(f"{counted(left, 'point')} of no triangle or quad left out")
     numbers = mesh.cell_data.get("gmsh:physical")
     turned = 0
     for i, block in enumerate(mesh.cells):
-        groups = numbers[i] if numbers is not None else np.zeros(len(block.data), dtype=int)
-        for row, group in zip(block.data, groups):
-            row = place[row]
-            if block.type in FACES:
-                name = names.get((2, int(group)), f"group {group}" if group else UNGROUPED)
-                walked, is_turned = walked_left(points, row)
-                turned += is_turned
-                result.parts.setdefault(name, []).append(walked)
-            elif (row < 0).any():
-                continue
-            elif block.type == "line" and group:
-                lines.setdefault(names.get((1, int(group)), f"group {group}"), []).append(row)
-            elif block.type == "vertex" and group:
-                name = names.get((0, int(group)), f"group {group}")
-                result.nodes[name] = np.append(result.nodes.get(name, np.zeros(0, dtype=int)), row)
+        groups = np.asarray(numbers[i] if numbers is not None else np.zeros(len(block.data), int))
+        dimension = {"vertex": 0, "line": 1}.get(block.type, 2)
+        for group in dict.fromkeys(groups.tolist()):
+            name = names.get((dimension, group), f"group {group}" if group else UNGROUPED)
+            rows = place[block.data[groups == group]]
+            kept = rows[(rows >= 0).all(axis=1)]
+            if dimension == 2:
+                turned += walk_left(result.points, rows)
+                result.parts.setdefault(name, []).extend(rows.tolist())
+            elif group and len(kept):
+                sets = result.lines if dimension else result.nodes
+                sets[name] = np.concatenate([sets[name], kept]) if name in sets else kept
     if turned:
         result.notes.append(f"{counted(turned, 'face')} walked clockwise and turned")
-    for name, rows in lines.items():
-        result.lines[name] = np.array(rows)
-    take_point_sets(mesh, place, result)
+    for name, rows in getattr(mesh, "point_sets", {}).items():  # of Abaqus and Exodus
+        rows = place[np.asarray(rows, dtype=int)]
+        result.nodes[name] = rows[rows >= 0]
+    result.nodes = {name: np.unique(rows) for name, rows in result.nodes.items()}
     return result
 
 
-def take_point_sets(mesh, place, result: PlaneMesh) -> None:
-    """Node sets of formats that have them (Abaqus, Exodus)."""
-    for name, rows in getattr(mesh, "point_sets", {}).items():
-        rows = place[np.asarray(rows, dtype=int)]
-        result.nodes[name] = np.unique(rows[rows >= 0])
-
-
-def walked_left(points, row) -> tuple[list[int], bool]:
-    """Nodes of a face with the face on the left, and whether they had to be turned."""
-    x, y = points[row, 0], points[row, 1]
-    area = 0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)
-    return (list(row), False) if area > 0.0 else (list(row[::-1]), True)
+def walk_left(points, rows) -> int:
+    """Turn faces that are walked with the face on the right; how many were."""
+    x, y = points[rows, 0], points[rows, 1]
+    area = np.sum(x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y, axis=1)
+    rows[area <= 0.0] = rows[area <= 0.0, ::-1]
+    return int(np.sum(area <= 0.0))
 
 
 def deck_of(mesh: PlaneMesh, title: str) -> Deck:
@@ -155,42 +140,26 @@ def deck_of(mesh: PlaneMesh, title: str) -> Deck:
     deck.block("The mesh.")
     deck.keyword("NODE").table("nid x y", [8, 16, 16],
                                [(n + 1, float(x), float(y)) for n, (x, y) in enumerate(mesh.points)])
-    eid = 0
-    rows = []
-    for pid, faces in enumerate(mesh.parts.values(), start=1):
-        for face in faces:
-            eid += 1
-            rows.append((eid, pid, *(n + 1 for n in face), *([face[-1] + 1] if len(face) == 3 else [])))
+    faces = [(pid, face) for pid, some in enumerate(mesh.parts.values(), start=1) for face in some]
+    rows = [(eid, pid, *(n + 1 for n in (*face, face[-1])[:4]))
+            for eid, (pid, face) in enumerate(faces, start=1)]
     deck.keyword("ELEMENT_SHELL").table("eid pid n1 n2 n3 n4", [8] * 6, rows)
     return deck
 
 
 def add_sets(deck: Deck, mesh: PlaneMesh) -> None:
     """Segment and node sets, with the names of their groups, and what to write to use them."""
-    sid = 0
-    surfaces = []
-    for name, rows in mesh.lines.items():
-        sid += 1
-        surfaces.append((sid, name))
-        deck.block(f"{name}: edges (segment set {sid}) and their nodes (node set {sid}).")
-        deck.keyword("SET_SEGMENT_TITLE", heading(name)).card("sid", sid)
-        deck.table("n1 n2", [10, 10], [(a + 1, b + 1) for a, b in rows])
-        add_node_set(deck, sid, name, np.unique(rows))
-    for name, rows in mesh.nodes.items():
-        sid += 1
-        deck.block(f"{name}: nodes (node set {sid}).")
-        add_node_set(deck, sid, name, np.unique(rows))
-    if len(surfaces) > 1:
-        (a, name_a), (b, name_b) = surfaces[:2]
-        deck.block(f"Contact between {name_a} and {name_b}, type 5: take the $ and the blank off the lines below, but for the second.",
-                   "*CONTACT_2D_SLIDELINE",
-                   "surfa, surfb, ctype, ngauss, pen; a positive number is a segment set where no part set has it",
-                   f"{a}, {b}, 5, 0, 1.0", "0, 0, 2")
-
-
-def add_node_set(deck: Deck, sid: int, name: str, nodes) -> None:
-    """*SET_NODE_LIST with eight nodes a card."""
-    deck.keyword("SET_NODE_LIST_TITLE", heading(name)).card("sid", sid)
-    nodes = [int(n) + 1 for n in nodes]
-    deck.table(" ".join(f"nid{i}" for i in range(1, 9)), [10] * 8,
-               [nodes[i:i + 8] for i in range(0, len(nodes), 8)])
+    for sid, (name, rows) in enumerate([*mesh.lines.items(), *mesh.nodes.items()], start=1):
+        if sid <= len(mesh.lines):
+            deck.block(f"{name}: edges (segment set {sid}) and their nodes (node set {sid}).")
+            deck.keyword("SET_SEGMENT_TITLE", heading(name)).card("sid", sid)
+            deck.table("n1 n2", [10, 10], [(a + 1, b + 1) for a, b in rows])
+        else:
+            deck.block(f"{name}: nodes (node set {sid}).")
+        deck.node_set(sid, heading(name), np.unique(rows) + 1)
+    if len(mesh.lines) > 1:
+        first, second, *_ = mesh.lines
+        deck.block(f"Contact between {first} and {second}, type 5: take the $ and the blank off the "
+                   "lines below, but for the second.", "*CONTACT_2D_SLIDELINE",
+                   "surfa, surfb, ctype, ngauss, pen; a positive number is a segment set where no "
+                   "part set has it", "1, 2, 5, 0, 1.0", "0, 0, 2")

@@ -5,20 +5,17 @@ from __future__ import annotations
 import csv
 import os
 import pathlib
-import types
 import typing
 
 import numpy as np
 
 from slideline_tools import UserError
-from slideline_tools.files import source
+from slideline_tools.files import TABLES, source  # noqa: F401
 from slideline_tools.names import missing, one_line
 
 if typing.TYPE_CHECKING:
     import pandas
 
-TABLES = ("glstat", "rcforc", "nodout", "matsum", "contact", "rwforc", "sleout", "spcforc", "elout", "rbdout",
-          "bndout", "nodfor", "secforc")
 TEXT_COLUMNS = ("side", "phase")
 INTEGER_COLUMNS = ("cycle", "interface", "wall", "group", "section", "node", "element", "part", "condition", "id", "n_active",
                    "calls")
@@ -72,11 +69,9 @@ class History:
                 if name != "time" and name not in ENTITY_COLUMNS + TEXT_COLUMNS]
 
     def frame(self) -> pandas.DataFrame:
-        """The table as a pandas DataFrame; `attrs["table"]` is its name.
-
-        HistoryError without pandas.
-        """
-        frame = require_pandas().DataFrame(self.columns)
+        """The table as a pandas DataFrame; `attrs["table"]` is its name."""
+        import pandas
+        frame = pandas.DataFrame(self.columns)
         frame.attrs["table"] = self.name
         return frame
 
@@ -109,15 +104,6 @@ class History:
                          for name, value in zip(self.entity_columns, entity))
 
 
-def require_pandas() -> types.ModuleType:
-    """The module pandas. HistoryError without it."""
-    try:
-        import pandas
-    except ImportError:
-        raise HistoryError("frames need pandas: build/venv/bin/pip install pandas") from None
-    return pandas
-
-
 def read_csv(path: str | os.PathLike) -> History:
     """The table in a CSV file of the program or in one of the same form.
 
@@ -127,14 +113,12 @@ def read_csv(path: str | os.PathLike) -> History:
     try:
         with open(source(path), newline="", encoding="utf-8") as stream:
             rows = [row for row in csv.reader(stream) if row]
-    except UnicodeDecodeError as problem:
-        raise HistoryError(f"cannot read {path}: it is no text; wanted is a CSV table of the program") \
-            from problem
-    except IsADirectoryError as problem:
-        raise HistoryError(f"cannot read {path}: it is a folder; wanted is a CSV table (all tables of two "
-                           "folders: tools/batch/compare_folder.sh)") from problem
-    except OSError as problem:
-        raise HistoryError(f"cannot read {path}: {problem.strerror or problem}") from problem
+    except (OSError, UnicodeDecodeError) as problem:
+        why = ("it is no text; wanted is a CSV table of the program"
+               if isinstance(problem, UnicodeDecodeError) else
+               "it is a folder; wanted is a CSV table (all tables of two folders: "
+               "tools/batch/compare_folder.sh)" if path.is_dir() else problem.strerror or problem)
+        raise HistoryError(f"cannot read {path}: {why}") from problem
     if not rows:
         raise HistoryError(f"{path}: the file is empty")
     names, rows = rows[0], rows[1:]

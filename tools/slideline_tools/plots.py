@@ -1,16 +1,26 @@
 # SPDX-License-Identifier: MIT
 """Figures: a field on the deformed mesh, histories, contact pressure along the surface."""
+import contextlib
+import os
+import sys
 import textwrap
 
+import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
-from slideline_tools import headless  # noqa: F401
 from slideline_tools.fields import default_field, largest, scalar_field, without_round_off
 from slideline_tools.results import ResultsError
 from slideline_tools.walls import draw_walls, walls_of
+
+# Pictures go to files, without a window; except in a notebook, and where $MPLBACKEND says otherwise.
+# A notebook sets up its backend with the first figure: within STYLE what that sets would be lost.
+if "IPython" in sys.modules:
+    plt.close(plt.figure())
+elif not os.environ.get("MPLBACKEND"):
+    matplotlib.use("Agg")
 
 STYLE = {
     "figure.dpi": 150, "savefig.dpi": 150, "font.size": 9, "axes.titlesize": 9,
@@ -88,17 +98,14 @@ def edge_width(n_cell):
     return float(np.clip(6.0 / np.sqrt(max(n_cell, 1)), 0.08, 0.4))
 
 
-def frame(axes, results, states, scale=1.0, zoom=None):
-    """Same window for all states: the box of all their points, or zoom = (x0, x1, y0, y1)."""
-    if zoom is None:
-        boxes = [deformed(results, state, scale) for state in states]
-        low = np.min([box.min(axis=0) for box in boxes], axis=0)
-        high = np.max([box.max(axis=0) for box in boxes], axis=0)
-        margin = 0.02 * max(high - low)
-        zoom = (low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin)
-    axes.set_xlim(zoom[0], zoom[1])
-    axes.set_ylim(zoom[2], zoom[3])
-    return zoom
+def window(results, states, scale=1.0, zoom=None):
+    """One window (x0, x1, y0, y1) for all states: zoom, or the box of all their points."""
+    if zoom is not None:
+        return zoom
+    boxes = np.concatenate([deformed(results, state, scale) for state in states])
+    low, high = boxes.min(axis=0), boxes.max(axis=0)
+    margin = 0.02 * max(high - low)
+    return (low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin)
 
 
 def panel_height(zoom, width):
@@ -142,11 +149,12 @@ def colour_bar(artist, panels, label):
 
 def beyond(panels, limits):
     """Which ends of a colour scale the values in the panels pass: for `extend` of a colour bar."""
-    shown = [artist.get_array() for axes in panels for artist in axes.collections if artist.get_array() is not None]
+    shown = [artist.get_array() for axes in panels for artist in axes.collections
+             if artist.get_array() is not None]
     spare = 1.0e-9 * (limits[1] - limits[0])
     low = any(np.min(values) < limits[0] - spare for values in shown)
     high = any(np.max(values) > limits[1] + spare for values in shown)
-    return {(False, False): "neither", (True, False): "min", (False, True): "max"}.get((low, high), "both")
+    return ("both" if high else "min") if low else ("max" if high else "neither")
 
 
 def mark_cut(axes, x, y, colour):
@@ -160,30 +168,40 @@ def mark_cut(axes, x, y, colour):
                   zorder=5)
 
 
+def line_style(count):
+    """Colour and dashes of the line of that number."""
+    return {"color": COLOURS[count % len(COLOURS)],
+            "linestyle": LINES[count // len(COLOURS) % len(LINES)]}
+
+
 def run_title(results):
     """Title of the deck, or the name of the file."""
     return results.run.get("title") or results.path.name
+
+
+@contextlib.contextmanager
+def page(results, count, height, **more):
+    """A figure with so many panels below each other, under the title of the run."""
+    with plt.rc_context(STYLE):
+        figure, panels = plt.subplots(count, 1, squeeze=False, layout="constrained",
+                                      figsize=(PAGE_WIDTH, height), **more)
+        yield figure, list(panels[:, 0])
+        for axes in panels[:-1, 0]:
+            axes.set_xlabel("")
+        figure.suptitle(run_title(results), fontsize=9)
 
 
 def field_figure(results, name=None, states=("-1",), scale=1.0, zoom=None):
     """A figure with one panel per state, below each other, on one colour scale."""
     field = scalar_field(results, name or default_field(results))
     states = [results.state_index(state) for state in states]
-    with plt.rc_context(STYLE):
-        scratch = plt.figure()
-        zoom = frame(scratch.add_subplot(), results, states, scale, zoom)
-        plt.close(scratch)
-        height = panel_height(zoom, PAGE_WIDTH - 1.9)
-        figure, panels = plt.subplots(len(states), 1, squeeze=False, layout="constrained",
-                                      figsize=(PAGE_WIDTH, (height + 0.95) * len(states) + 0.2))
-        limits = field.limits(states)
-        for axes, state in zip(panels[:, 0], states):
-            artist = field_panel(axes, results, field, state, scale, limits, zoom)
-        for axes in panels[:-1, 0]:
-            axes.set_xlabel("")
-        colour_bar(artist, list(panels[:, 0]), field.label)
-        figure.suptitle(run_title(results), fontsize=9)
-        return figure
+    zoom = window(results, states, scale, zoom)
+    height = panel_height(zoom, PAGE_WIDTH - 1.9) + 0.95
+    with page(results, len(states), height * len(states) + 0.2) as (figure, panels):
+        for axes, state in zip(panels, states):
+            artist = field_panel(axes, results, field, state, scale, field.limits(states), zoom)
+        colour_bar(artist, panels, field.label)
+    return figure
 
 
 # ---- histories ---------------------------------------------------------------------------------
@@ -225,8 +243,7 @@ def draw_history(axes, results, request):
         for column in columns:
             name = column.replace("_", " ")
             label = f"{history.entity_label(entity)}: {name}" if entity else name
-            axes.plot(rows["time"], drawn(rows, column, history), label=label, color=COLOURS[count % len(COLOURS)],
-                      linestyle=LINES[(count // len(COLOURS)) % len(LINES)])
+            axes.plot(rows["time"], drawn(rows, column, history), label=label, **line_style(count))
             count += 1
     axes.set_xlabel("time")
     axes.margins(x=0.0)
@@ -251,46 +268,35 @@ def drawn(rows, column, history):
 
 def history_figure(results, requests):
     """A figure with one panel per request, below each other."""
-    with plt.rc_context(STYLE):
-        figure, panels = plt.subplots(len(requests), 1, squeeze=False, layout="constrained",
-                                      sharex=True, figsize=(PAGE_WIDTH, 2.6 * len(requests)))
-        for axes, request in zip(panels[:, 0], requests):
+    with page(results, len(requests), 2.6 * len(requests), sharex=True) as (figure, panels):
+        for axes, request in zip(panels, requests):
             draw_history(axes, results, request)
             axes.set_title(request.partition(":")[0], loc="left")
-        for axes in panels[:-1, 0]:
-            axes.set_xlabel("")
-        figure.suptitle(run_title(results), fontsize=9)
-        return figure
+    return figure
 
-
-# ---- contact pressure --------------------------------------------------------------------------
 
 def contact_figure(results, states=("-1",)):
     """Contact pressure over the arc length of each slave surface at the given states."""
     contact = results.history("contact")
-    interfaces = sorted(set(contact["interface"].tolist()))
+    interfaces = np.unique(contact["interface"]).tolist()
     if not interfaces:
         raise ResultsError(f"{results.path}: the contact table is empty")
-    with plt.rc_context(STYLE):
-        figure, panels = plt.subplots(len(interfaces), 1, squeeze=False, layout="constrained",
-                                      figsize=(PAGE_WIDTH, 2.8 * len(interfaces)))
-        for axes, interface in zip(panels[:, 0], interfaces):
+    with page(results, len(interfaces), 2.8 * len(interfaces)) as (figure, panels):
+        for axes, interface in zip(panels, interfaces):
             rows = contact.where(interface=interface)
             known = np.unique(rows["time"])
             for count, state in enumerate(states):
-                time = results.times[results.state_index(state)]
-                nearest = known[np.argmin(np.abs(known - time))]
-                chain = rows.where(time=nearest)
+                time = known[np.argmin(np.abs(known - results.times[results.state_index(state)]))]
+                chain = rows.where(time=time)
                 axes.plot(chain["s"], chain["pressure"], marker="o", markersize=2.5,
-                          color=COLOURS[count % len(COLOURS)], label=f"t = {nearest:.4g}")
+                          color=COLOURS[count % len(COLOURS)], label=f"t = {time:.4g}")
             axes.set_title(f"interface {interface}", loc="left")
             axes.set_xlabel("arc length s along the slave surface")
             axes.set_ylabel("contact pressure")
             axes.set_ylim(0.0, 1.08 * axes.dataLim.ymax or 1.0)
             axes.grid(True, linewidth=0.3, color="#bbbbbb")
             axes.legend()
-        figure.suptitle(run_title(results), fontsize=9)
-        return figure
+    return figure
 
 
 # ---- the report picture ------------------------------------------------------------------------
@@ -300,10 +306,8 @@ def report_figure(results, state="-1", name=None, scale=1.0):
     field = scalar_field(results, name or default_field(results))
     state = results.state_index(state)
     panels = report_requests(results)
+    zoom = window(results, [state], scale)
     with plt.rc_context(STYLE):
-        scratch = plt.figure()
-        zoom = frame(scratch.add_subplot(), results, [state], scale)
-        plt.close(scratch)
         heights = [panel_height(zoom, PAGE_WIDTH - 1.9) + 0.9, 2.6][:1 + bool(panels)]
         figure = plt.figure(figsize=(PAGE_WIDTH, sum(heights)), layout="constrained")
         parts = figure.subfigures(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0]
@@ -333,24 +337,6 @@ def report_requests(results):
     elif "nodout" in results.histories and len(results.history("nodout")):
         panels.append(("nodout:uy", "displacement in y"))
     return panels
-
-
-def choose_figure(results, field=None, states=(), scale=1.0, zoom=None, history=(), contact=False, zones=False):
-    """The figure that is asked for: histories, contact pressure, zones of stick and slip, a field, or without any of
-    these a field above the energies and the contact force."""
-    if sum(map(bool, (history, contact, zones))) > 1:
-        raise ResultsError("choose one of history, contact and zones")
-    shown = list(states) or ["-1"]
-    if history:
-        return history_figure(results, list(history))
-    if contact:
-        return contact_figure(results, shown)
-    if zones:
-        from slideline_tools.zones import zones_figure
-        return zones_figure(results, shown)
-    if field or states or zoom:
-        return field_figure(results, field, shown, scale, zoom)
-    return report_figure(results, scale=scale)
 
 
 def save(figure, path):

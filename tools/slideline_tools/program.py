@@ -20,7 +20,7 @@ import urllib.parse
 import urllib.request
 
 from slideline_tools import UserError
-from slideline_tools.histories import History, read_csv, require_pandas
+from slideline_tools.histories import History, read_csv
 from slideline_tools.names import missing, nearest, one_line
 from slideline_tools.results import Results
 
@@ -206,7 +206,8 @@ class Sweep:
     def frame(self, measure: typing.Callable[[Outcome], typing.Mapping[str, typing.Any]]
               ) -> pandas.DataFrame:
         """The same as a pandas DataFrame."""
-        return require_pandas().DataFrame(self.table(measure))
+        import pandas
+        return pandas.DataFrame(self.table(measure))
 
 
 def sweep(deck: str | os.PathLike, folder: str | os.PathLike | None = None, *,

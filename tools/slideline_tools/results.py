@@ -22,7 +22,7 @@ import h5py
 import numpy as np
 
 from slideline_tools import UserError
-from slideline_tools.files import source
+from slideline_tools.files import ENDINGS, find_run, source
 from slideline_tools.histories import TABLES, History, from_hdf5, read_csv
 from slideline_tools.names import missing, one_line
 
@@ -54,16 +54,8 @@ def read(path: str | os.PathLike) -> Results:
 def open_run(path: str | os.PathLike) -> Results:
     """The results of a run by its folder, its results file or another of its files."""
     path = pathlib.Path(path)
-    if path.is_dir():
-        found = sorted(path.glob("*.vtkhdf"))
-        if len(found) != 1:
-            names = ", ".join(file.name for file in found)
-            raise ResultsError(f"{path}: " + (f"several runs: {names}; name one" if found
-                                              else "no results file (.vtkhdf)"))
-        return Results(found[0])
-    for ending in (".log", ".effective.k", ".timing.csv", *(f".{name}.csv" for name in TABLES)):
-        if path.name.endswith(ending):
-            return Results(path.with_name(path.name[:-len(ending)] + ".vtkhdf"))
+    if path.is_dir() or path.name.endswith(ENDINGS):
+        path = pathlib.Path(f"{find_run(path, '.vtkhdf')}.vtkhdf")
     return Results(path)
 
 

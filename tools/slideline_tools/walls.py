@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from slideline_tools.advise.run_deck import read_blocks
-from slideline_tools.advise.run_log import Wall
+from slideline_tools.effective_deck import read_blocks
+from slideline_tools.run_log import Wall
 
 COLOUR = "#333333"
 
@@ -13,21 +13,17 @@ COLOUR = "#333333"
 def walls_of(deck: str) -> list[Wall]:
     """The walls of a deck as run; none where a card can not be read."""
     found: list[Wall] = []
-    if "*RIGIDWALL_PLANAR" not in deck.upper():
-        return found
-    for block in read_blocks(deck):
-        if not block.keyword.startswith("RIGIDWALL_PLANAR"):
-            continue
-        titled = block.keyword.endswith(("_TITLE", "_ID"))
+    for block in read_blocks(deck, "RIGIDWALL_PLANAR") if "*RIGIDWALL_PLANAR" in deck.upper() else ():
         try:
-            row = [float(word or 0.0) for word in (block.fields(1 + titled) + [""] * 6)[:6]]
-            number = int(block.lines[0][:10]) if titled and block.lines[0][:10].strip().isdigit() else 0
-        except (ValueError, IndexError):
+            row = [float(word or 0.0) for word in (block.fields(1 + block.is_titled) + [""] * 6)[:6]]
+        except ValueError:
             continue
         arrow = (row[3] - row[0], row[4] - row[1])
         size = math.hypot(*arrow)
         if size > 0.0 and math.isfinite(size):
-            found.append(Wall(number or len(found) + 1, (row[0], row[1]), (arrow[0] / size, arrow[1] / size)))
+            number = block.number(0) if block.is_titled else 0
+            found.append(Wall(number or len(found) + 1, (row[0], row[1]),
+                              (arrow[0] / size, arrow[1] / size)))
     return found
 
 

@@ -4,10 +4,10 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
-from slideline_tools.advise.run_log import read_log
 from slideline_tools.files import source
 from slideline_tools.plots import COLOURS, PAGE_WIDTH, STYLE, plt, run_title
 from slideline_tools.results import ResultsError
+from slideline_tools.run_log import read_log
 
 #: Column `state` of the contact table: words and shade of 0, 1, ...
 STATES = (("open", "#f4f4f4"), ("stick", "#0b559f"), ("slip", "#f0a030"), ("tied", "#2e7d32"), ("broken", "#8c8c8c"))
@@ -62,30 +62,25 @@ def add_legend(figure, contact):
                   loc="outside lower center", ncols=len(STATES), frameon=False, fontsize=8)
 
 
-def limit_of(results, interface):
-    """(coefficient at rest, largest friction stress or 0) of an interface by the log beside the results; None where
-    nothing tells, and where the coefficient depends on the speed."""
-    log = results.path.with_suffix(".log")
-    if not log.exists():
-        return None
-    one = read_log(source(log).read_text(encoding="utf-8", errors="replace")).interfaces.get(int(interface))
-    if one is None or not one.friction or (one.decay and one.sliding_friction != one.friction):
+def limit_of(log, interface):
+    """(coefficient at rest, largest friction stress or 0) of an interface by the log of its run;
+    None where it does not tell, and where the coefficient depends on the speed."""
+    one = log.interfaces.get(int(interface))
+    if not one or not one.friction or (one.decay and one.sliding_friction != one.friction):
         return None
     return one.friction, one.most_friction
 
 
-def draw_tractions(axes, results, chain, interface, states):
-    """|traction| along one chain at some states; mu p as a broken line where the coefficient is one number."""
-    limit, known = limit_of(results, interface), np.unique(chain["time"])
-    for count, state in enumerate(states):
-        time = known[np.argmin(np.abs(known - results.times[results.state_index(state)]))]
+def draw_tractions(axes, chain, times, limit):
+    """|traction| along one chain at some times; mu p as a broken line where `limit` is known."""
+    known = np.unique(chain["time"])
+    for count, wanted in enumerate(times):
+        time = known[np.argmin(np.abs(known - wanted))]
         rows, colour = chain.where(time=time), COLOURS[count % len(COLOURS)]
-        axes.plot(rows["s"], np.abs(rows["traction"]), color=colour, marker="o", markersize=2.0, linewidth=1.0,
-                  label=f"t = {time:.4g}")
+        axes.plot(rows["s"], np.abs(rows["traction"]), color=colour, marker="o", markersize=2.0,
+                  linewidth=1.0, label=f"t = {time:.4g}")
         if limit:
-            most = limit[0] * rows["pressure"]
-            if limit[1]:
-                most = np.minimum(most, limit[1])
+            most = np.minimum(limit[0] * rows["pressure"], limit[1] or np.inf)
             axes.plot(rows["s"], most, color=colour, linestyle="--", linewidth=0.8,
                       label="what friction allows" if limit[1] else f"mu p, mu {limit[0]:g}")
     axes.set_xlabel("arc length s along the slave")
@@ -95,21 +90,33 @@ def draw_tractions(axes, results, chain, interface, states):
     axes.legend(fontsize=7)
 
 
-def zones_figure(results, states=("-1",)):
-    """One row for each chain of each interface with friction: stick and slip over time, tractions at the states."""
-    contact = results.history("contact")
+def zones_figure(contact, times, log):
+    """One row for each chain of each interface with friction: stick and slip over time, tractions
+    at some times with what friction allows by the log; None where no node ever stuck or slipped."""
     if "state" not in contact or not np.any(contact["state"]):
-        raise ResultsError(f"{results.path}: no slave node ever stuck or slipped (its contact table tells of no friction)")
-    with_friction = [number for number in np.unique(contact["interface"]).tolist()
-                     if np.any(contact.where(interface=number)["state"])]
-    chains = [(number, chain) for number in with_friction for chain in chains_of(contact.where(interface=number))]
+        return None
+    chains = [(number, chain) for number in np.unique(contact["interface"]).tolist()
+              if np.any((rows := contact.where(interface=number))["state"])
+              for chain in chains_of(rows)]
     with plt.rc_context(STYLE):
         figure, panels = plt.subplots(len(chains), 2, squeeze=False, layout="constrained",
                                       figsize=(PAGE_WIDTH + 1.5, 0.6 + PANEL * len(chains)))
         for (left, right), (number, chain) in zip(panels, chains):
             draw_zones(left, chain)
             left.set_title(f"interface {number}", loc="left")
-            draw_tractions(right, results, chain, number, states)
+            draw_tractions(right, chain, times, limit_of(log, number))
         add_legend(figure, contact)
-        figure.suptitle(run_title(results), fontsize=9)
         return figure
+
+
+def zones_of(results, states=("-1",)):
+    """The same of a run at its states; the log beside its results tells what friction allows."""
+    log = results.path.with_suffix(".log")
+    text = source(log).read_text(encoding="utf-8", errors="replace") if log.exists() else ""
+    times = [results.times[results.state_index(state)] for state in states]
+    figure = zones_figure(results.history("contact"), times, read_log(text))
+    if figure is None:
+        raise ResultsError(f"{results.path}: no slave node ever stuck or slipped (its contact table "
+                           "tells of no friction)")
+    figure.suptitle(run_title(results), fontsize=9)
+    return figure

@@ -6,7 +6,7 @@ import numpy as np
 
 from slideline_tools.advise import geometry
 from slideline_tools.advise.report import Advice
-from slideline_tools.advise.run_deck import material_keyword
+from slideline_tools.effective_deck import material_keyword
 
 # What a plastic law and bulk viscosity add to a one-point quad, in elastic ones without
 # viscosity. Measured in turn on meshes of 960 and 3840 elements: 0.05 to 0.2, 0.5 to 0.6.
@@ -66,7 +66,7 @@ def never_yielded(run) -> list[Advice]:
             f"plastic strain 0 in all {own.sum()} elements at the end; largest Mises stress at "
             f"{len(mises)} states {mises[:, own].max():.3g}, yield stress {yield_stress:.3g}",
             f"material {part.material}: *MAT_ELASTIC with the same MID, RO, E, PR in place of "
-            f"{material_keyword(run.blocks, part.material)}{shared}",
+            f"{material_keyword(run.deck, part.material)}{shared}",
             element_seconds(run, {part.id: PLASTIC_EXTRA}),
             f"a plastic element costs {1.0 + PLASTIC_EXTRA} elastic ones"))
     return advice

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import os
 import pathlib
 
 from slideline_tools import UserError
-from slideline_tools.advise.run_deck import Block, read_blocks
-from slideline_tools.advise.run_log import RunLog, read_log
-from slideline_tools.files import source
-from slideline_tools.histories import TABLES, History, read_csv
+from slideline_tools.draw.model import Model, check_deck
+from slideline_tools.files import ENDINGS, TABLES, find_run, source
+from slideline_tools.histories import History, read_csv
+from slideline_tools.program import find_program
 from slideline_tools.results import Results, ResultsError, read
+from slideline_tools.run_log import RunLog, read_log
 
-OTHER_ENDINGS = (".vtkhdf", ".timing.csv", ".log", ".effective.k")
 # File systems that keep access times the way POSIX says, unless mounted noatime.
 TRUSTED = ("ext2", "ext3", "ext4", "xfs", "btrfs", "tmpfs", "f2fs", "zfs")
-
-
-class RunError(UserError):
-    """A folder or file that is no finished run."""
 
 
 @dataclasses.dataclass
@@ -38,7 +35,6 @@ class Finished:
     seconds: dict[str, float]
     tables: dict[str, History]
     results: Results | None
-    blocks: list[Block]
     stamps: dict[str, os.stat_result]
     keeps_access_time: bool
 
@@ -62,6 +58,24 @@ class Finished:
         return self.seconds_of("solver") > 0.0
 
     @property
+    def n_element(self) -> int:
+        """Elements of all parts."""
+        return sum(part.n_element for part in self.log.parts.values())
+
+    @property
+    def deck(self) -> str:
+        """The deck as run; empty where it is not there."""
+        return read_text(f"{self.folder / self.job}.effective.k")
+
+    @functools.cached_property
+    def model(self) -> Model | None:
+        """The deck as run as the program reads it; None where it can not."""
+        try:
+            return check_deck(f"{self.folder / self.job}.effective.k", find_program())
+        except UserError:
+            return None
+
+    @property
     def options(self) -> str:
         """The command line."""
         return self.results.run.get("options", "") if self.results else ""
@@ -69,41 +83,21 @@ class Finished:
 
 def read_run(path) -> Finished:
     """The run whose folder, or any file, is `path`; the access times of its files stay."""
-    folder, job = find_job(pathlib.Path(path))
-    prefix = folder / job
-    stamps = {ending: os.stat(f"{prefix}{ending}") for ending in endings()
+    prefix = find_run(path, ".log")
+    folder, job = prefix.parent, prefix.name
+    stamps = {ending: os.stat(f"{prefix}{ending}") for ending in ENDINGS
               if os.path.exists(f"{prefix}{ending}")}
     for needed in (".log", ".timing.csv"):
         if needed not in stamps:
-            raise RunError(f"{prefix}{needed} is missing: not a finished run")
+            raise UserError(f"{prefix}{needed} is missing: not a finished run")
     try:
         return Finished(
             folder, job, read_log(read_text(f"{prefix}.log")), read_timing(prefix),
             {name: read_csv(f"{prefix}.{name}.csv") for name in TABLES
              if f".{name}.csv" in stamps},
-            read_states(prefix), read_blocks(read_text(f"{prefix}.effective.k")), stamps,
-            keeps_access_time(folder))
+            read_states(prefix), stamps, keeps_access_time(folder))
     finally:
         put_back(prefix, stamps)
-
-
-def endings() -> list[str]:
-    """What the names of result files end with, behind the job."""
-    return [f".{name}.csv" for name in TABLES] + list(OTHER_ENDINGS)
-
-
-def find_job(path: pathlib.Path) -> tuple[pathlib.Path, str]:
-    """Folder and job name from a folder with one run, or from a file of a run."""
-    if path.is_dir():
-        jobs = sorted(file.name[:-len(".log")] for file in path.glob("*.log"))
-        if len(jobs) != 1:
-            found = "no run (no .log)" if not jobs else f"several runs: {', '.join(jobs)}"
-            raise RunError(f"{path}: {found}; name a file of one")
-        return path, jobs[0]
-    for ending in endings():
-        if path.name.endswith(ending):
-            return path.parent, path.name[:-len(ending)]
-    raise RunError(f"{path}: neither a results folder nor a file of a run")
 
 
 def read_text(path: str) -> str:
@@ -119,7 +113,7 @@ def read_timing(prefix) -> dict[str, float]:
     table = read_csv(f"{prefix}.timing.csv")
     seconds = dict(zip(table["phase"].tolist(), table["seconds"].tolist()))
     if seconds.get("total", 0.0) <= 0.0:
-        raise RunError(f"{prefix}.timing.csv: no total")
+        raise UserError(f"{prefix}.timing.csv: no total")
     return seconds
 
 

@@ -44,15 +44,6 @@ def smallest_limit_ratio(run) -> float:
     return float(min(limits) / limits[0])
 
 
-def boundary_edges(cells: np.ndarray) -> np.ndarray:
-    """(n, 2) nodes of the edges that belong to one element only."""
-    edges = np.vstack([cells[:, [k, (k + 1) % 4]] for k in range(4)])
-    edges = edges[edges[:, 0] != edges[:, 1]]
-    ordered = np.sort(edges, axis=1)
-    _, first, counts = np.unique(ordered, axis=0, return_index=True, return_counts=True)
-    return edges[first[counts == 1]]
-
-
 def mirror_pairs(points: np.ndarray, axis: int) -> np.ndarray | None:
     """Node that each node falls upon when the mesh is mirrored about its middle; None if any
     falls beside. `axis` 0 mirrors x, 1 mirrors y."""

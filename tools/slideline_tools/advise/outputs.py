@@ -36,7 +36,7 @@ def written(run) -> dict[str, np.ndarray]:
 
 def weight(run, times: dict[str, np.ndarray]) -> float:
     """Weight of writing these times."""
-    n_element = sum(part.n_element for part in run.log.parts.values())
+    n_element = run.n_element
     cycles = len(np.unique(np.concatenate([*times.values(), [0.0]])))
     total = START + cycles * (CYCLE + CYCLE_ELEMENT * n_element)
     for name, when in times.items():

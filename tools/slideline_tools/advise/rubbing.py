@@ -6,7 +6,7 @@ import numpy as np
 
 from slideline_tools.advise.report import Advice
 
-STICK, SLIP = 1, 2
+SLIP = 2  # states 1 and 2: stick and slip
 # Friction counts for nothing: largest traction over mu p, and work over the largest energy of the run, below these at so
 # many states in contact.
 NO_TRACTION, NO_WORK, STATES_IN_CONTACT = 0.01, 1.0e-4, 10
@@ -44,16 +44,16 @@ def needless_friction(run) -> list[Advice]:
         pressed = rows["pressure"] > 0.0
         states = len(np.unique(rows["time"][pressed]))
         scale = largest_energy(run)
-        if states < STATES_IN_CONTACT or interface.dissipated is None or not scale:
+        if states < STATES_IN_CONTACT or not scale:
             continue
         most = interface.friction * rows["pressure"].max()
         traction = float(np.abs(rows["traction"]).max()) / most
-        work = abs(interface.dissipated) / scale
+        work = np.abs(run.tables["glstat"]["friction"]).max() / scale  # of all interfaces
         if traction > NO_TRACTION or work > NO_WORK:
             continue
         advice.append(Advice(
             "needless friction", f"Friction of {interface.label} does nothing worth naming.",
-            f"its largest traction at {states} states in contact is {traction:.1%} of mu times the largest pressure, its work "
+            f"its largest traction at {states} states in contact is {traction:.1%} of mu times the largest pressure, the work of friction "
             f"{work:.1g} of the largest energy", f"leave FS out on the contact card of interface {interface.id} (command line: fs.{interface.id}=0)",
             None, "contact without tangential springs"))
     return advice

@@ -34,7 +34,7 @@ def mean_step(run) -> float:
 def unknown_limits(run) -> str:
     """Why the step limits of elements or springs cannot be known; empty when they can."""
     interfaces = run.log.interfaces.values()
-    if automatic := [str(one.id) for one in interfaces if one.is_automatic]:
+    if automatic := [str(one.id) for one in interfaces if one.stable_share]:
         return f"the penalty follows the step (PUNIT 3, interface {', '.join(automatic)})"
     if run.results is None:
         return "no states of the run"
@@ -45,7 +45,7 @@ def unknown_limits(run) -> str:
     if unread := [str(one.id) for one in interfaces if not one.slave_penalty > 0.0]:
         return f"the log has no penalty of interface {', '.join(unread)}"
     if len(read_surfaces(run)) < len(run.log.interfaces):
-        return "the effective deck does not show the surfaces of all interfaces as lists"
+        return "the surfaces of some interface are not known (it touches itself, or no program reads the deck as run)"
     if not np.isfinite(geometry.smallest_limit_ratio(run)):
         return "the log has no wave speed of some material"
     mass = geometry.lumped_mass(run)
@@ -134,13 +134,12 @@ def many_threads(run) -> list[Advice]:
     """More threads than the mesh feeds."""
     found = re.search(r"\bncpu=(\d+)", run.options)
     threads = int(found[1]) if found else 1
-    n_element = sum(part.n_element for part in run.log.parts.values())
-    enough = max(1, -(-n_element // ELEMENTS_A_THREAD))
+    enough = max(1, -(-run.n_element // ELEMENTS_A_THREAD))
     if threads <= enough:
         return []
     return [Advice(
         "threads", f"{threads} threads are more than this mesh feeds.",
-        f"{n_element} elements, {n_element // threads} a thread",
+        f"{run.n_element} elements, {run.n_element // threads} a thread",
         f"ncpu={enough} on the command line; the results have the same bits", None,
         f"{threads - enough} cores free for {run.total:.2g} s")]
 

@@ -1,62 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""The two surfaces of each interface, from the effective deck and the mesh."""
+"""The two surfaces of each interface as the program walks them, and what their springs allow."""
 from __future__ import annotations
-
-import dataclasses
 
 import numpy as np
 
-from slideline_tools.advise import geometry
-from slideline_tools.advise.run_deck import contact_blocks, sets, whole_number
-
+from slideline_tools.draw.surface import Surface
 
 # Types that leave out what hangs over a chain's end; points of the others stand for half a segment
 # beyond it.
 COVERING = (5, 7)
 
 
-@dataclasses.dataclass
-class Surface:
-    """Indices of nodes, and of the two ends of each segment (n, 2)."""
-
-    nodes: np.ndarray
-    segments: np.ndarray
-
-    def lengths(self, points: np.ndarray) -> np.ndarray:
-        """Length of each segment, m."""
-        ends = points[self.segments]
-        return np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-
-
 def read_surfaces(run) -> dict[int, tuple[Surface, Surface]]:
-    """Slave and master of each interface by its number; those not understood are left out."""
-    blocks = contact_blocks(run.blocks)
-    if run.results is None or len(blocks) != len(run.log.interfaces):
+    """Slave and master of each interface by its number, with the indices of the results; those that
+    touch themselves are left out."""
+    if run.results is None or run.model is None or not np.array_equal(
+            run.results.point_field("node_id")[0], run.model.node_ids):
         return {}
-    found = {}
-    for interface, block in zip(run.log.interfaces.values(), blocks):
-        fields = block.fields(0)
-        try:
-            pair = [read_surface(run, whole_number(field)) for field in fields[:2]]
-        except (KeyError, ValueError):
-            continue
-        if len(pair) == 2 and [len(side.nodes) for side in pair] == [interface.n_slave,
-                                                                     interface.n_master]:
-            found[interface.id] = (pair[0], pair[1])
-    return found
-
-
-def read_surface(run, number: int) -> Surface:
-    """A node set in walking order (negative number) or the boundary of a part set."""
-    results = run.results
-    if number < 0:
-        index = {int(node): k for k, node in enumerate(results.point_field("node_id")[0])}
-        nodes = np.array([index[node] for node in sets(run.blocks, "NODE")[-number]])
-        return Surface(np.unique(nodes), np.stack([nodes[:-1], nodes[1:]], axis=1))
-    parts = sets(run.blocks, "PART")[number]
-    edges = geometry.boundary_edges(
-        results.cells[np.isin(results.cell_field("part_id")[0], parts)])
-    return Surface(np.unique(edges), edges)
+    return {one.id: (one.slave, one.master) for one in run.model.interfaces
+            if len(one.slave.segments) and len(one.master.segments)
+            and not np.isin(one.slave.segments, one.master.segments).any()}
 
 
 def spring_limit(run, interface, pair: tuple[Surface, Surface], mass: np.ndarray) -> float:
@@ -66,8 +29,7 @@ def spring_limit(run, interface, pair: tuple[Surface, Surface], mass: np.ndarray
     contact at time zero: the bound that the program itself warns by (doc/theory/contact.md, 7).
     """
     points = run.results.points[0][:, :2]
-    slave, master = ((side.lengths(points), np.searchsorted(side.nodes, side.segments),
-                      mass[side.nodes]) for side in pair)
+    slave, master = (local(side, points, mass) for side in pair)
     overhang = 0.0 if interface.ctype in COVERING else 0.5
     slave_ratio = interface.slave_penalty * competence(slave)
     master_ratio = interface.slave_penalty * most_on_nodes(master, slave[0].max(), overhang)
@@ -85,11 +47,16 @@ def spring_limit(run, interface, pair: tuple[Surface, Surface], mass: np.ndarray
     return float(2.0 / np.sqrt(max(stiffest, 1.0e-300)) * damping)
 
 
+def local(side: Surface, points: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Lengths of the segments, their ends by place among the nodes, and masses of the nodes."""
+    nodes, ends = np.unique(side.segments, return_inverse=True)
+    return side.lengths(points), ends.reshape(-1, 2), mass[nodes]
+
+
 def competence(side) -> np.ndarray:
     """Half of the segments beside each node, m; `side` = lengths, local ends, masses."""
     lengths, ends, mass = side
-    return 0.5 * (np.bincount(ends[:, 0], lengths, len(mass))
-                  + np.bincount(ends[:, 1], lengths, len(mass)))
+    return 0.5 * np.bincount(ends.ravel(), np.repeat(lengths, 2), len(mass))
 
 
 def most_on_nodes(side, s: float, overhang: float, at_equal_distances: bool = False):
@@ -101,8 +68,8 @@ def most_on_nodes(side, s: float, overhang: float, at_equal_distances: bool = Fa
     else:
         share = 0.5 * h + np.where(s <= 2.0 * h, s ** 2 / (8.0 * h), 0.5 * (s - h))
     beside = np.bincount(ends.ravel(), minlength=len(mass))
-    return (overhang * s * (2 - beside) + np.bincount(ends[:, 0], share, len(mass))
-            + np.bincount(ends[:, 1], share, len(mass)))
+    return (overhang * s * (2 - beside)
+            + np.bincount(ends.ravel(), np.repeat(share, 2), len(mass)))
 
 
 def never_near(run, pair: tuple[Surface, Surface], largest: float = 2.0e8) -> float | None:
@@ -114,9 +81,8 @@ def never_near(run, pair: tuple[Surface, Surface], largest: float = 2.0e8) -> fl
     """
     results = run.results
     slave, master = pair
-    spans = np.diff(results.times).max()
     speed = np.linalg.norm(results.point_field("velocity"), axis=2).max()
-    reach = 2.0 * 1.5 * speed * 0.5 * spans
+    reach = 2.0 * 1.5 * speed * 0.5 * np.diff(results.times).max()
     if len(slave.nodes) * len(master.nodes) * len(results.times) > largest:
         return None
     nearest = np.inf

@@ -147,8 +147,8 @@ def long_surface(run) -> list[Advice]:
 def long_flight(run) -> list[Advice]:
     """Free flight before anything touches."""
     glstat = run.tables.get("glstat")
-    if ("rcforc" not in run.tables or glstat is None or run.results is None or run.log.driven
-            or run.is_implicit or not run.log.interfaces):
+    if ("rcforc" not in run.tables or glstat is None or run.results is None
+            or np.any(glstat["external_work"]) or run.is_implicit or not run.log.interfaces):
         return []
     rows = run.tables["rcforc"].where(side="slave")
     active = rows["n_active"] > 0
@@ -211,14 +211,6 @@ def dear_type(run) -> list[Advice]:
     return advice
 
 
-def missed_target(run) -> list[Advice]:
-    """Targets of the estimate of contact that were not kept, with what the run says would keep them."""
-    return [Advice("missed target", f"{interface.label} does not keep its target of {interface.missed[0]}.",
-                   f"pressure and the stress behind it differ by {interface.estimate}", interface.missed[1], None,
-                   "costs time; figures of doc/studies/choosing.md, as the log has them")
-            for interface in run.log.interfaces.values() if interface.missed]
-
-
 def judged(run, number: int) -> str:
     """What an interface tells of its own answer, where sleout was written."""
     if (table := run.tables.get("sleout")) is None or "estimate" not in table:
@@ -230,4 +222,4 @@ def judged(run, number: int) -> str:
     return f"; pressure and the stress behind it differ by {rows['estimate'][at]:.1%} where its springs store most"
 
 
-CHECKS = (never_touched, touched_for_a_while, long_surface, long_flight, dear_type, missed_target)
+CHECKS = (never_touched, touched_for_a_while, long_surface, long_flight, dear_type)

@@ -19,6 +19,7 @@ import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.draw.surface import Surface
+from slideline_tools.names import counted
 from slideline_tools.program import not_run
 
 DIRECTIONS = {1: "x", 2: "y", 3: "turn about z"}
@@ -31,6 +32,11 @@ LONGEST = 120.0   # seconds that the program may take
 
 class ModelError(UserError):
     """A deck that the program refuses, or a program that cannot be run."""
+
+
+def labelled(kind: str, one) -> str:
+    """What a thing is called: its kind, its number and its title."""
+    return f"{kind} {one.id}" + (f' "{one.title}"' if one.title else "")
 
 
 @dataclasses.dataclass
@@ -50,7 +56,7 @@ class Part:
     @property
     def label(self) -> str:
         """Words for a reader."""
-        return f'part {self.id}' + (f' "{self.title}"' if self.title else "")
+        return labelled("part", self)
 
 
 @dataclasses.dataclass
@@ -64,7 +70,7 @@ class NodeSet:
     @property
     def label(self) -> str:
         """Words for a reader."""
-        return f"set {self.id}" + (f' "{self.title}"' if self.title else "")
+        return labelled("set", self)
 
 
 @dataclasses.dataclass
@@ -83,7 +89,7 @@ class Interface:
     @property
     def label(self) -> str:
         """Words for a reader."""
-        return f"interface {self.id}" + (f' "{self.title}"' if self.title else "") + f" (type {self.ctype})"
+        return f"{labelled('interface', self)} (type {self.ctype})"
 
 
 @dataclasses.dataclass
@@ -127,7 +133,6 @@ class Model:
         self.parts = self._parts(told)
         self.node_sets = {one["id"]: NodeSet(one["id"], one["title"], self.indices(one["nodes"]))
                           for one in told["node_sets"]}
-        self.part_sets = {one["id"]: one["parts"] for one in told["part_sets"]}
         self.interfaces = [Interface(one["id"], one["title"], one["type"], one["formulation"],
                                      one["friction"], one["sliding_friction"],
                                      *(Surface(self.indices(one[side]).reshape(-1, 2)) for side in ("slave", "master")))
@@ -138,7 +143,7 @@ class Model:
         self.fixed = np.zeros((len(self.points), 2), dtype=bool)
         self.fixed[self.indices(told["fixed"]["node"]), np.array(told["fixed"]["direction"], dtype=int) - 1] = True
         self.velocity = self._velocity(told)
-        self.arrows = [*self._motions(told), *self._loads(told)]
+        self.arrows = self._arrows(told)
         self.not_drawn = [words for name, words in NOT_DRAWN.items() if told.get(name)]
 
     def indices(self, nodes: typing.Sequence[int]) -> np.ndarray:
@@ -169,14 +174,11 @@ class Model:
     def _parts(self, told: dict) -> dict[int, Part]:
         """Parts, and how those that are rigid are held."""
         bodies = {one["part"]: one for one in told["rigid_bodies"]}
-        parts = {}
-        for one in told["parts"]:
-            body = bodies.get(one["id"], {})
-            parts[one["id"]] = Part(one["id"], one["title"], one["section"], one["material"], one["law"],
-                                    int(np.sum(self.cell_parts == one["id"])), bool(body),
-                                    (body.get("held_x", False), body.get("held_y", False)),
-                                    body.get("held_turn", False))
-        return parts
+        return {one["id"]: Part(one["id"], one["title"], one["section"], one["material"], one["law"],
+                                int(np.sum(self.cell_parts == one["id"])), bool(body),
+                                (body.get("held_x", False), body.get("held_y", False)),
+                                body.get("held_turn", False))
+                for one in told["parts"] for body in [bodies.get(one["id"], {})]}
 
     def _velocity(self, told: dict) -> np.ndarray:
         """(n_node, 2) at the start: that of its nodes, and of bodies that have one of their own, as far as they are
@@ -193,41 +195,28 @@ class Model:
                                    + spin * np.stack([-arm[:, 1], arm[:, 0]], axis=1))
         return velocity
 
-    def _motions(self, told: dict) -> list[Arrows]:
-        """Prescribed motions of nodes and bodies; those with one curve, factor and direction together."""
+    def _arrows(self, told: dict) -> list[Arrows]:
+        """Prescribed motions and loads; those with one curve, factor and direction together."""
         found = []
-        for (direction, kind, curve, scale), nodes in groups(told["motions"], "node"):
-            size = self.peak(curve, scale)
-            what = f"{QUANTITIES[kind]} of {whom(nodes)} in {DIRECTIONS[direction]}, curve {curve}, peak {size:.4g}"
-            places = self.points[self.indices(nodes)]
-            found.append(Arrows("motion", what, places, along(direction, size, len(places))))
-        for (direction, kind, curve, scale), parts in groups(told.get("body_motions", {}), "part"):
-            size = self.peak(curve, scale)
-            what = (f"{QUANTITIES[kind]} of part {listed(parts)} in {DIRECTIONS[direction]}, curve {curve}, "
-                    f"peak {size:.4g}")
-            places = np.array([self.centre(part) for part in parts])
-            found.append(Arrows("motion", what, places, along(direction, size, len(places))))
-        return found
-
-    def _loads(self, told: dict) -> list[Arrows]:
-        """Loads on nodes, edges, rigid bodies and the whole."""
-        found = []
-        for name, column in (("nodal_loads", "node"), ("rigid_loads", "part")):
-            for (direction, curve, scale), members in groups(told.get(name, {}), column):
+        for name, kind, column in (("motions", "motion", "node"), ("body_motions", "motion", "part"),
+                                   ("nodal_loads", "load", "node"), ("rigid_loads", "load", "part")):
+            for (direction, *quantity, curve, scale), members in groups(told.get(name, {}), column):
                 size = self.peak(curve, scale)
-                on = whom(members) if column == "node" else f"part {listed(members)}"
-                label = (f"load on {on} in {DIRECTIONS[direction]}, curve {curve}, peak {size:.4g}"
-                         + (" on each" if len(members) > 1 else ""))
+                what = f"{QUANTITIES[quantity[0]]} of" if quantity else "load on"
+                on = (f"part {', '.join(map(str, members))}" if column == "part" else
+                      f"{len(members)} nodes" if len(members) > 1 else f"node {members[0]}")
+                label = (f"{what} {on} in {DIRECTIONS[direction]}, curve {curve}, peak {size:.4g}"
+                         + (" on each" if kind == "load" and len(members) > 1 else ""))
                 places = (self.points[self.indices(members)] if column == "node"
                           else np.array([self.centre(part) for part in members]))
-                found.append(Arrows("load", label, places, along(direction, size, len(places))))
+                found.append(Arrows(kind, label, places, along(direction, size, len(places))))
         pressures = told["pressures"]
         edges = {**{name: pressures[name] for name in ("curve", "scale")},
                  "edge": list(zip(pressures["first"], pressures["second"]))}
         for (curve, scale), pairs in groups(edges, "edge"):
             size = self.peak(curve, scale)
             segments = self.indices(np.ravel(pairs)).reshape(-1, 2)
-            label = f"pressure on {len(pairs)} segment{'s' * (len(pairs) > 1)}, curve {curve}, peak {size:.4g}"
+            label = f"pressure on {counted(len(pairs), 'segment')}, curve {curve}, peak {size:.4g}"
             found.append(Arrows("pressure", label, self.points[segments].mean(axis=1),
                                 -size * Surface(segments).normals(self.points)))
         for (direction, curve, scale), _ in groups(told["body_loads"]):
@@ -235,6 +224,11 @@ class Model:
             label = f"body load in {DIRECTIONS[direction]}, curve {curve}, acceleration {size:.4g}"
             middle = 0.5 * (self.points.min(axis=0) + self.points.max(axis=0))
             found.append(Arrows("body", label, middle[None], along(direction, size, 1)))
+        speed = np.linalg.norm(self.velocity, axis=1)
+        if np.any(moving := speed > 0.0):
+            label = (f"initial velocity, largest {speed.max():.4g} "
+                     f"({counted(int(moving.sum()), 'node')})")
+            found.append(Arrows("velocity", label, self.points[moving], self.velocity[moving]))
         return found
 
 
@@ -246,16 +240,6 @@ def groups(columns: dict[str, list], member: str = "") -> list[tuple[tuple, list
         values = dict(zip(columns, row))
         found.setdefault(tuple(values[name] for name in others), []).append(values.get(member))
     return list(found.items())
-
-
-def whom(nodes: list[int]) -> str:
-    """Nodes in words."""
-    return f"node {nodes[0]}" if len(nodes) == 1 else f"{len(nodes)} nodes"
-
-
-def listed(numbers: list[int]) -> str:
-    """A few numbers in words."""
-    return ", ".join(map(str, numbers))
 
 
 def along(direction: int, size: float, count: int) -> np.ndarray:

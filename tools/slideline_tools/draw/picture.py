@@ -68,9 +68,11 @@ class Canvas:
         spare = 1.0e-6 * (self.high - self.low)
         return np.all((places >= self.low - spare) & (places <= self.high + spare), axis=1)
 
-    def add(self, handle) -> None:
-        """One more line of the legend."""
-        self.handles.append(handle)
+    def mark(self, places: np.ndarray, label: str, seen=None, **style) -> None:
+        """Symbols at places (of these those in `seen`), with their line of the legend."""
+        style |= {"linestyle": "none"}
+        self.axes.plot(*places[slice(None) if seen is None else seen].T, **style)
+        self.handles.append(Line2D([], [], label=label, **style))
 
 
 def window(model: Model, zoom) -> tuple[np.ndarray, np.ndarray]:
@@ -108,20 +110,19 @@ def thinned(count: int, most: int) -> np.ndarray:
 def draw_mesh(canvas: Canvas, model: Model, edges: bool) -> None:
     """The elements by part; rigid parts hatched. Without `edges` only the colours."""
     for count, part in enumerate(model.parts.values()):
-        cells = model.cells[model.cell_parts == part.id]
-        if not len(cells):
+        corners = model.points[model.cells[model.cell_parts == part.id]]
+        if not len(corners):
             continue
         colour = PART_COLOURS[count % len(PART_COLOURS)]
         hatch = "////" if part.is_rigid else None
         canvas.axes.add_collection(PolyCollection(
-            model.points[cells], facecolors=colour, edgecolors="#00000070" if edges else colour,
+            corners, facecolors=colour, edgecolors="#00000070" if edges else colour,
             linewidths=edge_width(len(model.cells)) if edges else 0.2))
         if part.is_rigid:
             canvas.axes.add_collection(PolyCollection(
-                model.points[cells], facecolors="none", edgecolors="#00000040", hatch=hatch,
-                linewidths=0.0))
-        canvas.add(Patch(facecolor=colour, edgecolor="#00000070", hatch=hatch, linewidth=0.5,
-                         label=part_words(part)))
+                corners, facecolors="none", edgecolors="#00000040", hatch=hatch, linewidths=0.0))
+        canvas.handles.append(Patch(facecolor=colour, edgecolor="#00000070", hatch=hatch,
+                                    linewidth=0.5, label=part_words(part)))
 
 
 def part_words(part) -> str:
@@ -137,13 +138,10 @@ def part_words(part) -> str:
 def draw_sets(canvas: Canvas, model: Model) -> None:
     """Node sets as rings, each set a little larger than the one before."""
     for count, one in enumerate(model.node_sets.values()):
-        nodes = one.nodes
-        colour = SET_COLOURS[count % len(SET_COLOURS)]
-        size = 3.0 + 1.3 * (count % 4)
-        style = {"marker": "o", "markersize": size, "markerfacecolor": "none",
-                 "markeredgecolor": colour, "markeredgewidth": 0.7, "linestyle": "none"}
-        canvas.axes.plot(*model.points[nodes].T, **style, alpha=0.8, zorder=3)
-        canvas.add(Line2D([], [], **style, label=f"node {one.label}: {counted(len(nodes), 'node')}"))
+        canvas.mark(model.points[one.nodes], f"node {one.label}: {counted(len(one.nodes), 'node')}",
+                    marker="o", markersize=3.0 + 1.3 * (count % 4), markerfacecolor="none",
+                    markeredgecolor=SET_COLOURS[count % len(SET_COLOURS)], markeredgewidth=0.7,
+                    alpha=0.8, zorder=3)
 
 
 # ---- surfaces -----------------------------------------------------------------------------------
@@ -154,7 +152,7 @@ def draw_surfaces(canvas: Canvas, model: Model) -> None:
         for name, colour, surface in (("slave", SLAVE, interface.slave),
                                       ("master", MASTER, interface.master)):
             draw_surface(canvas, model, surface, colour)
-            canvas.add(Line2D([], [], color=colour, linewidth=1.8, marker=">", markersize=5,
+            canvas.handles.append(Line2D([], [], color=colour, linewidth=1.8, marker=">", markersize=5,
                               label=f"{interface.label}: {name}, {counted(len(surface.segments), 'segment')}"
                                     + friction_words(interface.friction, interface.sliding_friction)))
 
@@ -196,13 +194,13 @@ def draw_boundary(canvas: Canvas, model: Model) -> None:
         nodes = np.flatnonzero(chosen)
         if not len(nodes):
             continue
-        style = {"marker": marker, "markersize": 5.0, "markerfacecolor": "#222222",
-                 "markeredgecolor": "white", "markeredgewidth": 0.4, "linestyle": "none"}
-        seen = nodes[canvas.visible(model.points[nodes])]
-        seen = seen[np.lexsort(model.points[seen].T)]
-        canvas.axes.plot(*model.points[seen[thinned(len(seen), MOST_SYMBOLS)]].T, **style, zorder=6,
-                         clip_on=False)
-        canvas.add(Line2D([], [], **style, label=f"{label}: {counted(len(nodes), 'node')}"))
+        places = model.points[nodes]
+        seen = np.flatnonzero(canvas.visible(places))
+        seen = seen[np.lexsort(places[seen].T)]
+        canvas.mark(places, f"{label}: {counted(len(nodes), 'node')}",
+                    seen[thinned(len(seen), MOST_SYMBOLS)], marker=marker, markersize=5.0,
+                    markerfacecolor="#222222", markeredgecolor="white", markeredgewidth=0.4,
+                    zorder=6, clip_on=False)
 
 
 def draw_walls(canvas: Canvas, model: Model) -> None:
@@ -215,7 +213,7 @@ def draw_walls(canvas: Canvas, model: Model) -> None:
                          zorder=4)
         canvas.axes.annotate("", xy=point + LONGEST_ARROW * canvas.inch * normal, xytext=point,
                              arrowprops={"arrowstyle": "->", "color": "#333333"})
-        canvas.add(Line2D([], [], color="#333333", linewidth=2.5,
+        canvas.handles.append(Line2D([], [], color="#333333", linewidth=2.5,
                           label=f"rigid wall {wall.id} at ({point[0]:g}, {point[1]:g}), bodies on the side of "
                                 f"its arrow{WALL_FRICTION.get(wall.friction, f', friction {wall.friction:g}')}"))
 
@@ -223,26 +221,12 @@ def draw_walls(canvas: Canvas, model: Model) -> None:
 def draw_history(canvas: Canvas, model: Model) -> None:
     """Nodes whose history is written."""
     if model.history_nodes:
-        style = {"marker": "x", "markersize": 6.0, "markeredgecolor": "black",
-                 "markeredgewidth": 1.2, "linestyle": "none"}
-        nodes = model.history_nodes
-        canvas.axes.plot(*model.points[nodes].T, **style, zorder=7)
-        canvas.add(Line2D([], [], **style, label=f"history of nodes: {len(nodes)}"))
+        canvas.mark(model.points[model.history_nodes],
+                    f"history of nodes: {len(model.history_nodes)}", marker="x", markersize=6.0,
+                    markeredgecolor="black", markeredgewidth=1.2, zorder=7)
 
 
 # ---- arrows -------------------------------------------------------------------------------------
-
-def draw_velocity(canvas: Canvas, model: Model) -> None:
-    """Initial velocities on evenly spread nodes."""
-    size = np.linalg.norm(model.velocity, axis=1)
-    moving = np.flatnonzero(size > 0.0)
-    if not len(moving):
-        return
-    picked = spread(model.points[moving], MOST_ARROWS, canvas)
-    label = f"initial velocity, largest {size.max():.4g} ({counted(len(moving), 'node')})"
-    draw_arrows(canvas, Arrows("velocity", label, model.points[moving[picked]],
-                               model.velocity[moving[picked]]), float(size.max()))
-
 
 def spread(places: np.ndarray, most: int, canvas: Canvas) -> np.ndarray:
     """Indices of visible points, one in each cell of a grid of about `most` cells."""
@@ -256,7 +240,7 @@ def spread(places: np.ndarray, most: int, canvas: Canvas) -> np.ndarray:
     return seen[first]
 
 
-def draw_of_kind(kinds: tuple[str, ...]):
+def draw_of_kind(*kinds: str):
     """A drawer of the arrows of some kinds, all of one kind on one scale."""
     def drawer(canvas: Canvas, model: Model) -> None:
         for kind in kinds:
@@ -265,8 +249,8 @@ def draw_of_kind(kinds: tuple[str, ...]):
                            if len(one.vectors)), default=0.0)
             for one in groups:
                 picked = spread(one.places, MOST_ARROWS, canvas)
-                draw_arrows(canvas, Arrows(kind, one.label, one.places[picked], one.vectors[picked]),
-                            float(largest))
+                draw_arrows(canvas, Arrows(kind, one.label, one.places[picked],
+                                           one.vectors[picked]), float(largest))
     return drawer
 
 
@@ -284,13 +268,13 @@ def draw_arrows(canvas: Canvas, arrows: Arrows, largest: float) -> None:
                            zorder=3.5 if arrows.kind in ("velocity", "motion") else 8,
                            headwidth=4.5, headlength=5.5, headaxislength=5.0,
                            pivot="tip" if arrows.kind == "pressure" else "tail")
-    canvas.add(Line2D([], [], color=colour, linewidth=1.5, marker=">", markersize=5,
+    canvas.handles.append(Line2D([], [], color=colour, linewidth=1.5, marker=">", markersize=5,
                       markevery=[1], label=arrows.label))
 
 
 DRAWERS = (
     ("sets", draw_sets), ("surfaces", draw_surfaces), ("walls", draw_walls),
-    ("boundary", draw_boundary), ("motion", draw_of_kind(("motion",))),
-    ("velocity", draw_velocity), ("loads", draw_of_kind(("load", "pressure", "body"))),
+    ("boundary", draw_boundary), ("motion", draw_of_kind("motion")),
+    ("velocity", draw_of_kind("velocity")), ("loads", draw_of_kind("load", "pressure", "body")),
     ("history", draw_history),
 )

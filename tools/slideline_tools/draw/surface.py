@@ -27,8 +27,12 @@ class Surface:
         breaks = np.flatnonzero(self.segments[1:, 0] != self.segments[:-1, 1]) + 1
         return [np.append(part[:, 0], part[-1, 1]) for part in np.split(self.segments, breaks) if len(part)]
 
+    def lengths(self, points: np.ndarray) -> np.ndarray:
+        """(n,) length of each segment."""
+        return np.linalg.norm(points[self.segments[:, 1]] - points[self.segments[:, 0]], axis=1)
+
     def normals(self, points: np.ndarray) -> np.ndarray:
         """(n, 2) outward unit normals."""
         tangent = points[self.segments[:, 1]] - points[self.segments[:, 0]]
-        tangent = tangent / np.maximum(np.linalg.norm(tangent, axis=1), 1.0e-300)[:, None]
+        tangent = tangent / np.maximum(self.lengths(points), 1.0e-300)[:, None]
         return np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)

@@ -11,15 +11,19 @@ import tempfile
 import numpy as np
 
 from slideline_tools import UserError
-from slideline_tools.advise.finished import endings, find_job, put_back, read_text
-from slideline_tools.advise.run_log import RunLog, read_log
+from slideline_tools.advise.finished import put_back, read_text
 from slideline_tools.draw.model import Model, check_deck
-from slideline_tools.histories import TABLES, History, read_csv
+from slideline_tools.files import ENDINGS, TABLES, find_run
+from slideline_tools.histories import History, read_csv
 from slideline_tools.program import find_program
-from slideline_tools.results import Results, ResultsError, read
+from slideline_tools.results import Results, read
+from slideline_tools.run_log import RunLog, read_log
 
 GOES_ON = "goes on from the restart file"
-MORE_ENDINGS = (".vtkhdf.part",)
+#: what the log tells where there are no results
+IN_LOG = {"title": r"^title: (.*)", "deck": r"^deck: (.*)", "version": r"^slideline (\S+)",
+          "options": r"^command line: (.*)", "source": r"^slideline .*, source (\S+)\)",
+          "build": r"^slideline \S+ \((.*?)(?:, source .*)?\)"}
 
 
 @dataclasses.dataclass
@@ -43,6 +47,7 @@ class Gathered:
     folder: pathlib.Path
     job: str
     log_text: str
+    deck_text: str
     log: RunLog
     ending: Ending
     tables: dict[str, History]
@@ -55,30 +60,24 @@ class Gathered:
     @property
     def title(self) -> str:
         """Title of the deck, or the name of the job."""
-        return (self.told("title") or (self.model.title if self.model else "")
-                or self.job)
+        return self.told("title") or (self.model.title if self.model else "") or self.job
 
     def told(self, name: str) -> str:
         """What the results file or the log says of `title`, `deck`, `version`, `options`, `build`,
         `source` and (the results file alone) `machine`; '' where nothing does."""
         if self.results is not None and self.results.run.get(name):
             return self.results.run[name]
-        pattern = {"title": r"^title: (.*)", "deck": r"^deck: (.*)", "version": r"^slideline (\S+)",
-                   "options": r"^command line: (.*)", "build": r"^slideline \S+ \((.*?)(?:, source .*)?\)",
-                   "source": r"^slideline .*, source (\S+)\)"}.get(name)
-        found = re.search(pattern, self.log_text, re.M) if pattern else None
+        found = re.search(IN_LOG[name], self.log_text, re.M) if name in IN_LOG else None
         return found[1].strip() if found else ""
 
     @property
     def warnings(self) -> list[str]:
         """The warnings of the log in their order."""
-        return [line[len("warning: "):] for line in self.log_text.splitlines()
-                if line.startswith("warning: ")]
+        return re.findall(r"^warning: (.*)", self.log_text, re.M)
 
     def rows(self, table: str) -> History | None:
         """A table that is there and has rows."""
-        found = self.tables.get(table)
-        return found if found is not None and len(found) else None
+        return self.tables.get(table) or None
 
     @property
     def interfaces(self) -> list[int]:
@@ -87,52 +86,52 @@ class Gathered:
         numbers |= {interface.id for interface in self.model.interfaces} if self.model else set()
         for name in ("rcforc", "contact"):
             if rows := self.rows(name):
-                numbers |= {int(number) for number in rows["interface"]}
+                numbers |= set(rows["interface"].tolist())
         return sorted(numbers)
 
 
 def gather(path, program=None) -> Gathered:
     """The run whose folder, or any file, is `path`; the access times of its files stay."""
-    folder, job = find_run(pathlib.Path(path))
-    prefix = folder / job
-    stamps = {ending: os.stat(f"{prefix}{ending}") for ending in [*endings(), *MORE_ENDINGS]
+    if not os.path.exists(path):
+        raise UserError(f"{path}: no such folder or file")
+    prefix = find_run(path, ".log", ".vtkhdf")
+    stamps = {ending: os.stat(f"{prefix}{ending}") for ending in [*ENDINGS, ".vtkhdf.part"]
               if os.path.exists(f"{prefix}{ending}")}
     if not stamps:
         raise UserError(f"{prefix}: no file of a run")
     try:
-        return read_all(folder, job, stamps, program)
+        return read_all(prefix, stamps, program)
     finally:
         put_back(prefix, stamps)
 
 
-def find_run(path: pathlib.Path) -> tuple[pathlib.Path, str]:
-    """Folder and job; a folder without a log may still hold one results file."""
-    if not path.exists():
-        raise UserError(f"{path}: no such folder or file")
-    if path.is_dir() and not list(path.glob("*.log")):
-        found = sorted(path.glob("*.vtkhdf"))
-        if len(found) == 1:
-            path = found[0]
-    return find_job(path)
-
-
-def read_all(folder: pathlib.Path, job: str, stamps: dict, program) -> Gathered:
+def read_all(prefix: pathlib.Path, stamps: dict, program) -> Gathered:
     """Read what there is, and note what there is not."""
-    prefix, notes = folder / job, []
+    notes: list[str] = []
     log_text = read_text(f"{prefix}.log")
     results = read_results(prefix, stamps, notes)
-    tables = {name: table for name in TABLES
+    tables = {name: table for name in (*TABLES, "timing")
               if (table := read_table(prefix, name, results, notes)) is not None}
-    timing = None
-    if ".timing.csv" in stamps:
-        timing = read_table(prefix, "timing", None, notes)
-    log = read_log(log_text)
+    timing = tables.pop("timing", None)
     if not log_text:
         notes.append("The log is empty or missing: parts, interfaces and warnings are known as far "
                      "as the deck and the tables tell.")
-    return Gathered(folder, job, log_text, log, read_ending(log_text, tables, results, timing),
-                    tables, results, timing, read_deck(prefix, results, program, notes),
-                    [(f"{job}{ending}", stamp.st_size) for ending, stamp in stamps.items()], notes)
+    deck_text = read_text(f"{prefix}.effective.k") or (
+        results.run.get("effective_deck", "") if results else "")
+    return Gathered(prefix.parent, prefix.name, log_text, deck_text, read_log(log_text),
+                    read_ending(log_text, tables, results, timing), tables, results, timing,
+                    read_model(deck_text, f"{prefix}.effective.k", program, notes),
+                    [(f"{prefix.name}{ending}", stamp.st_size)
+                     for ending, stamp in stamps.items()], notes)
+
+
+def attempt(notes: list[str], words: str, make):
+    """What `make` gives; None, and a note with the reason in `words`, where it can not."""
+    try:
+        return make()
+    except UserError as problem:
+        notes.append(words.format(problem))
+        return None
 
 
 def read_results(prefix, stamps: dict, notes: list[str]) -> Results | None:
@@ -141,67 +140,58 @@ def read_results(prefix, stamps: dict, notes: list[str]) -> Results | None:
         notes.append("No states: the run ended before it had written the first one."
                      if ".vtkhdf.part" in stamps else "No results file (.vtkhdf).")
         return None
-    try:
-        results = read(f"{prefix}.vtkhdf")
-    except ResultsError as problem:
-        notes.append(f"No states: {problem}.")
-        return None
-    if not results.n_state:
+    results = attempt(notes, "No states: {}.", lambda: read(f"{prefix}.vtkhdf"))
+    if results is not None and not results.n_state:
         notes.append("The results file holds no state.")
     return results
 
 
 def read_table(prefix, name: str, results: Results | None, notes: list[str]) -> History | None:
     """A table from its CSV file, else from the results file."""
-    path = pathlib.Path(f"{prefix}.{name}.csv")
-    try:
-        if path.exists():
-            return read_csv(path)
-        if results is not None and name in results.histories:
-            return results.history(name)
-    except UserError as problem:
-        notes.append(f"{problem}.")
+    path = f"{prefix}.{name}.csv"
+    if os.path.exists(path):
+        return attempt(notes, "{}.", lambda: read_csv(path))
+    if results is not None and name in results.histories:
+        return attempt(notes, "{}.", lambda: results.history(name))
     return None
 
 
-def read_deck(prefix, results: Results | None, program, notes: list[str]) -> Model | None:
-    """The model of the effective deck, of its file or of the text in the results file, as the program understands it."""
-    text = read_text(f"{prefix}.effective.k") or (results.run.get("effective_deck", "")
-                                                   if results else "")
+def read_model(text: str, name: str, program, notes: list[str]) -> Model | None:
+    """The model of the deck as run, as the program understands it."""
     if not text:
         return None
     with tempfile.TemporaryDirectory() as folder:
         deck = pathlib.Path(folder) / "model.k"
         deck.write_text(text, encoding="utf-8")
-        try:
-            return check_deck(deck, find_program(program))
-        except UserError as problem:
-            words = str(problem).replace(str(deck), f"{prefix}.effective.k")
-            notes.append(f"The deck as run could not be read: {words}.")
-            return None
+        model = attempt(notes, "The deck as run could not be read: {}.",
+                        lambda: check_deck(deck, find_program(program)))
+        if model is None:
+            notes[-1] = notes[-1].replace(str(deck), name)
+        return model
 
 
 def read_ending(log_text: str, tables: dict[str, History], results: Results | None,
                 timing: History | None) -> Ending:
     """How the run ended, by the last part of its log."""
     tail = log_text[log_text.rfind(GOES_ON) + 1:]
-    normal, error = "N o r m a l" in tail, "E r r o r" in tail
-    if normal or error:
+    if "N o r m a l" in tail or "E r r o r" in tail:
         reasons = re.findall(r"^ \*\*\* (.*) \*\*\*$", tail, re.M)
-        return Ending("normal" if normal else "error", reasons[-1] if reasons else "",
+        cycle = number(r"Problem cycle\s+=\s+(\S+)", tail)
+        return Ending("normal" if "N o r m a l" in tail else "error", (reasons or [""])[-1],
                       number(r"Problem time\s+=\s+(\S+)", tail),
-                      as_int(number(r"Problem cycle\s+=\s+(\S+)", tail)),
+                      None if cycle is None else int(cycle),
                       number(r"Elapsed time\s+=\s+(\S+)", tail))
-    time, cycle = None, None
-    if len(glstat := tables.get("glstat", ())):
-        time, cycle = float(glstat["time"][-1]), as_int(glstat["cycle"][-1])
+    time, cycle, seconds = None, None, None
+    if glstat := tables.get("glstat"):
+        time, last = float(glstat["time"][-1]), glstat["cycle"][-1]
+        cycle = int(last) if np.isfinite(last) else None
     elif results is not None and results.n_state:
         time = float(results.times[-1])
-    seconds = None
     if timing is not None and "total" in timing["phase"]:
         seconds = float(timing["seconds"][timing["phase"] == "total"][0])
     told = "no end in the log" if log_text else "the log is empty or missing"
-    return Ending("unfinished", f"{told}: the run was killed, or it still runs", time, cycle, seconds)
+    return Ending("unfinished", f"{told}: the run was killed, or it still runs", time, cycle,
+                  seconds)
 
 
 def number(pattern: str, text: str) -> float | None:
@@ -211,8 +201,3 @@ def number(pattern: str, text: str) -> float | None:
         return float(found[-1]) if found else None
     except ValueError:
         return None
-
-
-def as_int(value) -> int | None:
-    """A whole number, or None."""
-    return None if value is None or not np.isfinite(value) else int(value)

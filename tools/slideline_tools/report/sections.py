@@ -1,78 +1,85 @@
 # SPDX-License-Identifier: MIT
-"""The sections of a report. Each is a function of the run that gives a Section, or None when the
-run has nothing for it."""
+"""The sections of a report. Each is a function of the run that gives the blocks of a section (see
+page.py), none when the run has nothing for it."""
 from __future__ import annotations
 
 import os
 import re
 import time
+import typing
 
 import numpy as np
 
-from slideline_tools import UserError, advise
-from slideline_tools.advise import report as advice_report
+from slideline_tools import UserError, plots
+from slideline_tools.advise import advise
+from slideline_tools.advise.report import saving_text, select
 from slideline_tools.fields import ROUND_OFF, default_field, scalar_field
-from slideline_tools.files import source
+from slideline_tools.histories import History
 from slideline_tools.report import charts
 from slideline_tools.report.gather import Gathered
-from slideline_tools.report.html import (Section, figures, folded, paragraph, picture, table,
-                                         text)
+from slideline_tools.report.page import Block, Section, Table, figures, picture
+from slideline_tools.walls import walls_of
+from slideline_tools.zones import zones_figure
 
 MOST_LOG_LINES, MOST_WARNINGS, MOST_NODES = 600, 200, 24
 KINDS = {"normal": "normal termination", "error": "error termination",
          "unfinished": "not finished"}
+UNITS = ("All numbers are in the units of the deck; forces, energies, masses and momenta are per "
+         "unit of depth.")
+#: tables that a deck asks for by name: title, and the columns that are drawn
+ASKED = {"nodout": ("Nodes", "ux uy vx vy"), "elout": ("Elements", "sxx syy sxy plastic_strain"),
+         "rbdout": ("Rigid bodies", "ux uy rotation vx vy spin"),
+         "bndout": ("Loads and prescribed motion", "fx fy moment work"),
+         "nodfor": ("Groups of nodes", "fx fy work"), "secforc": ("Cross sections", "fx fy moment")}
 
 
-# ---- summary ------------------------------------------------------------------------------------
+def all_sections(run: Gathered, names: list[str], states: list[str], scale: float) -> list[Section]:
+    """Those that have something. Fields that were asked for by name must be there; where a table
+    lacks a column, the section says so."""
+    chosen = chosen_states(run, states)
+    found = {"Summary": (summary,), "Warnings": (warnings,), "Energies": (energies,),
+             "Contact": (contact, chosen), "Rigid walls": (walls,),
+             "Fields": (fields, names, chosen, scale),
+             "Nodes, elements, bodies and boundaries": (asked,),
+             "Parts, materials, interfaces": (model,), "Timing": (timing,),
+             "What this run did not need": (advice,), "Files, deck, log": (files,)}
+    sections = []
+    for title, (make, *more) in found.items():
+        try:
+            blocks = make(run, *more)
+        except UserError as problem:
+            if make is fields and names:
+                raise
+            blocks = [("note", f"This section could not be made: {problem}.")]
+        if blocks:
+            sections.append(Section(make.__name__, title, blocks))
+    return sections
 
-def summary(run: Gathered) -> Section:
+
+def summary(run: Gathered) -> list[Block]:
     """Which run this is, on which machine, and how it ended."""
-    end, model = run.ending, run.model
-    rows = [["title", run.title], ["deck", run.told("deck")],
-            ["command line", run.told("options")],
-            ["program", " ".join(filter(None, ("slideline", run.told("version"),
-                                               bracketed(run.told("build")))))],
+    end, results, options, build = run.ending, run.results, run.told("options"), run.told("build")
+    threads = re.findall(r"ncpu=(\d+)", options)
+    stamps = [time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(stamp)) for stamp in
+              sorted(os.stat(run.folder / name).st_mtime for name, _ in run.files)]
+    mesh = (f"{figures(len(run.model.points))} nodes, {figures(len(run.model.cells))} elements, "
+            f"{len(run.model.parts)} parts" if run.model
+            else f"{figures(results.n_node)} nodes, {figures(results.n_cell)} elements" if results
+            else "")
+    rows = [["title", run.title], ["deck", run.told("deck")], ["command line", options],
+            ["program", f"slideline {run.told('version')}" + (f" ({build})" if build else "")],
             ["source", run.told("source")],
             ["machine", run.told("machine") or "unknown: only the results file names it"],
-            ["threads", threads(run.told("options"))],
+            ["threads", threads[-1] if threads else "1" if options else ""],
             ["ended", KINDS[end.kind] + (f": {end.reason}" if end.reason else "")],
             ["problem time", figures(end.time, 9)], ["cycles", figures(end.cycle)],
-            ["wall clock", f"{figures(end.seconds)} s" if end.seconds is not None else "–"],
-            ["warnings", figures(len(run.warnings))]]
-    if model:
-        rows.append(["mesh", f"{figures(len(model.points))} nodes, {figures(len(model.cells))} "
-                             f"elements, {len(model.parts)} parts"])
-    elif run.results:
-        rows.append(["mesh", f"{figures(run.results.n_node)} nodes, "
-                             f"{figures(run.results.n_cell)} elements"])
-    if run.results is not None and run.results.n_state:
-        times = run.results.times
-        rows.append(["states", f"{len(times)}, time {times[0]:g} to {times[-1]:g}"])
-    rows.append(["files written", written(run)])
-    body = table([], [row for row in rows if row[1]])
-    body += "".join(paragraph(note, "note") for note in run.notes)
-    body += paragraph("All numbers are in the units of the deck; forces, energies, masses and momenta "
-                      "are per unit of depth.", "note")
-    return Section("summary", "Summary", body)
-
-
-def bracketed(words: str) -> str:
-    """Words in brackets, or nothing."""
-    return f"({words})" if words else ""
-
-
-def threads(options: str) -> str:
-    """The number of threads that the command line asks for."""
-    found = re.findall(r"ncpu=(\d+)", options)
-    return found[-1] if found else ("1" if options else "")
-
-
-def written(run: Gathered) -> str:
-    """First and last writing of the files of the run."""
-    stamps = [os.stat(run.folder / name).st_mtime for name, _ in run.files]
-    first, last = (time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(stamp))
-                   for stamp in (min(stamps), max(stamps)))
-    return last if first == last else f"{first} to {last}"
+            ["wall clock", "–" if end.seconds is None else f"{figures(end.seconds)} s"],
+            ["warnings", figures(len(run.warnings))], ["mesh", mesh],
+            ["states", f"{results.n_state}, time {results.times[0]:g} to {results.times[-1]:g}"
+             if results is not None and results.n_state else ""],
+            ["files written", " to ".join(dict.fromkeys([stamps[0], stamps[-1]]))]]
+    return [("table", Table([], [row for row in rows if row[1]])),
+            *(("note", note) for note in [*run.notes, UNITS])]
 
 
 def tiles_of(run: Gathered) -> list[tuple[str, str]]:
@@ -81,182 +88,202 @@ def tiles_of(run: Gathered) -> list[tuple[str, str]]:
     if run.ending.seconds is not None:
         found.append(("wall clock, s", figures(run.ending.seconds, 4)))
     if (glstat := run.rows("glstat")) and "energy_ratio" in glstat:
-        found.append(("energy ratio at the end", figures(float(glstat["energy_ratio"][-1]), 7)))
+        found.append(("energy ratio at the end", figures(glstat["energy_ratio"][-1], 7)))
     if (rcforc := run.rows("rcforc")) and "fx" in rcforc and "fy" in rcforc:
-        size = np.hypot(rcforc["fx"], rcforc["fy"])
-        found.append(("largest contact force", figures(float(size.max()), 4)))
-    if (contact := run.rows("contact")) and "pressure" in contact:
-        found.append(("largest contact pressure", figures(float(contact["pressure"].max()), 4)))
-    found.append(("warnings", figures(len(run.warnings))))
-    return found
+        largest = np.hypot(rcforc["fx"], rcforc["fy"]).max()
+        found.append(("largest contact force", figures(largest, 4)))
+    if (rows := run.rows("contact")) and "pressure" in rows:
+        found.append(("largest contact pressure", figures(rows["pressure"].max(), 4)))
+    return [*found, ("warnings", figures(len(run.warnings)))]
 
 
-def warnings(run: Gathered) -> Section:
+def warnings(run: Gathered) -> list[Block]:
     """Warnings of the log, and the reason of an error termination."""
-    body = ""
-    if run.ending.kind == "error":
-        body += f'<p class="warning"><b>Error termination:</b> {text(run.ending.reason)}</p>\n'
     found = run.warnings
-    body += "".join(f'<p class="warning">{text(one)}</p>\n' for one in found[:MOST_WARNINGS])
+    blocks = [("warning", one) for one in found[:MOST_WARNINGS]]
+    if run.ending.kind == "error":
+        blocks.insert(0, ("warning", f"Error termination: {run.ending.reason}"))
     if len(found) > MOST_WARNINGS:
-        body += paragraph(f"{len(found) - MOST_WARNINGS} more stand in the log.")
-    if not body:
-        body = paragraph("None." if run.log_text else "Unknown: the log is empty or missing.")
-    return Section("warnings", "Warnings", body)
+        blocks.append(("text", f"{len(found) - MOST_WARNINGS} more stand in the log."))
+    none = "None." if run.log_text else "Unknown: the log is empty or missing."
+    return blocks or [("text", none)]
 
 
-# ---- energies -----------------------------------------------------------------------------------
-
-def energies(run: Gathered) -> Section | None:
+def energies(run: Gathered) -> list[Block]:
     """Energies, their balance and the time step."""
-    glstat = run.rows("glstat")
-    if glstat is None:
-        return None
-    times = glstat["time"]
-    rows = []
-    for name in (*charts.ENERGIES, "energy_ratio"):
-        if name in glstat:
-            values = glstat[name]
-            rows.append([name.replace("_", " "),
-                         *(figures(float(value), 7) for value in (values[0], values[-1])),
-                         *extremes(times, values)])
-    body = '<div class="grid">\n' + picture(charts.energies(glstat), "Energies over time")
+    if (glstat := run.rows("glstat")) is None:
+        return []
+    times, steps = glstat["time"], glstat["dt"]
+    rows = [[name.replace("_", " "), figures(glstat[name][0], 7), figures(glstat[name][-1], 7),
+             *extremes(times, glstat[name])]
+            for name in (*charts.ENERGIES, "energy_ratio") if name in glstat]
+    pictures = [picture(charts.energies(glstat), "Energies over time")]
     if len(glstat) > 1 and np.any(np.isfinite(glstat["energy_ratio"])):
-        body += picture(charts.balance(glstat),
-                        "Balance: total energy over initial total and external work, minus one")
-    steps = glstat["dt"]
-    constant = np.ptp(steps) <= ROUND_OFF * np.max(np.abs(steps))
-    body += ("" if constant else picture(charts.step(glstat), "Time step over time")) + "</div>\n"
-    if constant:
-        body += paragraph(f"The time step is {figures(float(steps[0]), 7)} throughout.")
-    body += table(["energy", "at the start", "at the end", "lowest", "at time", "highest", "at time"],
-                  rows, set(range(1, 7)))
-    return Section("energies", "Energies", body)
+        pictures.append(picture(
+            charts.lines([("", times, glstat["energy_ratio"] - 1.0)], "energy ratio - 1"),
+            "Balance: total energy over initial total and external work, minus one"))
+    blocks: list[Block] = [("grid", pictures)]
+    if np.ptp(steps) <= ROUND_OFF * np.max(np.abs(steps)):
+        blocks.append(("text", f"The time step is {figures(steps[0], 7)} throughout."))
+    else:
+        pictures.append(picture(charts.step(glstat), "Time step over time"))
+    head = ["energy", "at the start", "at the end", "lowest", "at time", "highest", "at time"]
+    return [*blocks, ("table", Table(head, rows, range(1, 7)))]
 
 
 def extremes(times: np.ndarray, values: np.ndarray) -> list[str]:
     """Lowest and highest value, each with its time."""
     if not np.any(np.isfinite(values)):
         return ["–"] * 4
-    low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
-    return [figures(float(values[low]), 7), figures(float(times[low]), 4),
-            figures(float(values[high]), 7), figures(float(times[high]), 4)]
+    return [figures(column[at], digits) for at in (np.nanargmin(values), np.nanargmax(values))
+            for column, digits in ((values, 7), (times, 4))]
 
 
 # ---- contact ------------------------------------------------------------------------------------
 
-def contact(run: Gathered, states: list[int]) -> Section | None:
+def contact(run: Gathered, states: list[int]) -> list[Block]:
     """Force and pressure of each interface."""
-    if not run.interfaces:
-        return None
-    body = "".join(f"<h3>{text(label(run, number))}</h3>\n" + one_interface(run, number, states)
-                   for number in run.interfaces)
-    return Section("contact", "Contact", body)
+    return [block for number in run.interfaces
+            for block in [("heading", label(run, number)), *one_interface(run, number, states)]]
 
 
 def label(run: Gathered, number: int) -> str:
     """Words for an interface, as far as log and deck have them."""
-    if number in run.log.interfaces:
-        return run.log.interfaces[number].label[0].upper() + run.log.interfaces[number].label[1:]
-    for interface in run.model.interfaces if run.model else ():
-        if interface.id == number:
-            return interface.label[0].upper() + interface.label[1:]
-    return f"Interface {number}"
+    known = {one.id: one.label for one in run.model.interfaces} if run.model else {}
+    known |= {one.id: one.label for one in run.log.interfaces.values()}
+    words = known.get(number, f"interface {number}")
+    return words[0].upper() + words[1:]
 
 
-def one_interface(run: Gathered, number: int, states: list[int]) -> str:
+def of_interface(run: Gathered, table: str, number: int, **wanted) -> History | None:
+    """The rows of an interface in a table, None where there are none."""
+    rows = run.rows(table)
+    rows = None if rows is None else rows.where(interface=number, **wanted)
+    return rows if rows else None
+
+
+def one_interface(run: Gathered, number: int, states: list[int]) -> list[Block]:
     """Charts and figures of one interface."""
-    rcforc, contact_rows = run.rows("rcforc"), run.rows("contact")
-    pictures, rows = "", []
-    if rcforc is not None and len(slave := rcforc.where(interface=number, side="slave")):
-        pictures += picture(charts.forces(slave), f"Force on the slave side of interface {number}")
-        rows += force_rows(slave, rcforc.where(interface=number, side="master"))
-    if contact_rows is not None and len(chain := contact_rows.where(interface=number)):
-        times = chosen_times(run, chain, states)
-        pictures += picture(charts.pressures(chain, times),
-                            f"Contact pressure along the slave surface of interface {number}")
+    pictures, rows = [], []
+    if slave := of_interface(run, "rcforc", number, side="slave"):
+        pictures.append(picture(charts.columns(slave, ("fx", "fy"), "contact force on the slave"),
+                                f"Force on the slave side of interface {number}"))
+        rows += force_rows(slave, of_interface(run, "rcforc", number, side="master"))
+    if chain := of_interface(run, "contact", number):
+        pictures.append(picture(charts.pressures(chain, chosen_times(run, chain, states)),
+                                f"Contact pressure along the slave surface of interface {number}"))
         rows += pressure_rows(chain)
-        if "state" in chain and np.any(chain["state"]):
-            pictures += picture(charts.zones(chain), f"Where interface {number} sticks and slips, over time")
-            if run.results is not None and states:
-                pictures += picture(charts.tractions(run.results, chain, number, states),
-                                    f"Friction traction along the slave surface of interface {number}; broken: what friction allows")
-    if (sleout := run.rows("sleout")) is not None and "estimate" in sleout \
-            and np.any((judged := sleout.where(interface=number))["estimate"]):
-        pictures += picture(charts.estimates(judged), f"How good the answer of interface {number} is")
-        pictures += picture(charts.made(judged), f"Energy that contact of interface {number} has lost")
-        rows += estimate_rows(judged)
-    rows += friction_rows(run, number)
+        if slips := zones_figure(chain, chosen_times(run, chain, states), run.log):
+            pictures.append(picture(
+                slips,
+                f"Where interface {number} sticks and slips, over time, and its friction traction; "
+                "broken: what friction allows"))
+    judged = of_interface(run, "sleout", number)
+    if judged and "estimate" in judged and np.any(judged["estimate"]):
+        pictures.append(picture(charts.estimates(judged),
+                                f"How good the answer of interface {number} is"))
+        pictures.append(picture(
+            charts.lines([("", judged["time"], judged["energy"] - judged["stored"])],
+                         "energy lost by contact"),
+            f"Energy that contact of interface {number} has lost"))
+        rows += [at_row(words, judged, column, judged["estimate"], 4,
+                        "pressure against the stress behind it")
+                 for words, column in (("estimate at the largest energy of the springs", "stored"),
+                                       ("largest estimate", "estimate"))]
+    rows += friction_rows(run, number, judged)
     if not rows:
-        return paragraph("Neither forces (*DATABASE_RCFORC) nor pressures (plot states) were written.")
-    return f'<div class="grid">\n{pictures}</div>\n' + table(["", "value", "at time", ""], rows,
-                                                            {1, 2})
+        return [("text", "Neither forces (*DATABASE_RCFORC) nor pressures (plot states) were "
+                         "written.")]
+    return [("grid", pictures), ("table", Table(["", "value", "at time", ""], rows, (1, 2)))]
 
 
-def force_rows(slave, master) -> list[list[str]]:
+def at_row(words: str, table: History, column: str | np.ndarray, values: np.ndarray, digits: int,
+           more: str = "") -> list[str]:
+    """A row: `values` and time where `column` is largest; `{name}` in `more` is a value there."""
+    at = int(np.argmax(table[column] if isinstance(column, str) else column))
+    there = {name: values[at] for name, values in table.columns.items()}
+    value = values[at] if values.dtype.kind == "f" else int(values[at])
+    return [words, figures(value, digits), figures(table["time"][at], 4), more.format(**there)]
+
+
+def force_rows(slave: History, master: History | None) -> list[list[str]]:
     """Peak, impulse, contact points, and how well the two sides balance."""
-    times, fx, fy = slave["time"], slave["fx"], slave["fy"]
-    size = np.hypot(fx, fy)
-    top = int(np.argmax(size))
-    rows = [["largest force", figures(float(size[top]), 6), figures(float(times[top]), 4),
-             f"fx {fx[top]:.5g}, fy {fy[top]:.5g}"]]
-    for name, values in (("x", fx), ("y", fy)):
-        impulse = float(np.sum(0.5 * (values[1:] + values[:-1]) * np.diff(times)))
-        rows.append([f"impulse on the slave in {name}", figures(impulse, 6), "", ""])
-    most = int(np.argmax(slave["n_active"]))
-    rows.append(["most contact points at once", figures(int(slave["n_active"][most])),
-                 figures(float(times[most]), 4), ""])
-    if len(master) == len(slave) and size[top] > 0.0:
-        rest = np.hypot(fx + master["fx"], fy + master["fy"]).max()
+    size = np.hypot(slave["fx"], slave["fy"])
+    rows = [at_row("largest force", slave, size, size, 6, "fx {fx:.5g}, fy {fy:.5g}")]
+    rows += [[f"impulse on the slave in {axis}",
+              figures(np.trapezoid(slave[f"f{axis}"], slave["time"]), 6), "", ""] for axis in "xy"]
+    rows.append(at_row("most contact points at once", slave, "n_active", slave["n_active"], 0))
+    if master is not None and len(master) == len(slave) and size.max() > 0.0:
+        rest = np.hypot(slave["fx"] + master["fx"], slave["fy"] + master["fy"]).max()
         rows.append(["largest sum of both sides over the largest force",
-                     figures(float(rest / size[top]), 2), "", ""])
+                     figures(rest / size.max(), 2), "", ""])
     return rows
 
 
-def friction_rows(run: Gathered, number: int) -> list[list[str]]:
-    """Work that friction of an interface has dissipated: at the end by the log, else by the last row of sleout; none
-    without friction."""
-    one, sleout = run.log.interfaces.get(number), run.rows("sleout")
-    if one is not None and not one.friction:
-        return []
-    if one is not None and one.dissipated is not None:
-        return [["frictional work", figures(one.dissipated, 6), figures(run.ending.time, 4), f"coefficient {one.friction:g}"]]
-    rows = sleout.where(interface=number) if sleout is not None and "friction" in sleout else ()
-    if not len(rows) or (one is None and not np.any(rows["friction"])):
-        return []
-    return [["frictional work", figures(float(rows["friction"][-1]), 6), figures(float(rows["time"][-1]), 4), ""]]
-
-
-def estimate_rows(judged) -> list[list[str]]:
-    """The estimate where springs hold the most energy, and the largest."""
-    rows = []
-    for name, at in (("estimate at the largest energy of the springs", int(np.argmax(judged["stored"]))),
-                     ("largest estimate", int(np.argmax(judged["estimate"])))):
-        rows.append([name, figures(float(judged["estimate"][at]), 4), figures(float(judged["time"][at]), 4),
-                     "pressure against the stress behind it"])
-    return rows
-
-
-def pressure_rows(chain) -> list[list[str]]:
+def pressure_rows(chain: History) -> list[list[str]]:
     """Largest pressure and deepest penetration at plot states."""
-    top, deep = int(np.argmax(chain["pressure"])), int(np.argmin(chain["gap"]))
-    rows = [["largest pressure at plot states", figures(float(chain["pressure"][top]), 6),
-             figures(float(chain["time"][top]), 4), f"node {chain['node'][top]}"]]
-    if chain["gap"][deep] < 0.0:
-        rows.append(["deepest penetration at plot states", figures(float(-chain["gap"][deep]), 4),
-                     figures(float(chain["time"][deep]), 4), f"node {chain['node'][deep]}"])
+    rows = [at_row("largest pressure at plot states", chain, "pressure", chain["pressure"], 6,
+                   "node {node}")]
+    if chain["gap"].min() < 0.0:
+        rows.append(at_row("deepest penetration at plot states", chain, -chain["gap"],
+                           -chain["gap"], 4, "node {node}"))
     return rows
 
 
-def chosen_times(run: Gathered, chain, states: list[int]) -> list[float]:
+def friction_rows(run: Gathered, number: int, sleout: History | None) -> list[list[str]]:
+    """Work that friction of an interface has dissipated: at the end by the log, else by the last
+    row of sleout."""
+    one = run.log.interfaces.get(number)
+    work, time, more = None, run.ending.time, ""
+    if one is not None and one.friction and one.dissipated is not None:
+        work, more = one.dissipated, f"coefficient {one.friction:g}"
+    elif sleout and "friction" in sleout and np.any(sleout["friction"]):
+        work, time = sleout["friction"][-1], sleout["time"][-1]
+    return [["frictional work", figures(work, 6), figures(time, 4), more]] if work else []
+
+
+def chosen_times(run: Gathered, chain: History, states: list[int]) -> list[float]:
     """Times of the table nearest to the chosen states, each once."""
     known = np.unique(chain["time"])
-    wanted = [run.results.times[state] for state in states] if run.results is not None and states \
-        else [known[-1]]
-    return sorted({float(known[np.argmin(np.abs(known - time))]) for time in wanted})
+    wanted = run.results.times[states] if run.results is not None and states else [known[-1]]
+    return sorted({float(known[np.argmin(np.abs(known - one))]) for one in wanted})
 
 
-# ---- fields -------------------------------------------------------------------------------------
+def walls(run: Gathered) -> list[Block]:
+    """Every rigid wall that the log, the deck or rwforc tells of, and its force."""
+    deck = run.results.run.get("effective_deck", "") if run.results is not None else ""
+    known = {wall.id: wall for wall in walls_of(deck)} | run.log.walls
+    rwforc = run.rows("rwforc")
+    series = {} if rwforc is None else {entity[0]: rows for entity, rows in rwforc.series()}
+    rows, pictures = [], []
+    for number in sorted({**known, **series}):
+        wall, forces = known.get(number), series.get(number)
+        rows.append([number, *([figures(value, 5) for value in (*wall.point, *wall.normal)]
+                               + [figures(wall.n_node)] if wall else ["–"] * 5),
+                     *(wall_row(forces) if forces else ["–"] * 5)])
+        if forces:
+            pictures.append(picture(
+                charts.columns(forces, ("fx", "fy"), "force of the wall on the nodes"),
+                f"Force of wall {number} on the nodes"))
+    head = ["wall", "through x", "y", "normal in x", "y", "nodes that see it", "largest force",
+            "at time", "impulse", "work on the nodes", "most nodes at once"]
+    if rwforc is None:
+        head, rows = head[:6], [row[:6] for row in rows]
+    blocks: list[Block] = [("grid", pictures), ("table", Table(head, rows, range(1, 11)))]
+    if rwforc is None:
+        blocks.append(("note", "Their forces were not written (*DATABASE_RWFORC)."))
+    return blocks if rows else []
+
+
+def wall_row(rows: History) -> list[str]:
+    """Largest force and its time, impulse and work at the end, most nodes at once."""
+    size = np.hypot(rows["fx"], rows["fy"])
+    top = int(np.argmax(np.nan_to_num(size)))
+    return [figures(value, 6) for value in (size[top], rows["time"][top], rows["impulse"][-1],
+                                            rows["work"][-1], np.nanmax(rows["n_active"]))]
+
+
+# ---- fields and curves --------------------------------------------------------------------------
 
 def chosen_states(run: Gathered, wanted: list[str]) -> list[int]:
     """States to show: those asked for, else those of the largest contact force and pressure (half
@@ -266,188 +293,160 @@ def chosen_states(run: Gathered, wanted: list[str]) -> list[int]:
         return []
     if wanted:
         return list(dict.fromkeys(results.state_index(one) for one in wanted))
-    last = results.n_state - 1
-    tops = []
-    for name, columns in (("rcforc", ("fx", "fy")), ("contact", ("pressure", "pressure"))):
+    states = set()
+    for name, first, second in (("rcforc", "fx", "fy"), ("contact", "pressure", "pressure")):
         if (rows := run.rows(name)) is not None:
-            size = np.hypot(rows[columns[0]], rows[columns[1]])
+            size = np.hypot(rows[first], rows[second])
             if np.any(size > 0.0):
-                tops.append(float(rows["time"][np.argmax(size)]))
-    states = {int(np.argmin(np.abs(results.times - top))) for top in tops}
+                top = rows["time"][np.argmax(size)]
+                states.add(int(np.argmin(np.abs(results.times - top))))
+    last = results.n_state - 1
     return sorted((states or {last // 2}) | {last})
 
 
-def fields(run: Gathered, names: list[str], states: list[int], scale: float) -> Section | None:
+def fields(run: Gathered, names: list[str], states: list[int], scale: float) -> list[Block]:
     """Pictures of fields on the deformed mesh."""
-    if not states:
-        return None
     results = run.results
-    if not names:
-        names = [default_field(results)]
-        if "mises" in results.cell_fields and "mises" not in names:
-            names.append("mises")
-    body = ""
-    for name in names:
-        shown = scalar_field(results, name)
-        pictures = "".join(picture(charts.field(results, shown, state, states, scale),
-                                   f"{shown.label} at time {results.times[state]:.4g}", "png")
-                           for state in states)
-        body += f'<h3>{text(shown.label[0].upper() + shown.label[1:])}</h3>\n' \
-                f'<div class="grid">\n{pictures}</div>\n'
-    return Section("fields", "Fields", body)
+    if not states or results is None:
+        return []
+    usual = [default_field(results), *(["mises"] if "mises" in results.cell_fields else [])]
+    times = " and ".join(f"{results.times[state]:.4g}" for state in states)
+    labels = {name: scalar_field(results, name).label for name in names or dict.fromkeys(usual)}
+    return [("grid", [picture(plots.field_figure(results, name, states, scale),
+                              f"{label} at time {times}", "png")
+                      for name, label in labels.items()])]
 
 
-def nodes(run: Gathered) -> Section | None:
-    """Motion of chosen nodes."""
-    nodout = run.rows("nodout")
-    if nodout is None:
-        return None
-    series = nodout.series()
-    rows = [[entity[0], *(figures(float(one[name][-1]), 6) for name in ("ux", "uy", "vx", "vy")),
-             *(figures(float(np.abs(one[name]).max()), 6) for name in ("ux", "uy"))]
-            for entity, one in series[:MOST_NODES]]
-    body = ('<div class="grid">\n' + picture(charts.nodes(nodout, "ux"), "Displacement in x")
-            + picture(charts.nodes(nodout, "uy"), "Displacement in y") + "</div>\n"
-            + table(["node", "ux at the end", "uy", "vx", "vy", "largest |ux|", "largest |uy|"], rows,
-                    set(range(7))))
-    if len(series) > MOST_NODES:
-        body += paragraph(f"{len(series)} nodes in all; the charts show {charts.MOST_LINES}, the table "
-                          f"{MOST_NODES} of them.", "note")
-    return Section("nodes", "Nodes", body)
+def asked(run: Gathered) -> list[Block]:
+    """Curves of the histories that a deck asks for by name, with last and largest values."""
+    return [block for name, (title, columns) in ASKED.items()
+            if (rows := run.rows(name)) is not None
+            for block in [("heading", title), *curves(rows, title, columns.split())]]
+
+
+def curves(history: History, title: str, columns: list[str]) -> list[Block]:
+    """The part of one table; columns in which nothing happens are left out."""
+    found = [(history.entity_label(entity), rows.columns) for entity, rows in history.series()]
+    if history.name == "nodfor":  # of groups of nodes the sums over their nodes
+        sums = history.frame().groupby(["group", "time"], as_index=False).sum()
+        found = [(f"group {group}", {name: rows[name].to_numpy() for name in rows})
+                 for group, rows in sums.groupby("group", sort=False)]
+    drawn = [name for name in columns if any(np.any(rows[name]) for _, rows in found)]
+    if not drawn:
+        return [("note", "All values are zero.")]
+    pictures = [picture(charts.lines([(words, rows["time"], rows[name])
+                                      for words, rows in found[:charts.MOST_LINES]],
+                                     name.replace("_", " ")), f"{title}: {name.replace('_', ' ')}")
+                for name in drawn]
+    head = ["", *(f"{words} {name}" for name in drawn for words in ("last", "largest"))]
+    rows = [[words, *(figures(value, 6) for name in drawn
+                      for value in (rows[name][-1], np.abs(rows[name]).max()))]
+            for words, rows in found[:MOST_NODES]]
+    blocks: list[Block] = [("grid", pictures), ("table", Table(head, rows, range(1, len(head))))]
+    if len(found) > charts.MOST_LINES:
+        blocks.append(("note", f"{len(found)} in all: the charts show {charts.MOST_LINES}, the "
+                               f"table {len(rows)} of them."))
+    return blocks
 
 
 # ---- the model ----------------------------------------------------------------------------------
 
-def understood(run: Gathered) -> Section | None:
+def model(run: Gathered) -> list[Block]:
     """Parts, materials and interfaces as the program understood them."""
-    body = part_table(run) + material_table(run) + interface_table(run)
-    return Section("model", "Parts, materials, interfaces", body) if body else None
+    return parts(run) + materials(run) + interfaces(run)
 
 
-def part_table(run: Gathered) -> str:
+def parts(run: Gathered) -> list[Block]:
     """The parts with what they hold at the end."""
-    parts = {**(run.model.parts if run.model else {}), **run.log.parts}
+    known: dict[int, typing.Any] = {**(run.model.parts if run.model else {}), **run.log.parts}
+    laws = {number: part.law for number, part in run.model.parts.items()} if run.model else {}
     matsum = run.rows("matsum")
+    sums = ("mass", "kinetic", "internal", "hourglass", "momentum_x", "momentum_y")
     rows = []
-    for number, part in sorted(parts.items()):
-        row = [number, part.title, figures(part.n_element), part.material, law_of(run, number)]
-        last = matsum.where(part=number) if matsum is not None else ()
-        row += [figures(float(last[name][-1]), 5) if len(last) else "–"
-                for name in ("mass", "kinetic", "internal", "hourglass", "momentum_x", "momentum_y")]
-        rows.append(row)
-    if not rows:
-        return ""
-    return "<h3>Parts</h3>\n" + table(
-        ["part", "title", "elements", "material", "law", "mass", "kinetic", "internal", "hourglass",
-         "momentum x", "momentum y"], rows, {2, 5, 6, 7, 8, 9, 10}) + (
-        paragraph("Energies and momenta are those of the last row of matsum.", "note")
-        if matsum is not None else "")
+    for number, part in sorted(known.items()):
+        last = matsum.where(part=number) if matsum else None
+        rows.append([number, part.title, figures(part.n_element), part.material,
+                     laws.get(number, ""),
+                     *(figures(last[name][-1], 5) if last else "–" for name in sums)])
+    head = ["part", "title", "elements", "material", "law",
+            *(name.replace("_", " ") for name in sums)]
+    note = ("note", "Energies and momenta are those of the last row of matsum.")
+    return [("heading", "Parts"), ("table", Table(head, rows, (2, *range(5, 11)))),
+            *([note] if matsum else [])] if rows else []
 
 
-def law_of(run: Gathered, number: int) -> str:
-    """Name of the law of a part."""
-    part = run.model.parts.get(number) if run.model else None
-    return part.law if part else ""
-
-
-def material_table(run: Gathered) -> str:
+def materials(run: Gathered) -> list[Block]:
     """The materials as the log has them."""
-    if not run.log.materials:
-        return ""
     names = list(dict.fromkeys(name for one in run.log.materials.values() for name in one))
     rows = [[number, *(figures(one.get(name), 5) for name in names)]
             for number, one in sorted(run.log.materials.items())]
-    return "<h3>Materials</h3>\n" + table(["material", *names], rows,
-                                          set(range(1, len(names) + 1)))
+    return [("heading", "Materials"),
+            ("table", Table(["material", *names], rows, range(1, len(names) + 1)))] if rows else []
 
 
-def interface_table(run: Gathered) -> str:
-    """The interfaces with their surfaces and penalties."""
-    if run.log.interfaces:
-        rows = [[number, one.name, one.ctype, one.n_slave, figures(one.slave_length, 4), one.n_master,
-                 figures(one.master_length, 4), figures(one.slave_penalty, 4),
-                 figures(one.master_penalty, 4) if one.master_penalty else ""]
-                for number, one in sorted(run.log.interfaces.items())]
-        head = ["interface", "formulation", "type", "slave nodes", "mean length", "master nodes",
-                "mean length", "penalty per length", "of the master pass"]
-        return "<h3>Interfaces</h3>\n" + table(head, rows, {3, 4, 5, 6, 7, 8})
-    if run.model and run.model.interfaces:
-        rows = [[one.id, one.formulation, len(one.slave.nodes), len(one.master.nodes)] for one in run.model.interfaces]
-        return "<h3>Interfaces</h3>\n" + table(["interface", "formulation", "slave nodes", "master nodes"], rows, {2, 3})
-    return ""
+def interfaces(run: Gathered) -> list[Block]:
+    """The interfaces with their surfaces and penalties, or as the deck has them."""
+    rows = [[number, one.name, one.ctype, one.n_slave, figures(one.slave_length, 4), one.n_master,
+             figures(one.master_length, 4), figures(one.slave_penalty, 4),
+             figures(one.master_penalty, 4) if one.master_penalty else ""]
+            for number, one in sorted(run.log.interfaces.items())]
+    if not rows and run.model:
+        rows = [[one.id, one.formulation, one.ctype, len(one.slave.nodes), "",
+                 len(one.master.nodes), "", "", ""] for one in run.model.interfaces]
+    head = ["interface", "formulation", "type", "slave nodes", "mean length", "master nodes",
+            "mean length", "penalty per length", "of the master pass"]
+    return [("heading", "Interfaces"), ("table", Table(head, rows, range(3, 9)))] if rows else []
 
 
 # ---- timing, advice, log ------------------------------------------------------------------------
 
-def timing(run: Gathered) -> Section | None:
+def timing(run: Gathered) -> list[Block]:
     """Wall clock by phase."""
     if run.timing is None or not len(run.timing):
-        return None
-    rows = [[str(phase).replace("_", " "), f"{seconds:.4f}", f"{100.0 * share:.2f}",
-             figures(int(calls))]
-            for phase, seconds, share, calls in zip(*(run.timing[name] for name in
-                                                      ("phase", "seconds", "share", "calls")))]
-    body = ""
-    if len(rows) > 1:
-        chart = picture(charts.timing(run.timing), "Wall clock by phase")
-        body = f'<div class="grid">\n{chart}</div>\n'
-    body += table(["phase", "seconds", "share, %", "calls"], rows, {1, 2, 3})
-    return Section("timing", "Timing", body)
+        return []
+    columns = (run.timing[name].tolist() for name in ("phase", "seconds", "share", "calls"))
+    rows = [[phase.replace("_", " "), f"{seconds:.4f}", f"{100.0 * share:.2f}", figures(int(calls))]
+            for phase, seconds, share, calls in zip(*columns)]
+    chart = [("grid", [picture(charts.timing(run.timing), "Wall clock by phase")])]
+    return (chart if len(rows) > 1 else []) + [
+        ("table", Table(["phase", "seconds", "share, %", "calls"], rows, range(1, 4)))]
 
 
-def savings(run: Gathered) -> Section | None:
+def advice(run: Gathered) -> list[Block]:
     """What the run did not need, where that can be told (see the command advise)."""
     if run.ending.kind != "normal" or run.timing is None:
-        return None
+        return []
     try:
-        finished, found, _ = advise.advise(run.folder / f"{run.job}.log")
+        finished, found, _ = advise(run.folder / f"{run.job}.log")
     except UserError:
-        return None
-    shown = advice_report.select(found, finished.total)
-    if not shown:
-        return None
-    body = "".join(
-        f"<h3>{text(item.what)}</h3>\n"
-        + table([], [["saving", f"{advice_report.saving_text(item.seconds, finished.total)} "
-                                f"({item.basis})"],
-                     ["evidence", item.evidence], ["change", item.change]]) for item in shown)
-    return Section("advice", "What this run did not need", body)
+        return []
+    blocks: list[Block] = []
+    for item in select(found, finished.total):
+        saving = saving_text(item.seconds, finished.total)
+        blocks += [("heading", item.what),
+                   ("table", Table([], [["saving", f"{saving} ({item.basis})"],
+                                        ["evidence", item.evidence], ["change", item.change]]))]
+    return blocks
 
 
-def files(run: Gathered) -> Section:
+def files(run: Gathered) -> list[Block]:
     """The files, the deck without its mesh, and the log."""
-    body = table(["file", "bytes"], [[name, figures(size)] for name, size in run.files], {1})
-    body += paragraph(f"Folder: {run.folder.resolve()}", "note")
-    if deck := deck_text(run):
-        body += folded("The deck as run, without its mesh", f"<pre>{text(deck)}</pre>\n")
+    blocks: list[Block] = [
+        ("table", Table(["file", "bytes"], [[name, figures(size)] for name, size in run.files],
+                        (1,))), ("note", f"Folder: {run.folder.resolve()}")]
+    if run.deck_text:
+        blocks.append(("folded", ("The deck as run, without its mesh", shortened(re.sub(
+            r"^(\*(?:NODE|ELEMENT).*\n)((?:[^*\n].*\n|\n)+)",
+            lambda found: f"{found[1]}$ ({found[2].count(chr(10))} lines)\n", run.deck_text,
+            flags=re.M | re.I)))))
     if run.log_text:
-        body += folded("The log", f"<pre>{text(shortened(run.log_text))}</pre>\n")
-    return Section("files", "Files, deck, log", body)
-
-
-def deck_text(run: Gathered) -> str:
-    """The effective deck with the lines of nodes and elements counted, not shown."""
-    path = run.folder / f"{run.job}.effective.k"
-    whole = source(path).read_text(encoding="utf-8", errors="replace") if path.exists() else (
-        run.results.run.get("effective_deck", "") if run.results else "")
-    kept, hidden = [], 0
-    in_mesh = False
-    for line in whole.splitlines():
-        if line.startswith("*"):
-            if hidden:
-                kept.append(f"$ ({hidden} lines)")
-            in_mesh, hidden = line.upper().startswith(("*NODE", "*ELEMENT")), 0
-        if in_mesh and not line.startswith("*"):
-            hidden += 1
-        else:
-            kept.append(line)
-    return shortened("\n".join(kept))
+        blocks.append(("folded", ("The log", shortened(run.log_text))))
+    return blocks
 
 
 def shortened(words: str) -> str:
     """A long text without its middle."""
-    found = words.splitlines()
+    found, half = words.splitlines(), MOST_LOG_LINES // 2
     if len(found) <= MOST_LOG_LINES:
         return words
-    half = MOST_LOG_LINES // 2
-    return "\n".join(found[:half] + [f"... {len(found) - 2 * half} lines ..."] + found[-half:])
+    return "\n".join([*found[:half], f"... {len(found) - 2 * half} lines ...", *found[-half:]])

@@ -2,7 +2,7 @@
 """Block-to-block: two soft blocks with non-matching meshes are pressed together."""
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, implicit_dynamic,
-                                           part, plane_strain, roles, slideline)
+                                           part, plane_strain, contact_surfaces)
 
 
 def block_grids(n_slave=51, n_master=50, rows=2):
@@ -47,8 +47,7 @@ def block(ctype=2, ngauss=4, n_slave=51, n_master=50, exchanged=False, implicit=
         ("endtim", 0.2, f"end time in s: {200 * level} steps"))
     deck.block("When to stop, and " + ("implicit dynamics in constant steps." if implicit else
                "a constant time step (the curve LCTM caps the step)."))
-    deck.keyword("CONTROL_TERMINATION")
-    deck.card("endtim", "&endtim")
+    deck.keyword("CONTROL_TERMINATION").card("endtim", "&endtim")
     if implicit:
         implicit_dynamic(deck, "&dt")
     else:
@@ -66,15 +65,12 @@ def block(ctype=2, ngauss=4, n_slave=51, n_master=50, exchanged=False, implicit=
     deck.node_set(1, "lower face of the lower block", lower.lower)
     deck.spc_set(1, False, True)
     deck.node_set(2, "upper face of the upper block", upper.upper)
-    deck.keyword("BOUNDARY_PRESCRIBED_MOTION_SET")
-    deck.card("nsid dof vad lcid sf", 2, 2, 0, 2, 1.0)
+    deck.keyword("BOUNDARY_PRESCRIBED_MOTION_SET").card("nsid dof vad lcid sf", 2, 2, 0, 2, 1.0)
     deck.curve(2, "velocity of the upper face", [(0.0, "&v0"), (10.0, "&v0")])
     deck.block("The two surfaces as node sets in walking order: the body lies on the left hand, "
                "so a lower face runs from left to right, an upper face from right to left.")
-    first, second = roles(exchanged)
-    deck.node_set(3, f"{first}: lower face of the upper block", upper.lower)
-    deck.node_set(4, f"{second}: upper face of the lower block", lower.upper)
-    slideline(deck, 3, 4, exchanged)
+    contact_surfaces(deck, ("lower face of the upper block", upper.lower),
+                     ("upper face of the lower block", lower.upper), exchanged)
     deck.block(f"Mesh of the lower block: {n_master * level} x {2 * level} quads.")
     lower.write(deck, 1)
     deck.block(f"Mesh of the upper block: {n_slave * level} x {2 * level} quads.")

@@ -4,8 +4,7 @@ import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (ALUMINIUM, CONTACT_TYPES, STEEL, elastic, energies_on,
-                                           part, perfectly_plastic, plane_strain, roles,
-                                           slideline)
+                                           part, perfectly_plastic, plane_strain, contact_surfaces)
 
 
 def collision_grids(level):
@@ -61,12 +60,10 @@ def collision(level=1, ctype=2, ngauss=4, exchanged=False):
         ("dtforc", 1.0e-6, "time between the rows of the contact force history in s"))
     deck.block("When to stop, and a constant time step: the curve LCTM caps the step and lies "
                "below the stable step of the mesh (about 0.14 microseconds over N_r).")
-    deck.keyword("CONTROL_TERMINATION")
-    deck.card("endtim", "&endtim")
+    deck.keyword("CONTROL_TERMINATION").card("endtim", "&endtim")
     deck.constant_step(1, "&dt", 1.0)
     deck.block("One-point elements need hourglass control; every energy is in the balance.")
-    deck.keyword("CONTROL_HOURGLASS")
-    deck.card("ihq qh", "&ihq", "&qh")
+    deck.keyword("CONTROL_HOURGLASS").card("ihq qh", "&ihq", "&qh")
     energies_on(deck)
     deck.block("Output: energies, contact force, parts, four nodes, and states for pictures.",
                "The four nodes lie on the plane of symmetry: lower and upper face of the "
@@ -94,12 +91,9 @@ def collision(level=1, ctype=2, ngauss=4, exchanged=False):
     deck.spc_set(2, True, True)
     deck.block("The two surfaces as node sets in walking order: the body lies on the left hand, "
                "so a lower face runs from left to right, an upper face from right to left.")
-    first, second = roles(exchanged)
-    deck.node_set(3, f"{first}: lower face of the projectile", projectile.lower)
-    deck.node_set(4, f"{second}: upper face of the plate (0 to 25 mm)",
-                  plate.upper[-(20 * level + 1):])
-    deck.comment("A negative SURFA or SURFB is a node set. PEN is in N/m per contact node.")
-    slideline(deck, 3, 4, exchanged)
+    contact_surfaces(deck, ("lower face of the projectile", projectile.lower),
+                     ("upper face of the plate (0 to 25 mm)", plate.upper[-(20 * level + 1):]),
+                     exchanged, True)
     deck.block(f"Mesh of the plate: {36 * level} x {4 * level} quads.")
     plate.write(deck, 1)
     deck.block(f"Mesh of the projectile: {24 * level} x {4 * level} quads.")

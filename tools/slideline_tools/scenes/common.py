@@ -15,20 +15,17 @@ def part(deck, number, heading, section, material):
 
 def plane_strain(deck, section, points=1):
     """Plane-strain section of 1 or 4 points; the thickness is not used (unit depth)."""
-    deck.keyword("SECTION_SHELL")
-    deck.card("secid elform shrf nip", section, 13, 1.0, points)
+    deck.keyword("SECTION_SHELL").card("secid elform shrf nip", section, 13, 1.0, points)
     return deck.card("t1 t2 t3 t4", 1.0, 1.0, 1.0, 1.0)
 
 
 def elastic(deck, number, rho, young, poisson):
-    deck.keyword("MAT_ELASTIC")
-    return deck.card("mid ro e pr", number, rho, young, poisson)
+    return deck.keyword("MAT_ELASTIC").card("mid ro e pr", number, rho, young, poisson)
 
 
 def rigid(deck, number, rho, young, poisson, turn_held=True):
     """A rigid body whose centre is free; its turn about z is held unless asked otherwise."""
-    deck.keyword("MAT_RIGID")
-    deck.card("mid ro e pr", number, rho, young, poisson)
+    deck.keyword("MAT_RIGID").card("mid ro e pr", number, rho, young, poisson)
     deck.card("cmo con1 con2", 1, 0, 7 if turn_held else 0)
     return deck.card("lco a2 a3 v1 v2 v3", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -41,35 +38,33 @@ def perfectly_plastic(deck, number, rho, young, poisson, yield_stress):
 
 def implicit_static(deck, step):
     """Static equilibrium by the implicit method, in constant steps (a number or a parameter)."""
-    deck.keyword("CONTROL_IMPLICIT_GENERAL")
-    return deck.card("imflag dt0", 1, step)
+    return deck.keyword("CONTROL_IMPLICIT_GENERAL").card("imflag dt0", 1, step)
 
 
 def implicit_dynamic(deck, step):
     """Dynamics by the implicit method (generalised-alpha), in constant steps."""
     implicit_static(deck, step)
-    deck.keyword("CONTROL_IMPLICIT_DYNAMICS")
-    return deck.card("imass", 1)
+    return deck.keyword("CONTROL_IMPLICIT_DYNAMICS").card("imass", 1)
 
 
 def energies_on(deck):
     """All energies are computed and enter the balance of glstat."""
-    deck.keyword("CONTROL_ENERGY")
-    return deck.card("hgen rwen slnten rylen", 2, 2, 2, 2)
+    return deck.keyword("CONTROL_ENERGY").card("hgen rwen slnten rylen", 2, 2, 2, 2)
 
 
-def roles(exchanged):
-    """What the surface that is the slave of a scene and the other one are."""
-    return ("master", "slave") if exchanged else ("slave", "master")
-
-
-def slideline(deck, slave, master, exchanged=False):
-    """*CONTACT_2D_SLIDELINE between two node sets; type, points and penalty are parameters.
-
-    `exchanged`: the node set `slave` becomes the master and the other way round.
-    """
-    if exchanged:
-        slave, master = master, slave
+def slideline(deck, slave, master):
+    """*CONTACT_2D_SLIDELINE between two node sets; type, points and penalty are parameters."""
     deck.keyword("CONTACT_2D_SLIDELINE")
     return deck.card("surfa surfb ctype ngauss pen fs fd dc",
                      -slave, -master, "&ctype", "&ngauss", "&pen", 0.0, 0.0, 0.0)
+
+
+def contact_surfaces(deck, slave, master, exchanged=False, note=False):
+    """Both surfaces, (words, nodes), as node sets 3 and 4, and the contact between them;
+    `exchanged`: the roles change, not the sets."""
+    roles = ("master", "slave") if exchanged else ("slave", "master")
+    for number, role, (words, nodes) in zip((3, 4), roles, (slave, master)):
+        deck.node_set(number, f"{role}: {words}", nodes)
+    if note:
+        deck.comment("A negative SURFA or SURFB is a node set. PEN is in N/m per contact node.")
+    return slideline(deck, *((4, 3) if exchanged else (3, 4)))

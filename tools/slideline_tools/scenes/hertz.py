@@ -4,7 +4,7 @@ import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (ALUMINIUM, CONTACT_TYPES, STEEL, elastic, energies_on,
-                                           implicit_static, part, plane_strain, roles, slideline)
+                                           implicit_static, part, plane_strain, contact_surfaces)
 from slideline_tools.scenes.sliding import stroke
 
 RADIUS = 0.020
@@ -102,11 +102,8 @@ def hertz(level=1, ctype=2, ngauss=4, exchanged=False, static=False):
     write_support_and_motion(deck, block, cylinder, static)
     deck.block("The two surfaces, their evenly divided parts, as node sets in walking order: the "
                "body lies on the left hand.")
-    first, second = roles(exchanged)
-    deck.node_set(3, f"{first}: lower face of the cylinder", round_face)
-    deck.node_set(4, f"{second}: upper face of the block", flat_face)
-    deck.comment("A negative SURFA or SURFB is a node set. PEN is in N/m per contact node.")
-    slideline(deck, 3, 4, exchanged)
+    contact_surfaces(deck, ("lower face of the cylinder", round_face),
+                     ("upper face of the block", flat_face), exchanged, True)
     deck.block("Mesh of the block.")
     block.write(deck, 1)
     deck.block("Mesh of the cylinder.")
@@ -134,14 +131,11 @@ def write_parameters(deck, level, ctype, ngauss):
 def write_control(deck):
     """End, step, damping, hourglass control and output."""
     deck.block("When to stop, and a constant time step (the curve LCTM caps the step).")
-    deck.keyword("CONTROL_TERMINATION")
-    deck.card("endtim", "&endtim")
+    deck.keyword("CONTROL_TERMINATION").card("endtim", "&endtim")
     deck.constant_step(1, "&dt", 1.0)
-    deck.keyword("CONTROL_HOURGLASS")
-    deck.card("ihq qh", "&ihq", "&qh")
+    deck.keyword("CONTROL_HOURGLASS").card("ihq qh", "&ihq", "&qh")
     deck.comment("about critical for the lowest mode: the cylinder on the contact")
-    deck.keyword("DAMPING_GLOBAL")
-    deck.card("lcid valdmp", 0, "&damp")
+    deck.keyword("DAMPING_GLOBAL").card("lcid valdmp", 0, "&damp")
     energies_on(deck)
     deck.block("Output: energies, contact force, states.")
     deck.database(glstat="&dthist", rcforc="&dthist", binary_d3plot="&dtplot")
@@ -157,8 +151,7 @@ def write_static(deck, ctype, ngauss):
         ("down", APPROACH, "way of the cylinder's cut in m"),
         ("step", 1.0 / STATIC_STEPS, "part of the way in a step"))
     deck.block("Static steps; at time 1 the cut has gone all the way.")
-    deck.keyword("CONTROL_TERMINATION")
-    deck.card("endtim", 1.0)
+    deck.keyword("CONTROL_TERMINATION").card("endtim", 1.0)
     implicit_static(deck, "&step")
     energies_on(deck)
     deck.block("Output: energies, contact force, states.")

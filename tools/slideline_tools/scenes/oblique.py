@@ -4,7 +4,7 @@ import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, part,
-                                           plane_strain, roles, slideline)
+                                           plane_strain, contact_surfaces)
 
 ANGLE, FIRST_GAP = 30.0, 0.01
 
@@ -41,10 +41,8 @@ def oblique(ctype=2, ngauss=4, exchanged=False):
         ("vy", -1.0, "velocity of the turned block in y in m/s"),
         ("endtim", 0.3, "end time in s"))
     deck.block("When to stop, and the time step.")
-    deck.keyword("CONTROL_TERMINATION")
-    deck.card("endtim", "&endtim")
-    deck.keyword("CONTROL_TIMESTEP")
-    deck.card("dtinit tssfac", 0.0, 0.4)
+    deck.keyword("CONTROL_TERMINATION").card("endtim", "&endtim")
+    deck.keyword("CONTROL_TIMESTEP").card("dtinit tssfac", 0.0, 0.4)
     energies_on(deck)
     deck.block("Output.")
     deck.database(glstat=1.0e-3, rcforc=1.0e-3, matsum=1.0e-3, binary_d3plot=1.0e-2)
@@ -60,11 +58,9 @@ def oblique(ctype=2, ngauss=4, exchanged=False):
     deck.card("xc yc zc nx ny nz", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     deck.block("The two surfaces as node sets in walking order; that of the turned block is its left "
                "side, its lower face and its right side.")
-    first, second = roles(exchanged)
-    deck.node_set(3, f"{first}: sides and lower face of the turned block",
-                  np.concatenate([turned.left, turned.lower[1:], turned.right[1:]]))
-    deck.node_set(4, f"{second}: upper face of the large block", large.upper)
-    slideline(deck, 3, 4, exchanged)
+    contact_surfaces(deck, ("sides and lower face of the turned block", 
+                            np.concatenate([turned.left, turned.lower[1:], turned.right[1:]])),
+                     ("upper face of the large block", large.upper), exchanged)
     deck.block("Mesh of the large block: 16 x 6 quads.")
     large.write(deck, 1)
     deck.block("Mesh of the turned block: 7 x 5 quads.")

@@ -4,7 +4,7 @@ import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (CONTACT_TYPES, elastic, energies_on, implicit_static,
-                                           part, plane_strain, roles, slideline)
+                                           part, plane_strain, contact_surfaces)
 
 
 RHO, YOUNG = 1000.0, 1.0e6
@@ -112,17 +112,14 @@ def write_surfaces(deck, lower, upper, exchanged, surfaces):
     """The surfaces and what holds between them."""
     if surfaces == "one-set":
         deck.block("Both blocks as one set of parts, in contact with itself: whatever of their outlines meets.")
-        deck.keyword("SET_PART_LIST")
-        deck.card("sid", 3)
+        deck.keyword("SET_PART_LIST").card("sid", 3)
         deck.card("pid1 pid2", 1, 2)
         deck.keyword("CONTACT_2D_SLIDELINE")
         deck.card("surfa surfb ctype ngauss pen", 3, 0, "&ctype", "&ngauss", "&pen")
         return
     deck.block("The two surfaces as node sets in walking order.")
-    first, second = roles(exchanged)
-    deck.node_set(3, f"{first}: lower face of the upper block", upper.lower)
-    deck.node_set(4, f"{second}: upper face of the lower block", lower.upper)
-    slideline(deck, 3, 4, exchanged)
+    contact_surfaces(deck, ("lower face of the upper block", upper.lower),
+                     ("upper face of the lower block", lower.upper), exchanged)
     if surfaces == "tied":
         deck.card("tbirth", 0.0)
         deck.card("vc tfac tie", 0.0, 1.0, 1)
@@ -133,8 +130,7 @@ def write_static(deck, contact):
     deck.block("The numbers to play with.")
     deck.parameters(*contact)
     deck.block("One static step; the load grows with the time.")
-    deck.keyword("CONTROL_TERMINATION")
-    deck.card("endtim", 1.0)
+    deck.keyword("CONTROL_TERMINATION").card("endtim", 1.0)
     implicit_static(deck, 1.0)
     energies_on(deck)
     deck.block("Output.")
@@ -151,15 +147,12 @@ def write_damped(deck, contact, damping, step, end):
         ("endtim", end, f"end time in s: exp(-{SURVIVING:g}) of the motion is left"),
         ("dtplot", end / 4.0, "time between the states in s"))
     deck.block("When to stop, and a constant time step (the curve LCTM caps the step).")
-    deck.keyword("CONTROL_TERMINATION")
-    deck.card("endtim", "&endtim")
+    deck.keyword("CONTROL_TERMINATION").card("endtim", "&endtim")
     deck.constant_step(1, "&dt", 1.0e3)
     deck.block("The stiffness form of hourglass control: the viscous form lets hourglasses creep.")
-    deck.keyword("CONTROL_HOURGLASS")
-    deck.card("ihq qh", 4, 0.1)
+    deck.keyword("CONTROL_HOURGLASS").card("ihq qh", 4, 0.1)
     energies_on(deck)
-    deck.keyword("DAMPING_GLOBAL")
-    deck.card("lcid valdmp", 0, "&damp")
+    deck.keyword("DAMPING_GLOBAL").card("lcid valdmp", 0, "&damp")
     deck.block("Output.")
     deck.database(glstat="&dtplot", rcforc="&dtplot", binary_d3plot="&dtplot")
 

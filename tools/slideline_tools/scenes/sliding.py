@@ -5,7 +5,7 @@ import numpy as np
 from slideline_tools.decks import Deck, Grid, spaced
 from slideline_tools.scenes.common import (ALUMINIUM, CONTACT_TYPES, STEEL, elastic, energies_on,
                                            part, perfectly_plastic, plane_strain, rigid,
-                                           roles, slideline)
+                                           contact_surfaces)
 
 CENTRE, CROWN_RADIUS, TOP = 0.010, 0.020, 0.002
 PRESS = (0.0, 1.5e-3, -0.15e-3)
@@ -72,11 +72,9 @@ def sliding(level=1, ctype=2, ngauss=6, exchanged=False, rigid_die=False):
         ("dthist", 2.0e-5, "time between the rows of the histories in s"),
         ("dtforc", 2.0e-6, "time between the rows of the contact force history in s"))
     deck.block("When to stop, and a constant time step (the curve LCTM caps the step).")
-    deck.keyword("CONTROL_TERMINATION")
-    deck.card("endtim", "&endtim")
+    deck.keyword("CONTROL_TERMINATION").card("endtim", "&endtim")
     deck.constant_step(1, "&dt", 1.0)
-    deck.keyword("CONTROL_HOURGLASS")
-    deck.card("ihq qh", "&ihq", "&qh")
+    deck.keyword("CONTROL_HOURGLASS").card("ihq qh", "&ihq", "&qh")
     energies_on(deck)
     deck.block("Output: energies, contact force, parts, middle of the die's upper face, states.")
     deck.database(glstat="&dthist", matsum="&dthist", nodout="&dthist", rcforc="&dtforc",
@@ -100,11 +98,8 @@ def sliding(level=1, ctype=2, ngauss=6, exchanged=False, rigid_die=False):
     write_motion(deck, die, rigid_die)
     deck.block("The two surfaces as node sets in walking order: the body lies on the left hand, "
                "so a lower face runs from left to right, an upper face from right to left.")
-    first, second = roles(exchanged)
-    deck.node_set(3, f"{first}: lower face of the die", die.lower)
-    deck.node_set(4, f"{second}: upper face of the plate", plate.upper)
-    deck.comment("A negative SURFA or SURFB is a node set. PEN is in N/m per contact node.")
-    slideline(deck, 3, 4, exchanged)
+    contact_surfaces(deck, ("lower face of the die", die.lower),
+                     ("upper face of the plate", plate.upper), exchanged, True)
     deck.block(f"Mesh of the plate: {36 * level} x {4 * level} quads.")
     plate.write(deck, 1)
     deck.block(f"Mesh of the die: {18 * level} x {3 * level} quads.")

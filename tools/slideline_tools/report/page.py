@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""What a page is made of, as data for `report.html.j2`: sections of blocks (kind, content).
+
+A block is ("heading", words), ("text", words), ("note", words), ("warning", words),
+("table", Table), ("grid", [Picture, ...]) or ("folded", (title, text)).
+"""
+from __future__ import annotations
+
+import base64
+import dataclasses
+import io
+import typing
+
+import jinja2
+import matplotlib.pyplot as plt
+
+MOST_COLUMNS = 9   # of a table, on a page
+NO_DATE = {"Date": None, "Creator": None, "Format": None, "Type": None}
+
+Block = tuple[str, typing.Any]
+
+
+class Section(typing.NamedTuple):
+    """A section with the name that links lead to."""
+
+    anchor: str
+    title: str
+    blocks: list[Block]
+
+
+@dataclasses.dataclass
+class Table:
+    """A table of plain cells, whose columns `numeric` are set to the right."""
+
+    head: list
+    rows: list[list]
+    numeric: typing.Collection[int] = ()
+
+    @property
+    def parts(self) -> list[tuple[list, list[list], typing.Collection[int]]]:
+        """Head, rows and columns of numbers; of a table too wide for a page several such parts,
+        each with the first column."""
+        if len(self.head) <= MOST_COLUMNS:
+            return [(self.head, self.rows, self.numeric)]
+        count = -(-(len(self.head) - 1) // (MOST_COLUMNS - 1))
+        size = -(-(len(self.head) - 1) // count)
+        chosen = [[0, *range(first, min(first + size, len(self.head)))]
+                  for first in range(1, len(self.head), size)]
+        return [([self.head[k] for k in columns], [[row[k] for k in columns] for row in self.rows],
+                 [place for place, k in enumerate(columns) if k in self.numeric])
+                for columns in chosen]
+
+
+@dataclasses.dataclass
+class Picture:
+    """An inline picture with its words; `width` and `height` in pixels."""
+
+    source: str
+    words: str
+    width: int
+    height: int
+
+
+def picture(figure, words: str, kind: str = "svg") -> Picture:
+    """A figure of matplotlib, which is closed: `svg` for lines, `png` for fields."""
+    stream = io.BytesIO()
+    width, height = figure.get_size_inches()
+    figure.savefig(stream, format=kind, dpi=170, metadata=NO_DATE if kind == "svg" else {})
+    plt.close(figure)
+    data = base64.b64encode(stream.getvalue()).decode("ascii")
+    return Picture(f"data:image/{'svg+xml' if kind == 'svg' else 'png'};base64,{data}", words,
+                   round(96 * width), round(96 * height))
+
+
+def figures(value, digits: int = 5) -> str:
+    """A number as a reader wants it; a dash for None."""
+    if value is None:
+        return "–"
+    if isinstance(value, int):
+        return f"{value:,d}".replace(",", " ")
+    return f"{float(value):.{digits}g}"
+
+
+def page(**content) -> str:
+    """The page; what it shows is escaped."""
+    loader = jinja2.PackageLoader("slideline_tools.report", "")
+    pages = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined)
+    return pages.get_template("report.html.j2").render(content)
