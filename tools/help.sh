@@ -17,8 +17,7 @@ help_or_go_on() {
   done
 }
 
-# Results and the pages made of them: in results/, or where SLIDELINE_RESULTS says, which `study.sh all` sets so that one
-# program's results stay together.
-results=${SLIDELINE_RESULTS:-${root:-.}/results}
+# Results and the pages made of them.
+results=${root:-.}/results
 # shellcheck disable=SC2034  # for the scripts that source this
 pages=$results/doc

@@ -32,7 +32,6 @@ SHORTER = {
     "build/venv/bin/slideline-tools animate results/first/": FEW_OF_FIRST,
     "tools/run.sh input/taylor/": "{command} endtim=2e-5",
     "tools/test.sh": "test -x tools/test.sh",  # this test is part of it
-    "tools/study.sh all": "{command} --help",
     "tools/study.sh": "{command} --list",      # tests/tools runs studies
     "tools/docs.sh": "bash -n tools/docs.sh",  # installs from the network
     "tools/batch/run_folder.sh": "{command} endtim=1e-5",

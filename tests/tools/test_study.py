@@ -283,7 +283,7 @@ def test_command_refuses(tiny, capsys, arguments):
     assert capsys.readouterr().err.startswith("study: ")
 
 
-def test_pictures_of_the_page_are_those_that_the_chart_has_drawn(tiny, bench, monkeypatch):
+def test_pictures_of_the_page_are_those_that_the_chart_has_drawn(tiny, bench, monkeypatch, capsys):
     def chart(_, folder):
         (folder / "a.png").write_text("picture")
 
@@ -297,6 +297,8 @@ def test_pictures_of_the_page_are_those_that_the_chart_has_drawn(tiny, bench, mo
     assert tiny() == 0
     assert (bench.folder / "doc/pictures/a.png").read_text() == "picture"
     assert pages.ORIGIN.search((bench.folder / "doc/studies/tiny.md").read_text())["source"] == "unknown"
+    assert tiny("--publish") == 2
+    assert "committed, not from unknown" in capsys.readouterr().err
 
 
 def test_one_command_at_a_time(tiny, bench, capsys):

@@ -13,14 +13,13 @@ import sys
 
 from slideline_tools import UserError, counting
 from slideline_tools.contact_types import ALL_TYPES, SERIES, parse_series
-from slideline_tools.studies.framework import everything, pages
+from slideline_tools.studies.framework import pages
 from slideline_tools.studies.framework.job import Options, file_digest, interleave, part_of, write_whole
 from slideline_tools.studies.framework.progress import Progress
 from slideline_tools.studies.framework.runner import Sweep
 from slideline_tools.studies.framework.table import FAILED, MISSING, table_of
 
 DONE, UNUSABLE, STOPPED = 0, 2, 4
-EVERYTHING = "all"
 ROOT = pages.ROOT
 
 
@@ -29,9 +28,7 @@ def build_parser():
         prog="tools/study.sh", description="Run a study: a sweep of runs, its table, charts and page.",
         epilog="A study that was stopped or killed goes on with the same command. Exit status: "
                "0 done (failed runs are results too), 2 unusable, 4 stopped on request.")
-    parser.add_argument("name", choices=[*pages.STUDIES, EVERYTHING], metavar="NAME",
-                        help=", ".join(pages.STUDIES) + f"; {EVERYTHING}: all of them and the rest of doc/studies, from one "
-                        "program on one machine (hours), into results/all")
+    parser.add_argument("name", choices=pages.STUDIES, metavar="NAME", help=", ".join(pages.STUDIES))
     parser.add_argument("--levels", type=int, nargs="+", help="refinement levels")
     parser.add_argument("--types", type=parse_series, nargs="+", choices=SERIES,
                         help="contact types; some studies have 7i and 7h, type 7 with PUNIT 4, too")
@@ -40,8 +37,7 @@ def build_parser():
     parser.add_argument("--repeats", type=int, help="rounds of timing runs")
     parser.add_argument("-j", dest="parallel", type=int, default=len(os.sched_getaffinity(0)), metavar="N",
                         help="runs side by side (one for each core); timing runs stay alone")
-    parser.add_argument("--only", metavar="PATTERN", help="runs of these names, for example 'hertz*' "
-                        f"(of {EVERYTHING}: pages)")
+    parser.add_argument("--only", metavar="PATTERN", help="runs of these names, for example 'hertz*'")
     parser.add_argument("--retry", action="store_true", help="run anew what has failed before")
     parser.add_argument("--list", action="store_true", help="print the runs and do nothing")
     parser.add_argument("--part", metavar="I/N", help="run only part I (0 to N-1) of N, no table")
@@ -123,10 +119,13 @@ def collect(study, jobs, sweep, doc, publish):
     study.chart(table, folder)
     if study.page:
         processors = sorted(set(table["processor"].dropna()))
+        source = pages.program_source(sweep.program)
         if publish and len(processors) > 1:
             raise UserError(f"runs of several processors are not published together: {'; '.join(processors)}")
+        if publish and (source == "unknown" or source.endswith("-dirty")):
+            raise UserError(f"pages are published from a source that is committed, not from {source}")
         study.page(table, doc)
-        finish_page(study.name.replace("-", "_"), doc, folder, pages.program_source(sweep.program), "; ".join(processors))
+        finish_page(study.name.replace("-", "_"), doc, folder, source, "; ".join(processors))
 
 
 def finish_page(name, doc, folder, source, processors):
@@ -149,17 +148,8 @@ def print_runs(jobs, sweep):
 
 
 def perform(wanted):
-    results = pathlib.Path(os.environ.get("SLIDELINE_RESULTS") or ROOT / "results")
-    folder = (wanted.folder or results / (EVERYTHING if wanted.name == EVERYTHING
-                                          else f"study-{wanted.name}{'-quick' * wanted.quick}")).resolve()
-    if wanted.name == EVERYTHING:
-        others = [name for name, value in vars(wanted).items() if name not in ("name", "only", "folder")
-                  and value != build_parser().get_default(name)]
-        if others:
-            raise UserError(f"{EVERYTHING} takes no {', '.join(others)}")
-        with held(folder, shared=False):
-            everything.make_all(folder, wanted.only)
-        return
+    results = ROOT / "results"
+    folder = (wanted.folder or results / f"study-{wanted.name}{'-quick' * wanted.quick}").resolve()
     if wanted.quick and wanted.publish:
         raise UserError("a quick study is not published")
     study = pages.load(wanted.name)

@@ -45,15 +45,16 @@ def chart(table, folder):
     times = costs.times_of(table)
     if not times.empty:
         save_small(costs.cost_figure(times), folder / "paper_tables.png", lines=True)
-    runs = results_of(table, "patch")
-    shown = runs[(runs["mesh"] == PICTURED_MESH) & (runs["penalty"] == PICTURED_PENALTY)] if len(runs) else runs
-    for runs, draw, name, lines in ((shown, patch_figure, "patch_pressure", True),
-                                    (results_of(table, "block"), block_figure, "block_pressure", True),
-                                    (results_of(table, "sliding"), sliding_figure, "sliding_force", True),
-                                    (results_of(table, "collision"), strain_figure, "collision_plastic_strain", False)):
-        if not runs.empty:
+    for scene, name, draw, dpi in (("patch", "patch_pressure", patch_figure, 150), ("block", "block_pressure", block_figure, 150),
+                                   ("sliding", "sliding_force", sliding_figure, 110),
+                                   ("collision", "collision_plastic_strain", strain_figure, 110)):
+        runs = results_of(table, scene)
+        if scene == "patch" and len(runs):
+            runs = runs[(runs["mesh"] == PICTURED_MESH) & (runs["penalty"] == PICTURED_PENALTY)]
+        if len(runs):
             level = int(runs["level"].min())
-            save_small(draw(types_of(runs, folder, level), level), folder / f"{name}.png", lines=lines)
+            with plt.rc_context({**STYLE, "figure.dpi": dpi, "savefig.dpi": dpi}):
+                save_small(draw(types_of(runs, folder, level), level), folder / f"{name}.png", lines=scene != "collision")
 
 
 def grid_on(*panels):
@@ -64,91 +65,87 @@ def grid_on(*panels):
 
 def patch_figure(folders, _level):
     """Pressure along both sides of the interface of the patch test."""
-    with plt.rc_context(STYLE):
-        figure, panels = plt.subplots(1, 2, layout="constrained", sharey=True, figsize=(PAGE_WIDTH, 3.4))
-        for ctype, folder in folders.items():
-            for axes, (x, pressure) in zip(panels, patch.sides(folder, patch.layout_grids(PICTURED_MESH))):
-                axes.plot(x, pressure, color=colour(ctype), label=label(ctype), marker="o", markersize=3)
-        for axes, title in zip(panels, ("slave side", "master side")):
-            axes.set(title=title, xlabel="x (m)")
-        grid_on(*panels)
-        panels[0].set_ylabel("contact pressure (Pa)")
-        panels[0].legend(fontsize=7)
-        return figure
+    figure, panels = plt.subplots(1, 2, layout="constrained", sharey=True, figsize=(PAGE_WIDTH, 3.4))
+    for ctype, folder in folders.items():
+        for axes, (x, pressure) in zip(panels, patch.sides(folder, patch.layout_grids(PICTURED_MESH))):
+            axes.plot(x, pressure, color=colour(ctype), label=label(ctype), marker="o", markersize=3)
+    for axes, title in zip(panels, ("slave side", "master side")):
+        axes.set(title=title, xlabel="x (m)")
+    grid_on(*panels)
+    panels[0].set_ylabel("contact pressure (Pa)")
+    panels[0].legend(fontsize=7)
+    return figure
 
 
 def block_figure(folders, _level):
     """Pressure on the slave above, deviation from the one-dimensional one on both sides at two scales below."""
     grids = block_grids(block.N_SLAVE, block.N_MASTER)
-    with plt.rc_context(STYLE):
-        figure = plt.figure(figsize=(PAGE_WIDTH, 7.6), layout="constrained")
-        grid = figure.add_gridspec(3, 2)
-        whole = figure.add_subplot(grid[0, :])
-        panels = {(row, side): figure.add_subplot(grid[row, column])
-                  for row in (1, 2) for column, side in enumerate(("slave", "master"))}
-        for ctype, folder in folders.items():
-            run = block.read_pressures(folder, grids)
-            style = dict(color=colour(ctype), marker="o", markersize=1.6, linewidth=0.8)
-            whole.plot(run.slave_x, run.slave, label=label(ctype), **style)
-            exact = block.chain_pressure(block.interface_stiffness(ctype))
-            for (row, side), axes in panels.items():
-                reach, percent = ((3.0, 1.5), (10.0, 0.2))[row - 1]
-                x, y = getattr(run, f"{side}_x"), 100.0 * block.side_deviations(run, exact)[side]
-                axes.plot(x, y, **style)
-                axes.set(xlim=(-0.02 * reach, 1.02 * reach), ylim=(-percent, percent), xlabel="x (m)",
-                         ylabel="$p/p_{1D} - 1$ (%)", title=f"enlarged, {side} side")
-                mark_cut(axes, x, y, colour(ctype))
-        whole.set(ylabel="contact pressure (Pa)", title="slave surface")
-        whole.set_ylim(0.0, 1.05 * whole.dataLim.ymax)
-        whole.legend(ncols=4, loc="lower center")
-        grid_on(whole, *panels.values())
+    figure = plt.figure(figsize=(PAGE_WIDTH, 7.6), layout="constrained")
+    grid = figure.add_gridspec(3, 2)
+    whole = figure.add_subplot(grid[0, :])
+    panels = {(row, side): figure.add_subplot(grid[row, column])
+              for row in (1, 2) for column, side in enumerate(("slave", "master"))}
+    for ctype, folder in folders.items():
+        run = block.read_pressures(folder, grids)
+        style = dict(color=colour(ctype), marker="o", markersize=1.6, linewidth=0.8)
+        whole.plot(run.slave_x, run.slave, label=label(ctype), **style)
+        exact = block.chain_pressure(block.interface_stiffness(ctype))
+        for (row, side), axes in panels.items():
+            reach, percent = ((3.0, 1.5), (10.0, 0.2))[row - 1]
+            x, y = getattr(run, f"{side}_x"), 100.0 * block.side_deviations(run, exact)[side]
+            axes.plot(x, y, **style)
+            axes.set(xlim=(-0.02 * reach, 1.02 * reach), ylim=(-percent, percent), xlabel="x (m)",
+                     ylabel="$p/p_{1D} - 1$ (%)", title=f"enlarged, {side} side")
+            mark_cut(axes, x, y, colour(ctype))
+    whole.set(ylabel="contact pressure (Pa)", title="slave surface")
+    whole.set_ylim(0.0, 1.05 * whole.dataLim.ymax)
+    whole.legend(ncols=4, loc="lower center")
+    grid_on(whole, *panels.values())
     return figure
 
 
 def sliding_figure(folders, level):
     """Force over the whole time, enlarged, and what is left without the trend, each type shifted."""
-    with plt.rc_context({**STYLE, "figure.dpi": 110, "savefig.dpi": 110, "lines.linewidth": 0.8}):
-        figure, panels = plt.subplots(3, 1, layout="constrained", height_ratios=(2, 3, 3), figsize=(PAGE_WIDTH + 1.0, 9.0))
-        for place, (ctype, folder) in enumerate(folders.items()):
-            time, force = sliding.vertical_force(folder)
-            line = dict(color=colour(ctype), label=label(ctype))
-            near = (time >= ENLARGED[0]) & (time <= ENLARGED[1])
-            rest = force - peaks.trend(time, force, sliding.WINDOW_SHARE * sliding.crossing_time(level))
-            middle, reach = -SHIFT * place, 100.0 * sliding.THRESHOLD
-            panels[0].plot(1e3 * time[::20], force[::20] / 1e6, **line)
-            panels[1].plot(1e3 * time[near], force[near] / 1e6, **line)
-            panels[2].plot(1e3 * time, 100.0 * rest / sliding.force_peaks(time, force, level).mean + middle, **line)
-            panels[2].axhspan(middle - reach, middle + reach, color="#00000012", linewidth=0)
-        for axes, title, unit in zip(panels, (
-                "vertical contact force", "the same, enlarged", f"force without its trend, each type shifted by {SHIFT:g} %; "
-                "shaded: below the threshold of a peak"), ("MN/m", "MN/m", "% of the mean force")):
-            axes.set_title(title, loc="left")
-            axes.set_ylabel(unit)
-        grid_on(*panels)
-        panels[0].legend(ncols=2)
-        panels[2].set_xlim([1e3 * time for time in sliding.judged_interval()])
-        panels[2].set_xlabel("time, ms")
-        return figure
+    figure, panels = plt.subplots(3, 1, layout="constrained", height_ratios=(2, 3, 3), figsize=(PAGE_WIDTH + 1.0, 9.0))
+    for place, (ctype, folder) in enumerate(folders.items()):
+        time, force = sliding.vertical_force(folder)
+        line = dict(color=colour(ctype), label=label(ctype), linewidth=0.8)
+        near = (time >= ENLARGED[0]) & (time <= ENLARGED[1])
+        rest = force - peaks.trend(time, force, sliding.WINDOW_SHARE * sliding.crossing_time(level))
+        middle, reach = -SHIFT * place, 100.0 * sliding.THRESHOLD
+        panels[0].plot(1e3 * time[::20], force[::20] / 1e6, **line)
+        panels[1].plot(1e3 * time[near], force[near] / 1e6, **line)
+        panels[2].plot(1e3 * time, 100.0 * rest / sliding.force_peaks(time, force, level).mean + middle, **line)
+        panels[2].axhspan(middle - reach, middle + reach, color="#00000012", linewidth=0)
+    for axes, title, unit in zip(panels, (
+            "vertical contact force", "the same, enlarged", f"force without its trend, each type shifted by {SHIFT:g} %; "
+            "shaded: below the threshold of a peak"), ("MN/m", "MN/m", "% of the mean force")):
+        axes.set_title(title, loc="left")
+        axes.set_ylabel(unit)
+    grid_on(*panels)
+    panels[0].legend(ncols=2)
+    panels[2].set_xlim([1e3 * time for time in sliding.judged_interval()])
+    panels[2].set_xlabel("time, ms")
+    return figure
 
 
 def strain_figure(folders, _level):
     """Plastic strain of the collision at 0.7 ms, colours as in Fig. 31 of the paper."""
-    with plt.rc_context({**STYLE, "figure.dpi": 110, "savefig.dpi": 110}):
-        rows = (len(folders) + 1) // 2
-        height = panel_height(PLATE, 0.45 * PAGE_WIDTH)
-        figure, panels = plt.subplots(rows, 2, squeeze=False, layout="constrained",
-                                      figsize=(PAGE_WIDTH + 1.0, rows * (height + 0.3) + 0.2))
-        for axes in panels.flat:
-            axes.set_axis_off()
-        for axes, (ctype, folder) in zip(panels.flat, folders.items()):
-            results = read(folder / "collision.vtkhdf")
-            field = scalar_field(results, "plastic_strain")
-            artist = draw_field(axes, results, field, results.state_index(repr(collision.SNAPSHOT_TIME)), 1.0, (0.0, 0.25))
-            axes.set_xlim(PLATE[:2])
-            axes.set_ylim(PLATE[2:])
-            axes.set_title(label(ctype), loc="left")
-        colour_bar(artist, list(panels.flat), field.label)
-        return figure
+    rows = (len(folders) + 1) // 2
+    height = panel_height(PLATE, 0.45 * PAGE_WIDTH)
+    figure, panels = plt.subplots(rows, 2, squeeze=False, layout="constrained",
+                                  figsize=(PAGE_WIDTH + 1.0, rows * (height + 0.3) + 0.2))
+    for axes in panels.flat:
+        axes.set_axis_off()
+    for axes, (ctype, folder) in zip(panels.flat, folders.items()):
+        results = read(folder / "collision.vtkhdf")
+        field = scalar_field(results, "plastic_strain")
+        artist = draw_field(axes, results, field, results.state_index(repr(collision.SNAPSHOT_TIME)), 1.0, (0.0, 0.25))
+        axes.set_xlim(PLATE[:2])
+        axes.set_ylim(PLATE[2:])
+        axes.set_title(label(ctype), loc="left")
+    colour_bar(artist, list(panels.flat), field.label)
+    return figure
 
 
 # ---- tables ------------------------------------------------------------------------------------
