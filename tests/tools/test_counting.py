@@ -178,15 +178,8 @@ def test_counted_jobs_are_rows_of_their_own(tmp_path, monkeypatch):
     assert after["a"] == before["a"] and after["a_counted"]["fingerprint"] != before["a_counted"]["fingerprint"]
 
 
-def rows_of_types(**contact):
-    return pd.DataFrame([{"state": table.COUNTED, "scene": "s", "level": 1, "type": ctype, "instructions": total, "shortened": "endtim=1",
-             "counted_by": counting.CALLGRIND, **({"contact_instructions": part} if contact else {})}
-            for ctype, total, part in ((1, 10_000_000, 1_000_000), (5, 11_000_000, 2_000_000))])
-
-
-def test_tables_of_instructions():
-    text = counted.instruction_section(rows_of_types(contact=True), {"s": "Scene"})
-    assert "| 5 NTS-mAR | 11.0 | 1.100 | 2.0 | 2.000 |" in text
-    assert "Counted by callgrind, x86-64-v3" in text and "Cut short: s (endtim=1)." in text
-    assert "| 5 NTS-mAR | 11.0 | 1.100 |\n" in counted.instruction_table(rows_of_types()) + "\n"
-    assert "No instructions were counted" in counted.instruction_section(rows_of_types()[:0], {})
+def test_who_counted_and_what_was_cut_short():
+    runs = pd.DataFrame({"state": [table.COUNTED], "scene": ["s"], "shortened": ["endtim=1"], "counted_by": [counting.CALLGRIND]})
+    text = counted.who_counted(runs)
+    assert "Counted by callgrind, x86-64-v3" in text and text.endswith("Cut short: s (endtim=1).")
+    assert "No instructions were counted" in counted.who_counted(runs[:0])

@@ -6,6 +6,7 @@
 FOLDER holds bench.csv and machine.json; the page goes to DOC/studies, its picture to DOC/pictures.
 """
 import json
+import pathlib
 import sys
 
 import pandas as pd
@@ -13,7 +14,7 @@ import pandas as pd
 from slideline_tools import UserError
 from slideline_tools.contact_types import TYPES
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
-from slideline_tools.studies.common import colour, label, markdown_table, page_main, save_small, write_page
+from slideline_tools.studies.common import colour, label, markdown_table, save_small, write_page
 
 IN_MEMORY = 20000  # elements: from there on a model is larger than the caches of a core
 AT_ONCE = ", 2 runs at once"
@@ -226,4 +227,4 @@ def write(folder, doc):
 
 
 if __name__ == "__main__":
-    sys.exit(page_main(__doc__, write))
+    write(*map(pathlib.Path, sys.argv[1:]))

@@ -27,8 +27,6 @@ TARGETS = ("none", "0.6", "0.01")
 SAME_ERROR = 1.05  # errors that differ by less count as equal
 FILES = ("rcforc", "matsum", "contact")
 CHOICE = re.compile(r"\(type (\d)\), chosen by the program")
-CHANGE = "contact is open and goes on with"
-JUDGED = re.compile(r"interface \d+: the target \S+ % is (.*)")
 
 PAGE = """# What leaving the type to the program costs
 
@@ -61,15 +59,13 @@ def job(scene, deck, ctype, target):
 
 
 def measure(one, folder):
-    """What CTYPE 0 says in its log: the type it took, its changes on the way, its target."""
+    """The type that CTYPE 0 took, by its log."""
     if one.labels["type"]:
         return {}
-    log = (folder / f"{one.jobid}.log").read_text(encoding="utf-8")
-    chosen, judged = CHOICE.search(log), JUDGED.search(log)
+    chosen = CHOICE.search((folder / f"{one.jobid}.log").read_text(encoding="utf-8"))
     if not chosen:
         raise UserError("the log tells of no choice")
-    return {"chosen": int(chosen[1]), "changes": log.count(CHANGE),
-            "judged": judged[1] if judged else ""}
+    return {"chosen": int(chosen[1])}
 
 
 def known_errors(folder):
@@ -123,9 +119,8 @@ def page(table, doc):
     runs = finished(table[table["type"] == 0])
     shown = pd.DataFrame({
         "scene": [SCENES[name].title for name in runs["scene"]], "target": runs["target"],
-        "took": runs["chosen"].map(lambda chosen: label(int(chosen))), "changes": runs["changes"],
-        "files of the type": runs["same_files"].map({True: "yes", False: "no"}),
-        "target is": runs["judged"]})
+        "took": runs["chosen"].map(lambda chosen: label(int(chosen))),
+        "files of the type": runs["same_files"].map({True: "yes", False: "no"})})
     if "over_type" in runs:
         shown["over the front"] = runs["over_front"].map("{:.3f}".format)
         shown["for each error alone"] = runs["alone"]

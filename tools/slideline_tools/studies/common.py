@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
 """What all studies share: names and colours of the contact types, tables in Markdown, small pictures, pages."""
-import argparse
 import functools
 import importlib.util
 import io
@@ -18,7 +17,8 @@ from slideline_tools.studies.framework.pages import with_origin
 LARGEST_PICTURE = 100_000
 VERIFICATION = pathlib.Path(__file__).resolve().parents[3] / "tests" / "verification"
 #: Colour and marker of each type and series, the same in every picture.
-LOOKS = {**{ctype: (COLOURS[ctype - 1], MARKERS[ctype - 1]) for ctype in TYPES}, IMPLICIT: ("#e6007e", "X"), HARD: ("#111111", "*")}
+LOOKS: dict[object, tuple[str, str]] = {
+    **{ctype: (COLOURS[ctype - 1], MARKERS[ctype - 1]) for ctype in TYPES}, IMPLICIT: ("#e6007e", "X"), HARD: ("#111111", "*")}
 
 
 def label(ctype):
@@ -70,23 +70,6 @@ def save_small(figure, path, colours=256, lines=False):
     picture.save(path, optimize=True)
     if path.stat().st_size > LARGEST_PICTURE:
         raise UserError(f"{path}: {path.stat().st_size} bytes, more than {LARGEST_PICTURE}")
-
-
-def page_main(text, write, arguments=None):
-    """Command line `FOLDER DOC` of what is measured already; returns the exit status.
-
-    `write(folder, doc)` reads the tables in FOLDER and writes below DOC.
-    """
-    parser = argparse.ArgumentParser(description=text.splitlines()[0])
-    parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("doc", type=pathlib.Path)
-    options = parser.parse_args(arguments)
-    try:
-        write(options.folder, options.doc)
-    except UserError as problem:
-        print(problem, file=sys.stderr)
-        return 2
-    return 0
 
 
 def write_page(doc, name, text):

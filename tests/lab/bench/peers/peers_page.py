@@ -6,13 +6,14 @@
 FOLDER holds elements.csv, collision.csv, contact.csv and versions.txt, and counts.csv where
 instructions could be counted.
 """
+import pathlib
 import sys
 
 import pandas as pd
 
 from slideline_tools import UserError
 from slideline_tools.plots import PAGE_WIDTH, STYLE, plt
-from slideline_tools.studies.common import markdown_table, page_main, save_small, write_page
+from slideline_tools.studies.common import markdown_table, save_small, write_page
 from slideline_tools.studies.framework.counted import who_counted
 from slideline_tools.studies.framework.table import COUNTED
 
@@ -178,4 +179,4 @@ def write(folder, doc):
 
 
 if __name__ == "__main__":
-    sys.exit(page_main(__doc__, write))
+    write(*map(pathlib.Path, sys.argv[1:]))

@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What pages say of counted instructions: jobs, tables and the words beside them."""
+"""Counted instructions: jobs, and the words beside their figures."""
 import dataclasses
 
-import pandas as pd
-
-from slideline_tools.contact_types import in_order
 from slideline_tools.counting import HARDWARE
-from slideline_tools.studies.common import label, markdown_table
 from slideline_tools.studies.framework.table import counted
 
 
@@ -15,20 +11,6 @@ def counted_job(job, options=()):
     return dataclasses.replace(job, name=f"{job.name}_counted", options=(*job.options, *options),
                                labels={**job.labels, "shortened": " ".join(options)}, alone=False, turns=1,
                                once=True, counted=True, limit=None, cost=50.0 * job.cost)
-
-
-def instruction_table(table):
-    """Instructions of each type, in millions, and over those of type 1; of contact where it can be told apart.
-
-    `table`: counted runs of one scene and mesh.
-    """
-    runs = table.set_index("type").loc[in_order(table["type"])]
-    lines = pd.DataFrame({"type": [label(ctype) for ctype in runs.index]}, index=runs.index)
-    for title, column in (("whole run", "instructions"), ("contact", "contact_instructions")):
-        if column in runs and runs[column].notna().all():
-            lines[f"{title}, millions"] = (1e-6 * runs[column]).map("{:.1f}".format)
-            lines[f"{title} over type 1"] = (runs[column] / runs[column].get(1)).map("{:.3f}".format) if 1 in runs.index else ""
-    return markdown_table(lines)
 
 
 def who_counted(table):
@@ -46,12 +28,3 @@ def who_counted(table):
     if short:
         text += " Cut short: " + ", ".join(f"{scene} ({words})" for scene, words in short.items()) + "."
     return text
-
-
-def instruction_section(table, titles):
-    """A section of a page: a table for each scene and mesh that was counted. `titles`: {scene: words}."""
-    parts = ["## Instructions", "The same cost in retired instructions, the whole run with its start and end. "
-             + who_counted(table)]
-    for (scene, level), same in counted(table).groupby(["scene", "level"], sort=False):
-        parts.append(f"{titles[scene]}, N_r = {level}:\n\n{instruction_table(same)}")
-    return "\n\n".join(parts)

@@ -5,7 +5,6 @@ import pandas as pd
 from slideline_tools import UserError
 from slideline_tools.contact_types import HARD, IMPLICIT
 from slideline_tools.studies.common import label, markdown_table, write_page
-from slideline_tools.studies.framework.counted import instruction_section
 from slideline_tools.studies.framework.rules import RUN_FACTOR, between, least
 from slideline_tools.studies.framework.table import finished
 from slideline_tools.studies.speed_accuracy.charts import sorted_types
@@ -51,8 +50,6 @@ known; net moment over contact force times a slave segment.
 {references}
 
 {scenes}
-
-{counts}
 """
 
 
@@ -187,5 +184,4 @@ def page(table, doc):
         shares=share_table(points), targets=target_table(errors), meshes=mesh_table(errors),
         references=reference_table(table),
         scenes="\n\n".join(scene_section(name, points[points["scene"] == name], rows)
-                           for name, rows in by_scene.items()),
-        counts=instruction_section(table, {name: scene.title for name, scene in SCENES.items()})))
+                           for name, rows in by_scene.items())))

@@ -7,7 +7,6 @@ variants run in turn. See scenes.py for the scenes and their measures.
 """
 from slideline_tools.contact_types import SERIES
 from slideline_tools.results import read
-from slideline_tools.studies.framework.counted import counted_job
 from slideline_tools.studies.framework.job import Job, Study
 from slideline_tools.studies.framework.times import phases
 from slideline_tools.studies.speed_accuracy.charts import chart
@@ -15,12 +14,9 @@ from slideline_tools.studies.speed_accuracy.page import page
 from slideline_tools.studies.speed_accuracy.reference import add_errors, reference_series
 from slideline_tools.studies.speed_accuracy.scenes import SCENES, contact_options, net_moment
 
-COUNTED_OPTIONS = {"sliding": ("endtim=2.0e-3",)}
-
 
 def jobs(options):
-    """Each scene, level and type; before them, once, the finer meshes of the references. Level 1
-    is counted too."""
+    """Each scene, level and type; before them, once, the finer meshes of the references."""
     references, listed = [], []
     for name, scene in SCENES.items():
         levels = [level for level in (scene.quick_levels if options.quick else scene.levels)
@@ -34,9 +30,7 @@ def jobs(options):
                        for ctype in SERIES for level in wanted if (ctype, level) in extra]
         listed += [job(name, decks[level], level, ctype, "sweep")
                    for level in levels for ctype in options.types]
-    return references + listed + [
-        counted_job(one, COUNTED_OPTIONS.get(one.labels["scene"], ())) for one in listed
-        if one.labels["level"] == 1 and not options.quick]
+    return references + listed
 
 
 def job(name, deck, level, ctype, role):
