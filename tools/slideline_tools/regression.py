@@ -30,7 +30,8 @@ except ModuleNotFoundError:  # Python before 3.11
     import tomli as tomllib
 
 from slideline_tools import UserError
-from slideline_tools.compare import Tolerance, Unusable, compare, judged_columns, require_usable, unique_times
+from slideline_tools.compare import (MEASURES, Tolerance, Unusable, compare, judged_columns,
+                                     require_usable, unique_times)
 from slideline_tools.histories import History, HistoryError, read_csv
 
 ROWS = 20
@@ -43,9 +44,9 @@ class CaseError(UserError):
 
 def repository_root(start=None):
     """The folder above `start` (default: this file, then the current folder) with the cases."""
-    starts = [start] if start else [pathlib.Path(__file__), pathlib.Path.cwd()]
-    for one in starts:
-        for folder in [pathlib.Path(one).resolve(), *pathlib.Path(one).resolve().parents]:
+    for one in [start] if start else [__file__, pathlib.Path.cwd()]:
+        whole = pathlib.Path(one).resolve()
+        for folder in (whole, *whole.parents):
             if (folder / "tests" / "regression").is_dir():
                 return folder
     raise CaseError("no folder tests/regression above here; run from inside the repository")
@@ -103,31 +104,27 @@ class Case:
 
     def bless(self, work, reason, version=""):
         """Make the histories of a finished run the reference and note the reason."""
-        found = {}
+        # Several entries may look at columns of one file, each with its own tolerance.
+        names, tables, digits = {}, {}, {}
         for entry in self.content["table"]:
-            table = self.table(entry, work)
-            names = ["time", *table.entity_columns, *judged_columns(table, entry["columns"])]
-            # Several entries may look at columns of one file, each with its own tolerance.
-            _, before, digits = found.get(self.reference_file(entry), (None, [], 0))
-            found[self.reference_file(entry)] = (table, list(dict.fromkeys([*before, *names])),
-                                                 max(digits, digits_that_matter(entry)))
-        for file, (table, names, digits) in found.items():
-            write_reference(file, table.rows(kept_rows(table, names)), names, digits)
+            file, table = self.reference_file(entry), self.table(entry, work)
+            columns = ["time", *table.entity_columns, *judged_columns(table, entry["columns"])]
+            tables[file], names[file] = table, names.get(file, {}) | dict.fromkeys(columns)
+            digits[file] = max(digits.get(file, 0), digits_that_matter(entry))
+        for file, table in tables.items():
+            rows = table.rows(kept_rows(table, list(names[file])))
+            write_reference(file, rows, list(names[file]), digits[file])
         note = ["", "[[blessed]]", f'date = "{datetime.date.today().isoformat()}"',
                 f"reason = {json.dumps(reason)}"]
-        if version:
-            note.append(f"version = {json.dumps(version)}")
+        note += [f"version = {json.dumps(version)}"] if version else []
         with open(self.file, "a", encoding="utf-8") as stream:
             stream.write("\n".join(note) + "\n")
 
 
 def tolerance(entry):
     """Tolerance with the keys that a [[table]] may give."""
-    keys = ("rtol", "floor", "atol", "time")
-    given = {key: float(entry[key]) for key in keys if key in entry}
-    if "measures" in entry:
-        given["measures"] = tuple(entry["measures"])
-    return Tolerance(**given)
+    given = {key: float(entry[key]) for key in ("rtol", "floor", "atol", "time") if key in entry}
+    return Tolerance(**given, measures=tuple(entry.get("measures", MEASURES)))
 
 
 def kept_rows(table, names):
@@ -165,27 +162,20 @@ def digits_that_matter(entry):
 
 
 def write_reference(path, table, names, digits):
-    """A CSV file of the given columns."""
-    lines = [",".join(names)]
-    columns = [[text_of(value, TIME_DIGITS if name == "time" else digits) for value in table[name].tolist()]
+    """A CSV file of the given columns, reals with so many significant digits."""
+    columns = [[f"{value:.{TIME_DIGITS if name == 'time' else digits}g}"
+                if isinstance(value, float) else str(value) for value in table[name].tolist()]
                for name in names]
-    lines += [",".join(row) for row in zip(*columns)]
-    path.write_text("\n".join(lines) + "\n", encoding="ascii")
-
-
-def text_of(value, digits):
-    return f"{value:.{digits}g}" if isinstance(value, float) else str(value)
+    path.write_text("\n".join(map(",".join, [names, *zip(*columns)])) + "\n", encoding="ascii")
 
 
 def run_case(case, program, work, out):
     """Run and compare a case; reports go to `out`. Returns 0 passed, 1 failed, 2 unusable."""
     try:
-        passed = True
-        work = case.run(program, work)
-        for report in case.reports(work):
+        reports = list(case.reports(case.run(program, work)))
+        for report in reports:
             print(report.text(), file=out)
-            passed = passed and report.passed
-        return 0 if passed else 1
+        return 0 if all(report.passed for report in reports) else 1
     except (CaseError, HistoryError, Unusable, OSError) as problem:
         print(f"{case.folder.name}: {problem}", file=out)
         return 2

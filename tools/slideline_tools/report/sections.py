@@ -72,9 +72,7 @@ def summary(run: Gathered) -> list[Block]:
             ["machine", run.told("machine") or "unknown: only the results file names it"],
             ["threads", threads[-1] if threads else "1" if options else ""],
             ["ended", KINDS[end.kind] + (f": {end.reason}" if end.reason else "")],
-            ["problem time", figures(end.time, 9)], ["cycles", figures(end.cycle)],
-            ["wall clock", "–" if end.seconds is None else f"{figures(end.seconds)} s"],
-            ["warnings", figures(len(run.warnings))], ["mesh", mesh],
+            ["mesh", mesh],
             ["states", f"{results.n_state}, time {results.times[0]:g} to {results.times[-1]:g}"
              if results is not None and results.n_state else ""],
             ["files written", " to ".join(dict.fromkeys([stamps[0], stamps[-1]]))]]
