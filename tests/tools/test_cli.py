@@ -8,7 +8,7 @@ import pytest
 
 from slideline_tools import cli
 
-COMMANDS = ("info", "plot", "animate", "compare", "advise", "report", "draw", "make-deck", "bless",
+COMMANDS = ("info", "plot", "animate", "compare", "advise", "report", "draw", "make-deck",
             "completion")
 
 
@@ -46,13 +46,6 @@ def test_missing_results(tmp_path, tool, command):
     finished = tool(command, tmp_path / "none.vtkhdf", *more)
     assert finished.returncode == 2
     assert "no such file" in finished.stderr and "Traceback" not in finished.stderr
-
-
-def test_bless_wants_a_reason(tool):
-    finished = tool("bless", "collision_type_1")
-    assert finished.returncode == 2 and "--reason" in finished.stderr
-    finished = tool("bless", "collision_type_1", "--reason", " ")
-    assert finished.returncode == 2 and "reason" in finished.stderr
 
 
 def test_as_a_program():

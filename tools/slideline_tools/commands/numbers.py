@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""The commands that judge a run or write it for others: compare, advise, bless, binout, d3plot."""
+"""The commands that judge a run or write it for others: compare, advise, binout, d3plot."""
 from __future__ import annotations
 
 import dataclasses
-import os
-import tempfile
 
 from slideline_tools import UserError
-from slideline_tools.commands import ANY_FILE, PROGRAM, RUN, add, output_to
+from slideline_tools.commands import ANY_FILE, RUN, add, output_to
 
 RUN_PATH = ("run_path", {"metavar": "RUN", "help": ANY_FILE})
 
@@ -41,12 +39,6 @@ Exit status: 0 agreed, 1 a column failed, 2 the tables cannot be compared.""",
         f"advise {RUN}\nadvise {RUN} --all --json", RUN_PATH,
         ("--json", {"action": "store_true", "help": "print JSON"}),
         ("--all", {"action": "store_true", "help": "also what saves less than 1 %% of the run"}))
-    add(commands, bless, "bless", "renew the reference of a regression case",
-        "Run a regression case and make its histories the reference.",
-        'bless collision_type_1 --reason "search reads the clock less often" ',
-        ("case", {"help": "folder name below tests/regression"}),
-        ("--reason", {"required": True, "help": "why the reference changes; kept in case.toml"}),
-        PROGRAM, ("--root", {"help": "the repository (default: found from here)"}))
     add(commands, binout, "binout", "write DYNA's binout from the histories of a run",
         "Write all history tables of a run (glstat, rcforc, nodout, matsum, sleout, spcforc, "
         "rwforc, elout, rbdout, bndout, nodfor, secforc) to one binout in DYNA's LSDA format. A "
@@ -96,21 +88,6 @@ def advise(options) -> int:
     shown = report.select(advice, run.total, options.all)
     print(report.as_json(run, shown, notes) if options.json
           else report.as_text(run, shown, notes, len(advice) - len(shown)))
-    return 0
-
-
-def bless(options) -> int:
-    """Run a regression case and make its histories the reference."""
-    from slideline_tools import regression
-    if not options.reason.strip():
-        raise UserError("the reason must say something")
-    root = regression.repository_root(options.root)
-    program = options.program or os.environ.get("SLIDELINE") or root / "build/release/slideline"
-    case = regression.Case(root / "tests/regression" / options.case, root)
-    with tempfile.TemporaryDirectory() as work:
-        case.run(program, work)
-        case.bless(work, options.reason.strip(), regression.program_version(program))
-    print(f"renewed the reference of {options.case}")
     return 0
 
 

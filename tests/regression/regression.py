@@ -12,7 +12,7 @@ they are compared with the run at the same times. A case is a folder with `case.
     where = { part = 2 }                    # rows to keep, may be left out
     rtol = 1e-3                             # also floor, atol, time, measures
     tolerance.kinetic.rtol = 1e-4           # for one column
-    [[blessed]]                             # written by `bless`, newest last
+    [[blessed]]                             # written by `run_case.py CASE --bless REASON`, newest last
     date = "2026-01-31"
     reason = "first reference"
 """
@@ -40,16 +40,6 @@ TIME_DIGITS = 10
 
 class CaseError(UserError):
     """A case that cannot be read or whose program run failed."""
-
-
-def repository_root(start=None):
-    """The folder above `start` (default: this file, then the current folder) with the cases."""
-    for one in [start] if start else [__file__, pathlib.Path.cwd()]:
-        whole = pathlib.Path(one).resolve()
-        for folder in (whole, *whole.parents):
-            if (folder / "tests" / "regression").is_dir():
-                return folder
-    raise CaseError("no folder tests/regression above here; run from inside the repository")
 
 
 class Case:
@@ -179,6 +169,13 @@ def run_case(case, program, work, out):
     except (CaseError, HistoryError, Unusable, OSError) as problem:
         print(f"{case.folder.name}: {problem}", file=out)
         return 2
+
+
+def renew(case, program, work, reason):
+    """Run a case and make its histories the reference, for a reason that case.toml keeps."""
+    if not reason.strip():
+        raise CaseError("the reason must say something")
+    case.bless(case.run(program, work), reason.strip(), program_version(program))
 
 
 def program_version(program):
