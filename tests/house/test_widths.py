@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Lines of prose and cells of tables keep to the widths of slideline_tools/prose.py, on every page that is written by hand.
+"""Lines of prose and cells of tables keep to the widths of prose.py, on every page that is written by hand.
 
-Left out are pages of doc/studies that may be behind the code, which are wrapped when they are made the next time
-(slideline_tools/studies/common.py).
+Left out are pages of doc/studies that may be behind the code.
 """
-import sys
-
 import pytest
 
 from fortran_source import ROOT
 from test_house import tracked_files
 from test_pages import STUDIES, allowances
-
-sys.path.insert(0, str(ROOT / "tools"))
-
-from slideline_tools.prose import CELL, LONGEST, too_wide  # noqa: E402
+from prose import CELL, LONGEST, too_wide
 
 BEHIND = {f"doc/studies/{name}.md" for name in allowances((STUDIES / "README.md").read_text(encoding="utf-8"))}
 PAGES = [name for name in tracked_files()

@@ -170,36 +170,6 @@ def test_run_without_clock_gets_no_advice(runs, tmp_path):
     assert not found and "timing=off" in notes[0]
 
 
-def test_unread_files(runs, tmp_path):
-    for file in runs["none"].iterdir():
-        (tmp_path / file.name).write_bytes(file.read_bytes())
-    old = time.time() - 3 * 86400.0
-    for file in tmp_path.iterdir():
-        os.utime(file, (old, old))
-    run = finished.read_run(tmp_path)
-    assert os.stat(tmp_path / "run.vtkhdf").st_atime == pytest.approx(old, abs=1.0)
-    run.keeps_access_time = True
-    names = [item.what.split()[0] for item in outputs.never_read(run)]
-    assert names == ["run.vtkhdf", "run.rcforc.csv", "run.nodout.csv", "run.matsum.csv"]
-    assert outputs.never_read(run, now=old + 3600.0) == []
-    os.utime(tmp_path / "run.rcforc.csv", (old + 60.0, old))
-    run = finished.read_run(tmp_path)
-    run.keeps_access_time = True
-    assert "run.rcforc.csv" not in " ".join(item.what for item in outputs.never_read(run))
-    run.keeps_access_time = False
-    assert outputs.never_read(run) == []
-
-
-@pytest.mark.parametrize("options, kind, kept", [
-    ("rw,relatime", "ext4", True), ("rw,noatime", "ext4", False), ("rw", "nfs4", False)])
-def test_file_systems(tmp_path, options, kind, kept):
-    table = tmp_path / "mounts"
-    table.write_text(f"21 1 8:1 / / rw,noatime - ext4 /dev/a rw\n"
-                     f"22 21 8:2 / {tmp_path} {options} shared:1 - {kind} /dev/b rw\n",
-                     encoding="utf-8")
-    assert finished.keeps_access_time(tmp_path, str(table)) is kept
-
-
 def test_log():
     log = read_log(LOG)
     assert log.parts[7].points == 4 and log.parts[1].viscosity == (1.5, 0.06)

@@ -195,14 +195,6 @@ def test_chosen_fields_and_states(collision, tmp_path, tool):
     assert tool("report", collision, "--field", "colour", "-o", tmp_path / "s.html").returncode == 2
 
 
-def test_gathering_is_not_reading(collision):
-    """Advice on files that nobody reads goes by access times: a report leaves them."""
-    path = collision / "collision.glstat.csv"
-    os.utime(path, (1.0e9, path.stat().st_mtime))
-    assert len(gather(collision).rows("glstat")) > 2
-    assert path.stat().st_atime == 1.0e9
-
-
 def test_a_program_that_is_not_there_is_told_with_how_to_name_one(collision, tmp_path):
     page = write_report(collision, tmp_path / "page.html", program="/nowhere/slideline").read_text(encoding="utf-8")
     assert "cannot run the program /nowhere/slideline" in page and "name it by --program" in page

@@ -43,6 +43,4 @@ def not_judged(run: Finished) -> list[str]:
         notes.append("steps, contact types and bulk viscosity: an implicit run")
     elif run.results is not None and not run.log.is_restart and (why := stepping.unknown_limits(run)):
         notes.append(f"steps: {why}")
-    if not run.keeps_access_time:
-        notes.append("files never read: this file system is not known to keep access times")
     return notes

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A finished run: which files there are, when they were read, and what stands in them."""
+"""A finished run: which files there are, and what stands in them."""
 from __future__ import annotations
 
 import dataclasses
@@ -9,14 +9,11 @@ import pathlib
 
 from slideline_tools import UserError
 from slideline_tools.draw.model import Model, check_deck
-from slideline_tools.files import ENDINGS, TABLES, find_run, source
+from slideline_tools.files import TABLES, find_run, source
 from slideline_tools.histories import History, read_csv
 from slideline_tools.program import find_program
 from slideline_tools.results import Results, ResultsError, read
 from slideline_tools.run_log import RunLog, read_log
-
-# File systems that keep access times the way POSIX says, unless mounted noatime.
-TRUSTED = ("ext2", "ext3", "ext4", "xfs", "btrfs", "tmpfs", "f2fs", "zfs")
 
 
 @dataclasses.dataclass
@@ -26,7 +23,6 @@ class Finished:
     `seconds`    wall clock by phase, with `total`
     `results`    the states, None without a readable file or with a single state
     `tables`     histories by name
-    `stamps`     os.stat_result of every result file, taken before it was opened
     """
 
     folder: pathlib.Path
@@ -35,8 +31,6 @@ class Finished:
     seconds: dict[str, float]
     tables: dict[str, History]
     results: Results | None
-    stamps: dict[str, os.stat_result]
-    keeps_access_time: bool
 
     @property
     def total(self) -> float:
@@ -82,22 +76,15 @@ class Finished:
 
 
 def read_run(path) -> Finished:
-    """The run whose folder, or any file, is `path`; the access times of its files stay."""
+    """The run whose folder, or any file, is `path`."""
     prefix = find_run(path, ".log")
-    folder, job = prefix.parent, prefix.name
-    stamps = {ending: os.stat(f"{prefix}{ending}") for ending in ENDINGS
-              if os.path.exists(f"{prefix}{ending}")}
     for needed in (".log", ".timing.csv"):
-        if needed not in stamps:
+        if not os.path.exists(f"{prefix}{needed}"):
             raise UserError(f"{prefix}{needed} is missing: not a finished run")
-    try:
-        return Finished(
-            folder, job, read_log(read_text(f"{prefix}.log")), read_timing(prefix),
-            {name: read_csv(f"{prefix}.{name}.csv") for name in TABLES
-             if f".{name}.csv" in stamps},
-            read_states(prefix), stamps, keeps_access_time(folder))
-    finally:
-        put_back(prefix, stamps)
+    tables = {name: read_csv(f"{prefix}.{name}.csv") for name in TABLES
+              if os.path.exists(f"{prefix}.{name}.csv")}
+    return Finished(prefix.parent, prefix.name, read_log(read_text(f"{prefix}.log")),
+                    read_timing(prefix), tables, read_states(prefix))
 
 
 def read_text(path: str) -> str:
@@ -133,31 +120,3 @@ def read_states(prefix) -> Results | None:
         if name in results.cell_fields:
             results.cell_field(name)
     return results
-
-
-def put_back(prefix, stamps: dict[str, os.stat_result]) -> None:
-    """Restore access times, so that advice does not count as reading; silent where refused."""
-    for ending, stamp in stamps.items():
-        path = f"{prefix}{ending}"
-        try:
-            if os.stat(path).st_mtime_ns == stamp.st_mtime_ns:
-                os.utime(path, ns=(stamp.st_atime_ns, stamp.st_mtime_ns))
-        except OSError:
-            continue
-
-
-def keeps_access_time(folder: pathlib.Path, table: str = "/proc/self/mountinfo") -> bool:
-    """Whether reading a file in `folder` is known to leave a trace in its access time."""
-    place, best, kept = str(folder.resolve()), "", False
-    for line in read_text(table).splitlines():
-        words = line.split()
-        if "-" not in words[6:] or len(words) < 10:
-            continue
-        mark = words.index("-", 6)
-        point = words[4].replace("\\040", " ")
-        inside = place == point or place.startswith(point.rstrip("/") + "/")
-        if inside and len(point) >= len(best):
-            best = point
-            options = (words[5] + "," + words[mark + 3]).split(",")
-            kept = words[mark + 1] in TRUSTED and "noatime" not in options
-    return kept

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Advice on what was written: more often than its own content needs, or never read."""
+"""Advice on what was written: more often than its own content needs."""
 from __future__ import annotations
-
-import time
 
 import numpy as np
 
@@ -23,7 +21,6 @@ ROW_ELEMENT = {"glstat": 0.018, "matsum": 0.04}
 CARDS = {"states": "*DATABASE_BINARY_D3PLOT", "glstat": "*DATABASE_GLSTAT",
          "matsum": "*DATABASE_MATSUM", "rcforc": "*DATABASE_RCFORC", "nodout": "*DATABASE_NODOUT"}
 NOT_JUDGED_BY = ("cycle", "dt", "n_active", "energy_ratio", "mass", "length", "s")
-OLD_ENOUGH = 24.0 * 3600.0
 
 
 def written(run) -> dict[str, np.ndarray]:
@@ -127,30 +124,4 @@ def too_often(run) -> list[Advice]:
     return advice
 
 
-def never_read(run, now: float | None = None) -> list[Advice]:
-    """Result files that nobody has opened since they were written, a day ago or longer."""
-    if not run.keeps_access_time:
-        return []
-    now = time.time() if now is None else now
-    names = {"states": ".vtkhdf", "rcforc": ".rcforc.csv", "nodout": ".nodout.csv",
-             "matsum": ".matsum.csv"}
-    advice = []
-    for name, ending in names.items():
-        stamp = run.stamps.get(ending)
-        times = written(run).get(name)
-        if (stamp is None or times is None or now - stamp.st_mtime < OLD_ENOUGH
-                or stamp.st_atime_ns > stamp.st_mtime_ns):
-            continue
-        if name != "states" and run.stamps[".vtkhdf"].st_atime_ns > run.stamps[
-                ".vtkhdf"].st_mtime_ns:
-            continue
-        advice.append(Advice(
-            "never read", f"{run.job}{ending} has not been read since the run wrote it.",
-            f"{stamp.st_size / 1.0e6:.3g} MB, last read no later than last written, "
-            f"{(now - stamp.st_mtime) / 86400.0:.0f} days ago",
-            f"leave {CARDS[name]} out, or ask for less of it", saving(run, name, times[:1]),
-            "output time shared out by numbers written"))
-    return advice
-
-
-CHECKS = (too_often, never_read)
+CHECKS = (too_often,)

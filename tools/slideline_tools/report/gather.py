@@ -11,7 +11,7 @@ import tempfile
 import numpy as np
 
 from slideline_tools import UserError
-from slideline_tools.advise.finished import put_back, read_text
+from slideline_tools.advise.finished import read_text
 from slideline_tools.draw.model import Model, check_deck
 from slideline_tools.files import ENDINGS, TABLES, find_run
 from slideline_tools.histories import History, read_csv
@@ -91,25 +91,22 @@ class Gathered:
 
 
 def gather(path, program=None) -> Gathered:
-    """The run whose folder, or any file, is `path`; the access times of its files stay."""
+    """The run whose folder, or any file, is `path`."""
     if not os.path.exists(path):
         raise UserError(f"{path}: no such folder or file")
     prefix = find_run(path, ".log", ".vtkhdf")
-    stamps = {ending: os.stat(f"{prefix}{ending}") for ending in [*ENDINGS, ".vtkhdf.part"]
-              if os.path.exists(f"{prefix}{ending}")}
-    if not stamps:
+    sizes = {ending: os.path.getsize(f"{prefix}{ending}") for ending in [*ENDINGS, ".vtkhdf.part"]
+             if os.path.exists(f"{prefix}{ending}")}
+    if not sizes:
         raise UserError(f"{prefix}: no file of a run")
-    try:
-        return read_all(prefix, stamps, program)
-    finally:
-        put_back(prefix, stamps)
+    return read_all(prefix, sizes, program)
 
 
-def read_all(prefix: pathlib.Path, stamps: dict, program) -> Gathered:
+def read_all(prefix: pathlib.Path, sizes: dict, program) -> Gathered:
     """Read what there is, and note what there is not."""
     notes: list[str] = []
     log_text = read_text(f"{prefix}.log")
-    results = read_results(prefix, stamps, notes)
+    results = read_results(prefix, sizes, notes)
     tables = {name: table for name in (*TABLES, "timing")
               if (table := read_table(prefix, name, results, notes)) is not None}
     timing = tables.pop("timing", None)
@@ -121,8 +118,7 @@ def read_all(prefix: pathlib.Path, stamps: dict, program) -> Gathered:
     return Gathered(prefix.parent, prefix.name, log_text, deck_text, read_log(log_text),
                     read_ending(log_text, tables, results, timing), tables, results, timing,
                     read_model(deck_text, f"{prefix}.effective.k", program, notes),
-                    [(f"{prefix.name}{ending}", stamp.st_size)
-                     for ending, stamp in stamps.items()], notes)
+                    [(f"{prefix.name}{ending}", size) for ending, size in sizes.items()], notes)
 
 
 def attempt(notes: list[str], words: str, make):
@@ -134,11 +130,11 @@ def attempt(notes: list[str], words: str, make):
         return None
 
 
-def read_results(prefix, stamps: dict, notes: list[str]) -> Results | None:
+def read_results(prefix, sizes: dict, notes: list[str]) -> Results | None:
     """The states; a note where they cannot be read or are none."""
-    if ".vtkhdf" not in stamps:
+    if ".vtkhdf" not in sizes:
         notes.append("No states: the run ended before it had written the first one."
-                     if ".vtkhdf.part" in stamps else "No results file (.vtkhdf).")
+                     if ".vtkhdf.part" in sizes else "No results file (.vtkhdf).")
         return None
     results = attempt(notes, "No states: {}.", lambda: read(f"{prefix}.vtkhdf"))
     if results is not None and not results.n_state:

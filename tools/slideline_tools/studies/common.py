@@ -11,7 +11,6 @@ from PIL import Image
 from slideline_tools import UserError
 from slideline_tools.contact_types import HARD, IMPLICIT, SERIES, TYPES
 from slideline_tools.plots import COLOURS, MARKERS, plt
-from slideline_tools.prose import wrapped
 from slideline_tools.studies.framework.pages import with_origin
 
 LARGEST_PICTURE = 100_000
@@ -76,7 +75,7 @@ def write_page(doc, name, text):
     """Write DOC/studies/NAME.md, with the source and the processor it was made from below its title."""
     path = doc / "studies" / f"{name}.md"
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(wrapped(with_origin(name, text)), encoding="utf-8")
+    path.write_text(with_origin(name, text), encoding="utf-8")
     print(f"wrote {path}")
 
 

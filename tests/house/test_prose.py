@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Wrapped prose reads as before: what would mean something else at the beginning of a line stays where it is."""
-from slideline_tools.prose import CELL, LONGEST, WIDTH, too_wide, wrapped
+from prose import CELL, LONGEST, WIDTH, too_wide, wrapped
 
 LONG = "word " * 50
 

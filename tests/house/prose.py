@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Lines of Markdown prose that a terminal and a diff can show.
 
-`python -m slideline_tools.prose FILE...` wraps them in place.
+`python tests/house/prose.py FILE...` wraps them in place.
 """
 from __future__ import annotations
 
