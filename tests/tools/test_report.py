@@ -15,7 +15,7 @@ import pytest
 from slideline_tools import UserError, scenes
 from slideline_tools.histories import read_csv
 from slideline_tools.report import write_report
-from slideline_tools.report.gather import gather, read_ending
+from slideline_tools.report.gather import read_ending
 from slideline_tools.results import read
 
 VOID = {"meta", "img", "br", "hr", "link", "input"}

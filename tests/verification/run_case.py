@@ -37,11 +37,15 @@ import re
 import shutil
 import subprocess
 import sys
-import tomllib
 import traceback
 
 import h5py
 import numpy as np
+
+try:
+    import tomllib
+except ModuleNotFoundError:  # Python before 3.11
+    import tomli as tomllib
 
 HERE = pathlib.Path(__file__).resolve().parent
 TEXT_COLUMNS = ("side", "phase")

@@ -2,7 +2,7 @@
 """Mass scaling: closed sums of the added mass, the step that is asked for, motions that no mass changes."""
 import numpy as np
 
-from meshes import Deck, grid_quads, lumped_mass
+from meshes import Deck, grid_quads
 
 RHO, YOUNG, POISSON = 1000.0, 1.2e6, 0.0   # nu 0: the limit of the ends of a strip is L/c too
 SPEED = np.sqrt(YOUNG / RHO)

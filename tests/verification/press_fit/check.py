@@ -3,7 +3,7 @@
 import numpy as np
 
 from contact_types import PASS_PATCH, TYPES
-from meshes import Deck, grid, grid_quads
+from meshes import Deck, grid
 
 YOUNG, POISSON, RHO, OUTER, HEIGHT = 1000.0, 0.3, 1.0, 2.0, 1.0
 PENALTY = 2.0e4   # N/m^3 with PUNIT 1: a layer of springs, 1.9 % of the compliance of the bodies

@@ -206,7 +206,7 @@ def dear_type(run) -> list[Advice]:
             f"{interface.id} (command line: ctype.{interface.id}={number}), where the resultants "
             "matter more than a smooth pressure; compare both once",
             contact_seconds(run, interface) * saved,
-            f"mean over the scenes of doc/studies/speed_accuracy.md, which differ"
+            "mean over the scenes of doc/studies/speed_accuracy.md, which differ"
             + (", and where the forces of ironing are rougher with it" if interface.friction else "")))
     return advice
 
