@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Studies: runs that are put into tables, charts and pages of `doc/studies`.
+"""Studies: sweeps of runs, their tables and pictures, that pages of `doc/studies` quote.
 
-A study of one file is a module of this package, one of several a folder. A sweep (`tools/study.sh NAME`) has a `STUDY` in
-its module, or in `study.py` of its folder, and one line in `framework.registry.STUDIES`.
+`tools/study.sh NAME` runs the `STUDY` of a module, or of `study.py` in a folder; `framework.pages.PAGES` lists them. The
+modules block, patch, sliding, collision and hertz say what runs of these scenes are judged by.
 """

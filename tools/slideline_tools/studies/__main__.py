@@ -119,13 +119,10 @@ def collect(study, jobs, sweep, doc, publish):
     study.chart(table, folder)
     if study.page:
         processors = sorted(set(table["processor"].dropna()))
-        source = pages.program_source(sweep.program)
         if publish and len(processors) > 1:
             raise UserError(f"runs of several processors are not published together: {'; '.join(processors)}")
-        if publish and (source == "unknown" or source.endswith("-dirty")):
-            raise UserError(f"pages are published from a source that is committed, not from {source}")
         study.page(table, doc)
-        finish_page(study.name.replace("-", "_"), doc, folder, source, "; ".join(processors))
+        finish_page(study.name.replace("-", "_"), doc, folder, pages.program_source(sweep.program), "; ".join(processors))
 
 
 def finish_page(name, doc, folder, source, processors):
@@ -139,6 +136,14 @@ def finish_page(name, doc, folder, source, processors):
             shutil.copy(folder / picture, doc / "pictures")
 
 
+def check_fit_to_publish(wanted, source):
+    """Before anything runs: a page has to say what it was made from."""
+    if wanted.quick:
+        raise UserError("a quick study is not published")
+    if source == "unknown" or source.endswith("-dirty"):
+        raise UserError(f"pages are published from a source that is committed, not from {source}")
+
+
 def print_runs(jobs, sweep):
     """The state of each run."""
     for job in jobs:
@@ -150,13 +155,13 @@ def print_runs(jobs, sweep):
 def perform(wanted):
     results = ROOT / "results"
     folder = (wanted.folder or results / f"study-{wanted.name}{'-quick' * wanted.quick}").resolve()
-    if wanted.quick and wanted.publish:
-        raise UserError("a quick study is not published")
     study = pages.load(wanted.name)
     program = pathlib.Path(wanted.program or os.environ.get("SLIDELINE")
                            or ROOT / "build" / study.build / "slideline").resolve()
     if not program.is_file():
         raise UserError(f"no program {program}; build it with tools/build.sh {study.build}")
+    if wanted.publish:
+        check_fit_to_publish(wanted, pages.program_source(program))
     jobs, counted = with_counter(planned(study, wanted), wanted)
     sweep = Sweep(folder, program, file_digest(program), counted)
     chosen = part_of_text(jobs, wanted.part) if wanted.part else jobs

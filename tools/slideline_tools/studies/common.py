@@ -17,7 +17,8 @@ from slideline_tools.studies.framework.pages import with_origin
 LARGEST_PICTURE = 100_000
 VERIFICATION = pathlib.Path(__file__).resolve().parents[3] / "tests" / "verification"
 #: Colour and marker of each type and series, the same in every picture.
-LOOKS = {**{ctype: (COLOURS[ctype - 1], MARKERS[ctype - 1]) for ctype in TYPES}, IMPLICIT: ("#e6007e", "X"), HARD: ("#111111", "*")}
+LOOKS: dict[object, tuple[str, str]] = {
+    **{ctype: (COLOURS[ctype - 1], MARKERS[ctype - 1]) for ctype in TYPES}, IMPLICIT: ("#e6007e", "X"), HARD: ("#111111", "*")}
 
 
 def label(ctype):
