@@ -39,21 +39,21 @@ def force_distance(rows, others, factor):
     return {"force_error": float(np.sqrt(np.mean((force - reference) ** 2)) / size)} if size else {}
 
 
-def pair_of(one, other, entity, field):
-    """A field of both runs at the last state, of the entities that both have."""
-    (ids, values), (others, expected) = (
-        (getattr(run, f"{entity[0]}_field")(entity[1])[-1],
-         getattr(run, f"{entity[0]}_field")(field)[-1]) for run in (one, other))
-    _, rows, other_rows = np.intersect1d(ids, others, return_indices=True)
-    return values[rows], expected[other_rows]
+def common(ids, others):
+    """Rows of the entities that both have."""
+    return np.intersect1d(ids, others, return_indices=True)[1:]
 
 
 def state_distance(one, other):
     """Distances at the last states."""
-    moved, reference = pair_of(one, other, ("point", "node_id"), "displacement")
-    strain, expected = pair_of(one, other, ("cell", "element_id"), "plastic_strain")
-    found = {"displacement_error": float(np.abs(moved - reference)[:, :2].max()
-                                         / np.abs(reference)[:, :2].max())}
+    rows, others = common(one.point_field("node_id")[-1], other.point_field("node_id")[-1])
+    moved = one.point_field("displacement")[-1][rows, :2]
+    reference = other.point_field("displacement")[-1][others, :2]
+    rows, others = common(one.cell_field("element_id")[-1], other.cell_field("element_id")[-1])
+    strain = one.cell_field("plastic_strain")[-1][rows]
+    expected = other.cell_field("plastic_strain")[-1][others]
+    found = {"displacement_error": float(np.abs(moved - reference).max()
+                                         / np.abs(reference).max())}
     if expected.sum() > 0.0:
         found["strain_shift"] = float(np.abs(strain - expected).sum() / expected.sum())
     return found

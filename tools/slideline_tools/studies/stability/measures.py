@@ -39,11 +39,6 @@ def swings(rcforc):
     return float(np.sum(np.abs(np.diff(force))) / np.max(force))
 
 
-def depth(contact):
-    """Deepest penetration of a slave node in all states, m."""
-    return float(max(0.0, -np.min(contact["gap"])))
-
-
 def unevenness(contact):
     """Scatter of the pressure along the surface over its mean, in the last state."""
     last = contact.where(time=contact["time"][-1])
@@ -72,11 +67,15 @@ def cut_share(log):
 
 
 def measure_cell(folder, jobid, scene):
-    """All measures of a run and its verdict; stable by the energy law alone is limited."""
+    """All measures of a run and its verdict; stable by the energy law alone is limited.
+
+    `depth`: deepest penetration of a slave node in all states, m.
+    """
     tables = {name: read_csv(folder / f"{jobid}.{name}.csv")
               for name in ("glstat", "rcforc", "sleout", "contact")}
     drift, created = energies(tables["glstat"], tables["sleout"])
-    measures = {"drift": drift, "created": created, "depth": depth(tables["contact"]),
+    measures = {"drift": drift, "created": created,
+                "depth": float(max(0.0, -np.min(tables["contact"]["gap"]))),
                 "swings": swings(tables["rcforc"]), "uneven": unevenness(tables["contact"])}
     reached = tables["glstat"]["time"][-1] >= 0.99 * scene.end
     verdict = judge(0 if reached else 2, measures, scene.side, scene.approach, scene.is_uniform)
