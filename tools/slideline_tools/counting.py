@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Retired instructions of a run: a cost that a busy machine does not change.
 
-Where the kernel lends the processor's counters (perf_event_open) they count the program as it is. Elsewhere
-callgrind counts, on a program built for x86-64-v3 (`tools/build.sh counted`), since emulators lack AVX-512; it
-tells the parts of the program apart too. A run under callgrind takes some fifty times as long: shorten it.
+callgrind counts, on a program built for x86-64-v3 (`tools/build.sh counted`), since emulators lack AVX-512; it tells the
+parts of the program apart too. A run under callgrind takes some fifty times as long: shorten it.
 """
-import ctypes
 import dataclasses
 import functools
 import json
 import os
 import pathlib
-import platform
 import re
 import shutil
 import subprocess
@@ -19,7 +16,7 @@ import sys
 
 from slideline_tools import UserError
 
-HARDWARE, CALLGRIND = "hardware counters", "callgrind, x86-64-v3"
+CALLGRIND = "callgrind, x86-64-v3"
 # Parts of the program by the folders of src/ that their procedures are in: inclusive of what those call elsewhere.
 PARTS = {"contact": ("contact",), "elements": ("element", "material")}
 SOURCES = pathlib.Path(__file__).resolve().parents[2] / "src"
@@ -34,11 +31,6 @@ ALLOCATOR = re.compile(r"(__wrap_)?(malloc|calloc|realloc|free)('\d+)?$")
 # so, copies by vectors.
 COPIES = "glibc.cpu.x86_rep_movsb_threshold=0x7fffffff:glibc.cpu.x86_rep_stosb_threshold=0x7fffffff"
 
-# <linux/perf_event.h>
-_SYSTEM_CALL = {"x86_64": 298, "aarch64": 241}
-_HARDWARE_TYPE, _INSTRUCTIONS = 0, 1
-_DISABLED, _INHERIT, _NO_KERNEL, _NO_HYPERVISOR, _ON_EXEC = 1 << 0, 1 << 1, 1 << 5, 1 << 6, 1 << 12
-
 
 @dataclasses.dataclass(frozen=True)
 class Counts:
@@ -49,52 +41,17 @@ class Counts:
     by: str
 
 
-def open_counter(pid, kind=_HARDWARE_TYPE, event=_INSTRUCTIONS):
-    """A descriptor that counts an event in a process, its threads and what it starts, from its next exec on.
-
-    Raises OSError where the machine does not lend the counter.
-    """
-    attributes = (ctypes.c_uint64 * 8)()  # struct perf_event_attr, version 0: 64 bytes
-    attributes[0] = kind | 64 << 32
-    attributes[1] = event
-    attributes[5] = _DISABLED | _INHERIT | _NO_KERNEL | _NO_HYPERVISOR | _ON_EXEC
-    number = _SYSTEM_CALL.get(platform.machine())
-    if platform.system() != "Linux" or number is None:
-        raise OSError("no perf_event_open here")
-    library = ctypes.CDLL(None, use_errno=True)
-    found = library.syscall(ctypes.c_long(number), attributes, ctypes.c_int(pid), ctypes.c_int(-1),
-                            ctypes.c_int(-1), ctypes.c_ulong(0))
-    if found < 0:
-        raise OSError(ctypes.get_errno(), "perf_event_open")
-    return found
-
-
-@functools.lru_cache(maxsize=None)
-def hardware_is_there():
-    """Whether the machine lends its counter of instructions."""
-    try:
-        os.close(open_counter(0))
-    except OSError:
-        return False
-    return True
-
-
-def method():
-    """Who counts on this machine; UserError where nobody can."""
-    if hardware_is_there():
-        return HARDWARE
-    if shutil.which("valgrind"):
-        return CALLGRIND
-    raise UserError("no retired instructions: the machine lends no counters (perf_event_open) and "
-                    "valgrind is not installed")
+def require_counter():
+    """UserError where nothing can be counted."""
+    if not shutil.which("valgrind"):
+        raise UserError("no retired instructions: valgrind is not installed")
 
 
 def counted_program(root, build=True):
-    """The program to be counted: $SLIDELINE_COUNTED, that of the release, or the one for callgrind, which is built."""
+    """The program to be counted: $SLIDELINE_COUNTED, or the one for callgrind, which is built."""
     if "SLIDELINE_COUNTED" in os.environ:
         return pathlib.Path(os.environ["SLIDELINE_COUNTED"]).resolve()
-    if method() == HARDWARE:
-        return pathlib.Path(root) / "build" / "release" / "slideline"
+    require_counter()
     if build and subprocess.run([pathlib.Path(root) / "tools" / "build.sh", "counted"], check=False,
                                 stdout=sys.stderr).returncode:
         raise UserError("the program to be counted could not be built")
@@ -107,45 +64,20 @@ def counting_command(command, folder):
             f"--callgrind-out-file={pathlib.Path(folder) / PROFILE}", *map(str, command)]
 
 
-def count_instructions(command, folder, by=None, **options):
-    """`Counts` of a command, by the `method` of this machine or the one named; UserError where it fails.
+def count_instructions(command, folder, **options):
+    """`Counts` of a command; UserError where it fails or nobody can count.
 
     `folder` takes the profile; `options` go to subprocess (env, cwd ...).
     """
+    require_counter()
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    if (by or method()) == HARDWARE:
-        status, trouble, total = run_counted(command, **options)
-        found = Counts(total, {}, HARDWARE)
-    else:
-        options["env"] = {**(options.get("env") or os.environ), "GLIBC_TUNABLES": COPIES}
-        done = subprocess.run(counting_command(command, folder), stdin=subprocess.DEVNULL, capture_output=True,
-                              text=True, errors="replace", check=False, **options)
-        status, trouble = done.returncode, done.stderr
-        found = None if status else read_profile(folder / PROFILE)
-    if status:
-        raise UserError(f"{' '.join(map(str, command))}: exit status {status}\n{trouble[-1000:]}")
-    return found
-
-
-def run_counted(command, kind=_HARDWARE_TYPE, event=_INSTRUCTIONS, **options):
-    """Exit status, standard error and count of an event of a command, by perf_event_open.
-
-    The child waits for a line, that its counter is there, before it becomes the command.
-    """
-    with subprocess.Popen(["/bin/sh", "-c", 'read -r _; exec "$@" </dev/null', "sh", *map(str, command)],
-                          stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                          errors="replace", **options) as process:
-        try:
-            counter = open_counter(process.pid, kind, event)
-        except OSError:
-            process.kill()
-            raise
-        try:
-            _, trouble = process.communicate("\n")
-            return process.returncode, trouble, int.from_bytes(os.read(counter, 8), "little")
-        finally:
-            os.close(counter)
+    options["env"] = {**(options.get("env") or os.environ), "GLIBC_TUNABLES": COPIES}
+    done = subprocess.run(counting_command(command, folder), stdin=subprocess.DEVNULL, capture_output=True,
+                          text=True, errors="replace", check=False, **options)
+    if done.returncode:
+        raise UserError(f"{' '.join(map(str, command))}: exit status {done.returncode}\n{done.stderr[-1000:]}")
+    return read_profile(folder / PROFILE)
 
 
 def read_profile(path):

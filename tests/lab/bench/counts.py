@@ -8,7 +8,7 @@ import subprocess
 
 import elements
 from measuring import HERE, Variant
-from slideline_tools.counting import CALLGRIND, count_instructions
+from slideline_tools.counting import count_instructions
 
 ARCH = "x86-64-v3"
 YARDSTICK_ROUNDS, YARDSTICK_WORK = (20, 60), 200 * 96  # calls of a round times elements, as in yardstick.f90
@@ -18,7 +18,7 @@ STEPS = (100, 200)
 
 def difference(commands, work, folder):
     """Instructions per unit of the work that the second command does more."""
-    few, many = (count_instructions(command, folder, CALLGRIND).total for command in commands)
+    few, many = (count_instructions(command, folder).total for command in commands)
     return (many - few) / work
 
 

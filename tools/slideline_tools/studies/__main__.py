@@ -77,7 +77,7 @@ def with_counter(jobs, wanted):
             raise UserError("with a program of one's own $SLIDELINE_COUNTED has to name the one to be counted, "
                             "for callgrind one without AVX-512")
         program = counting.counted_program(ROOT, build=not wanted.list)
-        return jobs, (program, counting.method() + (file_digest(program) if program.is_file() else ""))
+        return jobs, (program, file_digest(program) if program.is_file() else "")
     except UserError as problem:
         print(f"study: instructions are not counted: {problem}", file=sys.stderr)
         return [job for job in jobs if not job.counted], None

@@ -2,7 +2,6 @@
 """Counted instructions: jobs, and the words beside their figures."""
 import dataclasses
 
-from slideline_tools.counting import HARDWARE
 from slideline_tools.studies.framework.table import counted
 
 
@@ -17,12 +16,10 @@ def who_counted(table):
     """'Counted by ...', with what was cut short and what a count is good for."""
     runs = counted(table)
     if runs.empty:
-        return "No instructions were counted: the machine lent no counters and valgrind was not installed."
-    by = sorted(set(runs["counted_by"]))
-    text = (f"Counted by {', '.join(by)}" + (", of the program as it is." if by == [HARDWARE] else
-            ", which emulates the program built for that processor (no AVX-512, so more of them than there are here).")
-            + " Two counts of a run agree to 1e-4, on a busy machine too. Instructions differ in what they cost: a count "
-            "tells work, not time.")
+        return "No instructions were counted: valgrind was not installed."
+    text = (f"Counted by {', '.join(sorted(set(runs['counted_by'])))}, which emulates the program built for that "
+            "processor. Two counts of a run agree to 1e-4, on a busy machine too. Instructions differ in what they "
+            "cost: a count tells work, not time.")
     short = dict(zip(runs["scene"], runs["shortened"])) if "scene" in runs and "shortened" in runs else {}
     short = {scene: words for scene, words in short.items() if words}
     if short:
