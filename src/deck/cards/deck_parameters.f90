@@ -4,7 +4,8 @@
 !> that defines it. Names compare without regard to case.
 module deck_parameters_m
   use kinds_m, only : wp
-  use text_m, only : upper_case, read_real, read_integer, exact_text, number_good
+  use number_text_m, only : shortest
+  use text_m, only : upper_case, read_real, read_integer, number_good
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, line_text, line_error
   use deck_spelling_m, only : first_too_far, keep_nearer
@@ -141,7 +142,7 @@ contains
       if (allocated(trouble)) then
         call field_error(deck, spec, card, 1, 'cannot be computed: '//trouble)
       else
-        call define(deck, parameters, spec, card, 1, exact_text(value), local_source(deck, i_block))
+        call define(deck, parameters, spec, card, 1, shortest(value), local_source(deck, i_block))
       end if
     end do
   end subroutine read_expressions
