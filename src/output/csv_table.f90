@@ -2,8 +2,8 @@
 !> One CSV file that grows by rows: comma between values, no blanks, reals as the shortest decimals
 !> that read back as the same numbers. Rows are kept in a buffer of whole lines and reach the file
 !> with one system call, at the latest a second after they came. The values are kept too: the results
-!> file takes them over at the end. A text file in DYNA's layout may grow beside it from the same rows; columns that it alone
-!> needs are not in the CSV file.
+!> file takes them over at the end. A text file in DYNA's layout may grow beside it from the same
+!> rows; columns that it alone needs are not in the CSV file.
 module csv_table_m
   use kinds_m, only : wp, long
   use number_text_m, only : real_size, put_real, put_integer

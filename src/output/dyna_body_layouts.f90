@@ -22,7 +22,8 @@ contains
       call add_line('', lines, n_line)
     end do
     call add_line(' e l e m e n t   s t r e s s   c a l c u l a t i o n s   f o r   t i m e  ' &
-      //'s t e p'//number(rows(8, 1), 9)//'   ( at time'//es(rows(1, 1), 12, 5)//' )', lines, n_line)
+      //'s t e p'//number(rows(8, 1), 9)//'   ( at time'//es(rows(1, 1), 12, 5)//' )', lines, &
+      n_line)
     call add_line('', lines, n_line)
     call add_line(' element  materl(global)', lines, n_line)
     call add_line(' ipt-shl  stress       sig-xx      sig-yy      sig-zz      sig-xy      ' &
