@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> One CSV file that grows by rows: comma between values, no blanks, reals as the shortest decimals
 !> that read back as the same numbers. Rows are kept in a buffer of whole lines and reach the file
-!> with one system call, at the latest a second after they came. The values are kept too: the results
+!> with one system call, at the latest a second after they came. The values are kept: the results
 !> file takes them over at the end. A text file in DYNA's layout may grow beside it from the same
 !> rows; columns that it alone needs are not in the CSV file.
 module csv_table_m
