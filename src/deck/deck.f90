@@ -12,7 +12,6 @@ module deck_m
   use deck_findings_m, only : list_findings
   use deck_report_m, only : emit_warnings, emit_errors
   use deck_lines_m, only : deck_t, line_error, line_warning, shown_text, file_paths
-  use deck_choose_case_m, only : choose_case
   use deck_reader_m, only : read_blocks, cut_deck
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
@@ -50,6 +49,7 @@ module deck_m
   use deck_resolve_m, only : resolve_model
   use deck_effective_m, only : forget_places, write_effective
   use deck_echo_m, only : echo_model
+  use text_m, only : upper_case
   implicit none
   private
   public :: deck_request_t, read_deck, interpret_deck
@@ -59,14 +59,15 @@ module deck_m
     character(:), allocatable :: path
     character(:), allocatable :: overrides(:) !! `name=value`, `name.interface=value`,
                                               !! `p:NAME=value`
-    integer :: n_of_case = 0                  !! as many of these, the first ones, are of COMMANDS
     character(:), allocatable :: text         !! of the deck where it is no file; `path` names it
                                               !! then
-    type(deck_t), allocatable :: deck         !! where it has been read and cut; reading takes it
-    integer :: case = 0                       !! of *CASE, 0: a deck without cases
-    character(:), allocatable :: refusal      !! why the cases can not run as they are asked for
     character(:), allocatable :: files(:)     !! that have been read: the deck, what it includes
   end type deck_request_t
+
+  !> What takes the place of *CASE, behind its refusals.
+  character(*), parameter :: instead_of_cases = ' not available in slideline: run the deck once ' &
+    //'for each, in a shell loop or by tools/batch/sweep.sh, with ctype=, p:NAME=VALUE of a ' &
+    //'*PARAMETER and the like, and *INCLUDE what several decks share'
 
 contains
 
@@ -80,24 +81,18 @@ contains
     character(:), allocatable, intent(out) :: effective      !! the deck as run
     type(error_t), allocatable, intent(out) :: error
     character(:), allocatable, intent(out), optional :: findings !! all messages, see list_findings
-    type(deck_t), allocatable :: deck
+    type(deck_t) :: deck
     character(:), allocatable :: text
 
-    if (allocated(request%deck)) then
-      call move_alloc(request%deck, deck)
-    else if (allocated(request%text)) then
-      allocate (deck)
+    if (allocated(request%text)) then
       text = request%text
       call cut_deck(request%path, text, deck)
     else
-      allocate (deck)
       call read_blocks(request%path, deck, error)
       if (present(findings)) findings = ''
       if (allocated(error)) return
     end if
     if (.not. allocated(request%text)) request%files = file_paths(deck)
-    if (deck%cases%found .or. request%case > 0) call choose_case(deck, request%case, &
-      request%refusal, log)
     call interpret_deck(deck, request, kinds, log, model, effective, error)
     if (present(findings)) call list_findings(deck%report, findings)
   end subroutine read_deck
@@ -126,7 +121,7 @@ contains
       return
     end if
     if (allocated(request%overrides)) then
-      call read_overrides(request%overrides, request%n_of_case, deck, parameters, overrides)
+      call read_overrides(request%overrides, deck, parameters, overrides)
     else
       allocate (overrides%items(0))
     end if
@@ -175,7 +170,7 @@ contains
     if (deck%n_block == 0) call line_error(deck, 0, 'holds no keyword (a line that starts with *)')
     do i = 1, deck%n_block
       associate (block => deck%blocks(i))
-        if (block%name == 'COMMENT') then ! also keywords of cases that are not read
+        if (block%name == 'COMMENT') then
           name = block%name
           known(i) = known_honoured
         else
@@ -189,21 +184,27 @@ contains
         case (known_honoured)
           block%name = name(:len(block%name))
           select case (block%name)
-          case ('KEYWORD', 'END', 'COMMENT', 'INCLUDE', 'INCLUDE_PATH', 'CASE', 'CASE_BEGIN', &
-              'CASE_END')
+          case ('KEYWORD', 'END', 'COMMENT', 'INCLUDE', 'INCLUDE_PATH')
             block%dropped = .true.
           end select
         case (known_ignored)
           call line_warning(deck, block%keyword, 'ignored'//block%given, 'has no effect here')
         case (known_refused)
-          call line_error(deck, block%keyword, reason//' not available in slideline' &
-            //meant(block%given))
+          if (index(block%given, 'CASE') == 1) then
+            call line_error(deck, block%keyword, reason//instead_of_cases)
+          else
+            call line_error(deck, block%keyword, reason//' not available in slideline' &
+              //meant(block%given))
+          end if
           call note_lost(block%given, raw)
         case default
           call line_error(deck, block%keyword, 'is not a keyword that this version knows' &
             //meant(block%given))
           call note_lost(block%given, raw)
         end select
+        if (block%name /= 'COMMENT' .and. index(' '//upper_case(block%rest), ' CID=') > 0) &
+          call line_error(deck, block%keyword, 'keywords of one of several runs (CID=) are' &
+          //instead_of_cases)
       end associate
     end do
   end subroutine know_blocks

@@ -62,24 +62,22 @@ contains
   end function override_mistake
 
   !> Take the texts apart; those of parameters go straight to the parameters.
-  subroutine read_overrides(texts, n_of_case, deck, parameters, overrides)
+  subroutine read_overrides(texts, deck, parameters, overrides)
     character(*), intent(in) :: texts(:)
-    integer, intent(in) :: n_of_case !! as many, the first ones, are of COMMANDS of *CASE
     type(deck_t), intent(inout) :: deck
     type(parameters_t), intent(inout) :: parameters
     type(overrides_t), intent(out) :: overrides
     type(override_t) :: item
-    character(:), allocatable :: mistake, where
+    character(:), allocatable :: mistake
     integer :: i
 
     allocate (overrides%items(0))
     do i = 1, size(texts)
       call take_apart(texts(i), item, mistake)
-      where = trim(merge('on the command line ', 'in COMMANDS of *CASE', i > n_of_case))
-      item%phrase = '"'//trim(adjustl(texts(i)))//'" '//where
+      item%phrase = '"'//trim(adjustl(texts(i)))//'" on the command line'
       if (len(mistake) > 0) call line_error(deck, 0, item%phrase//mistake)
       if (index(item%name, 'P:') == 1) then
-        call override_parameter(parameters, item%name(3:), item%text, where)
+        call override_parameter(parameters, item%name(3:), item%text)
       else if (len(item%name) > 0) then
         overrides%items = [overrides%items, item]
       end if

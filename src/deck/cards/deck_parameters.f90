@@ -43,9 +43,8 @@ contains
     do i = 1, parameters%n
       associate (item => parameters%items(i))
         if (item%fixed .and. .not. (item%found .or. deck%incomplete)) &
-          call line_error(deck, 0, 'p:'//trim(item%name)//' '//item%where &
-          //': the deck has no such parameter' &
-          //nearest_name(parameters, trim(item%name)))
+          call line_error(deck, 0, 'p:'//trim(item%name)//' on the command line: the deck has no ' &
+          //'such parameter'//nearest_name(parameters, trim(item%name)))
       end associate
     end do
   end subroutine read_parameters

@@ -12,7 +12,7 @@ module deck_schema_m
   use deck_schema_others_m, only : table_others
   use deck_spelling_m, only : keep_nearer
   use deck_schema_tables_m, only : table_control, table_mesh, table_conditions, table_contact, &
-    table_database, table_cases
+    table_database
   implicit none
   private
   public :: keyword_cards, find_keyword, nearest_keyword, refusal_reason, lost_effect, max_card, &
@@ -40,7 +40,6 @@ contains
     call collect(table_conditions)
     call collect(table_contact)
     call collect(table_database)
-    call collect(table_cases)
 
   contains
 
@@ -157,9 +156,6 @@ contains
       name = 'DATABASE_BINARY_D3PLOT'
     case ('INCLUDE_PATH_RELATIVE')
       name = 'INCLUDE_PATH'
-    case default
-      if (index(given, 'CASE_BEGIN_') == 1) name = 'CASE_BEGIN'
-      if (index(given, 'CASE_END_') == 1) name = 'CASE_END'
     end select
   end function canonical
 
@@ -176,7 +172,6 @@ contains
     call search(table_conditions)
     call search(table_contact)
     call search(table_database)
-    call search(table_cases)
 
   contains
 
@@ -233,7 +228,6 @@ contains
     call compare(table_conditions)
     call compare(table_contact)
     call compare(table_database)
-    call compare(table_cases)
     ! A name that stops early: the shortest that goes on.
     if (len_trim(nearest) == 0) nearest = longer
 

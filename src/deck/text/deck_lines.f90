@@ -10,8 +10,8 @@ module deck_lines_m
   use log_m, only : to_text
   implicit none
   private
-  public :: deck_t, source_t, block_t, place_t, case_blocks_t, file_paths, line_text, &
-    block_of_line, where_text, line_error, deck_error, line_warning, replace_line, written_text, &
+  public :: deck_t, source_t, block_t, place_t, file_paths, line_text, block_of_line, &
+    where_text, line_error, deck_error, line_warning, replace_line, written_text, &
     line_spot, keyword_of_line, shown_text, marked_line, layout_mark, format_standard, &
     format_long, format_i10, flag_comma, flag_parameter, flag_blank, max_source
 
@@ -54,15 +54,6 @@ module deck_lines_m
     integer :: field = 0        !! its position, where there is no name: members of sets
   end type place_t
 
-  !> What belongs to cases while a deck is cut (*CASE_BEGIN_n, *CASE_END_n, CID=n).
-  type :: case_blocks_t
-    logical :: found = .false.                !! the deck has cases
-    logical :: wrong = .false.                !! an error of these marks has been told
-    integer, allocatable :: read(:)           !! subcases whose keywords are read
-    integer, allocatable :: open(:), begun(:) !! subcases that wait for their end, their lines
-    integer, allocatable :: all(:), places(:) !! subcases as they come, the first line of each
-  end type case_blocks_t
-
   !> The whole deck.
   type :: deck_t
     type(source_t), allocatable :: sources(:)
@@ -78,9 +69,7 @@ module deck_lines_m
     integer, allocatable :: replaced(:, :)    !! (3, n) lines in `patch`, and where their file has
                                               !! them
     integer :: n_replaced = 0
-    logical :: incomplete = .false.           !! an included file could not be read, or
-                                              !! what belongs to the case is not known
-    type(case_blocks_t) :: cases
+    logical :: incomplete = .false.           !! an included file could not be read
     character(:), allocatable :: default_zeros, kept_zeros !! fields with a 0 that means their
                                               !! default, and of which a 0 is 0 all the same
     type(report_t) :: report

@@ -23,7 +23,6 @@ module deck_parameter_table_m
     character(:), allocatable :: text     !! what is put in its place
     integer :: source = 0                 !! file it is private to, 0 = the whole deck
     logical :: fixed = .false.            !! given on the command line
-    character(:), allocatable :: where    !! then: `on the command line`, for messages
     logical :: found = .false.            !! the deck defines it
     integer :: next = 0                   !! the next one of the same hash, in the order they come
   end type parameter_t
@@ -39,15 +38,13 @@ module deck_parameter_table_m
 contains
 
   !> A value from the command line, which wins over the deck.
-  subroutine override_parameter(parameters, name, text, where)
+  subroutine override_parameter(parameters, name, text)
     type(parameters_t), intent(inout) :: parameters
     character(*), intent(in) :: name
     character(*), intent(in) :: text
-    character(*), intent(in) :: where !! it is given, for messages
 
     call add_parameter(parameters, upper_case(name), '?', text, 0)
     parameters%items(parameters%n)%fixed = .true.
-    parameters%items(parameters%n)%where = where
   end subroutine override_parameter
 
   !> Put a definition into the table, minding one of the same name that is there.
@@ -96,8 +93,8 @@ contains
       integer :: status
 
       call read_real(parameters%items(k)%text, value, status)
-      if (status /= number_good) call line_error(deck, 0, 'p:'//name//' ' &
-        //parameters%items(k)%where//': "'//parameters%items(k)%text//'" is not a number')
+      if (status /= number_good) call line_error(deck, 0, 'p:'//name &
+        //' on the command line: "'//parameters%items(k)%text//'" is not a number')
     end subroutine check_override
 
   end subroutine settle_parameter
