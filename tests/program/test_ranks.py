@@ -25,7 +25,6 @@ from history_decks import busy_block
 from impact_decks import plates
 from meshes import Deck, grid
 from round_decks import rings
-from test_chosen_type import twice
 from test_contact_fineness import blow
 from test_requests import wait_for
 from test_same_bits import anvil, everything
@@ -130,7 +129,6 @@ SCENES = {
     "no contact, gravity": (settling, 60, (5,), 1),
     "tiles that wake, round": (lambda: struck(True), 260, (2,), 2),
     "histories and an end before its time, type 3": (ended, 60, (3,), 1),
-    "type that changes": (lambda: twice(columns=(40, 56), pace=0.06), 400, (3,), 1, "dt=4e-4"),
     "penalty and step by default": (lambda: blow("*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE", ("steel", 16, 20, 0.4),
                                                  ("brass", 160, 12, 0.2), end=2.0e-7), 60, (3,), 1),
     "bodies in each other, type 3": (lambda: two_blocks(3, 0.035, 0.0), 60, (2, 3), 1),
@@ -202,7 +200,6 @@ def test_files_are_those_of_one_process(tmp_path, scene):
     assert "leave" not in scene or "leave the mesh" in log
     assert "fail" not in scene or "points fail" in log
     assert ("end before" in scene) == ("*TERMINATION_BODY" in log)
-    assert ("changes" in scene) == ("contact is open and goes on with" in log)
     assert ("by default" in scene) == ("the step obeys its springs" in log)
     assert "in each other" not in scene or "deepest at node 1: 3.500000E-02" in log
     assert ("implicit springs" in scene) == ("penalty: implicit springs of" in log)

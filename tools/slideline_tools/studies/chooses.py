@@ -38,7 +38,6 @@ class Run:
     ctype: int
     target: str = ""
     chosen: int = 0
-    changes: int = 0
     same: bool = True          # the files are those of the type by name
     instructions: int = 0
     judged: str = ""           # what the run says of its target
@@ -72,7 +71,6 @@ def run_whole(run, folder, program):
     log = execute(program, folder / name_of(run), run.scene, options(run.scene, run.ctype, run.target))
     if run.ctype == 0:
         run.chosen = int(re.search(r"\(type (\d)\), chosen by the program", log)[1])
-        run.changes = len(re.findall(r"contact is open and goes on with", log))
         run.judged = re.search(r"interface \d+: the target \S+ % is (.*)", log)[1]
 
 
@@ -149,7 +147,7 @@ def page_text(scenes, doc):
     for runs in scenes:
         text, found = table(runs, doc)
         parts.append(f"## {SCENES[runs[0].scene].title}\n\n{text}")
-        told = [f"- {run.words}: took type {run.chosen}, {'no change' if not run.changes else f'{run.changes} change(s)'} on the way, "
+        told = [f"- {run.words}: took type {run.chosen}, "
                 f"files {'those' if run.same else 'not those'} of the type by name; the target is {run.judged}."
                 for run in runs if not run.ctype]
         parts.append("\n".join(told))
