@@ -15,7 +15,6 @@ module deck_m
   use deck_reader_m, only : read_blocks, cut_deck
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
-  use deck_parameter_table_m, only : parameters_t
   use deck_parameters_m, only : read_parameters
   use deck_overrides_m, only : overrides_t, read_overrides, override_text, &
     override_phrase
@@ -106,7 +105,6 @@ contains
     type(model_t), intent(out) :: model
     character(:), allocatable, intent(out) :: effective
     type(error_t), allocatable, intent(out) :: error
-    type(parameters_t) :: parameters
     type(overrides_t) :: overrides
     type(raw_t), allocatable :: raw
     character(:), allocatable :: tail
@@ -121,18 +119,18 @@ contains
       return
     end if
     if (allocated(request%overrides)) then
-      call read_overrides(request%overrides, deck, parameters, overrides)
+      call read_overrides(request%overrides, deck, overrides)
     else
       allocate (overrides%items(0))
     end if
-    call read_parameters(deck, parameters)
+    call read_parameters(deck)
     raw%end_given = len(override_text(overrides, 'ENDTIM', 0)) > 0
     raw%step_phrase = override_phrase(overrides, 'DT', 0)
     raw%scale_phrase = override_phrase(overrides, 'TSSFAC', 0)
     raw%controls%title = ''
     call reserve_lists(deck, raw)
     do i = 1, deck%n_block
-      if (known(i) == known_honoured) call read_block(deck, parameters, i, kinds, overrides, raw)
+      if (known(i) == known_honoured) call read_block(deck, i, kinds, overrides, raw)
     end do
     call trim_lists(raw)
     call settle_friction(deck, overrides, raw)
@@ -151,7 +149,7 @@ contains
     if (allocated(deck%kept_zeros)) call write_log(log, 'a 0 in these fields is kept, where ' &
       //'LS-DYNA takes the default: '//deck%kept_zeros)
     call forget_places(deck)
-    call write_effective(deck, parameters, tail, effective)
+    call write_effective(deck, tail, effective)
   end subroutine interpret_deck
 
   !> Look every keyword up: canonical names, options taken off; unknown and refused ones are errors,
@@ -244,9 +242,8 @@ contains
   end subroutine note_lost
 
   !> Read one block by its keyword.
-  subroutine read_block(deck, parameters, i, kinds, overrides, raw)
+  subroutine read_block(deck, i, kinds, overrides, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i
     type(contact_kind_t), intent(in) :: kinds(:)
     type(overrides_t), intent(in) :: overrides
@@ -262,72 +259,71 @@ contains
     case ('TITLE')
       call read_title(deck, i, raw)
     case ('NODE')
-      call read_nodes(deck, parameters, i, raw)
+      call read_nodes(deck, i, raw)
     case ('ELEMENT_SHELL')
-      call read_elements(deck, parameters, i, raw)
+      call read_elements(deck, i, raw)
     case ('ELEMENT_BEAM')
-      call read_beams(deck, parameters, i, raw)
+      call read_beams(deck, i, raw)
     case ('SET_NODE_LIST', 'SET_NODE_LIST_GENERATE', 'SET_NODE_GENERAL', 'SET_PART_LIST', &
         'SET_PART_LIST_GENERATE', 'SET_SHELL_LIST', 'SET_SHELL_LIST_GENERATE', 'SET_SEGMENT', &
         'SET_2D_SEGMENT', 'SET_2D_SEGMENT_SET')
-      call read_set(deck, parameters, i, raw)
+      call read_set(deck, i, raw)
     case ('PART')
-      call read_part(deck, parameters, i, raw)
+      call read_part(deck, i, raw)
     case ('SECTION_SHELL')
-      call read_section(deck, parameters, i, raw)
+      call read_section(deck, i, raw)
     case ('HOURGLASS')
-      call read_hourglass(deck, parameters, i, raw)
+      call read_hourglass(deck, i, raw)
     case ('MAT_ELASTIC')
-      call read_elastic(deck, parameters, i, raw)
+      call read_elastic(deck, i, raw)
     case ('MAT_PLASTIC_KINEMATIC')
-      call read_plastic_kinematic(deck, parameters, i, raw)
+      call read_plastic_kinematic(deck, i, raw)
     case ('MAT_PIECEWISE_LINEAR_PLASTICITY')
-      call read_piecewise(deck, parameters, i, raw)
+      call read_piecewise(deck, i, raw)
     case ('MAT_NULL')
-      call read_null(deck, parameters, i, raw)
+      call read_null(deck, i, raw)
     case ('MAT_ELASTIC_PLASTIC_HYDRO')
-      call read_hydro(deck, parameters, i, raw)
+      call read_hydro(deck, i, raw)
     case ('MAT_JOHNSON_COOK')
-      call read_johnson_cook(deck, parameters, i, raw)
+      call read_johnson_cook(deck, i, raw)
     case ('MAT_SIMPLIFIED_JOHNSON_COOK')
-      call read_simplified_johnson_cook(deck, parameters, i, raw)
+      call read_simplified_johnson_cook(deck, i, raw)
     case ('MAT_MOONEY-RIVLIN_RUBBER')
-      call read_mooney_rivlin(deck, parameters, i, raw)
+      call read_mooney_rivlin(deck, i, raw)
     case ('MAT_BLATZ-KO_RUBBER')
-      call read_blatz_ko(deck, parameters, i, raw)
+      call read_blatz_ko(deck, i, raw)
     case ('MAT_CRUSHABLE_FOAM')
-      call read_crushable_foam(deck, parameters, i, raw)
+      call read_crushable_foam(deck, i, raw)
     case ('MAT_ADD_EROSION')
-      call read_erosion(deck, parameters, i, raw)
+      call read_erosion(deck, i, raw)
     case ('EOS_LINEAR_POLYNOMIAL')
-      call read_linear_polynomial(deck, parameters, i, raw)
+      call read_linear_polynomial(deck, i, raw)
     case ('EOS_GRUNEISEN')
-      call read_gruneisen(deck, parameters, i, raw)
+      call read_gruneisen(deck, i, raw)
     case ('MAT_RIGID')
-      call read_rigid(deck, parameters, i, raw)
+      call read_rigid(deck, i, raw)
     case ('DEFINE_CURVE')
-      call read_curve(deck, parameters, i, raw)
+      call read_curve(deck, i, raw)
     case ('DEFINE_TABLE')
-      call read_table(deck, parameters, i, raw)
+      call read_table(deck, i, raw)
     case ('INITIAL_VELOCITY', 'INITIAL_VELOCITY_GENERATION')
-      call read_initial_velocity(deck, parameters, i, raw)
+      call read_initial_velocity(deck, i, raw)
     case ('DAMPING_PART_MASS', 'DAMPING_PART_MASS_SET')
-      call read_part_damping(deck, parameters, i, raw)
+      call read_part_damping(deck, i, raw)
     case ('DEFINE_COORDINATE_SYSTEM')
-      call read_system(deck, parameters, i, raw)
+      call read_system(deck, i, raw)
     case ('ELEMENT_MASS', 'ELEMENT_MASS_NODE_SET', 'CONSTRAINED_NODE_SET')
-      call read_condition(deck, parameters, i, raw)
+      call read_condition(deck, i, raw)
     case ('RIGIDWALL_PLANAR')
-      call read_wall(deck, parameters, i, raw)
+      call read_wall(deck, i, raw)
     case default
-      call read_family(deck, parameters, i, kinds, overrides, raw)
+      call read_family(deck, i, kinds, overrides, raw)
     end select
   end subroutine read_block
 
   !> Keywords whose family says how they are read.
-  subroutine read_family(deck, parameters, i, kinds, overrides, raw)
+  subroutine read_family(deck, i, kinds, overrides, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i
     type(contact_kind_t), intent(in) :: kinds(:)
     type(overrides_t), intent(in) :: overrides
@@ -337,44 +333,43 @@ contains
     n = scan(deck%blocks(i)%name, '_')
     select case (deck%blocks(i)%name(:max(n, 1)))
     case ('CONTROL_')
-      call read_control(deck, parameters, i, raw)
+      call read_control(deck, i, raw)
     case ('DATABASE_')
-      call read_output(deck, parameters, i, raw)
+      call read_output(deck, i, raw)
     case ('CONTACT_')
       if (deck%blocks(i)%name == 'CONTACT_2D_FORCE_TRANSDUCER') then
-        call read_transducer(deck, parameters, i, raw)
+        call read_transducer(deck, i, raw)
       else
-        call read_contact(deck, parameters, i, kinds, overrides, raw)
+        call read_contact(deck, i, kinds, overrides, raw)
       end if
     case ('TERMINATION_')
-      call read_ends(deck, parameters, i, raw)
+      call read_ends(deck, i, raw)
     case ('BOUNDARY_', 'INITIAL_', 'LOAD_', 'DAMPING_')
-      call read_condition(deck, parameters, i, raw)
+      call read_condition(deck, i, raw)
     end select
   end subroutine read_family
 
   !> What is written, of which nodes and elements, and how often.
-  subroutine read_output(deck, parameters, i, raw)
+  subroutine read_output(deck, i, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i
     type(raw_t), intent(inout) :: raw
 
     select case (deck%blocks(i)%name)
     case ('DATABASE_HISTORY_NODE', 'DATABASE_HISTORY_NODE_ID')
-      call read_history_ids(deck, parameters, i, raw%history_nodes)
+      call read_history_ids(deck, i, raw%history_nodes)
     case ('DATABASE_HISTORY_NODE_SET')
-      call read_history_ids(deck, parameters, i, raw%history_node_sets)
+      call read_history_ids(deck, i, raw%history_node_sets)
     case ('DATABASE_HISTORY_SHELL')
-      call read_history_ids(deck, parameters, i, raw%history_shells)
+      call read_history_ids(deck, i, raw%history_shells)
     case ('DATABASE_HISTORY_SHELL_SET')
-      call read_history_ids(deck, parameters, i, raw%history_shell_sets)
+      call read_history_ids(deck, i, raw%history_shell_sets)
     case ('DATABASE_NODAL_FORCE_GROUP')
-      call read_force_groups(deck, parameters, i, raw)
+      call read_force_groups(deck, i, raw)
     case ('DATABASE_CROSS_SECTION_SET')
-      call read_cross_sections(deck, parameters, i, raw)
+      call read_cross_sections(deck, i, raw)
     case default
-      call read_database(deck, parameters, i, raw)
+      call read_database(deck, i, raw)
     end select
   end subroutine read_output
 

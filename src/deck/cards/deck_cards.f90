@@ -11,7 +11,6 @@ module deck_cards_m
   use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error, place_error, &
     place_field
   use deck_schema_m, only : keyword_cards, refusal_reason, lost_effect, max_card
-  use deck_parameter_table_m, only : parameters_t
   use deck_parameters_m, only : substitute
   implicit none
   private
@@ -89,9 +88,8 @@ contains
   end subroutine get_specs
 
   !> Card number `number`: the next line, blank or not; all defaults when the block has ended.
-  subroutine next_card(deck, parameters, cursor, number, card)
+  subroutine next_card(deck, cursor, number, card)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     type(cursor_t), intent(inout) :: cursor
     integer, intent(in) :: number
     type(card_t), intent(out) :: card
@@ -103,13 +101,12 @@ contains
       call read_numbers(deck, cursor%specs(number), cursor%source, card)
       return
     end if
-    call read_line(deck, parameters, cursor, number, card)
+    call read_line(deck, cursor, number, card)
   end subroutine next_card
 
   !> The next line that is not blank, as card `number`; `found` is false at the end of the block.
-  subroutine next_row(deck, parameters, cursor, number, card, found)
+  subroutine next_row(deck, cursor, number, card, found)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     type(cursor_t), intent(inout) :: cursor
     integer, intent(in) :: number
     type(card_t), intent(inout) :: card
@@ -117,7 +114,7 @@ contains
 
     call skip_blank(deck, cursor)
     found = cursor%line <= cursor%last
-    if (found) call read_line(deck, parameters, cursor, number, card)
+    if (found) call read_line(deck, cursor, number, card)
   end subroutine next_row
 
   !> Whether a line that is not blank is left.
@@ -193,9 +190,8 @@ contains
   end subroutine name_fields
 
   !> Read one line as card `number`.
-  subroutine read_line(deck, parameters, cursor, number, card)
+  subroutine read_line(deck, cursor, number, card)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     type(cursor_t), intent(inout) :: cursor
     integer, intent(in) :: number
     type(card_t), intent(inout) :: card
@@ -207,7 +203,7 @@ contains
       call name_fields(spec, card)
       call cut_card(deck, spec, cursor%source, cursor%line, card)
       if (iand(deck%flags(cursor%line), flag_parameter) /= 0) then
-        call substitute(deck, parameters, spec, cursor%source, card, text)
+        call substitute(deck, spec, cursor%source, card, text)
         call replace_line(deck, cursor%line, text)
         bad = card%bad
         call cut_card(deck, spec, cursor%source, cursor%line, card)

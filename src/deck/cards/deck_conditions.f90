@@ -5,7 +5,6 @@ module deck_conditions_m
   use log_m, only : to_text
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, check_rest, &
     report_field, find_field
   use deck_values_m, only : integer_of, real_of, reals_of
@@ -34,9 +33,8 @@ module deck_conditions_m
 contains
 
   !> A keyword whose cards stand for themselves, one line each.
-  subroutine read_condition(deck, parameters, i_block, raw)
+  subroutine read_condition(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -59,7 +57,7 @@ contains
       call reserve_rows(raw, n_row)
     end if
     do
-      call next_row(deck, parameters, cursor, 1, card, found)
+      call next_row(deck, cursor, 1, card, found)
       if (.not. found) exit
       call fill_row(card, at, row)
       call check_row(deck, cursor, at, card, row)
@@ -339,9 +337,8 @@ contains
   end subroutine check_edge_nodes
 
   !> *INITIAL_VELOCITY (two or three cards) and *INITIAL_VELOCITY_GENERATION (two cards).
-  subroutine read_initial_velocity(deck, parameters, i_block, raw)
+  subroutine read_initial_velocity(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -349,8 +346,8 @@ contains
     type(row_t) :: row
 
     call open_cursor(deck, i_block, cursor)
-    call next_card(deck, parameters, cursor, 1, cards(1))
-    call next_card(deck, parameters, cursor, 2, cards(2))
+    call next_card(deck, cursor, 1, cards(1))
+    call next_card(deck, cursor, 2, cards(2))
     row%line = cards(1)%line
     if (deck%blocks(i_block)%name == 'INITIAL_VELOCITY') then
       row%kind = row_velocity
@@ -358,7 +355,7 @@ contains
       row%others = integer_of(cards(1), 'NSIDEX')
       row%velocity(:2) = reals_of(cards(2), 'VX', 'VY')
       if (row%others /= 0) then
-        call next_card(deck, parameters, cursor, 3, cards(3))
+        call next_card(deck, cursor, 3, cards(3))
         row%other_velocity = reals_of(cards(3), 'VXE', 'VYE')
       end if
       if (row%id < 0) call report_field(deck, cursor, cards(1), 'NSID', no_set)

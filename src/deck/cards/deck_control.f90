@@ -8,7 +8,6 @@ module deck_control_m
   use controls_m, only : length_by_side, length_by_diagonal, contact_step_warns, contact_step_rules
   use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t, field_text
-  use deck_parameter_table_m, only : parameters_t
   use deck_card_specs_m, only : field_number
   use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field, &
     reject_field, warn_of_field
@@ -26,9 +25,8 @@ module deck_control_m
 contains
 
   !> One *CONTROL_ keyword: its cards in order, then what they mean.
-  subroutine read_control(deck, parameters, i_block, raw)
+  subroutine read_control(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -41,7 +39,7 @@ contains
         ! The card of strict tolerances comes with a negative DNORM alone.
         if (integer_of(cards(2), 'DNORM') >= 0) cycle
       end if
-      call next_card(deck, parameters, cursor, k, cards(k))
+      call next_card(deck, cursor, k, cards(k))
     end do
     call check_rest(deck, cursor)
     call warn_of_repetition(deck, i_block)

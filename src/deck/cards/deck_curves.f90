@@ -5,7 +5,6 @@ module deck_curves_m
   use curves_m, only : curve_t
   use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, report_field, &
     find_field
   use deck_values_m, only : integer_of, real_of, reals_of, is_bad
@@ -18,9 +17,8 @@ module deck_curves_m
 contains
 
   !> *DEFINE_CURVE: points, then scale factors and offsets applied, x = SFA*(x + OFFA).
-  subroutine read_curve(deck, parameters, i_block, raw)
+  subroutine read_curve(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -29,14 +27,14 @@ contains
     real(wp), allocatable :: points(:, :)
     real(wp) :: scale(2)
 
-    call read_head(deck, parameters, i_block, ['LCID', 'SFA '], &
-      'is negative: it would turn the curve round', cursor, head)
+    call read_head(deck, i_block, ['LCID', 'SFA '], 'is negative: it would turn the curve round', &
+      cursor, head)
     scale = reals_of(head, 'SFA', 'SFO')
     scale(1) = abs(scale(1)) ! a negative one has been refused
     call refuse_outside(deck, cursor, head, 'SIDR', 0, 2, &
       'is not a phase (0 run, 1 dynamic relaxation, 2 both)')
     curve%phase = integer_of(head, 'SIDR')
-    call read_rows(deck, parameters, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
+    call read_rows(deck, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
       'is not beyond the point before it: abscissas must increase', cursor, points)
     if (size(points, 2) == 0) call line_error(deck, head%line, 'the curve has no points')
     if (is_bad(head, 'LCID')) raw%lost%curves = .true.
@@ -51,9 +49,8 @@ contains
   end subroutine read_curve
 
   !> *DEFINE_TABLE: a number, and a value for each of the curves that come next.
-  subroutine read_table(deck, parameters, i_block, raw)
+  subroutine read_table(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -62,10 +59,10 @@ contains
     real(wp), allocatable :: values(:, :)
     real(wp) :: scale
 
-    call read_head(deck, parameters, i_block, ['TBID', 'SFA '], &
-      'is negative: it would turn the table round', cursor, head)
+    call read_head(deck, i_block, ['TBID', 'SFA '], 'is negative: it would turn the table round', &
+      cursor, head)
     scale = abs(real_of(head, 'SFA')) ! a negative one has been refused
-    call read_rows(deck, parameters, ['VALUE'], [scale], [real_of(head, 'OFFA')], &
+    call read_rows(deck, ['VALUE'], [scale], [real_of(head, 'OFFA')], &
       'is not beyond the value before it: the values of a table must increase', cursor, values)
     if (size(values, 2) == 0) call line_error(deck, head%line, 'the table has no values')
     if (is_bad(head, 'TBID')) raw%lost%tables = .true.
@@ -76,9 +73,8 @@ contains
   end subroutine read_table
 
   !> The first card: the number, and the scale factor of what must increase.
-  subroutine read_head(deck, parameters, i_block, names, negative, cursor, head)
+  subroutine read_head(deck, i_block, names, negative, cursor, head)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     character(*), intent(in) :: names(2)    !! of the number and of the factor
     character(*), intent(in) :: negative    !! what to say of a factor below 0
@@ -87,15 +83,14 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, head)
+    call next_card(deck, cursor, 1, head)
     call require_id(deck, cursor, head, names(1))
     if (real_of(head, names(2)) < 0.0_wp) call report_field(deck, cursor, head, names(2), negative)
   end subroutine read_head
 
   !> The rows behind it, scale*(value + offset) in each column; the first column must increase.
-  subroutine read_rows(deck, parameters, names, scale, offset, not_beyond, cursor, rows)
+  subroutine read_rows(deck, names, scale, offset, not_beyond, cursor, rows)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     character(*), intent(in) :: names(:)               !! (n_column) fields of a row
     real(wp), intent(in) :: scale(:), offset(:)        !! (n_column)
     character(*), intent(in) :: not_beyond             !! what to say where it does not
@@ -112,7 +107,7 @@ contains
     last = -huge(1.0_wp)
     is_sound = .true.
     do
-      call next_row(deck, parameters, cursor, 2, card, found)
+      call next_row(deck, cursor, 2, card, found)
       if (.not. found) exit
       n = n + 1
       rows(:, n) = scale*(card%r(columns) + offset)

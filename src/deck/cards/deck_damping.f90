@@ -7,7 +7,6 @@ module deck_damping_m
   use deck_checks_m, only : refuse_outside
   use deck_fields_m, only : card_t
   use deck_lines_m, only : deck_t, line_text
-  use deck_parameter_table_m, only : parameters_t
   use deck_raw_m, only : raw_t, row_t, append_row, row_damping_part, row_damping_part_set, id_fields
   use deck_values_m, only : integer_of, real_of, reals_of
   implicit none
@@ -17,9 +16,8 @@ module deck_damping_m
 contains
 
   !> All rows of one keyword.
-  subroutine read_part_damping(deck, parameters, i_block, raw)
+  subroutine read_part_damping(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     character(*), parameter :: feeds = &
@@ -33,7 +31,7 @@ contains
     row%kind = merge(row_damping_part_set, row_damping_part, &
       deck%blocks(i_block)%name == 'DAMPING_PART_MASS_SET')
     do
-      call next_row(deck, parameters, cursor, 1, card, found)
+      call next_row(deck, cursor, 1, card, found)
       if (.not. found) exit
       row%line = card%line
       row%id = integer_of(card, trim(id_fields(row%kind)))
@@ -48,7 +46,7 @@ contains
       call refuse_outside(deck, cursor, card, 'FLAG', 0, 1, &
         'is not 0 or 1 (a second card with factors of the directions)')
       if (integer_of(card, 'FLAG') == 1) then
-        call next_card(deck, parameters, cursor, 2, factors)
+        call next_card(deck, cursor, 2, factors)
         row%factor = reals_of(factors, 'STX', 'STY')
         if (row%factor(1) < 0.0_wp) call report_field(deck, cursor, factors, 'STX', feeds)
         if (row%factor(2) < 0.0_wp) call report_field(deck, cursor, factors, 'STY', feeds)

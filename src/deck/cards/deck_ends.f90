@@ -6,7 +6,6 @@ module deck_ends_m
     end_body_way, end_contact
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_row, report_field
   use deck_checks_m, only : refuse_negative, refuse_outside
   use deck_values_m, only : integer_of, real_of, is_blank, is_bad, place_of
@@ -18,9 +17,8 @@ module deck_ends_m
 contains
 
   !> The rows of one keyword.
-  subroutine read_ends(deck, parameters, i_block, raw)
+  subroutine read_ends(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -30,7 +28,7 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     do
-      call next_row(deck, parameters, cursor, 1, card, found)
+      call next_row(deck, cursor, 1, card, found)
       if (.not. found) exit
       entry = raw_end_t()
       select case (deck%blocks(i_block)%name)

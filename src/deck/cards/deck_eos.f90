@@ -5,7 +5,6 @@ module deck_eos_m
   use eos_m, only : eos_t, eos_linear_polynomial, eos_gruneisen
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
   use deck_values_m, only : integer_of, real_of, reals_of, is_bad
   use deck_checks_m, only : require_id, refuse_large, refuse_negative
@@ -21,9 +20,8 @@ module deck_eos_m
 contains
 
   !> *EOS_LINEAR_POLYNOMIAL.
-  subroutine read_linear_polynomial(deck, parameters, i_block, raw)
+  subroutine read_linear_polynomial(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -31,7 +29,7 @@ contains
     type(eos_t) :: eos
     integer :: k
 
-    call read_cards(deck, parameters, i_block, cursor, card, start)
+    call read_cards(deck, i_block, cursor, card, start)
     do k = 0, 6
       call refuse_large(deck, cursor, card, 'C'//achar(iachar('0') + k), merge(most_pressure, &
         most_number, k < 4))
@@ -44,9 +42,8 @@ contains
   end subroutine read_linear_polynomial
 
   !> *EOS_GRUNEISEN.
-  subroutine read_gruneisen(deck, parameters, i_block, raw)
+  subroutine read_gruneisen(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -55,7 +52,7 @@ contains
     character(5), parameter :: numbers(5) = [character(5) :: 'S1', 'S2', 'S3', 'GAMAO', 'A']
     integer :: k
 
-    call read_cards(deck, parameters, i_block, cursor, card, start)
+    call read_cards(deck, i_block, cursor, card, start)
     if (.not. real_of(card, 'C') > 0.0_wp) call report_field(deck, cursor, card, 'C', &
       'is not a speed (more than 0): shocks of no strength run with it')
     call refuse_large(deck, cursor, card, 'C', most_speed)
@@ -75,18 +72,17 @@ contains
 
   !> The two cards that both have: EOSID on the first and V0 on the second. Bodies start with the
   !> density of their material.
-  subroutine read_cards(deck, parameters, i_block, cursor, card, start)
+  subroutine read_cards(deck, i_block, cursor, card, start)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(cursor_t), intent(out) :: cursor
     type(card_t), intent(out) :: card, start
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
+    call next_card(deck, cursor, 1, card)
     call require_id(deck, cursor, card, 'EOSID')
-    call next_card(deck, parameters, cursor, 2, start)
+    call next_card(deck, cursor, 2, start)
     if (abs(real_of(start, 'V0') - 1.0_wp) > 0.0_wp) call report_field(deck, cursor, start, &
       'V0', 'is a volume at the start that is not that of the density RO, which this version ' &
       //'does not have (0 or 1)')

@@ -6,7 +6,6 @@ module deck_foam_m
   use parts_m, only : material_t, law_crushable_foam
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
   use deck_values_m, only : integer_of, real_of, is_bad, place_of
   use deck_checks_m, only : refuse_negative
@@ -19,9 +18,8 @@ module deck_foam_m
 contains
 
   !> Elastic up to a curve, which is resolved later, and to TSC in tension.
-  subroutine read_crushable_foam(deck, parameters, i_block, raw)
+  subroutine read_crushable_foam(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -31,7 +29,7 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
+    call next_card(deck, cursor, 1, card)
     call elastic_constants(deck, cursor, card, material)
     if (integer_of(card, 'LCID') < 1) call report_field(deck, cursor, card, 'LCID', &
       'is not the number of a curve: yield stress against volumetric strain 1 - V')

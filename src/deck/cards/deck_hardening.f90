@@ -6,7 +6,6 @@ module deck_hardening_m
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
   use deck_values_m, only : integer_of, real_of, reals_of, is_bad, place_of
   use deck_checks_m, only : refuse_negative
@@ -25,9 +24,8 @@ module deck_hardening_m
 contains
 
   !> *MAT_PIECEWISE_LINEAR_PLASTICITY.
-  subroutine read_piecewise(deck, parameters, i_block, raw)
+  subroutine read_piecewise(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -38,14 +36,14 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
+    call next_card(deck, cursor, 1, card)
     call elastic_constants(deck, cursor, card, material)
     material%law = law_piecewise
     call take_failure(deck, cursor, card, 'FAIL', material)
-    call next_card(deck, parameters, cursor, 2, rate)
+    call next_card(deck, cursor, 2, rate)
     call read_rates(deck, cursor, rate, hardening)
-    call next_card(deck, parameters, cursor, 3, strains(1))
-    call next_card(deck, parameters, cursor, 4, stresses(1))
+    call next_card(deck, cursor, 3, strains(1))
+    call next_card(deck, cursor, 4, stresses(1))
     has_strains = any(abs(reals_of(strains(1), 'EPS1', 'EPS8')) > 0.0_wp)
     has_points = has_strains .or. any(abs(reals_of(stresses(1), 'ES1', 'ES8')) > 0.0_wp)
     if (hardening%curve > 0 .or. has_strains) then
@@ -143,9 +141,8 @@ contains
   end subroutine read_points
 
   !> *MAT_ELASTIC_PLASTIC_HYDRO: its pressure comes from an equation of state.
-  subroutine read_hydro(deck, parameters, i_block, raw)
+  subroutine read_hydro(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -156,7 +153,7 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
+    call next_card(deck, cursor, 1, card)
     call check_shear(deck, cursor, card, material)
     material%law = law_piecewise
     material%takes_eos = .true.
@@ -166,10 +163,10 @@ contains
     call refuse_negative(deck, cursor, card, 'SIGY')
     call refuse_negative(deck, cursor, card, 'EH')
     do k = 1, 2
-      call next_card(deck, parameters, cursor, 1 + k, strains(k))
+      call next_card(deck, cursor, 1 + k, strains(k))
     end do
     do k = 1, 2
-      call next_card(deck, parameters, cursor, 3 + k, stresses(k))
+      call next_card(deck, cursor, 3 + k, stresses(k))
     end do
     if (any(abs(reals_of(strains(1), 'EPS1', 'EPS8')) > 0.0_wp) &
       .or. any(abs(reals_of(stresses(1), 'ES1', 'ES8')) > 0.0_wp) &

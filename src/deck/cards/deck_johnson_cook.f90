@@ -8,7 +8,6 @@ module deck_johnson_cook_m
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, place_t
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field, &
     warn_of_field
   use deck_values_m, only : real_of, reals_of
@@ -26,9 +25,8 @@ module deck_johnson_cook_m
 contains
 
   !> *MAT_SIMPLIFIED_JOHNSON_COOK: neither heat nor damage.
-  subroutine read_simplified_johnson_cook(deck, parameters, i_block, raw)
+  subroutine read_simplified_johnson_cook(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -37,12 +35,12 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
+    call next_card(deck, cursor, 1, card)
     call elastic_constants(deck, cursor, card, material)
     material%law = law_johnson_cook
     allocate (material%flow)
     call take_rate_form(deck, cursor, card, material%flow)
-    call next_card(deck, parameters, cursor, 2, stress)
+    call next_card(deck, cursor, 2, stress)
     call take_stress(deck, cursor, stress, material%flow)
     call take_bound(deck, cursor, stress, 'SIGMAX', material%flow%most_static)
     call take_bound(deck, cursor, stress, 'SIGSAT', material%flow%most)
@@ -52,9 +50,8 @@ contains
   end subroutine read_simplified_johnson_cook
 
   !> *MAT_JOHNSON_COOK.
-  subroutine read_johnson_cook(deck, parameters, i_block, raw)
+  subroutine read_johnson_cook(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -63,7 +60,7 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
+    call next_card(deck, cursor, 1, card)
     call check_shear(deck, cursor, card, material)
     call take_bulk(deck, cursor, card, material)
     material%law = law_hot_johnson_cook
@@ -71,12 +68,12 @@ contains
     allocate (material%flow)
     material%flow%has_memory = .true.
     call take_rate_form(deck, cursor, card, material%flow)
-    call next_card(deck, parameters, cursor, 2, stress)
+    call next_card(deck, cursor, 2, stress)
     call take_stress(deck, cursor, stress, material%flow)
-    call next_card(deck, parameters, cursor, 3, heat)
+    call next_card(deck, cursor, 3, heat)
     call take_heat(deck, cursor, stress, heat, material)
     call take_spall(deck, cursor, heat, material)
-    call next_card(deck, parameters, cursor, 4, damage)
+    call next_card(deck, cursor, 4, damage)
     material%flow%d = [reals_of(heat, 'D1', 'D4'), real_of(damage, 'D5')]
     ! Tension breaks sooner, whichever sign of pressure and D3 the deck has in mind.
     material%flow%d(3) = -abs(material%flow%d(3))

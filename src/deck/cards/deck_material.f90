@@ -6,7 +6,6 @@ module deck_material_m
   use parts_m, only : material_t, law_elastic, law_plastic
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
   use deck_values_m, only : integer_of, real_of, is_bad
   use deck_checks_m, only : require_id
@@ -23,9 +22,8 @@ module deck_material_m
 contains
 
   !> *MAT_ELASTIC.
-  subroutine read_elastic(deck, parameters, i_block, raw)
+  subroutine read_elastic(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -34,7 +32,7 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
+    call next_card(deck, cursor, 1, card)
     call elastic_constants(deck, cursor, card, material)
     material%law = law_elastic
     call append_material(raw, material, card)
@@ -42,9 +40,8 @@ contains
   end subroutine read_elastic
 
   !> *MAT_PLASTIC_KINEMATIC.
-  subroutine read_plastic_kinematic(deck, parameters, i_block, raw)
+  subroutine read_plastic_kinematic(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -53,7 +50,7 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
+    call next_card(deck, cursor, 1, card)
     call elastic_constants(deck, cursor, card, material)
     material%law = law_plastic
     if (real_of(card, 'SIGY') <= 0.0_wp) call report_field(deck, cursor, card, 'SIGY', &
@@ -64,7 +61,7 @@ contains
     if (material%beta < 0.0_wp .or. material%beta > 1.0_wp) call report_field(deck, cursor, card, &
       'BETA', 'is not between 0 (kinematic) and 1 (isotropic hardening)')
     if (.not. any(card%bad)) material%hardening = plastic_modulus(card)
-    call next_card(deck, parameters, cursor, 2, rate)
+    call next_card(deck, cursor, 2, rate)
     call take_failure(deck, cursor, rate, 'FS', material)
     call append_material(raw, material, card)
     call check_rest(deck, cursor)

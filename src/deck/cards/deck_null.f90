@@ -5,7 +5,6 @@ module deck_null_m
   use parts_m, only : material_t, law_null
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
   use deck_values_m, only : integer_of, real_of
   use deck_checks_m, only : require_id, refuse_negative, refuse_large
@@ -18,9 +17,8 @@ module deck_null_m
 contains
 
   !> A fluid: its pressure comes from an equation of state.
-  subroutine read_null(deck, parameters, i_block, raw)
+  subroutine read_null(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -29,7 +27,7 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
+    call next_card(deck, cursor, 1, card)
     call require_id(deck, cursor, card, 'MID')
     if (real_of(card, 'RO') <= 0.0_wp .or. real_of(card, 'RO') > 1.0e30_wp) call report_field( &
       deck, cursor, card, 'RO', 'is not a density (more than 0, up to 1e30)')

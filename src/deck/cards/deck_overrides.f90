@@ -5,7 +5,7 @@ module deck_overrides_m
   use text_m, only : upper_case, read_real, read_integer, number_good, number_wrong
   use deck_fields_m, only : largest_value, smallest_value
   use deck_lines_m, only : deck_t, line_error
-  use deck_parameter_table_m, only : parameters_t, override_parameter
+  use deck_parameter_table_m, only : override_parameter
   implicit none
   private
   public :: overrides_t, is_override, override_mistake, read_overrides, override_text, &
@@ -62,10 +62,9 @@ contains
   end function override_mistake
 
   !> Take the texts apart; those of parameters go straight to the parameters.
-  subroutine read_overrides(texts, deck, parameters, overrides)
+  subroutine read_overrides(texts, deck, overrides)
     character(*), intent(in) :: texts(:)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(inout) :: parameters
     type(overrides_t), intent(out) :: overrides
     type(override_t) :: item
     character(:), allocatable :: mistake
@@ -77,7 +76,7 @@ contains
       item%phrase = '"'//trim(adjustl(texts(i)))//'" on the command line'
       if (len(mistake) > 0) call line_error(deck, 0, item%phrase//mistake)
       if (index(item%name, 'P:') == 1) then
-        call override_parameter(parameters, item%name(3:), item%text)
+        call override_parameter(deck%parameters, item%name(3:), item%text)
       else if (len(item%name) > 0) then
         overrides%items = [overrides%items, item]
       end if

@@ -7,11 +7,10 @@ module deck_parameters_m
   use number_text_m, only : shortest
   use text_m, only : upper_case, read_real, read_integer, number_good
   use log_m, only : to_text
-  use deck_lines_m, only : deck_t, line_text, line_error
+  use deck_lines_m, only : deck_t, parameters_t, again_error, line_text, line_error
   use deck_spelling_m, only : first_too_far, keep_nearer
   use deck_expression_m, only : evaluate
-  use deck_parameter_table_m, only : parameters_t, settle_parameter, named_values, look_up, &
-    again_error, again_warn_keep
+  use deck_parameter_table_m, only : settle_parameter, named_values, look_up, again_warn_keep
   use deck_card_specs_m, only : card_spec_t, make_spec
   use deck_fields_m, only : card_t, cut_card, field_text, field_error
   use deck_schema_m, only : keyword_cards, max_card
@@ -22,29 +21,28 @@ module deck_parameters_m
 contains
 
   !> Read all parameter keywords of the deck.
-  subroutine read_parameters(deck, parameters)
+  subroutine read_parameters(deck)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(inout) :: parameters
     integer :: i_block, i
 
-    if (.not. allocated(parameters%items)) allocate (parameters%items(16))
+    if (.not. allocated(deck%parameters%items)) allocate (deck%parameters%items(16))
     do i_block = 1, deck%n_block
       if (deck%blocks(i_block)%name(:9) /= 'PARAMETER') cycle
       deck%blocks(i_block)%dropped = .true.
       select case (deck%blocks(i_block)%name)
       case ('PARAMETER', 'PARAMETER_LOCAL')
-        call read_values(deck, i_block, parameters)
+        call read_values(deck, i_block)
       case ('PARAMETER_EXPRESSION', 'PARAMETER_EXPRESSION_LOCAL')
-        call read_expressions(deck, i_block, parameters)
+        call read_expressions(deck, i_block)
       case ('PARAMETER_DUPLICATION')
-        call read_policy(deck, i_block, parameters)
+        call read_policy(deck, i_block)
       end select
     end do
-    do i = 1, parameters%n
-      associate (item => parameters%items(i))
-        if (item%fixed .and. .not. (item%found .or. deck%incomplete)) &
-          call line_error(deck, 0, 'p:'//trim(item%name)//' on the command line: the deck has no ' &
-          //'such parameter'//nearest_name(parameters, trim(item%name)))
+    do i = 1, deck%parameters%n
+      associate (item => deck%parameters%items(i))
+        if (item%fixed .and. .not. (item%found .or. deck%incomplete)) call line_error(deck, 0, &
+          'p:'//trim(item%name)//' on the command line: the deck has no such parameter' &
+          //nearest_name(deck%parameters, trim(item%name)))
       end associate
     end do
   end subroutine read_parameters
@@ -68,10 +66,9 @@ contains
   end function nearest_name
 
   !> Pairs of name and value, four to a line.
-  subroutine read_values(deck, i_block, parameters)
+  subroutine read_values(deck, i_block)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
-    type(parameters_t), intent(inout) :: parameters
     type(card_spec_t) :: spec
     type(card_t) :: card
     integer :: line, k
@@ -88,21 +85,21 @@ contains
           cycle
         end if
         text = field_text(deck, card, k + 1)
-        if (index(text, '&') > 0) call look_up(parameters, text, deck%blocks(i_block)%source, text)
+        if (index(text, '&') > 0) &
+          call look_up(deck%parameters, text, deck%blocks(i_block)%source, text)
         if (len(text) == 0) then
           call field_error(deck, spec, card, k + 1, 'is not defined by *PARAMETER up to here')
         else
-          call define(deck, parameters, spec, card, k, text, local_source(deck, i_block))
+          call define(deck, spec, card, k, text, local_source(deck, i_block))
         end if
       end do
     end do
   end subroutine read_values
 
   !> Expressions, one to a line; a line with a blank name goes on with the one before.
-  subroutine read_expressions(deck, i_block, parameters)
+  subroutine read_expressions(deck, i_block)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
-    type(parameters_t), intent(inout) :: parameters
     type(card_spec_t) :: spec
     type(card_t) :: card
     character(:), allocatable :: text, formula, trouble, line_here
@@ -136,12 +133,12 @@ contains
       if (line < deck%blocks(i_block)%last) then
         if (continues(line_text(deck, line + 1), spec%widths(1))) cycle
       end if
-      call evaluate(formula, named_values(parameters, deck%blocks(i_block)%source, &
+      call evaluate(formula, named_values(deck%parameters, deck%blocks(i_block)%source, &
         formula), value, trouble)
       if (allocated(trouble)) then
         call field_error(deck, spec, card, 1, 'cannot be computed: '//trouble)
       else
-        call define(deck, parameters, spec, card, 1, shortest(value), local_source(deck, i_block))
+        call define(deck, spec, card, 1, shortest(value), local_source(deck, i_block))
       end if
     end do
   end subroutine read_expressions
@@ -156,10 +153,9 @@ contains
   end function continues
 
   !> *PARAMETER_DUPLICATION.
-  subroutine read_policy(deck, i_block, parameters)
+  subroutine read_policy(deck, i_block)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
-    type(parameters_t), intent(inout) :: parameters
     type(card_spec_t) :: spec
     type(card_t) :: card
     integer :: status
@@ -167,12 +163,13 @@ contains
     call block_spec(deck, i_block, spec)
     if (deck%blocks(i_block)%last < deck%blocks(i_block)%first) return
     call cut_card(deck, spec, deck%blocks(i_block)%source, deck%blocks(i_block)%first, card)
-    parameters%again = again_warn_keep
+    deck%parameters%again = again_warn_keep
     if (card%blank(1)) return
-    call read_integer(field_text(deck, card, 1), parameters%again, status)
-    if (status == number_good .and. parameters%again >= 1 .and. parameters%again <= 5) return
+    call read_integer(field_text(deck, card, 1), deck%parameters%again, status)
+    if (status == number_good .and. deck%parameters%again >= 1 .and. &
+      deck%parameters%again <= 5) return
     call field_error(deck, spec, card, 1, 'is not a policy from 1 to 5')
-    parameters%again = again_error
+    deck%parameters%again = again_error
   end subroutine read_policy
 
   !> The one card of a parameter keyword.
@@ -198,9 +195,8 @@ contains
   end function local_source
 
   !> Define the parameter named in field `k` of a card (type letter first).
-  subroutine define(deck, parameters, spec, card, k, given, source)
+  subroutine define(deck, spec, card, k, given, source)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(inout) :: parameters
     type(card_spec_t), intent(in) :: spec
     type(card_t), intent(inout) :: card
     integer, intent(in) :: k
@@ -237,13 +233,12 @@ contains
         text = to_text(number)
       end if
     end if
-    call settle_parameter(deck, parameters, card%line, name, kind, text, source)
+    call settle_parameter(deck, card%line, name, kind, text, source)
   end subroutine define
 
   !> The line of a card with its references replaced, in free format.
-  subroutine substitute(deck, parameters, spec, source, card, text)
+  subroutine substitute(deck, spec, source, card, text)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     type(card_spec_t), intent(in) :: spec
     integer, intent(in) :: source
     type(card_t), intent(inout) :: card
@@ -260,7 +255,7 @@ contains
       field = field_text(deck, card, k)
       if (index(field, '&') == 1 .or. index(field, '-&') == 1 .or. index(field, '+&') == 1) then
         if (index(field, '&(') == 0) then
-          call look_up(parameters, field, source, value)
+          call look_up(deck%parameters, field, source, value)
           if (len(value) == 0 .and. .not. deck%incomplete) call field_error(deck, spec, card, k, &
             'is not defined by any *PARAMETER')
           field = value

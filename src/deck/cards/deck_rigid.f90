@@ -4,7 +4,6 @@ module deck_rigid_m
   use parts_m, only : material_t
   use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
   use deck_values_m, only : integer_of, is_bad
   use deck_checks_m, only : refuse_outside
@@ -25,9 +24,8 @@ module deck_rigid_m
 contains
 
   !> *MAT_RIGID.
-  subroutine read_rigid(deck, parameters, i_block, raw)
+  subroutine read_rigid(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -36,12 +34,12 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
+    call next_card(deck, cursor, 1, card)
     call elastic_constants(deck, cursor, card, material)
     material%is_rigid = .true.
-    call next_card(deck, parameters, cursor, 2, constraints)
+    call next_card(deck, cursor, 2, constraints)
     call read_constraints(deck, cursor, constraints, material)
-    call next_card(deck, parameters, cursor, 3, axes)
+    call next_card(deck, cursor, 3, axes)
     call append_material(raw, material, card)
     call check_rest(deck, cursor)
   end subroutine read_rigid

@@ -8,7 +8,6 @@ module deck_rubber_m
   use rubbers_m, only : mooney_rivlin, blatz_ko, blatz_ko_poisson
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
   use deck_values_m, only : integer_of, real_of
   use deck_checks_m, only : require_id, refuse_negative
@@ -21,9 +20,8 @@ module deck_rubber_m
 contains
 
   !> *MAT_MOONEY-RIVLIN_RUBBER.
-  subroutine read_mooney_rivlin(deck, parameters, i_block, raw)
+  subroutine read_mooney_rivlin(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -33,8 +31,8 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
-    call next_card(deck, parameters, cursor, 2, fit)
+    call next_card(deck, cursor, 1, card)
+    call next_card(deck, cursor, 2, fit)
     call require_id(deck, cursor, card, 'MID')
     if (real_of(card, 'RO') <= 0.0_wp .or. real_of(card, 'RO') > 1.0e30_wp) call report_field( &
       deck, cursor, card, 'RO', 'is not a density (more than 0, up to 1e30)')
@@ -63,9 +61,8 @@ contains
   end subroutine read_mooney_rivlin
 
   !> *MAT_BLATZ-KO_RUBBER.
-  subroutine read_blatz_ko(deck, parameters, i_block, raw)
+  subroutine read_blatz_ko(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -74,7 +71,7 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
+    call next_card(deck, cursor, 1, card)
     call check_shear(deck, cursor, card, material)
     material%law = law_blatz_ko
     if (.not. any(card%bad)) then

@@ -6,7 +6,6 @@ module deck_systems_m
   use deck_checks_m, only : require_id
   use deck_fields_m, only : card_t
   use deck_lines_m, only : deck_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_raw_m, only : raw_t, raw_system_t
   use deck_values_m, only : integer_of, real_of, reals_of, is_bad
   implicit none
@@ -16,9 +15,8 @@ module deck_systems_m
 contains
 
   !> The x axis goes from the origin to the point L; the point P is on the side of the y axis.
-  subroutine read_system(deck, parameters, i_block, raw)
+  subroutine read_system(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     character(*), parameter :: leaves = 'takes the axes out of the plane of the model'
@@ -30,8 +28,8 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, cards(1))
-    call next_card(deck, parameters, cursor, 2, cards(2))
+    call next_card(deck, cursor, 1, cards(1))
+    call next_card(deck, cursor, 2, cards(2))
     call check_rest(deck, cursor)
     call require_id(deck, cursor, cards(1), 'CID')
     if (is_bad(cards(1), 'CID')) raw%lost%curves = .true.

@@ -3,7 +3,6 @@
 module deck_transducer_m
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, report_field
   use deck_values_m, only : integer_of, is_bad, place_of
   use deck_raw_m, only : raw_t, raw_contact_t
@@ -14,9 +13,8 @@ module deck_transducer_m
 contains
 
   !> One transducer.
-  subroutine read_transducer(deck, parameters, i_block, raw)
+  subroutine read_transducer(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -31,7 +29,7 @@ contains
     entry%block = i_block
     call settle_number(raw, entry)
     do k = 1, size(cards)
-      call next_card(deck, parameters, cursor, k, cards(k))
+      call next_card(deck, cursor, k, cards(k))
     end do
     call check_rest(deck, cursor)
     if (integer_of(cards(1), 'SURFA') == 0) call report_field(deck, cursor, cards(1), 'SURFA', &

@@ -3,7 +3,7 @@
 !> model to the last bit. Lines that nothing changed are copied as they were written.
 module deck_effective_m
   use deck_lines_m, only : deck_t, layout_mark
-  use deck_parameter_table_m, only : parameters_t, parameter_comment
+  use deck_parameter_table_m, only : parameter_comment
   use heap_m, only : give_back_memory
   implicit none
   private
@@ -27,24 +27,22 @@ contains
   end subroutine forget_places
 
   !> The text of the effective deck. The files that it is made of are given up on the way.
-  subroutine write_effective(deck, parameters, tail, effective)
+  subroutine write_effective(deck, tail, effective)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     character(*), intent(in) :: tail  !! keywords besides those of the deck
     character(:), allocatable, intent(out) :: effective
     type(buffer_t) :: buffer
 
-    call compose(deck, parameters, tail, buffer)
+    call compose(deck, tail, buffer)
     allocate (character(buffer%n) :: buffer%text)
     buffer%n = 0
-    call compose(deck, parameters, tail, buffer)
+    call compose(deck, tail, buffer)
     call move_alloc(buffer%text, effective)
   end subroutine write_effective
 
   !> Put the deck together; only counted while the buffer has no text.
-  subroutine compose(deck, parameters, tail, buffer)
+  subroutine compose(deck, tail, buffer)
     type(deck_t), intent(inout) :: deck !! loses its text when it is written
-    type(parameters_t), intent(in) :: parameters
     character(*), intent(in) :: tail
     type(buffer_t), intent(inout) :: buffer
     integer :: i, line, source, last_block(deck%n_source)
@@ -53,8 +51,8 @@ contains
       last_block(deck%blocks(i)%source) = i
     end do
     call put(buffer, '$ The deck as run: includes, parameters and command line resolved.')
-    do i = 1, parameters%n
-      call put_text(buffer, parameter_comment(parameters, i))
+    do i = 1, deck%parameters%n
+      call put_text(buffer, parameter_comment(deck%parameters, i))
     end do
     call put(buffer, '*KEYWORD')
     do i = 1, deck%n_block

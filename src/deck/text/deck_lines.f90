@@ -10,10 +10,10 @@ module deck_lines_m
   use log_m, only : to_text
   implicit none
   private
-  public :: deck_t, source_t, block_t, place_t, file_paths, line_text, block_of_line, &
-    where_text, line_error, deck_error, line_warning, replace_line, written_text, &
-    line_spot, keyword_of_line, shown_text, marked_line, layout_mark, format_standard, &
-    format_long, format_i10, flag_comma, flag_parameter, flag_blank, max_source
+  public :: deck_t, source_t, block_t, place_t, parameter_t, parameters_t, again_error, &
+    file_paths, line_text, block_of_line, where_text, line_error, deck_error, line_warning, &
+    replace_line, written_text, line_spot, keyword_of_line, shown_text, marked_line, layout_mark, &
+    format_standard, format_long, format_i10, flag_comma, flag_parameter, flag_blank, max_source
 
   !> Column layout of a block.
   integer, parameter :: format_standard = 0, format_long = 1, format_i10 = 2
@@ -21,6 +21,9 @@ module deck_lines_m
   integer(int8), parameter :: flag_comma = 1_int8, flag_parameter = 2_int8, flag_blank = 4_int8
   !> Files in one deck.
   integer, parameter :: max_source = 1000
+
+  !> A second definition of a parameter with another value is an error.
+  integer, parameter :: again_error = 0
 
   !> One file.
   type :: source_t
@@ -54,6 +57,25 @@ module deck_lines_m
     integer :: field = 0        !! its position, where there is no name: members of sets
   end type place_t
 
+  !> One parameter.
+  type :: parameter_t
+    character(20) :: name = ''            !! upper case
+    character :: kind = 'R'               !! R real, I integer, C text
+    character(:), allocatable :: text     !! what is put in its place
+    integer :: source = 0                 !! file it is private to, 0 = the whole deck
+    logical :: fixed = .false.            !! given on the command line
+    logical :: found = .false.            !! the deck defines it
+    integer :: next = 0                   !! the next one of the same hash, in the order they come
+  end type parameter_t
+
+  !> All parameters, with the first and last one of each hash of a name.
+  type :: parameters_t
+    type(parameter_t), allocatable :: items(:)
+    integer :: n = 0
+    integer, allocatable :: first(:), last(:)
+    integer :: again = again_error
+  end type parameters_t
+
   !> The whole deck.
   type :: deck_t
     type(source_t), allocatable :: sources(:)
@@ -72,6 +94,7 @@ module deck_lines_m
     logical :: incomplete = .false.           !! an included file could not be read
     character(:), allocatable :: default_zeros, kept_zeros !! fields with a 0 that means their
                                               !! default, and of which a 0 is 0 all the same
+    type(parameters_t) :: parameters
     type(report_t) :: report
   end type deck_t
 

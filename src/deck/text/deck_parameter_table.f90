@@ -4,36 +4,17 @@ module deck_parameter_table_m
   use kinds_m, only : wp
   use text_m, only : upper_case, read_real, number_good
   use log_m, only : to_text
-  use deck_lines_m, only : deck_t, line_error, line_warning
+  use deck_lines_m, only : deck_t, parameter_t, parameters_t, again_error, line_error, line_warning
   use deck_expression_m, only : named_value_t, name_characters
   implicit none
   private
-  public :: parameters_t, override_parameter, settle_parameter, named_values, look_up, &
-    parameter_comment, again_error, again_warn_keep
+  public :: override_parameter, settle_parameter, named_values, look_up, parameter_comment, &
+    again_warn_keep
 
   !> What happens when a name is defined again (*PARAMETER_DUPLICATION DFLAG); by default a second
   !> definition with another value is an error.
-  integer, parameter :: again_error = 0, again_warn_keep = 1, again_warn_replace = 2, &
-    again_error_keep = 3, again_replace = 4, again_keep = 5
-
-  !> One parameter.
-  type :: parameter_t
-    character(20) :: name = ''            !! upper case
-    character :: kind = 'R'               !! R real, I integer, C text
-    character(:), allocatable :: text     !! what is put in its place
-    integer :: source = 0                 !! file it is private to, 0 = the whole deck
-    logical :: fixed = .false.            !! given on the command line
-    logical :: found = .false.            !! the deck defines it
-    integer :: next = 0                   !! the next one of the same hash, in the order they come
-  end type parameter_t
-
-  !> All parameters, with the first and last one of each hash of a name.
-  type :: parameters_t
-    type(parameter_t), allocatable :: items(:)
-    integer :: n = 0
-    integer, allocatable :: first(:), last(:)
-    integer :: again = again_error
-  end type parameters_t
+  integer, parameter :: again_warn_keep = 1, again_warn_replace = 2, again_error_keep = 3, &
+    again_replace = 4, again_keep = 5
 
 contains
 
@@ -48,55 +29,48 @@ contains
   end subroutine override_parameter
 
   !> Put a definition into the table, minding one of the same name that is there.
-  subroutine settle_parameter(deck, parameters, line, name, kind, text, source)
+  subroutine settle_parameter(deck, line, name, kind, text, source)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(inout) :: parameters
     integer, intent(in) :: line
     character(*), intent(in) :: name
     character, intent(in) :: kind
     character(*), intent(in) :: text
     integer, intent(in) :: source
-    integer :: i
+    real(wp) :: value
+    integer :: i, status
 
-    i = first_of(parameters, name)
-    do while (i > 0)
-      if (parameters%items(i)%name == name .and. (parameters%items(i)%source == source &
-        .or. parameters%items(i)%fixed)) exit
-      i = parameters%items(i)%next
-    end do
-    if (i == 0) then
-      call add_parameter(parameters, name, kind, text, source)
-      parameters%items(parameters%n)%found = .true.
-      return
-    end if
-    if (.not. parameters%items(i)%found .and. kind /= 'C') call check_override(i)
-    parameters%items(i)%found = .true.
-    if (parameters%items(i)%fixed .or. parameters%items(i)%text == text) return
-    select case (parameters%again)
-    case (again_error, again_error_keep)
-      call line_error(deck, line, 'parameter '//name//' is defined again with another value ("' &
-        //text//'", before "'//parameters%items(i)%text//'")')
-    case (again_warn_keep, again_warn_replace)
-      call line_warning(deck, line, 'parameter '//name//to_text(line), 'parameter '//name &
-        //' is defined again; the '//merge('first ', 'second', &
-        parameters%again == again_warn_keep)//' value counts')
-    end select
-    if (parameters%again == again_warn_replace .or. parameters%again == again_replace) &
-      parameters%items(i)%text = text
-
-  contains
-
-    !> A value from the command line must be a number where the parameter is one.
-    subroutine check_override(k)
-      integer, intent(in) :: k
-      real(wp) :: value
-      integer :: status
-
-      call read_real(parameters%items(k)%text, value, status)
-      if (status /= number_good) call line_error(deck, 0, 'p:'//name &
-        //' on the command line: "'//parameters%items(k)%text//'" is not a number')
-    end subroutine check_override
-
+    associate (parameters => deck%parameters)
+      i = first_of(parameters, name)
+      do while (i > 0)
+        if (parameters%items(i)%name == name .and. (parameters%items(i)%source == source &
+          .or. parameters%items(i)%fixed)) exit
+        i = parameters%items(i)%next
+      end do
+      if (i == 0) then
+        call add_parameter(parameters, name, kind, text, source)
+        parameters%items(parameters%n)%found = .true.
+        return
+      end if
+      if (.not. parameters%items(i)%found .and. kind /= 'C') then
+        ! A value from the command line must be a number where the parameter is one.
+        call read_real(parameters%items(i)%text, value, status)
+        if (status /= number_good) call line_error(deck, 0, 'p:'//name &
+          //' on the command line: "'//parameters%items(i)%text//'" is not a number')
+      end if
+      parameters%items(i)%found = .true.
+      if (parameters%items(i)%fixed .or. parameters%items(i)%text == text) return
+      select case (parameters%again)
+      case (again_error, again_error_keep)
+        call line_error(deck, line, 'parameter '//name//' is defined again with another value ("' &
+          //text//'", before "'//parameters%items(i)%text//'")')
+      case (again_warn_keep, again_warn_replace)
+        call line_warning(deck, line, 'parameter '//name//to_text(line), 'parameter '//name &
+          //' is defined again; the '//merge('first ', 'second', &
+          parameters%again == again_warn_keep)//' value counts')
+      end select
+      if (parameters%again == again_warn_replace .or. parameters%again == again_replace) &
+        parameters%items(i)%text = text
+    end associate
   end subroutine settle_parameter
 
   !> Append a parameter.
