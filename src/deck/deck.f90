@@ -20,28 +20,21 @@ module deck_m
     override_phrase
   use deck_override_apply_m, only : apply_overrides
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
-  use deck_raw_m, only : raw_t, start_raw
-  use deck_raw_lists_m, only : reserve_lists, trim_lists
+  use deck_raw_m, only : raw_t, start_raw, reserve_lists, trim_lists
   use deck_mesh_m, only : read_nodes, read_elements, read_beams, read_set, read_history_ids
   use deck_part_m, only : read_part, read_section, read_hourglass
-  use deck_rubber_m, only : read_mooney_rivlin, read_blatz_ko
-  use deck_rigid_m, only : read_rigid
-  use deck_curves_m, only : read_curve, read_table
+  use deck_curves_m, only : read_curve, read_table, read_system
   use deck_eos_m, only : read_linear_polynomial, read_gruneisen
-  use deck_hardening_m, only : read_piecewise, read_hydro
-  use deck_foam_m, only : read_crushable_foam
-  use deck_johnson_cook_m, only : read_johnson_cook, read_simplified_johnson_cook
-  use deck_material_m, only : read_elastic, read_plastic_kinematic
+  use deck_hardening_m, only : read_piecewise, read_hydro, read_johnson_cook, &
+    read_simplified_johnson_cook
+  use deck_material_m, only : read_elastic, read_plastic_kinematic, read_null, &
+    read_crushable_foam, read_mooney_rivlin, read_blatz_ko, read_rigid
   use deck_erosion_m, only : read_erosion
-  use deck_null_m, only : read_null
   use deck_damping_m, only : read_part_damping
-  use deck_systems_m, only : read_system
   use deck_conditions_m, only : read_condition, read_initial_velocity
-  use deck_control_m, only : read_control, check_step
+  use deck_control_m, only : read_control, check_step, read_ends
   use deck_empty_m, only : check_empty
-  use deck_ends_m, only : read_ends
-  use deck_output_m, only : read_database, read_force_groups, read_cross_sections
-  use deck_transducer_m, only : read_transducer
+  use deck_output_m, only : read_database, read_force_groups, read_cross_sections, read_transducer
   use deck_contact_m, only : read_contact
   use deck_friction_m, only : settle_friction
   use deck_wall_m, only : read_wall

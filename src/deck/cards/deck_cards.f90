@@ -14,8 +14,9 @@ module deck_cards_m
   use deck_parameters_m, only : substitute
   implicit none
   private
-  public :: cursor_t, open_cursor, skip_title, next_card, next_row, next_text, next_heading, &
-    check_rest, report_field, row_comes, reject_field, warn_of_field, find_field, find_keyword_field
+  public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_text, &
+    next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field, find_field, &
+    find_keyword_field
 
   !> A place in a block.
   type :: cursor_t
@@ -46,6 +47,18 @@ contains
     cursor%last = deck%blocks(i_block)%last
     call get_specs(deck, i_block, cursor%specs, cursor%n_card)
   end subroutine open_cursor
+
+  !> Start at card 1 of a block, behind its title.
+  subroutine first_card(deck, i_block, cursor, card)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(cursor_t), intent(out) :: cursor
+    type(card_t), intent(out) :: card
+
+    call open_cursor(deck, i_block, cursor)
+    call skip_title(deck, cursor)
+    call next_card(deck, cursor, 1, card)
+  end subroutine first_card
 
   !> Position of a field of card `number`, for rows that are many: looked up once.
   function find_field(cursor, number, name) result(k)

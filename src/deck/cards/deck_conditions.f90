@@ -7,8 +7,7 @@ module deck_conditions_m
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, check_rest, &
     report_field, find_field
-  use deck_values_m, only : integer_of, real_of, reals_of
-  use deck_checks_m, only : refuse_outside
+  use deck_values_m, only : integer_of, real_of, reals_of, refuse_outside
   use deck_raw_m, only : raw_t, row_t, reserve_rows, append_row, reserve_velocities, &
     append_velocity, row_spc_node, row_spc_set, row_motion_node, row_motion_set, row_velocity, &
     row_velocity_node, row_velocity_generation, row_load_node, row_load_set, row_pressure, &

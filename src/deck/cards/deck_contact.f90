@@ -12,13 +12,13 @@ module deck_contact_m
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &
     report_field
-  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, place_of
-  use deck_checks_m, only : refuse_negative, refuse_outside, take_life
+  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, place_of, refuse_negative, &
+    refuse_outside, take_life
   use deck_contact_values_m, only : find_commanded, take_overrides, check_values, kind_names, &
     name_of, of_penalty, of_master_penalty
   use deck_friction_m, only : take_friction, take_stock_friction, take_penalty_friction
   use deck_tie_m, only : take_tie, take_stock_tie, check_tie
-  use deck_transducer_m, only : settle_number
+  use deck_output_m, only : settle_number
   use deck_raw_m, only : raw_t, raw_contact_t
   use deck_overrides_m, only : overrides_t, contact_names
   implicit none

@@ -4,11 +4,10 @@ module deck_damping_m
   use kinds_m, only : wp
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, row_comes, check_rest, &
     report_field
-  use deck_checks_m, only : refuse_outside
   use deck_fields_m, only : card_t
   use deck_lines_m, only : deck_t, line_text
   use deck_raw_m, only : raw_t, row_t, append_row, row_damping_part, row_damping_part_set, id_fields
-  use deck_values_m, only : integer_of, real_of, reals_of
+  use deck_values_m, only : integer_of, real_of, reals_of, refuse_outside
   implicit none
   private
   public :: read_part_damping

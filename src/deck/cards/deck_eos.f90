@@ -5,9 +5,9 @@ module deck_eos_m
   use eos_m, only : eos_t, eos_linear_polynomial, eos_gruneisen
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
-  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
-  use deck_values_m, only : integer_of, real_of, reals_of, is_bad
-  use deck_checks_m, only : require_id, refuse_large, refuse_negative
+  use deck_cards_m, only : cursor_t, first_card, next_card, check_rest, report_field
+  use deck_values_m, only : integer_of, real_of, reals_of, is_bad, require_id, refuse_large, &
+    refuse_negative
   use deck_raw_m, only : raw_t
   implicit none
   private
@@ -78,9 +78,7 @@ contains
     type(cursor_t), intent(out) :: cursor
     type(card_t), intent(out) :: card, start
 
-    call open_cursor(deck, i_block, cursor)
-    call skip_title(deck, cursor)
-    call next_card(deck, cursor, 1, card)
+    call first_card(deck, i_block, cursor, card)
     call require_id(deck, cursor, card, 'EOSID')
     call next_card(deck, cursor, 2, start)
     if (abs(real_of(start, 'V0') - 1.0_wp) > 0.0_wp) call report_field(deck, cursor, start, &

@@ -6,9 +6,8 @@ module deck_erosion_m
   use log_m, only : to_text
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
-  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
-  use deck_values_m, only : integer_of, real_of, is_blank, place_of
-  use deck_checks_m, only : require_id, refuse_negative
+  use deck_cards_m, only : cursor_t, first_card, next_card, check_rest, report_field
+  use deck_values_m, only : integer_of, real_of, is_blank, place_of, require_id, refuse_negative
   use deck_raw_m, only : raw_t, raw_erosion_t
   implicit none
   private
@@ -29,9 +28,7 @@ contains
     type(raw_erosion_t) :: entry
     real(wp) :: none
 
-    call open_cursor(deck, i_block, cursor)
-    call skip_title(deck, cursor)
-    call next_card(deck, cursor, 1, card)
+    call first_card(deck, i_block, cursor, card)
     call require_id(deck, cursor, card, 'MID')
     call next_card(deck, cursor, 2, more)
     call next_card(deck, cursor, 3, unused)

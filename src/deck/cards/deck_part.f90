@@ -10,8 +10,7 @@ module deck_part_m
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
     row_comes, report_field, find_field
-  use deck_values_m, only : integer_of, real_of, is_blank, is_bad
-  use deck_checks_m, only : require_id, refuse_negative
+  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, require_id, refuse_negative
   use deck_raw_m, only : raw_t, raw_part_t
   implicit none
   private

@@ -5,8 +5,7 @@ module deck_wall_m
   use walls_m, only : wall_t, friction_sticks
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &
     report_field
-  use deck_values_m, only : integer_of, real_of, reals_of
-  use deck_checks_m, only : refuse_negative, take_life
+  use deck_values_m, only : integer_of, real_of, reals_of, refuse_negative, take_life
   use deck_fields_m, only : card_t
   use deck_lines_m, only : deck_t
   use deck_raw_m, only : raw_t, raw_wall_t

@@ -16,25 +16,21 @@ module deck_resolve_m
   use deck_maps_m, only : maps_t, make_maps, resolve_id
   use deck_raw_m, only : raw_t, raw_contact_t, history_t, row_damping, row_motion_node, &
     row_motion_set, row_velocity, row_velocity_generation, output_plot
-  use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
+  use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh, settle_points, check_unsound_mesh
   use deck_resolve_eos_m, only : resolve_equations, check_implicit_laws
-  use deck_resolve_foams_m, only : resolve_foams
   use deck_resolve_erosion_m, only : resolve_erosion, check_erosion_points, check_eroding_contacts
-  use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates
+  use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates, resolve_foams
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
-  use deck_resolve_cross_sections_m, only : resolve_cross_sections
+  use deck_resolve_sections_m, only : resolve_cross_sections, resolve_transducers
   use deck_resolve_damping_m, only : resolve_damping, refuse_static, settle_relaxation
-  use deck_resolve_points_m, only : settle_points
   use deck_resolve_rigids_m, only : resolve_rigids
   use deck_resolve_round_m, only : settle_form, settle_axis, mark_round_contacts, &
     check_loads_of_round, check_velocities_of_round
   use deck_resolve_velocity_m, only : resolve_velocity
   use deck_resolve_ends_m, only : resolve_ends
   use deck_resolve_contacts_m, only : resolve_contacts
-  use deck_resolve_transducers_m, only : resolve_transducers
   use deck_resolve_walls_m, only : resolve_walls
-  use deck_unsound_mesh_m, only : check_unsound_mesh
   implicit none
   private
   public :: resolve_model
