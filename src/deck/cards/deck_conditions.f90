@@ -60,7 +60,13 @@ contains
       if (.not. found) exit
       call fill_row(card, at, row)
       call check_row(deck, cursor, at, card, row)
-      call keep_row(raw, card, row)
+      if (.not. any(card%bad)) then
+        if (row%kind == row_velocity_node) then
+          call append_velocity(raw, row%line, row%id, row%velocity(:2))
+        else
+          call append_row(raw, row)
+        end if
+      end if
       if (row%kind == row_body .or. row%kind == row_damping) exit
     end do
     call check_rest(deck, cursor)
@@ -187,20 +193,6 @@ contains
         card%r(at%factors(1):at%factors(1) + 1)
     end if
   end subroutine fill_row
-
-  !> Keep a row, unless a field that matters is bad.
-  subroutine keep_row(raw, card, row)
-    type(raw_t), intent(inout) :: raw
-    type(card_t), intent(in) :: card
-    type(row_t), intent(in) :: row
-
-    if (any(card%bad)) return
-    if (row%kind == row_velocity_node) then
-      call append_velocity(raw, row%line, row%id, row%velocity(:2))
-    else
-      call append_row(raw, row)
-    end if
-  end subroutine keep_row
 
   !> Fields of one row.
   subroutine check_row(deck, cursor, at, card, row)

@@ -50,23 +50,15 @@ contains
         if (row%factor(1) < 0.0_wp) call report_field(deck, cursor, factors, 'STX', feeds)
         if (row%factor(2) < 0.0_wp) call report_field(deck, cursor, factors, 'STY', feeds)
       else
-        call skip_zeros(deck, cursor)
+        ! A second card of zeros, which common writers put where FLAG is 0 too, is no row: there is
+        ! no part 0.
+        call row_comes(deck, cursor, found)
+        if (found) found = verify(line_text(deck, cursor%line), ' 0.,+-eEdD') == 0
+        if (found) cursor%line = cursor%line + 1
       end if
       if (.not. any(card%bad)) call append_row(raw, row)
     end do
     call check_rest(deck, cursor)
   end subroutine read_part_damping
-
-  !> Move past a second card of zeros, which common writers put where FLAG is 0 too: it is no row,
-  !> since there is no part 0.
-  subroutine skip_zeros(deck, cursor)
-    type(deck_t), intent(in) :: deck
-    type(cursor_t), intent(inout) :: cursor
-    logical :: found
-
-    call row_comes(deck, cursor, found)
-    if (.not. found) return
-    if (verify(line_text(deck, cursor%line), ' 0.,+-eEdD') == 0) cursor%line = cursor%line + 1
-  end subroutine skip_zeros
 
 end module deck_damping_m

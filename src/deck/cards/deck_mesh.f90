@@ -168,6 +168,7 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: head, card
     type(raw_set_t) :: set
+    integer :: first
     logical :: found
 
     call open_cursor(deck, i_block, cursor)
@@ -182,7 +183,13 @@ contains
       if (.not. found) exit
       select case (deck%blocks(i_block)%name)
       case ('SET_SEGMENT')
-        call take_segment(deck, cursor, card, find_field(cursor, 2, 'N1'), set)
+        ! N3 and N4 may repeat N2 or be zero.
+        first = find_field(cursor, 2, 'N1')
+        call check_edge(deck, cursor, card, first)
+        if (.not. any(card%bad(first:first + 3))) then
+          call append_member(set, card%i(first), card%line, first)
+          call append_member(set, card%i(first + 1), card%line, first + 1)
+        end if
       case ('SET_NODE_GENERAL')
         call take_action(deck, cursor, card, set)
       case default
@@ -268,20 +275,6 @@ contains
       if (card%i(k) > 0) call append_member(set, card%i(k), card%line, k, action)
     end do
   end subroutine take_action
-
-  !> One edge: N3 and N4 may repeat N2 or be zero.
-  subroutine take_segment(deck, cursor, card, first, set)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    integer, intent(in) :: first     !! field of N1
-    type(raw_set_t), intent(inout) :: set
-
-    call check_edge(deck, cursor, card, first)
-    if (any(card%bad(first:first + 3))) return
-    call append_member(set, card%i(first), card%line, first)
-    call append_member(set, card%i(first + 1), card%line, first + 1)
-  end subroutine take_segment
 
   !> Four node fields from `k` on must describe an edge.
   subroutine check_edge(deck, cursor, card, k)

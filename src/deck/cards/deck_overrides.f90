@@ -122,6 +122,7 @@ contains
   pure subroutine check_number(item, mistake)
     type(override_t), intent(inout) :: item
     character(:), allocatable, intent(inout) :: mistake
+    character(:), allocatable :: range
     integer :: whole, status
     real(wp) :: value
 
@@ -137,20 +138,13 @@ contains
         if (value >= smallest_value .and. value <= largest_value) return
         if (any(zero_names == item%name) .and. .not. abs(value) > 0.0_wp) return
       end if
-      mistake = ': the value is not a number '//range_of(item%name)//' (numbers reach 1e40)'
+      range = 'above 0'
+      if (any(zero_names == item%name)) range = 'of 0 or more'
+      if (any(signed_names == item%name)) range = 'other than 0'
+      mistake = ': the value is not a number '//range//' (numbers reach 1e40)'
     end select
     item%text = ''
   end subroutine check_number
-
-  !> What numbers a name takes.
-  pure function range_of(name) result(text)
-    character(*), intent(in) :: name
-    character(:), allocatable :: text
-
-    text = 'above 0'
-    if (any(zero_names == name)) text = 'of 0 or more'
-    if (any(signed_names == name)) text = 'other than 0'
-  end function range_of
 
   !> Value text for an interface (0: the run), the last one given; empty when there is none.
   pure function override_text(overrides, name, interface) result(text)

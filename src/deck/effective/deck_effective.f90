@@ -56,7 +56,12 @@ contains
     end do
     call put(buffer, '*KEYWORD')
     do i = 1, deck%n_block
-      if (i > 1 .and. allocated(buffer%text)) call forget_text(deck, last_block, i - 1)
+      if (i > 1 .and. allocated(buffer%text)) then
+        ! The text of a file goes behind its last block.
+        associate (last => deck%blocks(i - 1)%source)
+          if (last_block(last) == i - 1) deallocate (deck%sources(last)%text)
+        end associate
+      end if
       if (deck%blocks(i)%dropped) cycle
       if (allocated(deck%blocks(i)%replacement)) then
         call put_text(buffer, deck%blocks(i)%replacement)
@@ -75,17 +80,6 @@ contains
     call put_text(buffer, tail)
     call put(buffer, '*END')
   end subroutine compose
-
-  !> Give up the text of a file behind its last block.
-  subroutine forget_text(deck, last_block, i_block)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: last_block(:) !! by file
-    integer, intent(in) :: i_block
-
-    associate (source => deck%blocks(i_block)%source)
-      if (last_block(source) == i_block) deallocate (deck%sources(source)%text)
-    end associate
-  end subroutine forget_text
 
   !> Append a line.
   subroutine put(buffer, line)

@@ -152,7 +152,11 @@ contains
     if (size(raw%cuts) > 0) call resolve_cross_sections(deck, raw, maps, model)
     if (raw%dt_curve > 0) call resolve_id(deck, maps%curves, raw%dt_curve, 'curve', &
       raw%dt_curve_place, model%controls%dt_curve)
-    call check_step_curve(deck, raw, model)
+    if (model%controls%dt_curve > 0) then
+      if (minval(model%curves(model%controls%dt_curve)%ordinate) <= 0.0_wp) call line_error(deck, &
+        raw%curve_line(model%controls%dt_curve), 'curve '//to_text(raw%dt_curve) &
+        //' caps the time step (LCTM) and must be above 0 everywhere')
+    end if
     associate (output => model%controls%output)
       call take_interval(deck, maps, raw%outputs(output_plot), model, output%plot)
       do i = 1, n_table
@@ -182,18 +186,6 @@ contains
     call check_implicit_penalties(deck, raw, model, sound)
     call resolve_ends(deck, raw, maps, model, sound)
   end subroutine resolve_model
-
-  !> A curve that caps the step must leave it some length.
-  subroutine check_step_curve(deck, raw, model)
-    type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(in) :: raw
-    type(model_t), intent(in) :: model
-
-    if (model%controls%dt_curve == 0) return
-    if (minval(model%curves(model%controls%dt_curve)%ordinate) > 0.0_wp) return
-    call line_error(deck, raw%curve_line(model%controls%dt_curve), &
-      'curve '//to_text(raw%dt_curve)//' caps the time step (LCTM) and must be above 0 everywhere')
-  end subroutine check_step_curve
 
   !> Histories that are asked for and have no file, for want of a keyword that says of what.
   subroutine warn_of_empty(deck, raw, model)

@@ -26,7 +26,10 @@ contains
     integer, allocatable :: curves(:, :)
     integer :: i, j, k
 
-    call check_table_numbers(deck, raw, maps)
+    do i = 1, size(raw%tables)
+      if (index_of(maps%curves, raw%tables(i)%id) > 0) call reject_field(deck, &
+        place_t(raw%tables(i)%line, 1, 'TBID'), 'is the number of a curve too')
+    end do
     allocate (curves(2, size(raw%tables)))
     do i = 1, size(raw%tables)
       call find_table_curves(deck, raw, raw%tables(i), curves(:, i))
@@ -48,19 +51,6 @@ contains
       end associate
     end do
   end subroutine resolve_hardenings
-
-  !> A table and a curve of one number could not be told apart.
-  subroutine check_table_numbers(deck, raw, maps)
-    type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
-    integer :: i
-
-    do i = 1, size(raw%tables)
-      if (index_of(maps%curves, raw%tables(i)%id) > 0) call reject_field(deck, &
-        place_t(raw%tables(i)%line, 1, 'TBID'), 'is the number of a curve too')
-    end do
-  end subroutine check_table_numbers
 
   !> First and last curve of a table: those of the blocks that come next, one for each value. The
   !> last lies before the first where there are not enough.

@@ -95,7 +95,11 @@ contains
       else if (deck%sources(source)%text(start:start) == '$' .and. last >= start) then
         continue
       else if (in_block) then
-        call keep_line(deck, start, last, number, flags)
+        if (deck%blocks(deck%n_block)%name /= 'COMMENT') then
+          call add_line(deck, start, last, number, flags)
+          deck%blocks(deck%n_block)%last = deck%n_line
+          call limit_line(deck)
+        end if
       else if (last >= start) then
         if (len_trim(deck%sources(source)%text(start:last)) > 0) n_stray = n_stray + 1
       end if
@@ -106,18 +110,6 @@ contains
     if (n_stray > 0) call line_error(deck, 0, 'in '//deck%sources(source)%path//', ' &
       //to_text(n_stray)//' line(s) before the first keyword (a line that starts with *)')
   end subroutine cut_source
-
-  !> A data line of the block that is open.
-  subroutine keep_line(deck, first, last, number, flags)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: first, last, number
-    integer(int8), intent(in) :: flags
-
-    if (deck%blocks(deck%n_block)%name == 'COMMENT') return
-    call add_line(deck, first, last, number, flags)
-    deck%blocks(deck%n_block)%last = deck%n_line
-    call limit_line(deck)
-  end subroutine keep_line
 
   !> The last line may not be too long.
   subroutine limit_line(deck)
