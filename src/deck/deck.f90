@@ -24,11 +24,11 @@ module deck_m
   use deck_mesh_m, only : read_nodes, read_elements, read_beams, read_set, read_history_ids
   use deck_part_m, only : read_part, read_section, read_hourglass
   use deck_curves_m, only : read_curve, read_table, read_system
-  use deck_eos_m, only : read_linear_polynomial, read_gruneisen
   use deck_hardening_m, only : read_piecewise, read_hydro, read_johnson_cook, &
     read_simplified_johnson_cook
   use deck_material_m, only : read_elastic, read_plastic_kinematic, read_null, &
-    read_crushable_foam, read_mooney_rivlin, read_blatz_ko, read_rigid
+    read_crushable_foam, read_mooney_rivlin, read_blatz_ko, read_rigid, read_linear_polynomial, &
+    read_gruneisen
   use deck_erosion_m, only : read_erosion
   use deck_damping_m, only : read_part_damping
   use deck_conditions_m, only : read_condition, read_initial_velocity

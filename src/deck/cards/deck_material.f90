@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> *MAT_ELASTIC, _PLASTIC_KINEMATIC, _NULL, _CRUSHABLE_FOAM, _MOONEY-RIVLIN_RUBBER,
-!> _BLATZ-KO_RUBBER and _RIGID, and what all materials have.
+!> _BLATZ-KO_RUBBER and _RIGID, what all materials have, and *EOS_LINEAR_POLYNOMIAL and _GRUNEISEN.
 module deck_material_m
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -10,15 +10,16 @@ module deck_material_m
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, first_card, next_card, check_rest, report_field
   use deck_values_m, only : integer_of, real_of, is_bad, place_of, require_id, refuse_negative, &
-    refuse_large, refuse_outside
+    refuse_large, refuse_outside, reals_of
   use deck_raw_m, only : raw_t, raw_foam_t
-  use eos_m, only : eos_t, eos_by_law
+  use eos_m, only : eos_t, eos_by_law, eos_linear_polynomial, eos_gruneisen
   use rubbers_m, only : mooney_rivlin, blatz_ko, blatz_ko_poisson
   implicit none
   private
   public :: read_elastic, read_plastic_kinematic, elastic_constants, append_material, &
     check_tangent_modulus, take_failure, take_cutoff, plastic_modulus, check_shear, read_null, &
-    read_crushable_foam, read_mooney_rivlin, read_blatz_ko, read_rigid
+    read_crushable_foam, read_mooney_rivlin, read_blatz_ko, read_rigid, read_linear_polynomial, &
+    read_gruneisen
 
   !> A strain at failure from here on means never.
   real(wp), parameter :: never = 1.0e16_wp
@@ -30,6 +31,10 @@ module deck_material_m
     .true.]
   logical, parameter :: has_z(0:7) = [.false., .false., .false., .true., .false., .true., .true., &
     .true.]
+
+  !> Largest pressure and energy, speed, and pure number that constants may be: below them squares
+  !> and cubes stay numbers in any units, and no material is anywhere near.
+  real(wp), parameter :: most_pressure = 1.0e30_wp, most_speed = 1.0e12_wp, most_number = 100.0_wp
 
 contains
 
@@ -362,5 +367,89 @@ contains
         'CON1 and CON2 have no effect while CMO is 0; 1 makes them constraints')
     end if
   end subroutine read_constraints
+
+  !> *EOS_LINEAR_POLYNOMIAL.
+  subroutine read_linear_polynomial(deck, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card, start
+    type(eos_t) :: eos
+    integer :: k
+
+    call read_cards(deck, i_block, cursor, card, start)
+    do k = 0, 6
+      call refuse_large(deck, cursor, card, 'C'//achar(iachar('0') + k), merge(most_pressure, &
+        most_number, k < 4))
+    end do
+    eos%kind = eos_linear_polynomial
+    eos%c = reals_of(card, 'C0', 'C6')
+    eos%energy = real_of(start, 'E0')
+    call refuse_large(deck, cursor, start, 'E0', most_pressure)
+    call append_eos(deck, cursor, card, eos, raw)
+  end subroutine read_linear_polynomial
+
+  !> *EOS_GRUNEISEN.
+  subroutine read_gruneisen(deck, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card, start
+    type(eos_t) :: eos
+    character(5), parameter :: numbers(5) = [character(5) :: 'S1', 'S2', 'S3', 'GAMAO', 'A']
+    integer :: k
+
+    call read_cards(deck, i_block, cursor, card, start)
+    if (.not. real_of(card, 'C') > 0.0_wp) call report_field(deck, cursor, card, 'C', &
+      'is not a speed (more than 0): shocks of no strength run with it')
+    call refuse_large(deck, cursor, card, 'C', most_speed)
+    call refuse_negative(deck, cursor, card, 'GAMAO')
+    do k = 1, size(numbers)
+      call refuse_large(deck, cursor, card, trim(numbers(k)), most_number)
+    end do
+    call refuse_large(deck, cursor, card, 'E0', most_pressure)
+    eos%kind = eos_gruneisen
+    eos%speed = real_of(card, 'C')
+    eos%s = reals_of(card, 'S1', 'S3')
+    eos%gamma = real_of(card, 'GAMAO')
+    eos%correction = real_of(card, 'A')
+    eos%energy = real_of(card, 'E0')
+    call append_eos(deck, cursor, card, eos, raw)
+  end subroutine read_gruneisen
+
+  !> The two cards that both have: EOSID on the first and V0 on the second. Bodies start with the
+  !> density of their material.
+  subroutine read_cards(deck, i_block, cursor, card, start)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(cursor_t), intent(out) :: cursor
+    type(card_t), intent(out) :: card, start
+
+    call first_card(deck, i_block, cursor, card)
+    call require_id(deck, cursor, card, 'EOSID')
+    call next_card(deck, cursor, 2, start)
+    if (abs(real_of(start, 'V0') - 1.0_wp) > 0.0_wp) call report_field(deck, cursor, start, &
+      'V0', 'is a volume at the start that is not that of the density RO, which this version ' &
+      //'does not have (0 or 1)')
+  end subroutine read_cards
+
+  !> One more equation of state.
+  subroutine append_eos(deck, cursor, card, eos, raw)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(inout) :: cursor
+    type(card_t), intent(in) :: card
+    type(eos_t), intent(inout) :: eos
+    type(raw_t), intent(inout) :: raw
+
+    call check_rest(deck, cursor)
+    if (is_bad(card, 'EOSID')) raw%lost%equations = .true.
+    if (is_bad(card, 'EOSID')) return
+    eos%id = integer_of(card, 'EOSID')
+    raw%n_equation = raw%n_equation + 1
+    raw%equations(raw%n_equation) = eos
+    raw%equation_line(raw%n_equation) = card%line
+  end subroutine append_eos
 
 end module deck_material_m

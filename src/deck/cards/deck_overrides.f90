@@ -5,7 +5,7 @@ module deck_overrides_m
   use text_m, only : upper_case, read_real, read_integer, number_good, number_wrong
   use deck_fields_m, only : largest_value, smallest_value
   use deck_lines_m, only : deck_t, line_error
-  use deck_parameter_table_m, only : override_parameter
+  use deck_parameters_m, only : override_parameter
   implicit none
   private
   public :: overrides_t, is_override, override_mistake, read_overrides, override_text, &

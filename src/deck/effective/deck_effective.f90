@@ -3,7 +3,6 @@
 !> model to the last bit. Lines that nothing changed are copied as they were written.
 module deck_effective_m
   use deck_lines_m, only : deck_t, layout_mark
-  use deck_parameter_table_m, only : parameter_comment
   use heap_m, only : give_back_memory
   implicit none
   private
@@ -52,7 +51,9 @@ contains
     end do
     call put(buffer, '$ The deck as run: includes, parameters and command line resolved.')
     do i = 1, deck%parameters%n
-      call put_text(buffer, parameter_comment(deck%parameters, i))
+      associate (item => deck%parameters%items(i))
+        if (item%found) call put(buffer, '$ parameter '//trim(item%name)//' = '//item%text)
+      end associate
     end do
     call put(buffer, '*KEYWORD')
     do i = 1, deck%n_block
