@@ -12,7 +12,6 @@ import pytest
 
 import slideline_tools
 from slideline_tools import UserError, program
-from slideline_tools.histories import read_csv
 from slideline_tools.results import read
 
 DECK = conftest.ROOT / "input" / "collision" / "collision.k"
