@@ -4,10 +4,9 @@
 !> a bare path works as i=. Words of LS-DYNA mean what they mean there, or are told to be without
 !> effect.
 module arguments_m
-  use deck_command_words_m, only : lower_case, next_word, meant_word, control_mistake, &
-    is_memory, is_without_effect, read_threads, read_thread_share, read_count
   use deck_lines_m, only : shown_text
-  use deck_overrides_m, only : is_override, override_mistake
+  use deck_overrides_m, only : is_override, override_mistake, contact_names, run_names
+  use deck_spelling_m, only : first_too_far, keep_nearer
   use errors_m, only : error_t, raise, status_input
   implicit none
   private
@@ -21,8 +20,8 @@ module arguments_m
   integer, parameter :: timing_by_phase = 0, timing_by_interface = 1, timing_off = 2
 
   !> Words of more than a letter that are this program's own, for what is misspelt.
-  character(9), parameter :: own_words(8) = [character(9) :: 'jobid=', 'case=', 'quiet=', &
-    'timing=', 'memory=', '--help', '--version', '--json']
+  character(10), parameter :: own_words(9) = [character(10) :: 'ncpu=', 'perthread=', 'jobid=', &
+    'quiet=', 'timing=', 'memory=', '--help', '--version', '--json']
 
   !> What the command line asks for.
   type :: arguments_t
@@ -35,7 +34,6 @@ module arguments_m
     character(:), allocatable :: restart    !! path of the restart file to go on from, or unset
     character(:), allocatable :: directory  !! where results go
     character(:), allocatable :: job        !! stem of the result files
-    logical :: job_is_given = .false.       !! by the command line
     character(:), allocatable :: line       !! all arguments in one line, for the record
     integer :: n_thread = 1                 !! at most
     integer :: thread_share = 300           !! elements for each of several threads, at least:
@@ -44,32 +42,24 @@ module arguments_m
     logical :: quiet = .false.              !! nothing on the screen but how the run has ended
     logical :: no_dump = .false.            !! no numbered restart files (d=nodump)
     integer :: cpu_seconds = 0              !! processor time after which to stop (c=), 0 = no limit
-    logical :: all_cases = .false.          !! a run for each *CASE of the deck
-    integer, allocatable :: cases(:)        !! those that are run (case=)
-    integer :: case = 0                     !! that this run is of, 0: of none
-    character(:), allocatable :: refusal    !! why the cases can not run as they are asked for
     character(:), allocatable :: ignored    !! words of LS-DYNA that have no effect here
     character(argument_length), allocatable :: overrides(:) !! ctype=5, p:NAME=VALUE, ...
-    integer :: n_of_case = 0                !! as many of these, the first ones, are of COMMANDS
   end type arguments_t
 
 contains
 
   !> Read the arguments; all mistakes are reported together.
-  subroutine read_arguments(arguments, error, commands)
+  subroutine read_arguments(arguments, error)
     type(arguments_t), intent(out) :: arguments
     type(error_t), allocatable, intent(out) :: error
-    character(*), intent(in), optional :: commands !! words to be read before, as those of *CASE
     character(argument_length) :: word
     character(:), allocatable :: mistakes
     integer :: i, length
 
-    allocate (arguments%overrides(0), arguments%cases(0))
+    allocate (arguments%overrides(0))
     arguments%line = ''
     arguments%ignored = ''
     mistakes = ''
-    if (present(commands)) call read_commands(commands, arguments, mistakes)
-    arguments%n_of_case = size(arguments%overrides)
     do i = 1, command_argument_count()
       call get_command_argument(i, word, length=length)
       if (length > argument_length) then
@@ -86,12 +76,6 @@ contains
       mistakes = mistakes//'no deck given: expected i=DECK (or r=FILE to go on)'//new_line('a')
     if (arguments%check .and. allocated(arguments%restart)) mistakes = mistakes &
       //'check looks at a deck: r= has no meaning'//new_line('a')
-    if (arguments%all_cases .and. size(arguments%cases) > 0) mistakes = mistakes &
-      //'case (all cases) and case= (some) do not go together'//new_line('a')
-    if (allocated(arguments%restart) .and. (arguments%all_cases .or. size(arguments%cases) > 1 &
-      .or. (size(arguments%cases) > 0 .and. .not. allocated(arguments%deck)))) mistakes = mistakes &
-      //'a run that goes on is of one case: expected case=ID beside the deck (i=), or none' &
-      //new_line('a')
     if (arguments%json .and. .not. arguments%check) mistakes = mistakes &
       //'--json goes with check'//new_line('a')
     if (len(mistakes) > 0) then
@@ -102,7 +86,6 @@ contains
       call raise(error, mistakes//'try slideline --help', status_input)
       return
     end if
-    arguments%job_is_given = allocated(arguments%job)
     if (allocated(arguments%restart)) then
       if (.not. allocated(arguments%directory)) arguments%directory = folder_of(arguments%restart)
       return
@@ -110,21 +93,6 @@ contains
     if (.not. allocated(arguments%directory)) arguments%directory = '.'
     if (.not. allocated(arguments%job)) arguments%job = file_stem(arguments%deck)
   end subroutine read_arguments
-
-  !> Words of a *CASE, which the deck has found good. What the command line says comes after and
-  !> wins.
-  subroutine read_commands(commands, arguments, mistakes)
-    character(*), intent(in) :: commands
-    type(arguments_t), intent(inout) :: arguments
-    character(:), allocatable, intent(inout) :: mistakes
-    character(:), allocatable :: rest, word
-
-    rest = trim(adjustl(commands))
-    do while (len(rest) > 0)
-      call next_word(rest, word)
-      call read_word(word, arguments, mistakes)
-    end do
-  end subroutine read_commands
 
   !> An argument of which only the first part was read.
   pure subroutine refuse_length(word, length, mistakes)
@@ -163,9 +131,6 @@ contains
     else if (word == '--json') then
       arguments%json = .true.
       return
-    else if (lower_case(word) == 'case') then
-      arguments%all_cases = .true.
-      return
     else if (equals == 0 .and. word(1:min(1, len(word))) /= '-') then
       call take(arguments%deck, word, 'deck', mistakes)
       return
@@ -180,14 +145,14 @@ contains
     case ('d')
       arguments%no_dump = arguments%no_dump .or. lower_case(value) == 'nodump'
       if (lower_case(value) /= 'nodump') call take(arguments%directory, value, 'd=', mistakes)
-    case ('case')
-      call read_list(value, arguments%cases, mistakes)
     case ('jobid')
       call take(arguments%job, value, 'jobid=', mistakes)
       if (index(value, '/') > 0) mistakes = mistakes//'jobid="'//value &
         //'": expected a name without /'//new_line('a')
     case ('ncpu')
-      call read_threads(value, arguments%n_thread, mistake)
+      ! LS-DYNA's may have a minus before it.
+      call read_count(name, value(1 + index(value(:min(1, len(value))), '-'):), 1024, &
+        arguments%n_thread, mistake)
       call note(mistake, mistakes)
     case ('c')
       call read_count(name, value, 1000000000, arguments%cpu_seconds, mistake)
@@ -197,21 +162,48 @@ contains
       if (value /= '0' .and. value /= '1') mistakes = mistakes//'quiet="'//value &
         //'": expected 0 or 1'//new_line('a')
     case ('perthread')
-      call read_thread_share(value, arguments%thread_share, mistake)
+      call read_count(name, value, 1000000000, arguments%thread_share, mistake)
       call note(mistake, mistakes)
     case ('timing')
       call read_timing(value, arguments%timing, mistakes)
+    case ('memory', 'memory2')
+      continue ! memory is taken as it is needed
+    case ('o', 'g', 's', 'f', 'a', 'x', 'para')
+      call ignore(name//'=', arguments%ignored)
     case default
       if (is_override(name)) then
         arguments%overrides = [character(argument_length) :: arguments%overrides, word]
-      else if (is_without_effect(name)) then
-        call ignore(name//'=', arguments%ignored)
-      else if (.not. is_memory(name)) then
-        mistakes = mistakes//'unknown argument "'//word//'"'//meant_word(word, own_words) &
+      else
+        mistakes = mistakes//'unknown argument "'//word//'"'//meant_word(word) &
           //new_line('a')
       end if
     end select
   end subroutine read_word
+
+  !> `; did you mean NAME=?`, NAME the nearest of all words; nothing where none is near.
+  pure function meant_word(word) result(text)
+    character(*), intent(in) :: word !! that is not known
+    character(:), allocatable :: text
+    character(:), allocatable :: given
+    character(20) :: nearest
+    integer :: i, least
+
+    given = lower_case(word(:scan(word//'=.', '=.') - 1))
+    if (len(given) < len(word)) given = given//'='
+    nearest = ''
+    least = first_too_far(given)
+    do i = 1, size(run_names)
+      call keep_nearer(lower_case(trim(run_names(i)))//'=', given, least, nearest)
+    end do
+    do i = 1, size(contact_names)
+      call keep_nearer(lower_case(trim(contact_names(i)))//'=', given, least, nearest)
+    end do
+    do i = 1, size(own_words)
+      call keep_nearer(trim(own_words(i)), given, least, nearest)
+    end do
+    text = ''
+    if (len_trim(nearest) > 0) text = '; did you mean '//trim(nearest)//'?'
+  end function meant_word
 
   !> Note a word of LS-DYNA that has no effect, once.
   pure subroutine ignore(word, ignored)
@@ -223,6 +215,22 @@ contains
     ignored = ignored//word
   end subroutine ignore
 
+  !> What is wrong with a word that has control characters, which would make lines of their own in
+  !> logs and status.out, or act on terminals; empty where nothing is.
+  pure function control_mistake(word) result(mistake)
+    character(*), intent(in) :: word
+    character(:), allocatable :: mistake
+    integer :: i
+
+    mistake = ''
+    do i = 1, len(word)
+      if (iachar(word(i:i)) >= 32 .and. iachar(word(i:i)) /= 127) cycle
+      mistake = '"'//trim(shown_text(word))//'" has a control character (line feed, escape or ' &
+        //'the like) where ? stands: expected none'
+      return
+    end do
+  end function control_mistake
+
   !> Keep what is wrong with one word.
   pure subroutine note(mistake, mistakes)
     character(*), intent(in) :: mistake !! empty: nothing
@@ -231,26 +239,26 @@ contains
     if (len(mistake) > 0) mistakes = mistakes//mistake//new_line('a')
   end subroutine note
 
-  !> Understand the value of case=: numbers with commas between them.
-  subroutine read_list(value, list, mistakes)
-    character(*), intent(in) :: value
-    integer, allocatable, intent(inout) :: list(:)
-    character(:), allocatable, intent(inout) :: mistakes
-    character(:), allocatable :: rest, mistake
-    integer :: n, number
+  !> Understand a number from 1 to `most`.
+  pure subroutine read_count(name, value, most, count, mistake)
+    character(*), intent(in) :: name, value
+    integer, intent(in) :: most
+    integer, intent(inout) :: count !! kept where the value is wrong
+    character(:), allocatable, intent(out) :: mistake !! empty: none
+    character(12) :: limit
+    integer :: number, status
 
-    rest = value//','
-    do while (len(rest) > 0)
-      n = index(rest, ',') - 1
-      number = 0
-      call read_count('case', rest(:n), huge(number), number, mistake)
-      call note(mistake, mistakes)
-      if (any(list == number)) mistakes = mistakes//'case="'//value//'": '//rest(:n) &
-        //' is given twice'//new_line('a')
-      if (number > 0) list = [list, number]
-      rest = rest(n + 2:)
-    end do
-  end subroutine read_list
+    mistake = ''
+    number = 0
+    status = verify(value, '0123456789')
+    if (status == 0) read (value, *, iostat=status) number
+    if (status == 0 .and. number >= 1 .and. number <= most) then
+      count = number
+      return
+    end if
+    write (limit, '(ss,i0)') most
+    mistake = name//'="'//value//'": expected a number from 1 to '//trim(limit)
+  end subroutine read_count
 
   !> Understand the value of timing=.
   subroutine read_timing(value, timing, mistakes)
@@ -288,6 +296,18 @@ contains
       target_text = value
     end if
   end subroutine take
+
+  !> The text with letters A to Z made lower case, in which words of the command line are told.
+  pure function lower_case(text) result(lower)
+    character(*), intent(in) :: text
+    character(len(text)) :: lower
+    integer :: i
+
+    lower = text
+    do i = 1, len(text)
+      if (text(i:i) >= 'A' .and. text(i:i) <= 'Z') lower(i:i) = achar(iachar(text(i:i)) + 32)
+    end do
+  end function lower_case
 
   !> Whether the command line changes nothing of a deck but its end time.
   pure function only_end_time(arguments) result(only)
@@ -332,9 +352,7 @@ contains
         'restart file'//n// &
       '       slideline DECK ...     the same'//n// &
       '       slideline check DECK [--json] [OVERRIDES]   all errors and warnings, without '// &
-        'a run'//n// &
-      '       slideline DECK case ...   a run for each *CASE of the deck; case=1,3: for '// &
-        'these'//n//n// &
+        'a run'//n//n// &
       '  i=DECK        LS-DYNA style keyword deck'//n// &
       '  r=FILE        restart file (JOB.dump01.h5, JOB.runrsf.h5): the run goes on from '// &
         'there, in its'//n// &

@@ -4,9 +4,7 @@
 module check_m
   use contacts_m, only : n_told
   use arguments_m, only : arguments_t
-  use case_plan_m, only : plan_cases, case_name, join_failures
   use contact_dispatch_m, only : contact_kinds
-  use deck_lines_m, only : deck_t
   use deck_m, only : deck_request_t, read_deck
   use deck_findings_m, only : add_finding, json_text
   use deck_report_m, only : spot_t
@@ -17,7 +15,6 @@ module check_m
   use model_json_m, only : model_json
   use model_m, only : model_t
   use monitor_m, only : monitor_t
-  use ranks_m, only : ranks_t
   use renumber_m, only : renumber_model
   use screen_m, only : show
   use snapshot_filling_m, only : start_snapshot
@@ -29,61 +26,19 @@ module check_m
 
 contains
 
-  !> Check the deck that the command line names, in all cases that it asks for; `error` holds what a
-  !> run would end with.
+  !> Check the deck that the command line names; `error` holds what a run would end with. What is
+  !> accepted is said in a line where no program has asked.
   subroutine check_deck(arguments, error)
     type(arguments_t), intent(in) :: arguments
     type(error_t), allocatable, intent(out) :: error
-    type(arguments_t), allocatable :: runs(:)
-    type(error_t), allocatable :: failures(:), failure
-    type(deck_t), allocatable :: deck
-    type(ranks_t) :: alone !! the first of several processes checks
-    character(:), allocatable :: findings, told, objects
-    integer :: i
-
-    call plan_cases(arguments, alone, runs, deck, error)
-    if (allocated(error)) then
-      findings = ''
-      call add_message('error', error%message, findings)
-      objects = findings_text(arguments, findings, .true., told)
-    else
-      allocate (failures(size(runs)))
-      objects = ''
-      do i = 1, size(runs)
-        call check_case(runs(i), deck, told, failure)
-        if (allocated(failure)) failures(i) = failure
-        if (i > 1) objects = objects//','//new_line('a')
-        objects = objects//told
-      end do
-      call join_failures(runs, failures, error)
-      if (size(runs) > 1) objects = '{'//new_line('a')//'  "deck": '//json_text(arguments%deck) &
-        //','//new_line('a')//'  "accepted": '//yes_or_no(.not. allocated(error))//',' &
-        //new_line('a')//'  "cases": ['//new_line('a')//objects//new_line('a')//'  ]' &
-        //new_line('a')//'}'
-    end if
-    if (.not. arguments%json) return
-    call show(objects, failure)
-    ! Who asked for these lines has not got them: that counts more than what they would have said.
-    if (allocated(failure)) call raise(error, failure%message, status_files)
-  end subroutine check_deck
-
-  !> Check a deck in one case. What is accepted is said at once where no program has asked.
-  subroutine check_case(run, deck, object, error)
-    type(arguments_t), intent(in) :: run
-    type(deck_t), allocatable, intent(inout) :: deck !! cut already; who reads it takes it
-    character(:), allocatable, intent(out) :: object !! for programs
-    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: failure
     type(deck_request_t) :: request
     type(model_t) :: model
     type(monitor_t) :: monitor
-    character(:), allocatable :: effective, findings, told, name
+    character(:), allocatable :: effective, findings, told
 
-    request%path = run%deck
-    request%overrides = run%overrides
-    request%n_of_case = run%n_of_case
-    request%case = run%case
-    call move_alloc(deck, request%deck)
-    if (allocated(run%refusal)) request%refusal = run%refusal
+    request%path = arguments%deck
+    request%overrides = arguments%overrides
     call read_deck(request, contact_kinds, monitor%log, model, effective, error, findings)
     if (allocated(error)) then
       if (index(findings, '"severity": "error"') == 0) &
@@ -91,19 +46,21 @@ contains
     else
       ! The deck's warnings are findings already.
       call forget_waiting(monitor%log)
-      if (run%json) told = model_json(model)
+      if (arguments%json) told = model_json(model)
       call start_run(model, monitor, error)
       call add_warnings(monitor%log, findings)
       if (allocated(error)) call add_message('error', error%message, findings)
     end if
-    object = findings_text(run, findings, allocated(error), told)
-    if (run%json .or. allocated(error)) return
-    name = run%deck
-    if (run%case > 0) name = name//', '//case_name(run)
-    call show(name//': accepted, '//counted(model%mesh%n_element, 'element')//', ' &
-      //to_text(model%mesh%n_node)//' nodes, '//counted(n_told(model%contacts), 'interface') &
-      //', '//counted(monitor%log%n_warning, 'warning'))
-  end subroutine check_case
+    if (arguments%json) then
+      call show(findings_text(arguments%deck, findings, allocated(error), told), failure)
+      ! Who asked for these lines has not got them: that counts more than what they would have said.
+      if (allocated(failure)) call raise(error, failure%message, status_files)
+    else if (.not. allocated(error)) then
+      call show(arguments%deck//': accepted, '//counted(model%mesh%n_element, 'element')//', ' &
+        //to_text(model%mesh%n_node)//' nodes, '//counted(n_told(model%contacts), 'interface') &
+        //', '//counted(monitor%log%n_warning, 'warning'))
+    end if
+  end subroutine check_deck
 
   !> The state at time zero: forces, step or acceleration, and what the run says of them.
   subroutine start_run(model, monitor, error)
@@ -163,30 +120,19 @@ contains
   end subroutine add_message
 
   !> One JSON object: the findings and, where the deck could be read, its model.
-  pure function findings_text(run, findings, refused, told) result(text)
-    type(arguments_t), intent(in) :: run
-    character(*), intent(in) :: findings
+  pure function findings_text(path, findings, refused, told) result(text)
+    character(*), intent(in) :: path, findings
     logical, intent(in) :: refused
     character(:), allocatable, intent(in) :: told
     character(:), allocatable :: text
     character(1), parameter :: n = new_line('a')
 
-    text = '{'//n//'  "deck": '//json_text(run%deck)//','//n
-    if (run%case > 0) text = text//'  "case": '//to_text(run%case)//','//n//'  "job": ' &
-      //json_text(run%job)//','//n
-    text = text//'  "accepted": '//yes_or_no(.not. refused)//','//n//'  "findings": ['//n
+    text = '{'//n//'  "deck": '//json_text(path)//','//n//'  "accepted": ' &
+      //trim(merge('false', 'true ', refused))//','//n//'  "findings": ['//n
     if (len(findings) > 0) text = text//findings//n
     text = text//'  ]'
     if (allocated(told)) text = text//','//n//'  "model": '//told
     text = text//n//'}'
   end function findings_text
-
-  !> A truth value of JSON.
-  pure function yes_or_no(yes) result(text)
-    logical, intent(in) :: yes
-    character(:), allocatable :: text
-
-    text = trim(merge('true ', 'false', yes))
-  end function yes_or_no
 
 end module check_m

@@ -8,7 +8,7 @@ module go_on_m
   use deck_restart_m, only : merge_decks, is_whole_deck, deck_identity
   use deck_source_m, only : read_file
   use errors_m, only : error_t, raise, status_input
-  use log_m, only : log_t, write_log, to_text
+  use log_m, only : log_t, write_log
   use model_m, only : model_t
   use monitor_m, only : monitor_t
   use restart_reading_m, only : take_up_file
@@ -46,11 +46,6 @@ contains
         call take_whole_deck(arguments, deck, monitor%restarts%is_implicit, request, error)
         return
       end if
-      if (arguments%case > 0) then
-        call raise(error, 'case='//to_text(arguments%case)//' goes with a whole deck: ' &
-          //arguments%deck//' has changes alone', status_input)
-        return
-      end if
       call merge_decks(deck, changes, arguments%deck, request%text, error)
       if (allocated(error)) return
     else
@@ -75,10 +70,6 @@ contains
 
     whole%path = arguments%deck
     whole%overrides = arguments%overrides
-    whole%n_of_case = arguments%n_of_case
-    whole%case = arguments%case
-    if (allocated(arguments%refusal)) whole%refusal = arguments%refusal
-    call move_alloc(request%deck, whole%deck)
     call read_deck(whole, contact_kinds, unused, model, request%text, error)
     if (allocated(whole%files)) call move_alloc(whole%files, request%files)
     if (allocated(error)) return
@@ -88,8 +79,7 @@ contains
         //' asks for the '//trim(merge('explicit', 'implicit', is_implicit))//' method', &
         status_input)
     else if (deck_identity(request%text) == deck_identity(deck)) then
-      deallocate (request%overrides) ! they are in the text, as are the keywords of the case
-      request%case = 0
+      deallocate (request%overrides) ! they are in the text
     else
       call raise(error, 'the restart file '//arguments%restart &
         //' is refused: it belongs to another deck (checksum '//deck_identity(deck)//') than ' &

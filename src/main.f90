@@ -9,7 +9,7 @@ program slideline
   use errors_m, only : error_t
   use files_m, only : fill_standard_streams
   use ranks_m, only : ranks_t, join_ranks, leave_ranks
-  use case_runs_m, only : run_cases
+  use run_m, only : run_deck
   use screen_m, only : show, complain
   use signals_m, only : catch_requests
   use source_version_m, only : source_version
@@ -47,7 +47,7 @@ program slideline
     else if (arguments%check) then
       call check_deck(arguments, error)
     else
-      call run_cases(arguments, ranks, has_ended, error)
+      call run_deck(arguments, ranks, has_ended, error)
     end if
   end if
   call announce_end()

@@ -11,7 +11,8 @@ module model_json_m
   use material_dispatch_m, only : law_name
   use model_m, only : model_t
   use surfaces_m, only : surface_t
-  use text_m, only : exact_text, text_of
+  use number_text_m, only : shortest
+  use text_m, only : text_of
   implicit none
   private
   public :: model_json
@@ -84,8 +85,8 @@ contains
         call put_entry(list, '"id": '//to_text(part%id)//', "title": '//json_text(part%title) &
           //', "section": '//to_text(model%sections(part%section)%id)//', "material": ' &
           //to_text(material%id)//', "law": '//json_text(law_name(material))//', "density": ' &
-          //exact_text(material%density)//', "young": '//exact_text(material%young) &
-          //', "poisson": '//exact_text(material%poisson))
+          //shortest(material%density)//', "young": '//shortest(material%young) &
+          //', "poisson": '//shortest(material%poisson))
       end associate
     end do
     call put_list(buffer, 'parts', list)
@@ -269,7 +270,7 @@ contains
     do i = 1, size(model%walls)
       associate (wall => model%walls(i))
         call put_entry(list, '"id": '//to_text(wall%id)//', "point": '//reals(wall%foot) &
-          //', "normal": '//reals(wall%normal)//', "friction": '//exact_text(wall%friction) &
+          //', "normal": '//reals(wall%normal)//', "friction": '//shortest(wall%friction) &
           //', "nodes": '//to_text(size(wall%nodes)))
       end associate
     end do
@@ -288,8 +289,8 @@ contains
         call put_entry(list, '"id": '//to_text(contact%id)//', "title": ' &
           //json_text(text_of(contact%title))//', "type": '//to_text(contact%contact_type) &
           //', "formulation": '//json_text(formulation_text(contact))//', "friction": ' &
-          //exact_text(contact%friction%at_rest)//', "sliding_friction": ' &
-          //exact_text(contact%friction%sliding)//', "tied": '//truth(is_tied(contact)) &
+          //shortest(contact%friction%at_rest)//', "sliding_friction": ' &
+          //shortest(contact%friction%sliding)//', "tied": '//truth(is_tied(contact)) &
           //', "self": '//truth(contact%is_self)//', "slave": '//segments(contact%slave) &
           //', "master": '//segments(contact%master))
       end associate
@@ -414,7 +415,7 @@ contains
     call put(buffer, '[')
     do i = 1, size(values)
       if (i > 1) call put(buffer, ', ')
-      call put(buffer, exact_text(values(i)))
+      call put(buffer, shortest(values(i)))
     end do
     call put(buffer, ']')
     text = buffer%text(:buffer%n)

@@ -9,7 +9,6 @@ module run_m
   use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
   use clock_m, only : lap, start_clock, look_at_clock, split_contact, phase_input, phase_output
   use contact_dispatch_m, only : contact_kinds
-  use deck_lines_m, only : deck_t
   use deck_m, only : deck_request_t, read_deck
   use errors_m, only : error_t, raise, status_input, status_stopped
   use explicit_m, only : advance_explicit
@@ -52,10 +51,8 @@ module run_m
 contains
 
   !> Run what the command line asks for.
-  subroutine run_deck(arguments, deck, ranks, has_ended, error)
+  subroutine run_deck(arguments, ranks, has_ended, error)
     type(arguments_t), intent(inout) :: arguments !! gets the job name of a restart file
-    type(deck_t), allocatable, intent(inout) :: deck !! that has been cut for none of its cases
-                                                  !! already; the run takes it
     type(ranks_t), intent(in) :: ranks
     logical, intent(out) :: has_ended             !! how the run ended has been told
     type(error_t), allocatable, intent(out) :: error
@@ -80,7 +77,7 @@ contains
     if (len(arguments%ignored) > 0) call warn(monitor%log, &
       'without effect on the command line: '//arguments%ignored)
     if (ranks%mine == 0) then
-      call read_model(arguments, deck, monitor, model, info%effective_deck, error)
+      call read_model(arguments, monitor, model, info%effective_deck, error)
     else if (allocated(arguments%restart)) then
       call open_restart(arguments%restart, monitor%restarts%source, error)
       monitor%restarts%goes_on = .true.
@@ -115,16 +112,14 @@ contains
   end subroutine run_deck
 
   !> The first process reads the deck, alone.
-  subroutine read_model(arguments, deck, monitor, model, effective, error)
+  subroutine read_model(arguments, monitor, model, effective, error)
     type(arguments_t), intent(inout) :: arguments
-    type(deck_t), allocatable, intent(inout) :: deck
     type(monitor_t), intent(inout) :: monitor
     type(model_t), intent(out) :: model
     character(:), allocatable, intent(out) :: effective
     type(error_t), allocatable, intent(out) :: error
     type(deck_request_t) :: request
 
-    call move_alloc(deck, request%deck)
     call make_request(arguments, monitor, request, error)
     if (allocated(error)) return
     call read_deck(request, contact_kinds, monitor%log, model, effective, error)
@@ -216,13 +211,10 @@ contains
   subroutine make_request(arguments, monitor, request, error)
     type(arguments_t), intent(inout) :: arguments
     type(monitor_t), intent(inout) :: monitor
-    type(deck_request_t), intent(inout) :: request !! may have the deck
+    type(deck_request_t), intent(out) :: request
     type(error_t), allocatable, intent(out) :: error
 
     request%overrides = arguments%overrides
-    request%n_of_case = arguments%n_of_case
-    request%case = arguments%case
-    if (allocated(arguments%refusal)) request%refusal = arguments%refusal
     if (allocated(arguments%restart)) then
       call take_up_deck(arguments, program_text(), monitor, request, error)
     else

@@ -46,6 +46,7 @@ lacking() {
   elif ! echo end | gfortran -x f95 - -llapack -lblas -o /dev/null 2>/dev/null; then
     echo "liblapack-dev: LAPACK"
   fi
+  command -v g++ >/dev/null || echo "g++: C++ compiler"
   if ! command -v cmake >/dev/null; then
     echo "cmake: CMake, 3.22 or newer"
   elif ! cmake_is_new; then

@@ -6,7 +6,7 @@ module text_m
   use kinds_m, only : wp, long
   implicit none
   private
-  public :: upper_case, read_real, read_integer, exact_text, text_of, &
+  public :: upper_case, read_real, read_integer, text_of, &
     number_good, number_wrong, number_range, number_fraction
 
   !> Outcome of reading a number: good, not a number, too large, not a whole number.
@@ -257,24 +257,6 @@ contains
       value = nint(number)
     end if
   end subroutine read_integral
-
-  !> The shortest text with 15 to 17 digits that reads back as exactly `value`.
-  pure function exact_text(value) result(text)
-    real(wp), intent(in) :: value
-    character(:), allocatable :: text
-    character(32) :: buffer
-    character(20) :: form
-    real(wp) :: back
-    integer :: n_digit, status
-
-    do n_digit = 15, 17
-      write (form, '(ss, a, i0, a)') '(ss, es26.', n_digit - 1, 'e3)'
-      write (buffer, form) value
-      call read_real(buffer, back, status)
-      if (status == number_good .and. abs(back - value) <= 0.0_wp) exit
-    end do
-    text = trim(adjustl(buffer))
-  end function exact_text
 
   !> A text that may be missing.
   pure function text_of(text) result(known)

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Segments that stand for arcs: by how much these facets put gaps off beside the penetration. Where
-!> that is much, they make the pressure (doc/theory/contact.md, section 8.3).
+!> that is much, they make the pressure (doc/theory/contact.md, section 8.2).
 module contact_facets_m
   use arcs_m, only : find_curvatures, arc_height
   use contact_estimate_m, only : contact_estimate_t

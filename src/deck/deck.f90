@@ -12,44 +12,36 @@ module deck_m
   use deck_findings_m, only : list_findings
   use deck_report_m, only : emit_warnings, emit_errors
   use deck_lines_m, only : deck_t, line_error, line_warning, shown_text, file_paths
-  use deck_choose_case_m, only : choose_case
   use deck_reader_m, only : read_blocks, cut_deck
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
-  use deck_parameter_table_m, only : parameters_t
   use deck_parameters_m, only : read_parameters
   use deck_overrides_m, only : overrides_t, read_overrides, override_text, &
     override_phrase
   use deck_override_apply_m, only : apply_overrides
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
-  use deck_raw_m, only : raw_t, start_raw
-  use deck_raw_lists_m, only : reserve_lists, trim_lists
+  use deck_raw_m, only : raw_t, start_raw, reserve_lists, trim_lists
   use deck_mesh_m, only : read_nodes, read_elements, read_beams, read_set, read_history_ids
   use deck_part_m, only : read_part, read_section, read_hourglass
-  use deck_rubber_m, only : read_mooney_rivlin, read_blatz_ko
-  use deck_rigid_m, only : read_rigid
-  use deck_curves_m, only : read_curve, read_table
-  use deck_eos_m, only : read_linear_polynomial, read_gruneisen
-  use deck_hardening_m, only : read_piecewise, read_hydro
-  use deck_foam_m, only : read_crushable_foam
-  use deck_johnson_cook_m, only : read_johnson_cook, read_simplified_johnson_cook
-  use deck_material_m, only : read_elastic, read_plastic_kinematic
+  use deck_curves_m, only : read_curve, read_table, read_system
+  use deck_hardening_m, only : read_piecewise, read_hydro, read_johnson_cook, &
+    read_simplified_johnson_cook
+  use deck_material_m, only : read_elastic, read_plastic_kinematic, read_null, &
+    read_crushable_foam, read_mooney_rivlin, read_blatz_ko, read_rigid, read_linear_polynomial, &
+    read_gruneisen
   use deck_erosion_m, only : read_erosion
-  use deck_null_m, only : read_null
   use deck_damping_m, only : read_part_damping
-  use deck_systems_m, only : read_system
   use deck_conditions_m, only : read_condition, read_initial_velocity
-  use deck_control_m, only : read_control, check_step
+  use deck_control_m, only : read_control, check_step, read_ends
   use deck_empty_m, only : check_empty
-  use deck_ends_m, only : read_ends
-  use deck_output_m, only : read_database, read_force_groups, read_cross_sections
-  use deck_transducer_m, only : read_transducer
+  use deck_output_m, only : read_database, read_force_groups, read_cross_sections, read_transducer
   use deck_contact_m, only : read_contact
   use deck_friction_m, only : settle_friction
   use deck_wall_m, only : read_wall
   use deck_resolve_m, only : resolve_model
   use deck_effective_m, only : forget_places, write_effective
   use deck_echo_m, only : echo_model
+  use text_m, only : upper_case
   implicit none
   private
   public :: deck_request_t, read_deck, interpret_deck
@@ -59,14 +51,15 @@ module deck_m
     character(:), allocatable :: path
     character(:), allocatable :: overrides(:) !! `name=value`, `name.interface=value`,
                                               !! `p:NAME=value`
-    integer :: n_of_case = 0                  !! as many of these, the first ones, are of COMMANDS
     character(:), allocatable :: text         !! of the deck where it is no file; `path` names it
                                               !! then
-    type(deck_t), allocatable :: deck         !! where it has been read and cut; reading takes it
-    integer :: case = 0                       !! of *CASE, 0: a deck without cases
-    character(:), allocatable :: refusal      !! why the cases can not run as they are asked for
     character(:), allocatable :: files(:)     !! that have been read: the deck, what it includes
   end type deck_request_t
+
+  !> What takes the place of *CASE, behind its refusals.
+  character(*), parameter :: instead_of_cases = ' not available in slideline: run the deck once ' &
+    //'for each, in a shell loop or by tools/batch/sweep.sh, with ctype=, p:NAME=VALUE of a ' &
+    //'*PARAMETER and the like, and *INCLUDE what several decks share'
 
 contains
 
@@ -80,24 +73,18 @@ contains
     character(:), allocatable, intent(out) :: effective      !! the deck as run
     type(error_t), allocatable, intent(out) :: error
     character(:), allocatable, intent(out), optional :: findings !! all messages, see list_findings
-    type(deck_t), allocatable :: deck
+    type(deck_t) :: deck
     character(:), allocatable :: text
 
-    if (allocated(request%deck)) then
-      call move_alloc(request%deck, deck)
-    else if (allocated(request%text)) then
-      allocate (deck)
+    if (allocated(request%text)) then
       text = request%text
       call cut_deck(request%path, text, deck)
     else
-      allocate (deck)
       call read_blocks(request%path, deck, error)
       if (present(findings)) findings = ''
       if (allocated(error)) return
     end if
     if (.not. allocated(request%text)) request%files = file_paths(deck)
-    if (deck%cases%found .or. request%case > 0) call choose_case(deck, request%case, &
-      request%refusal, log)
     call interpret_deck(deck, request, kinds, log, model, effective, error)
     if (present(findings)) call list_findings(deck%report, findings)
   end subroutine read_deck
@@ -111,7 +98,6 @@ contains
     type(model_t), intent(out) :: model
     character(:), allocatable, intent(out) :: effective
     type(error_t), allocatable, intent(out) :: error
-    type(parameters_t) :: parameters
     type(overrides_t) :: overrides
     type(raw_t), allocatable :: raw
     character(:), allocatable :: tail
@@ -126,18 +112,18 @@ contains
       return
     end if
     if (allocated(request%overrides)) then
-      call read_overrides(request%overrides, request%n_of_case, deck, parameters, overrides)
+      call read_overrides(request%overrides, deck, overrides)
     else
       allocate (overrides%items(0))
     end if
-    call read_parameters(deck, parameters)
+    call read_parameters(deck)
     raw%end_given = len(override_text(overrides, 'ENDTIM', 0)) > 0
     raw%step_phrase = override_phrase(overrides, 'DT', 0)
     raw%scale_phrase = override_phrase(overrides, 'TSSFAC', 0)
     raw%controls%title = ''
     call reserve_lists(deck, raw)
     do i = 1, deck%n_block
-      if (known(i) == known_honoured) call read_block(deck, parameters, i, kinds, overrides, raw)
+      if (known(i) == known_honoured) call read_block(deck, i, kinds, overrides, raw)
     end do
     call trim_lists(raw)
     call settle_friction(deck, overrides, raw)
@@ -156,7 +142,7 @@ contains
     if (allocated(deck%kept_zeros)) call write_log(log, 'a 0 in these fields is kept, where ' &
       //'LS-DYNA takes the default: '//deck%kept_zeros)
     call forget_places(deck)
-    call write_effective(deck, parameters, tail, effective)
+    call write_effective(deck, tail, effective)
   end subroutine interpret_deck
 
   !> Look every keyword up: canonical names, options taken off; unknown and refused ones are errors,
@@ -175,7 +161,7 @@ contains
     if (deck%n_block == 0) call line_error(deck, 0, 'holds no keyword (a line that starts with *)')
     do i = 1, deck%n_block
       associate (block => deck%blocks(i))
-        if (block%name == 'COMMENT') then ! also keywords of cases that are not read
+        if (block%name == 'COMMENT') then
           name = block%name
           known(i) = known_honoured
         else
@@ -189,21 +175,27 @@ contains
         case (known_honoured)
           block%name = name(:len(block%name))
           select case (block%name)
-          case ('KEYWORD', 'END', 'COMMENT', 'INCLUDE', 'INCLUDE_PATH', 'CASE', 'CASE_BEGIN', &
-              'CASE_END')
+          case ('KEYWORD', 'END', 'COMMENT', 'INCLUDE', 'INCLUDE_PATH')
             block%dropped = .true.
           end select
         case (known_ignored)
           call line_warning(deck, block%keyword, 'ignored'//block%given, 'has no effect here')
         case (known_refused)
-          call line_error(deck, block%keyword, reason//' not available in slideline' &
-            //meant(block%given))
+          if (index(block%given, 'CASE') == 1) then
+            call line_error(deck, block%keyword, reason//instead_of_cases)
+          else
+            call line_error(deck, block%keyword, reason//' not available in slideline' &
+              //meant(block%given))
+          end if
           call note_lost(block%given, raw)
         case default
           call line_error(deck, block%keyword, 'is not a keyword that this version knows' &
             //meant(block%given))
           call note_lost(block%given, raw)
         end select
+        if (block%name /= 'COMMENT' .and. index(' '//upper_case(block%rest), ' CID=') > 0) &
+          call line_error(deck, block%keyword, 'keywords of one of several runs (CID=) are' &
+          //instead_of_cases)
       end associate
     end do
   end subroutine know_blocks
@@ -243,9 +235,8 @@ contains
   end subroutine note_lost
 
   !> Read one block by its keyword.
-  subroutine read_block(deck, parameters, i, kinds, overrides, raw)
+  subroutine read_block(deck, i, kinds, overrides, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i
     type(contact_kind_t), intent(in) :: kinds(:)
     type(overrides_t), intent(in) :: overrides
@@ -261,72 +252,71 @@ contains
     case ('TITLE')
       call read_title(deck, i, raw)
     case ('NODE')
-      call read_nodes(deck, parameters, i, raw)
+      call read_nodes(deck, i, raw)
     case ('ELEMENT_SHELL')
-      call read_elements(deck, parameters, i, raw)
+      call read_elements(deck, i, raw)
     case ('ELEMENT_BEAM')
-      call read_beams(deck, parameters, i, raw)
+      call read_beams(deck, i, raw)
     case ('SET_NODE_LIST', 'SET_NODE_LIST_GENERATE', 'SET_NODE_GENERAL', 'SET_PART_LIST', &
         'SET_PART_LIST_GENERATE', 'SET_SHELL_LIST', 'SET_SHELL_LIST_GENERATE', 'SET_SEGMENT', &
         'SET_2D_SEGMENT', 'SET_2D_SEGMENT_SET')
-      call read_set(deck, parameters, i, raw)
+      call read_set(deck, i, raw)
     case ('PART')
-      call read_part(deck, parameters, i, raw)
+      call read_part(deck, i, raw)
     case ('SECTION_SHELL')
-      call read_section(deck, parameters, i, raw)
+      call read_section(deck, i, raw)
     case ('HOURGLASS')
-      call read_hourglass(deck, parameters, i, raw)
+      call read_hourglass(deck, i, raw)
     case ('MAT_ELASTIC')
-      call read_elastic(deck, parameters, i, raw)
+      call read_elastic(deck, i, raw)
     case ('MAT_PLASTIC_KINEMATIC')
-      call read_plastic_kinematic(deck, parameters, i, raw)
+      call read_plastic_kinematic(deck, i, raw)
     case ('MAT_PIECEWISE_LINEAR_PLASTICITY')
-      call read_piecewise(deck, parameters, i, raw)
+      call read_piecewise(deck, i, raw)
     case ('MAT_NULL')
-      call read_null(deck, parameters, i, raw)
+      call read_null(deck, i, raw)
     case ('MAT_ELASTIC_PLASTIC_HYDRO')
-      call read_hydro(deck, parameters, i, raw)
+      call read_hydro(deck, i, raw)
     case ('MAT_JOHNSON_COOK')
-      call read_johnson_cook(deck, parameters, i, raw)
+      call read_johnson_cook(deck, i, raw)
     case ('MAT_SIMPLIFIED_JOHNSON_COOK')
-      call read_simplified_johnson_cook(deck, parameters, i, raw)
+      call read_simplified_johnson_cook(deck, i, raw)
     case ('MAT_MOONEY-RIVLIN_RUBBER')
-      call read_mooney_rivlin(deck, parameters, i, raw)
+      call read_mooney_rivlin(deck, i, raw)
     case ('MAT_BLATZ-KO_RUBBER')
-      call read_blatz_ko(deck, parameters, i, raw)
+      call read_blatz_ko(deck, i, raw)
     case ('MAT_CRUSHABLE_FOAM')
-      call read_crushable_foam(deck, parameters, i, raw)
+      call read_crushable_foam(deck, i, raw)
     case ('MAT_ADD_EROSION')
-      call read_erosion(deck, parameters, i, raw)
+      call read_erosion(deck, i, raw)
     case ('EOS_LINEAR_POLYNOMIAL')
-      call read_linear_polynomial(deck, parameters, i, raw)
+      call read_linear_polynomial(deck, i, raw)
     case ('EOS_GRUNEISEN')
-      call read_gruneisen(deck, parameters, i, raw)
+      call read_gruneisen(deck, i, raw)
     case ('MAT_RIGID')
-      call read_rigid(deck, parameters, i, raw)
+      call read_rigid(deck, i, raw)
     case ('DEFINE_CURVE')
-      call read_curve(deck, parameters, i, raw)
+      call read_curve(deck, i, raw)
     case ('DEFINE_TABLE')
-      call read_table(deck, parameters, i, raw)
+      call read_table(deck, i, raw)
     case ('INITIAL_VELOCITY', 'INITIAL_VELOCITY_GENERATION')
-      call read_initial_velocity(deck, parameters, i, raw)
+      call read_initial_velocity(deck, i, raw)
     case ('DAMPING_PART_MASS', 'DAMPING_PART_MASS_SET')
-      call read_part_damping(deck, parameters, i, raw)
+      call read_part_damping(deck, i, raw)
     case ('DEFINE_COORDINATE_SYSTEM')
-      call read_system(deck, parameters, i, raw)
+      call read_system(deck, i, raw)
     case ('ELEMENT_MASS', 'ELEMENT_MASS_NODE_SET', 'CONSTRAINED_NODE_SET')
-      call read_condition(deck, parameters, i, raw)
+      call read_condition(deck, i, raw)
     case ('RIGIDWALL_PLANAR')
-      call read_wall(deck, parameters, i, raw)
+      call read_wall(deck, i, raw)
     case default
-      call read_family(deck, parameters, i, kinds, overrides, raw)
+      call read_family(deck, i, kinds, overrides, raw)
     end select
   end subroutine read_block
 
   !> Keywords whose family says how they are read.
-  subroutine read_family(deck, parameters, i, kinds, overrides, raw)
+  subroutine read_family(deck, i, kinds, overrides, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i
     type(contact_kind_t), intent(in) :: kinds(:)
     type(overrides_t), intent(in) :: overrides
@@ -336,44 +326,43 @@ contains
     n = scan(deck%blocks(i)%name, '_')
     select case (deck%blocks(i)%name(:max(n, 1)))
     case ('CONTROL_')
-      call read_control(deck, parameters, i, raw)
+      call read_control(deck, i, raw)
     case ('DATABASE_')
-      call read_output(deck, parameters, i, raw)
+      call read_output(deck, i, raw)
     case ('CONTACT_')
       if (deck%blocks(i)%name == 'CONTACT_2D_FORCE_TRANSDUCER') then
-        call read_transducer(deck, parameters, i, raw)
+        call read_transducer(deck, i, raw)
       else
-        call read_contact(deck, parameters, i, kinds, overrides, raw)
+        call read_contact(deck, i, kinds, overrides, raw)
       end if
     case ('TERMINATION_')
-      call read_ends(deck, parameters, i, raw)
+      call read_ends(deck, i, raw)
     case ('BOUNDARY_', 'INITIAL_', 'LOAD_', 'DAMPING_')
-      call read_condition(deck, parameters, i, raw)
+      call read_condition(deck, i, raw)
     end select
   end subroutine read_family
 
   !> What is written, of which nodes and elements, and how often.
-  subroutine read_output(deck, parameters, i, raw)
+  subroutine read_output(deck, i, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i
     type(raw_t), intent(inout) :: raw
 
     select case (deck%blocks(i)%name)
     case ('DATABASE_HISTORY_NODE', 'DATABASE_HISTORY_NODE_ID')
-      call read_history_ids(deck, parameters, i, raw%history_nodes)
+      call read_history_ids(deck, i, raw%history_nodes)
     case ('DATABASE_HISTORY_NODE_SET')
-      call read_history_ids(deck, parameters, i, raw%history_node_sets)
+      call read_history_ids(deck, i, raw%history_node_sets)
     case ('DATABASE_HISTORY_SHELL')
-      call read_history_ids(deck, parameters, i, raw%history_shells)
+      call read_history_ids(deck, i, raw%history_shells)
     case ('DATABASE_HISTORY_SHELL_SET')
-      call read_history_ids(deck, parameters, i, raw%history_shell_sets)
+      call read_history_ids(deck, i, raw%history_shell_sets)
     case ('DATABASE_NODAL_FORCE_GROUP')
-      call read_force_groups(deck, parameters, i, raw)
+      call read_force_groups(deck, i, raw)
     case ('DATABASE_CROSS_SECTION_SET')
-      call read_cross_sections(deck, parameters, i, raw)
+      call read_cross_sections(deck, i, raw)
     case default
-      call read_database(deck, parameters, i, raw)
+      call read_database(deck, i, raw)
     end select
   end subroutine read_output
 

@@ -14,7 +14,6 @@ module renumber_m
   use rigids_m, only : mark_rigid_nodes
   use sorting_m, only : sorted_order
   use supports_m, only : mark_supports
-  use type_charts_m, only : may_change
   implicit none
   private
   public :: renumber_model, mark_moved_nodes, forget_start
@@ -73,8 +72,7 @@ contains
     if (allocated(model%node_sets)) deallocate (model%node_sets)
     if (allocated(model%segment_sets)) deallocate (model%segment_sets)
     if (allocated(model%shell_sets)) deallocate (model%shell_sets)
-    if (model%controls%implicit%is_on .or. model%erodes .or. any(may_change(model%contacts))) &
-      return
+    if (model%controls%implicit%is_on .or. model%erodes) return
     deallocate (model%mesh%element_nodes, model%mesh%element_part)
     if (.not. is_asked(model%controls%output%plot) .and. allocated(model%mesh%deck_node)) &
       deallocate (model%mesh%deck_node)

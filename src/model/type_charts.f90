@@ -3,13 +3,11 @@
 !> estimate of each in scenes of a kind, the largest of all meshes, and the time of its contact.
 !> Tests compare these figures with the pages (doc/studies/choosing.md, speed_accuracy.md).
 module type_charts_m
-  use contacts_m, only : contact_t, has_friction
   use kinds_m, only : wp
   implicit none
   private
   public :: scene_bound, scene_matching, scene_general, scene_led, scene_friction, scene_name, &
-    published_estimate, cheapest_type, better_type, published_share, refinement, may_change, &
-    has_chart
+    published_estimate, cheapest_type, better_type, refinement
 
   !> Kinds of scenes: something else binds the type; flat faces that match and stay so; any; led
   !> along each other; with friction.
@@ -53,24 +51,6 @@ contains
     end select
   end function scene_name
 
-  !> Whether the program may change the type of an interface while an explicit run goes on: what has
-  !> friction or an overlap that grows remembers places that are those of its type.
-  elemental function may_change(contact) result(may)
-    type(contact_t), intent(in) :: contact
-    logical :: may
-
-    may = contact%target > 0.0_wp .and. contact%scene > scene_bound .and. .not. ( &
-      has_friction(contact) .or. allocated(contact%interference))
-  end function may_change
-
-  !> Whether a number is that of a type with figures here.
-  elemental function has_chart(contact_type) result(has)
-    integer, intent(in) :: contact_type
-    logical :: has
-
-    has = contact_type >= 1 .and. contact_type <= n_type
-  end function has_chart
-
   !> The estimate of a type in scenes of a kind.
   elemental function published_estimate(scene, contact_type) result(estimate)
     integer, intent(in) :: scene, contact_type
@@ -112,15 +92,6 @@ contains
     best = cheapest_type(chart, estimates(present, chart)*bound/estimate)
     expected = estimate*estimates(best, chart)/estimates(present, chart)
   end subroutine better_type
-
-  !> The published estimate of another type over that of the present one.
-  elemental function published_share(scene, present, other) result(share)
-    integer, intent(in) :: scene, present, other
-    real(wp) :: share
-
-    share = estimates(other, max(scene, scene_general))/estimates(present, max(scene, &
-      scene_general))
-  end function published_share
 
   !> By which factor elements should be smaller to bring an estimate down to a bound.
   elemental function refinement(estimate, bound) result(factor)

@@ -1,11 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> One CSV file that grows by rows: comma between values, no blanks, reals with 17 significant
-!> digits. Rows are kept in a buffer of whole lines and reach the file with one system call, at the
-!> latest a second after they came. The values are kept too: the results file takes them over at the
-!> end. A text file in DYNA's layout may grow beside it from the same rows; columns that it alone
-!> needs are not in the CSV file.
+!> One CSV file that grows by rows: comma between values, no blanks, reals as the shortest decimals
+!> that read back as the same numbers. Rows are kept in a buffer of whole lines and reach the file
+!> with one system call, at the latest a second after they came. The values are kept: the results
+!> file takes them over at the end. A text file in DYNA's layout may grow beside it from the same
+!> rows; columns that it alone needs are not in the CSV file.
 module csv_table_m
   use kinds_m, only : wp, long
+  use number_text_m, only : real_size, put_real, put_integer
   use dyna_text_m, only : dyna_text_t, add_dyna_row, flush_dyna_text, close_dyna_text
   use errors_m, only : error_t
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
@@ -18,10 +19,8 @@ module csv_table_m
   integer, parameter :: kind_real = 1, kind_integer = 2, kind_side = 3
   !> Bytes of the buffer of lines.
   integer, parameter :: buffer_size = 65536
-  !> Bytes of the longest value with its comma, and of a formatted real.
-  integer, parameter :: value_size = 26, real_size = 24
-  !> A zero as text, of either sign.
-  character(*), parameter :: zero = '0.0000000000000000E+000'
+  !> Bytes of the longest value with its comma.
+  integer, parameter :: value_size = real_size + 1
 
   !> One table.
   type :: csv_table_t
@@ -146,52 +145,30 @@ contains
     text = buffer(:n)
   end function row_text
 
-  !> Append a row and its line end behind `n` bytes of the buffer. What a row costs is the
-  !> conversion of its reals: all go through one internal write, and zeros, which are many, through
-  !> none.
+  !> Append a row and its line end behind `n` bytes of the buffer.
   pure subroutine append_line(buffer, n, values, kinds)
     character(*), intent(inout) :: buffer
     integer, intent(inout) :: n        !! bytes in use
     real(wp), intent(in) :: values(:)
     integer, intent(in) :: kinds(:)
-    character(real_size) :: reals(size(values))
-    character(12) :: whole
-    logical :: is_converted(size(values))
-    integer :: i, i_real
+    character(real_size) :: word
+    integer :: i, length
 
-    is_converted = kinds == kind_real .and. values /= 0.0_wp ! so NaN is
-    if (any(is_converted)) write (reals(:count(is_converted)), '(ss,es24.16e3)') &
-      pack(values, is_converted)
-    i_real = 0
     do i = 1, size(values)
       select case (kinds(i))
       case (kind_integer)
-        write (whole, '(ss,i0)') nint(values(i))
-        call append_word(buffer, n, trim(whole))
+        call put_integer(nint(values(i)), word, length)
       case (kind_side)
-        call append_word(buffer, n, trim(merge('slave ', 'master', nint(values(i)) == 1)))
+        word = merge('slave ', 'master', nint(values(i)) == 1)
+        length = len_trim(word)
       case default
-        if (is_converted(i)) then
-          i_real = i_real + 1
-          call append_word(buffer, n, trim(adjustl(reals(i_real))))
-        else
-          call append_word(buffer, n, zero)
-        end if
+        call put_real(values(i), word, length)
       end select
+      buffer(n + 1:n + length + 1) = word(:length)//','
+      n = n + length + 1
     end do
     buffer(n:n) = new_line('a') ! in place of the last comma
   end subroutine append_line
-
-  !> Append a word and a comma behind `n` bytes of the buffer.
-  pure subroutine append_word(buffer, n, word)
-    character(*), intent(inout) :: buffer
-    integer, intent(inout) :: n
-    character(*), intent(in) :: word
-
-    buffer(n + 1:n + len(word)) = word
-    n = n + len(word) + 1
-    buffer(n:n) = ','
-  end subroutine append_word
 
   !> Write the waiting lines. The first failure is remembered and ends the writing.
   subroutine write_waiting(table)

@@ -1,8 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> The layouts of DYNA's text files of elements and rigid bodies (see `dyna_layouts_m`).
 module dyna_body_layouts_m
-  use dyna_lines_m, only : line_size, add_line, number, tidy
+  use dyna_lines_m, only : line_size, add_line, number
   use kinds_m, only : wp
+  use number_text_m, only : es
   implicit none
   private
   public :: form_elout, form_rbdout
@@ -15,15 +16,14 @@ contains
     real(wp), intent(in) :: rows(:, :)
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
-    character(line_size) :: line
     integer :: i
 
     do i = 1, 3
       call add_line('', lines, n_line)
     end do
-    write (line, '(ss,3a,es12.5,a)') ' e l e m e n t   s t r e s s   c a l c u l a t i o n s', &
-      '   f o r   t i m e  s t e p', number(rows(8, 1), 9)//'   ( at time', tidy(rows(1, 1)), ' )'
-    call add_line(line, lines, n_line)
+    call add_line(' e l e m e n t   s t r e s s   c a l c u l a t i o n s   f o r   t i m e  ' &
+      //'s t e p'//number(rows(8, 1), 9)//'   ( at time'//es(rows(1, 1), 12, 5)//' )', lines, &
+      n_line)
     call add_line('', lines, n_line)
     call add_line(' element  materl(global)', lines, n_line)
     call add_line(' ipt-shl  stress       sig-xx      sig-yy      sig-zz      sig-xy      ' &
@@ -31,9 +31,8 @@ contains
     call add_line('           state'//repeat(' ', 82)//'strain', lines, n_line)
     do i = 1, size(rows, 2)
       call add_line(number(rows(2, i), 8)//'-'//number(rows(9, i), 7), lines, n_line)
-      write (line, '(ss,2a,6es12.4,es14.4)') '   1-  1 ', state_of(rows(7, i), rows(10, i)), &
-        tidy([rows(3:6, i), 0.0_wp, 0.0_wp, rows(7, i)])
-      call add_line(line, lines, n_line)
+      call add_line('   1-  1 '//state_of(rows(7, i), rows(10, i))//es([rows(3:6, i), 0.0_wp, &
+        0.0_wp], 12, 4)//es(rows(7, i), 14, 4), lines, n_line)
     end do
   end subroutine form_elout
 
@@ -55,23 +54,20 @@ contains
     integer, intent(inout) :: n_line
     character(*), parameter :: heads(3) = [character(17) :: ' displacements:', '    velocities:', &
       ' accelerations:']
-    character(line_size) :: line
     real(wp) :: axes(2, 2)
     integer :: i, k
 
     call add_line('1', lines, n_line)
     call add_line('', lines, n_line)
-    write (line, '(ss,2a,es15.6)') '  r i g i d   b o d y   m o t i o n   a t  cycle=', &
-      number(rows(14, 1), 8)//'    time=', tidy(rows(1, 1))
-    call add_line(line, lines, n_line)
+    call add_line('  r i g i d   b o d y   m o t i o n   a t  cycle='//number(rows(14, 1), 8) &
+      //'    time='//es(rows(1, 1), 15, 6), lines, n_line)
     do i = 1, size(rows, 2)
       axes = reshape([cos(rows(7, i)), sin(rows(7, i)), -sin(rows(7, i)), cos(rows(7, i))], [2, 2])
       call add_line('', lines, n_line)
       call add_line(' rigid body'//number(rows(2, i), 8), lines, n_line)
       call add_line('   global             x           y           z          x-rot       ' &
         //'y-rot       z-rot', lines, n_line)
-      write (line, '(ss,a,3es12.4)') '   coordinates:  ', tidy([rows(3:4, i), 0.0_wp])
-      call add_line(line, lines, n_line)
+      call add_line('   coordinates:  '//es([rows(3:4, i), 0.0_wp], 12, 4), lines, n_line)
       do k = 1, 3
         call add_motion(heads(k), rows(3*k + 2:3*k + 4, i), lines, n_line)
       end do
@@ -90,7 +86,6 @@ contains
     real(wp), intent(in) :: axes(2, 2)   !! one a column
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
-    character(line_size) :: line
     real(wp) :: rows(3, 3)
     integer :: k
 
@@ -101,8 +96,7 @@ contains
     call add_line('principal or user defined local coordinate direction vectors', lines, n_line)
     call add_line('                     a           b           c', lines, n_line)
     do k = 1, 3
-      write (line, '(ss,a,i0,3es15.4)') '     row ', k, tidy(rows(k, :))
-      call add_line(line, lines, n_line)
+      call add_line('     row '//number(real(k, wp), 1)//es(rows(k, :), 15, 4), lines, n_line)
     end do
     call add_line('', lines, n_line)
     call add_line(' output in principal or user defined local coordinate directions', lines, n_line)
@@ -114,10 +108,8 @@ contains
     real(wp), intent(in) :: values(3)
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
-    character(line_size) :: line
 
-    write (line, '(ss,a,6es12.4)') head, tidy([values(1:2), 0.0_wp, 0.0_wp, 0.0_wp, values(3)])
-    call add_line(line, lines, n_line)
+    call add_line(head//es([values(1:2), 0.0_wp, 0.0_wp, 0.0_wp, values(3)], 12, 4), lines, n_line)
   end subroutine add_motion
 
 end module dyna_body_layouts_m

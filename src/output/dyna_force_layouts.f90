@@ -4,8 +4,9 @@
 module dyna_force_layouts_m
   use boundary_rows_m, only : boundary_load, boundary_body_load, boundary_pressure, &
     boundary_motion, boundary_body_motion
-  use dyna_lines_m, only : line_size, add_line, number, tidy
+  use dyna_lines_m, only : line_size, add_line, number
   use kinds_m, only : wp
+  use number_text_m, only : es
   implicit none
   private
   public :: form_bndout, form_nodfor, form_secforc
@@ -33,15 +34,13 @@ contains
     real(wp), intent(in) :: rows(:, :)
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
-    character(line_size) :: line
     real(wp) :: total(3)
     integer :: i
 
     if (.not. any([(any(nint(rows(2, i)) == conditions), i=1, size(rows, 2))])) return
     call add_blanks(5, lines, n_line)
-    write (line, '(ss,2a,es12.5)') ' n o d a l   f o r c e/e n e r g y', '    o u t p u t  t=', &
-      tidy(rows(1, 1))
-    call add_line(line, lines, n_line)
+    call add_line(' n o d a l   f o r c e/e n e r g y    o u t p u t  t='//es(rows(1, 1), 12, 5), &
+      lines, n_line)
     call add_blanks(4, lines, n_line)
     call add_line(' '//title, lines, n_line)
     call add_line('', lines, n_line)
@@ -52,9 +51,8 @@ contains
       call add_force(head_of(nint(rows(2, i)))//number(rows(3, i), 8), [rows(4:5, i), rows(7, i)], &
         lines, n_line)
       if (nint(rows(2, i)) /= boundary_body_motion) cycle
-      write (line, '(ss,3(a,es13.4))') '             xmoment=', 0.0_wp, '  ymoment=', 0.0_wp, &
-        ' zmoment=', tidy(rows(6, i))
-      call add_line(line, lines, n_line)
+      call add_line('             xmoment='//es(0.0_wp, 13, 4)//'  ymoment='//es(0.0_wp, 13, 4) &
+        //' zmoment='//es(rows(6, i), 13, 4), lines, n_line)
     end do
     call add_total(total, lines, n_line)
   end subroutine form_section
@@ -79,15 +77,13 @@ contains
     real(wp), intent(in) :: rows(:, :)
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
-    character(line_size) :: line
     real(wp) :: total(3)
     integer :: i, n_group
     logical :: is_first, is_last
 
     call add_blanks(5, lines, n_line)
-    write (line, '(ss,2a,es12.5)') ' n o d a l   f o r c e   g r o u p', '    o u t p u t  t=', &
-      tidy(rows(1, 1))
-    call add_line(line, lines, n_line)
+    call add_line(' n o d a l   f o r c e   g r o u p    o u t p u t  t='//es(rows(1, 1), 12, 5), &
+      lines, n_line)
     n_group = 0
     total = 0.0_wp
     do i = 1, size(rows, 2)
@@ -99,8 +95,7 @@ contains
         n_group = n_group + 1
         total = 0.0_wp
         call add_blanks(5, lines, n_line)
-        write (line, '(ss,a,i2)') ' nodal group output number ', n_group
-        call add_line(line, lines, n_line)
+        call add_line(' nodal group output number '//number(real(n_group, wp), 2), lines, n_line)
         call add_line('', lines, n_line)
       end if
       total = total + rows(4:6, i)
@@ -114,17 +109,14 @@ contains
     real(wp), intent(in) :: rows(:, :)
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
-    character(line_size) :: line
     integer :: i
 
     do i = 1, size(rows, 2)
-      write (line, '(ss,i11,5es13.4)') nint(rows(2, i)), tidy([rows(1, i), rows(3:4, i), 0.0_wp, &
-        norm2(rows(3:4, i))])
-      call add_line(line, lines, n_line)
-      write (line, '(ss,24x,4es13.4)') tidy([0.0_wp, 0.0_wp, rows(5, i), abs(rows(5, i))])
-      call add_line(line, lines, n_line)
-      write (line, '(ss,24x,4es13.4)') tidy([rows(6:7, i), 0.0_wp, rows(8, i)])
-      call add_line(line, lines, n_line)
+      call add_line(number(rows(2, i), 11)//es([rows(1, i), rows(3:4, i), 0.0_wp, &
+        norm2(rows(3:4, i))], 13, 4), lines, n_line)
+      call add_line(repeat(' ', 24)//es([0.0_wp, 0.0_wp, rows(5, i), abs(rows(5, i))], 13, 4), &
+        lines, n_line)
+      call add_line(repeat(' ', 24)//es([rows(6:7, i), 0.0_wp, rows(8, i)], 13, 4), lines, n_line)
       call add_line('', lines, n_line)
     end do
   end subroutine form_secforc
@@ -135,11 +127,9 @@ contains
     real(wp), intent(in) :: values(3)  !! force along x and y, energy
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
-    character(line_size) :: line
 
-    write (line, '(ss,a,4(a,es13.4))') head, '  xforce=', tidy(values(1)), '   yforce=', &
-      tidy(values(2)), '  zforce=', 0.0_wp, '   energy=', tidy(values(3))
-    call add_line(line, lines, n_line)
+    call add_line(head//'  xforce='//es(values(1), 13, 4)//'   yforce='//es(values(2), 13, 4) &
+      //'  zforce='//es(0.0_wp, 13, 4)//'   energy='//es(values(3), 13, 4), lines, n_line)
   end subroutine add_force
 
   !> Sums of some lines.
@@ -147,11 +137,10 @@ contains
     real(wp), intent(in) :: values(3)  !! as in `add_force`
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
-    character(line_size) :: line
 
-    write (line, '(ss,4(a,es13.4))') '              xtotal=', tidy(values(1)), '   ytotal=', &
-      tidy(values(2)), '  ztotal=', 0.0_wp, '   etotal=', tidy(values(3))
-    call add_line(line, lines, n_line)
+    call add_line('              xtotal='//es(values(1), 13, 4)//'   ytotal=' &
+      //es(values(2), 13, 4)//'  ztotal='//es(0.0_wp, 13, 4)//'   etotal='//es(values(3), 13, 4), &
+      lines, n_line)
   end subroutine add_total
 
   !> Some empty lines.

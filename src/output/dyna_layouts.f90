@@ -5,11 +5,12 @@
 module dyna_layouts_m
   use dyna_body_layouts_m, only : form_elout, form_rbdout
   use dyna_force_layouts_m, only : form_bndout, form_nodfor, form_secforc
-  use dyna_lines_m, only : line_size, add_line, number, tidy
+  use dyna_lines_m, only : line_size, add_line, number
   use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_matsum, &
     table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout, table_bndout, &
     table_nodfor, table_secforc
   use kinds_m, only : wp
+  use number_text_m, only : es
   implicit none
   private
   public :: columns_of, n_line_of, form_block
@@ -151,7 +152,6 @@ contains
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
     real(wp) :: values(n_label)
-    character(line_size) :: line
     real(wp) :: share
     integer :: i
 
@@ -172,16 +172,13 @@ contains
       row(6) + row(21), row(8), row(9) + row(18) + row(22), row(10), row(19:21), row(11), row(12), &
       share*row(12), row(14), row(15), 0.0_wp]
     do i = 1, n_label
-      write (line, '(ss,a,es14.5)') labels(i), tidy(values(i))
-      call add_line(line, lines, n_line)
+      call add_line(labels(i)//es(values(i), 14, 5), lines, n_line)
     end do
     call add_line(' time per zone cycle.(nanosec)..             0', lines, n_line)
     if (.not. scales) return
     call add_line('', lines, n_line)
-    write (line, '(ss,a,es14.5)') ' added mass.....................', tidy(row(23))
-    call add_line(line, lines, n_line)
-    write (line, '(ss,a,es14.5)') ' percentage increase............', tidy(row(24))
-    call add_line(line, lines, n_line)
+    call add_line(' added mass.....................'//es(row(23), 14, 5), lines, n_line)
+    call add_line(' percentage increase............'//es(row(24), 14, 5), lines, n_line)
   end subroutine form_glstat
 
   !> Contact forces, a line for each side.
@@ -189,14 +186,13 @@ contains
     real(wp), intent(in) :: rows(:, :)
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
-    character(line_size) :: line
     integer :: i
 
     do i = 1, size(rows, 2)
-      write (line, '(ss,2x,a,i11,a,es12.5,3(a,es12.5),a,es12.5)') merge('slave ', 'master', &
-        nint(rows(3, i)) == 1), nint(rows(2, i)), ' time', tidy(rows(1, i)), '  x ', &
-        tidy(rows(4, i)), '  y ', tidy(rows(5, i)), '  z ', 0.0_wp, ' mass ', 0.0_wp
-      call add_line(line, lines, n_line)
+      call add_line('  '//merge('slave ', 'master', nint(rows(3, i)) == 1)//number(rows(2, i), 11) &
+        //' time'//es(rows(1, i), 12, 5)//'  x '//es(rows(4, i), 12, 5)//'  y ' &
+        //es(rows(5, i), 12, 5)//'  z '//es(0.0_wp, 12, 5)//' mass '//es(0.0_wp, 12, 5), lines, &
+        n_line)
     end do
   end subroutine form_rcforc
 
@@ -205,17 +201,15 @@ contains
     real(wp), intent(in) :: rows(:, :)
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
-    character(line_size) :: line
     character(:), allocatable :: id
     integer :: i
 
     do i = 1, 3
       call add_line('', lines, n_line)
     end do
-    write (line, '(ss,2a,30x,a,es14.7,a)') &
-      ' n o d a l   p r i n t   o u t   f o r   t i m e  s t e p', &
-      number(rows(11, 1), 8), '( at time', tidy(rows(1, 1)), ' )'
-    call add_line(line, lines, n_line)
+    call add_line(' n o d a l   p r i n t   o u t   f o r   t i m e  s t e p' &
+      //number(rows(11, 1), 8)//repeat(' ', 30)//'( at time'//es(rows(1, 1), 14, 7)//' )', lines, &
+      n_line)
     call add_line('', lines, n_line)
     call add_line(' nodal point  x-disp     y-disp      z-disp      x-vel       y-vel       ' &
       //'z-vel      x-accl      y-accl      z-accl      x-coor      y-coor      z-coor', lines, &
@@ -223,9 +217,8 @@ contains
     do i = 1, size(rows, 2)
       id = number(rows(2, i), 9)
       if (len(id) == 9) id = id//' '
-      write (line, '(ss,a,12es12.4)') id, tidy([rows(5:6, i), 0.0_wp, rows(7:8, i), &
-        0.0_wp, rows(9:10, i), 0.0_wp, rows(3:4, i), 0.0_wp])
-      call add_line(line, lines, n_line)
+      call add_line(id//es([rows(5:6, i), 0.0_wp, rows(7:8, i), 0.0_wp, rows(9:10, i), 0.0_wp, &
+        rows(3:4, i), 0.0_wp], 12, 4), lines, n_line)
     end do
   end subroutine form_nodout
 
@@ -235,31 +228,24 @@ contains
     real(wp), intent(in) :: rows(:, :)
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
-    character(*), parameter :: vectors = '(ss,3(a,es13.4))'
-    character(line_size) :: line
     real(wp) :: velocity(2)
     integer :: i
 
     call add_line('', lines, n_line)
     call add_line('', lines, n_line)
-    write (line, '(ss,a,es13.4)') ' time =', tidy(rows(1, 1))
-    call add_line(line, lines, n_line)
+    call add_line(' time ='//es(rows(1, 1), 13, 4), lines, n_line)
     do i = 1, size(rows, 2)
       velocity = 0.0_wp
       if (rows(8, i) > 0.0_wp) velocity = rows(6:7, i)/rows(8, i)
-      write (line, '(ss,a,a,4(a,es13.4))') ' mat.#=', part_field(rows(2, i)), &
-        '          inten=', tidy(rows(4, i)), '     kinen=', tidy(rows(3, i)), &
-        '     eroded_ie=', 0.0_wp, '     eroded_ke=', 0.0_wp
-      call add_line(line, lines, n_line)
-      write (line, vectors) ' x-mom=', tidy(rows(6, i)), '     y-mom=', tidy(rows(7, i)), &
-        '     z-mom=', 0.0_wp
-      call add_line(line, lines, n_line)
-      write (line, vectors) ' x-rbv=', tidy(velocity(1)), '     y-rbv=', tidy(velocity(2)), &
-        '     z-rbv=', 0.0_wp
-      call add_line(line, lines, n_line)
-      write (line, '(ss,25x,a,es13.4,5x,a,es13.4)') 'hgeng=', tidy(rows(5, i)), '+mass=', &
-        tidy(rows(9, i))
-      call add_line(line, lines, n_line)
+      call add_line(' mat.#='//part_field(rows(2, i))//'          inten='//es(rows(4, i), 13, 4) &
+        //'     kinen='//es(rows(3, i), 13, 4)//'     eroded_ie='//es(0.0_wp, 13, 4) &
+        //'     eroded_ke='//es(0.0_wp, 13, 4), lines, n_line)
+      call add_line(' x-mom='//es(rows(6, i), 13, 4)//'     y-mom='//es(rows(7, i), 13, 4) &
+        //'     z-mom='//es(0.0_wp, 13, 4), lines, n_line)
+      call add_line(' x-rbv='//es(velocity(1), 13, 4)//'     y-rbv='//es(velocity(2), 13, 4) &
+        //'     z-rbv='//es(0.0_wp, 13, 4), lines, n_line)
+      call add_line(repeat(' ', 25)//'hgeng='//es(rows(5, i), 13, 4)//'     +mass=' &
+        //es(rows(9, i), 13, 4), lines, n_line)
     end do
   end subroutine form_matsum
 
@@ -278,32 +264,24 @@ contains
     real(wp), intent(in) :: rows(:, :)
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
-    character(line_size) :: line
     integer :: i
 
     do i = 1, 3
       call add_line('', lines, n_line)
     end do
-    write (line, '(ss,a,es14.7)') ' contact interface energy file, time=', tidy(rows(1, 1))
-    call add_line(line, lines, n_line)
-    write (line, '(ss,a,i14)') '    #            slave       master   frictional   cycle=', &
-      nint(rows(2, 1))
-    call add_line(line, lines, n_line)
+    call add_line(' contact interface energy file, time='//es(rows(1, 1), 14, 7), lines, n_line)
+    call add_line('    #            slave       master   frictional   cycle=' &
+      //number(rows(2, 1), 14), lines, n_line)
     call add_line('', lines, n_line)
     do i = 1, size(rows, 2)
-      write (line, '(ss,i10,3es13.4)') nint(rows(3, i)), tidy([sum(rows(4:6, i)), 0.0_wp, &
-        rows(6, i)])
-      call add_line(line, lines, n_line)
+      call add_line(number(rows(3, i), 10)//es([sum(rows(4:6, i)), 0.0_wp, rows(6, i)], 13, 4), &
+        lines, n_line)
     end do
     call add_line('', lines, n_line)
-    write (line, '(ss,a,es14.7)') ' summary   total slave side=', tidy(sum(rows(4:6, :)))
-    call add_line(line, lines, n_line)
-    write (line, '(ss,a,es14.7)') '           total mastr side=', 0.0_wp
-    call add_line(line, lines, n_line)
-    write (line, '(ss,a,es14.7)') '           total energy    =', tidy(sum(rows(4:6, :)))
-    call add_line(line, lines, n_line)
-    write (line, '(ss,a,es14.7)') '           friction energy =', tidy(sum(rows(6, :)))
-    call add_line(line, lines, n_line)
+    call add_line(' summary   total slave side='//es(sum(rows(4:6, :)), 14, 7), lines, n_line)
+    call add_line('           total mastr side='//es(0.0_wp, 14, 7), lines, n_line)
+    call add_line('           total energy    ='//es(sum(rows(4:6, :)), 14, 7), lines, n_line)
+    call add_line('           friction energy ='//es(sum(rows(6, :)), 14, 7), lines, n_line)
   end subroutine form_sleout
 
   !> Forces of constraints on their nodes, and their sum.
@@ -311,19 +289,15 @@ contains
     real(wp), intent(in) :: rows(:, :)
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
-    character(line_size) :: line
     integer :: i
 
-    write (line, '(ss,a,es14.5)') ' output at time =', tidy(rows(1, 1))
-    call add_line(line, lines, n_line)
+    call add_line(' output at time ='//es(rows(1, 1), 14, 5), lines, n_line)
     do i = 1, size(rows, 2)
-      write (line, '(ss,3a,3es14.4)') ' node=', number(rows(2, i), 8), ' local x,y,z forces =', &
-        tidy([rows(3:4, i), 0.0_wp])
-      call add_line(line, lines, n_line)
+      call add_line(' node='//number(rows(2, i), 8)//' local x,y,z forces =' &
+        //es([rows(3:4, i), 0.0_wp], 14, 4), lines, n_line)
     end do
-    write (line, '(ss,a,3es14.4)') '             force resultants   =', tidy([sum(rows(3, :)), &
-      sum(rows(4, :)), 0.0_wp])
-    call add_line(line, lines, n_line)
+    call add_line('             force resultants   =' &
+      //es([sum(rows(3, :)), sum(rows(4, :)), 0.0_wp], 14, 4), lines, n_line)
   end subroutine form_spcforc
 
   !> Forces of rigid walls.
@@ -331,13 +305,11 @@ contains
     real(wp), intent(in) :: rows(:, :)
     character(line_size), intent(inout) :: lines(:)
     integer, intent(inout) :: n_line
-    character(line_size) :: line
     integer :: i
 
     do i = 1, size(rows, 2)
-      write (line, '(ss,es12.5,a,4es15.6)') tidy(rows(1, i)), number(rows(2, i), 8), &
-        tidy([rows(3:5, i), 0.0_wp])
-      call add_line(line, lines, n_line)
+      call add_line(es(rows(1, i), 12, 5)//number(rows(2, i), 8) &
+        //es([rows(3:5, i), 0.0_wp], 15, 6), lines, n_line)
     end do
   end subroutine form_rwforc
 

@@ -1,11 +1,11 @@
 ! SPDX-License-Identifier: MIT
 !> Lines of DYNA's text files, and the numbers in them.
 module dyna_lines_m
-  use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
   use kinds_m, only : wp
+  use number_text_m, only : integer_size, put_integer
   implicit none
   private
-  public :: line_size, add_line, number, tidy
+  public :: line_size, add_line, number
 
   !> Bytes of the longest line.
   integer, parameter :: line_size = 160
@@ -17,10 +17,11 @@ contains
     real(wp), intent(in) :: value
     integer, intent(in) :: width
     character(:), allocatable :: text
-    character(12) :: digits
+    character(integer_size) :: digits
+    integer :: n
 
-    write (digits, '(ss,i12)') nint(value)
-    text = digits(min(13 - width, verify(digits, ' ')):)
+    call put_integer(nint(value), digits, n)
+    text = repeat(' ', max(width - n, 0))//digits(:n)
   end function number
 
   !> One more line.
@@ -32,17 +33,5 @@ contains
     n_line = n_line + 1
     lines(n_line) = line
   end subroutine add_line
-
-  !> A number whose exponent has two digits, which the columns are made for; NaN stays.
-  pure elemental function tidy(value) result(printed)
-    real(wp), intent(in) :: value
-    real(wp) :: printed
-    real(wp), parameter :: least = 1.0e-99_wp, most = 9.9e99_wp
-
-    printed = value
-    if (ieee_is_nan(value)) return
-    if (abs(value) < least) printed = 0.0_wp
-    if (abs(value) > most) printed = sign(most, value)
-  end function tidy
 
 end module dyna_lines_m

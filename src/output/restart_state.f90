@@ -18,7 +18,7 @@ module restart_state_m
   use wall_state_m, only : wall_state_t
   implicit none
   private
-  public :: keep_state, keep_erosion_status, keep_types
+  public :: keep_state, keep_erosion_status
 
 contains
 
@@ -227,23 +227,6 @@ contains
     call leave(archive)
   end subroutine keep_estimates
 
-  !> The present types of interfaces alone: the rest of the state has the shapes that these give it.
-  subroutine keep_types(archive, contact_types)
-    type(archive_t), intent(inout) :: archive
-    integer, intent(inout) :: contact_types(:)
-    integer :: i
-
-    call enter(archive, 'state')
-    call enter(archive, 'estimates')
-    do i = 1, size(contact_types)
-      call enter(archive, to_text(i))
-      call keep(archive, 'contact_type', contact_types(i))
-      call leave(archive)
-    end do
-    call leave(archive)
-    call leave(archive)
-  end subroutine keep_types
-
   !> That of one interface.
   subroutine keep_estimate(archive, name, estimate)
     type(archive_t), intent(inout) :: archive
@@ -266,10 +249,6 @@ contains
     call keep(archive, 'jumps', estimate%jumps)
     call keep(archive, 'forces', estimate%forces)
     call keep(archive, 'least_margin', estimate%least_margin)
-    call keep_fixed(archive, 'watched', estimate%watched)
-    call keep(archive, 'n_open', estimate%n_open)
-    call keep(archive, 'n_stayed', estimate%n_stayed)
-    call keep(archive, 'contact_type', estimate%contact_type)
     call keep(archive, 'softness', estimate%softness)
     call keep(archive, 'stored', estimate%stored)
     call keep(archive, 'bodies', estimate%bodies)

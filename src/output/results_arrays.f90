@@ -79,7 +79,7 @@ module results_arrays_m
     type(growing_t) :: point_fields(n_point_field)
     type(growing_t) :: cell_fields(n_cell_field)
     type(growing_t) :: steps(n_step_array)
-    real(wp), allocatable :: rows(:)            !! (3*block_rows) work space of one write
+    real(wp), allocatable :: rows(:)            !! (3*rows, at most block_rows) of one write
   end type results_file_t
 
 contains

@@ -73,7 +73,7 @@ contains
     call make_group(file%id, 'history', error)
     call publish(file, error)
     call h5gclose_f(group, status)
-    allocate (file%rows(3*block_rows))
+    allocate (file%rows(3*min(max(model%mesh%n_node, model%mesh%n_element), block_rows)))
     call note_failure(file, error)
   end subroutine open_results
 

@@ -3,7 +3,7 @@
 !> puts on a face, and the stress of the elements behind it (doc/theory/contact.md, section 8.1).
 !> At instants that are written, and in words at the end.
 module contact_judging_m
-  use contact_estimate_m, only : contact_estimate_t, judged_each
+  use contact_estimate_m, only : contact_estimate_t
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step
   use contacts_m, only : contact_t, n_told, penalty_implicit
   use controls_m, only : is_asked
@@ -97,9 +97,6 @@ contains
       result%row_energy = side%row_energy
       result%estimate = 0.0_wp
       if (side%load > 0.0_wp) result%estimate = sqrt(side%misfit/side%load)
-      if (state%cycle > state%estimates(i)%cycle .and. model%contacts(i)%target > 0.0_wp &
-        .and. mod(state%cycle, judged_each) == 0) state%estimates(i)%watched = &
-        state%estimates(i)%watched + [side%still, side%load]
       if (state%cycle > state%estimates(i)%cycle) call sum_up(state%cycle, state%dt, side, result, &
         state%estimates(i))
     end associate
@@ -223,9 +220,6 @@ contains
       if (model%contacts(i)%target > 0.0_wp) call write_log(log, 'interface ' &
         //to_text(model%contacts(i)%id)//': '//target_words(model%contacts(i), &
         state%estimates(i)))
-      if (state%estimates(i)%n_stayed > 0) call write_log(log, 'interface ' &
-        //to_text(model%contacts(i)%id)//': the step did not bear the springs of a better type ' &
-        //'at '//to_text(state%estimates(i)%n_stayed)//' opening(s)')
     end do
   end subroutine report_estimates
 

@@ -2,8 +2,7 @@
 !> Going on from a restart file: what it says of the run, its state and its outputs, and
 !> the files of the run before.
 module restart_reading_m
-  use archive_file_m, only : archive_t, enter, leave, refuse
-  use contacts_m, only : contact_t, n_told
+  use archive_file_m, only : archive_t, enter, leave
   use errors_m, only : error_t, raise, status_input
   use explicit_memory_m, only : check_steps
   use implicit_memory_m, only : check_memory
@@ -21,12 +20,11 @@ module restart_reading_m
   use restart_history_m, only : keep_times
   use restart_plan_m, only : restarts_t, place_text
   use restart_run_m, only : keep_run, keep_outputs
-  use restart_state_m, only : keep_state, keep_erosion_status, keep_types
+  use restart_state_m, only : keep_state, keep_erosion_status
   use results_copy_m, only : check_old_results, copy_states
   use results_file_m, only : results_file_t
   use start_m, only : start_state, resume_contacts
   use state_m, only : state_t
-  use type_charts_m, only : may_change, has_chart
   implicit none
   private
   public :: take_up_file, take_up_results, take_up_state, check_rest, take_up_outputs
@@ -73,21 +71,13 @@ contains
   !> Read the state into one that is started from the model: that tells what the file must hold.
   subroutine take_up_state(source, model, state, error, others, answers)
     type(archive_t), intent(inout) :: source
-    type(model_t), intent(inout) :: model  !! takes over the present contact types
+    type(model_t), intent(in) :: model
     type(state_t), intent(out) :: state
     type(error_t), allocatable, intent(out) :: error
     type(others_t), intent(inout), optional :: others !! what other processes have
     type(answers_t), intent(inout), optional :: answers
     type(log_t) :: silence
-    integer :: contact_types(n_told(model%contacts))
 
-    contact_types = model%contacts(:size(contact_types))%contact_type
-    call keep_types(source, contact_types)
-    if (.not. allocated(source%error)) call take_types(contact_types, model%contacts, source)
-    if (allocated(source%error)) then
-      error = source%error
-      return
-    end if
     silence%is_mute = .true.
     call start_state(model, silence, state, error, others, answers)
     if (allocated(error)) return
@@ -110,24 +100,6 @@ contains
         //', after the end time '//to_text(model%controls%end_time), status_input)
     end if
   end subroutine take_up_state
-
-  !> Contact types that the run has changed; others are those of the deck.
-  subroutine take_types(contact_types, contacts, source)
-    integer, intent(in) :: contact_types(:)
-    type(contact_t), intent(inout) :: contacts(:)
-    type(archive_t), intent(inout) :: source
-    integer :: i
-
-    do i = 1, size(contact_types)
-      if (any([contacts(i)%contact_type] == contact_types(i))) cycle
-      if (.not. may_change(contacts(i)) .or. .not. has_chart(contact_types(i))) then
-        call refuse(source, 'state/estimates/'//to_text(i)//'/contact_type', &
-          'a type that the deck does not give')
-        return
-      end if
-      contacts(i)%contact_type = contact_types(i)
-    end do
-  end subroutine take_types
 
   !> Look at what is read once the files are open, so that a file that is refused has emptied none:
   !> how far the outputs are, and what the driver keeps.

@@ -5,10 +5,7 @@ module contact_estimate_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: contact_estimate_t, judged_each
-
-  !> Cycles from one look to the next at interfaces whose type the program may change.
-  integer, parameter :: judged_each = 100
+  public :: contact_estimate_t
 
   !> Sums and extremes; nothing of time zero, where elements have no stress yet.
   type :: contact_estimate_t
@@ -28,10 +25,6 @@ module contact_estimate_m
                                        !! force, as of equal strides
     real(wp) :: forces = 0.0_wp        !! sum of its squares over the same instants
     real(wp) :: least_margin = huge(1.0_wp) !! smallest of stable step over step
-    real(wp) :: watched(2) = 0.0_wp    !! `still` and `load` at the looks since the type was chosen
-    integer :: n_open = 0              !! looks in a row that found it open, a better type wanted
-    integer :: n_stayed = 0            !! times that the step did not bear a better type
-    integer :: contact_type = 0        !! the present one
     real(wp) :: softness = 0.0_wp      !! of springs, over that of a row of elements on either side
     real(wp) :: stored = 0.0_wp        !! largest energy of the springs, J/m
     real(wp) :: bodies = 0.0_wp        !! largest internal energy of the bodies on both sides, J/m

@@ -54,7 +54,7 @@ KEPT = {
         "ranks": "of each run", "tables": "kept one by one", "scheduled": "from the deck"}),
     "explicit_cycle_t": ("solve/explicit/explicit_cycle.f90", "solve/explicit/explicit_memory.f90", "", {
         "writes": "set in each cycle", "finished": "not when a file is written",
-        "last": "found again", "judges": "found again", "may_judge": "from the deck", "plots": "of the run that was asked", "due": "set in each cycle",
+        "last": "found again", "plots": "of the run that was asked", "due": "set in each cycle",
         "leap": "made in each cycle", "sums": "formed in each cycle", "rest": "found anew in the first cycles", "refines": "from the deck", "presses": "from the deck", "pressing": "formed anew in each cycle", "common": "made in each cycle", "rates": "asked anew in the first cycle",
         "checks": "filled in each cycle", "failures": "of each log, counted anew", "steps": "kept as step_plan_t",
         "shares": "of each run", "borders": "of each run", "first_check": "of each run", "parcel": "filled in each cycle", "echoes": "of a second", "asked": "heard in each cycle",

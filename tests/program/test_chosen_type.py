@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """CTYPE 0: which type the program chooses and why, and that the run is that of the type by name."""
 import os
-import pathlib
 import re
 
 import numpy as np
@@ -201,127 +200,6 @@ def test_estimates_have_the_same_bits_with_threads(slideline, tmp_path):
     assert np.genfromtxt(tmp_path / "n1/job.sleout.csv", delimiter=",", names=True)["estimate"].max() > 0.0
 
 
-def twice(ctype=1, target=0.03, pen=1.0e6, punit=None, columns=(3, 4), pace=1.0, more=(), strokes=1):
-    """A block led slowly onto another of uneven mesh, off it, and on again: damped, far below the stable step."""
-    deck = Deck("twice")
-    end = 2.0 * pace * (strokes + 1)
-    deck.control(end)
-    deck.add("*SECTION_SHELL", (1, 13), (1.0,))
-    lower, quads = grid(columns[0], 2, origin=(0.0, -1.0))
-    below = deck.mesh(lower, quads, part=1)
-    upper, quads = grid(columns[1], 2, origin=(0.0, 1.0e-3))
-    above = deck.mesh(upper, quads, part=2)
-    for part in (1, 2):
-        deck.part(part, section=1).elastic(1000.0, 1.0e6, 0.3, part)
-    deck.fix(below[:columns[0] + 1], x=1, y=1)
-    way = [(k * pace, 0.2 if k % 2 == 0 else -1.0) for k in range(1, 2 * strokes + 2)]
-    deck.curve(1, [(0.0, 0.0), *way, (end, -1.0)])
-    for node in above[-columns[1] - 1:]:
-        deck.prescribe(node, 2, 2, 1, 0.01)
-    deck.curve(2, [(0.0, 5.0), (10.0, 5.0)])
-    deck.add("*DAMPING_GLOBAL", (2,))
-    deck.node_set(1, above[:columns[1] + 1]).node_set(2, below[-columns[0] - 1:][::-1])
-    deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, ctype, None, pen), (None, None, punit),
-             (None, None, None, None, None, None, target))
-    for keyword, *cards in more:
-        deck.add(keyword, *cards)
-    deck.add("*DATABASE_SLEOUT", (0.01,))
-    return deck.output(plot=0.5, glstat=0.01, rcforc=0.01, matsum=0.1)
-
-
-CHANGE = r"interface 1, cycle (\d+), time (\S+): the estimate without waves, ([\d.]+) % since .*, is above .*; contact is open and goes on with (.*), whose"
-
-
-@pytest.fixture
-def pressed_twice(slideline, tmp_path):
-    """pressed_twice(name, *words, **deck): the log of a run into a folder, at a step of 2e-3."""
-    def call(name, *words, deck=None, **scene):
-        done = slideline(f"d={name}", "jobid=job", *words, deck=deck or twice(**scene))
-        assert done.returncode == 0, done.stderr
-        return (tmp_path / name / "job.log").read_text()
-    return call
-
-
-def test_type_changes_when_contact_is_open(pressed_twice, tmp_path):
-    """From the type that fails the patch test to the one that passes: what follows is that type's answer, energy is kept."""
-    cycle, time, estimate, name = re.search(CHANGE, pressed_twice("out", "dt=2e-3")).groups()
-    assert int(cycle) % 100 == 0 and float(estimate) > 3.0 and name == "VTS-PPT (type 4)"
-    force = np.genfromtxt(tmp_path / "out/job.rcforc.csv", delimiter=",", names=True, dtype=None, encoding="ascii")
-    force = force[force["side"] == "slave"]
-    assert force["n_active"][np.argmin(np.abs(force["time"] - float(time)))] == 0
-    pressed_twice("four", "dt=2e-3", ctype=4, target=0.9)
-    means = []
-    for folder in ("out", "four"):
-        rows = np.genfromtxt(tmp_path / folder / "job.sleout.csv", delimiter=",", names=True)
-        loaded = rows["stored"] > 0.5 * rows["stored"].max()
-        means.append([rows["estimate"][loaded & ((rows["time"] > float(time)) == later)].mean() for later in (False, True)])
-    (was, now), (other, same) = means
-    assert now == pytest.approx(same, rel=1e-3) and was > 1.05 * other
-    energy = np.genfromtxt(tmp_path / "out/job.glstat.csv", delimiter=",", names=True)
-    assert np.abs(energy["energy_ratio"] - 1.0).max() < 0.01
-
-
-def test_changed_type_has_the_same_bits(slideline, pressed_twice, tmp_path):
-    """From the deck as run, with threads, however seldom it writes, and from restart files before and after the change."""
-    deck = twice(more=[("*DATABASE_BINARY_D3DUMP", (200,))])
-    first = re.search(CHANGE, pressed_twice("out", "dt=2e-3", deck=deck))
-    (tmp_path / "again.k").write_text((tmp_path / "out/job.effective.k").read_text())
-    assert slideline("i=again.k", "d=again", "jobid=job").returncode == 0
-    pressed_twice("threads", "dt=2e-3", "ncpu=3", "perthread=1", deck=deck)
-    for folder in ("again", "threads"):
-        for name in BITS:
-            assert (tmp_path / folder / f"job.{name}").read_bytes() == (tmp_path / "out" / f"job.{name}").read_bytes(), name
-    seldom = pressed_twice("seldom", "dt=2e-3", deck=deck.text().replace("*DATABASE_SLEOUT\n0.01", "*DATABASE_SLEOUT\n0.5"))
-    assert re.search(CHANGE, seldom)[0] == first[0]
-    dumps = sorted((tmp_path / "out").glob("*dump*.h5"))
-    assert len(dumps) == 10
-    for dump in (dumps[1], dumps[6]):
-        assert slideline(f"r=out/{dump.name}", f"d={dump.stem}").returncode == 0
-        for name in BITS:
-            whole, rest = ((tmp_path / folder / f"job.{name}").read_text().splitlines() for folder in ("out", dump.stem))
-            assert rest[-1] == whole[-1] and len(rest) > 1, name
-        told = [re.findall(r"interface 1: (?:contact pressure|the target) .*", (tmp_path / folder / "job.log").read_text())
-                for folder in ("out", dump.stem)]
-        assert told[0] == told[1] and len(told[0]) == 2
-
-
-def test_change_finds_nothing_behind_a_face(pressed_twice):
-    """Open for one type is not open for another that follows other places: the change waits until it is, and makes no energy."""
-    log = pressed_twice("out", deck=(pathlib.Path(__file__).parent / "change_of_type.k").read_text())
-    assert re.search(CHANGE, log)[4] == "NTS-mAR (type 5)"
-    assert "have made energy" not in log
-
-
-@pytest.mark.skipif(IS_SHORT, reason="Release alone: nothing happens here that other tests do not run")
-def test_a_type_that_was_refused_is_tried_again_more_and_more_seldom(slideline, pressed_twice, tmp_path):
-    """At 500, 600 and 800 cycles, not at 700: each look costs a start of contact. So does a run that goes on in between."""
-    deck = (pathlib.Path(__file__).parent / "change_of_type.k").read_text()
-    deck = deck.replace("*END", "*DATABASE_BINARY_D3DUMP\n650,\n*END")
-    told = re.search(CHANGE, pressed_twice("out", deck=deck))
-    assert told[1] == "800"
-    assert slideline("r=out/job.dump01.h5", "d=on").returncode == 0
-    assert re.search(CHANGE, (tmp_path / "on/job.log").read_text())[0] == told[0]
-
-
-@pytest.mark.skipif(IS_SHORT, reason="Release alone: nothing happens here that other tests do not run")
-@pytest.mark.parametrize("scene, words", [({"target": 0.9}, ()), ({"target": 0.0}, ()), ({"ctype": 0}, ("ctype=1",)),
-                                          ({"ctype": 5, "columns": (3, 5)}, ())])
-def test_type_stays(pressed_twice, scene, words):
-    """Below the target, where the deck or the command line names it, and above the target with the best that there is."""
-    assert not re.search(CHANGE, pressed_twice("out", "dt=2e-3", *words, **scene))
-
-
-def test_penalty_of_the_next_type_fits_the_step(pressed_twice):
-    """An automatic penalty goes on; a given one that the step does not bear keeps the type."""
-    log = pressed_twice("share", "dt=2e-3", pen=1.0, punit=3)
-    assert re.search(CHANGE, log)[4] == "VTS-PPT (type 4)"
-    most = float(re.search(r"interface 1: penalty (\S+) per slave node", log)[1])
-    stiff = pressed_twice("stiff", "dt=2e-3", pen=3.0 * most, strokes=3)
-    assert not re.search(CHANGE, stiff)
-    assert stiff.count("it stays, the step does not bear the springs of VTS-PPT (type 4)") == 1
-    assert "interface 1: the step did not bear the springs of a better type at 3 opening(s)" in stiff
-
-
 @pytest.mark.parametrize("target, found", [(0.02, r"by waves, without them it is 0\.\d\d %$"),
                                            (1.0e-5, r"without waves it is 0\.\d\d %, and then .* elements smaller")])
 def test_waves_are_told_apart(slideline, tmp_path, target, found):
@@ -347,14 +225,3 @@ def test_statics_have_no_waves(slideline, tmp_path):
     assert slideline("d=out", deck=deck).returncode == 0
     log = (tmp_path / "out/job.log").read_text()
     assert "without waves" not in log and re.search(r"is not kept; by .* smaller by a factor of [\d.E+]+\n", log)
-
-
-def test_springs_of_other_interfaces_count(pressed_twice):
-    """A penalty that the step bears alone but not beside an interface on the same nodes keeps the type."""
-    most = float(re.search(r"interface 1: penalty (\S+) per slave node", pressed_twice("share", "dt=2e-3", pen=1.0, punit=3))[1])
-    pen = 1.2 * most
-    assert re.search(CHANGE, pressed_twice("alone", "dt=2e-3", pen=pen))
-    other = ("*CONTACT_2D_SLIDELINE", (-1, -2, 5, None, pen))
-    beside = pressed_twice("beside", "dt=2e-3", pen=pen, more=[other])
-    assert "interface 1, cycle" in beside and "it stays, the step does not bear the springs" in beside
-    assert not re.search(CHANGE, beside)

@@ -42,12 +42,17 @@ def test_bare_path_with_an_equals_sign(slideline, tmp_path):
 @pytest.mark.parametrize("word, meant", [
     ("ctpye=5", "ctype="), ("ctpye.2=5", "ctype="), ("jobib=x", "jobid="), ("quite=1", "quiet="), ("NCPUS=2", "ncpu="),
     ("endtime=1", "endtim="), ("--jobid=x", "jobid="), ("--hlep", "--help"), ("dtt=1e-6", "dt="), ("tming=off", "timing="),
-    ("cases=1", "case="), ("memry=20m", "memory="), ("pne=1", "pen="),
-    ("what=1", None), ("runs=/deck.k", None), ("foo=2", None), ("k=1", None), ("=1", None), ("-", None)])
+    ("memry=20m", "memory="), ("pne=1", "pen="),
+    ("what=1", None), ("case=1", None), ("runs=/deck.k", None), ("foo=2", None), ("k=1", None), ("=1", None), ("-", None)])
 def test_misspelt_words_get_the_nearest(slideline, word, meant):
     done = slideline(word, deck=drop())
     assert done.returncode == 1
     assert done.stderr.splitlines()[0] == f'unknown argument "{word}"' + (f"; did you mean {meant}?" if meant else "")
+
+
+def test_a_second_word_without_a_name_is_a_second_deck(slideline):
+    done = slideline("case", deck=drop())
+    assert done.returncode == 1 and 'job.k" and "case"\n' in done.stderr, done.stderr
 
 
 def test_values_of_overrides_are_told_with_other_mistakes(slideline):
@@ -86,10 +91,10 @@ def test_memory_is_accepted_and_ignored(slideline, tmp_path):
 def test_words_of_ls_dyna(slideline, tmp_path):
     """Those without effect are told once, in one warning; the results are those of a run without them."""
     deck = drop(end_time=0.002).text().replace("*END", "*DATABASE_BINARY_D3DUMP\n10,\n*END")
-    words = ["o=d3hsp", "g=d3plot", "s=intfor", "f=d3thdt", "a=runrsf", "x=7", "x=8", "para=1", "case"]
+    words = ["o=d3hsp", "g=d3plot", "s=intfor", "f=d3thdt", "a=runrsf", "x=7", "x=8", "para=1"]
     done = slideline("d=dyna", "d=nodump", "c=3600", "memory2=20m", "ncpu=-2", *words, deck=deck)
     assert done.returncode == 0, done.stderr
-    assert done.stderr == "warning: without effect on the command line: o= g= s= f= a= x= para= case\n"
+    assert done.stderr == "warning: without effect on the command line: o= g= s= f= a= x= para=\n"
     assert "Warnings            = 1" in done.stdout
     assert slideline("d=own", "ncpu=2", deck=deck).returncode == 0
     names = {folder: {path.name for path in (tmp_path / folder).iterdir()} for folder in ("dyna", "own")}

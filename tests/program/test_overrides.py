@@ -213,3 +213,27 @@ def test_folder_of_any_length_is_searched(said, tmp_path):
     lines = " +\n".join(path[k:k + 400] for k in range(0, len(path), 400))
     status, found = said(text.replace(contact, f"*INCLUDE_PATH\n{lines}\n*INCLUDE\ncontact.k\n"))
     assert status == 0, found
+
+
+SLIDELINE = "*CONTACT_2D_SLIDELINE\n-2,-3,2,,2.0e5,"
+IMPLICIT = SLIDELINE + "\n*CONTROL_IMPLICIT_GENERAL\n1,1.0e-4"
+TIE = SLIDELINE + "\n\n,,1"
+
+
+@pytest.mark.parametrize("cards, words, told", [
+    (IMPLICIT, "tssfac=0.8", "{0} has no effect with the implicit method"),
+    (IMPLICIT, "punit=3 pen=0.5", "{0} asks for a share of the largest stable penalty"),
+    (SLIDELINE, "tssfac=1.2", "{0} is above 1: the run may become unstable"),
+    (SLIDELINE, "dt=5e-5", "DTINIT has no effect beside {0}"),
+    (SLIDELINE, "punit=4 ctype=7 vdc=5", "{0} asks for implicit springs, which in this version have no damping"),
+    (SLIDELINE, "punit=3 pen=2", 'with {1} and {0} the penalty "2.000000E+00" is not a share'),
+    (SLIDELINE, "punit=3", 'with {0} the penalty "2.000000E+05" is not a share'),
+    (TIE, "vdc=20", "interface 1 is tied: ties have no contact damping; {0} has no effect on it"),
+    (TIE, "punit=3 pen=0.5", "interface 1 is tied: its penalty can not be a share of the largest stable one; {0} has no effect on it"),
+    (TIE, "fs=0.1", "interface 1 is tied: {0} has no effect on it"),
+    ("", "pen=1e5", "{0} changes PEN of all interfaces, but the deck has none")])
+def test_messages_of_words_say_where_they_stand(said, cards, words, told):
+    deck = re.sub(r"\*CONTACT_2D[^*]*", "", drop(end_time=0.001).text()).rsplit("*END", 1)[0] + cards
+    deck = deck.replace("0.0,0.9,0,0.0,0.0,9001", "1.0e-5,0.9")
+    _, text = said(deck + "\n*END\n", *words.split())
+    assert text.count(told.format(*(f'"{word}" on the command line' for word in words.split()))) == 1, text

@@ -19,14 +19,12 @@ import time
 
 import h5py
 import pytest
-from conftest import numbers
+from conftest import drop, numbers
 from erosion_decks import penetration
 from history_decks import busy_block
 from impact_decks import plates
 from meshes import Deck, grid
 from round_decks import rings
-from test_cases import cases_deck, fast  # noqa: F401 (a fixture)
-from test_chosen_type import twice
 from test_contact_fineness import blow
 from test_requests import wait_for
 from test_same_bits import anvil, everything
@@ -131,7 +129,6 @@ SCENES = {
     "no contact, gravity": (settling, 60, (5,), 1),
     "tiles that wake, round": (lambda: struck(True), 260, (2,), 2),
     "histories and an end before its time, type 3": (ended, 60, (3,), 1),
-    "type that changes": (lambda: twice(columns=(40, 56), pace=0.06), 400, (3,), 1, "dt=4e-4"),
     "penalty and step by default": (lambda: blow("*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE", ("steel", 16, 20, 0.4),
                                                  ("brass", 160, 12, 0.2), end=2.0e-7), 60, (3,), 1),
     "bodies in each other, type 3": (lambda: two_blocks(3, 0.035, 0.0), 60, (2, 3), 1),
@@ -203,7 +200,6 @@ def test_files_are_those_of_one_process(tmp_path, scene):
     assert "leave" not in scene or "leave the mesh" in log
     assert "fail" not in scene or "points fail" in log
     assert ("end before" in scene) == ("*TERMINATION_BODY" in log)
-    assert ("changes" in scene) == ("contact is open and goes on with" in log)
     assert ("by default" in scene) == ("the step obeys its springs" in log)
     assert "in each other" not in scene or "deepest at node 1: 3.500000E-02" in log
     assert ("implicit springs" in scene) == ("penalty: implicit springs of" in log)
@@ -298,16 +294,16 @@ FIRST_ALONE = ["sh", "-c", 'test "$OMPI_COMM_WORLD_RANK" = 0 || { mkdir -p "asid
                'cd "aside$OMPI_COMM_WORLD_RANK"; }; exec "$@"', "sh", PROGRAM]
 
 
-@pytest.mark.usefixtures("fast")
 def test_the_first_process_alone_reads_the_deck(tmp_path):
-    """Its cases, its include files and its mistakes as well."""
-    (tmp_path / "job.k").write_text(cases_deck(), encoding="ascii")
-    run(tmp_path, 1, "i=job.k", "d=one", "case")
-    told = run(tmp_path, 3, "i=job.k", "d=several", "case", program=FIRST_ALONE)
+    """Its include files and its mistakes as well."""
+    (tmp_path / "fast.inc").write_text("*INITIAL_VELOCITY\n1,\n0.3,-3.0\n")
+    deck = re.sub(r"\*INITIAL_VELOCITY\n.*\n.*\n", "*INCLUDE\nfast.inc\n", drop(end_time=0.002).text())
+    (tmp_path / "job.k").write_text(deck, encoding="ascii")
+    run(tmp_path, 1, "i=job.k", "d=one")
+    run(tmp_path, 3, "i=job.k", "d=several", program=FIRST_ALONE)
     assert_same(tmp_path / "one", tmp_path / "several")
-    assert told.stdout.count("N o r m a l") == told.stdout.count("\ncase ") + 1 == 3
-    (tmp_path / "bad.k").write_text(cases_deck().replace("fast.inc", "slow.inc"), encoding="ascii")
-    said = run(tmp_path, 3, "i=bad.k", "case", program=FIRST_ALONE, status=1).stderr
+    (tmp_path / "bad.k").write_text(deck.replace("fast.inc", "slow.inc"), encoding="ascii")
+    said = run(tmp_path, 3, "i=bad.k", program=FIRST_ALONE, status=1).stderr
     assert said.count('*INCLUDE: the file "slow.inc" was not found') == 1, said
     assert len([*tmp_path.glob("aside?")]) == 2 and not [*tmp_path.glob("aside?/*")]
 

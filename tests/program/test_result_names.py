@@ -157,17 +157,6 @@ def test_a_restart_file_is_no_name_of_a_result(exe, deck, whole):
         assert status == 0 or "which this run reads" in done.stderr and snapshot(deck / "own") == before, done.stderr
 
 
-def test_the_cases_of_a_deck_look_at_names_before_the_first_runs(exe, deck):
-    folder = deck / "cases"
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir()
-    (folder / "case2.effective.k").write_text(drop(end_time=0.002).text().rsplit("*END", 1)[0])
-    (folder / "c.k").write_text("*KEYWORD\n*CASE\n1\n\n*CASE\n2\n\n*INCLUDE\ncase2.effective.k\n*END\n")
-    done = run(exe, folder, "i=c.k", "case")
-    assert done.returncode == 3 and "case 2" in done.stderr and "case 1" not in done.stderr, done.stderr
-    assert sorted(path.name for path in folder.iterdir()) == ["c.k", "case2.effective.k"]
-
-
 @pytest.fixture
 def slow(exe, deck):
     """A run that goes on until it is ended."""

@@ -81,11 +81,7 @@ def test_a_small_run_asks_little(count):
 
 
 def test_a_deck_is_read_once(count):
-    """Also for one of its cases."""
-    cases = drop().text().replace("*INITIAL_VELOCITY", "*INITIAL_VELOCITY CID=2") + "*CASE\n4\n\n2\n*END\n"
-    cases = cases.replace("*END\n*CASE", "*CASE")
     assert count(drop().text(), "endtim=1e-3")["opened"] == 1
-    assert count(cases, "endtim=1e-3", "case=4")["opened"] == 1
 
 
 def test_what_protects_is_forced_to_the_disk(count):

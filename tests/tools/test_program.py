@@ -117,21 +117,6 @@ def test_sweep(slideline, tmp_path):
     assert repr(sweep) == "<Sweep of collision.k over ctype, v0, endtim: 4 runs, 4 ended well>"
 
 
-def test_cases(slideline, tmp_path):
-    """A *CASE has its JOBID as the name of its results, also of one that is refused or made by a sweep."""
-    deck = conftest.ROOT / "doc" / "examples" / "case.k"
-    outcome = slideline_tools.run(deck, tmp_path / "one", program=slideline, case=1)
-    assert outcome.job == "slow" and outcome.history("nodout")["vx"][-1] == pytest.approx(2.0)
-    sweep = slideline_tools.sweep(deck, tmp_path, program=slideline, case=[1, 3], vx=[3.0, 5.0])
-    assert [one.job for one in sweep] == ["slow", "slow", "case3", "case3"]
-    assert [one.history("nodout")["vx"][-1] for one in sweep] == pytest.approx([3.0, 5.0] * 2)
-    for case, message in ((2, r"expected one of 1 \(slow\), 3 \(case3\)"), ("1,3", "the number of one"), (True, "the number of")):
-        with pytest.raises(program.RunError, match=message):
-            slideline_tools.run(deck, tmp_path, program=slideline, case=case)
-    with pytest.raises(program.RunError, match="the deck has cases: say case=ID"):
-        slideline_tools.run(deck, tmp_path, program=slideline)
-
-
 def test_sweep_refuses(slideline, tmp_path):
     for values, message in (({"ctype": []}, "no value"), ({"ctype": [1, 1]}, "given twice"), ({"ctpye": [1]}, "CTPYE")):
         with pytest.raises(program.RunError, match=message):

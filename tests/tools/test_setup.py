@@ -35,7 +35,7 @@ def tree(tmp_path):
     shutil.copytree(TOOLS, tmp_path / "tools", ignore=shutil.ignore_patterns("slideline_tools*", "docs", "batch"))
     machine = tmp_path / "machine"
     machine.mkdir()
-    for name, text in (("cmake", CMAKE), ("python3", PYTHON), ("gfortran", "#!/bin/sh\ncat >/dev/null  # else the pipe to it may break\n"), ("ninja", "#!/bin/sh\n"),
+    for name, text in (("cmake", CMAKE), ("python3", PYTHON), ("gfortran", "#!/bin/sh\ncat >/dev/null  # else the pipe to it may break\n"), ("ninja", "#!/bin/sh\n"), ("g++", "#!/bin/sh\n"),
                        ("h5fc", "#!/bin/sh\n"), ("id", "#!/bin/sh\necho 1000\n")):
         (machine / name).write_text(text)
         (machine / name).chmod(0o755)
@@ -76,10 +76,10 @@ def test_tests_need_the_tools(tree, variables, said):
 
 def test_the_line_to_type_is_complete(tree):
     """Without apt-get: all packages, those that the program is only better with too."""
-    for name in ("cmake", "gfortran", "ninja", "h5fc", "python3"):
+    for name in ("cmake", "gfortran", "g++", "ninja", "h5fc", "python3"):
         (tree / "machine" / name).unlink()
     done = build(tree)
     assert done.returncode == 1
     line = next(text for text in done.stderr.splitlines() if "apt-get install" in text)
-    assert line.split("-y ", 1)[1].split() == ["gfortran", "libc6-dev", "liblapack-dev", "cmake", "ninja-build", "libhdf5-dev",
+    assert line.split("-y ", 1)[1].split() == ["gfortran", "libc6-dev", "liblapack-dev", "g++", "cmake", "ninja-build", "libhdf5-dev",
                                                "python3", "python3-venv", "libsuitesparse-dev"]

@@ -114,6 +114,7 @@ def navigation(folder, keywords):
                    {"Choose": "choose.md"}, {"Building": "building.md"},
                    {"Tutorial": "tutorial.md"},
                    {"Meshes": "meshes.md"}, {"Coming from LS-DYNA": "coming_from_ls_dyna.md"},
+                   {"What was let go": "let_go.md"},
                    {"Results": "results.md"}, {"Python tools": "tools.md"}]},
         {"Keywords": ["keywords/index.md", {"All on one page": "keywords.md"},
                       {"Example decks": "examples/index.md"},

@@ -127,12 +127,10 @@ def words_of(parameters: typing.Mapping[str, typing.Any]) -> list[str]:
     words = []
     for name, value in parameters.items():
         value = value.item() if getattr(value, "size", 0) == 1 else value
-        if name == "case" and not (isinstance(value, int) and value > 0 and value is not True):
-            raise RunError(f"case={value!r}: expected the number of one *CASE, 1 or more")
         if isinstance(value, bool) or not isinstance(value, (int, float, str)):
             raise RunError(f"{name}={value!r}: expected a number or a text")
         base, dot, number = name.partition(".")
-        known = name in (*OVERRIDES, "case") or (dot and base in OF_CONTACT and number.isdigit())
+        known = name in OVERRIDES or (dot and base in OF_CONTACT and number.isdigit())
         words.append(f"{name if known or name.startswith('p:') else f'p:{name}'}={value}")
     return words
 
@@ -144,8 +142,7 @@ def run(deck: str | os.PathLike, folder: str | os.PathLike | None = None, *,
 
     `folder` of the results (default: results/<deck>); `parameters` are what may be changed of every
     deck (ctype, ngauss, pen, punit, pent, vdc, fs, fd, dc, vc, tfac, endtim, dt, tssfac; of
-    interface 2 alone **{"ctype.2": 6}), the number of a *CASE (case=2, whose JOBID is the name of the
-    results; `sweep` takes several), and otherwise a *PARAMETER of the deck (**{"p:dt": 1e-7}
+    interface 2 alone **{"ctype.2": 6}), and otherwise a *PARAMETER of the deck (**{"p:dt": 1e-7}
     where it has one of those names). RunError where the run does not end normally, unless `check`
     is False.
     """
@@ -159,8 +156,7 @@ def run(deck: str | os.PathLike, folder: str | os.PathLike | None = None, *,
         done = subprocess.run(command, capture_output=True, text=True, check=False)
     except OSError as problem:
         raise RunError(not_run(command[0], problem)) from problem
-    told = re.search(r"^case \d+ \((.+)\)$", done.stdout, re.M) if "case" in parameters else None
-    outcome = Outcome(folder, told[1] if told else deck.stem, dict(parameters), done.returncode, done.stderr.strip())
+    outcome = Outcome(folder, deck.stem, dict(parameters), done.returncode, done.stderr.strip())
     if check and not outcome.ended_well:
         raise RunError(failure(outcome), outcome)
     return outcome

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Surfaces that stand for curved ones: the curvature that the initial mesh gives to each of its
-!> segments (doc/theory/contact.md, section 8.3).
+!> segments (doc/theory/contact.md, section 8.2).
 module arcs_m
   use kinds_m, only : wp
   use surfaces_m, only : surface_t

@@ -11,12 +11,12 @@ module deck_cards_m
   use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error, place_error, &
     place_field
   use deck_schema_m, only : keyword_cards, refusal_reason, lost_effect, max_card
-  use deck_parameter_table_m, only : parameters_t
   use deck_parameters_m, only : substitute
   implicit none
   private
-  public :: cursor_t, open_cursor, skip_title, next_card, next_row, next_text, next_heading, &
-    check_rest, report_field, row_comes, reject_field, warn_of_field, find_field, find_keyword_field
+  public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_text, &
+    next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field, find_field, &
+    find_keyword_field
 
   !> A place in a block.
   type :: cursor_t
@@ -47,6 +47,18 @@ contains
     cursor%last = deck%blocks(i_block)%last
     call get_specs(deck, i_block, cursor%specs, cursor%n_card)
   end subroutine open_cursor
+
+  !> Start at card 1 of a block, behind its title.
+  subroutine first_card(deck, i_block, cursor, card)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(cursor_t), intent(out) :: cursor
+    type(card_t), intent(out) :: card
+
+    call open_cursor(deck, i_block, cursor)
+    call skip_title(deck, cursor)
+    call next_card(deck, cursor, 1, card)
+  end subroutine first_card
 
   !> Position of a field of card `number`, for rows that are many: looked up once.
   function find_field(cursor, number, name) result(k)
@@ -89,9 +101,8 @@ contains
   end subroutine get_specs
 
   !> Card number `number`: the next line, blank or not; all defaults when the block has ended.
-  subroutine next_card(deck, parameters, cursor, number, card)
+  subroutine next_card(deck, cursor, number, card)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     type(cursor_t), intent(inout) :: cursor
     integer, intent(in) :: number
     type(card_t), intent(out) :: card
@@ -103,13 +114,12 @@ contains
       call read_numbers(deck, cursor%specs(number), cursor%source, card)
       return
     end if
-    call read_line(deck, parameters, cursor, number, card)
+    call read_line(deck, cursor, number, card)
   end subroutine next_card
 
   !> The next line that is not blank, as card `number`; `found` is false at the end of the block.
-  subroutine next_row(deck, parameters, cursor, number, card, found)
+  subroutine next_row(deck, cursor, number, card, found)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     type(cursor_t), intent(inout) :: cursor
     integer, intent(in) :: number
     type(card_t), intent(inout) :: card
@@ -117,7 +127,7 @@ contains
 
     call skip_blank(deck, cursor)
     found = cursor%line <= cursor%last
-    if (found) call read_line(deck, parameters, cursor, number, card)
+    if (found) call read_line(deck, cursor, number, card)
   end subroutine next_row
 
   !> Whether a line that is not blank is left.
@@ -193,9 +203,8 @@ contains
   end subroutine name_fields
 
   !> Read one line as card `number`.
-  subroutine read_line(deck, parameters, cursor, number, card)
+  subroutine read_line(deck, cursor, number, card)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     type(cursor_t), intent(inout) :: cursor
     integer, intent(in) :: number
     type(card_t), intent(inout) :: card
@@ -207,7 +216,7 @@ contains
       call name_fields(spec, card)
       call cut_card(deck, spec, cursor%source, cursor%line, card)
       if (iand(deck%flags(cursor%line), flag_parameter) /= 0) then
-        call substitute(deck, parameters, spec, cursor%source, card, text)
+        call substitute(deck, spec, cursor%source, card, text)
         call replace_line(deck, cursor%line, text)
         bad = card%bad
         call cut_card(deck, spec, cursor%source, cursor%line, card)

@@ -5,11 +5,9 @@ module deck_conditions_m
   use log_m, only : to_text
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, check_rest, &
     report_field, find_field
-  use deck_values_m, only : integer_of, real_of, reals_of
-  use deck_checks_m, only : refuse_outside
+  use deck_values_m, only : integer_of, real_of, reals_of, refuse_outside
   use deck_raw_m, only : raw_t, row_t, reserve_rows, append_row, reserve_velocities, &
     append_velocity, row_spc_node, row_spc_set, row_motion_node, row_motion_set, row_velocity, &
     row_velocity_node, row_velocity_generation, row_load_node, row_load_set, row_pressure, &
@@ -34,9 +32,8 @@ module deck_conditions_m
 contains
 
   !> A keyword whose cards stand for themselves, one line each.
-  subroutine read_condition(deck, parameters, i_block, raw)
+  subroutine read_condition(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -59,11 +56,17 @@ contains
       call reserve_rows(raw, n_row)
     end if
     do
-      call next_row(deck, parameters, cursor, 1, card, found)
+      call next_row(deck, cursor, 1, card, found)
       if (.not. found) exit
       call fill_row(card, at, row)
       call check_row(deck, cursor, at, card, row)
-      call keep_row(raw, card, row)
+      if (.not. any(card%bad)) then
+        if (row%kind == row_velocity_node) then
+          call append_velocity(raw, row%line, row%id, row%velocity(:2))
+        else
+          call append_row(raw, row)
+        end if
+      end if
       if (row%kind == row_body .or. row%kind == row_damping) exit
     end do
     call check_rest(deck, cursor)
@@ -190,20 +193,6 @@ contains
         card%r(at%factors(1):at%factors(1) + 1)
     end if
   end subroutine fill_row
-
-  !> Keep a row, unless a field that matters is bad.
-  subroutine keep_row(raw, card, row)
-    type(raw_t), intent(inout) :: raw
-    type(card_t), intent(in) :: card
-    type(row_t), intent(in) :: row
-
-    if (any(card%bad)) return
-    if (row%kind == row_velocity_node) then
-      call append_velocity(raw, row%line, row%id, row%velocity(:2))
-    else
-      call append_row(raw, row)
-    end if
-  end subroutine keep_row
 
   !> Fields of one row.
   subroutine check_row(deck, cursor, at, card, row)
@@ -339,9 +328,8 @@ contains
   end subroutine check_edge_nodes
 
   !> *INITIAL_VELOCITY (two or three cards) and *INITIAL_VELOCITY_GENERATION (two cards).
-  subroutine read_initial_velocity(deck, parameters, i_block, raw)
+  subroutine read_initial_velocity(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -349,8 +337,8 @@ contains
     type(row_t) :: row
 
     call open_cursor(deck, i_block, cursor)
-    call next_card(deck, parameters, cursor, 1, cards(1))
-    call next_card(deck, parameters, cursor, 2, cards(2))
+    call next_card(deck, cursor, 1, cards(1))
+    call next_card(deck, cursor, 2, cards(2))
     row%line = cards(1)%line
     if (deck%blocks(i_block)%name == 'INITIAL_VELOCITY') then
       row%kind = row_velocity
@@ -358,7 +346,7 @@ contains
       row%others = integer_of(cards(1), 'NSIDEX')
       row%velocity(:2) = reals_of(cards(2), 'VX', 'VY')
       if (row%others /= 0) then
-        call next_card(deck, parameters, cursor, 3, cards(3))
+        call next_card(deck, cursor, 3, cards(3))
         row%other_velocity = reals_of(cards(3), 'VXE', 'VYE')
       end if
       if (row%id < 0) call report_field(deck, cursor, cards(1), 'NSID', no_set)

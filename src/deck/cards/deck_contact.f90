@@ -10,16 +10,15 @@ module deck_contact_m
     tie_breaks
   use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &
     report_field
-  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, place_of
-  use deck_checks_m, only : refuse_negative, refuse_outside, take_life
+  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, place_of, refuse_negative, &
+    refuse_outside, take_life
   use deck_contact_values_m, only : find_commanded, take_overrides, check_values, kind_names, &
     name_of, of_penalty, of_master_penalty
   use deck_friction_m, only : take_friction, take_stock_friction, take_penalty_friction
   use deck_tie_m, only : take_tie, take_stock_tie, check_tie
-  use deck_transducer_m, only : settle_number
+  use deck_output_m, only : settle_number
   use deck_raw_m, only : raw_t, raw_contact_t
   use deck_overrides_m, only : overrides_t, contact_names
   implicit none
@@ -34,9 +33,8 @@ module deck_contact_m
 contains
 
   !> One interface.
-  subroutine read_contact(deck, parameters, i_block, kinds, overrides, raw)
+  subroutine read_contact(deck, i_block, kinds, overrides, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(contact_kind_t), intent(in) :: kinds(:)
     type(overrides_t), intent(in) :: overrides
@@ -54,7 +52,7 @@ contains
     entry%block = i_block
     call settle_number(raw, entry)
     do k = 1, cursor%n_card
-      call next_card(deck, parameters, cursor, k, cards(k))
+      call next_card(deck, cursor, k, cards(k))
     end do
     call check_rest(deck, cursor)
     call take_sides(deck, cursor, cards(1), trim(deck%blocks(i_block)%name), entry)

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> *CONTROL_ cards.
+!> *CONTROL_ cards, and *TERMINATION_: what ends a run before its end time.
 module deck_control_m
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -8,27 +8,27 @@ module deck_control_m
   use controls_m, only : length_by_side, length_by_diagonal, contact_step_warns, contact_step_rules
   use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t, field_text
-  use deck_parameter_table_m, only : parameters_t
   use deck_card_specs_m, only : field_number
   use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field, &
-    reject_field, warn_of_field
-  use deck_checks_m, only : refuse_negative, refuse_outside
-  use deck_values_m, only : integer_of, real_of, place_of
+    reject_field, warn_of_field, next_row
+  use deck_values_m, only : integer_of, real_of, place_of, is_blank, is_bad, refuse_negative, &
+    refuse_outside
   use deck_implicit_m, only : take_implicit, take_dynamics, take_spectral_radius, take_solution, &
     take_automatic
-  use deck_raw_m, only : raw_t
+  use deck_raw_m, only : raw_t, raw_end_t
   use deck_friction_m, only : take_default_friction
   use deck_part_m, only : hourglass_form, hourglass_coefficient, check_viscosity
+  use end_conditions_m, only : end_condition_t, end_node_place, end_node_touch, end_body_place, &
+    end_body_way, end_contact
   implicit none
   private
-  public :: read_control, check_step
+  public :: read_control, check_step, read_ends
 
 contains
 
   !> One *CONTROL_ keyword: its cards in order, then what they mean.
-  subroutine read_control(deck, parameters, i_block, raw)
+  subroutine read_control(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -41,7 +41,7 @@ contains
         ! The card of strict tolerances comes with a negative DNORM alone.
         if (integer_of(cards(2), 'DNORM') >= 0) cycle
       end if
-      call next_card(deck, parameters, cursor, k, cards(k))
+      call next_card(deck, cursor, k, cards(k))
     end do
     call check_rest(deck, cursor)
     call warn_of_repetition(deck, i_block)
@@ -269,5 +269,91 @@ contains
     end do
     if (all(values > 0.0_wp)) call set_force(values, raw%controls%units)
   end subroutine take_units
+
+  !> The rows of one keyword.
+  subroutine read_ends(deck, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    type(raw_end_t) :: entry
+    logical :: found
+
+    call open_cursor(deck, i_block, cursor)
+    do
+      call next_row(deck, cursor, 1, card, found)
+      if (.not. found) exit
+      entry = raw_end_t()
+      select case (deck%blocks(i_block)%name)
+      case ('TERMINATION_CONTACT')
+        call take_contact_end(deck, cursor, card, entry)
+      case ('TERMINATION_NODE')
+        call take_bounds(deck, cursor, card, 'NID', end_node_place, end_node_touch, entry)
+      case default
+        call take_bounds(deck, cursor, card, 'PID', end_body_place, end_body_way, entry)
+      end select
+      if (any(card%bad)) cycle
+      raw%n_end = raw%n_end + 1
+      raw%ends(raw%n_end) = entry
+    end do
+  end subroutine read_ends
+
+  !> Bounds of a node or a rigid body. A bound that is blank, of bodies also 0, does not count.
+  subroutine take_bounds(deck, cursor, card, name, along, other, entry)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    character(*), intent(in) :: name         !! of the field of what is bounded
+    integer, intent(in) :: along, other      !! kind of STOP 1 and 2, of STOP 4
+    type(raw_end_t), intent(inout) :: entry
+    logical :: is_open(2)
+
+    entry%id_place = place_of(card, name)
+    if (integer_of(card, name) < 1) call report_field(deck, cursor, card, name, &
+      'is not a number of 1 or more')
+    entry%condition%id = integer_of(card, name)
+    select case (integer_of(card, 'STOP'))
+    case (1, 2)
+      entry%condition%kind = along
+      entry%condition%direction = integer_of(card, 'STOP')
+    case (4)
+      entry%condition%kind = other
+    case default
+      call report_field(deck, cursor, card, 'STOP', 'is none of 1 (x), 2 (y) and 4 (' &
+        //trim(merge('contact     ', 'displacement', other == end_node_touch))//')')
+      return
+    end select
+    if (other == end_node_touch .and. entry%condition%kind == other) return
+    is_open = [is_blank(card, 'MAXC'), is_blank(card, 'MINC')]
+    if (along == end_body_place) is_open = is_open .or. [abs(real_of(card, 'MAXC')), &
+      abs(real_of(card, 'MINC'))] <= 0.0_wp
+    if (entry%condition%kind == end_body_way) is_open(2) = .true.
+    if (all(is_open)) call report_field(deck, cursor, card, 'MAXC', 'is no bound, nor is MINC: ' &
+      //'nothing would end the run')
+    if (.not. is_open(1)) entry%condition%most = real_of(card, 'MAXC')
+    if (.not. is_open(2)) entry%condition%least = real_of(card, 'MINC')
+    if (entry%condition%least >= entry%condition%most) call report_field(deck, cursor, card, &
+      'MINC', 'is not below MAXC')
+  end subroutine take_bounds
+
+  !> An interface without force.
+  subroutine take_contact_end(deck, cursor, card, entry)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(raw_end_t), intent(inout) :: entry
+
+    entry%id_place = place_of(card, 'CID')
+    if (integer_of(card, 'CID') < 1) call report_field(deck, cursor, card, 'CID', &
+      'is not a number of 1 or more')
+    call refuse_negative(deck, cursor, card, 'ACTIM')
+    call refuse_negative(deck, cursor, card, 'DUR')
+    call refuse_negative(deck, cursor, card, 'THRES')
+    call refuse_outside(deck, cursor, card, 'DOF', 0, 2, 'is none of 0 (both), 1 (x) and 2 (y)')
+    entry%condition = end_condition_t(kind=end_contact, id=integer_of(card, 'CID'), &
+      direction=integer_of(card, 'DOF'), start=real_of(card, 'ACTIM'), &
+      duration=real_of(card, 'DUR'), threshold=real_of(card, 'THRES'))
+  end subroutine take_contact_end
 
 end module deck_control_m

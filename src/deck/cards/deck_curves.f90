@@ -1,26 +1,23 @@
 ! SPDX-License-Identifier: MIT
-!> *DEFINE_CURVE and *DEFINE_TABLE.
+!> *DEFINE_CURVE, *DEFINE_TABLE and *DEFINE_COORDINATE_SYSTEM (axes in the plane).
 module deck_curves_m
   use kinds_m, only : wp
   use curves_m, only : curve_t
   use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, report_field, &
-    find_field
-  use deck_values_m, only : integer_of, real_of, reals_of, is_bad
-  use deck_checks_m, only : require_id, refuse_outside
-  use deck_raw_m, only : raw_t, raw_table_t
+  use deck_cards_m, only : cursor_t, first_card, next_row, report_field, find_field, next_card, &
+    check_rest
+  use deck_values_m, only : integer_of, real_of, reals_of, is_bad, require_id, refuse_outside
+  use deck_raw_m, only : raw_t, raw_table_t, raw_system_t
   implicit none
   private
-  public :: read_curve, read_table
+  public :: read_curve, read_table, read_system
 
 contains
 
   !> *DEFINE_CURVE: points, then scale factors and offsets applied, x = SFA*(x + OFFA).
-  subroutine read_curve(deck, parameters, i_block, raw)
+  subroutine read_curve(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -29,14 +26,14 @@ contains
     real(wp), allocatable :: points(:, :)
     real(wp) :: scale(2)
 
-    call read_head(deck, parameters, i_block, ['LCID', 'SFA '], &
-      'is negative: it would turn the curve round', cursor, head)
+    call read_head(deck, i_block, ['LCID', 'SFA '], 'is negative: it would turn the curve round', &
+      cursor, head)
     scale = reals_of(head, 'SFA', 'SFO')
     scale(1) = abs(scale(1)) ! a negative one has been refused
     call refuse_outside(deck, cursor, head, 'SIDR', 0, 2, &
       'is not a phase (0 run, 1 dynamic relaxation, 2 both)')
     curve%phase = integer_of(head, 'SIDR')
-    call read_rows(deck, parameters, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
+    call read_rows(deck, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
       'is not beyond the point before it: abscissas must increase', cursor, points)
     if (size(points, 2) == 0) call line_error(deck, head%line, 'the curve has no points')
     if (is_bad(head, 'LCID')) raw%lost%curves = .true.
@@ -51,9 +48,8 @@ contains
   end subroutine read_curve
 
   !> *DEFINE_TABLE: a number, and a value for each of the curves that come next.
-  subroutine read_table(deck, parameters, i_block, raw)
+  subroutine read_table(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -62,10 +58,10 @@ contains
     real(wp), allocatable :: values(:, :)
     real(wp) :: scale
 
-    call read_head(deck, parameters, i_block, ['TBID', 'SFA '], &
-      'is negative: it would turn the table round', cursor, head)
+    call read_head(deck, i_block, ['TBID', 'SFA '], 'is negative: it would turn the table round', &
+      cursor, head)
     scale = abs(real_of(head, 'SFA')) ! a negative one has been refused
-    call read_rows(deck, parameters, ['VALUE'], [scale], [real_of(head, 'OFFA')], &
+    call read_rows(deck, ['VALUE'], [scale], [real_of(head, 'OFFA')], &
       'is not beyond the value before it: the values of a table must increase', cursor, values)
     if (size(values, 2) == 0) call line_error(deck, head%line, 'the table has no values')
     if (is_bad(head, 'TBID')) raw%lost%tables = .true.
@@ -76,26 +72,22 @@ contains
   end subroutine read_table
 
   !> The first card: the number, and the scale factor of what must increase.
-  subroutine read_head(deck, parameters, i_block, names, negative, cursor, head)
+  subroutine read_head(deck, i_block, names, negative, cursor, head)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     character(*), intent(in) :: names(2)    !! of the number and of the factor
     character(*), intent(in) :: negative    !! what to say of a factor below 0
     type(cursor_t), intent(out) :: cursor
     type(card_t), intent(out) :: head
 
-    call open_cursor(deck, i_block, cursor)
-    call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, head)
+    call first_card(deck, i_block, cursor, head)
     call require_id(deck, cursor, head, names(1))
     if (real_of(head, names(2)) < 0.0_wp) call report_field(deck, cursor, head, names(2), negative)
   end subroutine read_head
 
   !> The rows behind it, scale*(value + offset) in each column; the first column must increase.
-  subroutine read_rows(deck, parameters, names, scale, offset, not_beyond, cursor, rows)
+  subroutine read_rows(deck, names, scale, offset, not_beyond, cursor, rows)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     character(*), intent(in) :: names(:)               !! (n_column) fields of a row
     real(wp), intent(in) :: scale(:), offset(:)        !! (n_column)
     character(*), intent(in) :: not_beyond             !! what to say where it does not
@@ -112,7 +104,7 @@ contains
     last = -huge(1.0_wp)
     is_sound = .true.
     do
-      call next_row(deck, parameters, cursor, 2, card, found)
+      call next_row(deck, cursor, 2, card, found)
       if (.not. found) exit
       n = n + 1
       rows(:, n) = scale*(card%r(columns) + offset)
@@ -126,5 +118,47 @@ contains
     ! What has been refused is looked at further, with values that at least increase.
     if (.not. is_sound) rows(1, :) = [(real(i, wp), i=0, n - 1)]
   end subroutine read_rows
+
+  !> The x axis goes from the origin to the point L; the point P is on the side of the y axis.
+  subroutine read_system(deck, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    character(*), parameter :: leaves = 'takes the axes out of the plane of the model'
+    type(cursor_t) :: cursor
+    type(card_t) :: cards(2)
+    type(raw_system_t) :: system
+    real(wp) :: origin(2), to_p(2), across
+    logical :: in_plane
+
+    call first_card(deck, i_block, cursor, cards(1))
+    call next_card(deck, cursor, 2, cards(2))
+    call check_rest(deck, cursor)
+    call require_id(deck, cursor, cards(1), 'CID')
+    if (is_bad(cards(1), 'CID')) raw%lost%curves = .true.
+    if (is_bad(cards(1), 'CID')) return
+    system%id = integer_of(cards(1), 'CID')
+    system%line = cards(1)%line
+    in_plane = .not. abs(real_of(cards(1), 'ZL') - real_of(cards(1), 'ZO')) > 0.0_wp
+    if (.not. in_plane) call report_field(deck, cursor, cards(1), 'ZL', leaves)
+    if (abs(real_of(cards(2), 'ZP') - real_of(cards(1), 'ZO')) > 0.0_wp) &
+      call report_field(deck, cursor, cards(2), 'ZP', leaves)
+    origin = reals_of(cards(1), 'XO', 'YO')
+    system%axes(:, 1) = reals_of(cards(1), 'XL', 'YL') - origin
+    to_p = reals_of(cards(2), 'XP', 'YP') - origin
+    across = system%axes(1, 1)*to_p(2) - system%axes(2, 1)*to_p(1)
+    if (.not. norm2(system%axes(:, 1)) > 0.0_wp) then
+      if (in_plane) call report_field(deck, cursor, cards(1), 'XL', &
+        ': the point on the x axis is the origin')
+      system%axes(:, 1) = [1.0_wp, 0.0_wp]
+    else if (.not. abs(across) > 0.0_wp) then
+      call report_field(deck, cursor, cards(2), 'XP', &
+        ': the point in the plane of the axes lies on the x axis')
+    end if
+    system%axes(:, 1) = system%axes(:, 1)/norm2(system%axes(:, 1))
+    system%axes(:, 2) = sign(1.0_wp, across)*[-system%axes(2, 1), system%axes(1, 1)]
+    raw%n_system = raw%n_system + 1
+    raw%systems(raw%n_system) = system
+  end subroutine read_system
 
 end module deck_curves_m

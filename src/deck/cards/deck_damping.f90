@@ -4,12 +4,10 @@ module deck_damping_m
   use kinds_m, only : wp
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, row_comes, check_rest, &
     report_field
-  use deck_checks_m, only : refuse_outside
   use deck_fields_m, only : card_t
   use deck_lines_m, only : deck_t, line_text
-  use deck_parameter_table_m, only : parameters_t
   use deck_raw_m, only : raw_t, row_t, append_row, row_damping_part, row_damping_part_set, id_fields
-  use deck_values_m, only : integer_of, real_of, reals_of
+  use deck_values_m, only : integer_of, real_of, reals_of, refuse_outside
   implicit none
   private
   public :: read_part_damping
@@ -17,9 +15,8 @@ module deck_damping_m
 contains
 
   !> All rows of one keyword.
-  subroutine read_part_damping(deck, parameters, i_block, raw)
+  subroutine read_part_damping(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     character(*), parameter :: feeds = &
@@ -33,7 +30,7 @@ contains
     row%kind = merge(row_damping_part_set, row_damping_part, &
       deck%blocks(i_block)%name == 'DAMPING_PART_MASS_SET')
     do
-      call next_row(deck, parameters, cursor, 1, card, found)
+      call next_row(deck, cursor, 1, card, found)
       if (.not. found) exit
       row%line = card%line
       row%id = integer_of(card, trim(id_fields(row%kind)))
@@ -48,28 +45,20 @@ contains
       call refuse_outside(deck, cursor, card, 'FLAG', 0, 1, &
         'is not 0 or 1 (a second card with factors of the directions)')
       if (integer_of(card, 'FLAG') == 1) then
-        call next_card(deck, parameters, cursor, 2, factors)
+        call next_card(deck, cursor, 2, factors)
         row%factor = reals_of(factors, 'STX', 'STY')
         if (row%factor(1) < 0.0_wp) call report_field(deck, cursor, factors, 'STX', feeds)
         if (row%factor(2) < 0.0_wp) call report_field(deck, cursor, factors, 'STY', feeds)
       else
-        call skip_zeros(deck, cursor)
+        ! A second card of zeros, which common writers put where FLAG is 0 too, is no row: there is
+        ! no part 0.
+        call row_comes(deck, cursor, found)
+        if (found) found = verify(line_text(deck, cursor%line), ' 0.,+-eEdD') == 0
+        if (found) cursor%line = cursor%line + 1
       end if
       if (.not. any(card%bad)) call append_row(raw, row)
     end do
     call check_rest(deck, cursor)
   end subroutine read_part_damping
-
-  !> Move past a second card of zeros, which common writers put where FLAG is 0 too: it is no row,
-  !> since there is no part 0.
-  subroutine skip_zeros(deck, cursor)
-    type(deck_t), intent(in) :: deck
-    type(cursor_t), intent(inout) :: cursor
-    logical :: found
-
-    call row_comes(deck, cursor, found)
-    if (.not. found) return
-    if (verify(line_text(deck, cursor%line), ' 0.,+-eEdD') == 0) cursor%line = cursor%line + 1
-  end subroutine skip_zeros
 
 end module deck_damping_m

@@ -6,10 +6,8 @@ module deck_erosion_m
   use log_m, only : to_text
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
-  use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, check_rest, report_field
-  use deck_values_m, only : integer_of, real_of, is_blank, place_of
-  use deck_checks_m, only : require_id, refuse_negative
+  use deck_cards_m, only : cursor_t, first_card, next_card, check_rest, report_field
+  use deck_values_m, only : integer_of, real_of, is_blank, place_of, require_id, refuse_negative
   use deck_raw_m, only : raw_t, raw_erosion_t
   implicit none
   private
@@ -21,9 +19,8 @@ module deck_erosion_m
 contains
 
   !> Criteria of one material. A field that is blank, or equal to EXCL, is none.
-  subroutine read_erosion(deck, parameters, i_block, raw)
+  subroutine read_erosion(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -31,14 +28,12 @@ contains
     type(raw_erosion_t) :: entry
     real(wp) :: none
 
-    call open_cursor(deck, i_block, cursor)
-    call skip_title(deck, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
+    call first_card(deck, i_block, cursor, card)
     call require_id(deck, cursor, card, 'MID')
-    call next_card(deck, parameters, cursor, 2, more)
-    call next_card(deck, parameters, cursor, 3, unused)
-    call next_card(deck, parameters, cursor, 4, unused)
-    call next_card(deck, parameters, cursor, 5, rest)
+    call next_card(deck, cursor, 2, more)
+    call next_card(deck, cursor, 3, unused)
+    call next_card(deck, cursor, 4, unused)
+    call next_card(deck, cursor, 5, rest)
     call check_rest(deck, cursor)
     none = real_of(card, 'EXCL')
     entry%material = integer_of(card, 'MID')

@@ -8,10 +8,9 @@ module deck_friction_m
   use deck_lines_m, only : deck_t, deck_error, line_warning
   use deck_fields_m, only : card_t, smallest_value
   use deck_cards_m, only : cursor_t, report_field, warn_of_field
-  use deck_checks_m, only : refuse_negative
   use deck_overrides_m, only : overrides_t, override_real, override_text, override_phrase
   use deck_raw_m, only : raw_t, raw_contact_t
-  use deck_values_m, only : real_of, is_bad, place_of
+  use deck_values_m, only : real_of, is_bad, place_of, refuse_negative
   implicit none
   private
   public :: take_friction, take_stock_friction, take_penalty_friction, take_default_friction, &

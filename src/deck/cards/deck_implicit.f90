@@ -7,8 +7,7 @@ module deck_implicit_m
   use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, report_field
-  use deck_checks_m, only : refuse_negative, refuse_outside
-  use deck_values_m, only : integer_of, real_of, is_blank
+  use deck_values_m, only : integer_of, real_of, is_blank, refuse_negative, refuse_outside
   use deck_raw_m, only : raw_t
   implicit none
   private

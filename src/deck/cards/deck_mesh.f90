@@ -5,7 +5,6 @@ module deck_mesh_m
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t, field_text
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_text, next_card, next_row, report_field, &
     find_field
   use deck_values_m, only : integer_of, is_bad
@@ -20,9 +19,8 @@ module deck_mesh_m
 contains
 
   !> *NODE: id, coordinates and boundary code.
-  subroutine read_nodes(deck, parameters, i_block, raw)
+  subroutine read_nodes(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -38,7 +36,7 @@ contains
     code = find_field(cursor, 1, 'TC')
     call reserve_nodes(raw, max(cursor%last - cursor%line + 1, 0))
     do
-      call next_row(deck, parameters, cursor, 1, card, found)
+      call next_row(deck, cursor, 1, card, found)
       if (.not. found) exit
       if (card%i(id) < 1) call report_field(deck, cursor, card, id, &
         'is not a node number (1 or more)')
@@ -59,9 +57,8 @@ contains
   end subroutine read_nodes
 
   !> *ELEMENT_SHELL: id, part and corner nodes; N4 = 0 or N3 makes a triangle.
-  subroutine read_elements(deck, parameters, i_block, raw)
+  subroutine read_elements(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -76,7 +73,7 @@ contains
     last = find_field(cursor, 1, 'N4')
     call reserve_elements(raw, max(cursor%last - cursor%line + 1, 0))
     do
-      call next_row(deck, parameters, cursor, 1, card, found)
+      call next_row(deck, cursor, 1, card, found)
       if (.not. found) exit
       if (card%i(id) < 1) call report_field(deck, cursor, card, id, &
         'is not an element number (1 or more)')
@@ -102,9 +99,8 @@ contains
 
   !> *ELEMENT_BEAM, as mesh generators write the edges of a plane mesh: no elements here, but the
   !> segment set and the node set of the number of their part.
-  subroutine read_beams(deck, parameters, i_block, raw)
+  subroutine read_beams(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -116,7 +112,7 @@ contains
     part = find_field(cursor, 1, 'PID')
     first = find_field(cursor, 1, 'N1')
     do
-      call next_row(deck, parameters, cursor, 1, card, found)
+      call next_row(deck, cursor, 1, card, found)
       if (.not. found) exit
       if (card%i(part) < 1) call report_field(deck, cursor, card, part, &
         'is not a part number (1 or more)')
@@ -165,29 +161,35 @@ contains
   end subroutine append_to_beam_set
 
   !> A set of nodes, parts, elements or segments: its number, then its members.
-  subroutine read_set(deck, parameters, i_block, raw)
+  subroutine read_set(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
     type(card_t) :: head, card
     type(raw_set_t) :: set
+    integer :: first
     logical :: found
 
     call open_cursor(deck, i_block, cursor)
     if (deck%blocks(i_block)%titled) call next_text(deck, cursor, set%title)
-    call next_card(deck, parameters, cursor, 1, head)
+    call next_card(deck, cursor, 1, head)
     set%id = integer_of(head, 'SID')
     if (set%id < 1) call report_field(deck, cursor, head, 'SID', 'is not a set number (1 or more)')
     set%line = head%line
     set%generate = index(deck%blocks(i_block)%name, '_GENERATE') > 0
     do
-      call next_row(deck, parameters, cursor, 2, card, found)
+      call next_row(deck, cursor, 2, card, found)
       if (.not. found) exit
       select case (deck%blocks(i_block)%name)
       case ('SET_SEGMENT')
-        call take_segment(deck, cursor, card, find_field(cursor, 2, 'N1'), set)
+        ! N3 and N4 may repeat N2 or be zero.
+        first = find_field(cursor, 2, 'N1')
+        call check_edge(deck, cursor, card, first)
+        if (.not. any(card%bad(first:first + 3))) then
+          call append_member(set, card%i(first), card%line, first)
+          call append_member(set, card%i(first + 1), card%line, first + 1)
+        end if
       case ('SET_NODE_GENERAL')
         call take_action(deck, cursor, card, set)
       case default
@@ -274,20 +276,6 @@ contains
     end do
   end subroutine take_action
 
-  !> One edge: N3 and N4 may repeat N2 or be zero.
-  subroutine take_segment(deck, cursor, card, first, set)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    integer, intent(in) :: first     !! field of N1
-    type(raw_set_t), intent(inout) :: set
-
-    call check_edge(deck, cursor, card, first)
-    if (any(card%bad(first:first + 3))) return
-    call append_member(set, card%i(first), card%line, first)
-    call append_member(set, card%i(first + 1), card%line, first + 1)
-  end subroutine take_segment
-
   !> Four node fields from `k` on must describe an edge.
   subroutine check_edge(deck, cursor, card, k)
     type(deck_t), intent(inout) :: deck
@@ -311,9 +299,8 @@ contains
   end subroutine check_edge
 
   !> *DATABASE_HISTORY_NODE, _NODE_ID, _NODE_SET, _SHELL and _SHELL_SET.
-  subroutine read_history_ids(deck, parameters, i_block, set)
+  subroutine read_history_ids(deck, i_block, set)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_set_t), intent(inout) :: set
     type(cursor_t) :: cursor
@@ -322,7 +309,7 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     do
-      call next_row(deck, parameters, cursor, 1, card, found)
+      call next_row(deck, cursor, 1, card, found)
       if (.not. found) exit
       call take_members(deck, cursor, card, set)
     end do

@@ -1,20 +1,19 @@
 ! SPDX-License-Identifier: MIT
-!> *DATABASE_ cards: what is written and how often.
+!> *DATABASE_ cards: what is written and how often; *CONTACT_2D_FORCE_TRANSDUCER: a surface on which
+!> the forces of interfaces are added up.
 module deck_output_m
   use kinds_m, only : wp
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, next_row, row_comes, &
     check_rest, report_field
-  use deck_values_m, only : integer_of, real_of, place_of, is_bad
-  use deck_checks_m, only : refuse_negative, refuse_outside
-  use deck_raw_m, only : raw_t, raw_section_t, history_t, output_plot
+  use deck_values_m, only : integer_of, real_of, place_of, is_bad, refuse_negative, refuse_outside
+  use deck_raw_m, only : raw_t, raw_section_t, history_t, output_plot, raw_contact_t
   use deck_raw_sets_m, only : append_member
   use history_tables_m, only : history_tables, table_of_keyword, text_none
   implicit none
   private
-  public :: read_database, read_force_groups, read_cross_sections
+  public :: read_database, read_force_groups, read_cross_sections, read_transducer, settle_number
 
   !> Most cycles between two restart files.
   real(wp), parameter :: most_cycles = 2.0e9_wp
@@ -22,9 +21,8 @@ module deck_output_m
 contains
 
   !> One *DATABASE_ keyword with an interval.
-  subroutine read_database(deck, parameters, i_block, raw)
+  subroutine read_database(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -34,9 +32,9 @@ contains
     integer :: file, k
 
     call open_cursor(deck, i_block, cursor)
-    call next_card(deck, parameters, cursor, 1, card)
+    call next_card(deck, cursor, 1, card)
     do k = 2, cursor%n_card
-      call next_card(deck, parameters, cursor, k, rest)
+      call next_card(deck, cursor, k, rest)
     end do
     call check_rest(deck, cursor)
     select case (deck%blocks(i_block)%name)
@@ -71,9 +69,8 @@ contains
   end subroutine read_database
 
   !> *DATABASE_NODAL_FORCE_GROUP: a node set in each row.
-  subroutine read_force_groups(deck, parameters, i_block, raw)
+  subroutine read_force_groups(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -83,7 +80,7 @@ contains
 
     call open_cursor(deck, i_block, cursor)
     do
-      call next_row(deck, parameters, cursor, 1, card, found)
+      call next_row(deck, cursor, 1, card, found)
       if (.not. found) exit
       call take_set(deck, cursor, card, 'NSID', 'node', id)
       if (id > 0) call append_member(raw%force_groups, id, card%line, 1)
@@ -92,9 +89,8 @@ contains
 
   !> *DATABASE_CROSS_SECTION_SET: nodes and shells in each row, behind a heading each where the
   !> keyword has one.
-  subroutine read_cross_sections(deck, parameters, i_block, raw)
+  subroutine read_cross_sections(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -108,7 +104,7 @@ contains
       entry = raw_section_t(line=cursor%line)
       if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%id, entry%title)
       if (entry%id == 0) entry%id = raw%n_cut + 1
-      call next_card(deck, parameters, cursor, 1, card)
+      call next_card(deck, cursor, 1, card)
       entry%line = card%line
       call take_set(deck, cursor, card, 'NSID', 'node', entry%nodes)
       call take_set(deck, cursor, card, 'SSID', 'shell', entry%shells)
@@ -151,5 +147,41 @@ contains
       cycles = nint(given)
     end if
   end subroutine take_cycles
+
+  !> One transducer.
+  subroutine read_transducer(deck, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: cards(2)
+    type(raw_contact_t) :: entry
+    integer :: k
+
+    call open_cursor(deck, i_block, cursor)
+    entry%contact%title = ''
+    if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%contact%id, &
+      entry%contact%title)
+    entry%block = i_block
+    call settle_number(raw, entry)
+    do k = 1, size(cards)
+      call next_card(deck, cursor, k, cards(k))
+    end do
+    call check_rest(deck, cursor)
+    if (integer_of(cards(1), 'SURFA') == 0) call report_field(deck, cursor, cards(1), 'SURFA', &
+      'is not a surface (more than 0: part set, less than 0: node set)')
+    entry%places(1) = place_of(cards(1), 'SURFA')
+    if (.not. is_bad(cards(1), 'SURFA')) entry%sides(1) = integer_of(cards(1), 'SURFA')
+    raw%n_transducer = raw%n_transducer + 1
+    raw%transducers(raw%n_transducer) = entry
+  end subroutine read_transducer
+
+  !> The number of an interface or transducer: its own, or its position in the deck.
+  pure subroutine settle_number(raw, entry)
+    type(raw_t), intent(in) :: raw
+    type(raw_contact_t), intent(inout) :: entry
+
+    if (entry%contact%id == 0) entry%contact%id = raw%n_contact + raw%n_transducer + 1
+  end subroutine settle_number
 
 end module deck_output_m

@@ -2,7 +2,7 @@
 !> Overrides put into what was read, and into the text of the effective deck at the same time.
 module deck_override_apply_m
   use kinds_m, only : wp
-  use text_m, only : exact_text
+  use number_text_m, only : shortest
   use log_m, only : to_text
   use curves_m, only : curve_t
   use contacts_m, only : friction_rule_t, is_tied, breaks
@@ -197,11 +197,11 @@ contains
     associate (c => entry%contact)
       text = '*CONTACT_2D_SLIDELINE_TITLE'//new_line('a')//id//c%title//new_line('a') &
         //to_text(entry%sides(1))//','//to_text(entry%sides(2))//','//to_text(c%contact_type) &
-        //','//to_text(c%n_gauss)//','//exact_text(c%penalty)//friction(1)//new_line('a') &
-        //exact_text(c%birth)//','//exact_text(c%death)//','//to_text(c%penalty_unit)//',' &
-        //exact_text(max(c%master_penalty, 0.0_wp))//','//exact_text(entry%per_cent)//',' &
+        //','//to_text(c%n_gauss)//','//shortest(c%penalty)//friction(1)//new_line('a') &
+        //shortest(c%birth)//','//shortest(c%death)//','//to_text(c%penalty_unit)//',' &
+        //shortest(max(c%master_penalty, 0.0_wp))//','//shortest(entry%per_cent)//',' &
         //to_text(merge(1, 0, c%strict))//','//to_text(c%search_interval)//',' &
-        //exact_text(merge(c%tie_reach, c%search_depth, is_tied(c)))//new_line('a')//friction(2)
+        //shortest(merge(c%tie_reach, c%search_depth, is_tied(c)))//new_line('a')//friction(2)
     end associate
 
   contains
@@ -218,22 +218,22 @@ contains
       associate (rule => entry%contact%friction)
         if (k == 1) then
           if (max(rule%at_rest, rule%sliding, rule%decay) > 0.0_wp) text = ',' &
-            //exact_text(rule%at_rest)//','//exact_text(rule%sliding)//','//exact_text(rule%decay)
+            //shortest(rule%at_rest)//','//shortest(rule%sliding)//','//shortest(rule%decay)
         else if (breaks(entry%contact)) then
-          text = exact_text(rule%most)//','//exact_text(rule%stiffness)//',' &
-            //to_text(entry%contact%tie)//','//exact_text(entry%contact%strength(1))//',' &
-            //exact_text(entry%contact%strength(2))
+          text = shortest(rule%most)//','//shortest(rule%stiffness)//',' &
+            //to_text(entry%contact%tie)//','//shortest(entry%contact%strength(1))//',' &
+            //shortest(entry%contact%strength(2))
         else if (is_tied(entry%contact)) then
           text = '0,1,'//to_text(entry%contact%tie)
         else if (rule%most > 0.0_wp .or. abs(rule%stiffness - default%stiffness) > 0.0_wp &
           .or. entry%interference > 0) then
-          text = exact_text(rule%most)//','//exact_text(rule%stiffness)
+          text = shortest(rule%most)//','//shortest(rule%stiffness)
           if (entry%interference > 0) text = text//',0,,,'//to_text(entry%interference)
         end if
       end associate
       if (k == 1) return
       if (entry%contact%target > 0.0_wp) text = text//repeat(',', before_target &
-        - count([(text(i:i) == ',', i=1, len(text))]))//exact_text(entry%contact%target)
+        - count([(text(i:i) == ',', i=1, len(text))]))//shortest(entry%contact%target)
       if (len(text) > 0) text = text//new_line('a')
     end function friction
 

@@ -5,7 +5,7 @@ module deck_overrides_m
   use text_m, only : upper_case, read_real, read_integer, number_good, number_wrong
   use deck_fields_m, only : largest_value, smallest_value
   use deck_lines_m, only : deck_t, line_error
-  use deck_parameter_table_m, only : parameters_t, override_parameter
+  use deck_parameters_m, only : override_parameter
   implicit none
   private
   public :: overrides_t, is_override, override_mistake, read_overrides, override_text, &
@@ -62,24 +62,21 @@ contains
   end function override_mistake
 
   !> Take the texts apart; those of parameters go straight to the parameters.
-  subroutine read_overrides(texts, n_of_case, deck, parameters, overrides)
+  subroutine read_overrides(texts, deck, overrides)
     character(*), intent(in) :: texts(:)
-    integer, intent(in) :: n_of_case !! as many, the first ones, are of COMMANDS of *CASE
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(inout) :: parameters
     type(overrides_t), intent(out) :: overrides
     type(override_t) :: item
-    character(:), allocatable :: mistake, where
+    character(:), allocatable :: mistake
     integer :: i
 
     allocate (overrides%items(0))
     do i = 1, size(texts)
       call take_apart(texts(i), item, mistake)
-      where = trim(merge('on the command line ', 'in COMMANDS of *CASE', i > n_of_case))
-      item%phrase = '"'//trim(adjustl(texts(i)))//'" '//where
+      item%phrase = '"'//trim(adjustl(texts(i)))//'" on the command line'
       if (len(mistake) > 0) call line_error(deck, 0, item%phrase//mistake)
       if (index(item%name, 'P:') == 1) then
-        call override_parameter(parameters, item%name(3:), item%text, where)
+        call override_parameter(deck%parameters, item%name(3:), item%text)
       else if (len(item%name) > 0) then
         overrides%items = [overrides%items, item]
       end if
@@ -125,6 +122,7 @@ contains
   pure subroutine check_number(item, mistake)
     type(override_t), intent(inout) :: item
     character(:), allocatable, intent(inout) :: mistake
+    character(:), allocatable :: range
     integer :: whole, status
     real(wp) :: value
 
@@ -140,20 +138,13 @@ contains
         if (value >= smallest_value .and. value <= largest_value) return
         if (any(zero_names == item%name) .and. .not. abs(value) > 0.0_wp) return
       end if
-      mistake = ': the value is not a number '//range_of(item%name)//' (numbers reach 1e40)'
+      range = 'above 0'
+      if (any(zero_names == item%name)) range = 'of 0 or more'
+      if (any(signed_names == item%name)) range = 'other than 0'
+      mistake = ': the value is not a number '//range//' (numbers reach 1e40)'
     end select
     item%text = ''
   end subroutine check_number
-
-  !> What numbers a name takes.
-  pure function range_of(name) result(text)
-    character(*), intent(in) :: name
-    character(:), allocatable :: text
-
-    text = 'above 0'
-    if (any(zero_names == name)) text = 'of 0 or more'
-    if (any(signed_names == name)) text = 'other than 0'
-  end function range_of
 
   !> Value text for an interface (0: the run), the last one given; empty when there is none.
   pure function override_text(overrides, name, interface) result(text)

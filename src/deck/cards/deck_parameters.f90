@@ -1,50 +1,54 @@
 ! SPDX-License-Identifier: MIT
 !> *PARAMETER and its relatives: names with values, put in place of `&name` and `-&name`.
 !> All definitions are read before any other keyword, so that a name may be used before the line
-!> that defines it. Names compare without regard to case.
+!> that defines it. Names compare without regard to case; some are private to a file, some come from
+!> the command line.
 module deck_parameters_m
   use kinds_m, only : wp
-  use text_m, only : upper_case, read_real, read_integer, exact_text, number_good
+  use number_text_m, only : shortest
+  use text_m, only : upper_case, read_real, read_integer, number_good
   use log_m, only : to_text
-  use deck_lines_m, only : deck_t, line_text, line_error
+  use deck_lines_m, only : deck_t, parameters_t, again_error, line_text, line_error, parameter_t, &
+    line_warning
   use deck_spelling_m, only : first_too_far, keep_nearer
-  use deck_expression_m, only : evaluate
-  use deck_parameter_table_m, only : parameters_t, settle_parameter, named_values, look_up, &
-    again_error, again_warn_keep
+  use deck_expression_m, only : evaluate, named_value_t, name_characters
   use deck_card_specs_m, only : card_spec_t, make_spec
   use deck_fields_m, only : card_t, cut_card, field_text, field_error
   use deck_schema_m, only : keyword_cards, max_card
   implicit none
   private
-  public :: read_parameters, substitute
+  public :: read_parameters, substitute, override_parameter
+
+  !> What happens when a name is defined again (*PARAMETER_DUPLICATION DFLAG); by default a second
+  !> definition with another value is an error.
+  integer, parameter :: again_warn_keep = 1, again_warn_replace = 2, again_error_keep = 3, &
+    again_replace = 4, again_keep = 5
 
 contains
 
   !> Read all parameter keywords of the deck.
-  subroutine read_parameters(deck, parameters)
+  subroutine read_parameters(deck)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(inout) :: parameters
     integer :: i_block, i
 
-    if (.not. allocated(parameters%items)) allocate (parameters%items(16))
+    if (.not. allocated(deck%parameters%items)) allocate (deck%parameters%items(16))
     do i_block = 1, deck%n_block
       if (deck%blocks(i_block)%name(:9) /= 'PARAMETER') cycle
       deck%blocks(i_block)%dropped = .true.
       select case (deck%blocks(i_block)%name)
       case ('PARAMETER', 'PARAMETER_LOCAL')
-        call read_values(deck, i_block, parameters)
+        call read_values(deck, i_block)
       case ('PARAMETER_EXPRESSION', 'PARAMETER_EXPRESSION_LOCAL')
-        call read_expressions(deck, i_block, parameters)
+        call read_expressions(deck, i_block)
       case ('PARAMETER_DUPLICATION')
-        call read_policy(deck, i_block, parameters)
+        call read_policy(deck, i_block)
       end select
     end do
-    do i = 1, parameters%n
-      associate (item => parameters%items(i))
-        if (item%fixed .and. .not. (item%found .or. deck%incomplete)) &
-          call line_error(deck, 0, 'p:'//trim(item%name)//' '//item%where &
-          //': the deck has no such parameter' &
-          //nearest_name(parameters, trim(item%name)))
+    do i = 1, deck%parameters%n
+      associate (item => deck%parameters%items(i))
+        if (item%fixed .and. .not. (item%found .or. deck%incomplete)) call line_error(deck, 0, &
+          'p:'//trim(item%name)//' on the command line: the deck has no such parameter' &
+          //nearest_name(deck%parameters, trim(item%name)))
       end associate
     end do
   end subroutine read_parameters
@@ -68,10 +72,9 @@ contains
   end function nearest_name
 
   !> Pairs of name and value, four to a line.
-  subroutine read_values(deck, i_block, parameters)
+  subroutine read_values(deck, i_block)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
-    type(parameters_t), intent(inout) :: parameters
     type(card_spec_t) :: spec
     type(card_t) :: card
     integer :: line, k
@@ -88,21 +91,21 @@ contains
           cycle
         end if
         text = field_text(deck, card, k + 1)
-        if (index(text, '&') > 0) call look_up(parameters, text, deck%blocks(i_block)%source, text)
+        if (index(text, '&') > 0) &
+          call look_up(deck%parameters, text, deck%blocks(i_block)%source, text)
         if (len(text) == 0) then
           call field_error(deck, spec, card, k + 1, 'is not defined by *PARAMETER up to here')
         else
-          call define(deck, parameters, spec, card, k, text, local_source(deck, i_block))
+          call define(deck, spec, card, k, text, local_source(deck, i_block))
         end if
       end do
     end do
   end subroutine read_values
 
   !> Expressions, one to a line; a line with a blank name goes on with the one before.
-  subroutine read_expressions(deck, i_block, parameters)
+  subroutine read_expressions(deck, i_block)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
-    type(parameters_t), intent(inout) :: parameters
     type(card_spec_t) :: spec
     type(card_t) :: card
     character(:), allocatable :: text, formula, trouble, line_here
@@ -136,12 +139,12 @@ contains
       if (line < deck%blocks(i_block)%last) then
         if (continues(line_text(deck, line + 1), spec%widths(1))) cycle
       end if
-      call evaluate(formula, named_values(parameters, deck%blocks(i_block)%source, &
+      call evaluate(formula, named_values(deck%parameters, deck%blocks(i_block)%source, &
         formula), value, trouble)
       if (allocated(trouble)) then
         call field_error(deck, spec, card, 1, 'cannot be computed: '//trouble)
       else
-        call define(deck, parameters, spec, card, 1, exact_text(value), local_source(deck, i_block))
+        call define(deck, spec, card, 1, shortest(value), local_source(deck, i_block))
       end if
     end do
   end subroutine read_expressions
@@ -156,10 +159,9 @@ contains
   end function continues
 
   !> *PARAMETER_DUPLICATION.
-  subroutine read_policy(deck, i_block, parameters)
+  subroutine read_policy(deck, i_block)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
-    type(parameters_t), intent(inout) :: parameters
     type(card_spec_t) :: spec
     type(card_t) :: card
     integer :: status
@@ -167,12 +169,13 @@ contains
     call block_spec(deck, i_block, spec)
     if (deck%blocks(i_block)%last < deck%blocks(i_block)%first) return
     call cut_card(deck, spec, deck%blocks(i_block)%source, deck%blocks(i_block)%first, card)
-    parameters%again = again_warn_keep
+    deck%parameters%again = again_warn_keep
     if (card%blank(1)) return
-    call read_integer(field_text(deck, card, 1), parameters%again, status)
-    if (status == number_good .and. parameters%again >= 1 .and. parameters%again <= 5) return
+    call read_integer(field_text(deck, card, 1), deck%parameters%again, status)
+    if (status == number_good .and. deck%parameters%again >= 1 .and. &
+      deck%parameters%again <= 5) return
     call field_error(deck, spec, card, 1, 'is not a policy from 1 to 5')
-    parameters%again = again_error
+    deck%parameters%again = again_error
   end subroutine read_policy
 
   !> The one card of a parameter keyword.
@@ -198,9 +201,8 @@ contains
   end function local_source
 
   !> Define the parameter named in field `k` of a card (type letter first).
-  subroutine define(deck, parameters, spec, card, k, given, source)
+  subroutine define(deck, spec, card, k, given, source)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(inout) :: parameters
     type(card_spec_t), intent(in) :: spec
     type(card_t), intent(inout) :: card
     integer, intent(in) :: k
@@ -237,13 +239,12 @@ contains
         text = to_text(number)
       end if
     end if
-    call settle_parameter(deck, parameters, card%line, name, kind, text, source)
+    call settle_parameter(deck, card%line, name, kind, text, source)
   end subroutine define
 
   !> The line of a card with its references replaced, in free format.
-  subroutine substitute(deck, parameters, spec, source, card, text)
+  subroutine substitute(deck, spec, source, card, text)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     type(card_spec_t), intent(in) :: spec
     integer, intent(in) :: source
     type(card_t), intent(inout) :: card
@@ -260,7 +261,7 @@ contains
       field = field_text(deck, card, k)
       if (index(field, '&') == 1 .or. index(field, '-&') == 1 .or. index(field, '+&') == 1) then
         if (index(field, '&(') == 0) then
-          call look_up(parameters, field, source, value)
+          call look_up(deck%parameters, field, source, value)
           if (len(value) == 0 .and. .not. deck%incomplete) call field_error(deck, spec, card, k, &
             'is not defined by any *PARAMETER')
           field = value
@@ -270,5 +271,213 @@ contains
       if (k < last .or. last == 1) text = text//','
     end do
   end subroutine substitute
+
+  !> A value from the command line, which wins over the deck.
+  subroutine override_parameter(parameters, name, text)
+    type(parameters_t), intent(inout) :: parameters
+    character(*), intent(in) :: name
+    character(*), intent(in) :: text
+
+    call add_parameter(parameters, upper_case(name), '?', text, 0)
+    parameters%items(parameters%n)%fixed = .true.
+  end subroutine override_parameter
+
+  !> Put a definition into the table, minding one of the same name that is there.
+  subroutine settle_parameter(deck, line, name, kind, text, source)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line
+    character(*), intent(in) :: name
+    character, intent(in) :: kind
+    character(*), intent(in) :: text
+    integer, intent(in) :: source
+    real(wp) :: value
+    integer :: i, status
+
+    associate (parameters => deck%parameters)
+      i = first_of(parameters, name)
+      do while (i > 0)
+        if (parameters%items(i)%name == name .and. (parameters%items(i)%source == source &
+          .or. parameters%items(i)%fixed)) exit
+        i = parameters%items(i)%next
+      end do
+      if (i == 0) then
+        call add_parameter(parameters, name, kind, text, source)
+        parameters%items(parameters%n)%found = .true.
+        return
+      end if
+      if (.not. parameters%items(i)%found .and. kind /= 'C') then
+        ! A value from the command line must be a number where the parameter is one.
+        call read_real(parameters%items(i)%text, value, status)
+        if (status /= number_good) call line_error(deck, 0, 'p:'//name &
+          //' on the command line: "'//parameters%items(i)%text//'" is not a number')
+      end if
+      parameters%items(i)%found = .true.
+      if (parameters%items(i)%fixed .or. parameters%items(i)%text == text) return
+      select case (parameters%again)
+      case (again_error, again_error_keep)
+        call line_error(deck, line, 'parameter '//name//' is defined again with another value ("' &
+          //text//'", before "'//parameters%items(i)%text//'")')
+      case (again_warn_keep, again_warn_replace)
+        call line_warning(deck, line, 'parameter '//name//to_text(line), 'parameter '//name &
+          //' is defined again; the '//merge('first ', 'second', &
+          parameters%again == again_warn_keep)//' value counts')
+      end select
+      if (parameters%again == again_warn_replace .or. parameters%again == again_replace) &
+        parameters%items(i)%text = text
+    end associate
+  end subroutine settle_parameter
+
+  !> Append a parameter.
+  subroutine add_parameter(parameters, name, kind, text, source)
+    type(parameters_t), intent(inout) :: parameters
+    character(*), intent(in) :: name
+    character, intent(in) :: kind
+    character(*), intent(in) :: text
+    integer, intent(in) :: source
+    type(parameter_t), allocatable :: longer(:)
+    integer :: i
+
+    if (.not. allocated(parameters%items)) allocate (parameters%items(16))
+    if (parameters%n == size(parameters%items)) then
+      allocate (longer(2*parameters%n))
+      longer(:parameters%n) = parameters%items
+      call move_alloc(longer, parameters%items)
+    end if
+    parameters%n = parameters%n + 1
+    parameters%items(parameters%n) = parameter_t(name=name, kind=kind, text=text, source=source)
+    if (allocated(parameters%first)) then
+      if (parameters%n <= size(parameters%first)) then
+        call chain_parameter(parameters, parameters%n)
+        return
+      end if
+      deallocate (parameters%first, parameters%last)
+    end if
+    allocate (parameters%first(2*size(parameters%items)), source=0)
+    allocate (parameters%last(2*size(parameters%items)), source=0)
+    do i = 1, parameters%n
+      call chain_parameter(parameters, i)
+    end do
+  end subroutine add_parameter
+
+  !> Put a parameter behind those of the same hash.
+  subroutine chain_parameter(parameters, i)
+    type(parameters_t), intent(inout) :: parameters
+    integer, intent(in) :: i
+    integer :: k
+
+    k = name_hash(parameters%items(i)%name, size(parameters%first))
+    parameters%items(i)%next = 0
+    if (parameters%first(k) == 0) then
+      parameters%first(k) = i
+    else
+      parameters%items(parameters%last(k))%next = i
+    end if
+    parameters%last(k) = i
+  end subroutine chain_parameter
+
+  !> The first parameter of the hash of a name, 0 where there is none.
+  pure function first_of(parameters, name) result(i)
+    type(parameters_t), intent(in) :: parameters
+    character(*), intent(in) :: name
+    integer :: i
+
+    i = 0
+    if (allocated(parameters%first)) i = parameters%first(name_hash(name, size(parameters%first)))
+  end function first_of
+
+  !> Hash of a name, 1 to `n`.
+  pure function name_hash(name, n) result(k)
+    character(*), intent(in) :: name
+    integer, intent(in) :: n
+    integer :: k
+    integer :: i
+
+    k = 0
+    do i = 1, len_trim(name)
+      k = modulo(31*k + iachar(name(i:i)), 16777213)
+    end do
+    k = modulo(k, n) + 1
+  end function name_hash
+
+  !> The parameter of a name that a file can see, one private to it before one of the whole deck; 0
+  !> where there is none.
+  pure function find_parameter(parameters, name, source, is_number) result(found)
+    type(parameters_t), intent(in) :: parameters
+    character(*), intent(in) :: name
+    integer, intent(in) :: source
+    logical, intent(in) :: is_number   !! texts do not count
+    integer :: found
+    integer :: i
+
+    found = 0
+    i = first_of(parameters, name)
+    do while (i > 0)
+      associate (item => parameters%items(i))
+        if (item%name == name .and. item%found .and. .not. (is_number .and. item%kind == 'C')) then
+          if (item%source == source) then
+            found = i
+            return
+          else if (item%source == 0) then
+            found = i
+          end if
+        end if
+        i = item%next
+      end associate
+    end do
+  end function find_parameter
+
+  !> Names and values of the numbers that a file can see, of the names in a formula.
+  function named_values(parameters, source, formula) result(names)
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: source
+    character(*), intent(in) :: formula
+    type(named_value_t), allocatable :: names(:)
+    character(len(formula)) :: text
+    integer :: i, n, first, last, status
+
+    text = upper_case(formula)
+    allocate (names(len(formula)))
+    n = 0
+    last = 0
+    do
+      first = scan(text(last + 1:), name_characters) + last
+      if (first == last) exit
+      last = verify(text(first:)//' ', name_characters) + first - 2
+      i = find_parameter(parameters, text(first:last), source, .true.)
+      if (i == 0) cycle
+      n = n + 1
+      names(n)%name = parameters%items(i)%name
+      call read_real(parameters%items(i)%text, names(n)%value, status)
+    end do
+    names = names(:n)
+  end function named_values
+
+  !> Value text of a reference `&name`, `-&name` or `+&name`; empty when there is none.
+  subroutine look_up(parameters, reference, source, text)
+    type(parameters_t), intent(in) :: parameters
+    character(*), intent(in) :: reference
+    integer, intent(in) :: source
+    character(:), allocatable, intent(inout) :: text
+    character(:), allocatable :: name, value
+    integer :: i, at
+    logical :: negative
+
+    at = index(reference, '&')
+    negative = reference(1:1) == '-'
+    name = trim(adjustl(upper_case(reference(at + 1:))))
+    value = ''
+    i = find_parameter(parameters, name, source, .false.)
+    if (i > 0) value = parameters%items(i)%text
+    if (len(value) > 0 .and. negative) then
+      if (value(1:1) == '-') then
+        value = value(2:)
+      else if (value(1:1) == '+') then
+        value = '-'//value(2:)
+      else
+        value = '-'//value
+      end if
+    end if
+    text = value
+  end subroutine look_up
 
 end module deck_parameters_m

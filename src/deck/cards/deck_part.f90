@@ -8,11 +8,9 @@ module deck_part_m
     hourglass_assumed, form_one_point, form_full, form_round_one_point, form_round_full
   use deck_lines_m, only : deck_t, line_text, line_error, line_warning, flag_blank
   use deck_fields_m, only : card_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
     row_comes, report_field, find_field
-  use deck_values_m, only : integer_of, real_of, is_blank, is_bad
-  use deck_checks_m, only : require_id, refuse_negative
+  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, require_id, refuse_negative
   use deck_raw_m, only : raw_t, raw_part_t
   implicit none
   private
@@ -25,9 +23,8 @@ module deck_part_m
 contains
 
   !> *PART: a heading and a card for each part.
-  subroutine read_part(deck, parameters, i_block, raw)
+  subroutine read_part(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -41,7 +38,7 @@ contains
       if (cursor%line > cursor%last) exit
       call next_text(deck, cursor, part%title)
       part%title = trim(adjustl(part%title))
-      call next_row(deck, parameters, cursor, 2, card, found)
+      call next_row(deck, cursor, 2, card, found)
       if (.not. found) then
         call line_error(deck, cursor%line - 1, 'a heading without the card of its part after it')
         exit
@@ -89,9 +86,8 @@ contains
   end subroutine skip_separators
 
   !> *SECTION_SHELL: two cards each; only the element form matters.
-  subroutine read_section(deck, parameters, i_block, raw)
+  subroutine read_section(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -102,7 +98,7 @@ contains
     call open_cursor(deck, i_block, cursor)
     do
       call skip_title(deck, cursor)
-      call next_card(deck, parameters, cursor, 1, card)
+      call next_card(deck, cursor, 1, card)
       call check_section(deck, cursor, card)
       section%id = integer_of(card, 'SECID')
       section%is_full = integer_of(card, 'NIP') == 4
@@ -117,7 +113,7 @@ contains
         raw%sections(raw%n_section) = section
         raw%section_line(raw%n_section) = card%line
       end if
-      call next_card(deck, parameters, cursor, 2, thickness)
+      call next_card(deck, cursor, 2, thickness)
       call row_comes(deck, cursor, found)
       if (.not. found) exit
     end do
@@ -153,9 +149,8 @@ contains
   end subroutine check_section
 
   !> *HOURGLASS: one card each.
-  subroutine read_hourglass(deck, parameters, i_block, raw)
+  subroutine read_hourglass(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -166,7 +161,7 @@ contains
     call open_cursor(deck, i_block, cursor)
     do
       call skip_title(deck, cursor)
-      call next_row(deck, parameters, cursor, 1, card, found)
+      call next_row(deck, cursor, 1, card, found)
       if (.not. found) exit
       call require_id(deck, cursor, card, 'HGID')
       hourglass%id = integer_of(card, 'HGID')

@@ -8,10 +8,9 @@ module deck_tie_m
   use deck_lines_m, only : deck_t, line_error, line_warning
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, report_field, warn_of_field
-  use deck_checks_m, only : refuse_outside
   use deck_contact_values_m, only : of_penalty, of_unit, of_damping
   use deck_overrides_m, only : overrides_t, override_phrase
-  use deck_values_m, only : integer_of, real_of, is_bad, place_of
+  use deck_values_m, only : integer_of, real_of, is_bad, place_of, refuse_outside
   use deck_raw_m, only : raw_contact_t
   implicit none
   private

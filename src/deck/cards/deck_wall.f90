@@ -5,11 +5,9 @@ module deck_wall_m
   use walls_m, only : wall_t, friction_sticks
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &
     report_field
-  use deck_values_m, only : integer_of, real_of, reals_of
-  use deck_checks_m, only : refuse_negative, take_life
+  use deck_values_m, only : integer_of, real_of, reals_of, refuse_negative, take_life
   use deck_fields_m, only : card_t
   use deck_lines_m, only : deck_t
-  use deck_parameter_table_m, only : parameters_t
   use deck_raw_m, only : raw_t, raw_wall_t
   implicit none
   private
@@ -18,9 +16,8 @@ module deck_wall_m
 contains
 
   !> *RIGIDWALL_PLANAR.
-  subroutine read_wall(deck, parameters, i_block, raw)
+  subroutine read_wall(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
@@ -31,8 +28,8 @@ contains
     call open_cursor(deck, i_block, cursor)
     entry%line = deck%blocks(i_block)%keyword
     if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%wall%id, title)
-    call next_card(deck, parameters, cursor, 1, card)
-    call next_card(deck, parameters, cursor, 2, place)
+    call next_card(deck, cursor, 1, card)
+    call next_card(deck, cursor, 2, place)
     call check_rest(deck, cursor)
     if (integer_of(card, 'NSID') < 0) call report_field(deck, cursor, card, 'NSID', &
       'is not a node set, nor 0 (all nodes)')

@@ -3,7 +3,7 @@
 module deck_echo_m
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, to_text
-  use controls_m, only : interval_t, output_plan_t
+  use controls_m, only : interval_t
   use curves_m, only : curve_is_constant
   use hardenings_m, only : hardening_t
   use history_tables_m, only : history_tables, n_table
@@ -38,12 +38,23 @@ contains
       //to_text(count(.not. model%mesh%coordinates(1, :) > 0.0_wp)) &
       //' node(s) at r = 0 keep to it (u_r = 0); rigid bodies move along it alone')
     do i = 1, size(model%parts)
-      call echo_part(model, i, n_element(i), log)
+      associate (part => model%parts(i))
+        call write_log(log, 'part '//to_text(part%id)//' "'//part%title//'": ' &
+          //to_text(n_element(i))//' elements, section ' &
+          //to_text(model%sections(part%section)%id)//', material ' &
+          //to_text(model%materials(part%material)%id))
+      end associate
     end do
     do i = 1, size(model%materials)
       call echo_material(model, i, log)
     end do
-    call echo_conditions(model, log)
+    associate (conditions => model%conditions)
+      call write_log(log, 'conditions: '//to_text(size(conditions%fixed_nodes)) &
+        //' fixed and '//to_text(size(conditions%motions))//' moved degrees of freedom, ' &
+        //to_text(size(conditions%nodal_loads))//' nodal loads, ' &
+        //to_text(size(conditions%pressures))//' pressure edges, ' &
+        //to_text(size(conditions%body_loads))//' body loads')
+    end associate
     if (allocated(model%walls)) call echo_walls(model, log)
     call write_log(log, 'end: time '//to_text(model%controls%end_time)//', step scale ' &
       //to_text(model%controls%dt_scale))
@@ -54,8 +65,18 @@ contains
     do i = 1, n_table
       call echo_interval(trim(history_tables(i)%name), model%controls%output%histories(i))
     end do
-    call echo_binout(model, log)
-    call echo_restarts(model%controls%output, log)
+    if (any(model%controls%output%histories%is_binout)) call write_log(log, &
+      "BINARY asks for binout: 'slideline-tools binout' writes it from the results")
+    associate (plan => model%controls%output)
+      if (plan%dump_cycles > 0) then
+        call write_log(log, 'output restart files: every '//to_text(plan%dump_cycles) &
+          //' cycles and at the end')
+      else if (plan%dump_cycles == 0) then
+        call write_log(log, 'output restart file: at the end')
+      end if
+      if (plan%running_cycles > 0) call write_log(log, 'output running restart file: every ' &
+        //to_text(plan%running_cycles)//' cycles')
+    end associate
 
   contains
 
@@ -74,30 +95,6 @@ contains
 
   end subroutine echo_model
 
-  !> Where binout comes from.
-  subroutine echo_binout(model, log)
-    type(model_t), intent(in) :: model
-    type(log_t), intent(inout) :: log
-
-    if (any(model%controls%output%histories%is_binout)) call write_log(log, &
-      "BINARY asks for binout: 'slideline-tools binout' writes it from the results")
-  end subroutine echo_binout
-
-  !> How often restart files are written.
-  subroutine echo_restarts(plan, log)
-    type(output_plan_t), intent(in) :: plan
-    type(log_t), intent(inout) :: log
-
-    if (plan%dump_cycles > 0) then
-      call write_log(log, 'output restart files: every '//to_text(plan%dump_cycles) &
-        //' cycles and at the end')
-    else if (plan%dump_cycles == 0) then
-      call write_log(log, 'output restart file: at the end')
-    end if
-    if (plan%running_cycles > 0) call write_log(log, 'output running restart file: every ' &
-      //to_text(plan%running_cycles)//' cycles')
-  end subroutine echo_restarts
-
   !> Curves that end before the run does: what holds after their end.
   subroutine echo_short_curves(model, log)
     type(model_t), intent(in) :: model
@@ -114,21 +111,6 @@ contains
       end associate
     end do
   end subroutine echo_short_curves
-
-  !> One part.
-  subroutine echo_part(model, i, n_element, log)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i
-    integer, intent(in) :: n_element !! of the part
-    type(log_t), intent(inout) :: log
-
-    associate (part => model%parts(i))
-      call write_log(log, 'part '//to_text(part%id)//' "'//part%title//'": ' &
-        //to_text(n_element)//' elements, section ' &
-        //to_text(model%sections(part%section)%id)//', material ' &
-        //to_text(model%materials(part%material)%id))
-    end associate
-  end subroutine echo_part
 
   !> One material.
   subroutine echo_material(model, i, log)
@@ -255,19 +237,5 @@ contains
       text = 'without sliding'
     end if
   end function friction_text
-
-  !> Counts of the conditions.
-  subroutine echo_conditions(model, log)
-    type(model_t), intent(in) :: model
-    type(log_t), intent(inout) :: log
-
-    associate (conditions => model%conditions)
-      call write_log(log, 'conditions: '//to_text(size(conditions%fixed_nodes)) &
-        //' fixed and '//to_text(size(conditions%motions))//' moved degrees of freedom, ' &
-        //to_text(size(conditions%nodal_loads))//' nodal loads, ' &
-        //to_text(size(conditions%pressures))//' pressure edges, ' &
-        //to_text(size(conditions%body_loads))//' body loads')
-    end associate
-  end subroutine echo_conditions
 
 end module deck_echo_m

@@ -3,7 +3,6 @@
 !> model to the last bit. Lines that nothing changed are copied as they were written.
 module deck_effective_m
   use deck_lines_m, only : deck_t, layout_mark
-  use deck_parameter_table_m, only : parameters_t, parameter_comment
   use heap_m, only : give_back_memory
   implicit none
   private
@@ -27,24 +26,22 @@ contains
   end subroutine forget_places
 
   !> The text of the effective deck. The files that it is made of are given up on the way.
-  subroutine write_effective(deck, parameters, tail, effective)
+  subroutine write_effective(deck, tail, effective)
     type(deck_t), intent(inout) :: deck
-    type(parameters_t), intent(in) :: parameters
     character(*), intent(in) :: tail  !! keywords besides those of the deck
     character(:), allocatable, intent(out) :: effective
     type(buffer_t) :: buffer
 
-    call compose(deck, parameters, tail, buffer)
+    call compose(deck, tail, buffer)
     allocate (character(buffer%n) :: buffer%text)
     buffer%n = 0
-    call compose(deck, parameters, tail, buffer)
+    call compose(deck, tail, buffer)
     call move_alloc(buffer%text, effective)
   end subroutine write_effective
 
   !> Put the deck together; only counted while the buffer has no text.
-  subroutine compose(deck, parameters, tail, buffer)
+  subroutine compose(deck, tail, buffer)
     type(deck_t), intent(inout) :: deck !! loses its text when it is written
-    type(parameters_t), intent(in) :: parameters
     character(*), intent(in) :: tail
     type(buffer_t), intent(inout) :: buffer
     integer :: i, line, source, last_block(deck%n_source)
@@ -53,12 +50,19 @@ contains
       last_block(deck%blocks(i)%source) = i
     end do
     call put(buffer, '$ The deck as run: includes, parameters and command line resolved.')
-    do i = 1, parameters%n
-      call put_text(buffer, parameter_comment(parameters, i))
+    do i = 1, deck%parameters%n
+      associate (item => deck%parameters%items(i))
+        if (item%found) call put(buffer, '$ parameter '//trim(item%name)//' = '//item%text)
+      end associate
     end do
     call put(buffer, '*KEYWORD')
     do i = 1, deck%n_block
-      if (i > 1 .and. allocated(buffer%text)) call forget_text(deck, last_block, i - 1)
+      if (i > 1 .and. allocated(buffer%text)) then
+        ! The text of a file goes behind its last block.
+        associate (last => deck%blocks(i - 1)%source)
+          if (last_block(last) == i - 1) deallocate (deck%sources(last)%text)
+        end associate
+      end if
       if (deck%blocks(i)%dropped) cycle
       if (allocated(deck%blocks(i)%replacement)) then
         call put_text(buffer, deck%blocks(i)%replacement)
@@ -77,17 +81,6 @@ contains
     call put_text(buffer, tail)
     call put(buffer, '*END')
   end subroutine compose
-
-  !> Give up the text of a file behind its last block.
-  subroutine forget_text(deck, last_block, i_block)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: last_block(:) !! by file
-    integer, intent(in) :: i_block
-
-    associate (source => deck%blocks(i_block)%source)
-      if (last_block(source) == i_block) deallocate (deck%sources(source)%text)
-    end associate
-  end subroutine forget_text
 
   !> Append a line.
   subroutine put(buffer, line)

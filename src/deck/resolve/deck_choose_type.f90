@@ -26,11 +26,11 @@ module deck_choose_type_m
   !> Part of a motion along faces from which on they are led along each other.
   real(wp), parameter :: aside = 0.1_wp
   !> The target where none is given: types above it have lost the surface.
-  real(wp), parameter :: watched_for = 0.1_wp
+  real(wp), parameter :: default_target = 0.1_wp
 
 contains
 
-  !> Choose for one interface that asks for it; one that is watched has its kind of scene.
+  !> Choose for one interface that asks for it; one with a target has its kind of scene.
   subroutine choose_type(deck, entry, model, contact)
     type(deck_t), intent(inout) :: deck
     type(raw_contact_t), intent(in) :: entry
@@ -47,7 +47,7 @@ contains
     else
       call decide_by_scene(contact)
     end if
-    if (.not. has_target) contact%target = watched_for
+    if (.not. has_target) contact%target = default_target
     if (.not. abs(contact%penalty) > 0.0_wp) call take_penalty(model%controls%implicit%is_on, &
       contact)
     chosen = entry

@@ -16,25 +16,21 @@ module deck_resolve_m
   use deck_maps_m, only : maps_t, make_maps, resolve_id
   use deck_raw_m, only : raw_t, raw_contact_t, history_t, row_damping, row_motion_node, &
     row_motion_set, row_velocity, row_velocity_generation, output_plot
-  use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh
+  use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh, settle_points, check_unsound_mesh
   use deck_resolve_eos_m, only : resolve_equations, check_implicit_laws
-  use deck_resolve_foams_m, only : resolve_foams
   use deck_resolve_erosion_m, only : resolve_erosion, check_erosion_points, check_eroding_contacts
-  use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates
+  use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates, resolve_foams
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_conditions_m, only : resolve_conditions
-  use deck_resolve_cross_sections_m, only : resolve_cross_sections
+  use deck_resolve_sections_m, only : resolve_cross_sections, resolve_transducers
   use deck_resolve_damping_m, only : resolve_damping, refuse_static, settle_relaxation
-  use deck_resolve_points_m, only : settle_points
   use deck_resolve_rigids_m, only : resolve_rigids
   use deck_resolve_round_m, only : settle_form, settle_axis, mark_round_contacts, &
     check_loads_of_round, check_velocities_of_round
   use deck_resolve_velocity_m, only : resolve_velocity
   use deck_resolve_ends_m, only : resolve_ends
   use deck_resolve_contacts_m, only : resolve_contacts
-  use deck_resolve_transducers_m, only : resolve_transducers
   use deck_resolve_walls_m, only : resolve_walls
-  use deck_unsound_mesh_m, only : check_unsound_mesh
   implicit none
   private
   public :: resolve_model
@@ -156,7 +152,11 @@ contains
     if (size(raw%cuts) > 0) call resolve_cross_sections(deck, raw, maps, model)
     if (raw%dt_curve > 0) call resolve_id(deck, maps%curves, raw%dt_curve, 'curve', &
       raw%dt_curve_place, model%controls%dt_curve)
-    call check_step_curve(deck, raw, model)
+    if (model%controls%dt_curve > 0) then
+      if (minval(model%curves(model%controls%dt_curve)%ordinate) <= 0.0_wp) call line_error(deck, &
+        raw%curve_line(model%controls%dt_curve), 'curve '//to_text(raw%dt_curve) &
+        //' caps the time step (LCTM) and must be above 0 everywhere')
+    end if
     associate (output => model%controls%output)
       call take_interval(deck, maps, raw%outputs(output_plot), model, output%plot)
       do i = 1, n_table
@@ -186,18 +186,6 @@ contains
     call check_implicit_penalties(deck, raw, model, sound)
     call resolve_ends(deck, raw, maps, model, sound)
   end subroutine resolve_model
-
-  !> A curve that caps the step must leave it some length.
-  subroutine check_step_curve(deck, raw, model)
-    type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(in) :: raw
-    type(model_t), intent(in) :: model
-
-    if (model%controls%dt_curve == 0) return
-    if (minval(model%curves(model%controls%dt_curve)%ordinate) > 0.0_wp) return
-    call line_error(deck, raw%curve_line(model%controls%dt_curve), &
-      'curve '//to_text(raw%dt_curve)//' caps the time step (LCTM) and must be above 0 everywhere')
-  end subroutine check_step_curve
 
   !> Histories that are asked for and have no file, for want of a keyword that says of what.
   subroutine warn_of_empty(deck, raw, model)

@@ -158,19 +158,14 @@ contains
       end do
       if (j == 0) then
         conditions%skew_supports = [conditions%skew_supports, support]
-      else if (.not. is_along(conditions%skew_supports(j)%normal, support%normal)) then
-        fixed(:, nodes(k)) = .true.   ! along two axes; the same axis twice is one
+      else
+        associate (a => conditions%skew_supports(j)%normal, b => support%normal)
+          ! Along two axes; the same axis twice is one.
+          if (abs(a(1)*b(2) - a(2)*b(1)) >= aligned) fixed(:, nodes(k)) = .true.
+        end associate
       end if
     end do
   end subroutine fix_along_axes
-
-  !> Whether two unit vectors have one axis.
-  pure function is_along(a, b) result(yes)
-    real(wp), intent(in) :: a(2), b(2)
-    logical :: yes
-
-    yes = abs(a(1)*b(2) - a(2)*b(1)) < 1.0e-12_wp
-  end function is_along
 
   !> What skew supports ask of the rest of the deck.
   subroutine check_skew_supports(deck, raw, model, rows)
@@ -379,7 +374,7 @@ contains
     type(model_t), intent(inout) :: model
     type(body_load_t) :: load
     type(body_load_t), allocatable :: loads(:)
-    integer :: i, n
+    integer :: i, k, n
 
     allocate (loads(count(raw%rows(:raw%n_row)%kind == row_body)))
     n = 0
@@ -398,7 +393,12 @@ contains
           if (.not. allocated(model%conditions%damping)) allocate (model%conditions%damping)
           if (row%curve > 0) call resolve_id(deck, maps%curves, row%curve, 'curve', &
             id_place(row), model%conditions%damping%curve)
-          call check_damping(deck, row, model)
+          k = model%conditions%damping%curve
+          if (k > 0) then
+            if (minval(model%curves(k)%ordinate) < 0.0_wp) call reject_field(deck, id_place(row), &
+              'is a curve with values below 0: forces that push along with the velocity would ' &
+              //'feed energy')
+          end if
           model%conditions%damping%coefficient = row%scale
           model%conditions%damping%factor = row%factor
         end if
@@ -406,19 +406,5 @@ contains
     end do
     model%conditions%body_loads = loads(:n)
   end subroutine collect_global
-
-  !> A curve of damping must not fall below 0.
-  subroutine check_damping(deck, row, model)
-    type(deck_t), intent(inout) :: deck
-    type(row_t), intent(in) :: row
-    type(model_t), intent(in) :: model
-    integer :: k
-
-    k = model%conditions%damping%curve
-    if (k == 0) return
-    if (minval(model%curves(k)%ordinate) < 0.0_wp) &
-      call reject_field(deck, id_place(row), 'is a curve with ' &
-      //'values below 0: forces that push along with the velocity would feed energy')
-  end subroutine check_damping
 
 end module deck_resolve_conditions_m

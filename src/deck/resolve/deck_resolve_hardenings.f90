@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Hardening of materials: curves and tables put together and checked.
+!> Hardening of materials, crushable foams: curves and tables put together and checked.
 module deck_resolve_hardenings_m
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -13,7 +13,7 @@ module deck_resolve_hardenings_m
   use deck_raw_m, only : raw_t, raw_hardening_t, raw_table_t
   implicit none
   private
-  public :: resolve_hardenings, check_no_rates
+  public :: resolve_hardenings, check_no_rates, resolve_foams
 
 contains
 
@@ -26,7 +26,10 @@ contains
     integer, allocatable :: curves(:, :)
     integer :: i, j, k
 
-    call check_table_numbers(deck, raw, maps)
+    do i = 1, size(raw%tables)
+      if (index_of(maps%curves, raw%tables(i)%id) > 0) call reject_field(deck, &
+        place_t(raw%tables(i)%line, 1, 'TBID'), 'is the number of a curve too')
+    end do
     allocate (curves(2, size(raw%tables)))
     do i = 1, size(raw%tables)
       call find_table_curves(deck, raw, raw%tables(i), curves(:, i))
@@ -48,19 +51,6 @@ contains
       end associate
     end do
   end subroutine resolve_hardenings
-
-  !> A table and a curve of one number could not be told apart.
-  subroutine check_table_numbers(deck, raw, maps)
-    type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
-    integer :: i
-
-    do i = 1, size(raw%tables)
-      if (index_of(maps%curves, raw%tables(i)%id) > 0) call reject_field(deck, &
-        place_t(raw%tables(i)%line, 1, 'TBID'), 'is the number of a curve too')
-    end do
-  end subroutine check_table_numbers
 
   !> First and last curve of a table: those of the blocks that come next, one for each value. The
   !> last lies before the first where there are not enough.
@@ -222,5 +212,36 @@ contains
         //'strain rate (C, LCSR or a table), which the implicit method does not have')
     end do
   end subroutine check_no_rates
+
+  !> Give every foam its curve, which must not fall.
+  subroutine resolve_foams(deck, raw, maps, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(in) :: maps
+    type(model_t), intent(inout) :: model
+    character(:), allocatable :: name
+    integer :: i, k
+
+    do i = 1, size(raw%foams)
+      call resolve_id(deck, maps%curves, raw%foams(i)%curve, 'curve', raw%foams(i)%place, k)
+      if (k == 0) cycle
+      associate (curve => model%curves(k))
+        curve%is_of_time = .false.
+        model%materials(raw%foams(i)%material)%crush = curve
+        if (raw%lost%curves) cycle
+        name = 'curve '//to_text(curve%id)//' is a yield stress against volumetric strain (LCID)'
+        if (.not. minval(curve%ordinate) >= 0.0_wp .or. .not. maxval(curve%ordinate) > 0.0_wp) then
+          call line_error(deck, raw%curve_line(k), name &
+            //' and must not be negative, nor 0 everywhere')
+        else if (any(curve%ordinate(2:) < curve%ordinate(:size(curve%ordinate) - 1))) then
+          call line_error(deck, raw%curve_line(k), name &
+            //', which must not fall: foams harden as they are crushed')
+        end if
+        if (curve%abscissa(1) < 0.0_wp) call reject_field(deck, raw%foams(i)%place, &
+          'is a curve that starts at the volumetric strain '//to_text(curve%abscissa(1)) &
+          //', which is below 0: 1 - V/V0 counts compression')
+      end associate
+    end do
+  end subroutine resolve_foams
 
 end module deck_resolve_hardenings_m

@@ -1,18 +1,26 @@
 ! SPDX-License-Identifier: MIT
-!> Nodes, elements, parts and sets with indices in place of ids, and the checks of the mesh.
+!> Nodes, elements, parts and sets with indices in place of ids, and the checks of the mesh, also of
+!> one some elements of which are refused: mistakes that do not follow from theirs are told in the
+!> same pass. What assumed strain and the implicit method ask of parts of one-point quads.
 module deck_resolve_mesh_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use parts_m, only : hourglass_t
+  use parts_m, only : hourglass_t, form_full, form_round_full, hourglass_assumed, section_t
   use mesh_m, only : mesh_t
   use model_m, only : model_t
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning
   use deck_cards_m, only : reject_field
   use deck_maps_m, only : maps_t, resolve_id
   use deck_raw_m, only : raw_t
+  use boundary_m, only : boundary_t, find_boundary
+  use deck_interference_m, only : resolve_interference
+  use deck_resolve_contacts_m, only : check_common_nodes
+  use deck_resolve_pressures_m, only : resolve_pressures
+  use deck_resolve_sides_m, only : find_side, require_side, resolve_side, side_nodes, side_segments
+  use surfaces_m, only : surface_t
   implicit none
   private
-  public :: resolve_parts, resolve_mesh
+  public :: resolve_parts, resolve_mesh, settle_points, check_unsound_mesh
 
   !> Fields of the coordinates and of the first three nodes.
   character(1), parameter :: axes(2) = ['X', 'Y']
@@ -221,5 +229,143 @@ contains
     twice = nodes(1) == nodes(2) .or. nodes(1) == nodes(3) .or. nodes(2) == nodes(3) &
       .or. nodes(4) == nodes(1) .or. nodes(4) == nodes(2)
   end function repeated
+
+  !> Parts of one-point quads: those with assumed strain must resist shear; in implicit runs those
+  !> without it, or of rubber, whose tangent is that of full integration, are fully integrated,
+  !> whatever the deck says.
+  subroutine settle_points(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(inout) :: model
+    character(:), allocatable :: changed
+    integer :: twins(size(model%sections)) !! fully integrated ones, 0 where there is none
+    integer :: i, line
+
+    changed = ''
+    twins = 0
+    do i = 1, size(model%parts)
+      associate (part => model%parts(i))
+        if (part%section == 0 .or. part%material == 0) cycle
+        if (model%sections(part%section)%is_full .or. model%materials(part%material)%is_rigid) cycle
+        if (part%hourglass%form == hourglass_assumed .and. .not. (model%controls%implicit%is_on &
+          .and. allocated(model%materials(part%material)%rubber))) then
+          call check_shear(deck, raw%parts(i)%line, i, model)
+        else if (model%controls%implicit%is_on) then
+          if (len(changed) == 0) line = raw%section_line(part%section)
+          changed = changed//', '//to_text(part%id)
+          if (twins(part%section) == 0) call add_full_section(part%section, model, twins)
+          part%section = twins(part%section)
+        end if
+      end associate
+    end do
+    if (len(changed) > 0) call line_warning(deck, line, 'implicit points', 'the implicit method ' &
+      //'takes parts whose NIP is not 4 as NIP 4 where hourglass control is not by ' &
+      //'assumed strain (IHQ 6), which would keep them as they are (but for rubber): '//changed(3:))
+  end subroutine settle_points
+
+  !> The stiffness of assumed strain is that of shear.
+  subroutine check_shear(deck, line, i, model)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line     !! card of the part
+    integer, intent(in) :: i        !! part
+    type(model_t), intent(in) :: model
+
+    associate (part => model%parts(i))
+      if (model%materials(part%material)%shear > 0.0_wp) return
+      if (.not. model%materials(part%material)%needs_eos) return ! told as a field
+      call line_error(deck, line, 'part '//to_text(part%id)//' has hourglass control by assumed ' &
+        //'strain (IHQ 6), whose stiffness comes from the shear modulus, and its material ' &
+        //to_text(model%materials(part%material)%id)//' has none (take IHQ 1 to 3)')
+    end associate
+  end subroutine check_shear
+
+  !> The fully integrated twin of a section, which other parts may go on sharing as it is.
+  pure subroutine add_full_section(section, model, twins)
+    integer, value :: section             !! index
+    type(model_t), intent(inout) :: model
+    integer, intent(inout) :: twins(:)    !! index, by that of the section
+    type(section_t) :: twin
+
+    twin = model%sections(section)
+    twin%is_full = .true.
+    twin%element_form = merge(form_round_full, form_full, twin%is_round)
+    model%sections = [model%sections, twin]
+    twins(section) = size(model%sections)
+  end subroutine add_full_section
+
+  !> Wrong numbers always; edges where no refused element has their nodes.
+  subroutine check_unsound_mesh(deck, raw, maps, is_sound, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(maps_t), intent(in) :: maps
+    logical, intent(in) :: is_sound(:)    !! (n_element)
+    type(model_t), intent(inout) :: model !! gets interfaces without surfaces
+    type(boundary_t) :: outside
+    logical, allocatable :: in_doubt(:), all_nodes(:)
+    integer :: i, k, n, kind, found
+
+    allocate (in_doubt(model%mesh%n_node), source=.not. any(is_sound))
+    do i = 1, size(is_sound)
+      if (is_sound(i)) cycle
+      do k = 1, 4
+        n = model%mesh%element_nodes(k, i)
+        if (n > 0) in_doubt(n) = .true.
+      end do
+    end do
+    allocate (all_nodes(model%mesh%n_node), source=.true.)
+    call find_boundary(model%mesh%element_nodes, is_sound, all_nodes, outside)
+    call resolve_pressures(deck, raw, maps, outside, model, in_doubt)
+    allocate (model%contacts(size(raw%contacts)))
+    do i = 1, size(raw%contacts)
+      call check_sides(deck, raw, i, maps, outside, in_doubt, model)
+      model%contacts(i) = raw%contacts(i)%contact
+      call resolve_interference(deck, raw%contacts(i), maps, model, model%contacts(i))
+    end do
+    do i = 1, size(raw%transducers)
+      call require_side(deck, raw%transducers(i), 1, maps, kind, found)
+    end do
+  end subroutine check_unsound_mesh
+
+  !> Sides of nodes or segments without doubt as in a sound mesh, of others whether they exist.
+  subroutine check_sides(deck, raw, i, maps, outside, in_doubt, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    integer, intent(in) :: i
+    type(maps_t), intent(in) :: maps
+    type(boundary_t), intent(in) :: outside
+    logical, intent(in) :: in_doubt(:)
+    type(model_t), intent(in) :: model
+    type(surface_t) :: sides(2)
+    integer :: k, kind, found, n_known
+
+    n_known = 0
+    do k = 1, merge(1, 2, raw%contacts(i)%contact%is_self)
+      call find_side(raw%contacts(i), k, maps, kind, found)
+      if (is_certain(kind, found)) then
+        call resolve_side(deck, raw, i, k, maps, outside, model, sides(k))
+        n_known = n_known + 1
+      else
+        call require_side(deck, raw%contacts(i), k, maps, kind, found)
+      end if
+    end do
+    if (n_known == 2) call check_common_nodes(deck, raw%contacts(i), sides, model)
+
+  contains
+
+    !> Whether no refused element has nodes of the surface.
+    pure function is_certain(kind, found)
+      integer, intent(in) :: kind, found
+      logical :: is_certain
+
+      is_certain = .false.
+      if (kind == side_nodes) then
+        is_certain = .not. any(in_doubt(model%node_sets(found)%nodes))
+      else if (kind == side_segments) then
+        if (allocated(model%segment_sets(found)%parts)) return
+        is_certain = .not. any(in_doubt([model%segment_sets(found)%nodes]))
+      end if
+    end function is_certain
+
+  end subroutine check_sides
 
 end module deck_resolve_mesh_m

@@ -120,7 +120,8 @@ contains
 
     if (size(model%rigids) == 0) return
     do i = 1, model%mesh%n_node
-      if (owner(i) > 0 .and. holds_in_plane(raw%node_code(i))) call complain(place_t( &
+      ! TC 3 holds z alone.
+      if (owner(i) > 0 .and. any([1, 2, 4, 5, 6, 7] == raw%node_code(i))) call complain(place_t( &
         raw%node_line(i), 1, 'TC'), i, 'CON1 and CON2 of *MAT_RIGID hold the body')
     end do
     do i = 1, raw%n_row
@@ -167,14 +168,6 @@ contains
     end subroutine complain
 
   end subroutine refuse_conditions
-
-  !> Whether TC of *NODE holds x or y.
-  pure function holds_in_plane(code) result(yes)
-    integer, intent(in) :: code
-    logical :: yes
-
-    yes = code >= 1 .and. code <= 7 .and. code /= 3
-  end function holds_in_plane
 
   !> *BOUNDARY_PRESCRIBED_MOTION_RIGID.
   subroutine collect_rigid_motions(deck, raw, maps, model)

@@ -22,7 +22,8 @@ contains
     real(wp), allocatable :: velocity(:, :)
     integer :: i, next
 
-    if (raw%n_node_velocity == 0 .and. .not. any(is_velocity(raw%rows(:raw%n_row)%kind))) return
+    if (raw%n_node_velocity == 0 .and. .not. any(raw%rows(:raw%n_row)%kind == row_velocity &
+      .or. raw%rows(:raw%n_row)%kind == row_velocity_generation)) return
     allocate (velocity(2, model%mesh%n_node), source=0.0_wp)
     next = 1
     do i = 1, raw%n_row
@@ -37,14 +38,6 @@ contains
     end do
     call move_alloc(velocity, model%conditions%initial_velocity)
   end subroutine resolve_velocity
-
-  !> Whether a row gives an initial velocity.
-  pure elemental function is_velocity(kind) result(yes)
-    integer, intent(in) :: kind
-    logical :: yes
-
-    yes = kind == row_velocity .or. kind == row_velocity_generation
-  end function is_velocity
 
   !> *INITIAL_VELOCITY_NODE: the cards with at most `n_row` rows before
   !> them; `next` moves past them.

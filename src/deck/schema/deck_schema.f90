@@ -12,12 +12,15 @@ module deck_schema_m
   use deck_schema_others_m, only : table_others
   use deck_spelling_m, only : keep_nearer
   use deck_schema_tables_m, only : table_control, table_mesh, table_conditions, table_contact, &
-    table_database, table_cases
+    table_database
   implicit none
   private
   public :: keyword_cards, find_keyword, nearest_keyword, refusal_reason, lost_effect, max_card, &
     known_honoured, known_ignored, known_refused, known_not
 
+  !> All keywords that are honoured, and their cards.
+  character(98), parameter :: table(*) = [character(98) :: table_control, table_mesh, &
+    table_conditions, table_contact, table_database]
   !> Characters by which a canonical name is longer than a short one at most (MAT_024).
   integer, parameter :: longest_addition = 24
   !> Cards of one keyword at most.
@@ -32,35 +35,19 @@ contains
     character(*), intent(in) :: name
     character(*), intent(out) :: cards(max_card)
     integer, intent(out) :: n_card
+    integer :: i, k
 
     cards = ''
     n_card = 0
-    call collect(table_control)
-    call collect(table_mesh)
-    call collect(table_conditions)
-    call collect(table_contact)
-    call collect(table_database)
-    call collect(table_cases)
-
-  contains
-
-    !> Look into one table.
-    subroutine collect(table)
-      character(*), intent(in) :: table(:)
-      integer :: i, k, n
-
-      if (n_card > 0) return
-      n = len_trim(name)
-      do i = 1, size(table)
-        if (.not. begins_with(table(i), name(:n))) cycle
-        do k = i + 1, size(table)
-          if (table(k)(1:1) /= ' ' .or. n_card == max_card) return
-          n_card = n_card + 1
-          cards(n_card) = table(k)
-        end do
+    do i = 1, size(table)
+      if (.not. begins_with(table(i), trim(name))) cycle
+      do k = i + 1, min(i + max_card, size(table))
+        if (table(k)(1:1) /= ' ') return
+        n_card = n_card + 1
+        cards(n_card) = table(k)
       end do
-    end subroutine collect
-
+      return
+    end do
   end subroutine keyword_cards
 
   !> What is known of a keyword as written: its canonical name, its treatment, and for a refused one
@@ -157,9 +144,6 @@ contains
       name = 'DATABASE_BINARY_D3PLOT'
     case ('INCLUDE_PATH_RELATIVE')
       name = 'INCLUDE_PATH'
-    case default
-      if (index(given, 'CASE_BEGIN_') == 1) name = 'CASE_BEGIN'
-      if (index(given, 'CASE_END_') == 1) name = 'CASE_END'
     end select
   end function canonical
 
@@ -168,33 +152,16 @@ contains
     character(*), intent(in) :: name
     integer, intent(out) :: known
     character(*), intent(out) :: options
+    integer :: i
 
     known = known_not
     options = ''
-    call search(table_control)
-    call search(table_mesh)
-    call search(table_conditions)
-    call search(table_contact)
-    call search(table_database)
-    call search(table_cases)
-
-  contains
-
-    !> Look into one table of honoured keywords.
-    subroutine search(table)
-      character(*), intent(in) :: table(:)
-      integer :: k, n
-
-      if (known == known_honoured) return
-      n = len_trim(name)
-      do k = 1, size(table)
-        if (.not. begins_with(table(k), name(:n))) cycle
-        known = known_honoured
-        options = table(k)(n + 2:)
-        return
-      end do
-    end subroutine search
-
+    do i = 1, size(table)
+      if (.not. begins_with(table(i), trim(name))) cycle
+      known = known_honoured
+      options = table(i)(len_trim(name) + 2:)
+      return
+    end do
   end subroutine look
 
   !> Whether a row of a table is that of a keyword: its name, then a blank. Rows of cards begin with
@@ -214,7 +181,7 @@ contains
     character(*), intent(in) :: given   !! upper case
     character(40) :: nearest, longer
     integer, parameter :: near = 2, least_length = 6
-    integer :: least, i
+    integer :: least, i, n
     character(len(given)) :: base
 
     nearest = ''
@@ -228,31 +195,15 @@ contains
     least = near + 1
     call take_option(given, base)
     if (len_trim(base) == 0) base = given
-    call compare(table_control)
-    call compare(table_mesh)
-    call compare(table_conditions)
-    call compare(table_contact)
-    call compare(table_database)
-    call compare(table_cases)
+    do i = 1, size(table)
+      if (table(i)(1:1) == ' ') cycle
+      n = index(table(i), ' ') - 1
+      if (index(base, '_') > 0 .and. index(table(i)(:n), trim(base)) == 1 &
+        .and. (len_trim(longer) == 0 .or. n < len_trim(longer))) longer = table(i)(:n)
+      call keep_nearer(table(i)(:n), trim(base), least, nearest)
+    end do
     ! A name that stops early: the shortest that goes on.
     if (len_trim(nearest) == 0) nearest = longer
-
-  contains
-
-    !> Look into one table of honoured keywords.
-    subroutine compare(table)
-      character(*), intent(in) :: table(:)
-      integer :: k, n
-
-      do k = 1, size(table)
-        if (table(k)(1:1) == ' ') cycle
-        n = index(table(k), ' ') - 1
-        if (index(base, '_') > 0 .and. index(table(k)(:n), trim(base)) == 1 &
-          .and. (len_trim(longer) == 0 .or. n < len_trim(longer))) longer = table(k)(:n)
-        call keep_nearer(table(k)(:n), trim(base), least, nearest)
-      end do
-    end subroutine compare
-
   end function nearest_keyword
 
   !> Whether a row of the others stands for a family of names, as in `MAT_*`, or for unknown ones.

@@ -155,7 +155,8 @@ module deck_schema_others_m
     'INTERFACE_SPRINGBACK_* the file of a next stage (dynain) is', &
     'INTERFACE_* a file for another run is', &
     'COMPONENT_* ignored', &
-    'CASE_* unknown', &
+    'CASE several runs of one deck are', &
+    'CASE_* several runs of one deck are', &
     'DATABASE_* this output is', &
     'TERMINATION_* this end of a run is', &
     'PERTURBATION_* perturbations are', &

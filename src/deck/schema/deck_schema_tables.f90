@@ -3,8 +3,7 @@
 module deck_schema_tables_m
   implicit none
   private
-  public :: table_control, table_mesh, table_conditions, table_contact, table_database, &
-    table_cases
+  public :: table_control, table_mesh, table_conditions, table_contact, table_database
 
   !> Control of the deck and of the run.
   character(98), parameter :: table_control(*) = [character(98) :: &
@@ -360,14 +359,5 @@ module deck_schema_tables_m
     ' NSID:i CID:ir', &
     'DATABASE_CROSS_SECTION_SET t', &
     ' NSID:i HSID:ir BSID:ir SSID:i TSID:ir DSID:ir ID:ir ITYPE:is']
-
-  !> Several runs of one deck.
-  character(66), parameter :: table_cases(*) = [character(66) :: &
-    'CASE', &
-    ' CASEID:i JOBID:a70', &
-    ' COMMANDS:a80', &
-    ' SCID1:i SCID2:i SCID3:i SCID4:i SCID5:i SCID6:i SCID7:i SCID8:i', &
-    'CASE_BEGIN', &
-    'CASE_END']
 
 end module deck_schema_tables_m

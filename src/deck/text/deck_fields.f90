@@ -43,6 +43,7 @@ contains
     integer, intent(in) :: source
     integer, intent(in) :: line
     type(card_t), intent(inout) :: card
+    character(:), allocatable :: where
     integer :: first, last, rest
 
     card%line = line
@@ -58,19 +59,11 @@ contains
       call cut_text(deck%sources(source)%text(first:last), spec, &
         iand(deck%flags(line), flag_comma) /= 0, card, rest)
     end if
-    if (rest > 0) call line_warning(deck, line, 'extra'//where_keyword(deck, line), &
+    if (rest == 0) return
+    where = where_text(deck, line)
+    call line_warning(deck, line, 'extra'//where(index(where, '*', back=.true.):), &
       'text after the last field (column '//to_text(rest)//') is ignored')
   end subroutine cut_card
-
-  !> Keyword of a line, as the key of a warning.
-  pure function where_keyword(deck, line) result(text)
-    type(deck_t), intent(in) :: deck
-    integer, intent(in) :: line
-    character(:), allocatable :: text
-
-    text = where_text(deck, line)
-    text = text(index(text, '*', back=.true.):)
-  end function where_keyword
 
   !> Cut a text: by column, or at commas when it holds one.
   pure subroutine cut_text(text, spec, comma, card, rest)

@@ -10,10 +10,10 @@ module deck_lines_m
   use log_m, only : to_text
   implicit none
   private
-  public :: deck_t, source_t, block_t, place_t, case_blocks_t, file_paths, line_text, &
-    block_of_line, where_text, line_error, deck_error, line_warning, replace_line, written_text, &
-    line_spot, keyword_of_line, shown_text, marked_line, layout_mark, format_standard, &
-    format_long, format_i10, flag_comma, flag_parameter, flag_blank, max_source
+  public :: deck_t, source_t, block_t, place_t, parameter_t, parameters_t, again_error, &
+    file_paths, line_text, block_of_line, where_text, line_error, deck_error, line_warning, &
+    replace_line, written_text, line_spot, keyword_of_line, shown_text, marked_line, layout_mark, &
+    format_standard, format_long, format_i10, flag_comma, flag_parameter, flag_blank, max_source
 
   !> Column layout of a block.
   integer, parameter :: format_standard = 0, format_long = 1, format_i10 = 2
@@ -21,6 +21,9 @@ module deck_lines_m
   integer(int8), parameter :: flag_comma = 1_int8, flag_parameter = 2_int8, flag_blank = 4_int8
   !> Files in one deck.
   integer, parameter :: max_source = 1000
+
+  !> A second definition of a parameter with another value is an error.
+  integer, parameter :: again_error = 0
 
   !> One file.
   type :: source_t
@@ -54,14 +57,24 @@ module deck_lines_m
     integer :: field = 0        !! its position, where there is no name: members of sets
   end type place_t
 
-  !> What belongs to cases while a deck is cut (*CASE_BEGIN_n, *CASE_END_n, CID=n).
-  type :: case_blocks_t
-    logical :: found = .false.                !! the deck has cases
-    logical :: wrong = .false.                !! an error of these marks has been told
-    integer, allocatable :: read(:)           !! subcases whose keywords are read
-    integer, allocatable :: open(:), begun(:) !! subcases that wait for their end, their lines
-    integer, allocatable :: all(:), places(:) !! subcases as they come, the first line of each
-  end type case_blocks_t
+  !> One parameter.
+  type :: parameter_t
+    character(20) :: name = ''            !! upper case
+    character :: kind = 'R'               !! R real, I integer, C text
+    character(:), allocatable :: text     !! what is put in its place
+    integer :: source = 0                 !! file it is private to, 0 = the whole deck
+    logical :: fixed = .false.            !! given on the command line
+    logical :: found = .false.            !! the deck defines it
+    integer :: next = 0                   !! the next one of the same hash, in the order they come
+  end type parameter_t
+
+  !> All parameters, with the first and last one of each hash of a name.
+  type :: parameters_t
+    type(parameter_t), allocatable :: items(:)
+    integer :: n = 0
+    integer, allocatable :: first(:), last(:)
+    integer :: again = again_error
+  end type parameters_t
 
   !> The whole deck.
   type :: deck_t
@@ -78,11 +91,10 @@ module deck_lines_m
     integer, allocatable :: replaced(:, :)    !! (3, n) lines in `patch`, and where their file has
                                               !! them
     integer :: n_replaced = 0
-    logical :: incomplete = .false.           !! an included file could not be read, or
-                                              !! what belongs to the case is not known
-    type(case_blocks_t) :: cases
+    logical :: incomplete = .false.           !! an included file could not be read
     character(:), allocatable :: default_zeros, kept_zeros !! fields with a 0 that means their
                                               !! default, and of which a 0 is 0 all the same
+    type(parameters_t) :: parameters
     type(report_t) :: report
   end type deck_t
 

@@ -6,7 +6,6 @@ module deck_reader_m
   use log_m, only : to_text
   use errors_m, only : error_t, raise, status_input
   use deck_lines_m, only : deck_t, line_text, line_error, shown_text, max_source
-  use deck_case_blocks_m, only : start_cases, follow_cases, end_cases
   use deck_source_m, only : read_file, scan_line, open_block, add_line, file_options, reserve_lines
   implicit none
   private
@@ -47,20 +46,17 @@ contains
   end subroutine read_blocks
 
   !> Cut the text of a deck into blocks, its includes in their place.
-  subroutine cut_deck(path, text, deck, sub_cases)
+  subroutine cut_deck(path, text, deck)
     character(*), intent(in) :: path
     character(:), allocatable, intent(inout) :: text !! moves into the deck
     type(deck_t), intent(inout) :: deck
-    integer, intent(in), optional :: sub_cases(:)    !! whose keywords are read; absent: none
     type(folders_t) :: folders
 
     allocate (deck%sources(max_source), deck%blocks(64), folders%items(16))
     deck%n_source = 1
     deck%sources(1)%path = path
     call move_alloc(text, deck%sources(1)%text)
-    call start_cases(deck%cases, sub_cases)
     call cut_source(deck, 1, 1, folders)
-    call end_cases(deck)
   end subroutine cut_deck
 
   !> Cut a file into lines and blocks, its includes in their place.
@@ -90,7 +86,6 @@ contains
         call open_block(deck, source, deck%sources(source)%text(start + 1:min(last, &
           start + line_length - 1)))
         call limit_line(deck)
-        call follow_cases(deck)
         in_block = .true.
         if (deck%blocks(deck%n_block)%name == 'KEYWORD') then
           call file_options(deck%blocks(deck%n_block)%rest, deck%sources(source)%layout)
@@ -100,7 +95,11 @@ contains
       else if (deck%sources(source)%text(start:start) == '$' .and. last >= start) then
         continue
       else if (in_block) then
-        call keep_line(deck, start, last, number, flags)
+        if (deck%blocks(deck%n_block)%name /= 'COMMENT') then
+          call add_line(deck, start, last, number, flags)
+          deck%blocks(deck%n_block)%last = deck%n_line
+          call limit_line(deck)
+        end if
       else if (last >= start) then
         if (len_trim(deck%sources(source)%text(start:last)) > 0) n_stray = n_stray + 1
       end if
@@ -111,18 +110,6 @@ contains
     if (n_stray > 0) call line_error(deck, 0, 'in '//deck%sources(source)%path//', ' &
       //to_text(n_stray)//' line(s) before the first keyword (a line that starts with *)')
   end subroutine cut_source
-
-  !> A data line of the block that is open.
-  subroutine keep_line(deck, first, last, number, flags)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: first, last, number
-    integer(int8), intent(in) :: flags
-
-    if (deck%blocks(deck%n_block)%name == 'COMMENT') return
-    call add_line(deck, first, last, number, flags)
-    deck%blocks(deck%n_block)%last = deck%n_line
-    call limit_line(deck)
-  end subroutine keep_line
 
   !> The last line may not be too long.
   subroutine limit_line(deck)

@@ -7,7 +7,7 @@ module deck_report_m
   use log_m, only : log_t, warn, to_text
   implicit none
   private
-  public :: report_t, note_t, spot_t, add_error, count_only, has_error, add_warning, is_full, &
+  public :: report_t, note_t, spot_t, add_error, count_only, has_error, add_warning, &
     emit_warnings, emit_errors, deck_order
 
   !> Errors kept, and warnings; what comes later is counted. Of a kind of errors that comes later
@@ -102,7 +102,7 @@ contains
     logical, intent(out) :: is_done
     integer :: k
 
-    is_done = is_full(report)
+    is_done = report%n_kept >= max_kept
     if (.not. is_done) return
     call find_kind(report, key_of(keyword, name, message), k)
     if (k > 0) is_done = report%kinds(k)%n >= first_kept
@@ -172,14 +172,6 @@ contains
     end do
   end function has_error
 
-  !> Whether further errors are only counted, so that their text need not be made.
-  pure function is_full(report) result(full)
-    type(report_t), intent(in) :: report
-    logical :: full
-
-    full = report%n_kept >= max_kept
-  end function is_full
-
   !> One more warning; warnings of the same key are given once.
   subroutine add_warning(report, line, key, text, spot)
     type(report_t), intent(inout) :: report
@@ -238,7 +230,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer, allocatable :: order(:)
     character(:), allocatable :: text
-    logical :: is_told(report%n_kind)
+    logical :: is_told(report%n_kind), many
     integer :: i, k, n_rest
 
     if (report%n_error == 0) return
@@ -248,7 +240,11 @@ contains
     text = ''
     do i = 1, size(order)
       k = report%errors(order(i))%kind
-      if (.not. is_many(report, k)) then
+      ! So many, or some of them without their text: one message.
+      many = .false.
+      if (k > 0) many = report%kinds(k)%n > most_told &
+        .or. report%kinds(k)%n > report%kinds(k)%n_kept
+      if (.not. many) then
         text = text//report%errors(order(i))%text//new_line('a')
         n_rest = n_rest - 1
       else if (.not. is_told(k)) then
@@ -262,16 +258,6 @@ contains
     text = text//merge(' error ', ' errors', report%n_error == 1)
     call raise(error, trim(text), status_input)
   end subroutine emit_errors
-
-  !> Whether the errors of a kind are one message: so many, or some of them without their text.
-  pure function is_many(report, k) result(many)
-    type(report_t), intent(in) :: report
-    integer, intent(in) :: k  !! 0: none
-    logical :: many
-
-    many = .false.
-    if (k > 0) many = report%kinds(k)%n > most_told .or. report%kinds(k)%n > report%kinds(k)%n_kept
-  end function is_many
 
   !> The line with the count of a kind and its first places.
   pure function count_text(report, order, k) result(text)

@@ -8,7 +8,6 @@ module explicit_cycle_m
   use clock_m, only : lap, share_contact, phase_nodes
   use constraints_m, only : fix_nodes, update_activity, is_active
   use contact_account_m, only : plan_looks, follow_contact
-  use contact_choosing_m, only : judges_at_all, is_judged
   use contact_inertia_m, only : weigh_contacts
   use contact_pressing_m, only : pressing_t, press_contacts
   use contacts_m, only : told_as, penalty_implicit
@@ -60,8 +59,6 @@ module explicit_cycle_m
     logical :: writes = .true.       !! this cycle writes something
     logical :: finished = .false.    !! the run is over
     logical :: last = .false.        !! this cycle is the last one
-    logical :: may_judge = .false.   !! some cycles judge interfaces for the choice of their type
-    logical :: judges = .false.      !! this cycle judges interfaces for the choice of their type
     logical :: plots = .false.       !! this cycle writes a plot state because someone asked for it
     type(due_t) :: due
     type(shares_t) :: shares         !! tiles of each process
@@ -111,7 +108,6 @@ contains
         motions%death < model%controls%end_time)
     end associate
     call plan_sums(model, cycle%sums)
-    cycle%may_judge = judges_at_all(model)
     cycle%presses = any(model%contacts%penalty_unit == penalty_implicit)
     if (cycle%presses) allocate (cycle%pressing(size(model%contacts)))
     cycle%refines = needs_refinement(state%elements)
@@ -152,8 +148,7 @@ contains
     cycle%due = find_due(monitor, state%time, state%dt, state%cycle == 0 .or. cycle%last)
     cycle%due%plot = cycle%due%plot .or. (cycle%plots .and. monitor%has_plot)
     cycle%plots = .false.
-    if (cycle%may_judge) cycle%judges = is_judged(state%cycle)
-    cycle%writes = any_due(cycle%due) .or. state%cycle == 0 .or. cycle%last .or. cycle%judges
+    cycle%writes = any_due(cycle%due) .or. state%cycle == 0 .or. cycle%last
     call apply_loads(model, state, cycle%damping, cycle%sums)
     if (allocated(state%boundary_work)) call count_boundary_loads(model, state)
     if (allocated(state%node_damping)) call follow_damping(model, cycle%rates, state)

@@ -4,7 +4,6 @@ module explicit_report_m
   use boundary_account_m, only : count_boundary_motions, count_boundary_bodies, count_groups
   use boundary_filling_m, only : fill_boundaries
   use contact_check_m, only : report_contact_start
-  use contact_choosing_m, only : follow_choices
   use contact_judging_m, only : judge_contacts
   use contact_softness_m, only : follow_softness
   use energies_m, only : energy_ratio, total_energy
@@ -48,7 +47,7 @@ contains
 
   !> Write what is due, unless the state has gone wrong; the first cycle first finds its step.
   subroutine report_cycle(model, state, monitor, cycle)
-    type(model_t), intent(inout) :: model
+    type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
@@ -87,8 +86,6 @@ contains
     if (allocated(state%group_work)) call count_groups(model, .true., .false., state)
     if (monitor%ranks%mine == 0) call write_report(model, held, state, monitor, cycle)
     if (monitor%ranks%n > 1) call hear_report(model, state, monitor, cycle)
-    if (cycle%judges) call follow_choices(model, monitor%ranks, &
-      minval(cycle%checks(cycle%first_check:)%time_limit), state, monitor%log)
     cycle%finished = cycle%last .or. allocated(cycle%error)
   end subroutine report_cycle
 
@@ -152,7 +149,7 @@ contains
     if (cycle%due%tables(table_matsum)) call fill_parts(model, state%elements, &
       monitor%snapshot)
     if (cycle%due%tables(table_glstat)) call find_slowest(model, state, monitor%snapshot)
-    if (any(cycle%due%tables([table_rcforc, table_sleout, table_contact])) .or. cycle%judges) &
+    if (any(cycle%due%tables([table_rcforc, table_sleout, table_contact]))) &
       call fill_interfaces(model, state, monitor%snapshot)
     if (cycle%due%tables(table_spcforc)) &
       call fill_explicit_reactions(model, state, monitor%snapshot, held)
@@ -162,7 +159,7 @@ contains
     if (cycle%due%tables(table_secforc)) call fill_sections(model, state, monitor%snapshot)
     if (cycle%due%tables(table_rbdout)) call fill_bodies(state, monitor%snapshot)
     if (cycle%due%plot) call fill_plot(model, state, monitor%snapshot)
-    if (any(cycle%due%tables([table_sleout, table_contact])) .or. cycle%judges) &
+    if (any(cycle%due%tables([table_sleout, table_contact]))) &
       call judge_contacts(model, state, cycle%due%plot, monitor%rows, monitor%snapshot)
     call write_due(model, cycle%due, state%dt, monitor, cycle%error)
     if (cycle%due%tables(table_glstat)) cycle%ratio = energy_ratio(monitor%snapshot%energies)

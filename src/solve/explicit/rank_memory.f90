@@ -12,7 +12,6 @@ module rank_memory_m
   use rank_shares_m, only : shares_t, share_out
   use ranks_m, only : ranks_t
   use state_m, only : state_t
-  use type_charts_m, only : may_change
   implicit none
   private
   public :: forget_others, forget_tiles, needs_all, starts_from_all, others_of
@@ -55,7 +54,6 @@ contains
     logical :: needs
 
     needs = model%erodes .or. allocated(model%conditions%part_damping) &
-      .or. any(may_change(model%contacts)) &
       .or. (abs(model%controls%mass_step) > 0.0_wp .and. .not. model%controls%masses_stay)
   end function needs_all
 

@@ -25,7 +25,7 @@ module automatic_penalty_m
   use state_m, only : state_t
   implicit none
   private
-  public :: set_automatic_penalties, scale_penalties
+  public :: set_automatic_penalties
 
   integer, parameter :: n_halving = 60           !! of the common factor
   real(wp), parameter :: round_off = 1.0e-12_wp  !! by which a bound may miss the step that it was

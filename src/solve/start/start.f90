@@ -132,7 +132,6 @@ contains
         status_input)
       return
     end do
-    state%estimates%contact_type = model%contacts(:size(state%estimates))%contact_type
   end subroutine start_contacts
 
   !> Vectors of all nodes, zero where the process knows them.

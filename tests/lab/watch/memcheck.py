@@ -82,8 +82,7 @@ def all_cases() -> list[Case]:
                       then=(("r=out/job.runrsf.h5", "d=out", "endtim=7e-6"),)))
     cases.append(Case("die", with_end(scenes.sliding(1, 7, rigid_die=True), 60)))
     cases.append(Case("check", with_end(scenes.collision(1, 6), 60), ("check", "--json")))
-    cases += [Case(f"example_{path.stem}", path, ("case",) if path.stem == "case" else ())
-              for path in sorted((ROOT / "doc/examples").glob("*.k"))]
+    cases += [Case(f"example_{path.stem}", path) for path in sorted((ROOT / "doc/examples").glob("*.k"))]
     stock = ROOT / "tests/program/stock"
     cases += [Case(f"stock_{name}", stock / f"stock_{name}.k") for name in RUN]
     cases += [Case(f"refused_{deck.name}", deck.folder / f"{deck.name}.k" if deck.family == "examples" else deck.text, status=1)
