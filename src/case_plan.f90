@@ -6,7 +6,6 @@ module case_plan_m
   use deck_choose_case_m, only : list_cases
   use deck_lines_m, only : deck_t
   use errors_m, only : error_t, raise
-  use freight_lists_m, only : pass, pass_text
   use freight_m, only : freight_t, start_loading
   use freight_sharing_m, only : spread_freight
   use log_m, only : to_text
@@ -89,15 +88,15 @@ contains
     subroutine pass_cases()
       integer :: i, n
 
-      call pass(freight, found)
+      call freight%visit('found', found)
       n = 0
       if (allocated(cases)) n = size(cases)
-      call pass(freight, n)
+      call freight%visit('n', n)
       if (freight%unloads) allocate (cases(n))
       do i = 1, n
-        call pass(freight, cases(i)%id)
-        call pass_text(freight, cases(i)%job)
-        call pass_text(freight, cases(i)%commands)
+        call freight%visit('id', cases(i)%id)
+        call freight%visit('job', cases(i)%job)
+        call freight%visit('commands', cases(i)%commands)
       end do
     end subroutine pass_cases
 

@@ -17,14 +17,17 @@ module history_file_m
     each_section, text_none, &
     text_rows
   use table_row_m, only : row_t
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: histories_t, plan_histories, open_histories, check_histories, flush_histories, &
     close_histories, has_rows
 
   !> All tables of a run.
-  type :: histories_t
+  type, extends(visited_t) :: histories_t
     type(csv_table_t) :: tables(n_table) !! by the `table_` constants
+  contains
+    procedure :: visit => visit_histories
   end type histories_t
 
 contains
@@ -187,5 +190,14 @@ contains
       if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
     end do
   end subroutine close_histories
+
+  !> Its components. Tables are kept whole: the run that goes on writes them again from the first
+  !> row, so that they do not depend on what has become of the files.
+  subroutine visit_histories(self, visitor)
+    class(histories_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%each('tables', self%tables)
+  end subroutine visit_histories
 
 end module history_file_m

@@ -4,26 +4,25 @@
 !> nobody has sent or written takes no memory: a process that is not the first gets special nodes,
 !> and the nodes and slots of its own tiles.
 module rank_model_m
-  use freight_lists_m, only : pass
-  use freight_m, only : freight_t, start_loading, pass_reals
+  use, intrinsic :: iso_c_binding, only : c_loc
+  use freight_m, only : freight_t, start_loading, part_of
   use freight_sharing_m, only : spread_freight, send_freight
   use inside_answers_m, only : answers_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
-  use mesh_freight_m, only : pass_nodes, pass_slots, pass_elements, pass_faces
-  use model_freight_m, only : pass_model
   use model_m, only : model_t
   use others_memory_m, only : others_t
   use rank_memory_m, only : starts_from_all, others_of
   use rank_shares_m, only : shares_t, share_out
   use ranks_m, only : ranks_t
   use state_m, only : state_t
+  use visitor_m, only : of_elements, of_nodes, of_slots
   implicit none
   private
   public :: hand_model, hand_others
 
-  !> What goes in pieces, and items of a piece at most.
-  integer, parameter :: of_nodes = 1, of_slots = 2, of_elements = 3, of_faces = 4, of_mass = 5
+  !> What goes in pieces besides the mesh, and items of a piece at most.
+  integer, parameter :: of_faces = -1, of_mass = -2
   integer, parameter :: most_items = 65536
   !> In place of a receiver: all.
   integer, parameter :: everyone = 0
@@ -36,22 +35,17 @@ contains
     type(model_t), intent(inout) :: model
     logical, intent(out) :: has_all !! each process gets all of it
     type(freight_t) :: freight
-    logical :: moves !! there are initial velocities
 
     has_all = .true.
     if (ranks%n == 1) return
     if (ranks%mine == 0) then
       has_all = starts_from_all(model)
-      moves = allocated(model%conditions%initial_velocity)
       call pass_all()
       call start_loading(freight)
       call pass_all()
     end if
     call spread_freight(ranks, freight)
-    if (ranks%mine > 0) then
-      call pass_all()
-      call reserve_mesh(moves, model)
-    end if
+    if (ranks%mine > 0) call pass_all()
     deallocate (freight%values)
     if (has_all) then
       call hand_range(ranks, everyone, of_nodes, [1, model%mesh%n_node], model)
@@ -67,8 +61,8 @@ contains
   contains
 
     subroutine pass_all()
-      call pass(freight, has_all, moves)
-      call pass_model(freight, model)
+      call freight%visit('has_all', has_all)
+      call model%visit(freight)
     end subroutine pass_all
 
   end subroutine hand_model
@@ -110,26 +104,11 @@ contains
     subroutine pass_fixed(nodes, directions)
       integer, allocatable, intent(inout) :: nodes(:), directions(:)
 
-      call pass(freight, nodes)
-      call pass(freight, directions)
+      call freight%visit('nodes', nodes)
+      call freight%visit('directions', directions)
     end subroutine pass_fixed
 
   end subroutine hand_fixed
-
-  !> Room for what goes in pieces; it takes memory where something is put.
-  subroutine reserve_mesh(moves, model)
-    logical, intent(in) :: moves
-    type(model_t), intent(inout) :: model
-
-    associate (mesh => model%mesh, layout => model%layout)
-      allocate (mesh%node_id(mesh%n_node), mesh%coordinates(2, mesh%n_node))
-      if (moves) allocate (model%conditions%initial_velocity(2, mesh%n_node))
-      allocate (layout%slot_element(layout%n_slot), layout%slot_nodes(4, layout%n_slot), &
-        layout%slot_local(4, layout%n_slot))
-      allocate (mesh%element_id(mesh%n_element), mesh%element_nodes(4, mesh%n_element), &
-        mesh%element_part(mesh%n_element), layout%element_slot(mesh%n_element))
-    end associate
-  end subroutine reserve_mesh
 
   !> What a process that starts its own share alone has to know of the state of the first one.
   subroutine hand_others(model, ranks, state, others, answers)
@@ -165,8 +144,8 @@ contains
   contains
 
     subroutine pass_answers()
-      call pass(freight, answers%is_inside)
-      call pass(freight, penalties)
+      call freight%visit('is_inside', answers%is_inside)
+      call freight%visit('penalties', penalties)
     end subroutine pass_answers
 
   end subroutine hand_others
@@ -177,7 +156,7 @@ contains
     type(ranks_t), intent(inout) :: ranks
     integer, intent(in) :: what
     type(model_t), intent(inout) :: model
-    real(wp), intent(inout), optional :: mass(:)
+    real(wp), allocatable, intent(inout), optional :: mass(:)
     type(shares_t) :: shares
     integer :: starts(0:ranks%n), rank
 
@@ -201,14 +180,15 @@ contains
     integer, intent(in) :: what       !! one of the `of_` constants
     integer, intent(in) :: range(2)
     type(model_t), intent(inout) :: model
-    real(wp), intent(inout), optional :: mass(:)
+    real(wp), allocatable, intent(inout), optional :: mass(:)
     type(freight_t) :: freight
     integer :: first, last
 
     if (receiver /= everyone .and. all(ranks%mine /= [0, receiver])) return
     do first = range(1), range(2), most_items
       last = min(range(2), first + most_items - 1)
-      freight = freight_t()
+      freight = part_of(merge(of_nodes, what, what < 0), [first, last])
+      freight%is_partial = what /= of_faces
       if (ranks%mine == 0) then
         call pass_piece()
         call start_loading(freight)
@@ -227,19 +207,56 @@ contains
     !> Count, load or unload it.
     subroutine pass_piece()
       select case (what)
-      case (of_nodes)
-        call pass_nodes(first, last, model, freight)
-      case (of_slots)
-        call pass_slots(first, last, model%layout, freight)
-      case (of_elements)
-        call pass_elements(first, last, model, freight)
       case (of_faces)
         call pass_faces(model, freight)
       case (of_mass)
-        call pass_reals(last - first + 1, mass(first:last), freight)
+        call freight%visit('mass', mass, of_nodes)
+      case default
+        call model%visit(freight)
       end select
     end subroutine pass_piece
 
   end subroutine hand_range
+
+  !> Single elements that all have to know: those behind contact surfaces with their nodes, and
+  !> where those of cross sections stand.
+  subroutine pass_faces(model, freight)
+    type(model_t), intent(inout), target :: model
+    type(freight_t), intent(inout) :: freight
+    integer :: i, k
+
+    do i = 1, size(model%contacts)
+      call pass_side(model%contacts(i)%slave%segment_element)
+      call pass_side(model%contacts(i)%master%segment_element)
+    end do
+    if (.not. allocated(model%controls%output%cross_sections)) return
+    do i = 1, size(model%controls%output%cross_sections)
+      associate (elements => model%controls%output%cross_sections(i)%elements)
+        do k = 1, size(elements)
+          call freight%plain(c_loc(model%layout%element_slot(elements(k))), storage_size(1), 1)
+        end do
+      end associate
+    end do
+
+  contains
+
+    !> Nodes, places and parts of the elements behind one surface.
+    subroutine pass_side(elements)
+      integer, intent(in) :: elements(:)
+      integer :: i, k
+
+      do i = 1, size(elements)
+        associate (e => elements(i), mesh => model%mesh)
+          call freight%plain(c_loc(mesh%element_part(e)), storage_size(1), 1)
+          call freight%plain(c_loc(mesh%element_nodes(1, e)), storage_size(1), 4)
+          do k = 1, 4
+            call freight%plain(c_loc(mesh%coordinates(1, mesh%element_nodes(k, e))), &
+              storage_size(1.0_wp), 2)
+          end do
+        end associate
+      end do
+    end subroutine pass_side
+
+  end subroutine pass_faces
 
 end module rank_model_m
