@@ -6,13 +6,22 @@ module case_plan_m
   use deck_choose_case_m, only : list_cases
   use deck_lines_m, only : deck_t
   use errors_m, only : error_t, raise
-  use freight_m, only : freight_t, start_loading
-  use freight_sharing_m, only : spread_freight
+  use freight_m, only : freight_t
+  use freight_sharing_m, only : hand, everyone
   use log_m, only : to_text
   use ranks_m, only : ranks_t, share_error
+  use visitor_m, only : visited_t, visitor_t, length
   implicit none
   private
   public :: plan_cases, case_name, join_failures
+
+  !> The cases of a deck.
+  type, extends(visited_t) :: cases_t
+    logical :: found = .false. !! it has some
+    type(case_t), allocatable :: list(:)
+  contains
+    procedure :: visit => visit_cases
+  end type cases_t
 
 contains
 
@@ -21,14 +30,14 @@ contains
   !> told by whoever reads all of it.
   subroutine plan_cases(arguments, ranks, runs, deck, error)
     type(arguments_t), intent(in) :: arguments
-    type(ranks_t), intent(in) :: ranks
+    type(ranks_t), intent(inout) :: ranks
     type(arguments_t), allocatable, intent(out) :: runs(:)
     type(deck_t), allocatable, intent(out) :: deck !! that has been cut, if it had to be; of
                                                    !! several processes the first one has it
     type(error_t), allocatable, intent(out) :: error
-    type(case_t), allocatable :: cases(:)
+    type(cases_t) :: cases
+    type(freight_t) :: freight
     character(:), allocatable :: refusal
-    logical :: found
     integer :: i, k, n_asked
     integer, allocatable :: chosen(:)
 
@@ -36,20 +45,20 @@ contains
     if (.not. (arguments%all_cases .or. size(arguments%cases) > 0)) return
     if (ranks%mine == 0) then
       allocate (deck)
-      call list_cases(arguments%deck, deck, cases, error)
-      found = deck%cases%found
+      call list_cases(arguments%deck, deck, cases%list, error)
+      cases%found = deck%cases%found
     end if
     call share_error(ranks, error)
     if (allocated(error)) return
-    call hand_cases(ranks, found, cases)
-    if (arguments%all_cases .and. .not. found) &
+    if (ranks%n > 1) call hand(ranks, everyone, freight, cases)
+    if (arguments%all_cases .and. .not. cases%found) &
       runs(1)%ignored = trim(adjustl(runs(1)%ignored//' case'))
     chosen = arguments%cases
     ! A number that is none is a mistake, which the other cases tell.
-    if (arguments%all_cases) chosen = pack([(cases(i)%id, i=1, size(cases))], &
-      [(cases(i)%id > 0, i=1, size(cases))])
+    if (arguments%all_cases) chosen = pack([(cases%list(i)%id, i=1, size(cases%list))], &
+      [(cases%list(i)%id > 0, i=1, size(cases%list))])
     n_asked = size(chosen)
-    if (arguments%all_cases) n_asked = size(cases)
+    if (arguments%all_cases) n_asked = size(cases%list)
     if (n_asked > 1 .and. arguments%job_is_given) refusal = 'jobid= on the command line would be ' &
       //'the name of '//to_text(n_asked)//' cases: expected one case (case=ID), or JOBID of *CASE'
     if (size(chosen) == 0) then
@@ -61,46 +70,21 @@ contains
     do i = 1, size(chosen)
       runs(i) = arguments
       runs(i)%case = chosen(i)
-      k = find_case(cases, chosen(i))
-      if (k > 0) call ask_for(cases(k), allocated(refusal), runs(i))
+      k = find_case(cases%list, chosen(i))
+      if (k > 0) call ask_for(cases%list(k), allocated(refusal), runs(i))
       if (allocated(refusal)) runs(i)%refusal = refusal
     end do
   end subroutine plan_cases
 
-  !> What the first process has found in the deck, for all: of each case what its run is asked for.
-  subroutine hand_cases(ranks, found, cases)
-    type(ranks_t), intent(in) :: ranks
-    logical, intent(inout) :: found
-    type(case_t), allocatable, intent(inout) :: cases(:)
-    type(freight_t) :: freight
+  !> Its components.
+  subroutine visit_cases(self, visitor)
+    class(cases_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
 
-    if (ranks%n == 1) return
-    if (ranks%mine == 0) then
-      call pass_cases()
-      call start_loading(freight)
-      call pass_cases()
-    end if
-    call spread_freight(ranks, freight)
-    if (ranks%mine > 0) call pass_cases()
-
-  contains
-
-    subroutine pass_cases()
-      integer :: i, n
-
-      call freight%visit('found', found)
-      n = 0
-      if (allocated(cases)) n = size(cases)
-      call freight%visit('n', n)
-      if (freight%unloads) allocate (cases(n))
-      do i = 1, n
-        call freight%visit('id', cases(i)%id)
-        call freight%visit('job', cases(i)%job)
-        call freight%visit('commands', cases(i)%commands)
-      end do
-    end subroutine pass_cases
-
-  end subroutine hand_cases
+    call visitor%visit('found', self%found)
+    if (visitor%makes(length(self%list))) allocate (self%list(visitor%n_item))
+    call visitor%each('list', self%list)
+  end subroutine visit_cases
 
   !> The run of one case.
   subroutine ask_for(item, is_own_name, run)

@@ -26,7 +26,7 @@ contains
   !> error termination the next one begins, but not after a stop on request or trouble with files.
   subroutine run_cases(arguments, ranks, has_ended, error)
     type(arguments_t), intent(in) :: arguments
-    type(ranks_t), intent(in) :: ranks
+    type(ranks_t), intent(inout) :: ranks
     logical, intent(out) :: has_ended !! how all has ended has been told
     type(error_t), allocatable, intent(out) :: error
     type(arguments_t), allocatable :: runs(:)

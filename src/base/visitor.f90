@@ -258,6 +258,7 @@ contains
     item = item_t(name, as_bytes)
     if (allocated(text)) item%extents(1) = len(text)
     call visitor%find(item)
+    if (item%is_new .and. allocated(text)) deallocate (text)
     if (item%is_new .and. item%extents(1) /= absent) allocate (character(item%extents(1)) :: text)
     if (item%extents(1) > 0) call visitor%pass(item, c_loc(text))
   end subroutine visit_text

@@ -36,6 +36,7 @@ EXEMPT = {
     "mesh_t": {"deck_node": "the order of results, which the first process writes"},
     "conditions_t": dict.fromkeys(("fixed_nodes", "fixed_directions"), "of its own nodes, rank_model.f90"),
     "model_t": dict.fromkeys(("node_sets", "segment_sets", "part_sets", "shell_sets"), "conditions and surfaces have been made of them"),
+    "case_t": dict.fromkeys(("line", "sub_cases"), "of the deck, which the first process reads"),
     "controls_t": {"implicit": "runs of several processes are explicit, its default"},
 }
 #: types of src/state that hold no memory

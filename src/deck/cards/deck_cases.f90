@@ -14,18 +14,21 @@ module deck_cases_m
   use deck_parameter_table_m, only : parameters_t
   use deck_values_m, only : integer_of, is_blank
   use deck_checks_m, only : require_id
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: case_t, read_cases, find_case, cases_text
 
   !> One case.
-  type :: case_t
+  type, extends(visited_t) :: case_t
     integer :: id = 0
     integer :: line = 0                   !! of its keyword
     character(:), allocatable :: job      !! stem of its result files
     character(:), allocatable :: commands !! words of the command line, without those that are
                                           !! wrong
     integer, allocatable :: sub_cases(:)
+  contains
+    procedure :: visit => visit_case
   end type case_t
 
 contains
@@ -230,5 +233,15 @@ contains
     end do
     if (n > most) text = text//' and '//to_text(n - most)//' more'
   end function cases_text
+
+  !> What its run is asked for.
+  subroutine visit_case(self, visitor)
+    class(case_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('id', self%id)
+    call visitor%visit('job', self%job)
+    call visitor%visit('commands', self%commands)
+  end subroutine visit_case
 
 end module deck_cases_m

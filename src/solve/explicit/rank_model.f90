@@ -4,9 +4,8 @@
 !> nobody has sent or written takes no memory: a process that is not the first gets special nodes,
 !> and the nodes and slots of its own tiles.
 module rank_model_m
-  use, intrinsic :: iso_c_binding, only : c_loc
-  use freight_m, only : freight_t, start_loading, part_of
-  use freight_sharing_m, only : spread_freight, send_freight
+  use freight_m, only : freight_t, part_of
+  use freight_sharing_m, only : hand, everyone
   use inside_answers_m, only : answers_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
@@ -16,18 +15,45 @@ module rank_model_m
   use rank_shares_m, only : shares_t, share_out
   use ranks_m, only : ranks_t
   use state_m, only : state_t
-  use visitor_m, only : of_elements, of_nodes, of_slots
+  use visitor_m, only : visited_t, visitor_t, of_elements, of_nodes, of_slots
   implicit none
   private
   public :: hand_model, hand_others
 
-  !> What goes in pieces besides the mesh, and items of a piece at most.
-  integer, parameter :: of_faces = -1, of_mass = -2
+  !> Items of a piece at most.
   integer, parameter :: most_items = 65536
-  !> In place of a receiver: all.
-  integer, parameter :: everyone = 0
+
+  !> What is handed besides the model.
+  type, extends(visited_t) :: handed_t
+    integer, allocatable :: nodes(:), directions(:) !! fixed degrees of freedom
+    integer, allocatable :: parts(:)                !! of elements behind surfaces
+    integer, allocatable :: corners(:, :)           !! (4, elements) their nodes
+    real(wp), allocatable :: places(:, :)           !! (2, 4 elements) where these are
+    integer, allocatable :: slots(:)                !! of elements of cross sections
+    real(wp), allocatable :: mass(:)                !! (n_node) lumped masses
+    real(wp), allocatable :: penalties(:, :)        !! (3, interfaces) as in others_t
+    logical, allocatable :: is_inside(:)            !! as in answers_t
+  contains
+    procedure :: visit => visit_handed
+  end type handed_t
 
 contains
+
+  !> Its components.
+  subroutine visit_handed(self, visitor)
+    class(handed_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('nodes', self%nodes)
+    call visitor%visit('directions', self%directions)
+    call visitor%visit('parts', self%parts)
+    call visitor%visit('corners', self%corners)
+    call visitor%visit('places', self%places)
+    call visitor%visit('slots', self%slots)
+    call visitor%visit('mass', self%mass, of_nodes)
+    call visitor%visit('penalties', self%penalties)
+    call visitor%visit('is_inside', self%is_inside)
+  end subroutine visit_handed
 
   !> The model of the first process for all.
   subroutine hand_model(ranks, model, has_all)
@@ -35,37 +61,69 @@ contains
     type(model_t), intent(inout) :: model
     logical, intent(out) :: has_all !! each process gets all of it
     type(freight_t) :: freight
+    type(shares_t) :: shares
+    integer :: n_node
 
     has_all = .true.
     if (ranks%n == 1) return
-    if (ranks%mine == 0) then
-      has_all = starts_from_all(model)
-      call pass_all()
-      call start_loading(freight)
-      call pass_all()
-    end if
-    call spread_freight(ranks, freight)
-    if (ranks%mine > 0) call pass_all()
+    call hand(ranks, everyone, freight, model)
     deallocate (freight%values)
+    has_all = starts_from_all(model)
+    n_node = model%mesh%n_node
     if (has_all) then
-      call hand_range(ranks, everyone, of_nodes, [1, model%mesh%n_node], model)
+      call hand_range(ranks, everyone, of_nodes, [1, n_node], model)
       call hand_range(ranks, everyone, of_slots, [1, model%layout%n_slot], model)
       call hand_range(ranks, everyone, of_elements, [1, model%mesh%n_element], model)
     else
-      call hand_shares(ranks, of_nodes, model)
-      call hand_shares(ranks, of_slots, model)
-      call hand_range(ranks, everyone, of_faces, [1, 1], model)
+      shares = share_out(model%layout, ranks%mine, ranks%n)
+      call hand_shares(ranks, of_nodes, shares, n_node, model)
+      call hand_shares(ranks, of_slots, shares, n_node, model)
+      call hand_faces(ranks, model)
     end if
     call hand_fixed(ranks, has_all, model)
-
-  contains
-
-    subroutine pass_all()
-      call freight%visit('has_all', has_all)
-      call model%visit(freight)
-    end subroutine pass_all
-
   end subroutine hand_model
+
+  !> Single elements that all have to know: those behind contact surfaces with their nodes, and
+  !> where those of cross sections stand.
+  subroutine hand_faces(ranks, model)
+    type(ranks_t), intent(inout) :: ranks
+    type(model_t), intent(inout) :: model
+    type(handed_t) :: handed
+    type(freight_t) :: freight
+    integer, allocatable :: elements(:), cut(:)
+    integer :: i, k
+
+    allocate (elements(0), cut(0))
+    do i = 1, size(model%contacts)
+      elements = [elements, model%contacts(i)%slave%segment_element, &
+        model%contacts(i)%master%segment_element]
+    end do
+    if (allocated(model%controls%output%cross_sections)) then
+      do i = 1, size(model%controls%output%cross_sections)
+        cut = [cut, model%controls%output%cross_sections(i)%elements]
+      end do
+    end if
+    associate (mesh => model%mesh, layout => model%layout)
+      if (ranks%mine == 0) then
+        handed%parts = mesh%element_part(elements)
+        handed%corners = mesh%element_nodes(:, elements)
+        handed%places = mesh%coordinates(:, [handed%corners])
+        handed%slots = layout%element_slot(cut)
+      end if
+      call hand(ranks, everyone, freight, handed)
+      if (ranks%mine == 0) return
+      do i = 1, size(elements)
+        mesh%element_part(elements(i)) = handed%parts(i)
+        mesh%element_nodes(:, elements(i)) = handed%corners(:, i)
+        do k = 1, 4
+          mesh%coordinates(:, handed%corners(k, i)) = handed%places(:, 4*(i - 1) + k)
+        end do
+      end do
+      do i = 1, size(cut)
+        layout%element_slot(cut(i)) = handed%slots(i)
+      end do
+    end associate
+  end subroutine hand_faces
 
   !> Fixed degrees of freedom of the nodes that each process has.
   subroutine hand_fixed(ranks, has_all, model)
@@ -73,190 +131,99 @@ contains
     logical, intent(in) :: has_all
     type(model_t), intent(inout) :: model
     type(freight_t) :: freight
+    type(handed_t) :: handed
     type(shares_t) :: shares
-    integer, allocatable :: nodes(:), directions(:)
     logical, allocatable :: is_known(:)
     integer :: rank
 
     shares = share_out(model%layout, ranks%mine, ranks%n)
     do rank = 1, ranks%n - 1
-      if (all(ranks%mine /= [0, rank])) cycle
       freight = freight_t()
       if (ranks%mine == 0) then
-        associate (all_nodes => model%conditions%fixed_nodes, starts => shares%nodes)
-          is_known = all_nodes <= model%layout%n_special .or. all_nodes >= starts(ranks%n) &
-            .or. (all_nodes >= starts(rank) .and. all_nodes < starts(rank + 1))
-          if (has_all) is_known = .true.
-          nodes = pack(all_nodes, is_known)
+        associate (nodes => model%conditions%fixed_nodes, starts => shares%nodes)
+          is_known = has_all .or. nodes <= model%layout%n_special .or. nodes >= starts(ranks%n) &
+            .or. (nodes >= starts(rank) .and. nodes < starts(rank + 1))
+          handed%nodes = pack(nodes, is_known)
         end associate
-        directions = pack(model%conditions%fixed_directions, is_known)
-        call pass_fixed(nodes, directions)
-        call start_loading(freight)
-        call pass_fixed(nodes, directions)
+        handed%directions = pack(model%conditions%fixed_directions, is_known)
       end if
-      call send_freight(ranks, rank, freight)
-      if (ranks%mine > 0) &
-        call pass_fixed(model%conditions%fixed_nodes, model%conditions%fixed_directions)
+      call hand(ranks, rank, freight, handed)
     end do
-
-  contains
-
-    subroutine pass_fixed(nodes, directions)
-      integer, allocatable, intent(inout) :: nodes(:), directions(:)
-
-      call freight%visit('nodes', nodes)
-      call freight%visit('directions', directions)
-    end subroutine pass_fixed
-
+    if (ranks%mine == 0) return
+    call move_alloc(handed%nodes, model%conditions%fixed_nodes)
+    call move_alloc(handed%directions, model%conditions%fixed_directions)
   end subroutine hand_fixed
 
   !> What a process that starts its own share alone has to know of the state of the first one.
   subroutine hand_others(model, ranks, state, others, answers)
-    type(model_t), intent(inout) :: model
+    type(model_t), intent(in) :: model
     type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state              !! of the first process
     type(others_t), allocatable, intent(out) :: others !! left alone
     type(answers_t), allocatable, intent(inout) :: answers !! to the first process; then from it
     type(freight_t) :: freight
-    real(wp), allocatable :: penalties(:, :)
+    type(handed_t) :: handed
+    type(shares_t) :: shares
     integer :: i
 
     if (ranks%mine == 0) then
-      call hand_shares(ranks, of_mass, model, state%mass)
-      penalties = reshape([(state%contacts(i)%slave_penalty, state%contacts(i)%master_penalty, &
-        state%contacts(i)%node_penalty, i=1, size(state%contacts))], [3, size(state%contacts)])
-      call pass_answers()
-      call start_loading(freight)
-      call pass_answers()
-    else
-      allocate (others, source=others_of(model, share_out(model%layout, ranks%mine, ranks%n), &
-        ranks))
-      allocate (others%mass(model%mesh%n_node))
-      call hand_shares(ranks, of_mass, model, others%mass)
-      allocate (answers)
-      answers%are_given = .true.
+      call move_alloc(state%mass, handed%mass)
+      handed%penalties = reshape([(state%contacts(i)%slave_penalty, &
+        state%contacts(i)%master_penalty, state%contacts(i)%node_penalty, &
+        i=1, size(state%contacts))], [3, size(state%contacts)])
+      if (allocated(answers%is_inside)) handed%is_inside = answers%is_inside
     end if
-    call spread_freight(ranks, freight)
-    if (ranks%mine == 0) return
-    call pass_answers()
-    call move_alloc(penalties, others%penalties)
-
-  contains
-
-    subroutine pass_answers()
-      call freight%visit('is_inside', answers%is_inside)
-      call freight%visit('penalties', penalties)
-    end subroutine pass_answers
-
+    call hand(ranks, everyone, freight, handed)
+    shares = share_out(model%layout, ranks%mine, ranks%n)
+    call hand_shares(ranks, of_nodes, shares, model%mesh%n_node, handed)
+    if (ranks%mine == 0) then
+      call move_alloc(handed%mass, state%mass)
+      return
+    end if
+    allocate (others, source=others_of(model, shares, ranks))
+    call move_alloc(handed%mass, others%mass)
+    call move_alloc(handed%penalties, others%penalties)
+    allocate (answers)
+    answers%are_given = .true.
+    if (allocated(handed%is_inside)) call move_alloc(handed%is_inside, answers%is_inside)
   end subroutine hand_others
 
   !> What all have to know, and then to each process what is of its tiles. Nodes inside of rigid
   !> bodies stand behind those of tiles: all move them.
-  subroutine hand_shares(ranks, what, model, mass)
+  subroutine hand_shares(ranks, of, shares, n_node, item)
     type(ranks_t), intent(inout) :: ranks
-    integer, intent(in) :: what
-    type(model_t), intent(inout) :: model
-    real(wp), allocatable, intent(inout), optional :: mass(:)
-    type(shares_t) :: shares
+    integer, intent(in) :: of         !! of_nodes or of_slots
+    type(shares_t), intent(in) :: shares
+    integer, intent(in) :: n_node     !! of the mesh
+    class(visited_t), intent(inout) :: item
     integer :: starts(0:ranks%n), rank
 
-    shares = share_out(model%layout, ranks%mine, ranks%n)
     starts = shares%nodes
-    if (what == of_slots) then
+    if (of == of_slots) then
       starts = (shares%chunks - 1)*chunk_size + 1
     else
-      call hand_range(ranks, everyone, what, [1, model%layout%n_special], model, mass)
-      call hand_range(ranks, everyone, what, [starts(ranks%n), model%mesh%n_node], model, mass)
+      call hand_range(ranks, everyone, of, [1, starts(0) - 1], item)
+      call hand_range(ranks, everyone, of, [starts(ranks%n), n_node], item)
     end if
     do rank = 1, ranks%n - 1
-      call hand_range(ranks, rank, what, [starts(rank), starts(rank + 1) - 1], model, mass)
+      call hand_range(ranks, rank, of, [starts(rank), starts(rank + 1) - 1], item)
     end do
   end subroutine hand_shares
 
-  !> A range of items, piece by piece.
-  subroutine hand_range(ranks, receiver, what, range, model, mass)
+  !> A range of what an item has, piece by piece.
+  subroutine hand_range(ranks, receiver, of, range, item)
     type(ranks_t), intent(inout) :: ranks
     integer, intent(in) :: receiver   !! `everyone` or one of the others
-    integer, intent(in) :: what       !! one of the `of_` constants
+    integer, intent(in) :: of         !! one of the `of_` constants
     integer, intent(in) :: range(2)
-    type(model_t), intent(inout) :: model
-    real(wp), allocatable, intent(inout), optional :: mass(:)
+    class(visited_t), intent(inout) :: item
     type(freight_t) :: freight
-    integer :: first, last
+    integer :: first
 
-    if (receiver /= everyone .and. all(ranks%mine /= [0, receiver])) return
     do first = range(1), range(2), most_items
-      last = min(range(2), first + most_items - 1)
-      freight = part_of(merge(of_nodes, what, what < 0), [first, last])
-      freight%is_partial = what /= of_faces
-      if (ranks%mine == 0) then
-        call pass_piece()
-        call start_loading(freight)
-        call pass_piece()
-      end if
-      if (receiver == everyone) then
-        call spread_freight(ranks, freight)
-      else
-        call send_freight(ranks, receiver, freight)
-      end if
-      if (ranks%mine > 0) call pass_piece()
+      freight = part_of(of, [first, min(range(2), first + most_items - 1)])
+      call hand(ranks, receiver, freight, item)
     end do
-
-  contains
-
-    !> Count, load or unload it.
-    subroutine pass_piece()
-      select case (what)
-      case (of_faces)
-        call pass_faces(model, freight)
-      case (of_mass)
-        call freight%visit('mass', mass, of_nodes)
-      case default
-        call model%visit(freight)
-      end select
-    end subroutine pass_piece
-
   end subroutine hand_range
-
-  !> Single elements that all have to know: those behind contact surfaces with their nodes, and
-  !> where those of cross sections stand.
-  subroutine pass_faces(model, freight)
-    type(model_t), intent(inout), target :: model
-    type(freight_t), intent(inout) :: freight
-    integer :: i, k
-
-    do i = 1, size(model%contacts)
-      call pass_side(model%contacts(i)%slave%segment_element)
-      call pass_side(model%contacts(i)%master%segment_element)
-    end do
-    if (.not. allocated(model%controls%output%cross_sections)) return
-    do i = 1, size(model%controls%output%cross_sections)
-      associate (elements => model%controls%output%cross_sections(i)%elements)
-        do k = 1, size(elements)
-          call freight%plain(c_loc(model%layout%element_slot(elements(k))), storage_size(1), 1)
-        end do
-      end associate
-    end do
-
-  contains
-
-    !> Nodes, places and parts of the elements behind one surface.
-    subroutine pass_side(elements)
-      integer, intent(in) :: elements(:)
-      integer :: i, k
-
-      do i = 1, size(elements)
-        associate (e => elements(i), mesh => model%mesh)
-          call freight%plain(c_loc(mesh%element_part(e)), storage_size(1), 1)
-          call freight%plain(c_loc(mesh%element_nodes(1, e)), storage_size(1), 4)
-          do k = 1, 4
-            call freight%plain(c_loc(mesh%coordinates(1, mesh%element_nodes(k, e))), &
-              storage_size(1.0_wp), 2)
-          end do
-        end associate
-      end do
-    end subroutine pass_side
-
-  end subroutine pass_faces
 
 end module rank_model_m
