@@ -9,11 +9,11 @@ module csv_table_m
   use dyna_text_m, only : dyna_text_t, add_dyna_row, flush_dyna_text, close_dyna_text
   use errors_m, only : error_t
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
-  use visitor_m, only : visited_t, visitor_t, any_length
+  use visitor_m, only : visitor_t, any_length
   implicit none
   private
   public :: csv_table_t, plan_table, open_table, add_row, check_table, flush_table, close_table, &
-    column_name, column_names, n_columns, row_text, kind_real, kind_integer, kind_side
+    column_name, column_names, n_columns, row_text, visit_rows, kind_real, kind_integer, kind_side
 
   !> Kinds of columns: a real, an integer, a side of an interface (1 = slave, 2 = master).
   integer, parameter :: kind_real = 1, kind_integer = 2, kind_side = 3
@@ -25,7 +25,7 @@ module csv_table_m
   character(*), parameter :: zero = '0.0000000000000000E+000'
 
   !> One table.
-  type, extends(visited_t) :: csv_table_t
+  type :: csv_table_t
     logical :: is_open = .false.            !! rows are taken only while open
     character(:), allocatable :: name       !! glstat, rcforc and so on
     character(:), allocatable :: header     !! column names with commas between
@@ -39,8 +39,6 @@ module csv_table_m
     integer :: n_waiting = 0                !! bytes of them
     integer(long) :: flushed = 0            !! clock tick of the last write
     type(error_t), allocatable :: trouble   !! first failure; reported by the next check or flush
-  contains
-    procedure :: visit => visit_table
   end type csv_table_t
 
 contains
@@ -244,19 +242,20 @@ contains
     if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
   end subroutine close_table
 
-  !> Its rows. Those of a table that the run no longer writes are left out.
-  subroutine visit_table(self, visitor)
-    class(csv_table_t), intent(inout), target :: self
+  !> Rows as a restart file has them. Those of a table that the run no longer writes are left out.
+  subroutine visit_rows(table, name, visitor)
+    type(csv_table_t), intent(inout) :: table
+    character(*), intent(in) :: name
     class(visitor_t), intent(inout) :: visitor
     real(wp), allocatable :: rows(:, :)
     integer :: i
 
-    if (allocated(self%values)) rows = self%values(:, :self%n_row)
-    call visitor%visit('values', rows, any_length)
-    if (.not. visitor%judges .or. .not. allocated(rows) .or. .not. self%is_open) return
+    if (allocated(table%values)) rows = table%values(:, :table%n_row)
+    call visitor%visit(name, rows, any_length)
+    if (.not. visitor%judges .or. .not. allocated(rows) .or. .not. table%is_open) return
     do i = 1, size(rows, 2)
-      call add_row(self, rows(:, i))
+      call add_row(table, rows(:, i))
     end do
-  end subroutine visit_table
+  end subroutine visit_rows
 
 end module csv_table_m

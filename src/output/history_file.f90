@@ -7,10 +7,11 @@ module history_file_m
   use model_m, only : model_t
   use controls_m, only : is_asked
   use csv_table_m, only : csv_table_t, plan_table, open_table, check_table, flush_table, &
-    close_table, column_names
+    close_table, column_names, visit_rows
   use dyna_text_m, only : open_dyna_text
   use history_rows_m, only : name_columns
   use kinds_m, only : wp
+  use log_m, only : to_text
   use history_tables_m, only : history_tables, n_table, asked_alone, asked_or_states, &
     asked_by_states, each_run, each_contact, each_history_node, each_part, each_wall, &
     each_support, each_history_element, each_body, each_boundary, each_group_node, &
@@ -196,8 +197,11 @@ contains
   subroutine visit_histories(self, visitor)
     class(histories_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
+    integer :: i
 
-    call visitor%each('tables', self%tables)
+    do i = 1, n_table
+      call visit_rows(self%tables(i), to_text(i), visitor)
+    end do
   end subroutine visit_histories
 
 end module history_file_m

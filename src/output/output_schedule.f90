@@ -6,7 +6,7 @@ module output_schedule_m
   use kinds_m, only : wp, long
   use controls_m, only : interval_t, controls_t
   use curves_m, only : curve_t, curve_value
-  use visitor_m, only : visited_t, visitor_t
+  use visitor_m, only : visited_t, visitor_t, any_length
   implicit none
   private
   public :: schedule_t, start_schedule, is_due, mark_written, is_active, output_reach, &
@@ -156,7 +156,8 @@ contains
     call visitor%visit('active', self%active)
     call visitor%visit('interval', self%interval)
     call visitor%visit('varies', self%varies)
-    call visitor%part('curve', self%curve)
+    call visitor%visit('curve_abscissa', self%curve%abscissa, any_length)
+    call visitor%visit('curve_ordinate', self%curve%ordinate, any_length)
     call visitor%visit('count', self%count, most_outputs, 'a count that no run can reach')
     call visitor%visit('next', self%next, 0.0_wp, 'a time below zero')
   end subroutine visit_schedule
