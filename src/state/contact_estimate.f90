@@ -75,7 +75,7 @@ contains
     call visitor%visit('softness', self%softness)
     call visitor%visit('stored', self%stored)
     call visitor%visit('bodies', self%bodies)
-    call visitor%visit('penetration', self%penetration)
+    call visitor%visit('penetration', self%penetration, 0.0_wp, 'a number below zero')
     call visitor%visit('facet_error', self%facet_error)
     call visitor%visit('arc_height', self%arc_height)
     call visitor%visit('arc_curvature', self%arc_curvature)
