@@ -1,18 +1,42 @@
 ! SPDX-License-Identifier: MIT
-!> Values of many arrays one behind the other. The same walk along the arrays counts the values,
-!> loads them and unloads them.
+!> A visitor that carries values from one process to another, or aside: the same visit counts them,
+!> loads them one behind the other and unloads them. As they lie in memory: who loads and who
+!> unloads are programs of one build.
+!>
+!> A freight takes all that is not divided among processes; of arrays that are, it gives the lengths
+!> alone. A partial one takes ranges of these.
 module freight_m
-  use, intrinsic :: iso_fortran_env, only : int16
+  use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc, c_ptr, c_size_t
+  use c_files_m, only : c_memcpy
+  use heap_m, only : give_back_pages
   use kinds_m, only : wp
+  use visitor_m, only : visitor_t, item_t, any_length, of_slots, of_columns, of_streams, &
+    of_stresses, of_chunks, new_chunks, fixed_slots, fixed_columns, n_of, as_integer, as_bytes
   implicit none
   private
-  public :: freight_t, start_loading, start_unloading, pass_reals, pass_integers, pass_shorts
+  public :: freight_t, forgetter_t, start_loading, start_unloading, part_of, choose_slots, &
+    stream_starts
 
-  type :: freight_t
+  integer, parameter :: real_bytes = storage_size(1.0_wp)/8, integer_bytes = storage_size(1)/8
+
+  type, extends(visitor_t) :: freight_t
     integer :: n = 0                    !! values passed so far
     logical :: unloads = .false.
     real(wp), allocatable :: values(:)  !! not there while they are only counted
+    integer :: ranges(2, n_of) = spread([1, 0], 2, n_of) !! of a partial one: first and last that it
+                                        !! takes of what is divided, by the `of_` constants
+  contains
+    procedure :: find => pass_extents
+    procedure :: pass => pass_values
+    procedure :: carry => load_or_unload
   end type freight_t
+
+  !> A partial one that gives the memory of its ranges back: nobody asks for them any more. The
+  !> arrays stay as long as they are.
+  type, extends(freight_t) :: forgetter_t
+  contains
+    procedure :: carry => give_back
+  end type forgetter_t
 
 contains
 
@@ -32,52 +56,140 @@ contains
     freight%unloads = .true.
   end subroutine start_unloading
 
-  !> A piece of an array of reals.
-  pure subroutine pass_reals(n, values, freight)
-    integer, intent(in) :: n
-    real(wp), intent(inout) :: values(n)
-    type(freight_t), intent(inout) :: freight
+  !> A freight of a range of what is divided.
+  pure function part_of(of, range) result(freight)
+    integer, intent(in) :: of       !! one of the `of_` constants
+    integer, intent(in) :: range(2)
+    type(freight_t) :: freight
 
-    if (allocated(freight%values)) then
-      if (freight%unloads) then
-        values = freight%values(freight%n + 1:freight%n + n)
+    freight%is_partial = .true.
+    freight%ranges(:, of) = range
+  end function part_of
+
+  !> The slots of a range of chunks, and their streams.
+  pure subroutine choose_slots(freight, chunks, chunk_size, with_fixed, with_chunks)
+    class(freight_t), intent(inout) :: freight
+    integer, intent(in) :: chunks(2)
+    integer, intent(in) :: chunk_size
+    logical, intent(in) :: with_fixed  !! what steps do not change too
+    logical, intent(in) :: with_chunks !! values of whole chunks too
+    integer :: slots(2)
+
+    freight%is_partial = .true.
+    slots = [(chunks(1) - 1)*chunk_size + 1, chunks(2)*chunk_size]
+    freight%ranges(:, of_slots) = slots
+    freight%ranges(:, of_columns) = slots
+    freight%ranges(:, of_stresses) = [16*slots(1) - 15, 16*slots(2)]
+    freight%ranges(:, of_streams) = chunks
+    if (with_fixed) freight%ranges(:, fixed_slots) = slots
+    if (with_fixed) freight%ranges(:, fixed_columns) = slots
+    if (with_chunks) freight%ranges(:, of_chunks) = chunks
+    if (with_chunks) freight%ranges(:, new_chunks) = chunks
+  end subroutine choose_slots
+
+  !> Extents go along, so that who unloads can allocate.
+  subroutine pass_extents(visitor, item)
+    class(freight_t), intent(inout) :: visitor
+    type(item_t), intent(inout) :: item
+    integer, target :: extents(2)
+
+    if (visitor%is_partial) return
+    extents = item%extents
+    call visitor%carry(c_loc(extents), int(2*integer_bytes, c_size_t))
+    item%extents = extents
+    item%is_new = visitor%unloads
+  end subroutine pass_extents
+
+  !> All values of an array, or those of a range of it.
+  subroutine pass_values(visitor, item, place, starts)
+    class(freight_t), intent(inout) :: visitor
+    type(item_t), intent(in) :: item
+    type(c_ptr), intent(in) :: place
+    integer, intent(in), optional :: starts(:)
+    integer(c_size_t) :: n_byte
+    integer :: range(2), k
+
+    if (item%extents(1) < 1 .or. (visitor%is_partial .neqv. item%of > any_length)) return
+    n_byte = real_bytes
+    if (item%content == as_integer) n_byte = integer_bytes
+    if (item%content == as_bytes) n_byte = 1
+    if (.not. visitor%is_partial) then
+      n_byte = n_byte*product(int(item%extents(:item%rank), c_size_t))
+      if (n_byte > 0) call visitor%carry(place, n_byte)
+      return
+    end if
+    range = visitor%ranges(:, item%of)
+    if (present(starts)) &
+      range = stream_starts([range(1), range(2) + 1], starts, item%extents(1)) - [0, 1]
+    if (range(2) < range(1)) return
+    if (any(item%of == [of_columns, fixed_columns])) then
+      do k = 1, item%extents(2)
+        call visitor%carry(behind(place, n_byte*(int(k - 1, c_size_t)*item%extents(1) &
+          + range(1) - 1)), n_byte*(range(2) - range(1) + 1))
+      end do
+    else
+      if (item%rank == 2) n_byte = n_byte*item%extents(1)
+      call visitor%carry(behind(place, n_byte*(range(1) - 1)), n_byte*(range(2) - range(1) + 1))
+    end if
+  end subroutine pass_values
+
+  !> The place so many bytes behind another.
+  pure function behind(place, n_byte) result(there)
+    type(c_ptr), intent(in) :: place
+    integer(c_size_t), intent(in) :: n_byte
+    type(c_ptr) :: there
+    integer(c_intptr_t) :: address
+
+    address = transfer(place, address) + n_byte
+    there = transfer(address, there)
+  end function behind
+
+  !> Bytes that lie side by side. They take a whole number of reals.
+  subroutine load_or_unload(visitor, place, n_byte)
+    class(freight_t), intent(inout), target :: visitor
+    type(c_ptr), intent(in) :: place
+    integer(c_size_t), intent(in) :: n_byte
+    type(c_ptr) :: ignored
+    integer :: last
+
+    last = visitor%n + int((n_byte + real_bytes - 1)/real_bytes)
+    if (allocated(visitor%values)) then
+      if (visitor%unloads) then
+        ignored = c_memcpy(place, c_loc(visitor%values(visitor%n + 1)), n_byte)
       else
-        freight%values(freight%n + 1:freight%n + n) = values
+        visitor%values(last) = 0.0_wp
+        ignored = c_memcpy(c_loc(visitor%values(visitor%n + 1)), place, n_byte)
       end if
     end if
-    freight%n = freight%n + n
-  end subroutine pass_reals
+    visitor%n = last
+  end subroutine load_or_unload
 
-  !> One of integers.
-  pure subroutine pass_integers(n, values, freight)
-    integer, intent(in) :: n
-    integer, intent(inout) :: values(n)
-    type(freight_t), intent(inout) :: freight
+  !> Their pages go back to the system.
+  subroutine give_back(visitor, place, n_byte)
+    class(forgetter_t), intent(inout), target :: visitor
+    type(c_ptr), intent(in) :: place
+    integer(c_size_t), intent(in) :: n_byte
 
-    if (allocated(freight%values)) then
-      if (freight%unloads) then
-        values = nint(freight%values(freight%n + 1:freight%n + n))
-      else
-        freight%values(freight%n + 1:freight%n + n) = real(values, wp)
-      end if
-    end if
-    freight%n = freight%n + n
-  end subroutine pass_integers
+    call give_back_pages(place, n_byte)
+    visitor%n = visitor%n + int(n_byte/real_bytes)
+  end subroutine give_back
 
-  !> One of short integers.
-  pure subroutine pass_shorts(n, values, freight)
-    integer, intent(in) :: n
-    integer(int16), intent(inout) :: values(n)
-    type(freight_t), intent(inout) :: freight
+  !> Ranges of a stream that only some chunks of elements have a part of.
+  pure function stream_starts(chunks, chunk_start, n_value) result(starts)
+    integer, intent(in) :: chunks(0:)      !! ranges of chunks
+    integer, intent(in) :: chunk_start(:)  !! where a chunk's part starts, 0 = none
+    integer, intent(in) :: n_value         !! length of the stream
+    integer :: starts(0:size(chunks) - 1)
+    integer :: rank, i
 
-    if (allocated(freight%values)) then
-      if (freight%unloads) then
-        values = nint(freight%values(freight%n + 1:freight%n + n), int16)
-      else
-        freight%values(freight%n + 1:freight%n + n) = real(values, wp)
-      end if
-    end if
-    freight%n = freight%n + n
-  end subroutine pass_shorts
+    do rank = 0, size(chunks) - 1
+      starts(rank) = n_value + 1
+      do i = chunks(rank), size(chunk_start)
+        if (chunk_start(i) == 0) cycle
+        starts(rank) = chunk_start(i)
+        exit
+      end do
+    end do
+  end function stream_starts
 
 end module freight_m

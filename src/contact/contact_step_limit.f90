@@ -19,6 +19,7 @@ module contact_step_limit_m
   use contacts_m, only : contact_t, is_tied
   use facing_state_m, only : facing_side_t
   use kinds_m, only : wp
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: spring_bound_t, bound_springs, stable_step, closed_step, opening_step, &
@@ -26,11 +27,13 @@ module contact_step_limit_m
 
   !> What is known of the springs at the nodes of one interface, those of other interfaces there
   !> included.
-  type :: spring_bound_t
+  type, extends(visited_t) :: spring_bound_t
     real(wp) :: rate = 0.0_wp     !! bound of omega^2, 1/s^2
     real(wp) :: damping = 0.0_wp  !! sum of damping fraction times omega, 1/s
     integer :: node = 0           !! where the bound is taken: index in the mesh
     real(wp) :: closed_rate = 0.0_wp !! the part of it of ties, which never open, 1/s^2
+  contains
+    procedure :: visit => visit_springs
   end type spring_bound_t
 
   !> K/m of the nodes of one interface.
@@ -277,5 +280,16 @@ contains
     scale = min(2.0_wp*room/(dt*(bound%damping + sqrt(bound%damping**2 + room*bound%rate))), &
       opening_step(bound)/dt)**2
   end function fitting_scale
+
+  !> Its components.
+  subroutine visit_springs(self, visitor)
+    class(spring_bound_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('rate', self%rate)
+    call visitor%visit('damping', self%damping)
+    call visitor%visit('node', self%node, 0, visitor%n_node, 'a number that no node has')
+    call visitor%visit('closed_rate', self%closed_rate)
+  end subroutine visit_springs
 
 end module contact_step_limit_m

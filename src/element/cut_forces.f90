@@ -42,12 +42,12 @@ contains
     do i = 1, size(list)
       if (list(i) < chunks(1) .or. list(i) > chunks(2)) cycle
       call take_values(tile_of(list(i)), elements, present_values)
-      if (present(before)) call put_values(tile_of(list(i)), before(i), elements)
+      if (present(before)) call put_values(before(i), elements)
       call step_chunk(model, list(i), motion, times(2), elements, of_slots(:, :, i))
-      call put_values(tile_of(list(i)), present_values, elements)
+      call put_values(present_values, elements)
       if (model%erodes) then
         call clear_gone(model, list(i), motion, times, elements, of_slots(:, :, i))
-        call put_values(tile_of(list(i)), present_values, elements)
+        call put_values(present_values, elements)
       end if
     end do
     call take_slots(model, chunks, place, of_slots, force)

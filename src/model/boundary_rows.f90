@@ -5,6 +5,7 @@ module boundary_rows_m
   use conditions_m, only : conditions_t
   use kinds_m, only : long
   use sorting_m, only : sorted_order
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: boundary_rows_t, list_boundaries, boundary_load, boundary_body_load, &
@@ -16,11 +17,13 @@ module boundary_rows_m
     boundary_motion = 4, boundary_body_motion = 5
 
   !> The rows, and which belong to the prescribed motions.
-  type :: boundary_rows_t
+  type, extends(visited_t) :: boundary_rows_t
     integer, allocatable :: condition(:)       !! one of `boundary_`
     integer, allocatable :: where(:)           !! index of the node, or of the body
     integer, allocatable :: motion_rows(:)     !! of each prescribed motion of a node
     integer, allocatable :: body_motion_rows(:) !! of each of a body
+  contains
+    procedure :: visit => visit_rows
   end type boundary_rows_t
 
 contains
@@ -64,5 +67,16 @@ contains
     rows%condition = [rows%condition, spread(condition, 1, size(found))]
     rows%where = [rows%where, found]
   end subroutine add_rows
+
+  !> Its components.
+  subroutine visit_rows(self, visitor)
+    class(boundary_rows_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('condition', self%condition)
+    call visitor%visit('where', self%where)
+    call visitor%visit('motion_rows', self%motion_rows)
+    call visitor%visit('body_motion_rows', self%body_motion_rows)
+  end subroutine visit_rows
 
 end module boundary_rows_m

@@ -1,7 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> Constraints, loads and initial values as data, every set already resolved to nodes.
 module conditions_m
+  use, intrinsic :: iso_c_binding, only : c_loc
   use kinds_m, only : wp
+  use visitor_m, only : visited_t, visitor_t, absent, length, of_nodes
   implicit none
   private
   public :: conditions_t, prescribed_motion_t, nodal_load_t, pressure_load_t, body_load_t, &
@@ -68,9 +70,11 @@ module conditions_m
   end type lumped_mass_t
 
   !> *CONSTRAINED_NODE_SET: nodes that move alike along x, y or both.
-  type :: common_motion_t
+  type, extends(visited_t) :: common_motion_t
     integer, allocatable :: nodes(:)
     logical :: along(2) = .false.
+  contains
+    procedure :: visit => visit_common_motion
   end type common_motion_t
 
   !> A node that does not move along a direction that is neither x nor y.
@@ -80,7 +84,7 @@ module conditions_m
   end type skew_support_t
 
   !> All conditions of a model. What is not always there is present only when the deck asks.
-  type :: conditions_t
+  type, extends(visited_t) :: conditions_t
     integer, allocatable :: fixed_nodes(:)      !! nodes with a fixed degree of freedom ...
     integer, allocatable :: fixed_directions(:) !! ... and its direction, each pair once
     integer :: n_support = 0                    !! nodes with mass that are held, once renumbered
@@ -97,6 +101,64 @@ module conditions_m
     type(skew_support_t), allocatable :: skew_supports(:)
     type(nodal_load_t), allocatable :: rigid_loads(:) !! on bodies: `node` is the body, 3 the moment
     real(wp), allocatable :: initial_velocity(:, :) !! (2, n_node), present only when the deck asks
+  contains
+    procedure :: visit => visit_conditions
   end type conditions_t
+
+contains
+
+  !> Its components.
+  subroutine visit_common_motion(self, visitor)
+    class(common_motion_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('nodes', self%nodes)
+    call visitor%plain(c_loc(self%along), storage_size(self%along), size(self%along))
+  end subroutine visit_common_motion
+
+  !> Its components, but for fixed degrees of freedom: each process gets those of its nodes.
+  subroutine visit_conditions(self, visitor)
+    class(conditions_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('n_support', self%n_support)
+    if (visitor%makes(length(self%motions))) allocate (self%motions(visitor%n_item))
+    if (visitor%n_item > 0) &
+      call visitor%plain(c_loc(self%motions(1)), storage_size(self%motions), visitor%n_item)
+    if (visitor%makes(length(self%rigid_motions))) allocate (self%rigid_motions(visitor%n_item))
+    if (visitor%n_item > 0) &
+      call visitor%plain(c_loc(self%rigid_motions(1)), storage_size(self%rigid_motions), &
+        visitor%n_item)
+    if (visitor%makes(length(self%nodal_loads))) allocate (self%nodal_loads(visitor%n_item))
+    if (visitor%n_item > 0) &
+      call visitor%plain(c_loc(self%nodal_loads(1)), storage_size(self%nodal_loads), visitor%n_item)
+    if (visitor%makes(length(self%pressures))) allocate (self%pressures(visitor%n_item))
+    if (visitor%n_item > 0) &
+      call visitor%plain(c_loc(self%pressures(1)), storage_size(self%pressures), visitor%n_item)
+    if (visitor%makes(length(self%body_loads))) allocate (self%body_loads(visitor%n_item))
+    if (visitor%n_item > 0) &
+      call visitor%plain(c_loc(self%body_loads(1)), storage_size(self%body_loads), visitor%n_item)
+    if (visitor%makes(merge(1, absent, allocated(self%damping)))) allocate (self%damping)
+    if (allocated(self%damping)) &
+      call visitor%plain(c_loc(self%damping), storage_size(self%damping), 1)
+    if (visitor%makes(length(self%part_damping))) allocate (self%part_damping(visitor%n_item))
+    if (visitor%n_item > 0) &
+      call visitor%plain(c_loc(self%part_damping(1)), storage_size(self%part_damping), &
+        visitor%n_item)
+    if (visitor%makes(length(self%lumped_masses))) allocate (self%lumped_masses(visitor%n_item))
+    if (visitor%n_item > 0) &
+      call visitor%plain(c_loc(self%lumped_masses(1)), storage_size(self%lumped_masses), &
+        visitor%n_item)
+    if (visitor%makes(length(self%common_motions))) allocate (self%common_motions(visitor%n_item))
+    call visitor%each('common_motions', self%common_motions)
+    if (visitor%makes(length(self%skew_supports))) allocate (self%skew_supports(visitor%n_item))
+    if (visitor%n_item > 0) &
+      call visitor%plain(c_loc(self%skew_supports(1)), storage_size(self%skew_supports), &
+        visitor%n_item)
+    if (visitor%makes(length(self%rigid_loads))) allocate (self%rigid_loads(visitor%n_item))
+    if (visitor%n_item > 0) &
+      call visitor%plain(c_loc(self%rigid_loads(1)), storage_size(self%rigid_loads), visitor%n_item)
+    call visitor%visit('initial_velocity', self%initial_velocity, of_nodes)
+  end subroutine visit_conditions
 
 end module conditions_m

@@ -1,10 +1,12 @@
 ! SPDX-License-Identifier: MIT
 !> Contact interfaces as the deck describes them.
 module contacts_m
+  use, intrinsic :: iso_c_binding, only : c_loc
   use curves_m, only : curve_t
   use kinds_m, only : wp
   use log_m, only : to_text
   use surfaces_m, only : surface_t
+  use visitor_m, only : visited_t, visitor_t, absent
   implicit none
   private
   public :: contact_t, contact_kind_t, transducer_t, friction_rule_t, has_friction, is_tied, &
@@ -50,7 +52,7 @@ module contacts_m
   end type friction_rule_t
 
   !> One interface.
-  type :: contact_t
+  type, extends(visited_t) :: contact_t
     integer :: id = 0                      !! user id, or its position in the deck
     character(:), allocatable :: title     !! heading of the _TITLE option
     integer :: contact_type = 0            !! CTYPE
@@ -84,13 +86,17 @@ module contacts_m
                                            !! from 0 to 1
     logical :: is_round = .false.          !! axisymmetric: lengths weigh with their radius
     logical :: is_self = .false.           !! SURFB 0: one surface with itself; both sides are it
+  contains
+    procedure :: visit => visit_contact
   end type contact_t
 
   !> A surface on which the forces of all interfaces are added up.
-  type :: transducer_t
+  type, extends(visited_t) :: transducer_t
     integer :: id = 0
     character(:), allocatable :: title
     integer, allocatable :: nodes(:) !! those of its surface that interfaces have
+  contains
+    procedure :: visit => visit_transducer
   end type transducer_t
 
 contains
@@ -152,5 +158,50 @@ contains
 
     text = trim(kind%name)//' (type '//to_text(kind%number)//')'
   end function kind_text
+
+  !> Its components.
+  subroutine visit_contact(self, visitor)
+    class(contact_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('id', self%id)
+    call visitor%visit('title', self%title)
+    call visitor%visit('contact_type', self%contact_type)
+    call visitor%visit('chosen_by_keyword', self%chosen_by_keyword)
+    call visitor%visit('reason', self%reason)
+    call visitor%visit('target', self%target)
+    call visitor%visit('scene', self%scene)
+    call visitor%part('slave', self%slave)
+    call visitor%part('master', self%master)
+    call visitor%visit('n_gauss', self%n_gauss)
+    call visitor%visit('penalty_unit', self%penalty_unit)
+    call visitor%visit('penalty', self%penalty)
+    call visitor%visit('master_penalty', self%master_penalty)
+    call visitor%visit('damping', self%damping)
+    call visitor%visit('birth', self%birth)
+    call visitor%visit('death', self%death)
+    call visitor%visit('strict', self%strict)
+    call visitor%visit('search_interval', self%search_interval)
+    call visitor%visit('search_depth', self%search_depth)
+    call visitor%plain(c_loc(self%friction), storage_size(self%friction), 1)
+    call visitor%visit('tie', self%tie)
+    call visitor%visit('tie_reach', self%tie_reach)
+    call visitor%fixed('strength', self%strength)
+    call visitor%visit('behind', self%behind)
+    if (visitor%makes(merge(1, absent, allocated(self%interference)))) allocate (self%interference)
+    if (allocated(self%interference)) call visitor%part('interference', self%interference)
+    call visitor%visit('is_round', self%is_round)
+    call visitor%visit('is_self', self%is_self)
+  end subroutine visit_contact
+
+  !> Its components.
+  subroutine visit_transducer(self, visitor)
+    class(transducer_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('id', self%id)
+    call visitor%visit('title', self%title)
+    call visitor%visit('nodes', self%nodes)
+  end subroutine visit_transducer
 
 end module contacts_m

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Controls of the run: end, time step and output plan.
 module controls_m
+  use, intrinsic :: iso_c_binding, only : c_loc
   use boundary_rows_m, only : boundary_rows_t
   use cross_sections_m, only : cross_section_t
   use end_conditions_m, only : end_condition_t
@@ -8,6 +9,7 @@ module controls_m
   use history_tables_m, only : n_table
   use kinds_m, only : wp
   use units_m, only : units_t
+  use visitor_m, only : visited_t, visitor_t, length
   implicit none
   private
   public :: controls_t, relaxation_t, implicit_t, output_plan_t, interval_t, is_asked, &
@@ -29,7 +31,7 @@ module controls_m
   end type interval_t
 
   !> What is written, and how often.
-  type :: output_plan_t
+  type, extends(visited_t) :: output_plan_t
     type(interval_t) :: plot    !! VTKHDF states and contact rows (*DATABASE_BINARY_D3PLOT)
     type(interval_t) :: histories(n_table)   !! by the `table_` constants; that of contact is
                                              !! unused
@@ -44,6 +46,8 @@ module controls_m
                                    !! 0 = none
     integer :: status_interval = 0 !! cycles between progress lines (IKEDIT); 0 = the program's
                                    !! choice
+  contains
+    procedure :: visit => visit_output
   end type output_plan_t
 
   !> The implicit method (*CONTROL_IMPLICIT_...). Time integration is the generalised-alpha family
@@ -83,7 +87,7 @@ module controls_m
   end type relaxation_t
 
   !> All controls.
-  type :: controls_t
+  type, extends(visited_t) :: controls_t
     character(:), allocatable :: title       !! *TITLE
     real(wp) :: end_time = 0.0_wp            !! ENDTIM
     integer :: end_cycle = 0                 !! ENDCYC, 0 = no limit
@@ -106,6 +110,8 @@ module controls_m
     type(implicit_t) :: implicit
     type(units_t) :: units                   !! *CONTROL_UNITS
     type(output_plan_t) :: output
+  contains
+    procedure :: visit => visit_controls
   end type controls_t
 
 contains
@@ -117,5 +123,52 @@ contains
 
     asked = interval%dt > 0.0_wp .or. interval%curve > 0
   end function is_asked
+
+  !> Its components.
+  subroutine visit_output(self, visitor)
+    class(output_plan_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%plain(c_loc(self%plot), storage_size(self%plot), 1)
+    call visitor%plain(c_loc(self%histories(1)), storage_size(self%histories), n_table)
+    call visitor%visit('history_nodes', self%history_nodes)
+    call visitor%visit('history_elements', self%history_elements)
+    call visitor%part('boundaries', self%boundaries)
+    if (visitor%makes(length(self%force_groups))) allocate (self%force_groups(visitor%n_item))
+    call visitor%each('force_groups', self%force_groups)
+    if (visitor%makes(length(self%cross_sections))) allocate (self%cross_sections(visitor%n_item))
+    call visitor%each('cross_sections', self%cross_sections)
+    call visitor%visit('dump_cycles', self%dump_cycles)
+    call visitor%visit('running_cycles', self%running_cycles)
+    call visitor%visit('status_interval', self%status_interval)
+  end subroutine visit_output
+
+  !> Its components, but for implicit runs, which have one process.
+  subroutine visit_controls(self, visitor)
+    class(controls_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('title', self%title)
+    call visitor%visit('end_time', self%end_time)
+    call visitor%visit('end_cycle', self%end_cycle)
+    call visitor%visit('dt_floor', self%dt_floor)
+    call visitor%visit('energy_limit', self%energy_limit)
+    if (visitor%makes(length(self%ends))) allocate (self%ends(visitor%n_item))
+    if (visitor%n_item > 0) &
+      call visitor%plain(c_loc(self%ends(1)), storage_size(self%ends), visitor%n_item)
+    call visitor%visit('check_only', self%check_only)
+    call visitor%visit('dt_initial', self%dt_initial)
+    call visitor%visit('dt_scale', self%dt_scale)
+    call visitor%visit('length_rule', self%length_rule)
+    call visitor%visit('dt_curve', self%dt_curve)
+    call visitor%visit('mass_step', self%mass_step)
+    call visitor%visit('masses_stay', self%masses_stay)
+    call visitor%visit('most_added', self%most_added)
+    call visitor%plain(c_loc(self%relaxation), storage_size(self%relaxation), 1)
+    call visitor%visit('penalty_scale', self%penalty_scale)
+    call visitor%visit('contact_step', self%contact_step)
+    call visitor%plain(c_loc(self%units), storage_size(self%units), 1)
+    call visitor%part('output', self%output)
+  end subroutine visit_controls
 
 end module controls_m

@@ -4,12 +4,13 @@ module cross_sections_m
   use kinds_m, only : long
   use layout_m, only : layout_t
   use sorting_m, only : sorted_order
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: cross_section_t, find_edges, mark_corners, n_cut
 
   !> One *DATABASE_CROSS_SECTION_SET.
-  type :: cross_section_t
+  type, extends(visited_t) :: cross_section_t
     integer :: id = 0                   !! user number, or its position in the deck
     character(:), allocatable :: title
     integer, allocatable :: nodes(:)    !! node indices, each once
@@ -17,6 +18,8 @@ module cross_sections_m
                                         !! a layout
     logical, allocatable :: is_corner(:, :) !! (4, elements) corners that are nodes of it
     integer, allocatable :: edges(:, :) !! (2, n) edges of the elements with both nodes in it
+  contains
+    procedure :: visit => visit_section
   end type cross_section_t
 
 contains
@@ -82,5 +85,21 @@ contains
       end do
     end do
   end subroutine mark_corners
+
+  !> Its components.
+  subroutine visit_section(self, visitor)
+    class(cross_section_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+    integer, allocatable :: corner(:, :)
+
+    call visitor%visit('id', self%id)
+    call visitor%visit('title', self%title)
+    call visitor%visit('nodes', self%nodes)
+    call visitor%visit('elements', self%elements)
+    if (allocated(self%is_corner)) corner = merge(1, 0, self%is_corner)
+    call visitor%visit('is_corner', corner)
+    if (allocated(corner)) self%is_corner = corner == 1
+    call visitor%visit('edges', self%edges)
+  end subroutine visit_section
 
 end module cross_sections_m

@@ -2,17 +2,20 @@
 !> Load curves: piecewise linear, the end values held outside the range of the abscissa.
 module curves_m
   use kinds_m, only : wp
+  use visitor_m, only : visited_t, visitor_t, any_length
   implicit none
   private
   public :: curve_t, curve_value, curve_integral, curve_is_constant
 
   !> One *DEFINE_CURVE, its scale factors and offsets already applied.
-  type :: curve_t
+  type, extends(visited_t) :: curve_t
     integer :: id = 0                      !! user id
     real(wp), allocatable :: abscissa(:)   !! increasing, one or more points
     real(wp), allocatable :: ordinate(:)   !! same length
     integer :: phase = 0                   !! SIDR: 0 run, 1 dynamic relaxation, 2 both
     logical :: is_of_time = .true.         !! false for one that a material uses
+  contains
+    procedure :: visit => visit_curve
   end type curve_t
 
 contains
@@ -71,5 +74,17 @@ contains
 
     constant = maxval(curve%ordinate) <= minval(curve%ordinate)
   end function curve_is_constant
+
+  !> Its components.
+  subroutine visit_curve(self, visitor)
+    class(curve_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('id', self%id)
+    call visitor%visit('abscissa', self%abscissa, any_length)
+    call visitor%visit('ordinate', self%ordinate, any_length)
+    call visitor%visit('phase', self%phase)
+    call visitor%visit('is_of_time', self%is_of_time)
+  end subroutine visit_curve
 
 end module curves_m

@@ -3,6 +3,7 @@
 module hardenings_m
   use kinds_m, only : wp
   use curves_m, only : curve_t
+  use visitor_m, only : visited_t, visitor_t, absent
   implicit none
   private
   public :: hardening_t, make_hardening, depends_on_rate
@@ -10,7 +11,7 @@ module hardenings_m
   !> Hardening of one material: rows of points, one for each strain rate, all at the same
   !> plastic strains. Between points and between rates the yield stress is linear; outside the
   !> rates the outermost row holds.
-  type :: hardening_t
+  type, extends(visited_t) :: hardening_t
     real(wp), allocatable :: strain(:)     !! (n) plastic strain of the points, increasing, the
                                            !! first 0
     real(wp), allocatable :: stress(:, :)  !! (n, n_rate) yield stress at the points
@@ -21,6 +22,8 @@ module hardenings_m
     real(wp) :: rate_constant = 0.0_wp     !! C of Cowper and Symonds, 1/s, 0 = none
     real(wp) :: rate_exponent = 1.0_wp     !! 1/P
     type(curve_t), allocatable :: rate_factor !! factor on the yield stress against the strain rate
+  contains
+    procedure :: visit => visit_hardening
   end type hardening_t
 
 contains
@@ -110,5 +113,20 @@ contains
     yes = size(hardening%rate) > 1 .or. hardening%rate_constant > 0.0_wp &
       .or. allocated(hardening%rate_factor)
   end function depends_on_rate
+
+  !> Its components.
+  subroutine visit_hardening(self, visitor)
+    class(hardening_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('strain', self%strain)
+    call visitor%visit('stress', self%stress)
+    call visitor%visit('slope', self%slope)
+    call visitor%visit('rate', self%rate)
+    call visitor%visit('rate_constant', self%rate_constant)
+    call visitor%visit('rate_exponent', self%rate_exponent)
+    if (visitor%makes(merge(1, absent, allocated(self%rate_factor)))) allocate (self%rate_factor)
+    if (allocated(self%rate_factor)) call visitor%part('rate_factor', self%rate_factor)
+  end subroutine visit_hardening
 
 end module hardenings_m

@@ -11,7 +11,9 @@
 !> so that the result has the same bits at any number of threads.
 module layout_m
   use, intrinsic :: iso_fortran_env, only : int16
+  use, intrinsic :: iso_c_binding, only : c_loc
   use kinds_m, only : wp
+  use visitor_m, only : visited_t, visitor_t, length, of_elements, of_slots
   implicit none
   private
   public :: layout_t, tile_t, chunk_size, local_kind, slot_part, first_slot, last_slot
@@ -33,7 +35,7 @@ module layout_m
   end type tile_t
 
   !> The layout of the whole model.
-  type :: layout_t
+  type, extends(visited_t) :: layout_t
     integer :: n_slot = 0          !! element slots, chunk_size * n_chunk
     integer :: n_chunk = 0
     integer :: n_special = 0       !! nodes 1 .. n_special are special
@@ -53,6 +55,8 @@ module layout_m
     integer, allocatable :: node_slots(:)    !! (n_special + 1) where each special node's list
                                              !! starts ...
     integer, allocatable :: slot_list(:)     !! ... in this list of force slots
+  contains
+    procedure :: visit => visit_layout
   end type layout_t
 
 contains
@@ -78,5 +82,30 @@ contains
 
     last_slot = tile%last_chunk*chunk_size
   end function last_slot
+
+  !> Its components.
+  subroutine visit_layout(self, visitor)
+    class(layout_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('n_slot', self%n_slot)
+    call visitor%visit('n_chunk', self%n_chunk)
+    call visitor%visit('n_special', self%n_special)
+    call visitor%visit('n_local', self%n_local)
+    if (visitor%makes(length(self%tiles))) allocate (self%tiles(visitor%n_item))
+    if (visitor%n_item > 0) &
+      call visitor%plain(c_loc(self%tiles(1)), storage_size(self%tiles), visitor%n_item)
+    call visitor%visit('chunk_part', self%chunk_part)
+    call visitor%visit('chunk_elements', self%chunk_elements)
+    call visitor%visit('slot_element', self%slot_element, of_slots)
+    call visitor%visit('element_slot', self%element_slot, of_elements)
+    call visitor%visit('slot_nodes', self%slot_nodes, of_slots)
+    call visitor%visit('slot_local', self%slot_local, of_slots)
+    call visitor%visit('exposed', self%exposed)
+    call visitor%visit('exposed_shares', self%exposed_shares)
+    call visitor%visit('special_node', self%special_node)
+    call visitor%visit('node_slots', self%node_slots)
+    call visitor%visit('slot_list', self%slot_list)
+  end subroutine visit_layout
 
 end module layout_m

@@ -7,6 +7,7 @@
 !> writes to it. All index arrays refer to the arrays of this type; user ids appear in components
 !> named `id` and `..._id` only, and are used for messages and output.
 module model_m
+  use, intrinsic :: iso_c_binding, only : c_loc
   use curves_m, only : curve_t
   use parts_m, only : part_t, section_t, material_t
   use mesh_m, only : mesh_t
@@ -15,6 +16,7 @@ module model_m
   use conditions_m, only : conditions_t
   use contacts_m, only : contact_t, transducer_t
   use rigids_m, only : rigid_t
+  use visitor_m, only : visited_t, visitor_t, length
   use walls_m, only : wall_t
   use controls_m, only : controls_t
   implicit none
@@ -22,7 +24,7 @@ module model_m
   public :: model_t
 
   !> A whole problem.
-  type :: model_t
+  type, extends(visited_t) :: model_t
     type(mesh_t) :: mesh
     type(layout_t) :: layout
     type(part_t), allocatable :: parts(:)
@@ -42,6 +44,40 @@ module model_m
     logical :: erodes = .false.   !! elements may leave the mesh
     logical :: is_round = .false. !! axisymmetric: x is the radius, y the axis; forces, masses and
                                   !! energies per radian
+  contains
+    procedure :: visit => visit_model
   end type model_t
+
+contains
+
+  !> Its components, but for sets: conditions and surfaces have been made of them.
+  subroutine visit_model(self, visitor)
+    class(model_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%part('mesh', self%mesh)
+    call visitor%part('layout', self%layout)
+    if (visitor%makes(length(self%parts))) allocate (self%parts(visitor%n_item))
+    call visitor%each('parts', self%parts)
+    if (visitor%makes(length(self%sections))) allocate (self%sections(visitor%n_item))
+    if (visitor%n_item > 0) &
+      call visitor%plain(c_loc(self%sections(1)), storage_size(self%sections), visitor%n_item)
+    if (visitor%makes(length(self%materials))) allocate (self%materials(visitor%n_item))
+    call visitor%each('materials', self%materials)
+    if (visitor%makes(length(self%curves))) allocate (self%curves(visitor%n_item))
+    call visitor%each('curves', self%curves)
+    call visitor%part('conditions', self%conditions)
+    if (visitor%makes(length(self%contacts))) allocate (self%contacts(visitor%n_item))
+    call visitor%each('contacts', self%contacts)
+    if (visitor%makes(length(self%transducers))) allocate (self%transducers(visitor%n_item))
+    call visitor%each('transducers', self%transducers)
+    if (visitor%makes(length(self%rigids))) allocate (self%rigids(visitor%n_item))
+    call visitor%each('rigids', self%rigids)
+    if (visitor%makes(length(self%walls))) allocate (self%walls(visitor%n_item))
+    call visitor%each('walls', self%walls)
+    call visitor%part('controls', self%controls)
+    call visitor%visit('erodes', self%erodes)
+    call visitor%visit('is_round', self%is_round)
+  end subroutine visit_model
 
 end module model_m

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Parts and what they refer to: section, material, hourglass control and bulk viscosity.
 module parts_m
+  use, intrinsic :: iso_c_binding, only : c_loc
   use curves_m, only : curve_t
   use eos_m, only : eos_t, eos_by_law
   use erosion_m, only : erosion_t
@@ -8,6 +9,7 @@ module parts_m
   use johnson_cook_m, only : johnson_cook_t
   use kinds_m, only : wp
   use rubbers_m, only : rubber_t
+  use visitor_m, only : visited_t, visitor_t, absent
   implicit none
   private
   public :: part_t, section_t, material_t, hourglass_t, has_memory_of_heat, &
@@ -39,7 +41,7 @@ module parts_m
   end type section_t
 
   !> One material. Moduli follow from E and nu once, in the deck layer.
-  type :: material_t
+  type, extends(visited_t) :: material_t
     integer :: id = 0              !! user id
     integer :: law = law_elastic   !! one of the `law_` constants
     real(wp) :: density = 0.0_wp   !! kg/m^3
@@ -68,6 +70,8 @@ module parts_m
     logical :: is_rigid = .false.  !! no stress: parts of it are rigid bodies; E and nu serve
                                    !! contact
     logical :: is_fixed(3) = .false. !! of a rigid body: x, y and the turn about z do not move
+  contains
+    procedure :: visit => visit_material
   end type material_t
 
   !> Hourglass control and bulk viscosity of a part (*HOURGLASS, or the *CONTROL defaults).
@@ -80,7 +84,7 @@ module parts_m
   end type hourglass_t
 
   !> One *PART; `section` and `material` are indices, never user ids.
-  type :: part_t
+  type, extends(visited_t) :: part_t
     integer :: id = 0                 !! user id
     character(:), allocatable :: title !! heading
     integer :: section = 0            !! index into model%sections
@@ -88,6 +92,8 @@ module parts_m
     type(hourglass_t) :: hourglass    !! what holds for this part
     real(wp) :: stiffness_damping = 0.0_wp !! COEF of *DAMPING_PART_STIFFNESS: a share of critical
                                            !! damping of the fastest mode, below 0 a time in s
+  contains
+    procedure :: visit => visit_part
   end type part_t
 
 contains
@@ -118,5 +124,58 @@ contains
     yes = material%failure_strain < huge(1.0_wp) .or. material%spall /= spall_pressure
     if (allocated(material%flow)) yes = yes .or. material%flow%has_damage
   end function may_fail
+
+  !> Its components.
+  subroutine visit_material(self, visitor)
+    class(material_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('id', self%id)
+    call visitor%visit('law', self%law)
+    call visitor%visit('density', self%density)
+    call visitor%visit('young', self%young)
+    call visitor%visit('poisson', self%poisson)
+    call visitor%visit('bulk', self%bulk)
+    call visitor%visit('shear', self%shear)
+    call visitor%visit('sound_speed', self%sound_speed)
+    call visitor%visit('yield', self%yield)
+    call visitor%visit('hardening', self%hardening)
+    call visitor%visit('beta', self%beta)
+    call visitor%visit('viscosity', self%viscosity)
+    if (visitor%makes(merge(1, absent, allocated(self%curve)))) allocate (self%curve)
+    if (allocated(self%curve)) call visitor%part('curve', self%curve)
+    if (visitor%makes(merge(1, absent, allocated(self%flow)))) allocate (self%flow)
+    if (allocated(self%flow)) call visitor%plain(c_loc(self%flow), storage_size(self%flow), 1)
+    if (visitor%makes(merge(1, absent, allocated(self%rubber)))) allocate (self%rubber)
+    if (allocated(self%rubber)) call visitor%plain(c_loc(self%rubber), storage_size(self%rubber), 1)
+    if (visitor%makes(merge(1, absent, allocated(self%crush)))) allocate (self%crush)
+    if (allocated(self%crush)) call visitor%part('crush', self%crush)
+    call visitor%visit('tension', self%tension)
+    if (visitor%makes(merge(1, absent, allocated(self%eos)))) allocate (self%eos)
+    if (allocated(self%eos)) call visitor%plain(c_loc(self%eos), storage_size(self%eos), 1)
+    call visitor%visit('failure_strain', self%failure_strain)
+    call visitor%visit('cutoff', self%cutoff)
+    call visitor%visit('spall', self%spall)
+    if (visitor%makes(merge(1, absent, allocated(self%erosion)))) allocate (self%erosion)
+    if (allocated(self%erosion)) &
+      call visitor%plain(c_loc(self%erosion), storage_size(self%erosion), 1)
+    call visitor%visit('takes_eos', self%takes_eos)
+    call visitor%visit('needs_eos', self%needs_eos)
+    call visitor%visit('is_rigid', self%is_rigid)
+    call visitor%plain(c_loc(self%is_fixed), storage_size(self%is_fixed), size(self%is_fixed))
+  end subroutine visit_material
+
+  !> Its components.
+  subroutine visit_part(self, visitor)
+    class(part_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('id', self%id)
+    call visitor%visit('title', self%title)
+    call visitor%visit('section', self%section)
+    call visitor%visit('material', self%material)
+    call visitor%plain(c_loc(self%hourglass), storage_size(self%hourglass), 1)
+    call visitor%visit('stiffness_damping', self%stiffness_damping)
+  end subroutine visit_part
 
 end module parts_m

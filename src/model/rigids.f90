@@ -1,18 +1,22 @@
 ! SPDX-License-Identifier: MIT
 !> Rigid bodies: one for each part of *MAT_RIGID.
 module rigids_m
+  use, intrinsic :: iso_c_binding, only : c_loc
   use kinds_m, only : wp
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: rigid_t, mark_rigid_nodes
 
   !> One body.
-  type :: rigid_t
+  type, extends(visited_t) :: rigid_t
     integer :: part = 0               !! index into model%parts
     integer, allocatable :: nodes(:)  !! node indices, rising: those that forces reach come first
     logical :: is_fixed(3) = .false.  !! x, y and the turn about z (CON1 and CON2 of *MAT_RIGID)
     logical :: has_velocity = .false. !! the deck gives the body a velocity of its own:
     real(wp) :: velocity(3) = 0.0_wp  !! that of the centre of mass and the spin
+  contains
+    procedure :: visit => visit_rigid
   end type rigid_t
 
 contains
@@ -29,5 +33,17 @@ contains
       is_rigid(rigids(i)%nodes) = .true.
     end do
   end function mark_rigid_nodes
+
+  !> Its components.
+  subroutine visit_rigid(self, visitor)
+    class(rigid_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('part', self%part)
+    call visitor%visit('nodes', self%nodes)
+    call visitor%plain(c_loc(self%is_fixed), storage_size(self%is_fixed), size(self%is_fixed))
+    call visitor%visit('has_velocity', self%has_velocity)
+    call visitor%fixed('velocity', self%velocity)
+  end subroutine visit_rigid
 
 end module rigids_m

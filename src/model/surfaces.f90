@@ -3,12 +3,13 @@
 !> body, so that the outward normal of a segment with unit tangent t is n = (t_y, -t_x).
 !> A surface may hold several chains, open or closed.
 module surfaces_m
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: surface_t, link_segments, number_chains, has_closed_chain, meets_axis
 
   !> One surface. "Local" node numbers count the nodes of this surface in walking order.
-  type :: surface_t
+  type, extends(visited_t) :: surface_t
     integer :: n_node = 0
     integer :: n_segment = 0
     integer, allocatable :: nodes(:)           !! (n_node) node indices in the mesh, chain after
@@ -23,6 +24,8 @@ module surfaces_m
     integer, allocatable :: parts(:)           !! whose outline it is; only where elements may leave
                                                !! the mesh
     logical, allocatable :: is_on_axis(:)      !! (n_node) axisymmetry alone: nodes on the axis
+  contains
+    procedure :: visit => visit_surface
   end type surface_t
 
 contains
@@ -98,5 +101,24 @@ contains
       end do
     end do
   end subroutine number_chains
+
+  !> Its components.
+  subroutine visit_surface(self, visitor)
+    class(surface_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('n_node', self%n_node)
+    call visitor%visit('n_segment', self%n_segment)
+    call visitor%visit('nodes', self%nodes)
+    call visitor%visit('segments', self%segments)
+    call visitor%visit('segment_element', self%segment_element)
+    call visitor%visit('previous', self%previous)
+    call visitor%visit('next', self%next)
+    call visitor%visit('chain', self%chain)
+    call visitor%visit('incoming', self%incoming)
+    call visitor%visit('outgoing', self%outgoing)
+    call visitor%visit('parts', self%parts)
+    call visitor%visit('is_on_axis', self%is_on_axis)
+  end subroutine visit_surface
 
 end module surfaces_m

@@ -2,6 +2,7 @@
 !> Rigid walls: fixed planes that nodes do not pass.
 module walls_m
   use kinds_m, only : wp
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: wall_t, wall_distance, wall_tangent, friction_sticks
@@ -10,7 +11,7 @@ module walls_m
   real(wp), parameter :: friction_sticks = 1.0_wp
 
   !> One *RIGIDWALL_PLANAR.
-  type :: wall_t
+  type, extends(visited_t) :: wall_t
     integer :: id = 0                        !! user id, or one that the deck layer gives
     real(wp) :: foot(2) = 0.0_wp             !! a point of the wall (tail)
     real(wp) :: normal(2) = [0.0_wp, 1.0_wp] !! of length 1, into the free side (tail to head)
@@ -20,6 +21,8 @@ module walls_m
     integer, allocatable :: nodes(:)         !! indices of the nodes that see it
     integer, allocatable :: place(:)         !! (n_special) where each special node stands in
                                              !! `nodes`, 0 = not there
+  contains
+    procedure :: visit => visit_wall
   end type wall_t
 
 contains
@@ -42,5 +45,20 @@ contains
 
     tangent = [-wall%normal(2), wall%normal(1)]
   end function wall_tangent
+
+  !> Its components.
+  subroutine visit_wall(self, visitor)
+    class(wall_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('id', self%id)
+    call visitor%fixed('foot', self%foot)
+    call visitor%fixed('normal', self%normal)
+    call visitor%visit('friction', self%friction)
+    call visitor%visit('birth', self%birth)
+    call visitor%visit('death', self%death)
+    call visitor%visit('nodes', self%nodes)
+    call visitor%visit('place', self%place)
+  end subroutine visit_wall
 
 end module walls_m

@@ -10,10 +10,11 @@ module csv_table_m
   use dyna_text_m, only : dyna_text_t, add_dyna_row, flush_dyna_text, close_dyna_text
   use errors_m, only : error_t
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
+  use visitor_m, only : visitor_t, any_length
   implicit none
   private
   public :: csv_table_t, plan_table, open_table, add_row, check_table, flush_table, close_table, &
-    column_name, column_names, n_columns, row_text, kind_real, kind_integer, kind_side
+    column_name, column_names, n_columns, row_text, visit_rows, kind_real, kind_integer, kind_side
 
   !> Kinds of columns: a real, an integer, a side of an interface (1 = slave, 2 = master).
   integer, parameter :: kind_real = 1, kind_integer = 2, kind_side = 3
@@ -217,5 +218,21 @@ contains
     call close_dyna_text(table%text, closing)
     if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
   end subroutine close_table
+
+  !> Rows as a restart file has them. Those of a table that the run no longer writes are left out.
+  subroutine visit_rows(table, name, visitor)
+    type(csv_table_t), intent(inout) :: table
+    character(*), intent(in) :: name
+    class(visitor_t), intent(inout) :: visitor
+    real(wp), allocatable :: rows(:, :)
+    integer :: i
+
+    if (allocated(table%values)) rows = table%values(:, :table%n_row)
+    call visitor%visit(name, rows, any_length)
+    if (.not. visitor%judges .or. .not. allocated(rows) .or. .not. table%is_open) return
+    do i = 1, size(rows, 2)
+      call add_row(table, rows(:, i))
+    end do
+  end subroutine visit_rows
 
 end module csv_table_m

@@ -17,15 +17,13 @@ module hdf5_writing_m
     h5tset_size_f, h5tset_strpad_f
   use kinds_m, only : long
   use errors_m, only : error_t, raise, status_files
+  use visitor_m, only : as_real, as_integer, as_index
   implicit none
   private
   public :: growing_t, as_real, as_integer, as_index, &
     create_growing, link_growing, append_rows, close_growing, &
     make_group, write_rows, write_string_attribute, write_index_attribute, write_text, &
     check_status, memory_type, file_type
-
-  !> What the rows of a dataset hold: float64, int32, int64.
-  integer, parameter :: as_real = 1, as_integer = 2, as_index = 3
 
   !> A dataset that grows by whole rows.
   type :: growing_t

@@ -7,24 +7,28 @@ module history_file_m
   use model_m, only : model_t
   use controls_m, only : is_asked
   use csv_table_m, only : csv_table_t, plan_table, open_table, check_table, flush_table, &
-    close_table, column_names
+    close_table, column_names, visit_rows
   use dyna_text_m, only : open_dyna_text
   use history_rows_m, only : name_columns
   use kinds_m, only : wp
+  use log_m, only : to_text
   use history_tables_m, only : history_tables, n_table, asked_alone, asked_or_states, &
     asked_by_states, each_run, each_contact, each_history_node, each_part, each_wall, &
     each_support, each_history_element, each_body, each_boundary, each_group_node, &
     each_section, text_none, &
     text_rows
   use table_row_m, only : row_t
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: histories_t, plan_histories, open_histories, check_histories, flush_histories, &
     close_histories, has_rows
 
   !> All tables of a run.
-  type :: histories_t
+  type, extends(visited_t) :: histories_t
     type(csv_table_t) :: tables(n_table) !! by the `table_` constants
+  contains
+    procedure :: visit => visit_histories
   end type histories_t
 
 contains
@@ -187,5 +191,17 @@ contains
       if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
     end do
   end subroutine close_histories
+
+  !> Its components. Tables are kept whole: the run that goes on writes them again from the first
+  !> row, so that they do not depend on what has become of the files.
+  subroutine visit_histories(self, visitor)
+    class(histories_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+    integer :: i
+
+    do i = 1, n_table
+      call visit_rows(self%tables(i), to_text(i), visitor)
+    end do
+  end subroutine visit_histories
 
 end module history_file_m

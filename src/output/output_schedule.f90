@@ -6,20 +6,23 @@ module output_schedule_m
   use kinds_m, only : wp, long
   use controls_m, only : interval_t, controls_t
   use curves_m, only : curve_t, curve_value
+  use visitor_m, only : visited_t, visitor_t, any_length
   implicit none
   private
-  public :: schedule_t, start_schedule, is_due, mark_written, is_active, output_reach
+  public :: schedule_t, start_schedule, is_due, mark_written, is_active, output_reach, &
+    go_on_with
 
   !> A tie of two cycles round an output time goes to the first, although sums of steps carry
   !> rounding: this fraction of a step is forgiven.
   real(wp), parameter :: forgiven = 1.0e-6_wp
   !> Part of a step that a state may be early for an output time where steps can be cut.
   real(wp), parameter :: soon = 1.0e-6_wp
-  !> Shortest interval as a fraction of the run, so that every count stays finite.
+  !> Shortest interval as a fraction of the run, so that every count stays finite; a bound of these.
   real(wp), parameter :: shortest = 1.0e-9_wp
+  integer(long), parameter :: most_outputs = 2_long**53
 
   !> The plan of one output.
-  type :: schedule_t
+  type, extends(visited_t) :: schedule_t
     logical :: active = .false.         !! false: never due
     real(wp) :: interval = 0.0_wp       !! constant interval, s; unused with a curve
     logical :: varies = .false.         !! the interval comes from the curve
@@ -27,6 +30,8 @@ module output_schedule_m
     integer(long) :: count = 0          !! multiples that are done
     real(wp) :: next = 0.0_wp           !! next output time, s
     real(wp) :: end_time = 0.0_wp       !! no output time lies after it
+  contains
+    procedure :: visit => visit_schedule
   end type schedule_t
 
 contains
@@ -107,5 +112,54 @@ contains
     schedule%next = schedule%next + max(interval, shortest*schedule%end_time)
     if (interval <= 0.0_wp) schedule%active = .false.
   end subroutine advance
+
+  !> Take up how far an output is. Where the run goes on with another interval, the first output
+  !> comes at the next multiple of the new one.
+  pure subroutine go_on_with(kept, time, dt, schedule)
+    type(schedule_t), intent(in) :: kept            !! of the run before
+    real(wp), intent(in) :: time, dt      !! of the state before, as given to `is_due` then
+    type(schedule_t), intent(inout) :: schedule     !! planned from the deck
+
+    if (is_same_plan(kept, schedule)) then
+      schedule%active = kept%active
+      schedule%count = kept%count
+      schedule%next = kept%next
+    else
+      call mark_written(schedule, time, dt)
+    end if
+  end subroutine go_on_with
+
+  !> Whether two schedules have the same output times. One of a curve may have come to its end.
+  pure function is_same_plan(kept, schedule) result(same)
+    type(schedule_t), intent(in) :: kept, schedule
+    logical :: same
+
+    same = kept%varies .eqv. schedule%varies
+    if (.not. same) return
+    if (.not. schedule%varies) then
+      same = (kept%active .eqv. schedule%active) &
+        .and. .not. abs(kept%interval - schedule%interval) > 0.0_wp
+    else
+      same = allocated(kept%curve%ordinate) .and. allocated(kept%curve%abscissa)
+      if (same) same = size(kept%curve%ordinate) == size(schedule%curve%ordinate) &
+        .and. size(kept%curve%abscissa) == size(schedule%curve%abscissa)
+      if (same) same = all(.not. abs(kept%curve%ordinate - schedule%curve%ordinate) > 0.0_wp) &
+        .and. all(.not. abs(kept%curve%abscissa - schedule%curve%abscissa) > 0.0_wp)
+    end if
+  end function is_same_plan
+
+  !> Its components; the deck, which may change it, has the end.
+  subroutine visit_schedule(self, visitor)
+    class(schedule_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('active', self%active)
+    call visitor%visit('interval', self%interval)
+    call visitor%visit('varies', self%varies)
+    call visitor%visit('curve_abscissa', self%curve%abscissa, any_length)
+    call visitor%visit('curve_ordinate', self%curve%ordinate, any_length)
+    call visitor%visit('count', self%count, most_outputs, 'a count that no run can reach')
+    call visitor%visit('next', self%next, 0.0_wp, 'a time below zero')
+  end subroutine visit_schedule
 
 end module output_schedule_m

@@ -13,7 +13,7 @@ module restart_file_m
   use hdf5, only : hid_t, hsize_t, H5P_FILE_CREATE_F, H5F_ACC_TRUNC_F, H5F_ACC_RDONLY_F, &
     H5F_SCOPE_LOCAL_F, h5fcreate_f, h5fopen_f, h5fclose_f, h5fflush_f, h5pcreate_f, h5pclose_f, &
     h5pset_userblock_f
-  use archive_file_m, only : archive_t, fail_archive
+  use archive_m, only : archive_t
   use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
   use errors_m, only : error_t, raise, status_files, status_input
   use file_facts_m, only : what_hinders
@@ -29,7 +29,7 @@ module restart_file_m
 
   !> Layout of the file. To be raised when a component of the state comes, goes or changes its
   !> meaning, and when nodes or elements get another order: arrays lie in that order.
-  integer, parameter :: format_version = 22
+  integer, parameter :: format_version = 23
   character(*), parameter :: mark = 'slideline restart '
   !> Bytes of the head, and of a block that is read.
   integer, parameter :: head_size = 512, block_size = 65536
@@ -46,7 +46,7 @@ contains
     archive%path = path
     archive%folder = ''
     if (len(what_hinders(path//unfinished)) > 0) then
-      call fail_archive(archive, 'cannot write '//path//unfinished//': ' &
+      call archive%fail('cannot write '//path//unfinished//': ' &
         //what_hinders(path//unfinished), status_files)
       return
     end if
@@ -57,7 +57,7 @@ contains
     call h5pset_userblock_f(creation, int(head_size, hsize_t), status(3))
     call h5fcreate_f(path//unfinished, H5F_ACC_TRUNC_F, archive%id, status(4), creation)
     call h5pclose_f(creation, ignored)
-    if (minval(status) < 0) call fail_archive(archive, 'cannot write '//path &
+    if (minval(status) < 0) call archive%fail('cannot write '//path &
       //' (no directory, no permission or no space)', status_files)
   end subroutine create_restart
 
@@ -73,7 +73,7 @@ contains
       call h5fflush_f(archive%id, H5F_SCOPE_LOCAL_F, status)
       ! A file that could not be flushed is left: closing it would make HDF5 try again, and crash.
       if (status >= 0) call h5fclose_f(archive%id, status)
-      if (status < 0) call fail_archive(archive, 'cannot write '//archive%path &
+      if (status < 0) call archive%fail('cannot write '//archive%path &
         //' (is the disk full, or a quota used up?)', status_files)
     end if
     if (.not. allocated(archive%error)) call write_head(archive%path//unfinished, archive%error)
@@ -208,6 +208,7 @@ contains
     archive%path = path
     archive%folder = ''
     archive%is_read = .true.
+    archive%judges = .true.
     call judge_file(path, reason)
     if (.not. allocated(reason)) then
       call open_library(status)

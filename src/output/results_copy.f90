@@ -6,7 +6,7 @@ module results_copy_m
   use hdf5, only : hid_t, hsize_t, H5F_ACC_RDONLY_F, H5S_SELECT_SET_F, h5dclose_f, h5dget_space_f, &
     h5dopen_f, h5dread_f, h5fclose_f, h5fopen_f, h5lexists_f, h5sclose_f, h5screate_simple_f, &
     h5sget_simple_extent_dims_f, h5sget_simple_extent_ndims_f, h5sselect_hyperslab_f
-  use archive_file_m, only : archive_t, is_hard, is_stored_within
+  use archive_m, only : archive_t, is_hard, is_stored_within
   use errors_m, only : error_t, raise, status_files, status_input
   use files_m, only : file_exists
   use hdf5_library_m, only : open_library

@@ -3,28 +3,53 @@
 !>
 !> There a run is its state, what its driver hands from cycle to cycle besides, how far its
 !> outputs are, and the deck. All of that is written, so that the run that goes on makes the same
-!> bits as one that was not interrupted. The driver's part is written by the driver, between
-!> `begin_file` and `end_file`.
+!> bits as one that was not interrupted.
 module restart_m
-  use archive_file_m, only : archive_t, fail_archive
+  use archive_m, only : archive_t
+  use clock_m, only : lap, phase_nodes, phase_output
   use errors_m, only : error_t, status_files
   use files_m, only : file_exists, remove_file, unfinished
-  use kinds_m, only : long
+  use history_tables_m, only : history_tables, n_table, asked_by_states
+  use kinds_m, only : wp, long
   use log_m, only : write_log
   use monitor_m, only : monitor_t
+  use output_schedule_m, only : schedule_t, go_on_with
   use progress_m, only : show_note
   use restart_file_m, only : create_restart, finish_restart, file_checksum
   use restart_plan_m, only : restarts_t, dump_path, running_path, place_text, numbered_file
-  use restart_run_m, only : keep_run, keep_outputs
-  use restart_state_m, only : keep_state
   use state_m, only : state_t
+  use visitor_m, only : visited_t, any_length
   implicit none
   private
-  public :: begin_file, end_file, forget_files
+  public :: write_restarts, forget_files, keep_run, keep_outputs
+
+  !> Bounds on numbered files and on the length of a job's name.
+  integer, parameter :: most_dumps = 1000000000, longest_name = 4096
 
 contains
 
-  !> Begin a restart file: the next numbered one, or the running one in place of the one before.
+  !> Write restart files: the next numbered one, or the running one in place of the one before.
+  subroutine write_restarts(wanted, state, monitor, error, driver)
+    logical, intent(in) :: wanted(:)   !! numbered_file, running_file
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+    class(visited_t), intent(inout), optional :: driver !! what it remembers besides the state
+    type(archive_t) :: archive
+    integer :: kind
+
+    if (.not. any(wanted)) return
+    if (present(driver)) call lap(monitor%clock, phase_nodes)
+    do kind = 1, size(wanted)
+      if (.not. wanted(kind) .or. allocated(error)) cycle
+      call begin_file(kind, state, monitor, archive)
+      if (present(driver)) call archive%part('driver', driver)
+      call end_file(kind, state, monitor, archive, error)
+    end do
+    if (present(driver)) call lap(monitor%clock, phase_output)
+  end subroutine write_restarts
+
+  !> What every file has.
   subroutine begin_file(kind, state, monitor, archive)
     integer, intent(in) :: kind                  !! numbered_file or running_file
     type(state_t), intent(inout) :: state
@@ -38,7 +63,7 @@ contains
     call keep_run(archive, monitor%restarts, effective_deck)
     if (allocated(effective_deck)) deallocate (effective_deck)
     call keep_outputs(archive, state%time, state%dt_before, monitor)
-    call keep_state(archive, state)
+    call archive%part('state', state)
   end subroutine begin_file
 
   !> Complete it, and say so.
@@ -97,9 +122,77 @@ contains
       if (status == 0) close (unit)
       if (status /= 0) reason = 'it can not be read'
     end if
-    if (allocated(reason)) call fail_archive(archive, 'no restart file can be written, since it ' &
+    if (allocated(reason)) call archive%fail('no restart file can be written, since it ' &
       //'would hold the deck as run, '//path//': '//reason, status_files)
   end subroutine read_effective_deck
+
+  !> Write or read what is known of the run.
+  subroutine keep_run(archive, restarts, effective_deck)
+    type(archive_t), intent(inout) :: archive
+    type(restarts_t), intent(inout) :: restarts
+    character(:), allocatable, intent(inout) :: effective_deck
+
+    call archive%enter('run')
+    call archive%text('effective_deck', effective_deck)
+    call archive%text('job', restarts%job)
+    call archive%text('deck', restarts%deck)
+    call archive%text('program', restarts%program)
+    call archive%visit('n_dump', restarts%n_dump, 0, most_dumps - 1, 'a number that no run reaches')
+    call archive%visit('is_implicit', restarts%is_implicit)
+    if (archive%judges) call archive%expect('job', is_stem(restarts%job), &
+      'a name that no file can have')
+    call archive%leave()
+  end subroutine keep_run
+
+  !> Whether a text may begin the names of files in the folder of the results.
+  pure function is_stem(text)
+    character(*), intent(in) :: text
+    logical :: is_stem
+    integer :: i
+
+    is_stem = len(text) > 0 .and. len(text) <= longest_name .and. index(text, '/') == 0
+    do i = 1, len(text)
+      is_stem = is_stem .and. iachar(text(i:i)) >= 32
+    end do
+  end function is_stem
+
+  !> Write or read how far the outputs are.
+  subroutine keep_outputs(archive, time, dt, monitor)
+    type(archive_t), intent(inout) :: archive
+    real(wp), intent(in) :: time, dt    !! of the state before, and the step within which it was
+                                        !! early for an output
+    type(monitor_t), intent(inout) :: monitor
+    real(wp), allocatable :: times(:)
+    integer :: k
+
+    call archive%enter('outputs')
+    call keep_schedule('plot', monitor%plot)
+    do k = 1, n_table
+      if (history_tables(k)%asked /= asked_by_states) &
+        call keep_schedule(trim(history_tables(k)%name), monitor%tables(k))
+    end do
+    call archive%part('histories', monitor%histories)
+    if (.not. archive%is_read) then
+      allocate (times(0))
+      if (allocated(monitor%results%times)) times = monitor%results%times(:monitor%results%n_state)
+      call archive%visit('state_times', times, any_length)
+    end if
+    call archive%leave()
+
+  contains
+
+    !> One of them.
+    subroutine keep_schedule(name, schedule)
+      character(*), intent(in) :: name
+      type(schedule_t), intent(inout) :: schedule !! planned from the deck
+      type(schedule_t) :: kept
+
+      kept = schedule
+      call archive%part(name, kept)
+      if (archive%judges) call go_on_with(kept, time, dt, schedule)
+    end subroutine keep_schedule
+
+  end subroutine keep_outputs
 
   !> Remove what an earlier run of this name has left: files that it has not finished, and whole
   !> ones too unless the run goes on.

@@ -1,14 +1,14 @@
 ! SPDX-License-Identifier: MIT
 !> Whether the numbers of a state that was read may be used: every index lies within what it points
-!> at, every list is one, and times are times. Shapes have been compared before (`keep`). A restart
-!> file may come from elsewhere: its checksum says that it is whole, not that it is sound.
+!> at, and every list is one. Shapes, and bounds that one component has, are looked at where they
+!> are visited. A restart file may come from elsewhere: its checksum says that it is whole, not that
+!> it is sound.
 module restart_bounds_m
-  use archive_file_m, only : archive_t, refuse
-  use contact_state_m, only : contact_state_t, tracking_t, bucket_grid_t, &
-    is_free, is_touching, is_behind
+  use archive_m, only : archive_t
+  use contact_state_m, only : contact_state_t, tracking_t, bucket_grid_t, is_free, is_touching
   use contacts_m, only : contact_t
   use facing_state_m, only : facing_t, facing_side_t
-  use friction_state_m, only : is_open, slips, is_held, is_broken
+  use friction_state_m, only : is_open, is_held, is_broken
   use kinds_m, only : wp
   use log_m, only : to_text
   use model_m, only : model_t
@@ -29,19 +29,13 @@ contains
     type(archive_t), intent(inout) :: archive
     integer :: i
 
-    call require(archive, 'state/cycle', state%cycle >= 0 .and. state%cycle < huge(1), &
-      'a cycle that no run reaches')
-    call require(archive, 'state/time', state%time >= 0.0_wp, 'a time below zero')
-    call require(archive, 'state/dt', state%dt > 0.0_wp, 'a step that is not positive')
-    call require(archive, 'state/dt_before', state%dt_before >= 0.0_wp, 'a step below zero')
-    call require(archive, 'state/mass', all(state%mass >= 0.0_wp), 'masses below zero')
     call check_relaxation(model, state, archive)
     do i = 1, size(state%contacts)
       if (model%erodes) then
-        call check_contact(state%outlines(i), model%mesh%n_node, state%contacts(i), &
+        call check_contact(state%outlines(i), state%contacts(i), &
           'state/contacts/'//to_text(i)//'/', archive)
       else
-        call check_contact(model%contacts(i), model%mesh%n_node, state%contacts(i), &
+        call check_contact(model%contacts(i), state%contacts(i), &
           'state/contacts/'//to_text(i)//'/', archive)
       end if
     end do
@@ -55,40 +49,26 @@ contains
     logical :: fits
 
     associate (relaxation => state%relaxation)
-      call require(archive, 'state/relaxation/n', relaxation%n == 0 .or. (relaxation%n > 0 .and. &
+      call archive%expect('state/relaxation/n', relaxation%n == 0 .or. (relaxation%n > 0 .and. &
         model%controls%relaxation%is_on), 'a phase that the deck does not ask for')
-      call require(archive, 'state/relaxation/time', relaxation%time >= 0.0_wp, 'a time below zero')
       fits = allocated(relaxation%velocity) .eqv. relaxation%n > 0
       if (fits .and. relaxation%n > 0) fits = all(shape(relaxation%velocity) == &
         [2, size(state%motion, 2)])
-      call require(archive, 'state/relaxation/velocity', fits, 'another number of velocities ' &
+      call archive%expect('state/relaxation/velocity', fits, 'another number of velocities ' &
         //'than there are nodes')
-      call require(archive, 'state/time', relaxation%n == 0 .or. .not. state%time > 0.0_wp, &
+      call archive%expect('state/time', relaxation%n == 0 .or. .not. state%time > 0.0_wp, &
         'a time after that of the relaxation')
     end associate
   end subroutine check_relaxation
 
   !> The memory of one interface.
-  subroutine check_contact(contact, n_node, memory, folder, archive)
+  subroutine check_contact(contact, memory, folder, archive)
     type(contact_t), intent(in) :: contact
-    integer, intent(in) :: n_node !! of the mesh
     type(contact_state_t), intent(in) :: memory
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
-    integer :: i, n_segments(2), n_spot
+    integer :: n_segments(2), n_spot
 
-    call require(archive, folder//'travel', memory%travel >= 0.0_wp, 'a way below zero')
-    call require(archive, folder//'advance', memory%advance >= 0.0_wp, 'a way below zero')
-    call require(archive, folder//'n_active', memory%n_active >= 0, 'a number below zero')
-    call require(archive, folder//'n_released', memory%n_released >= 0 .and. &
-      memory%n_released <= 10**9, 'a number that no run reaches')
-    call check_node('watch/node', memory%watch%node)
-    do i = 1, size(memory%watch%changes)
-      call check_node('watch/'//to_text(i)//'/node', memory%watch%changes(i)%node)
-    end do
-    if (allocated(memory%friction%state)) call require(archive, folder//'friction/state', &
-      all(memory%friction%state >= is_open .and. memory%friction%state <= slips), &
-      'numbers that mean nothing')
     call check_points(memory, folder//'points/', archive)
     if (allocated(archive%error)) return
     if (allocated(memory%ties%side)) call check_ties(memory, folder//'ties/', archive)
@@ -107,21 +87,6 @@ contains
     if (allocated(archive%error)) return
     call check_tracking(memory%master_tracking, memory%n_master, n_segments(1), &
       folder//'master_tracking/', archive)
-    if (allocated(memory%segments%status)) call require(archive, folder//'segments/status', &
-      all(memory%segments%status >= is_free .and. memory%segments%status <= is_behind), &
-      'numbers that mean nothing')
-
-  contains
-
-    !> A node of the mesh, or none.
-    subroutine check_node(name, node)
-      character(*), intent(in) :: name
-      integer, intent(in) :: node
-
-      call require(archive, folder//name, node >= 0 .and. node <= n_node, &
-        'a number that no node has')
-    end subroutine check_node
-
   end subroutine check_contact
 
   !> Runs of facing segments: rising numbers of segments that there are.
@@ -131,8 +96,6 @@ contains
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
 
-    call require(archive, folder//'n_look', facing%n_look >= 0 .and. facing%n_look <= 10**9 &
-      .and. facing%n_change >= 0 .and. facing%n_change <= 10**9, 'a number that no run reaches')
     call check_side(facing%slave, n_segments(1), folder//'slave/')
     if (.not. allocated(archive%error)) &
       call check_side(facing%master, n_segments(2), folder//'master/')
@@ -145,10 +108,10 @@ contains
       integer, intent(in) :: n
       character(*), intent(in) :: folder
 
-      call require(archive, folder//'n', side%n >= 0 .and. side%n <= n, &
+      call archive%expect(folder//'n', side%n >= 0 .and. side%n <= n, &
         'a number beyond the length of its list')
       if (allocated(archive%error)) return
-      call require(archive, folder//'segments', all(side%segments(:side%n) >= 1 &
+      call archive%expect(folder//'segments', all(side%segments(:side%n) >= 1 &
         .and. side%segments(:side%n) <= n) .and. all(side%segments(2:side%n) &
         > side%segments(:side%n - 1)), 'numbers that do not rise, or that no segment has')
     end subroutine check_side
@@ -173,14 +136,14 @@ contains
         size(points%area), size(points%stiffness), size(points%pressure)] == size(points%gap))
       if (fits .and. allocated(points%load)) fits = size(points%load, 2) == size(points%gap)
       if (fits .and. allocated(points%traction)) fits = size(points%traction) == size(points%gap)
-      call require(archive, folder//'gap', fits, 'not as many values as the arrays beside it')
+      call archive%expect(folder//'gap', fits, 'not as many values as the arrays beside it')
       if (allocated(archive%error)) return
-      call require(archive, folder//'n', points%n >= 0 .and. points%n <= size(points%gap), &
+      call archive%expect(folder//'n', points%n >= 0 .and. points%n <= size(points%gap), &
         'a number beyond the length of the list')
       n_local = memory%n_slave + memory%n_master
-      call require(archive, folder//'slave_nodes', all(points%slave_nodes >= 1 &
+      call archive%expect(folder//'slave_nodes', all(points%slave_nodes >= 1 &
         .and. points%slave_nodes <= n_local), 'numbers that no node of the interface has')
-      call require(archive, folder//'master_nodes', all(points%master_nodes >= 1 &
+      call archive%expect(folder//'master_nodes', all(points%master_nodes >= 1 &
         .and. points%master_nodes <= n_local), 'numbers that no node of the interface has')
     end associate
   end subroutine check_points
@@ -198,16 +161,16 @@ contains
       n_place = memory%n_master + memory%n_slave
       if (allocated(memory%spots)) n_place = memory%n_master + size(memory%spot_xi)*memory%n_slave
       if (allocated(ties%state)) then
-        call require(archive, folder//'state', all(ties%state == is_open .or. ties%state &
+        call archive%expect(folder//'state', all(ties%state == is_open .or. ties%state &
           == is_held .or. ties%state == is_broken), 'numbers that mean nothing')
-        call require(archive, folder//'place', all(ties%place >= merge(0, 1, &
+        call archive%expect(folder//'place', all(ties%place >= merge(0, 1, &
           allocated(memory%node_pressure)) .and. ties%place <= n_place), &
           'numbers that no place of the interface has')
       end if
-      call require(archive, folder//'first', ties%first(1) == 1 &
+      call archive%expect(folder//'first', ties%first(1) == 1 &
         .and. all(ties%first(2:) > ties%first(:n)) .and. (ties%first(n + 1) == memory%points%n + 1 &
         .or. memory%points%n == 0), 'numbers that do not rise to the number of points')
-      call require(archive, folder//'owner', all(ties%owner >= 1 .and. ties%owner &
+      call archive%expect(folder//'owner', all(ties%owner >= 1 .and. ties%owner &
         <= memory%n_slave + memory%n_master), 'numbers that no node of the interface has')
     end associate
   end subroutine check_ties
@@ -223,35 +186,29 @@ contains
 
     n = tracking%n
     if (.not. allocated(tracking%status)) then
-      call require(archive, folder//'n_touching', tracking%n_touching == 0, &
+      call archive%expect(folder//'n_touching', tracking%n_touching == 0, &
         'spots that are not there')
       return
     end if
-    call require(archive, folder//'n', n == n_spot, 'another number of spots than there are')
-    call require(archive, folder//'chord', all(tracking%chord >= 1 &
+    call archive%expect(folder//'n', n == n_spot, 'another number of spots than there are')
+    call archive%expect(folder//'chord', all(tracking%chord >= 1 &
       .and. tracking%chord <= max(1, n)), 'numbers that no spot has')
     if (allocated(archive%error)) return
-    call require(archive, folder//'n_touching', tracking%n_touching >= 0 &
+    call archive%expect(folder//'n_touching', tracking%n_touching >= 0 &
       .and. tracking%n_touching <= n, 'more than there are spots')
-    call require(archive, folder//'segment', all(tracking%segment >= 0 &
+    call archive%expect(folder//'segment', all(tracking%segment >= 0 &
       .and. tracking%segment <= n_segment), 'numbers that no segment has')
-    call require(archive, folder//'status', all(tracking%status >= is_free &
-      .and. tracking%status <= is_behind), 'numbers that mean nothing')
-    call require(archive, folder//'status', all(tracking%status == is_free &
+    call archive%expect(folder//'status', all(tracking%status == is_free &
       .or. tracking%segment > 0), 'spots that stand before no segment')
-    call require(archive, folder//'due', all(tracking%due >= 0 &
-      .and. tracking%due <= size(tracking%due)), 'numbers that no spot has')
-    call require(archive, folder//'touching', all(tracking%touching >= 0 &
-      .and. tracking%touching <= size(tracking%touching)), 'numbers that no spot has')
     if (allocated(archive%error)) return
-    call require(archive, folder//'touching', is_list(tracking%touching(:tracking%n_touching), n), &
+    call archive%expect(folder//'touching', is_list(tracking%touching(:tracking%n_touching), n), &
       'spots that stand on its list twice')
     if (allocated(archive%error)) return
-    call require(archive, folder//'touching', all(tracking%status( &
+    call archive%expect(folder//'touching', all(tracking%status( &
       tracking%touching(:tracking%n_touching)) == is_touching), 'spots that do not touch')
-    call require(archive, folder//'n_touching', count(tracking%status == is_touching) &
+    call archive%expect(folder//'n_touching', count(tracking%status == is_touching) &
       == tracking%n_touching, 'another number than there are spots in contact')
-    call require(archive, folder//'reach', tracking%reach >= 0.0_wp .and. tracking%reach &
+    call archive%expect(folder//'reach', tracking%reach >= 0.0_wp .and. tracking%reach &
       <= most_cells*tracking%grid%least_cell, 'a distance that does not fit its cells')
     call check_grid(tracking%grid, n_segment, folder//'grid/', archive)
   end subroutine check_tracking
@@ -283,27 +240,16 @@ contains
     integer :: n
 
     n = size(grid%first)
-    call require(archive, folder//'cell', grid%cell >= 0.0_wp, 'a side below zero')
     if (.not. grid%cell > 0.0_wp) return ! never filled, or to be filled anew
-    call require(archive, folder//'cell', grid%cell >= grid%least_cell .and. &
+    call archive%expect(folder//'cell', grid%cell >= grid%least_cell .and. &
       grid%cell > tiny(1.0_wp), 'a side below the smallest')
-    call require(archive, folder//'first', grid%first(1) >= 0 .and. grid%first(n) &
+    call archive%expect(folder//'first', grid%first(1) >= 0 .and. grid%first(n) &
       <= size(grid%items) .and. all(grid%first(2:) >= grid%first(:n - 1)), &
       'places that do not follow each other in its list')
     if (allocated(archive%error)) return
-    call require(archive, folder//'items', all(grid%items(grid%first(1) + 1:grid%first(n)) >= 1 &
+    call archive%expect(folder//'items', all(grid%items(grid%first(1) + 1:grid%first(n)) >= 1 &
       .and. grid%items(grid%first(1) + 1:grid%first(n)) <= n_segment), &
       'numbers that no segment has')
   end subroutine check_grid
-
-  !> Refuse the file unless something holds.
-  subroutine require(archive, name, holds, what)
-    type(archive_t), intent(inout) :: archive
-    character(*), intent(in) :: name
-    logical, intent(in) :: holds
-    character(*), intent(in) :: what    !! the component has otherwise
-
-    if (.not. holds) call refuse(archive, name, what)
-  end subroutine require
 
 end module restart_bounds_m

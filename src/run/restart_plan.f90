@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> When a run writes restart files and under which names, and the one that it goes on from.
 module restart_plan_m
-  use archive_file_m, only : archive_t
+  use archive_m, only : archive_t
   use controls_m, only : controls_t
   use kinds_m, only : wp, long
   use log_m, only : to_text

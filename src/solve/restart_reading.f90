@@ -2,29 +2,27 @@
 !> Going on from a restart file: what it says of the run, its state and its outputs, and
 !> the files of the run before.
 module restart_reading_m
-  use archive_file_m, only : archive_t, enter, leave
+  use archive_m, only : archive_t
   use errors_m, only : error_t, raise, status_input
-  use explicit_memory_m, only : check_steps
-  use implicit_memory_m, only : check_memory
+  use explicit_cycle_m, only : explicit_cycle_t, read_cycle
+  use implicit_memory_m, only : implicit_memory_t, read_memory
   use inside_answers_m, only : answers_t
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, plan_outputs
-  use others_memory_m, only : others_t
+  use others_memory_m, only : others_t, forgetters_of
   use outlines_m, only : resume_outlines
   use output_schedule_m, only : output_reach
   use progress_m, only : show_note
   use restart_bounds_m, only : check_state
   use restart_file_m, only : open_restart
-  use restart_history_m, only : keep_times
+  use restart_m, only : keep_run, keep_outputs
   use restart_plan_m, only : restarts_t, place_text
-  use restart_run_m, only : keep_run, keep_outputs
-  use restart_state_m, only : keep_state, keep_erosion_status
   use results_copy_m, only : check_old_results, copy_states
-  use results_file_m, only : results_file_t
   use start_m, only : start_state, resume_contacts
   use state_m, only : state_t
+  use visitor_m, only : any_length
   implicit none
   private
   public :: take_up_file, take_up_results, take_up_state, check_rest, take_up_outputs
@@ -55,11 +53,11 @@ contains
     type(model_t), intent(in) :: model
     character(*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
-    type(results_file_t) :: nothing
 
-    call enter(restarts%source, 'outputs')
-    call keep_times(restarts%source, 'state_times', nothing, restarts%state_times)
-    call leave(restarts%source)
+    call restarts%source%enter('outputs')
+    call restarts%source%visit('state_times', restarts%state_times, any_length)
+    call restarts%source%leave()
+    if (.not. allocated(restarts%state_times)) allocate (restarts%state_times(0))
     if (allocated(restarts%source%error)) then
       error = restarts%source%error
     else
@@ -84,10 +82,11 @@ contains
     if (model%controls%implicit%is_on) &
       allocate (state%acceleration(2, model%mesh%n_node), source=0.0_wp)
     if (model%erodes) then
-      call keep_erosion_status(source, state%elements%erosion)
+      call read_status(source, state%elements%erosion%status)
       if (.not. allocated(source%error)) call resume_outlines(model, state)
     end if
-    if (.not. allocated(source%error)) call keep_state(source, state, others)
+    if (present(others)) source%forgetters = forgetters_of(others)
+    if (.not. allocated(source%error)) call source%part('state', state)
     if (.not. allocated(source%error)) call check_state(model, state, source)
     if (.not. allocated(source%error)) then
       call resume_contacts(model, state)
@@ -101,6 +100,20 @@ contains
     end if
   end subroutine take_up_state
 
+  !> Which elements are there: shapes of interfaces follow from it.
+  subroutine read_status(source, status)
+    type(archive_t), intent(inout) :: source
+    integer, allocatable, intent(inout) :: status(:)
+
+    call source%enter('state')
+    call source%enter('elements')
+    call source%enter('erosion')
+    call source%visit('status', status)
+    call source%leave()
+    call source%leave()
+    call source%leave()
+  end subroutine read_status
+
   !> Look at what is read once the files are open, so that a file that is refused has emptied none:
   !> how far the outputs are, and what the driver keeps.
   subroutine check_rest(source, model, state, error)
@@ -109,14 +122,16 @@ contains
     type(state_t), intent(in) :: state     !! that of the file
     type(error_t), allocatable, intent(out) :: error
     type(monitor_t) :: planned
+    type(implicit_memory_t) :: memory
+    type(explicit_cycle_t) :: cycle
 
     call plan_outputs(model, planned)
     call keep_outputs(source, state%time - state%dt_before, &
       output_reach(model%controls, state%dt_before), planned)
     if (model%controls%implicit%is_on) then
-      call check_memory(model, state, source)
+      call read_memory(model, state, source, memory)
     else if (state%relaxation%n == 0) then
-      call check_steps(model, state, source)
+      call read_cycle(model, state, source, cycle)
     end if
     if (allocated(source%error)) error = source%error
   end subroutine check_rest

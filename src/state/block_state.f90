@@ -4,13 +4,15 @@
 module block_state_m
   use erosion_state_m, only : erosion_state_t
   use kinds_m, only : wp
+  use visitor_m, only : visited_t, visitor_t, of_slots, of_columns, of_stresses, of_chunks, &
+    new_chunks, fixed_slots, fixed_columns
   implicit none
   private
-  public :: block_state_t, stream_starts
+  public :: block_state_t
 
   !> Element history. The volumetric stress follows from the displacement, so only the deviator is
   !> stored: s_zz = -(s_xx + s_yy). Work and limits end with the last tile: rigid parts have none.
-  type :: block_state_t
+  type, extends(visited_t) :: block_state_t
     real(wp), allocatable :: reference(:, :)  !! (n_slot, 6) X31 Y31 X42 Y42 and h.X, h.Y at time
                                               !! zero
     real(wp), allocatable :: deviator(:, :)   !! (n_slot, 3) s_xx, s_yy, s_xy, Pa; the mean over the
@@ -60,26 +62,39 @@ module block_state_m
     real(wp), allocatable :: mass_shares(:, :)  !! (4, n_slot) of exposed quads in the masses of
                                                 !! their nodes (`find_exposed`); only where some are
     type(erosion_state_t), allocatable :: erosion !! only where elements may leave the mesh
+  contains
+    procedure :: visit => visit_elements
   end type block_state_t
 
 contains
 
-  !> Ranges of a stream that only some chunks have a part of.
-  pure function stream_starts(chunks, chunk_start, n_value) result(starts)
-    integer, intent(in) :: chunks(0:)      !! ranges of chunks
-    integer, intent(in) :: chunk_start(:)  !! where a chunk's part starts, 0 = none
-    integer, intent(in) :: n_value         !! length of the stream
-    integer :: starts(0:size(chunks) - 1)
-    integer :: rank, i
+  !> Its components, but for shares in masses, which are made anew. The shape of an element that
+  !> leaves the mesh becomes that of padding.
+  subroutine visit_elements(self, visitor)
+    class(block_state_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
 
-    do rank = 0, size(chunks) - 1
-      starts(rank) = n_value + 1
-      do i = chunks(rank), size(chunk_start)
-        if (chunk_start(i) == 0) cycle
-        starts(rank) = chunk_start(i)
-        exit
-      end do
-    end do
-  end function stream_starts
+    call visitor%visit('reference', self%reference, merge(of_columns, fixed_columns, &
+      allocated(self%erosion)))
+    call visitor%visit('deviator', self%deviator, of_columns)
+    call visitor%stream('point_deviator', self%point_deviator, 'point_start', self%point_start)
+    call visitor%stream('history', self%history, 'history_start', self%history_start)
+    call visitor%stream('eos_state', self%eos_state, 'eos_start', self%eos_start)
+    call visitor%stream('hourglass_strain', self%hourglass_strain, 'hourglass_start', &
+      self%hourglass_start)
+    call visitor%visit('n_failed', self%n_failed, new_chunks)
+    call visitor%visit('deviatoric_work', self%deviatoric_work, of_chunks)
+    call visitor%visit('hourglass_work', self%hourglass_work, of_chunks)
+    call visitor%visit('viscous_work', self%viscous_work, of_chunks)
+    call visitor%visit('viscous_pressure', self%viscous_pressure, of_slots)
+    call visitor%visit('mass_ratio', self%mass_ratio, fixed_slots)
+    call visitor%visit('retardation', self%retardation, fixed_slots)
+    call visitor%visit('damping_stress', self%damping_stress, of_stresses)
+    call visitor%visit('damping_work', self%damping_work, of_chunks)
+    call visitor%visit('time_limit', self%time_limit, of_chunks)
+    call visitor%visit('volume_limit', self%volume_limit, of_chunks)
+    call visitor%visit('volume_change', self%volume_change, new_chunks)
+    if (allocated(self%erosion)) call visitor%part('erosion', self%erosion)
+  end subroutine visit_elements
 
 end module block_state_m

@@ -3,12 +3,13 @@
 !> was judged, those that write rows of interfaces or plot states.
 module contact_estimate_m
   use kinds_m, only : wp
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: contact_estimate_t
 
   !> Sums and extremes; nothing of time zero, where elements have no stress yet.
-  type :: contact_estimate_t
+  type, extends(visited_t) :: contact_estimate_t
     integer :: cycle = 0               !! of the last instant
     integer :: stride = 0              !! cycles between that one and the one before
     integer :: n = 0                   !! instants
@@ -34,6 +35,40 @@ module contact_estimate_m
     real(wp) :: arc_height = 0.0_wp    !! of the highest arc over its segment there, m
     real(wp) :: arc_curvature = 0.0_wp !! of that arc, 1/m
     integer :: arc_side = 0            !! it is on: 1 slave, 2 master
+  contains
+    procedure :: visit => visit_estimate
   end type contact_estimate_t
+
+contains
+
+  !> Its components.
+  subroutine visit_estimate(self, visitor)
+    class(contact_estimate_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('cycle', self%cycle)
+    call visitor%visit('stride', self%stride)
+    call visitor%visit('n', self%n)
+    call visitor%visit('misfit', self%misfit)
+    call visitor%visit('load', self%load)
+    call visitor%visit('still', self%still)
+    call visitor%visit('heaviest', self%heaviest)
+    call visitor%visit('at_heaviest', self%at_heaviest)
+    call visitor%visit('springs', self%springs)
+    call visitor%visit('rows', self%rows)
+    call visitor%fixed('force', self%force)
+    call visitor%fixed('former', self%former)
+    call visitor%visit('jumps', self%jumps)
+    call visitor%visit('forces', self%forces)
+    call visitor%visit('least_margin', self%least_margin)
+    call visitor%visit('softness', self%softness)
+    call visitor%visit('stored', self%stored)
+    call visitor%visit('bodies', self%bodies)
+    call visitor%visit('penetration', self%penetration, 0.0_wp, 'a number below zero')
+    call visitor%visit('facet_error', self%facet_error)
+    call visitor%visit('arc_height', self%arc_height)
+    call visitor%visit('arc_curvature', self%arc_curvature)
+    call visitor%visit('arc_side', self%arc_side)
+  end subroutine visit_estimate
 
 end module contact_estimate_m

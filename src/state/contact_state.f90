@@ -25,6 +25,7 @@ module contact_state_m
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
   use tie_state_m, only : tie_memory_t
+  use visitor_m, only : visited_t, visitor_t, any_length, length, whole
   implicit none
   private
   public :: contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
@@ -41,7 +42,7 @@ module contact_state_m
   integer, parameter :: is_free = 0, is_in_front = 1, is_touching = 2, is_behind = 3
 
   !> The list, one column per point.
-  type :: contact_points_t
+  type, extends(visited_t) :: contact_points_t
     integer :: n = 0                           !! points in use
     integer, allocatable :: slave_nodes(:, :)  !! (n_side, capacity) local numbers
     real(wp), allocatable :: slave_weights(:, :)
@@ -57,10 +58,12 @@ module contact_state_m
                                                !! there is damping
     real(wp), allocatable :: traction(:)       !! as pressure, along -(-n_y, n_x) on the slave side;
                                                !! only where there is friction or a tie
+  contains
+    procedure :: visit => visit_points
   end type contact_points_t
 
   !> Segments sorted into square cells by hashing; tells which segments are near a place.
-  type :: bucket_grid_t
+  type, extends(visited_t) :: bucket_grid_t
     real(wp) :: cell = 0.0_wp         !! side of a cell, m; 0 = never filled
     real(wp) :: least_cell = 0.0_wp   !! smallest side, m: cells that much smaller than the reach
                                       !! cost more
@@ -69,10 +72,12 @@ module contact_state_m
     real(wp) :: high(2) = 0.0_wp
     integer, allocatable :: first(:)  !! (n_bucket + 1) where each bucket starts ...
     integer, allocatable :: items(:)  !! ... in this list of segments
+  contains
+    procedure :: visit => visit_grid
   end type bucket_grid_t
 
   !> Spots followed over a chain.
-  type :: tracking_t
+  type, extends(visited_t) :: tracking_t
     integer :: n = 0                         !! spots
     integer :: n_touching = 0
     real(wp) :: next_wake = -huge(1.0_wp)    !! travel before which no spot that is not in contact
@@ -99,14 +104,18 @@ module contact_state_m
     integer :: own_spots = -1                !! where the chain is the spots' own surface: how many
                                              !! there are on a segment, 0: at its nodes; else -1
     type(bucket_grid_t) :: grid
+  contains
+    procedure :: visit => visit_tracking
   end type tracking_t
 
   !> What formulations that go along both chains remember of each slave segment; empty for others.
-  type :: segment_memory_t
+  type, extends(visited_t) :: segment_memory_t
     integer, allocatable :: status(:)     !! (n_segment) is_free, is_touching (may be deep) or
                                           !! is_behind
     real(wp), allocatable :: wake(:)      !! (n_segment) travel before which it can not touch
     real(wp) :: next_wake = -huge(1.0_wp) !! travel before which none can touch
+  contains
+    procedure :: visit => visit_segments
   end type segment_memory_t
 
   !> Room that procedures use within a step; nothing in it lasts to the next one.
@@ -153,7 +162,7 @@ module contact_state_m
   end type contact_scratch_t
 
   !> Memory of one interface.
-  type :: contact_state_t
+  type, extends(visited_t) :: contact_state_t
     integer :: n_slave = 0, n_master = 0
     integer, allocatable :: nodes(:)        !! (n_slave + n_master) node indices in the mesh
     real(wp), allocatable :: places(:, :)   !! (4, n_slave + n_master) X, Y, u_x, u_y of the last
@@ -198,6 +207,8 @@ module contact_state_m
     integer :: n_swept = 0                  !! calls in which sweeps had to settle which nodes press
     integer :: n_dropped = 0                !! calls in which some pressures depended on others
     type(contact_scratch_t) :: scratch
+  contains
+    procedure :: visit => visit_contact
   end type contact_state_t
 
 contains
@@ -320,5 +331,119 @@ contains
     n = 1
     if (allocated(memory%spots)) n = size(memory%spot_xi)
   end function places_of_segment
+
+  !> Its components.
+  subroutine visit_points(self, visitor)
+    class(contact_points_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('n', self%n)
+    call visitor%visit('slave_nodes', self%slave_nodes, any_length)
+    call visitor%visit('slave_weights', self%slave_weights, any_length)
+    call visitor%visit('master_nodes', self%master_nodes, any_length)
+    call visitor%visit('master_weights', self%master_weights, any_length)
+    call visitor%visit('normal', self%normal, any_length)
+    call visitor%visit('gap', self%gap, any_length)
+    call visitor%visit('area', self%area, any_length)
+    call visitor%visit('stiffness', self%stiffness, any_length)
+    call visitor%visit('pressure', self%pressure, any_length)
+    call visitor%visit('load', self%load, any_length)
+    call visitor%visit('traction', self%traction, any_length)
+  end subroutine visit_points
+
+  !> Its components.
+  subroutine visit_grid(self, visitor)
+    class(bucket_grid_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('cell', self%cell, 0.0_wp, 'a side below zero')
+    call visitor%visit('least_cell', self%least_cell)
+    call visitor%visit('filled_at', self%filled_at)
+    call visitor%fixed('low', self%low)
+    call visitor%fixed('high', self%high)
+    call visitor%visit('first', self%first)
+    call visitor%visit('items', self%items)
+  end subroutine visit_grid
+
+  !> Its components; extremes are found again.
+  subroutine visit_tracking(self, visitor)
+    class(tracking_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('n', self%n)
+    call visitor%visit('n_touching', self%n_touching)
+    call visitor%visit('next_wake', self%next_wake)
+    call visitor%visit('reach', self%reach)
+    call visitor%visit('touching', self%touching, whole, 0, length(self%touching), &
+      'numbers that no spot has')
+    call visitor%visit('due', self%due, whole, 0, length(self%due), 'numbers that no spot has')
+    call visitor%visit('segment', self%segment)
+    call visitor%visit('status', self%status, whole, is_free, is_behind, &
+      'numbers that mean nothing')
+    call visitor%visit('xi', self%xi)
+    call visitor%visit('gap', self%gap)
+    call visitor%visit('normal', self%normal)
+    call visitor%visit('wake', self%wake)
+    call visitor%visit('recheck', self%recheck)
+    call visitor%visit('spot_depth', self%spot_depth)
+    call visitor%visit('segment_depth', self%segment_depth)
+    call visitor%visit('chord', self%chord)
+    call visitor%part('grid', self%grid)
+  end subroutine visit_tracking
+
+  !> Its components.
+  subroutine visit_segments(self, visitor)
+    class(segment_memory_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('status', self%status, whole, is_free, is_behind, &
+      'numbers that mean nothing')
+    call visitor%visit('wake', self%wake)
+    call visitor%visit('next_wake', self%next_wake)
+  end subroutine visit_segments
+
+  !> Its components.
+  subroutine visit_contact(self, visitor)
+    class(contact_state_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%same('n_slave', self%n_slave)
+    call visitor%same('n_master', self%n_master)
+    call visitor%same('nodes', self%nodes)
+    call visitor%visit('places', self%places)
+    call visitor%visit('travel', self%travel, 0.0_wp, 'a way below zero')
+    call visitor%visit('advance', self%advance, 0.0_wp, 'a way below zero')
+    call visitor%visit('is_stale', self%is_stale)
+    call visitor%visit('next_search', self%next_search)
+    call visitor%visit('spots', self%spots)
+    call visitor%visit('spot_xi', self%spot_xi)
+    call visitor%visit('spot_share', self%spot_share)
+    call visitor%visit('spot_spread', self%spot_spread)
+    call visitor%part('slave_tracking', self%slave_tracking)
+    call visitor%part('master_tracking', self%master_tracking)
+    call visitor%part('segments', self%segments)
+    call visitor%part('facing', self%facing)
+    call visitor%part('points', self%points)
+    call visitor%visit('closed_gap', self%closed_gap)
+    call visitor%visit('node_pressure', self%node_pressure)
+    call visitor%visit('force', self%force)
+    call visitor%same('contact_law', self%contact_law)
+    call visitor%visit('slave_penalty', self%slave_penalty)
+    call visitor%visit('master_penalty', self%master_penalty)
+    call visitor%visit('node_penalty', self%node_penalty)
+    call visitor%visit('damping_force', self%damping_force)
+    call visitor%part('friction', self%friction)
+    call visitor%part('interference', self%interference)
+    call visitor%part('ties', self%ties)
+    call visitor%visit('energy', self%energy)
+    call visitor%visit('damping_work', self%damping_work)
+    call visitor%part('watch', self%watch)
+    call visitor%part('limit', self%limit)
+    call visitor%visit('n_active', self%n_active, 0, what='a number below zero')
+    call visitor%visit('rules_step', self%rules_step)
+    call visitor%visit('n_released', self%n_released, 0, 10**9, 'a number that no run reaches')
+    call visitor%visit('n_swept', self%n_swept)
+    call visitor%visit('n_dropped', self%n_dropped)
+  end subroutine visit_contact
 
 end module contact_state_m

@@ -2,6 +2,7 @@
 !> Which elements have left the mesh, and what is known only of elements that may.
 module erosion_state_m
   use kinds_m, only : wp
+  use visitor_m, only : visited_t, visitor_t, of_chunks, of_slots
   implicit none
   private
   public :: erosion_state_t, stays, has_left, has_gone
@@ -10,7 +11,7 @@ module erosion_state_m
   integer, parameter :: stays = 0, has_left = 1, has_gone = 2
 
   !> Only in runs some elements of which may leave.
-  type :: erosion_state_t
+  type, extends(visited_t) :: erosion_state_t
     integer, allocatable :: status(:)      !! (n_slot) one of the constants above
     integer, allocatable :: n_gone(:)      !! (n_chunk) elements of a chunk that are not there
     real(wp), allocatable :: hourglass(:)  !! (n_slot) work of its hourglass forces, J/m
@@ -22,6 +23,27 @@ module erosion_state_m
     real(wp) :: least_step = 0.0_wp        !! step below which ERODE takes elements, s
     real(wp) :: took(4) = 0.0_wp           !! energies that went with them: kinetic, internal,
                                            !! hourglass, contact springs, J/m
+  contains
+    procedure :: visit => visit_erosion
   end type erosion_state_t
+
+contains
+
+  !> Its components.
+  subroutine visit_erosion(self, visitor)
+    class(erosion_state_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('status', self%status, of_slots)
+    call visitor%visit('n_gone', self%n_gone, of_chunks)
+    call visitor%visit('hourglass', self%hourglass, of_slots)
+    call visitor%visit('internal', self%internal, of_slots)
+    call visitor%visit('impulse', self%impulse, of_slots)
+    call visitor%visit('n_element', self%n_element)
+    call visitor%visit('n_eroded', self%n_eroded)
+    call visitor%visit('first_time', self%first_time)
+    call visitor%visit('least_step', self%least_step)
+    call visitor%fixed('took', self%took)
+  end subroutine visit_erosion
 
 end module erosion_state_m

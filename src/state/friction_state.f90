@@ -5,6 +5,7 @@
 !> segments change.
 module friction_state_m
   use kinds_m, only : wp
+  use visitor_m, only : visited_t, visitor_t, whole
   implicit none
   private
   public :: friction_memory_t, allocate_friction, is_open, sticks, slips, &
@@ -16,7 +17,7 @@ module friction_state_m
   integer, parameter :: is_held = 3, is_broken = 4
 
   !> Arrays are allocated for interfaces with friction alone.
-  type :: friction_memory_t
+  type, extends(visited_t) :: friction_memory_t
     real(wp), allocatable :: traction(:)  !! (n_place) of the last call, before the energy law,
                                           !! N/m^2 (N/m for type 1); 0 where open
     integer, allocatable :: state(:)      !! (n_place) one of the constants above
@@ -25,6 +26,8 @@ module friction_state_m
                                           !! that friction has, N/m
     real(wp) :: work = 0.0_wp             !! minus the accumulated work of these forces, J/m
     real(wp) :: stored = 0.0_wp           !! the part of it that tangential springs hold now, J/m
+  contains
+    procedure :: visit => visit_friction
   end type friction_memory_t
 
 contains
@@ -38,5 +41,18 @@ contains
       source=0.0_wp)
     allocate (friction%state(n_place), source=is_open)
   end subroutine allocate_friction
+
+  !> Its components.
+  subroutine visit_friction(self, visitor)
+    class(friction_memory_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('traction', self%traction)
+    call visitor%visit('state', self%state, whole, is_open, slips, 'numbers that mean nothing')
+    call visitor%visit('slip', self%slip)
+    call visitor%visit('force', self%force)
+    call visitor%visit('work', self%work)
+    call visitor%visit('stored', self%stored)
+  end subroutine visit_friction
 
 end module friction_state_m

@@ -2,15 +2,14 @@
 !> Nodes and elements of other processes, whose state this one does not keep, and those whose state
 !> it has.
 module others_memory_m
-  use block_state_m, only : block_state_t, stream_starts
+  use freight_m, only : forgetter_t, choose_slots
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use model_m, only : model_t
-  use pages_m, only : forget_reals
-  use state_m, only : state_t
+  use visitor_m, only : of_nodes
   implicit none
   private
-  public :: others_t, known_nodes, known_slots, forget_nodes, forget_slots
+  public :: others_t, known_nodes, known_slots, forgetters_of
 
   !> Two ranges of each: before and behind those of this process.
   type :: others_t
@@ -59,56 +58,17 @@ contains
     ranges = reshape([1, items(1) - 1, items(2) + 1, items(3) - 1, items(4) + 1, n], [2, 3])
   end function between
 
-  !> Interior nodes of others.
-  subroutine forget_nodes(others, state)
+  !> Who gives up the memory of others' nodes and slots: before and behind those of this process.
+  pure function forgetters_of(others) result(forgetters)
     type(others_t), intent(in) :: others
-    type(state_t), intent(inout) :: state
-
-    call forget_reals(others%nodes, 4, state%motion)
-    call forget_reals(others%nodes, 1, state%mass)
-    call forget_reals(others%nodes, 2, state%inverse_mass)
-    if (allocated(state%internal_force)) call forget_reals(others%nodes, 2, state%internal_force)
-    if (allocated(state%former_velocity)) call forget_reals(others%nodes, 2, state%former_velocity)
-  end subroutine forget_nodes
-
-  !> What elements of others keep, slot by slot and in streams.
-  subroutine forget_slots(others, elements)
-    type(others_t), intent(in) :: others
-    type(block_state_t), intent(inout) :: elements
+    type(forgetter_t) :: forgetters(2)
     integer :: k
 
-    do k = 1, size(elements%reference, 2)
-      call forget_reals(others%slots, 1, elements%reference(:, k))
+    do k = 1, 2
+      forgetters(k)%ranges(:, of_nodes) = others%nodes(2*k - 1:2*k)
+      call choose_slots(forgetters(k), (others%slots(2*k - 1:2*k) + [chunk_size - 1, 0]) &
+        /chunk_size, chunk_size, .true., .false.)
     end do
-    do k = 1, size(elements%deviator, 2)
-      call forget_reals(others%slots, 1, elements%deviator(:, k))
-    end do
-    if (allocated(elements%mass_ratio)) call forget_reals(others%slots, 1, elements%mass_ratio)
-    if (allocated(elements%retardation)) call forget_reals(others%slots, 1, elements%retardation)
-    if (allocated(elements%viscous_pressure)) &
-      call forget_reals(others%slots, 1, elements%viscous_pressure)
-    if (allocated(elements%damping_stress)) &
-      call forget_reals(others%slots, 16, elements%damping_stress)
-    call forget_stream(elements%point_start, elements%point_deviator)
-    call forget_stream(elements%history_start, elements%history)
-    call forget_stream(elements%eos_start, elements%eos_state)
-    call forget_stream(elements%hourglass_start, elements%hourglass_strain)
-
-  contains
-
-    !> What only some chunks keep.
-    subroutine forget_stream(starts, values)
-      integer, intent(in) :: starts(:) !! of chunks, 0 where one has none
-      real(wp), intent(inout), contiguous :: values(:)
-
-      integer :: own(2)
-
-      if (size(values) == 0) return
-      own = stream_starts([others%slots(2), others%slots(3) - 1]/chunk_size + 1, starts, &
-        size(values))
-      call forget_reals([1, own(1) - 1, own(2), size(values)], 1, values)
-    end subroutine forget_stream
-
-  end subroutine forget_slots
+  end function forgetters_of
 
 end module others_memory_m

@@ -3,12 +3,13 @@
 !> about z, counter-clockwise.
 module rigid_state_m
   use kinds_m, only : wp
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: rigid_state_t, turn_of, shift_by_turn, velocity_of
 
   !> One body. The places of its nodes follow from `place` alone, so that its shape never drifts.
-  type :: rigid_state_t
+  type, extends(visited_t) :: rigid_state_t
     real(wp) :: inertia(3) = 0.0_wp       !! M, M and the moment of inertia about the centre of mass
     real(wp) :: second(3) = 0.0_wp        !! sums of m r_x^2, m r_y^2, m r_x r_y at time zero
     real(wp) :: centre(2) = 0.0_wp        !! centre of mass at time zero
@@ -19,6 +20,8 @@ module rigid_state_m
     real(wp) :: acceleration(3) = 0.0_wp  !! of the present instant
     real(wp) :: force(3) = 0.0_wp         !! resultants of contact, loads and deformable elements
     real(wp) :: load(3) = 0.0_wp          !! forces and moment of *LOAD_RIGID_BODY
+  contains
+    procedure :: visit => visit_rigid
   end type rigid_state_t
 
 contains
@@ -51,5 +54,22 @@ contains
     there(1) = velocity(1) - velocity(3)*arm(2)
     there(2) = velocity(2) + velocity(3)*arm(1)
   end function velocity_of
+
+  !> Its components.
+  subroutine visit_rigid(self, visitor)
+    class(rigid_state_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%fixed('inertia', self%inertia)
+    call visitor%fixed('second', self%second)
+    call visitor%fixed('centre', self%centre)
+    call visitor%visit('arms', self%arms)
+    call visitor%fixed('place', self%place)
+    call visitor%fixed('velocity', self%velocity)
+    call visitor%fixed('next_velocity', self%next_velocity)
+    call visitor%fixed('acceleration', self%acceleration)
+    call visitor%fixed('force', self%force)
+    call visitor%fixed('load', self%load)
+  end subroutine visit_rigid
 
 end module rigid_state_m

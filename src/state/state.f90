@@ -14,13 +14,14 @@ module state_m
   use contacts_m, only : contact_t
   use relaxation_state_m, only : relaxation_state_t
   use rigid_state_m, only : rigid_state_t
+  use visitor_m, only : visited_t, visitor_t, length, any_length, of_forces, of_nodes
   use wall_state_m, only : wall_state_t
   implicit none
   private
   public :: state_t
 
   !> State of a run.
-  type :: state_t
+  type, extends(visited_t) :: state_t
     integer :: cycle = 0
     real(wp) :: time = 0.0_wp
     real(wp) :: dt = 0.0_wp                    !! step that leads away from this state
@@ -75,6 +76,88 @@ module state_m
     real(wp) :: initial_energy = 0.0_wp
     real(wp) :: largest_energy = 0.0_wp !! largest |initial energy + external work| so far; only
                                         !! where there is contact in an explicit run
+  contains
+    procedure :: visit => visit_state
   end type state_t
+
+contains
+
+  !> Its components.
+  subroutine visit_state(self, visitor)
+    class(state_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+    logical :: is_new
+
+    call visitor%visit('cycle', self%cycle, 0, huge(1) - 1, 'a cycle that no run reaches')
+    call visitor%visit('time', self%time, 0.0_wp, 'a time below zero')
+    call visitor%visit('dt', self%dt)
+    call visitor%expect('dt', self%dt > 0.0_wp, 'a step that is not positive')
+    call visitor%visit('dt_before', self%dt_before, 0.0_wp, 'a step below zero')
+    call visitor%visit('motion', self%motion, of_nodes)
+    if (allocated(self%motion)) visitor%n_node = size(self%motion, 2)
+    call visitor%visit('mass', self%mass, of_nodes, 0.0_wp, 'masses below zero')
+    call visitor%visit('inverse_mass', self%inverse_mass, of_nodes)
+    call visitor%visit('contact_mass', self%contact_mass)
+    call visitor%visit('force_special', self%force_special)
+    call visitor%visit('external', self%external)
+    call visitor%visit('force_slots', self%force_slots, of_forces)
+    call visitor%visit('internal_force', self%internal_force, of_nodes)
+    call visitor%visit('prescribed_velocity', self%prescribed_velocity)
+    call visitor%visit('former_velocity', self%former_velocity, of_nodes)
+    call visitor%visit('node_damping', self%node_damping, of_nodes)
+    call visitor%visit('former_damping', self%former_damping, of_nodes)
+    call visitor%visit('former_dt', self%former_dt)
+    call visitor%visit('acceleration', self%acceleration, of_nodes)
+    call visitor%fixed('body_acceleration', self%body_acceleration)
+    call visitor%part('relaxation', self%relaxation)
+    call visitor%part('elements', self%elements)
+    call visitor%each('contacts', self%contacts)
+    call visitor%each('estimates', self%estimates)
+    call visitor%each('rigids', self%rigids)
+    call visitor%each('walls', self%walls)
+    call visit_asked_table(visitor, 'boundary_force', self%boundary_force)
+    call visit_asked(visitor, 'boundary_work', self%boundary_work, is_new)
+    if (is_new) self%boundary_since = self%cycle
+    call visit_asked_table(visitor, 'group_force', self%group_force)
+    call visit_asked_table(visitor, 'group_velocity', self%group_velocity)
+    call visit_asked(visitor, 'group_work', self%group_work, is_new)
+    call visitor%visit('cut_force', self%cut_force)
+    call visitor%visit('quiet_since', self%quiet_since)
+    call visitor%visit('external_work', self%external_work)
+    call visitor%visit('damping_work', self%damping_work)
+    call visitor%visit('initial_energy', self%initial_energy)
+    call visitor%visit('largest_energy', self%largest_energy)
+  end subroutine visit_state
+
+  !> Values that a history asks for. The run that goes on may ask for them anew: they begin at 0
+  !> then.
+  subroutine visit_asked(visitor, name, values, is_new)
+    class(visitor_t), intent(inout) :: visitor
+    character(*), intent(in) :: name
+    real(wp), allocatable, intent(inout) :: values(:)
+    logical, intent(out) :: is_new !! they begin here
+    real(wp), allocatable :: kept(:)
+
+    is_new = .false.
+    if (visitor%is_partial) return
+    if (allocated(values)) kept = values
+    call visitor%visit(name, kept, any_length)
+    is_new = length(values) /= length(kept)
+    if (allocated(values) .and. .not. is_new) values = kept
+  end subroutine visit_asked
+
+  !> Vectors that a history asks for, in the same way.
+  subroutine visit_asked_table(visitor, name, values)
+    class(visitor_t), intent(inout) :: visitor
+    character(*), intent(in) :: name
+    real(wp), allocatable, intent(inout) :: values(:, :)
+    real(wp), allocatable :: kept(:, :)
+
+    if (visitor%is_partial) return
+    if (allocated(values)) kept = values
+    call visitor%visit(name, kept, any_length)
+    if (.not. allocated(values) .or. .not. allocated(kept)) return
+    if (all(shape(kept) == shape(values))) values = kept
+  end subroutine visit_asked_table
 
 end module state_m

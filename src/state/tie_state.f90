@@ -4,12 +4,13 @@
 !> spring. Node numbers are local to the interface.
 module tie_state_m
   use kinds_m, only : wp
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: tie_memory_t, allocate_ties
 
   !> Arrays are allocated for tied interfaces alone.
-  type :: tie_memory_t
+  type, extends(visited_t) :: tie_memory_t
     integer, allocatable :: first(:)     !! (n_spring + 1) first point of each, then the end
     integer, allocatable :: owner(:, :)  !! (2, n_spring) nodes of the segment that n and t turn
                                          !! with
@@ -29,6 +30,8 @@ module tie_state_m
                                          !! behind them took over, J/m
     real(wp) :: first_break = 0.0_wp     !! its time, s
     real(wp) :: last_break = 0.0_wp      !! likewise
+  contains
+    procedure :: visit => visit_ties
   end type tie_memory_t
 
 contains
@@ -41,5 +44,24 @@ contains
     allocate (ties%first(n_spring + 1), ties%owner(2, n_spring), source=1)
     allocate (ties%side(n_spring), ties%lag(2, n_spring), ties%offset(2, n_spring), source=0.0_wp)
   end subroutine allocate_ties
+
+  !> Its components.
+  subroutine visit_ties(self, visitor)
+    class(tie_memory_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('first', self%first)
+    call visitor%visit('owner', self%owner)
+    call visitor%visit('side', self%side)
+    call visitor%visit('lag', self%lag)
+    call visitor%visit('offset', self%offset)
+    call visitor%visit('traction', self%traction)
+    call visitor%visit('state', self%state)
+    call visitor%visit('place', self%place)
+    call visitor%visit('to_stress', self%to_stress)
+    call visitor%visit('spent', self%spent)
+    call visitor%visit('first_break', self%first_break)
+    call visitor%visit('last_break', self%last_break)
+  end subroutine visit_ties
 
 end module tie_state_m

@@ -13,7 +13,7 @@ from test_restart import arrays, assert_same, histories, part_of, start, wait_fo
 
 from slideline_tools.contact_types import ALL_TYPES
 
-GROUPS = ("state", "outputs", "steps")
+GROUPS = ("state", "outputs", "driver")
 VERSION = re.compile(rb"restart \d+")
 TABLES = ("glstat", "rcforc", "nodout", "matsum", "sleout", "spcforc")
 
@@ -236,7 +236,7 @@ def test_an_end_within_a_divided_step(slideline, tmp_path):
     """A motion is born at 0.0042, within the whole step to 0.0045; the run that goes on from there ends before that."""
     run_whole(slideline, struck(2), dump=9)
     with h5py.File(tmp_path / "whole" / "job.dump01.h5") as stream:
-        assert stream["state/time"][0] == 0.0042 and stream["steps/target"][0] == pytest.approx(0.0045)
+        assert stream["state/time"][0] == 0.0042 and stream["driver/control/target"][0] == pytest.approx(0.0045)
     rest = part_of(tmp_path / "whole", tmp_path / "rest", "job.dump01.h5", "job.vtkhdf")
     go_on(slideline, rest / "job.dump01.h5", "endtim=0.0043")
     assert numbers(rest / "job.glstat.csv", "time")[-1] == 0.0043

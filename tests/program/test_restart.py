@@ -121,7 +121,7 @@ def test_scene_goes_on_to_the_same_bits(slideline, tmp_path, scene, kind):
     assert numbers(rest / "job.glstat.csv", "cycle")[-1] == cycles
     assert_same(whole, rest)
     last = f"job.dump0{len(list(whole.glob('*.dump*')))}.h5"
-    groups = ("state", "outputs", "steps")
+    groups = ("state", "outputs", "driver")
     assert arrays(whole / last, *groups) == arrays(rest / last, *groups)
 
 
@@ -284,7 +284,7 @@ def test_head_is_that_of_an_independent_program(slideline, tmp_path):
     assert slideline("d=a", deck=with_files(drop(), dump=100)).returncode == 0
     data = (tmp_path / "a" / "job.dump01.h5").read_bytes()
     lines = data[:HEAD].decode().splitlines()
-    assert lines[:3] == ["slideline restart 22", f"length {len(data) - HEAD}",
+    assert lines[:3] == ["slideline restart 23", f"length {len(data) - HEAD}",
                          f"checksum {zlib.crc32(data[HEAD:]):08X}"]
     with h5py.File(tmp_path / "a" / "job.dump01.h5") as stream:
         assert stream["state/cycle"][0] == 100

@@ -65,13 +65,13 @@ LIES = {
     "state/motion": (lambda old: old * np.nan, "finite"),
     "state/mass": (lambda old: old[:-1], "in all"),
     "state/time": (lambda old: np.float64(old[0]), "a single one"),
-    "steps/first_dt": (lambda old: old * 0, "not positive"),
+    "driver/steps/first_dt": (lambda old: old * 0, "not positive"),
     "run/n_dump": (lambda old: old * 0 - 1, "no run reaches"),
     "state/contacts/1/watch/node": (lambda old: old * 0 + 99999, "no node"),
-    "state/contacts/1/watch/2/node": (lambda old: old * 0 - 1, "no node"),
-    "steps/start_cycle": (lambda old: old * 0 - 1, "below zero"),
-    "steps/start_cycle, later": (lambda old: old * 0 + 10**8, "after the present one"),
-    "steps/damping": (lambda old: old[:-1], "in all"),
+    "state/contacts/1/watch/changes/2/node": (lambda old: old * 0 - 1, "no node"),
+    "driver/steps/start_cycle": (lambda old: old * 0 - 1, "below zero"),
+    "driver/steps/start_cycle, later": (lambda old: old * 0 + 10**8, "after the present one"),
+    "driver/damping": (lambda old: old[:-1], "in all"),
     "outputs/plot/next": (lambda old: old * 0 - 1.0e300, "below zero"),
     "outputs/plot/count": (lambda old: old * 0 - 7, "no run can reach"),
     "outputs/histories/1": (lambda old: old[:, :-1].copy(), "expected"),
@@ -104,11 +104,11 @@ def refuse_lie(exe, job, tmp_path, name, change, word):
     assert before.keys() == after.keys() and not [file for file in before if before[file] != after[file]]
 
 
-@pytest.mark.parametrize("name", ["steps/dt", "steps/internal", "outputs/glstat/next"])
+@pytest.mark.parametrize("name", ["driver/control/dt", "driver/trial/internal", "outputs/glstat/next"])
 def test_a_lie_of_an_implicit_run_is_named(exe, implicit_job, tmp_path, name):
     refuse_lie(exe, implicit_job, tmp_path, name, *{
-        "steps/dt": (lambda old: old * 0, "not positive"),
-        "steps/internal": (lambda old: old * np.nan, "finite"),
+        "driver/control/dt": (lambda old: old * 0, "not positive"),
+        "driver/trial/internal": (lambda old: old * np.nan, "finite"),
         "outputs/glstat/next": (lambda old: old * 0 - 1.0, "below zero")}[name])
 
 

@@ -2,6 +2,7 @@
 !> What one thread does in each explicit cycle: contact and loads before the elements; time, step
 !> and health after them.
 module explicit_cycle_m
+  use archive_m, only : archive_t
   use behind_ties_m, only : hear_tie, settle_with_tie
   use boundary_account_m, only : count_boundary_loads, count_boundary_motions, &
     count_boundary_bodies, count_groups
@@ -15,7 +16,6 @@ module explicit_cycle_m
   use early_end_m, only : find_early_end
   use erosion_account_m, only : settle_elements, release_nodes
   use errors_m, only : error_t
-  use explicit_memory_m, only : write_restarts, take_up_steps
   use explicit_prescribed_m, only : find_prescribed_velocities, impose_prescribed, prescribed_work
   use failure_watch_m, only : failure_watch_t, start_watch, follow_failures
   use health_m, only : tile_check_t, are_sound, check_step, name_collapsed, check_cycle
@@ -39,6 +39,8 @@ module explicit_cycle_m
   use rank_shares_m, only : shares_t, share_out
   use ranks_m, only : ranks_t, share_error
   use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
+  use restart_file_m, only : close_restart
+  use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use resting_tiles_m, only : rest_t, plan_rest, follow_rest
   use rigid_motion_m, only : solve_rigids, rigid_work, move_rigids
@@ -47,15 +49,16 @@ module explicit_cycle_m
   use state_m, only : state_t
   use tile_forces_m, only : sum_special_forces
   use time_step_m, only : step_plan_t, start_steps, volume_step, next_step, obey_approach, &
-    is_last, follow_springs
+    is_last, follow_springs, cycles_in, has_springs
+  use visitor_m, only : visited_t, visitor_t
   use wall_motion_m, only : count_walls
   implicit none
   private
   public :: explicit_cycle_t, start_cycles, begin_cycle, prepare_leap, exchange_tiles, &
-    press_cycle, end_cycle
+    press_cycle, end_cycle, read_cycle
 
   !> Shared by the team, written by one thread between barriers.
-  type :: explicit_cycle_t
+  type, extends(visited_t) :: explicit_cycle_t
     logical :: writes = .true.       !! this cycle writes something
     logical :: finished = .false.    !! the run is over
     logical :: last = .false.        !! this cycle is the last one
@@ -91,6 +94,8 @@ module explicit_cycle_m
     real(wp), allocatable :: common(:, :)    !! (2, n_set) v(n-1/2) of nodes that move alike
     character(:), allocatable :: reason      !! what ended the run
     type(error_t), allocatable :: error
+  contains
+    procedure :: visit => visit_cycle
   end type explicit_cycle_t
 
 contains
@@ -129,11 +134,29 @@ contains
     if (model%erodes) allocate (cycle%told, source=state%elements%erosion%n_eroded)
     cycle%steps = start_steps(model, state%time)
     call start_watch(monitor%restarts%goes_on, cycle%failures)
-    if (monitor%restarts%goes_on) call take_up_steps(model, state, monitor%restarts%source, &
-      cycle%steps, cycle%damping, cycle%ratio, cycle%error)
-    if (monitor%restarts%goes_on .and. allocated(model%controls%ends)) &
-      call heed_ends(model, state, cycle)
+    if (.not. monitor%restarts%goes_on) return
+    call read_cycle(model, state, monitor%restarts%source, cycle)
+    ! The deck of this run says when it ends.
+    cycle%steps%end_time = model%controls%end_time
+    cycle%steps%end_cycle = model%controls%end_cycle
+    if (cycle%steps%constant > 0.0_wp) cycle%steps%n_cycle = &
+      cycles_in(cycle%steps%end_time - cycle%steps%start_time, cycle%steps%constant)
+    call close_restart(monitor%restarts%source, cycle%error)
+    if (allocated(model%controls%ends)) call heed_ends(model, state, cycle)
   end subroutine start_cycles
+
+  !> What a restart file says of it; the first thing that is wrong is an error of the archive.
+  subroutine read_cycle(model, state, source, cycle)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(archive_t), intent(inout) :: source
+    type(explicit_cycle_t), intent(inout) :: cycle
+
+    if (has_springs(model, state%contacts)) allocate (cycle%steps%springs(size(model%contacts)))
+    call source%part('driver', cycle)
+    call source%expect('driver/steps/start_cycle', cycle%steps%start_cycle <= state%cycle, &
+      'a cycle after the present one')
+  end subroutine read_cycle
 
   !> Forces on the special nodes at u(n), and what this cycle has to write.
   subroutine begin_cycle(model, state, monitor, cycle)
@@ -451,9 +474,18 @@ contains
     if (.not. any(wanted)) return
     if (monitor%ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .false., &
       monitor%ranks, state)
-    if (monitor%ranks%mine == 0) call write_restarts(wanted, state, monitor, cycle%steps, &
-      cycle%damping, cycle%ratio, cycle%error)
+    if (monitor%ranks%mine == 0) call write_restarts(wanted, state, monitor, cycle%error, cycle)
     if (monitor%ranks%n > 1) call share_error(monitor%ranks, cycle%error)
   end subroutine write_files
+
+  !> What a cycle hands to the next besides the state.
+  subroutine visit_cycle(self, visitor)
+    class(explicit_cycle_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%part('steps', self%steps)
+    call visitor%fixed('damping', self%damping)
+    call visitor%visit('ratio', self%ratio)
+  end subroutine visit_cycle
 
 end module explicit_cycle_m

@@ -4,11 +4,11 @@
 !> that numbers mean the same everywhere, but what belongs to others is not written to; the pages of
 !> tiles that go to another process go back to the system.
 module rank_memory_m
+  use freight_m, only : forgetter_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use model_m, only : model_t
-  use others_memory_m, only : others_t, forget_nodes, forget_slots
-  use pages_m, only : forget_reals, forget_integers, forget_shorts
+  use others_memory_m, only : others_t, forgetters_of
   use rank_shares_m, only : shares_t, share_out
   use ranks_m, only : ranks_t
   use state_m, only : state_t
@@ -36,16 +36,14 @@ contains
     type(ranks_t), intent(in) :: ranks
     type(model_t), intent(inout) :: model
     type(state_t), intent(inout) :: state
-    type(others_t) :: others
+    type(forgetter_t) :: forgetters(2)
+    integer :: k
 
-    others = others_of(model, shares, ranks)
-    call forget_integers(others%nodes, 1, model%mesh%node_id)
-    call forget_reals(others%nodes, 2, model%mesh%coordinates)
-    call forget_integers(others%slots, 1, model%layout%slot_element)
-    call forget_integers(others%slots, 4, model%layout%slot_nodes)
-    call forget_shorts(others%slots, 4, model%layout%slot_local)
-    call forget_nodes(others, state)
-    call forget_slots(others, state%elements)
+    forgetters = forgetters_of(others_of(model, shares, ranks))
+    do k = 1, 2
+      call model%visit(forgetters(k))
+      call state%visit(forgetters(k))
+    end do
   end subroutine forget_tiles
 
   !> Whether each process looks at all elements during the run.

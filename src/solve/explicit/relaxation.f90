@@ -3,7 +3,6 @@
 !> the body, and every step leaves a share of the velocities, until the body rests. What it has come
 !> to is the state at time zero. One thread, before any output.
 module relaxation_m
-  use archive_file_m, only : archive_t
   use block_state_m, only : block_state_t
   use clock_m, only : lap, phase_input
   use cycle_loads_m, only : apply_loads
@@ -22,7 +21,7 @@ module relaxation_m
   use ranks_m, only : ranks_t, find_least, share_error
   use relaxation_state_m, only : relaxation_state_t
   use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
-  use restart_m, only : begin_file, end_file
+  use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use scaled_step_m, only : scaled_step
   use skew_motion_m, only : hold_skew_nodes
@@ -160,16 +159,10 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(inout) :: error
-    type(archive_t) :: archive
-    integer :: kind
 
     state%relaxation%time = state%time
     state%time = 0.0_wp
-    do kind = 1, size(wanted)
-      if (.not. wanted(kind) .or. allocated(error)) cycle
-      call begin_file(kind, state, monitor, archive)
-      call end_file(kind, state, monitor, archive, error)
-    end do
+    if (.not. allocated(error)) call write_restarts(wanted, state, monitor, error)
     state%time = state%relaxation%time
   end subroutine write_files
 

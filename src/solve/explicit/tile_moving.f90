@@ -2,15 +2,13 @@
 !> Tiles go from the processes that have had them to those that have them from now on, with all that
 !> a process keeps of its tiles alone.
 module tile_moving_m
-  use block_state_m, only : block_state_t
-  use freight_m, only : freight_t, start_loading, start_unloading, pass_reals
-  use layout_m, only : tile_t, first_slot, last_slot
-  use mesh_freight_m, only : pass_nodes, pass_slots
+  use freight_m, only : freight_t, start_loading, start_unloading, choose_slots
+  use layout_m, only : tile_t, chunk_size
   use model_m, only : model_t
   use rank_shares_m, only : shares_t
   use ranks_m, only : ranks_t, swap_reals
   use state_m, only : state_t
-  use tile_values_m, only : pass_values
+  use visitor_m, only : of_forces, of_nodes
   implicit none
   private
   public :: move_tiles
@@ -65,48 +63,11 @@ contains
     type(state_t), intent(inout) :: state
     type(freight_t), intent(inout) :: freight
 
-    call pass_motion(tile%first_node, tile%last_node, state, freight)
-    call pass_nodes(tile%first_node, tile%last_node, model, freight)
-    associate (first => tile%first_special, last => tile%last_special)
-      call pass_reals(2*(last - first + 1), state%force_slots(:, first:last), freight)
-    end associate
-    call pass_values(tile, state%elements, freight)
-    call pass_constants(first_slot(tile), last_slot(tile), state%elements, freight)
-    call pass_slots(first_slot(tile), last_slot(tile), model%layout, freight)
+    call choose_slots(freight, [tile%first_chunk, tile%last_chunk], chunk_size, .true., .true.)
+    freight%ranges(:, of_nodes) = [tile%first_node, tile%last_node]
+    freight%ranges(:, of_forces) = [tile%first_special, tile%last_special]
+    call model%visit(freight)
+    call state%visit(freight)
   end subroutine pass_tile
-
-  !> The state of interior nodes (what `forget_nodes` gives up).
-  subroutine pass_motion(first, last, state, freight)
-    integer, intent(in) :: first, last
-    type(state_t), intent(inout) :: state
-    type(freight_t), intent(inout) :: freight
-
-    associate (n => last - first + 1)
-      call pass_reals(4*n, state%motion(:, first:last), freight)
-      call pass_reals(n, state%mass(first:last), freight)
-      call pass_reals(2*n, state%inverse_mass(:, first:last), freight)
-      call pass_reals(2*n, state%internal_force(:, first:last), freight)
-      if (allocated(state%former_velocity)) &
-        call pass_reals(2*n, state%former_velocity(:, first:last), freight)
-    end associate
-  end subroutine pass_motion
-
-  !> What a step does not change of the state of elements.
-  subroutine pass_constants(first, last, elements, freight)
-    integer, intent(in) :: first, last !! slots
-    type(block_state_t), intent(inout) :: elements
-    type(freight_t), intent(inout) :: freight
-    integer :: k
-
-    associate (n => last - first + 1)
-      do k = 1, size(elements%reference, 2)
-        call pass_reals(n, elements%reference(first:last, k), freight)
-      end do
-      if (allocated(elements%mass_ratio)) &
-        call pass_reals(n, elements%mass_ratio(first:last), freight)
-      if (allocated(elements%retardation)) &
-        call pass_reals(n, elements%retardation(first:last), freight)
-    end associate
-  end subroutine pass_constants
 
 end module tile_moving_m

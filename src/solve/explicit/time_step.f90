@@ -20,6 +20,7 @@ module time_step_m
   use model_m, only : model_t
   use scaled_step_m, only : scaled_step
   use state_m, only : state_t
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: step_plan_t, start_steps, first_step, shorten_first_step, volume_step, next_step, &
@@ -35,7 +36,7 @@ module time_step_m
   integer, parameter :: refresh_interval = 20
 
   !> How the steps go on.
-  type :: step_plan_t
+  type, extends(visited_t) :: step_plan_t
     real(wp) :: first_dt = 0.0_wp    !! first step, the measure of the floor
     real(wp) :: constant = 0.0_wp    !! the constant step while it holds, else 0
     real(wp) :: start_time = 0.0_wp  !! time at `start_cycle`, from where the constant step counts
@@ -48,6 +49,8 @@ module time_step_m
     type(spring_bound_t), allocatable :: springs(:) !! that the step must respect; none unless ECDT
                                                     !! = 2, or there are ties or default
                                                     !! penalties that need it
+  contains
+    procedure :: visit => visit_steps
   end type step_plan_t
 
 contains
@@ -317,5 +320,23 @@ contains
     has = model%controls%contact_step == contact_step_rules .or. (any(is_tied(model%contacts)) &
       .and. model%controls%contact_step /= contact_step_free) .or. any(memories%rules_step)
   end function has_springs
+
+  !> Its components.
+  subroutine visit_steps(self, visitor)
+    class(step_plan_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('first_dt', self%first_dt)
+    call visitor%expect('first_dt', self%first_dt > 0.0_wp, 'a step that is not positive')
+    call visitor%visit('constant', self%constant, 0.0_wp, 'a step below zero')
+    call visitor%visit('start_time', self%start_time)
+    call visitor%visit('start_cycle', self%start_cycle, 0, what='a cycle below zero')
+    call visitor%visit('n_cycle', self%n_cycle)
+    call visitor%visit('end_cycle', self%end_cycle)
+    call visitor%visit('end_time', self%end_time)
+    call visitor%visit('warned', self%warned)
+    call visitor%visit('warned_approach', self%warned_approach)
+    call visitor%each('springs', self%springs)
+  end subroutine visit_steps
 
 end module time_step_m

@@ -16,7 +16,7 @@ module implicit_m
   use health_m, only : check_static_step, what_would_do
   use implicit_boundary_m, only : count_step_boundaries
   use implicit_forces_m, only : trial_t, start_trial, damping_force, net_force, keep_sections
-  use implicit_memory_m, only : implicit_memory_t, write_restarts
+  use implicit_memory_m, only : implicit_memory_t, write_files
   use implicit_prescribed_m, only : prescribe_step
   use implicit_report_m, only : reactions_work, report_step, held_energy, spent_energy
   use implicit_start_m, only : begin_steps, plan_next, has_ended
@@ -129,7 +129,7 @@ contains
     last = last .or. asked%stop
     planned = memory%control
     call plan_next(model, last, state, planned, ends)
-    call write_restarts(model, wanted_files(monitor%restarts, state%cycle, asked%dump, ends, &
+    call write_files(model, wanted_files(monitor%restarts, state%cycle, asked%dump, ends, &
       asked%signalled), state, monitor, memory, error)
     last = last .and. .not. allocated(error)
     memory%control = planned

@@ -19,6 +19,7 @@ module implicit_forces_m
   use part_damping_m, only : damping_rates
   use state_m, only : state_t
   use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: trial_t, start_trial, assemble_forces, damping_force, net_force, trouble_of, &
@@ -28,7 +29,7 @@ module implicit_forces_m
   real(wp), parameter :: unit_step = 1.0_wp
 
   !> What a trial displacement makes of a committed state.
-  type :: trial_t
+  type, extends(visited_t) :: trial_t
     real(wp), allocatable :: motion(:, :)   !! (4, n_node) u, and u minus the committed u
     type(block_state_t) :: elements
     type(contact_state_t), allocatable :: contacts(:)
@@ -40,6 +41,8 @@ module implicit_forces_m
     real(wp), allocatable :: slots(:, :)    !! forces of tiles on their special nodes
     type(freight_t), allocatable :: before(:) !! chunks of cross sections before the step, until
                                             !! the forces of these are formed
+  contains
+    procedure :: visit => visit_trial
   end type trial_t
 
 contains
@@ -167,5 +170,16 @@ contains
       trouble = 'the forces are not finite'
     end if
   end function trouble_of
+
+  !> The forces of the state.
+  subroutine visit_trial(self, visitor)
+    class(trial_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('internal', self%internal)
+    call visitor%visit('contact', self%contact)
+    call visitor%visit('external', self%external)
+    call visitor%visit('damping', self%damping)
+  end subroutine visit_trial
 
 end module implicit_forces_m

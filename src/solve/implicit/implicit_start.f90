@@ -14,7 +14,7 @@ module implicit_start_m
   use errors_m, only : error_t, raise, status_run
   use implicit_forces_m, only : start_trial, assemble_forces, damping_force, net_force, &
     keep_sections
-  use implicit_memory_m, only : implicit_memory_t, take_up_memory, write_restarts
+  use implicit_memory_m, only : implicit_memory_t, take_up_memory, write_files
   use implicit_prescribed_m, only : prescribe_start, list_changes
   use implicit_tangent_m, only : step_t
   use law_friction_m, only : has_decay
@@ -61,7 +61,7 @@ contains
     if (.not. monitor%restarts%goes_on) then
       call start_implicit(model, planned%next, state, monitor, memory, error)
       if (.not. allocated(error)) call report_contact_start(model, state, monitor%log)
-      if (.not. allocated(error)) call write_restarts(model, wanted_files(monitor%restarts, &
+      if (.not. allocated(error)) call write_files(model, wanted_files(monitor%restarts, &
         state%cycle, .false., ends, .false.), state, monitor, memory, error)
     end if
     memory%control = planned

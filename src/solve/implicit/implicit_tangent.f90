@@ -16,12 +16,13 @@ module implicit_tangent_m
   use part_damping_m, only : damping_rates
   use sparse_m, only : sparse_t, start_matrix, add_block
   use state_m, only : state_t
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: step_t, assemble_residual, assemble_tangent, new_acceleration, new_velocity
 
   !> One step. Static: all weights of the old instant are zero and there is no inertia.
-  type :: step_t
+  type, extends(visited_t) :: step_t
     real(wp) :: time = 0.0_wp          !! at its end
     real(wp) :: dt = 0.0_wp
     logical :: is_dynamic = .false.
@@ -33,6 +34,8 @@ module implicit_tangent_m
                                        !! pivots
     logical :: slips_on = .true.       !! what slipped before does so in the first iteration
     type(prescribed_step_t) :: prescribed    !! what the curves ask for
+  contains
+    procedure :: visit => visit_step
   end type step_t
 
 contains
@@ -162,5 +165,14 @@ contains
       end associate
     end do
   end subroutine weigh_with_radius
+
+  !> What a step hands to the next.
+  subroutine visit_step(self, visitor)
+    class(step_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('searches', self%searches)
+    call visitor%visit('began_negative', self%began_negative)
+  end subroutine visit_step
 
 end module implicit_tangent_m

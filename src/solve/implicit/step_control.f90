@@ -4,6 +4,7 @@
 module step_control_m
   use kinds_m, only : wp
   use controls_m, only : controls_t
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
   public :: step_control_t, start_step_control, plan_step, is_over, grow_step, cut_step
@@ -16,7 +17,7 @@ module step_control_m
   real(wp), parameter :: round_off = 1.0e-9_wp
 
   !> Step lengths of a run.
-  type :: step_control_t
+  type, extends(visited_t) :: step_control_t
     real(wp) :: dt = 0.0_wp        !! of a whole step, s
     real(wp) :: target = 0.0_wp    !! where the present whole step ends
     real(wp) :: next = 0.0_wp      !! where the next step ends: there, or where the equations change
@@ -28,6 +29,8 @@ module step_control_m
     integer :: few = 0             !! iterations below which the step grows
     integer :: many = 0            !! iterations above which it shrinks
     real(wp), allocatable :: changes(:) !! when the equations change
+  contains
+    procedure :: visit => visit_control
   end type step_control_t
 
 contains
@@ -118,5 +121,15 @@ contains
     control%dt = max(control%least, cut*tried)
     control%target = time
   end subroutine cut_step
+
+  !> What the deck and the plan of the next step do not give.
+  subroutine visit_control(self, visitor)
+    class(step_control_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('dt', self%dt)
+    call visitor%expect('dt', self%dt > 0.0_wp, 'a step that is not positive')
+    call visitor%visit('target', self%target)
+  end subroutine visit_control
 
 end module step_control_m
