@@ -93,7 +93,6 @@ contains
     type(item_t), intent(inout) :: item
     integer, target :: extents(2)
 
-    if (visitor%is_partial) return
     extents = item%extents
     call visitor%carry(c_loc(extents), int(2*integer_bytes, c_size_t))
     item%extents = extents

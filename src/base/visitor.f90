@@ -273,11 +273,11 @@ contains
     type(item_t) :: item
     type(c_ptr) :: place
 
+    if (visitor%is_partial .and. .not. (present(of) .and. allocated(values))) return
     item = item_t(name, as_integer, 1)
     if (present(of)) item%of = of
-    if (visitor%is_partial .and. item%of <= any_length) return
     if (allocated(values)) item%extents(:1) = shape(values)
-    call visitor%find(item)
+    if (.not. visitor%is_partial) call visitor%find(item)
     if (item%is_new) then
       if (allocated(values)) deallocate (values)
       if (item%extents(1) /= absent) allocate (values(item%extents(1)))
@@ -313,11 +313,11 @@ contains
     type(item_t) :: item
     type(c_ptr) :: place
 
+    if (visitor%is_partial .and. .not. (present(of) .and. allocated(values))) return
     item = item_t(name, as_real, 1)
     if (present(of)) item%of = of
-    if (visitor%is_partial .and. item%of <= any_length) return
     if (allocated(values)) item%extents(:1) = shape(values)
-    call visitor%find(item)
+    if (.not. visitor%is_partial) call visitor%find(item)
     if (item%is_new) then
       if (allocated(values)) deallocate (values)
       if (item%extents(1) /= absent) allocate (values(item%extents(1)))
@@ -353,11 +353,11 @@ contains
     type(item_t) :: item
     type(c_ptr) :: place
 
+    if (visitor%is_partial .and. .not. (present(of) .and. allocated(values))) return
     item = item_t(name, as_integer, 2, [absent, absent])
     if (present(of)) item%of = of
-    if (visitor%is_partial .and. item%of <= any_length) return
     if (allocated(values)) item%extents = shape(values)
-    call visitor%find(item)
+    if (.not. visitor%is_partial) call visitor%find(item)
     if (item%is_new) then
       if (allocated(values)) deallocate (values)
       if (item%extents(1) /= absent) allocate (values(item%extents(1), item%extents(2)))
@@ -379,11 +379,11 @@ contains
     type(item_t) :: item
     type(c_ptr) :: place
 
+    if (visitor%is_partial .and. .not. (present(of) .and. allocated(values))) return
     item = item_t(name, as_real, 2, [absent, absent])
     if (present(of)) item%of = of
-    if (visitor%is_partial .and. item%of <= any_length) return
     if (allocated(values)) item%extents = shape(values)
-    call visitor%find(item)
+    if (.not. visitor%is_partial) call visitor%find(item)
     if (item%is_new) then
       if (allocated(values)) deallocate (values)
       if (item%extents(1) /= absent) allocate (values(item%extents(1), item%extents(2)))
@@ -406,7 +406,7 @@ contains
 
     item = item_t(name, as_bytes, 2, [absent, absent], of)
     if (allocated(values)) item%extents = [n_byte, 1]*shape(values)
-    call visitor%find(item)
+    if (.not. visitor%is_partial) call visitor%find(item)
     if (item%is_new .and. item%extents(1) /= absent) &
       allocate (values(item%extents(1)/n_byte, item%extents(2)))
     if (allocated(values)) call visitor%pass(item, c_loc(values))
@@ -433,9 +433,9 @@ contains
     integer, allocatable, intent(in) :: starts(:)  !! 0: none
     type(item_t) :: item
 
+    if (visitor%is_partial .and. size(values) == 0) return
     call visitor%same(name_of_starts, starts)
-    item = item_t(name, as_real, 1, [absent, 1], of_streams)
-    item%extents(:1) = shape(values)
+    item = item_t(name, as_real, 1, [size(values), 1], of_streams)
     call visitor%pass(item, c_loc(values), starts)
     if (visitor%judges) call visitor%expect(name, all(is_finite(values)), not_finite)
   end subroutine stream

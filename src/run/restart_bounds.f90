@@ -186,6 +186,7 @@ contains
 
     n = tracking%n
     if (.not. allocated(tracking%status)) then
+      call archive%expect(folder//'n', n == 0, 'another number of spots than there are')
       call archive%expect(folder//'n_touching', tracking%n_touching == 0, &
         'spots that are not there')
       return
