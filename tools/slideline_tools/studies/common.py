@@ -82,7 +82,8 @@ def write_page(doc, name, text):
 @functools.lru_cache(maxsize=None)
 def verification(case, name="check"):
     """A module of a verification case, for the decks and solutions that studies share with it."""
-    sys.path.insert(0, str(VERIFICATION))
+    before = list(sys.path)
+    sys.path[:0] = [str(VERIFICATION / case), str(VERIFICATION)]
     try:
         spec = importlib.util.spec_from_file_location(f"{case}_{name}", VERIFICATION / case / f"{name}.py")
         module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)
@@ -91,4 +92,4 @@ def verification(case, name="check"):
     except OSError as problem:
         raise UserError(f"cannot read {VERIFICATION / case}: {problem}") from problem
     finally:
-        sys.path.remove(str(VERIFICATION))
+        sys.path[:] = before
