@@ -18,7 +18,7 @@ def busy_block(end_time=0.02, interval=1.0e-3, binary="", fine=1):
     n, m = 12 * fine, 8 * fine
     block = deck.mesh(*grid(n, m, 0.6, 0.4), part=1)
     falling = deck.mesh(*grid(3, 3, 0.2, 0.2, (0.2, 0.401)), part=2)
-    turning = deck.mesh(*grid(2, 2, 0.2, 0.2, (1.0, 0.0)), part=3)
+    deck.mesh(*grid(2, 2, 0.2, 0.2, (1.0, 0.0)), part=3)
     top, bottom = block[-(n + 1):], block[:n + 1]
     deck.node_set(1, falling[:4]).node_set(2, top[::-1]).node_set(3, bottom[-3:])
     deck.contact(1, 2, 3, 2.0e4)

@@ -7,7 +7,7 @@ import time
 import h5py
 import pytest
 from conftest import by_turns, numbers
-from meshes import Deck, grid
+from meshes import grid
 from test_implicit import implicit, pulled
 from test_restart import arrays, assert_same, histories, part_of, start, wait_for, with_files
 

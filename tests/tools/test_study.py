@@ -363,7 +363,7 @@ def test_goes_on_after_a_kill(bench, tmp_path, how, status):
     assert pd.read_csv(bench.folder / "tiny.csv")["value"].tolist() == [10, 11, 20, 21]
 
 
-def test_every_study_of_the_registry_has_unique_runs():
+def test_every_study_has_unique_runs():
     for name in pages.STUDIES:
         study = pages.load(name)
         assert study.name == name

@@ -9,7 +9,7 @@
 # in place of run_folder.sh and its. The last call prints the table. What a task has not finished when its time is over runs
 # when the array is submitted again. For a restart file of every run before that: scancel --signal=USR1 --full "$job"
 #   tools/build.sh mpi
-#   sbatch --ntasks=128 --time=8:00:00 tools/batch/slurm.sh ranks i=DECK d=FOLDER [options of the program]
+#   sbatch --ntasks=128 --time=8:00:00 --output=slideline_%j.txt tools/batch/slurm.sh ranks i=DECK d=FOLDER [options of the program]
 # One explicit run on many processes, with as many threads each as --cpus-per-task says. Five minutes before its time is
 # over (--signal above) it stops, with a restart file where the deck has *DATABASE_BINARY_D3DUMP; it goes on from that, on
 # any number of processes, by

@@ -149,7 +149,7 @@ class Planted:
         elif kind == "house":
             command = [python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", str(self.plant_tree()/f"tests/{test}")]
         elif kind == "rejected":
-            command = [python, f"{tests}/rejected/run_rejected.py", "--program", str(self.link("slideline"))]
+            command = [python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", f"{tests}/rejected"]
         else:
             command = [python, f"{tests}/{kind}/run_case.py", name, "--program", str(self.link("slideline")),
                        "--work", str(self.scratch / "work")]
@@ -160,6 +160,8 @@ class Planted:
             words["SLIDELINE_MPI"] = str(self.link("slideline_mpi"))
         done = self.run(["timeout", str(LONGEST), *command], self.scratch if kind == "unit" else ROOT, words)
         (self.scratch / "last_test.txt").write_text(done.stdout + done.stderr)
+        if "pytest" in command and done.returncode not in (0, 1, 124):
+            raise RuntimeError(f"{test} does not run:\n{done.stdout[-1000:]}{done.stderr[-1000:]}")
         return done.returncode != 0
 
     @staticmethod

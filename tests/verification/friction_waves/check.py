@@ -64,7 +64,7 @@ def capstan(kind, exchanged, cells=60, sink=1.0e-3, transits=20.0, n_drum=157):
     angles = 2.0 * np.pi * np.arange(n_drum)[::-1] / n_drum
     points = np.array([(r * np.cos(a), r * np.sin(a)) for r in (DRUM - 0.1, DRUM) for a in angles])
     closed = [(i, (i + 1) % n_drum, n_drum + (i + 1) % n_drum, n_drum + i) for i in range(n_drum)]
-    drum = deck.mesh(points, closed, part=2)
+    deck.mesh(points, closed, part=2)
     deck.fix(band[[0, n + 1]], y=1).curve(1, [(0.0, 0.0), (0.25 * end, 1.0), (2.0 * end, 1.0)])
     deck.add("*LOAD_NODE_POINT", *[(int(node), 2, 1, -0.5 * PULL) for node in band[[n, 2 * n + 1]]])
     # On its way the rim slides along the whole band.
