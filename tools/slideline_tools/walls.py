@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from slideline_tools.effective_deck import read_blocks
 from slideline_tools.draw.model import Wall
+from slideline_tools.effective_deck import read_blocks
 
 COLOUR = "#333333"
 

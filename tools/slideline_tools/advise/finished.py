@@ -18,7 +18,7 @@ from slideline_tools.results import Results, ResultsError, read
 class Finished:
     """One finished run.
 
-    `ended`      whether it ended normally, by the last words that scripts ask of a log
+    `ended`      whether it ended normally: the words that scripts look for at the end of a log
     `seconds`    wall clock by phase, with `total`
     `results`    the states, None without a readable file or with a single state
     `tables`     histories by name
