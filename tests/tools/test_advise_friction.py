@@ -3,12 +3,13 @@
 import importlib.util
 import re
 import subprocess
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from conftest import ROOT
-from slideline_tools.advise import advise, rubbing, touching
+from slideline_tools.advise import advise, finished, rubbing, touching
 from slideline_tools.histories import History
 
 EXAMPLES = ROOT / "doc/examples"
@@ -49,6 +50,23 @@ def test_flutter_is_told_and_damping_silences_it(slideline, tmp_path, fluttering
     assert item.seconds is None and "mu 0.5" in item.evidence and "studies/stability.md" in item.evidence
     assert int(re.match(r"(\d+)%", item.evidence)[1]) >= 100 * rubbing.CHANGING
     assert "undamped sliding" not in run(slideline, tmp_path / "damped", fluttering)
+
+
+def test_damping_of_contact_is_known_from_sleout_else_from_the_deck(tmp_path):
+    """A number above 0 in column 41 of the second card, behind a title card where there is one."""
+    card = "*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE{}\n         1         2\n{}\n"
+
+    def is_damped(text, **tables):
+        (tmp_path / "run.effective.k").write_text(text)
+        bare = finished.Finished(tmp_path, "run", True, {}, tables, None)
+        return rubbing.is_damped(bare, SimpleNamespace(id=1))
+
+    damped = " " * 40 + "      20.0"
+    assert is_damped(card.format("", damped)) and is_damped(card.format("_TITLE\n         1 pair", damped))
+    assert not is_damped(card.format("", " " * 40 + "       0.0")) and not is_damped(card.format("", ""))
+    for work in (0.0, 2.0):
+        sleout = History("sleout", {"interface": np.array([1, 2]), "damping": np.array([work, 1.0])})
+        assert is_damped(card.format("", damped), sleout=sleout) is (work > 0.0)
 
 
 def test_growth_is_the_slowest_that_the_page_tells():

@@ -13,19 +13,10 @@ from slideline_tools import zones
 from slideline_tools.histories import History, read_csv
 from slideline_tools.report import write_report
 from slideline_tools.results import read
-from slideline_tools.run_log import RunLog, read_log
+from slideline_tools.draw.model import model_of
 from test_pictures import assert_picture
 
 EXAMPLE = ROOT / "doc/examples/contact_2d_slideline_friction.k"
-LOG = """interface 1: NTS-mAR (type 5)
-  friction: coefficient 3.000000E-01; tangential penalty 1.000000E+00 of the normal one
-interface 2: NTS-AR (type 2)
-  friction: coefficient 5.000000E-01 at rest, 2.000000E-01 in fast sliding, decay 2.000000E+00{slowness}, stress at most 4.000000E+06{stress}; tangential penalty 1.000000E-01 of the normal one
-interface 3: mortar (type 6)
-interface 1: friction has dissipated 4.25E+01{energy}
-"""
-
-
 def table(states):
     """A contact table at times 0, 1, 2: nodes 7, 3 and 5 of one chain, 8 and 2 of another."""
     nodes, s = [7, 3, 5, 8, 2], [0.0, 1.0, 3.0, 0.0, 2.0]
@@ -55,21 +46,12 @@ def test_a_time_that_lacks_rows_is_left_out():
 
 
 def test_the_picture_has_the_states_as_shades():
-    figure = zones.zones_figure(table(STATES), [2.0], RunLog())
+    figure = zones.zones_figure(table(STATES), [2.0], None)
     quads = figure.axes[0].collections[0]
     assert quads.get_array().reshape(3, 3).tolist() == [[0, 1, 1], [0, 1, 2], [0, 0, 0]]
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["open", "stick", "slip"]
     broken = np.where(np.array(STATES) == 2, 4, STATES)
-    assert zones.zones_figure(table(broken), [2.0], RunLog()).legends[0].get_texts()[-1].get_text() == "broken"
-
-
-@pytest.mark.parametrize("units", [("", "", ""), (" s/m", " N/m^2", " N m/m"), (" ms/mm", " kN/mm^2", " kN mm per radian")])
-def test_friction_of_the_log(units):
-    log = read_log(LOG.format(**dict(zip(("slowness", "stress", "energy"), units))))
-    assert [one.friction for one in log.interfaces.values()] == [0.3, 0.5, 0.0]
-    assert log.interfaces[1].sliding_friction == 0.3 and log.interfaces[1].dissipated == 42.5
-    two = log.interfaces[2]
-    assert (two.sliding_friction, two.decay, two.most_friction, two.dissipated) == (0.2, 2.0, 4.0e6, None)
+    assert zones.zones_figure(table(broken), [2.0], None).legends[0].get_texts()[-1].get_text() == "broken"
 
 
 def test_refused_without_friction(results_file, tool, tmp_path):
@@ -112,28 +94,30 @@ def test_zones_of_a_run_that_slides_and_stops(sliding, tool, tmp_path):
     finished = tool("plot", sliding, "--zones", "--state", "5", "--state", "-1", "--output", path)
     assert finished.returncode == 0, finished.stderr
     assert_picture(path)
-    results, log = read(sliding / "block.vtkhdf"), read_log((sliding / "block.log").read_text())
-    assert zones.limit_of(log, 1) == (0.5, 0.0) and zones.limit_of(log, 2) is None
+    results, model = read(sliding / "block.vtkhdf"), model_of(sliding / "block")
+    assert zones.limit_of(model, 1) == 0.5 and zones.limit_of(model, 2) is None and zones.limit_of(None, 1) is None
+    model.interfaces[0].sliding_friction = 0.2
+    assert zones.limit_of(model, 1) is None
     _, _, states = zones.state_grid(zones.chains_of(results.history("contact"))[0])
     assert np.all(states[:, 3:9] == 2.0) and np.all(states[:, -1] == 1.0)  # it slides, then it stands
 
 
-def test_frictional_work_is_in_the_report_and_the_log(sliding, tmp_path):
-    """As glstat has it, and half m v^2: by the log, and by sleout where there is no log."""
+def test_frictional_work_is_in_the_report(sliding, tmp_path):
+    """As glstat has it, and half m v^2: by sleout, and by glstat where there is none."""
     work = read_csv(sliding / "block.glstat.csv")["friction"][-1]
     assert work == pytest.approx(0.5 * 50.0 * 0.5 ** 2, rel=0.01)
-    assert f"{read_log((sliding / 'block.log').read_text()).interfaces[1].dissipated:.5e}" == f"{work:.5e}"
 
     def told():
         page = re.sub(r"<[^>]+>", " ", write_report(sliding, tmp_path / "r.html").read_text(encoding="utf-8"))
-        assert "Where interface 1 sticks and slips" in (tmp_path / "r.html").read_text(encoding="utf-8")
-        return float(re.search(r"frictional work\s+([-0-9.e+]+)", page)[1])
+        assert "Where interface 1 sticks and slips" in page
+        return re.search(r"frictional work\s+([-0-9.e+]+)\s+[-0-9.e+]+\s+coefficient 0.5", page)[1]
 
-    assert told() == pytest.approx(work, rel=1e-5)
-    log = sliding / "block.log"
-    words = log.read_text()
-    try:
-        log.write_text(words[:words.index("friction has dissipated")])
-        assert told() == pytest.approx(read_csv(sliding / "block.sleout.csv")["friction"][-1], rel=1e-5)
-    finally:
-        log.write_text(words)
+    assert float(told()) == pytest.approx(work, rel=1e-5)
+    for name in ("glstat", "sleout"):
+        path = sliding / f"block.{name}.csv"
+        words = path.read_text()
+        head, last = words.splitlines()[0].split(","), words.splitlines()[-1].split(",")
+        last[head.index("friction")] = "3.25"
+        path.write_text("\n".join([*words.splitlines()[:-1], ",".join(last)]) + "\n")
+        assert (float(told()) == 3.25) is (name == "sleout")
+        path.write_text(words)

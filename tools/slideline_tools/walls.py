@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from slideline_tools.draw.model import Wall
 from slideline_tools.effective_deck import read_blocks
-from slideline_tools.run_log import Wall
 
 COLOUR = "#333333"
 
@@ -15,15 +17,15 @@ def walls_of(deck: str) -> list[Wall]:
     found: list[Wall] = []
     for block in read_blocks(deck, "RIGIDWALL_PLANAR") if "*RIGIDWALL_PLANAR" in deck.upper() else ():
         try:
-            row = [float(word or 0.0) for word in (block.fields(1 + block.is_titled) + [""] * 6)[:6]]
+            row = [float(word or 0.0) for word in (block.fields(1 + block.is_titled) + [""] * 7)[:7]]
         except ValueError:
             continue
         arrow = (row[3] - row[0], row[4] - row[1])
         size = math.hypot(*arrow)
         if size > 0.0 and math.isfinite(size):
             number = block.number(0) if block.is_titled else 0
-            found.append(Wall(number or len(found) + 1, (row[0], row[1]),
-                              (arrow[0] / size, arrow[1] / size)))
+            found.append(Wall(number or len(found) + 1, np.array(row[:2]),
+                              np.array(arrow) / size, row[6]))
     return found
 
 

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Where a surface sticks and slips: places along the slave over time, and tractions beside what friction allows."""
+"""Where a surface sticks and slips: places along the slave over time, and tractions beside mu p."""
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
-from slideline_tools.files import source
+from slideline_tools.draw.model import model_of
 from slideline_tools.plots import COLOURS, PAGE_WIDTH, STYLE, plt, run_title
 from slideline_tools.results import ResultsError
-from slideline_tools.run_log import read_log
 
 #: Column `state` of the contact table: words and shade of 0, 1, ...
 STATES = (("open", "#f4f4f4"), ("stick", "#0b559f"), ("slip", "#f0a030"), ("tied", "#2e7d32"), ("broken", "#8c8c8c"))
@@ -62,17 +61,16 @@ def add_legend(figure, contact):
                   loc="outside lower center", ncols=len(STATES), frameon=False, fontsize=8)
 
 
-def limit_of(log, interface):
-    """(coefficient at rest, largest friction stress or 0) of an interface by the log of its run;
-    None where it does not tell, and where the coefficient depends on the speed."""
-    one = log.interfaces.get(int(interface))
-    if not one or not one.friction or (one.decay and one.sliding_friction != one.friction):
-        return None
-    return one.friction, one.most_friction
+def limit_of(model, interface):
+    """Coefficient of friction of an interface; None without a model, and where it depends on the speed."""
+    for one in model.interfaces if model else ():
+        if one.id == interface and one.friction == one.sliding_friction:
+            return one.friction or None
+    return None
 
 
 def draw_tractions(axes, chain, times, limit):
-    """|traction| along one chain at some times; mu p as a broken line where `limit` is known."""
+    """|traction| along one chain at some times; mu p as a broken line where mu, the `limit`, is known."""
     known = np.unique(chain["time"])
     for count, wanted in enumerate(times):
         time = known[np.argmin(np.abs(known - wanted))]
@@ -80,9 +78,8 @@ def draw_tractions(axes, chain, times, limit):
         axes.plot(rows["s"], np.abs(rows["traction"]), color=colour, marker="o", markersize=2.0,
                   linewidth=1.0, label=f"t = {time:.4g}")
         if limit:
-            most = np.minimum(limit[0] * rows["pressure"], limit[1] or np.inf)
-            axes.plot(rows["s"], most, color=colour, linestyle="--", linewidth=0.8,
-                      label="what friction allows" if limit[1] else f"mu p, mu {limit[0]:g}")
+            axes.plot(rows["s"], limit * rows["pressure"], color=colour, linestyle="--", linewidth=0.8,
+                      label=f"mu p, mu {limit:g}")
     axes.set_xlabel("arc length s along the slave")
     axes.set_ylabel("|traction|")
     axes.set_ylim(bottom=0.0)
@@ -90,9 +87,9 @@ def draw_tractions(axes, chain, times, limit):
     axes.legend(fontsize=7)
 
 
-def zones_figure(contact, times, log):
+def zones_figure(contact, times, model):
     """One row for each chain of each interface with friction: stick and slip over time, tractions
-    at some times with what friction allows by the log; None where no node ever stuck or slipped."""
+    at some times with mu p of the model; None where no node ever stuck or slipped."""
     if "state" not in contact or not np.any(contact["state"]):
         return None
     chains = [(number, chain) for number in np.unique(contact["interface"]).tolist()
@@ -104,17 +101,15 @@ def zones_figure(contact, times, log):
         for (left, right), (number, chain) in zip(panels, chains):
             draw_zones(left, chain)
             left.set_title(f"interface {number}", loc="left")
-            draw_tractions(right, chain, times, limit_of(log, number))
+            draw_tractions(right, chain, times, limit_of(model, number))
         add_legend(figure, contact)
         return figure
 
 
 def zones_of(results, states=("-1",)):
-    """The same of a run at its states; the log beside its results tells what friction allows."""
-    log = results.path.with_suffix(".log")
-    text = source(log).read_text(encoding="utf-8", errors="replace") if log.exists() else ""
+    """The same of a run at its states; the deck as run beside its results tells the coefficient."""
     times = [results.times[results.state_index(state)] for state in states]
-    figure = zones_figure(results.history("contact"), times, read_log(text))
+    figure = zones_figure(results.history("contact"), times, model_of(results.path.with_suffix("")))
     if figure is None:
         raise ResultsError(f"{results.path}: no slave node ever stuck or slipped (its contact table "
                            "tells of no friction)")

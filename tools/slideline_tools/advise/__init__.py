@@ -19,7 +19,7 @@ CHECKS = bodies.CHECKS + touching.CHECKS + rubbing.CHECKS + stepping.CHECKS + ou
 def advise(path) -> tuple[Finished, list[Advice], list[str]]:
     """The run at `path` (its folder or a file of it), all advice, and what was not judged."""
     run = read_run(path)
-    if not run.log.normal:
+    if not run.ended:
         return run, [], ["anything: the run did not end normally"]
     if run.seconds_of("loop") == 0.0:
         return run, [], ["anything: the run was not timed by phase (timing=off)"]
@@ -31,16 +31,13 @@ def not_judged(run: Finished) -> list[str]:
     """What could not be looked at, and why."""
     notes = []
     if run.results is None:
-        notes.append("strains, stresses, symmetry and steps: no states of the run")
-    if run.log.is_restart:
-        notes.append("interfaces, bulk viscosity and steps: the log of a restart in a folder of "
-                     "its own does not describe them; ask the run before it")
-    if run.log.interfaces and "rcforc" not in run.tables:
+        notes.append("strains, stresses and symmetry: no states of the run")
+    if run.model is None:
+        notes.append("parts, interfaces and bulk viscosity: no program reads the deck as run")
+    if run.interfaces and "rcforc" not in run.tables:
         notes.append("interfaces: no rcforc (*DATABASE_RCFORC)")
     if "matsum" not in run.tables:
         notes.append("rigid parts: no matsum (*DATABASE_MATSUM)")
     if run.is_implicit:
-        notes.append("steps, contact types and bulk viscosity: an implicit run")
-    elif run.results is not None and not run.log.is_restart and (why := stepping.unknown_limits(run)):
-        notes.append(f"steps: {why}")
+        notes.append("contact types and bulk viscosity: an implicit run")
     return notes

@@ -11,8 +11,8 @@ from slideline_tools.effective_deck import material_keyword
 # What a plastic law and bulk viscosity add to a one-point quad, in elastic ones without
 # viscosity. Measured in turn on meshes of 960 and 3840 elements: 0.05 to 0.2, 0.5 to 0.6.
 PLASTIC_EXTRA, VISCOUS_EXTRA = 0.1, 0.5
-# A 2x2 quad stands for so many one-point quads where a model has both.
-POINTS_COST = 4.0
+# Laws without a plastic strain.
+ELASTIC = ("elastic", "rigid", "fluid", "Mooney-Rivlin rubber", "Blatz-Ko rubber")
 # Largest viscous energy over the largest total energy that says: without effect.
 NO_VISCOUS_ENERGY = 1.0e-4
 # Strain and internal energy of a part over the largest of all parts that say: rigid.
@@ -23,26 +23,22 @@ SYMMETRIC = 1.0e-3
 
 def extras(run, part) -> tuple[float, float]:
     """What its law and its viscosity add to an element of a part, in elastic elements."""
-    plastic = run.log.materials.get(part.material, {}).get("yield", 0.0) > 0.0
-    return PLASTIC_EXTRA * plastic, VISCOUS_EXTRA * (max(part.viscosity) > 0.0)
+    glstat = run.tables.get("glstat")
+    viscous = glstat is not None and bool(np.any(glstat["viscous"]))
+    return PLASTIC_EXTRA * (part.law not in ELASTIC), VISCOUS_EXTRA * (viscous and not part.is_rigid)
 
 
 def element_seconds(run, worth: dict[int, float | None]) -> float:
     """Seconds of the element loop that belong to `worth`: by part, the cost per element in
     elastic elements (None: all of it)."""
     weights, total = 0.0, 0.0
-    for part in run.log.parts.values():
-        count = part.n_element * (POINTS_COST if part.points == 4 else 1.0)
+    for part in run.parts:
+        count = part.n_element
         whole = 1.0 + sum(extras(run, part))
         total += count * whole
         if part.id in worth:
             weights += count * (whole if worth[part.id] is None else worth[part.id])
     return run.seconds_of("elements") * weights / max(total, 1.0)
-
-
-def part_label(part) -> str:
-    """Words for a part."""
-    return f'part {part.id} "{part.title}"' if part.title else f"part {part.id}"
 
 
 def never_yielded(run) -> list[Advice]:
@@ -52,19 +48,18 @@ def never_yielded(run) -> list[Advice]:
     parts = run.results.cell_field("part_id")[0]
     strain, mises = run.results.cell_field("plastic_strain")[-1], run.results.cell_field("mises")
     advice = []
-    for part in run.log.parts.values():
-        yield_stress = run.log.materials.get(part.material, {}).get("yield", 0.0)
+    for part in run.parts:
         own = parts == part.id
-        if yield_stress <= 0.0 or not own.any() or strain[own].max() > 0.0:
+        if part.law in ELASTIC or not own.any() or strain[own].max() > 0.0:
             continue
-        others = [other.id for other in run.log.parts.values()
+        others = [other.id for other in run.parts
                   if other.material == part.material and other.id != part.id]
         shared = (f" (a material of its own: parts {', '.join(map(str, others))} share it)"
                   if others else "")
         advice.append(Advice(
-            "never yielded", f"{part_label(part)} never yielded: its law could be elastic.",
+            "never yielded", f"{part.label} never yielded: its law could be elastic.",
             f"plastic strain 0 in all {own.sum()} elements at the end; largest Mises stress at "
-            f"{len(mises)} states {mises[:, own].max():.3g}, yield stress {yield_stress:.3g}",
+            f"{len(mises)} states {mises[:, own].max():.3g}",
             f"material {part.material}: *MAT_ELASTIC with the same MID, RO, E, PR in place of "
             f"{material_keyword(run.deck, part.material)}{shared}",
             element_seconds(run, {part.id: PLASTIC_EXTRA}),
@@ -74,17 +69,16 @@ def never_yielded(run) -> list[Advice]:
 
 def idle_viscosity(run) -> list[Advice]:
     """Bulk viscosity that took no energy."""
-    numbers = [part.id for part in run.log.parts.values() if max(part.viscosity) > 0.0]
+    numbers = [part.id for part in run.parts if not part.is_rigid]
     glstat = run.tables.get("glstat")
     if not numbers or run.is_implicit or glstat is None or len(glstat) < 3:
         return []
-    largest = np.abs(glstat["total"]).max()
-    if not np.abs(glstat["viscous"]).max() <= NO_VISCOUS_ENERGY * largest:
+    largest, viscous = np.abs(glstat["total"]).max(), np.abs(glstat["viscous"]).max()
+    if not 0.0 < viscous <= NO_VISCOUS_ENERGY * largest:  # exactly 0: there is none
         return []
     return [Advice(
         "bulk viscosity", "Bulk viscosity took no energy worth naming.",
-        f"largest viscous energy {np.abs(glstat['viscous']).max():.3g}, largest total energy "
-        f"{largest:.3g}; parts with Q1 or Q2: {', '.join(map(str, numbers))}",
+        f"largest viscous energy {viscous:.3g}, largest total energy {largest:.3g}",
         "leave *CONTROL_BULK_VISCOSITY out, or Q1 = Q2 = 0.0 there and in *HOURGLASS",
         element_seconds(run, dict.fromkeys(numbers, VISCOUS_EXTRA)),
         f"it adds {VISCOUS_EXTRA} elastic elements to an element; the step limit grows, too")]
@@ -93,28 +87,27 @@ def idle_viscosity(run) -> list[Advice]:
 def nearly_rigid(run) -> list[Advice]:
     """Parts that hardly deform beside the others."""
     matsum, results = run.tables.get("matsum"), run.results
-    if (results is None or run.is_implicit or matsum is None or len(run.log.parts) < 2
+    if (results is None or run.is_implicit or matsum is None or len(run.parts) < 2
             or "mises" not in results.cell_fields):
         return []
     cell_part, mises = results.cell_field("part_id")[0], results.cell_field("mises")
     plastic = (results.cell_field("plastic_strain") if "plastic_strain" in results.cell_fields
                else np.zeros_like(mises))
     strains, energies = {}, {}
-    for part in run.log.parts.values():
+    for part in run.parts:
         own = cell_part == part.id
-        young = run.log.materials.get(part.material, {}).get("E", 0.0)
         rows = matsum.where(part=part.id)
-        if not own.any() or young <= 0.0 or not len(rows):
+        if not own.any() or part.young <= 0.0 or not len(rows):
             return []
-        strains[part.id] = float((mises[:, own] / young + plastic[:, own]).max())
+        strains[part.id] = float((mises[:, own] / part.young + plastic[:, own]).max())
         energies[part.id] = float(rows["internal"].max())
     advice = []
     for number, strain in strains.items():
         if (0.0 < strain <= RIGID_STRAIN * max(strains.values())
                 and energies[number] <= RIGID_ENERGY * max(energies.values())):
-            part = run.log.parts[number]
+            part = run.model.parts[number]
             advice.append(Advice(
-                "rigid", f"{part_label(part)} moved nearly as a rigid body.",
+                "rigid", f"{part.label} moved nearly as a rigid body.",
                 f"largest strain {strain:.2g} (of all parts {max(strains.values()):.2g}), largest "
                 f"internal energy {energies[number]:.2g} (of all parts "
                 f"{max(energies.values()):.2g})",

@@ -8,18 +8,17 @@ import os
 import pathlib
 
 from slideline_tools import UserError
-from slideline_tools.draw.model import Model, check_deck
+from slideline_tools.draw.model import Interface, Model, Part, model_of
 from slideline_tools.files import TABLES, find_run, source
 from slideline_tools.histories import History, read_csv
-from slideline_tools.program import find_program
 from slideline_tools.results import Results, ResultsError, read
-from slideline_tools.run_log import RunLog, read_log
 
 
 @dataclasses.dataclass
 class Finished:
     """One finished run.
 
+    `ended`      whether it ended normally: the words that scripts look for at the end of a log
     `seconds`    wall clock by phase, with `total`
     `results`    the states, None without a readable file or with a single state
     `tables`     histories by name
@@ -27,7 +26,7 @@ class Finished:
 
     folder: pathlib.Path
     job: str
-    log: RunLog
+    ended: bool
     seconds: dict[str, float]
     tables: dict[str, History]
     results: Results | None
@@ -54,7 +53,17 @@ class Finished:
     @property
     def n_element(self) -> int:
         """Elements of all parts."""
-        return sum(part.n_element for part in self.log.parts.values())
+        return len(self.model.cells) if self.model else self.results.n_cell if self.results else 0
+
+    @property
+    def parts(self) -> list[Part]:
+        """The parts; none without a model."""
+        return list(self.model.parts.values()) if self.model else []
+
+    @property
+    def interfaces(self) -> list[Interface]:
+        """The interfaces; none without a model."""
+        return self.model.interfaces if self.model else []
 
     @property
     def deck(self) -> str:
@@ -64,10 +73,7 @@ class Finished:
     @functools.cached_property
     def model(self) -> Model | None:
         """The deck as run as the program reads it; None where it can not."""
-        try:
-            return check_deck(f"{self.folder / self.job}.effective.k", find_program())
-        except UserError:
-            return None
+        return model_of(self.folder / self.job)
 
     @property
     def options(self) -> str:
@@ -83,7 +89,7 @@ def read_run(path) -> Finished:
             raise UserError(f"{prefix}{needed} is missing: not a finished run")
     tables = {name: read_csv(f"{prefix}.{name}.csv") for name in TABLES
               if os.path.exists(f"{prefix}.{name}.csv")}
-    return Finished(prefix.parent, prefix.name, read_log(read_text(f"{prefix}.log")),
+    return Finished(prefix.parent, prefix.name, "N o r m a l" in read_text(f"{prefix}.log"),
                     read_timing(prefix), tables, read_states(prefix))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What can be computed from the mesh of a run: areas, lumped masses, step limits, mirror images."""
+"""What can be computed from the mesh of a run: areas, the step limit of its elements, mirror images."""
 from __future__ import annotations
 
 import numpy as np
@@ -14,34 +14,22 @@ def corner_difference(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray
     return area, area / sides.max(axis=1)
 
 
-def cell_values(run, name: str) -> np.ndarray:
-    """A value of its material for each element, NaN where the log has none."""
-    parts = run.results.cell_field("part_id")[0]
-    values = np.full(len(parts), np.nan)
-    for part in run.log.parts.values():
-        values[parts == part.id] = run.log.materials.get(part.material, {}).get(name, np.nan)
-    return values
-
-
-def lumped_mass(run) -> np.ndarray:
-    """(n_node) kg/m; the mass of an element in equal parts on its corners."""
-    cells = run.results.cells
-    area, _ = corner_difference(run.results.points[0][:, :2], cells)
-    mass = np.zeros(run.results.n_node)
-    triangle = cells[:, 2] == cells[:, 3]
-    share = cell_values(run, "density") * area / np.where(triangle, 3.0, 4.0)
-    for k in range(4):
-        rows = ~triangle if k == 3 else slice(None)
-        np.add.at(mass, cells[rows, k], share[rows])
-    return mass
-
-
-def smallest_limit_ratio(run) -> float:
-    """Smallest step limit of the elements over all states, over that at time zero; NaN unknown."""
-    speed = cell_values(run, "c")
-    limits = [(corner_difference(points[:, :2], run.results.cells)[1] / speed).min()
-              for points in run.results.points]
-    return float(min(limits) / limits[0])
+def element_limit(run) -> float:
+    """Smallest A/(longest side c) of the elements at the first state, s, with c by the elastic constants; 0 where a
+    deformable part has none."""
+    if run.results is None or not run.parts:
+        return 0.0
+    length = corner_difference(run.results.points[0][:, :2], run.results.cells)[1]
+    parts, limit = run.results.cell_field("part_id")[0], np.inf
+    for part in run.parts:
+        if part.is_rigid or not np.any(parts == part.id):
+            continue
+        if not part.young > 0.0 or not part.density > 0.0 or part.poisson >= 0.5:
+            return 0.0
+        nu = part.poisson
+        speed = np.sqrt(part.young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu) * part.density))
+        limit = min(limit, float(length[parts == part.id].min()) / speed)
+    return limit if np.isfinite(limit) else 0.0
 
 
 def mirror_pairs(points: np.ndarray, axis: int) -> np.ndarray | None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from slideline_tools.advise import geometry
 from slideline_tools.advise.report import Advice
+from slideline_tools.effective_deck import read_blocks
 
 SLIP = 2  # states 1 and 2: stick and slip
 # Friction counts for nothing: largest traction over mu p, and work over the largest energy of the run, below these at so
@@ -23,7 +25,7 @@ def with_friction(run):
     table = run.tables.get("contact")
     if table is None or "state" not in table:
         return
-    for interface in run.log.interfaces.values():
+    for interface in run.interfaces:
         rows = table.where(interface=interface.id)
         if interface.friction and len(rows):
             yield interface, rows
@@ -52,7 +54,7 @@ def needless_friction(run) -> list[Advice]:
         if traction > NO_TRACTION or work > NO_WORK:
             continue
         advice.append(Advice(
-            "needless friction", f"Friction of {interface.label} does nothing worth naming.",
+            "needless friction", f"Friction of {interface.described} does nothing worth naming.",
             f"its largest traction at {states} states in contact is {traction:.1%} of mu times the largest pressure, the work of friction "
             f"{work:.1g} of the largest energy", f"leave FS out on the contact card of interface {interface.id} (command line: fs.{interface.id}=0)",
             None, "contact without tangential springs"))
@@ -75,29 +77,37 @@ def changes(rows) -> tuple[int, int]:
     return changed, possible
 
 
+def is_damped(run, interface) -> bool:
+    """Whether contact damping acts: by sleout; without it where a contact card or the command line has VDC."""
+    if (sleout := run.tables.get("sleout")) is not None:
+        return bool(np.any(sleout.where(interface=interface.id)["damping"]))
+    cards = [block.fields(1 + block.is_titled) for block in read_blocks(run.deck, "CONTACT_2D_AUTOMATIC")]
+    return "vdc" in run.options or any(card[4:5] not in ([], [""]) and float(card[4]) > 0.0 for card in cards)
+
+
 def undamped_sliding(run) -> list[Advice]:
     """Interfaces that slide, change between stick and slip all the time, and have nothing that damps them."""
     glstat = run.tables.get("glstat")
-    if run.is_implicit or glstat is None or not run.log.element_limit > 0.0:
+    if run.is_implicit or glstat is None or not (limit := geometry.element_limit(run)) > 0.0:
         return []
     if np.any(glstat["damping"]) or np.any(glstat["viscous"]):
         return []
     advice = []
     for interface, rows in with_friction(run):
-        if interface.damping or interface.sliding_friction < GROWTH[0][1]:
+        if is_damped(run, interface) or interface.sliding_friction < GROWTH[0][1]:
             continue
         changed, possible = changes(rows)
         slid = rows["time"][rows["state"] == SLIP]
         if possible < FEWEST or changed < CHANGING * possible:
             continue
-        rate = float(np.interp(interface.sliding_friction, *GROWTH)) / 1000.0 / run.log.element_limit
+        rate = float(np.interp(interface.sliding_friction, *GROWTH)) / 1000.0 / limit
         folds = rate * (slid.max() - slid.min())
         if folds < GROWN:
             continue
         advice.append(Advice(
-            "undamped sliding", f"{interface.label} slides without any damping, and may flutter.",
+            "undamped sliding", f"{interface.described} slides without any damping, and may flutter.",
             f"{changed / possible:.0%} of the pressed nodes are in the other state, stick or slip, at the next of the states; at mu "
-            f"{interface.sliding_friction:g} a small motion grows by {rate * run.log.element_limit * 1000.0:.2g} e-folds or more in 1000 steps of the "
+            f"{interface.sliding_friction:g} a small motion grows by {rate * limit * 1000.0:.2g} e-folds or more in 1000 steps of the "
             f"elements (doc/studies/stability.md), {folds:.2g} while it slid",
             f"*DAMPING_GLOBAL with D of {2.0 * rate:.2g} or more stops it, and slows what moves steadily; VDC, bulk viscosity or "
             "the viscous form of hourglass control hold down its short waves", None, "a smoother contact force, no time"))

@@ -39,16 +39,16 @@ def contact_seconds(run, interface, steps=("search", "pairing", "force")) -> flo
         return sum(timed)
 
     def weight(one):
-        return one.n_slave + (one.n_master if one.ctype == 3 else 0)
-    share = weight(interface) / max(sum(map(weight, run.log.interfaces.values())), 1)
+        return len(one.slave.nodes) + (len(one.master.nodes) if one.ctype == 3 else 0)
+    share = weight(interface) / max(sum(map(weight, run.interfaces)), 1)
     return share * sum(run.seconds_of(f"contact_{step}") for step in steps)
 
 
 def node_seconds(run, interface) -> float:
     """Seconds that moving the nodes of one interface takes beyond those inside the bodies."""
     def count(one):
-        return one.n_slave + one.n_master
-    share = count(interface) / max(sum(map(count, run.log.interfaces.values())), 1)
+        return len(one.slave.nodes) + len(one.master.nodes)
+    share = count(interface) / max(sum(map(count, run.interfaces)), 1)
     return INTERFACE_NODES * share * run.seconds_of("nodes")
 
 
@@ -58,7 +58,7 @@ def never_touched(run) -> list[Advice]:
         return []
     glstat, surfaces, advice = run.tables.get("glstat"), read_surfaces(run), []
     work_free = glstat is not None and not np.any(glstat["contact"])
-    for interface in run.log.interfaces.values():
+    for interface in run.interfaces:
         rows = slave_rows(run, interface)
         if not len(rows) or np.any(rows["n_active"]):
             continue
@@ -72,11 +72,11 @@ def never_touched(run) -> list[Advice]:
         else:
             continue
         advice.append(Advice(
-            "never touched", f"{interface.label} never touched.",
+            "never touched", f"{interface.described} never touched.",
             f"no active point in {len(rows)} rows of rcforc; {proof}",
             f"leave interface {interface.id} (its *CONTACT_2D... block) out",
             contact_seconds(run, interface) + node_seconds(run, interface),
-            ("its contact time" if len(run.log.interfaces) == 1
+            ("its contact time" if len(run.interfaces) == 1
              or f"contact_search.{interface.id}" in run.seconds
              else "its share of the contact time by its tracked nodes")
             + ", and what its nodes cost to move"))
@@ -88,7 +88,7 @@ def touched_for_a_while(run) -> list[Advice]:
     if "rcforc" not in run.tables or run.is_implicit:
         return []
     advice = []
-    for interface in run.log.interfaces.values():
+    for interface in run.interfaces:
         rows = slave_rows(run, interface)
         active = np.flatnonzero(rows["n_active"] > 0)
         if len(rows) < 100 or not len(active):
@@ -102,7 +102,7 @@ def touched_for_a_while(run) -> list[Advice]:
         ends = ([f"TBIRTH = {birth:.4g}"] if active[0] > 2 else []) + (
             [f"TDEATH = {death:.4g}"] if active[-1] < last_row - 2 else [])
         advice.append(Advice(
-            "touched for a while", f"{interface.label} touched only from {time[active[0]]:.4g} to "
+            "touched for a while", f"{interface.described} touched only from {time[active[0]]:.4g} to "
             f"{time[active[-1]]:.4g}.",
             f"{len(active)} of {len(rows)} rows of rcforc have active points; none in "
             f"{idle:.0%} of the time, before the first and after the last",
@@ -116,7 +116,7 @@ def touched_for_a_while(run) -> list[Advice]:
 def long_surface(run) -> list[Advice]:
     """Slave surfaces of which only a small part was ever pressed."""
     table, advice = run.tables.get("contact"), []
-    for interface in run.log.interfaces.values() if table is not None else ():
+    for interface in run.interfaces if table is not None else ():
         rows = table.where(interface=interface.id)
         if not len(rows) or interface.ctype == 3:
             continue
@@ -134,7 +134,7 @@ def long_surface(run) -> list[Advice]:
             continue
         x, y, s = (rows[name][first][wide] for name in ("x", "y", "s"))
         advice.append(Advice(
-            "long surface", f"Only {share:.0%} of the slave surface of {interface.label} was ever "
+            "long surface", f"Only {share:.0%} of the slave surface of {interface.described} was ever "
             "pressed.",
             f"{ever.sum()} of {len(nodes)} slave nodes carried a force at any of {states} states "
             f"in contact (x {x.min():.4g} to {x.max():.4g}, y {y.min():.4g} to {y.max():.4g})",
@@ -148,7 +148,7 @@ def long_flight(run) -> list[Advice]:
     """Free flight before anything touches."""
     glstat = run.tables.get("glstat")
     if ("rcforc" not in run.tables or glstat is None or run.results is None
-            or np.any(glstat["external_work"]) or run.is_implicit or not run.log.interfaces):
+            or np.any(glstat["external_work"]) or run.is_implicit or not run.interfaces):
         return []
     rows = run.tables["rcforc"].where(side="slave")
     active = rows["n_active"] > 0
@@ -192,7 +192,7 @@ def flights(run, time: float) -> list[str]:
 
 def dear_type(run) -> list[Advice]:
     """Types 6 and 7 where contact is a large share of the run."""
-    dear = [(one, found) for one in run.log.interfaces.values()
+    dear = [(one, found) for one in run.interfaces
             if (found := (CHEAPER_WITH_FRICTION if one.friction else CHEAPER).get(one.ctype))]
     contact = run.seconds_of("contact")
     if run.is_implicit or contact < CONTACT_MATTERS * run.total:
@@ -200,7 +200,7 @@ def dear_type(run) -> list[Advice]:
     advice = []
     for interface, (number, name, saved) in dear:
         advice.append(Advice(
-            "dear type", f"{interface.label} takes much of the run; {name} (type {number}) passes "
+            "dear type", f"{interface.described} takes much of the run; {name} (type {number}) passes "
             "the patch test and usually costs less.",
             f"contact takes {contact / run.total:.0%} of the run{judged(run, interface.id)}", f"CTYPE {number} on interface "
             f"{interface.id} (command line: ctype.{interface.id}={number}), where the resultants "

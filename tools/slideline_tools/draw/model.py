@@ -20,7 +20,7 @@ import numpy as np
 from slideline_tools import UserError
 from slideline_tools.draw.surface import Surface
 from slideline_tools.names import counted
-from slideline_tools.program import not_run
+from slideline_tools.program import find_program, not_run
 
 DIRECTIONS = {1: "x", 2: "y", 3: "turn about z"}
 QUANTITIES = {0: "velocity", 1: "acceleration", 2: "displacement"}
@@ -48,6 +48,9 @@ class Part:
     section: int
     material: int
     law: str = ""
+    density: float = 0.0
+    young: float = 0.0
+    poisson: float = 0.0
     n_element: int = 0
     is_rigid: bool = False
     held: tuple[bool, bool] = (False, False)
@@ -90,6 +93,11 @@ class Interface:
     def label(self) -> str:
         """Words for a reader."""
         return f"{labelled('interface', self)} (type {self.ctype})"
+
+    @property
+    def described(self) -> str:
+        """Words with its formulation."""
+        return f"interface {self.id} ({self.formulation.replace(' (', ', ')}"
 
 
 @dataclasses.dataclass
@@ -175,7 +183,7 @@ class Model:
         """Parts, and how those that are rigid are held."""
         bodies = {one["part"]: one for one in told["rigid_bodies"]}
         return {one["id"]: Part(one["id"], one["title"], one["section"], one["material"], one["law"],
-                                int(np.sum(self.cell_parts == one["id"])), bool(body),
+                                one["density"], one["young"], one["poisson"], int(np.sum(self.cell_parts == one["id"])), bool(body),
                                 (body.get("held_x", False), body.get("held_y", False)),
                                 body.get("held_turn", False))
                 for one in told["parts"] for body in [bodies.get(one["id"], {})]}
@@ -267,3 +275,11 @@ def check_deck(deck: str | os.PathLike, program: str | os.PathLike, overrides: t
     # What can be read may still not start: that is told with the warnings.
     return Model(answer["model"], [("" if one["severity"] == "warning" else "it would not run: ") + one["message"]
                                    for one in answer["findings"]])
+
+
+def model_of(prefix: str | os.PathLike) -> Model | None:
+    """The model of the deck as run of a run, `prefix` its folder and job; None where no program can read it."""
+    try:
+        return check_deck(f"{os.fspath(prefix)}.effective.k", find_program())
+    except UserError:
+        return None

@@ -17,7 +17,6 @@ from slideline_tools.files import ENDINGS, TABLES, find_run
 from slideline_tools.histories import History, read_csv
 from slideline_tools.program import find_program
 from slideline_tools.results import Results, read
-from slideline_tools.run_log import RunLog, read_log
 
 GOES_ON = "goes on from the restart file"
 #: what the log tells where there are no results
@@ -48,7 +47,6 @@ class Gathered:
     job: str
     log_text: str
     deck_text: str
-    log: RunLog
     ending: Ending
     tables: dict[str, History]
     results: Results | None
@@ -82,8 +80,7 @@ class Gathered:
     @property
     def interfaces(self) -> list[int]:
         """Numbers of the interfaces that anything tells of."""
-        numbers = set(self.log.interfaces)
-        numbers |= {interface.id for interface in self.model.interfaces} if self.model else set()
+        numbers = {interface.id for interface in self.model.interfaces} if self.model else set()
         for name in ("rcforc", "contact"):
             if rows := self.rows(name):
                 numbers |= set(rows["interface"].tolist())
@@ -115,7 +112,7 @@ def read_all(prefix: pathlib.Path, sizes: dict, program) -> Gathered:
                      "as the deck and the tables tell.")
     deck_text = read_text(f"{prefix}.effective.k") or (
         results.run.get("effective_deck", "") if results else "")
-    return Gathered(prefix.parent, prefix.name, log_text, deck_text, read_log(log_text),
+    return Gathered(prefix.parent, prefix.name, log_text, deck_text,
                     read_ending(log_text, tables, results, timing), tables, results, timing,
                     read_model(deck_text, f"{prefix}.effective.k", program, notes),
                     [(f"{prefix.name}{ending}", size) for ending, size in sizes.items()], notes)

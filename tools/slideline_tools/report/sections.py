@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 import re
 import time
-import typing
 
 import numpy as np
 
@@ -146,9 +145,8 @@ def contact(run: Gathered, states: list[int]) -> list[Block]:
 
 
 def label(run: Gathered, number: int) -> str:
-    """Words for an interface, as far as log and deck have them."""
-    known = {one.id: one.label for one in run.model.interfaces} if run.model else {}
-    known |= {one.id: one.label for one in run.log.interfaces.values()}
+    """Words for an interface, as far as the deck has them."""
+    known = {one.id: one.described for one in run.model.interfaces} if run.model else {}
     words = known.get(number, f"interface {number}")
     return words[0].upper() + words[1:]
 
@@ -171,11 +169,11 @@ def one_interface(run: Gathered, number: int, states: list[int]) -> list[Block]:
         pictures.append(picture(charts.pressures(chain, chosen_times(run, chain, states)),
                                 f"Contact pressure along the slave surface of interface {number}"))
         rows += pressure_rows(chain)
-        if slips := zones_figure(chain, chosen_times(run, chain, states), run.log):
+        if slips := zones_figure(chain, chosen_times(run, chain, states), run.model):
             pictures.append(picture(
                 slips,
                 f"Where interface {number} sticks and slips, over time, and its friction traction; "
-                "broken: what friction allows"))
+                "broken: mu times the pressure"))
     judged = of_interface(run, "sleout", number)
     if judged and "estimate" in judged and np.any(judged["estimate"]):
         pictures.append(picture(charts.estimates(judged),
@@ -229,15 +227,13 @@ def pressure_rows(chain: History) -> list[list[str]]:
 
 
 def friction_rows(run: Gathered, number: int, sleout: History | None) -> list[list[str]]:
-    """Work that friction of an interface has dissipated: at the end by the log, else by the last
-    row of sleout."""
-    one = run.log.interfaces.get(number)
-    work, time, more = None, run.ending.time, ""
-    if one is not None and one.friction and one.dissipated is not None:
-        work, more = one.dissipated, f"coefficient {one.friction:g}"
-    elif sleout and "friction" in sleout and np.any(sleout["friction"]):
-        work, time = sleout["friction"][-1], sleout["time"][-1]
-    return [["frictional work", figures(work, 6), figures(time, 4), more]] if work else []
+    """Work that friction of an interface has dissipated, by sleout; of a single one else by glstat."""
+    table = sleout if sleout and "friction" in sleout else run.rows("glstat") if len(run.interfaces) == 1 else None
+    if table is None or "friction" not in table or not table["friction"][-1]:
+        return []
+    known = [one.friction for one in run.model.interfaces if one.id == number] if run.model else []
+    return [["frictional work", figures(table["friction"][-1], 6), figures(table["time"][-1], 4),
+             f"coefficient {known[0]:g}" if known else ""]]
 
 
 def chosen_times(run: Gathered, chain: History, states: list[int]) -> list[float]:
@@ -248,26 +244,25 @@ def chosen_times(run: Gathered, chain: History, states: list[int]) -> list[float
 
 
 def walls(run: Gathered) -> list[Block]:
-    """Every rigid wall that the log, the deck or rwforc tells of, and its force."""
-    deck = run.results.run.get("effective_deck", "") if run.results is not None else ""
-    known = {wall.id: wall for wall in walls_of(deck)} | run.log.walls
+    """Every rigid wall that the deck or rwforc tells of, and its force."""
+    known = {wall.id: wall for wall in walls_of(run.deck_text)}
     rwforc = run.rows("rwforc")
     series = {} if rwforc is None else {entity[0]: rows for entity, rows in rwforc.series()}
     rows, pictures = [], []
     for number in sorted({**known, **series}):
         wall, forces = known.get(number), series.get(number)
         rows.append([number, *([figures(value, 5) for value in (*wall.point, *wall.normal)]
-                               + [figures(wall.n_node)] if wall else ["–"] * 5),
+                               if wall else ["–"] * 4),
                      *(wall_row(forces) if forces else ["–"] * 5)])
         if forces:
             pictures.append(picture(
                 charts.columns(forces, ("fx", "fy"), "force of the wall on the nodes"),
                 f"Force of wall {number} on the nodes"))
-    head = ["wall", "through x", "y", "normal in x", "y", "nodes that see it", "largest force",
+    head = ["wall", "through x", "y", "normal in x", "y", "largest force",
             "at time", "impulse", "work on the nodes", "most nodes at once"]
     if rwforc is None:
-        head, rows = head[:6], [row[:6] for row in rows]
-    blocks: list[Block] = [("grid", pictures), ("table", Table(head, rows, range(1, 11)))]
+        head, rows = head[:5], [row[:5] for row in rows]
+    blocks: list[Block] = [("grid", pictures), ("table", Table(head, rows, range(1, 10)))]
     if rwforc is None:
         blocks.append(("note", "Their forces were not written (*DATABASE_RWFORC)."))
     return blocks if rows else []
@@ -356,16 +351,14 @@ def model(run: Gathered) -> list[Block]:
 
 def parts(run: Gathered) -> list[Block]:
     """The parts with what they hold at the end."""
-    known: dict[int, typing.Any] = {**(run.model.parts if run.model else {}), **run.log.parts}
-    laws = {number: part.law for number, part in run.model.parts.items()} if run.model else {}
+    known = run.model.parts if run.model else {}
     matsum = run.rows("matsum")
     sums = ("mass", "kinetic", "internal", "hourglass", "momentum_x", "momentum_y")
     rows = []
     for number, part in sorted(known.items()):
         last = matsum.where(part=number) if matsum else None
         rows.append([number, part.title, figures(part.n_element), part.material,
-                     laws.get(number, ""),
-                     *(figures(last[name][-1], 5) if last else "–" for name in sums)])
+                     part.law, *(figures(last[name][-1], 5) if last else "–" for name in sums)])
     head = ["part", "title", "elements", "material", "law",
             *(name.replace("_", " ") for name in sums)]
     note = ("note", "Energies and momenta are those of the last row of matsum.")
@@ -374,26 +367,20 @@ def parts(run: Gathered) -> list[Block]:
 
 
 def materials(run: Gathered) -> list[Block]:
-    """The materials as the log has them."""
-    names = list(dict.fromkeys(name for one in run.log.materials.values() for name in one))
-    rows = [[number, *(figures(one.get(name), 5) for name in names)]
-            for number, one in sorted(run.log.materials.items())]
-    return [("heading", "Materials"),
-            ("table", Table(["material", *names], rows, range(1, len(names) + 1)))] if rows else []
+    """The materials of the parts."""
+    found = {part.material: part for part in run.model.parts.values()} if run.model else {}
+    rows = [[number, one.law, *(figures(value, 5) for value in (one.density, one.young, one.poisson))]
+            for number, one in sorted(found.items())]
+    head = ["material", "law", "density", "Young's modulus", "Poisson's ratio"]
+    return [("heading", "Materials"), ("table", Table(head, rows, range(2, 5)))] if rows else []
 
 
 def interfaces(run: Gathered) -> list[Block]:
-    """The interfaces with their surfaces and penalties, or as the deck has them."""
-    rows = [[number, one.name, one.ctype, one.n_slave, figures(one.slave_length, 4), one.n_master,
-             figures(one.master_length, 4), figures(one.slave_penalty, 4),
-             figures(one.master_penalty, 4) if one.master_penalty else ""]
-            for number, one in sorted(run.log.interfaces.items())]
-    if not rows and run.model:
-        rows = [[one.id, one.formulation, one.ctype, len(one.slave.nodes), "",
-                 len(one.master.nodes), "", "", ""] for one in run.model.interfaces]
-    head = ["interface", "formulation", "type", "slave nodes", "mean length", "master nodes",
-            "mean length", "penalty per length", "of the master pass"]
-    return [("heading", "Interfaces"), ("table", Table(head, rows, range(3, 9)))] if rows else []
+    """The interfaces with their surfaces."""
+    rows = [[one.id, one.formulation, one.ctype, len(one.slave.nodes), len(one.master.nodes), figures(one.friction)]
+            for one in run.model.interfaces] if run.model else []
+    head = ["interface", "formulation", "type", "slave nodes", "master nodes", "friction"]
+    return [("heading", "Interfaces"), ("table", Table(head, rows, range(3, 6)))] if rows else []
 
 
 # ---- timing, advice, log ------------------------------------------------------------------------
