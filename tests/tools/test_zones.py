@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Stick and slip over time: places and states of chains, what friction allows, pictures, the frictional work of reports."""
+"""Stick and slip over time: places and states of chains, mu p, pictures, the frictional work of reports."""
 import os
 import re
 import subprocess

@@ -11,8 +11,8 @@ from slideline_tools.effective_deck import material_keyword
 # What a plastic law and bulk viscosity add to a one-point quad, in elastic ones without
 # viscosity. Measured in turn on meshes of 960 and 3840 elements: 0.05 to 0.2, 0.5 to 0.6.
 PLASTIC_EXTRA, VISCOUS_EXTRA = 0.1, 0.5
-# Laws without a plastic strain.
-ELASTIC = ("elastic", "rigid", "fluid", "Mooney-Rivlin rubber", "Blatz-Ko rubber")
+# Laws that are not those of metals: an elastic one would not do in their place, or they are it.
+NOT_OF_METALS = ("elastic", "rigid", "fluid", "Mooney-Rivlin rubber", "Blatz-Ko rubber", "crushable foam")
 # Largest viscous energy over the largest total energy that says: without effect.
 NO_VISCOUS_ENERGY = 1.0e-4
 # Strain and internal energy of a part over the largest of all parts that say: rigid.
@@ -25,7 +25,7 @@ def extras(run, part) -> tuple[float, float]:
     """What its law and its viscosity add to an element of a part, in elastic elements."""
     glstat = run.tables.get("glstat")
     viscous = glstat is not None and bool(np.any(glstat["viscous"]))
-    return PLASTIC_EXTRA * (part.law not in ELASTIC), VISCOUS_EXTRA * (viscous and not part.is_rigid)
+    return PLASTIC_EXTRA * (part.law not in NOT_OF_METALS), VISCOUS_EXTRA * (viscous and not part.is_rigid)
 
 
 def element_seconds(run, worth: dict[int, float | None]) -> float:
@@ -50,7 +50,7 @@ def never_yielded(run) -> list[Advice]:
     advice = []
     for part in run.parts:
         own = parts == part.id
-        if part.law in ELASTIC or not own.any() or strain[own].max() > 0.0:
+        if part.law in NOT_OF_METALS or not own.any() or strain[own].max() > 0.0:
             continue
         others = [other.id for other in run.parts
                   if other.material == part.material and other.id != part.id]
