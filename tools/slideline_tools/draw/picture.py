@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 from slideline_tools.draw.model import Arrows, Model
 from slideline_tools.draw.surface import Surface
 from slideline_tools.names import counted
-from slideline_tools.plots import STYLE, edge_width, save  # noqa: F401
+from slideline_tools.plots import STYLE, edge_width
 
 WHAT = ("mesh", "sets", "surfaces", "boundary", "motion", "velocity", "loads", "walls", "history")
 PART_COLOURS = ("#dbe7f3", "#f6e6cf", "#dff0dc", "#ecdff1", "#f7dcd8", "#d9eeee", "#eee9c9",
