@@ -36,7 +36,8 @@ def draw(deck: str | os.PathLike, output: str | os.PathLike, program: str | os.P
          overrides: typing.Sequence[str] = (), show: typing.Iterable[str] | None = None,
          zoom: typing.Sequence[float] | None = None) -> Model:
     """Write the picture of a deck (or of a results folder) and give its model."""
-    from slideline_tools.draw.picture import model_figure, save
+    from slideline_tools.draw.picture import model_figure
+    from slideline_tools.plots import save
     model = resolve(deck, program, overrides)
     save(model_figure(model, show, zoom), files.output(output, [deck]))
     return model
