@@ -5,7 +5,7 @@
     stock_decks.py FOLDER    writes every deck of stock_list.py and what it includes
 
 tests/program/test_stock_decks.py runs the copies in tests/program/stock, and new ones where the package is
-installed (pip install "./tools[stock]").
+installed (pip install -e "./tools[stock]").
 """
 import pathlib
 import sys

@@ -229,6 +229,14 @@ def test_wrong_calls(place, script, words):
     assert done.stderr
 
 
+def test_a_list_makes_its_folder(place):
+    deck(place / "one.k")
+    (place / "list.txt").write_text("a\tone.k\n")
+    done = call(place, "run_list.sh", "list.txt", "new/out")
+    assert done.returncode == 0, done.stderr
+    assert (place / "new/out/summary.csv").is_file() and (place / "new/out/a/run.status").read_text() == "0\n"
+
+
 def test_missing_program_is_said(place, decks):
     done = call(place, "run_folder.sh", "my decks", program=place / "gone")
     assert done.returncode == 2 and "no such program" in done.stderr

@@ -223,6 +223,7 @@ esac
 [ "$k" -lt "$n" ] || wrong "--part '$part': expected K/N with K from 0 to N - 1 (number an array from 0 without gaps)"
 case $2 in -*) set -- "$1" "./$2" ;; esac
 if [ "$runs" = yes ]; then
+  mkdir -p -- "$2" || exit 2
   if ! command -v "$program" >/dev/null; then
     echo "$program: no such program; build it with tools/build.sh, or say SLIDELINE=..." >&2
     exit 2

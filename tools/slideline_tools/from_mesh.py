@@ -40,7 +40,7 @@ def read(path) -> PlaneMesh:
     try:
         import meshio
     except ImportError:
-        raise UserError("reading meshes needs meshio: build/venv/bin/pip install './tools[mesh]'") from None
+        raise UserError("reading meshes needs meshio: build/venv/bin/pip install -e './tools[mesh]'") from None
     if not pathlib.Path(path).is_file():
         raise UserError(f"{path}: no such file")
     try:

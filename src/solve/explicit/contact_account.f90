@@ -79,8 +79,9 @@ contains
           model%mesh%coordinates(:, watch%node) + state%motion(1:2, watch%node)
       end if
       sign_of = merge(has_made, has_lost, watch%balance < 0.0_wp)
-      if (watch%changes(sign_of)%warned .or. &
-        abs(watch%balance) <= noticed_share*state%largest_energy) return
+      ! In the first cycles the springs hold energy that no work has been booked for yet.
+      if (watch%changes(sign_of)%warned .or. abs(watch%balance) <= &
+        noticed_share*max(state%largest_energy, contact%energy)) return
       ! While an overlap grows there is nothing yet to hold it against.
       if (allocated(contact%interference%depth) .and. contact%interference%left > 0.0_wp) return
       ! What impacts take of implicit springs is no fault of theirs; the end tells it.

@@ -79,7 +79,7 @@ A batch: for run in results/*/; do slideline-tools report "$run"; done""",
         "direction and outward normals, held nodes, motions, initial velocities, loads, pressures, rigid "
         "bodies. The program reads the deck, so that the picture shows what would run.", f"""\
 draw deck.k
-draw deck.k p:level=2 --show mesh,surfaces --zoom 0 0.02 -0.002 0.002 -o gap.png
+draw deck.k p:v0=-40.0 --show mesh,surfaces --zoom 0 0.02 -0.002 0.002 -o gap.png
 draw results/collision -o collision.png
 
 {ARROWS}""",
