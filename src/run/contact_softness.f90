@@ -136,6 +136,7 @@ contains
     type(log_t), intent(inout) :: log
     integer :: i
 
+    if (log%is_mute) return ! the first process alone knows the parts of all elements
     do i = 1, size(state%estimates)
       associate (estimate => state%estimates(i), contact => model%contacts(i))
         if (contact%penalty_unit == penalty_implicit .and. &

@@ -221,6 +221,20 @@ def test_restart_files_go_from_two_processes_to_three(tmp_path):
     assert len(rest) > 20 and not [name for name in rest if rest[name] != one[name]]
 
 
+def test_a_run_that_goes_on_reports_soft_springs_once(tmp_path):
+    """Estimates come from the file on each process; the parts of all elements are known to the first alone."""
+    examples = pathlib.Path(__file__).parents[2] / "doc/examples"
+    shutil.copytree(examples / "parts", tmp_path / "parts")
+    deck = (examples / "contact_2d_slideline_chosen.k").read_text(encoding="ascii")
+    (tmp_path / "job.k").write_text(with_cycles(deck, 90, 42), encoding="ascii")
+    run(tmp_path, 1, "i=job.k", "d=one")
+    (tmp_path / "rest").mkdir()
+    shutil.copy(tmp_path / "one" / "job.dump01.h5", tmp_path / "rest")
+    run(tmp_path, 2, "r=rest/job.dump01.h5")
+    last = [(tmp_path / name / "job.rcforc.csv").read_text().splitlines()[-1] for name in ("one", "rest")]
+    assert last[0] == last[1]
+
+
 def test_restart_files_go_from_three_processes_to_eight(tmp_path):
     """Nodes between the tiles of others are as old as the start where nobody has gathered them."""
     (tmp_path / "job.k").write_text(with_cycles(settling(), 40, 20), encoding="ascii")
