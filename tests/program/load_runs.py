@@ -164,7 +164,10 @@ class Batch:
         kept = {}
         for name in names:
             path = self.out / name / "run.status"
-            kept[name] = path.read_text().strip() if path.exists() else "none" if path.parent.exists() else "not begun"
+            try:
+                kept[name] = path.read_text().strip()
+            except FileNotFoundError:  # a batch may take it away at any moment
+                kept[name] = "none" if path.parent.exists() else "not begun"
         return kept
 
 
