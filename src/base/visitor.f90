@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Visits of all that is stored of a state or a model. Each type names its components once, in its
 !> `visit`; what is done with them is the visitor's: to write or read a restart file (`archive_m`),
-!> to send them to another process or to give memory back (`freight_m`).
+!> to send them to another process or to give memory back (`packed_buffer_m`).
 !>
 !> A visitor that brings values gives an array the extents that come with them; others leave arrays
 !> that are not allocated as they are. One that judges looks at bounds and refuses what it brings;

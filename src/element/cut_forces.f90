@@ -8,7 +8,7 @@ module cut_forces_m
   use element_dispatch_m, only : advance_chunk
   use eroding_tiles_m, only : add_eroding_tile_forces, take_nodes
   use erosion_state_m, only : stays
-  use freight_m, only : freight_t
+  use packed_buffer_m, only : packed_buffer_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size, tile_t
   use model_m, only : model_t
@@ -31,8 +31,8 @@ contains
     type(block_state_t), intent(inout) :: elements     !! on return as they were
     real(wp), intent(inout) :: force(:, :)             !! (8, n) x, y of four corners of each; it
                                                        !! stays of elements in other chunks
-    type(freight_t), intent(inout), optional :: before(:) !! of `keep_cut_chunks`
-    type(freight_t) :: present_values
+    type(packed_buffer_t), intent(inout), optional :: before(:) !! of `keep_cut_chunks`
+    type(packed_buffer_t) :: present_values
     real(wp), allocatable :: of_slots(:, :, :) !! of the chunks with cut elements
     integer, allocatable :: list(:), place(:)
     integer :: i
@@ -57,7 +57,7 @@ contains
   subroutine keep_cut_chunks(model, elements, kept)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(inout) :: elements     !! stay as they are
-    type(freight_t), allocatable, intent(inout) :: kept(:)
+    type(packed_buffer_t), allocatable, intent(inout) :: kept(:)
     integer, allocatable :: list(:), place(:)
     integer :: i
 

@@ -3,7 +3,7 @@
 !> changed any is seen by their bits, and a step that only tries puts them back.
 module tile_values_m
   use block_state_m, only : block_state_t
-  use freight_m, only : freight_t, start_loading, start_unloading, choose_slots
+  use packed_buffer_m, only : packed_buffer_t, start_loading, start_unloading, choose_slots
   use kinds_m, only : wp, long
   use layout_m, only : tile_t, chunk_size
   implicit none
@@ -13,24 +13,24 @@ module tile_values_m
 contains
 
   !> What a step may change of the elements of a tile.
-  subroutine take_values(tile, elements, freight)
+  subroutine take_values(tile, elements, buffer)
     type(tile_t), intent(in) :: tile
     type(block_state_t), intent(inout) :: elements !! as before
-    type(freight_t), intent(out) :: freight
+    type(packed_buffer_t), intent(out) :: buffer
 
-    call choose_slots(freight, [tile%first_chunk, tile%last_chunk], chunk_size, .false., .true.)
-    call elements%visit(freight)
-    call start_loading(freight)
-    call elements%visit(freight)
+    call choose_slots(buffer, [tile%first_chunk, tile%last_chunk], chunk_size, .false., .true.)
+    call elements%visit(buffer)
+    call start_loading(buffer)
+    call elements%visit(buffer)
   end subroutine take_values
 
   !> The elements of a tile as they were when their values were taken.
-  subroutine put_values(freight, elements)
-    type(freight_t), intent(inout) :: freight !! may be put back again
+  subroutine put_values(buffer, elements)
+    type(packed_buffer_t), intent(inout) :: buffer !! may be put back again
     type(block_state_t), intent(inout) :: elements
 
-    call start_unloading(freight)
-    call elements%visit(freight)
+    call start_unloading(buffer)
+    call elements%visit(buffer)
   end subroutine put_values
 
   !> Whether two arrays of one length have the same bits: zeros have signs, and what is not a number

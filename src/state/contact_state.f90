@@ -336,6 +336,7 @@ contains
   subroutine visit_points(self, visitor)
     class(contact_points_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
+    logical :: has_traction
 
     call visitor%visit('n', self%n)
     call visitor%visit('slave_nodes', self%slave_nodes, any_length)
@@ -348,7 +349,10 @@ contains
     call visitor%visit('stiffness', self%stiffness, any_length)
     call visitor%visit('pressure', self%pressure, any_length)
     call visitor%visit('load', self%load, any_length)
+    has_traction = allocated(self%traction) ! from the start, where the deck has friction or ties
     call visitor%visit('traction', self%traction, any_length)
+    call visitor%expect('traction', allocated(self%traction) .eqv. has_traction, &
+      'values where the deck has no friction and no tie, or none where it has')
   end subroutine visit_points
 
   !> Its components.

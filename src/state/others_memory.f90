@@ -2,7 +2,7 @@
 !> Nodes and elements of other processes, whose state this one does not keep, and those whose state
 !> it has.
 module others_memory_m
-  use freight_m, only : forgetter_t, choose_slots
+  use packed_buffer_m, only : forgetter_t, choose_slots
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use model_m, only : model_t

@@ -58,6 +58,7 @@ LIES = {
     "state/contacts/1/master_tracking/n": (lambda old: old + 2, "than there are"),
     "state/estimates/1/penetration": (lambda old: old - 1.0, "below zero"),
     "state/contacts/1/points/n": (lambda old: old * 0 + (2**31 - 1), "list"),
+    "state/contacts/1/points/traction": (lambda old: np.zeros(3), "no friction"),
     "state/contacts/1/points/slave_nodes": (lambda old: old * 0 - 1, "no node"),
     "state/contacts/1/points/master_nodes": (lambda old: old * 0 + 99999, "no node"),
     "state/contacts/1/nodes": (lambda old: old[::-1].copy(), "follow from the deck"),

@@ -7,7 +7,7 @@
 module rank_exchange_m
   use block_state_m, only : block_state_t
   use errors_m, only : error_t
-  use freight_m, only : stream_starts
+  use packed_buffer_m, only : stream_starts
   use health_m, only : tile_check_t, check_elements, most_work
   use kinds_m, only : wp, long
   use layout_m, only : chunk_size

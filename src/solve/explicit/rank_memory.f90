@@ -4,7 +4,7 @@
 !> that numbers mean the same everywhere, but what belongs to others is not written to; the pages of
 !> tiles that go to another process go back to the system.
 module rank_memory_m
-  use freight_m, only : forgetter_t
+  use packed_buffer_m, only : forgetter_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use model_m, only : model_t

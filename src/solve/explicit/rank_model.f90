@@ -4,8 +4,8 @@
 !> nobody has sent or written takes no memory: a process that is not the first gets special nodes,
 !> and the nodes and slots of its own tiles.
 module rank_model_m
-  use freight_m, only : freight_t, part_of
-  use freight_sharing_m, only : hand, everyone
+  use packed_buffer_m, only : packed_buffer_t, part_of
+  use buffer_sharing_m, only : hand, everyone
   use inside_answers_m, only : answers_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
@@ -60,14 +60,14 @@ contains
     type(ranks_t), intent(inout) :: ranks
     type(model_t), intent(inout) :: model
     logical, intent(out) :: has_all !! each process gets all of it
-    type(freight_t) :: freight
+    type(packed_buffer_t) :: buffer
     type(shares_t) :: shares
     integer :: n_node
 
     has_all = .true.
     if (ranks%n == 1) return
-    call hand(ranks, everyone, freight, model)
-    deallocate (freight%values)
+    call hand(ranks, everyone, buffer, model)
+    deallocate (buffer%values)
     has_all = starts_from_all(model)
     n_node = model%mesh%n_node
     if (has_all) then
@@ -89,7 +89,7 @@ contains
     type(ranks_t), intent(inout) :: ranks
     type(model_t), intent(inout) :: model
     type(handed_t) :: handed
-    type(freight_t) :: freight
+    type(packed_buffer_t) :: buffer
     integer, allocatable :: elements(:), cut(:)
     integer :: i, k
 
@@ -110,7 +110,7 @@ contains
         handed%places = mesh%coordinates(:, [handed%corners])
         handed%slots = layout%element_slot(cut)
       end if
-      call hand(ranks, everyone, freight, handed)
+      call hand(ranks, everyone, buffer, handed)
       if (ranks%mine == 0) return
       do i = 1, size(elements)
         mesh%element_part(elements(i)) = handed%parts(i)
@@ -130,7 +130,7 @@ contains
     type(ranks_t), intent(inout) :: ranks
     logical, intent(in) :: has_all
     type(model_t), intent(inout) :: model
-    type(freight_t) :: freight
+    type(packed_buffer_t) :: buffer
     type(handed_t) :: handed
     type(shares_t) :: shares
     logical, allocatable :: is_known(:)
@@ -138,7 +138,7 @@ contains
 
     shares = share_out(model%layout, ranks%mine, ranks%n)
     do rank = 1, ranks%n - 1
-      freight = freight_t()
+      buffer = packed_buffer_t()
       if (ranks%mine == 0) then
         associate (nodes => model%conditions%fixed_nodes, starts => shares%nodes)
           is_known = has_all .or. nodes <= model%layout%n_special .or. nodes >= starts(ranks%n) &
@@ -147,7 +147,7 @@ contains
         end associate
         handed%directions = pack(model%conditions%fixed_directions, is_known)
       end if
-      call hand(ranks, rank, freight, handed)
+      call hand(ranks, rank, buffer, handed)
     end do
     if (ranks%mine == 0) return
     call move_alloc(handed%nodes, model%conditions%fixed_nodes)
@@ -161,7 +161,7 @@ contains
     type(state_t), intent(inout) :: state              !! of the first process
     type(others_t), allocatable, intent(out) :: others !! left alone
     type(answers_t), allocatable, intent(inout) :: answers !! to the first process; then from it
-    type(freight_t) :: freight
+    type(packed_buffer_t) :: buffer
     type(handed_t) :: handed
     type(shares_t) :: shares
     integer :: i
@@ -173,7 +173,7 @@ contains
         i=1, size(state%contacts))], [3, size(state%contacts)])
       if (allocated(answers%is_inside)) handed%is_inside = answers%is_inside
     end if
-    call hand(ranks, everyone, freight, handed)
+    call hand(ranks, everyone, buffer, handed)
     shares = share_out(model%layout, ranks%mine, ranks%n)
     call hand_shares(ranks, of_nodes, shares, model%mesh%n_node, handed)
     if (ranks%mine == 0) then
@@ -217,12 +217,12 @@ contains
     integer, intent(in) :: of         !! one of the `of_` constants
     integer, intent(in) :: range(2)
     class(visited_t), intent(inout) :: item
-    type(freight_t) :: freight
+    type(packed_buffer_t) :: buffer
     integer :: first
 
     do first = range(1), range(2), most_items
-      freight = part_of(of, [first, min(range(2), first + most_items - 1)])
-      call hand(ranks, receiver, freight, item)
+      buffer = part_of(of, [first, min(range(2), first + most_items - 1)])
+      call hand(ranks, receiver, buffer, item)
     end do
   end subroutine hand_range
 

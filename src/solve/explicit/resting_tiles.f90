@@ -6,7 +6,7 @@
 !> bring about, and is stepped from then on. Tiles that rest at velocity zero amid others that do
 !> are not even looked at.
 module resting_tiles_m
-  use freight_m, only : freight_t
+  use packed_buffer_m, only : packed_buffer_t
   use kinds_m, only : wp, long
   use layout_m, only : layout_t, tile_t
   use log_m, only : log_t, write_log
@@ -168,7 +168,7 @@ contains
     real(wp), allocatable, intent(out) :: before(:) !! not there where it can not come to rest
     real(wp) :: one(4)
     integer :: i
-    type(freight_t) :: freight
+    type(packed_buffer_t) :: buffer
 
     one = motion_of(model%layout, model%layout%tiles(i_tile), state%motion)
     rest%status(i_tile) = merge(rest%status(i_tile), awake, may_go_on(model, one, state) &
@@ -178,8 +178,8 @@ contains
       if (.not. same_bits(state%motion(:, i), one)) rest%status(i_tile) = awake
     end do
     if (rest%status(i_tile) == awake .or. .not. state%dt_before > 0.0_wp) return
-    call take_values(model%layout%tiles(i_tile), state%elements, freight)
-    call move_alloc(freight%values, before)
+    call take_values(model%layout%tiles(i_tile), state%elements, buffer)
+    call move_alloc(buffer%values, before)
   end subroutine remember_tile
 
   !> Whether the motion of a tile in one motion goes on as one: each element of a round body is
@@ -203,7 +203,7 @@ contains
     real(wp), intent(in) :: force(2, *)    !! of the tile's local nodes
     type(state_t), intent(inout) :: state
     type(rest_t), intent(inout) :: rest
-    type(freight_t) :: after
+    type(packed_buffer_t) :: after
     real(wp) :: one(4)
     integer :: i
     logical :: is_still

@@ -14,7 +14,7 @@ module implicit_forces_m
   use element_dispatch_m, only : add_tile_forces
   use element_mass_m, only : mass_times
   use external_force_m, only : form_external_force, body_acceleration
-  use freight_m, only : freight_t
+  use packed_buffer_m, only : packed_buffer_t
   use model_m, only : model_t
   use part_damping_m, only : damping_rates
   use state_m, only : state_t
@@ -39,8 +39,8 @@ module implicit_forces_m
     real(wp), allocatable :: damping(:, :)  !! (2, n_node) D M v of an equilibrium; only where the
                                             !! deck damps by mass
     real(wp), allocatable :: slots(:, :)    !! forces of tiles on their special nodes
-    type(freight_t), allocatable :: before(:) !! chunks of cross sections before the step, until
-                                            !! the forces of these are formed
+    type(packed_buffer_t), allocatable :: before(:) !! chunks of cross sections before the step,
+                                            !! until the forces of these are formed
   contains
     procedure :: visit => visit_trial
   end type trial_t

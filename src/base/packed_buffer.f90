@@ -3,9 +3,9 @@
 !> loads them one behind the other and unloads them. As they lie in memory: who loads and who
 !> unloads are programs of one build.
 !>
-!> A freight takes all that is not divided among processes; of arrays that are, it gives the lengths
+!> A buffer takes all that is not divided among processes; of arrays that are, it gives the lengths
 !> alone. A partial one takes ranges of these.
-module freight_m
+module packed_buffer_m
   use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc, c_ptr, c_size_t
   use c_files_m, only : c_memcpy
   use heap_m, only : give_back_pages
@@ -14,12 +14,12 @@ module freight_m
     of_stresses, of_chunks, new_chunks, fixed_slots, fixed_columns, n_of, as_integer, as_bytes
   implicit none
   private
-  public :: freight_t, forgetter_t, start_loading, start_unloading, part_of, choose_slots, &
+  public :: packed_buffer_t, forgetter_t, start_loading, start_unloading, part_of, choose_slots, &
     stream_starts
 
   integer, parameter :: real_bytes = storage_size(1.0_wp)/8, integer_bytes = storage_size(1)/8
 
-  type, extends(visitor_t) :: freight_t
+  type, extends(visitor_t) :: packed_buffer_t
     integer :: n = 0                    !! values passed so far
     logical :: unloads = .false.
     real(wp), allocatable :: values(:)  !! not there while they are only counted
@@ -29,11 +29,11 @@ module freight_m
     procedure :: find => pass_extents
     procedure :: pass => pass_values
     procedure :: carry => load_or_unload
-  end type freight_t
+  end type packed_buffer_t
 
   !> A partial one that gives the memory of its ranges back: nobody asks for them any more. The
   !> arrays stay as long as they are.
-  type, extends(freight_t) :: forgetter_t
+  type, extends(packed_buffer_t) :: forgetter_t
   contains
     procedure :: carry => give_back
   end type forgetter_t
@@ -41,55 +41,55 @@ module freight_m
 contains
 
   !> Once the values are counted: room for them.
-  pure subroutine start_loading(freight)
-    type(freight_t), intent(inout) :: freight
+  pure subroutine start_loading(buffer)
+    type(packed_buffer_t), intent(inout) :: buffer
 
-    allocate (freight%values(freight%n))
-    freight%n = 0
+    allocate (buffer%values(buffer%n))
+    buffer%n = 0
   end subroutine start_loading
 
   !> Back to the first value, to put them into arrays.
-  pure subroutine start_unloading(freight)
-    type(freight_t), intent(inout) :: freight
+  pure subroutine start_unloading(buffer)
+    type(packed_buffer_t), intent(inout) :: buffer
 
-    freight%n = 0
-    freight%unloads = .true.
+    buffer%n = 0
+    buffer%unloads = .true.
   end subroutine start_unloading
 
-  !> A freight of a range of what is divided.
-  pure function part_of(of, range) result(freight)
+  !> A buffer of a range of what is divided.
+  pure function part_of(of, range) result(buffer)
     integer, intent(in) :: of       !! one of the `of_` constants
     integer, intent(in) :: range(2)
-    type(freight_t) :: freight
+    type(packed_buffer_t) :: buffer
 
-    freight%is_partial = .true.
-    freight%ranges(:, of) = range
+    buffer%is_partial = .true.
+    buffer%ranges(:, of) = range
   end function part_of
 
   !> The slots of a range of chunks, and their streams.
-  pure subroutine choose_slots(freight, chunks, chunk_size, with_fixed, with_chunks)
-    class(freight_t), intent(inout) :: freight
+  pure subroutine choose_slots(buffer, chunks, chunk_size, with_fixed, with_chunks)
+    class(packed_buffer_t), intent(inout) :: buffer
     integer, intent(in) :: chunks(2)
     integer, intent(in) :: chunk_size
     logical, intent(in) :: with_fixed  !! what steps do not change too
     logical, intent(in) :: with_chunks !! values of whole chunks too
     integer :: slots(2)
 
-    freight%is_partial = .true.
+    buffer%is_partial = .true.
     slots = [(chunks(1) - 1)*chunk_size + 1, chunks(2)*chunk_size]
-    freight%ranges(:, of_slots) = slots
-    freight%ranges(:, of_columns) = slots
-    freight%ranges(:, of_stresses) = [16*slots(1) - 15, 16*slots(2)]
-    freight%ranges(:, of_streams) = chunks
-    if (with_fixed) freight%ranges(:, fixed_slots) = slots
-    if (with_fixed) freight%ranges(:, fixed_columns) = slots
-    if (with_chunks) freight%ranges(:, of_chunks) = chunks
-    if (with_chunks) freight%ranges(:, new_chunks) = chunks
+    buffer%ranges(:, of_slots) = slots
+    buffer%ranges(:, of_columns) = slots
+    buffer%ranges(:, of_stresses) = [16*slots(1) - 15, 16*slots(2)]
+    buffer%ranges(:, of_streams) = chunks
+    if (with_fixed) buffer%ranges(:, fixed_slots) = slots
+    if (with_fixed) buffer%ranges(:, fixed_columns) = slots
+    if (with_chunks) buffer%ranges(:, of_chunks) = chunks
+    if (with_chunks) buffer%ranges(:, new_chunks) = chunks
   end subroutine choose_slots
 
   !> Extents go along, so that who unloads can allocate.
   subroutine pass_extents(visitor, item)
-    class(freight_t), intent(inout) :: visitor
+    class(packed_buffer_t), intent(inout) :: visitor
     type(item_t), intent(inout) :: item
     integer, target :: extents(2)
 
@@ -101,7 +101,7 @@ contains
 
   !> All values of an array, or those of a range of it.
   subroutine pass_values(visitor, item, place, starts)
-    class(freight_t), intent(inout) :: visitor
+    class(packed_buffer_t), intent(inout) :: visitor
     type(item_t), intent(in) :: item
     type(c_ptr), intent(in) :: place
     integer, intent(in), optional :: starts(:)
@@ -145,7 +145,7 @@ contains
 
   !> Bytes that lie side by side. They take a whole number of reals.
   subroutine load_or_unload(visitor, place, n_byte)
-    class(freight_t), intent(inout), target :: visitor
+    class(packed_buffer_t), intent(inout), target :: visitor
     type(c_ptr), intent(in) :: place
     integer(c_size_t), intent(in) :: n_byte
     type(c_ptr) :: ignored
@@ -191,4 +191,4 @@ contains
     end do
   end function stream_starts
 
-end module freight_m
+end module packed_buffer_m
