@@ -25,8 +25,8 @@ module run_m
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use processor_m, only : processor_name
   use progress_m, only : show_end
-  use rank_memory_m, only : forget_others
   use rank_model_m, only : hand_model, hand_others
+  use rank_shares_m, only : forget_others
   use ranks_m, only : ranks_t, share_error
   use relaxation_m, only : relax, leave_relaxation
   use renumber_m, only : renumber_model, forget_start

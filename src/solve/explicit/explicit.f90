@@ -24,11 +24,9 @@ module explicit_m
   use motion_sums_m, only : sum_motion, sum_blocks
   use monitor_m, only : monitor_t
   use node_motion_m, only : leap_t, move_tile_nodes, move_special_nodes, move_damped_nodes
-  use rank_balance_m, only : balance_ranks
-  use rank_report_m, only : report_exchange
+  use rank_exchange_m, only : report_exchange
   use ranks_m, only : share_error
-  use resting_tiles_m, only : is_tried, rests, is_flying, remember_tile, judge_tile, look_at_tile, &
-    report_rest
+  use resting_tiles_m, only : awake, flying, remember_tile, judge_tile, look_at_tile, report_rest
   use skew_motion_m, only : hold_skew_nodes
   use state_m, only : state_t
   use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
@@ -41,7 +39,7 @@ contains
 
   !> From the state at time zero to the end of the run.
   subroutine advance_explicit(model, n_thread, state, monitor, reason, error)
-    type(model_t), intent(inout) :: model
+    type(model_t), intent(in) :: model
     integer, intent(in) :: n_thread
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
@@ -81,7 +79,7 @@ contains
   !> are one piece of serial work; `cycle` may then already speak of the next one, so that what
   !> others still ask it is kept.
   subroutine run_cycles(model, state, monitor, cycle)
-    type(model_t), intent(inout) :: model
+    type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
@@ -116,10 +114,7 @@ contains
       end if
       !$omp master
       call end_cycle(model, state, monitor, cycle)
-      if (.not. cycle%finished) then
-        if (monitor%ranks%n > 1) call balance_ranks(model, monitor%ranks, state, cycle)
-        call begin_cycle(model, state, monitor, cycle)
-      end if
+      if (.not. cycle%finished) call begin_cycle(model, state, monitor, cycle)
       !$omp end master
       !$omp barrier
       if (cycle%finished) exit
@@ -141,7 +136,7 @@ contains
       do i = 1, size(cycle%rest%watched)
         i_tile = cycle%rest%watched(i)
         call look_at_tile(model%layout, i_tile, state%motion, cycle%rest)
-        if (rests(cycle%rest, i_tile)) then
+        if (cycle%rest%status(i_tile) < awake) then
           call carry_tile(model, i_tile, state, cycle)
         else
           call step_tile(model, i_tile, state, cycle, force)
@@ -166,7 +161,8 @@ contains
     real(wp), allocatable :: before(:) !! values of its elements, where the tile may come to rest
 
     associate (tile => model%layout%tiles(i_tile))
-      if (is_tried(cycle%rest, i_tile)) call remember_tile(model, i_tile, state, cycle%rest, before)
+      if (cycle%rest%status(i_tile) > awake) &
+        call remember_tile(model, i_tile, state, cycle%rest, before)
       if (model%erodes) then
         call add_eroding_tile_forces(model, tile, state%motion, [state%time, state%dt_before], &
           state%elements, force)
@@ -201,8 +197,9 @@ contains
     associate (tile => model%layout%tiles(i_tile))
       if (allocated(cycle%sums%parts)) call sum_motion(tile%first_node, tile%last_node, state, &
         cycle%sums%parts(:, i_tile))
-      if (is_flying(cycle%rest, i_tile) .and. .not. cycle%writes) call move_tile_nodes(cycle%leap, &
-        tile%first_node, tile%last_node, cycle%rest%no_force, state%inverse_mass, state%motion)
+      if (cycle%rest%status(i_tile) == flying .and. .not. cycle%writes) &
+        call move_tile_nodes(cycle%leap, tile%first_node, tile%last_node, cycle%rest%no_force, &
+        state%inverse_mass, state%motion)
     end associate
   end subroutine carry_tile
 

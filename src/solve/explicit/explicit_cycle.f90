@@ -32,13 +32,12 @@ module explicit_cycle_m
   use node_motion_m, only : leap_t, make_leap
   use outlines_m, only : follow_outlines
   use progress_m, only : follow_progress
-  use rank_borders_m, only : borders_t, plan_borders, plan_whole
+  use rank_borders_m, only : borders_t, plan_borders
   use rank_exchange_m, only : parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, &
-    exchange_failures, exchange_erosion, exchange_limits, exchange_history, gather_motion, &
-    gather_state, judge_elements
+    exchange_erosion, exchange_history, gather_motion, gather_state, judge_elements, hear_requests
   use rank_shares_m, only : shares_t, share_out
-  use ranks_m, only : ranks_t, share_error
-  use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
+  use ranks_m, only : ranks_t, bring_integers, bring_reals, share_error
+  use requests_m, only : requests_t, take_requests, echoes_t
   use restart_file_m, only : close_restart
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
@@ -120,13 +119,9 @@ contains
       cycle%shares = share_out(model%layout, ranks%mine, ranks%n)
       if (ranks%n > 1) cycle%first_check = size(model%layout%tiles) + 1
       allocate (cycle%checks(max(size(model%layout%tiles), cycle%first_check)))
-      if (ranks%n == 1) then
-        call plan_whole(model, cycle%borders)
-      else
-        call plan_borders(model, cycle%shares, ranks%mine, cycle%sums, cycle%borders)
-        call plan_parcel(cycle%borders, cycle%shares, ranks%mine, state%elements, cycle%sums, &
-          cycle%parcel)
-      end if
+      call plan_borders(model, cycle%shares, ranks%mine, cycle%sums, cycle%borders)
+      if (ranks%n > 1) call plan_parcel(cycle%borders, cycle%shares, ranks%mine, state%elements, &
+        cycle%sums, cycle%parcel)
       call plan_rest(model, cycle%shares, cycle%borders%run_tiles, allocated(cycle%sums%parts), &
         cycle%rest)
     end associate
@@ -247,22 +242,6 @@ contains
     call weigh_contacts(model, state)
   end subroutine follow_activity
 
-  !> What someone asks of this process, for all of them.
-  subroutine hear_requests(state, monitor, cycle)
-    type(state_t), intent(in) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(explicit_cycle_t), intent(inout) :: cycle
-    type(requests_t) :: before
-
-    before = cycle%asked
-    if (monitor%ranks%mine == 0) then
-      call take_requests(state, cycle%ratio, .false., monitor, cycle%asked, cycle%error)
-    else
-      call hear_signals(cycle%asked)
-    end if
-    call drop_echoes(before, cycle%echoes, cycle%asked)
-  end subroutine hear_requests
-
   !> What processes have to know of each other's tiles before special nodes move.
   subroutine exchange_tiles(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
@@ -272,7 +251,7 @@ contains
     type(record_t) :: record
 
     associate (ranks => monitor%ranks, shares => cycle%shares, elements => state%elements)
-      call hear_requests(state, monitor, cycle)
+      call hear_requests(state, cycle%ratio, monitor, cycle%echoes, cycle%asked, cycle%error)
       record%asked = cycle%asked
       record%has_error = allocated(cycle%error)
       call exchange_parcel(shares, cycle%borders, ranks, cycle%parcel, state, cycle%sums)
@@ -282,9 +261,10 @@ contains
         has_volume=record%is_sound, volume_change=record%volume_change)
       if (record%has_error) call share_error(ranks, cycle%error)
       if (record%loses) call exchange_erosion(ranks, shares, elements)
-      if (state%cycle == 0) call exchange_limits(ranks, shares, elements)
+      if (state%cycle == 0) call bring_reals(ranks, shares%chunks, 1, .true., &
+        elements%time_limit)
       if (record%fails) then
-        call exchange_failures(ranks, shares, elements)
+        call bring_integers(ranks, shares%chunks, 1, .true., elements%n_failed)
         ! The log names the first one.
         if (cycle%failures%told == 0 .and. any(elements%n_failed > 0)) &
           call exchange_history(ranks, shares, elements)

@@ -18,9 +18,10 @@ module relaxation_m
   use motion_sums_m, only : motion_sums_t
   use node_motion_m, only : leap_t, make_leap, move_tile_nodes, move_special_nodes
   use parts_m, only : hourglass_viscous
+  use rank_exchange_m, only : hear_requests
   use ranks_m, only : ranks_t, find_least, share_error
   use relaxation_state_m, only : relaxation_state_t
-  use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
+  use requests_m, only : requests_t, echoes_t
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use scaled_step_m, only : scaled_step
@@ -117,17 +118,10 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
-    type(requests_t) :: before
     logical :: wanted(2)
 
-    before = asked
     call lap(monitor%clock, phase_input)
-    if (monitor%ranks%mine == 0) then
-      call take_requests(state, 1.0_wp, .false., monitor, asked, error)
-    else
-      call hear_signals(asked)
-    end if
-    call drop_echoes(before, echoes, asked)
+    call hear_requests(state, 1.0_wp, monitor, echoes, asked, error)
     if (monitor%ranks%n > 1) call agree(monitor%ranks, asked)
     wanted = wanted_files(monitor%restarts, 0, asked%dump, .false., asked%signalled)
     if (any(wanted)) then

@@ -13,16 +13,16 @@ module resting_tiles_m
   use model_m, only : model_t
   use rank_shares_m, only : shares_t
   use ranks_m, only : ranks_t, bring_reals
+  use renumber_m, only : mark_moved_nodes
   use state_m, only : state_t
-  use tile_neighbours_m, only : neighbours_t, find_neighbours
   use tile_values_m, only : take_values, same_bits
   implicit none
   private
-  public :: rest_t, plan_rest, take_tiles, effort_of, is_awake, is_tried, rests, &
-    is_flying, remember_tile, judge_tile, look_at_tile, follow_rest, report_rest
+  public :: rest_t, awake, flying, plan_rest, remember_tile, judge_tile, look_at_tile, follow_rest, &
+    report_rest
 
-  !> Status of a tile: stepped in each cycle, or not; above zero so many cycles are left in which it
-  !> may come to rest.
+  !> Status of a tile: stepped in each cycle, or not as it rests or all of its nodes move by the
+  !> same; above zero so many cycles are left in which it may come to rest.
   integer, parameter :: awake = 0, resting = -1, flying = -2
 
   !> Cycles in which a tile may come to rest: signs of zeros may change in the first ones.
@@ -36,11 +36,14 @@ module resting_tiles_m
     integer, allocatable :: watched(:)   !! resting ones that may wake, or whose nodes move
     integer, allocatable :: run_tiles(:) !! the tile that owns each run of special nodes
     integer, allocatable :: summed(:)    !! runs that are summed and moved
-    type(neighbours_t) :: neighbours     !! asked for once tiles rest
-    real(wp), allocatable :: no_force(:, :) !! (2, n_local), likewise
     logical :: watches_all = .false.     !! tiles that rest are all looked at
-    logical :: is_settled = .false.      !! no tile rests or may come to rest any more, in any
-                                         !! process
+    real(wp), allocatable :: no_force(:, :) !! (2, n_local) this and the next three only once tiles
+                                         !! rest
+    logical, allocatable :: is_touched(:) !! (tiles) contact, loads, prescribed motion, walls or
+                                         !! bodies that are rigid may move its nodes
+    integer, allocatable :: first(:)     !! (tiles + 1) where those start that have nodes in common
+                                         !! with each tile ...
+    integer, allocatable :: near(:)      !! ... in this list
     integer :: n_resting = 0             !! at the start of the cycle
     integer :: n_woken = 0, n_fallen = 0 !! since
     integer(long) :: n_skipped = 0       !! steps of tiles that were not taken
@@ -61,7 +64,6 @@ contains
     associate (n => size(model%layout%tiles), first => shares%first_tile, last => shares%last_tile)
       allocate (rest%status(n), source=awake)
       ! Where all bodies are rigid the one tile is empty.
-      rest%is_settled = .not. may_rest(model)
       if (may_rest(model)) rest%status(first:last) = merge(n_try, awake, &
         model%layout%tiles(first:last)%last_chunk >= model%layout%tiles(first:last)%first_chunk)
       allocate (rest%stepped(last - first + 1), source=[(i, i = first, last)])
@@ -73,48 +75,6 @@ contains
     rest%last_tile = shares%last_tile
     rest%watches_all = watches_all
   end subroutine plan_rest
-
-  !> The tiles that a process has from now on, some of which rest.
-  subroutine take_tiles(model, shares, status, run_tiles, rest)
-    type(model_t), intent(in) :: model
-    type(shares_t), intent(in) :: shares
-    integer, intent(in) :: status(:)     !! of all tiles
-    integer, intent(in) :: run_tiles(:)  !! as above
-    type(rest_t), intent(inout) :: rest
-    integer :: i
-
-    rest%first_tile = shares%first_tile
-    rest%last_tile = shares%last_tile
-    associate (first => rest%first_tile, last => rest%last_tile)
-      rest%status = awake
-      rest%status(first:last) = status(first:last)
-      rest%n_resting = count(rest%status < awake)
-    end associate
-    rest%run_tiles = run_tiles
-    rest%summed = [(i, i = 1, size(run_tiles))]
-    call list_tiles(model, rest)
-  end subroutine take_tiles
-
-  !> What a cycle costs an element of a tile, over what it costs where the tile is stepped: tiles
-  !> that fly are looked at and their nodes move, of the others some are looked at.
-  elemental function effort_of(status) result(effort)
-    integer, intent(in) :: status
-    real(wp) :: effort
-
-    select case (status)
-    case (flying); effort = 0.15_wp
-    case (resting); effort = 0.02_wp
-    case default; effort = 1.0_wp
-    end select
-  end function effort_of
-
-  !> Whether a tile is stepped in all cycles to come.
-  elemental function is_awake(status)
-    integer, intent(in) :: status
-    logical :: is_awake
-
-    is_awake = status == awake
-  end function is_awake
 
   !> Whether nothing but motion of its nodes can change the next step of a tile: no body load, no
   !> mass that grows, no element that leaves the mesh at a given time.
@@ -130,33 +90,6 @@ contains
         may = may .and. .not. model%materials(i)%erosion%time < huge(1.0_wp)
     end do
   end function may_rest
-
-  !> Whether a tile that is stepped may come to rest.
-  pure function is_tried(rest, i_tile) result(tried)
-    type(rest_t), intent(in) :: rest
-    integer, intent(in) :: i_tile
-    logical :: tried
-
-    tried = rest%status(i_tile) > 0
-  end function is_tried
-
-  !> Whether a tile rests.
-  pure function rests(rest, i_tile)
-    type(rest_t), intent(in) :: rest
-    integer, intent(in) :: i_tile
-    logical :: rests
-
-    rests = rest%status(i_tile) < 0
-  end function rests
-
-  !> Whether a tile rests and its nodes move on, all by the same.
-  pure function is_flying(rest, i_tile) result(flies)
-    type(rest_t), intent(in) :: rest
-    integer, intent(in) :: i_tile
-    logical :: flies
-
-    flies = rest%status(i_tile) == flying
-  end function is_flying
 
   !> Before the step of a tile that is tried: what its elements are, if its nodes are in one motion;
   !> if not it is awake for good.
@@ -318,46 +251,69 @@ contains
 
     if (.not. allocated(rest%no_force)) then
       allocate (rest%no_force(2, model%layout%n_local), source=0.0_wp)
-      call find_neighbours(model, rest%neighbours)
+      call find_neighbours(model, rest)
     end if
-    associate (first => rest%neighbours%first, near => rest%neighbours%near)
-      do i = 1, size(rest%status)
-        may_wake(i) = rest%status(i) < awake .and. (rest%watches_all &
-          .or. rest%neighbours%is_touched(i) &
-          .or. any(rest%status(near(first(i):first(i + 1) - 1)) >= awake))
-      end do
-      do i = 1, size(rest%status)
-        is_watched(i) = rest%status(i) < awake .and. (may_wake(i) .or. rest%status(i) == flying &
-          .or. any(may_wake(near(first(i):first(i + 1) - 1))))
-      end do
-    end associate
+    do i = 1, size(rest%status)
+      may_wake(i) = rest%status(i) < awake .and. (rest%watches_all .or. rest%is_touched(i) &
+        .or. any(rest%status(rest%near(rest%first(i):rest%first(i + 1) - 1)) >= awake))
+    end do
+    do i = 1, size(rest%status)
+      is_watched(i) = rest%status(i) < awake .and. (may_wake(i) .or. rest%status(i) == flying &
+        .or. any(may_wake(rest%near(rest%first(i):rest%first(i + 1) - 1))))
+    end do
     is_stepped = .false.
     is_stepped(rest%first_tile:rest%last_tile) = &
       rest%status(rest%first_tile:rest%last_tile) >= awake
-    call list_true(is_stepped, rest%stepped)
-    call list_true(is_watched, rest%watched)
-    ! Else all are listed.
-    if (.not. rest%watches_all) then
-      is_watched = is_watched .or. rest%status >= awake
-      call list_true([(is_watched(rest%run_tiles(i)), i = 1, size(rest%run_tiles))], rest%summed)
-    end if
+    rest%stepped = pack([(i, i=1, size(rest%status))], is_stepped)
+    rest%watched = pack([(i, i=1, size(rest%status))], is_watched)
+    if (rest%watches_all) return ! all runs are listed
+    is_watched = is_watched .or. rest%status >= awake
+    rest%summed = pack([(i, i=1, size(rest%run_tiles))], is_watched(rest%run_tiles))
   end subroutine list_tiles
 
-  !> The tiles for which something is true.
-  subroutine list_true(is_true, tiles)
-    logical, intent(in) :: is_true(:)
-    integer, allocatable, intent(inout) :: tiles(:)
-    integer :: i, n
+  !> Which tiles have nodes that feel more than their elements, and which have special nodes in
+  !> common: counted, then listed.
+  subroutine find_neighbours(model, rest)
+    type(model_t), intent(in) :: model
+    type(rest_t), intent(inout) :: rest
+    logical, allocatable :: is_moved(:)
+    integer, allocatable :: tile_of(:), last_met(:)
+    integer :: pass, i, k, m, n
 
-    deallocate (tiles)
-    allocate (tiles(count(is_true)))
-    n = 0
-    do i = 1, size(is_true)
-      if (.not. is_true(i)) cycle
-      n = n + 1
-      tiles(n) = i
-    end do
-  end subroutine list_true
+    call mark_moved_nodes(model, is_moved)
+    associate (layout => model%layout, tiles => model%layout%tiles)
+      allocate (tile_of(size(layout%special_node)), last_met(size(tiles)), &
+        rest%first(size(tiles) + 1), rest%is_touched(size(tiles)))
+      do i = 1, size(tiles)
+        tile_of(tiles(i)%first_special:tiles(i)%last_special) = i
+        rest%is_touched(i) = any(is_moved(layout%special_node(tiles(i)%first_special: &
+          tiles(i)%last_special)))
+      end do
+      ! The last one has the nodes without element, too.
+      rest%is_touched(size(tiles)) = .true.
+      do pass = 1, 2
+        last_met = 0
+        n = 0
+        do i = 1, size(tiles)
+          rest%first(i) = n + 1
+          last_met(i) = i
+          do k = tiles(i)%first_special, tiles(i)%last_special
+            do m = layout%node_slots(layout%special_node(k)), &
+              layout%node_slots(layout%special_node(k) + 1) - 1
+              associate (other => tile_of(layout%slot_list(m)))
+                if (last_met(other) == i) cycle
+                last_met(other) = i
+                n = n + 1
+                if (pass == 2) rest%near(n) = other
+              end associate
+            end do
+          end do
+        end do
+        rest%first(size(tiles) + 1) = n + 1
+        if (pass == 1) allocate (rest%near(n))
+      end do
+    end associate
+  end subroutine find_neighbours
 
   !> The log tells how many steps of tiles were taken, if not all.
   subroutine report_rest(ranks, rest, log)
