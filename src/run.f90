@@ -18,10 +18,9 @@ module run_m
   use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
   use go_on_m, only : take_up_deck
   use heap_m, only : give_back_memory
-  use inside_answers_m, only : answers_t
+  use others_memory_m, only : answers_t, others_t
   use log_m, only : open_log, close_log, write_log, warn, to_text
   use model_m, only : model_t
-  use others_memory_m, only : others_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use processor_m, only : processor_name
   use progress_m, only : show_end

@@ -1,16 +1,13 @@
 ! SPDX-License-Identifier: MIT
 !> Puts a finished model into the order of the step: nodes renumbered everywhere, layout built.
 module renumber_m
-  use boundary_rows_m, only : list_boundaries
-  use controls_m, only : is_asked
-  use cross_sections_m, only : mark_corners
+  use controls_m, only : list_boundaries, is_asked, mark_corners, end_condition_t, end_node_place, &
+    end_node_touch
   use exposed_quads_m, only : list_exposed
-  use end_conditions_m, only : end_condition_t, end_node_place, end_node_touch
   use history_tables_m, only : table_bndout
   use kinds_m, only : long
-  use layout_building_m, only : build_slots, build_local_numbers
+  use layout_building_m, only : build_slots, build_local_numbers, order_nodes
   use model_m, only : model_t
-  use node_order_m, only : order_nodes
   use rigids_m, only : mark_rigid_nodes
   use sorting_m, only : sorted_order
   use supports_m, only : mark_supports

@@ -2,8 +2,8 @@
 !> The layouts of DYNA's text files of forces on boundaries, of groups of nodes and of cross
 !> sections (see `dyna_layouts_m`).
 module dyna_force_layouts_m
-  use boundary_rows_m, only : boundary_load, boundary_body_load, boundary_pressure, &
-    boundary_motion, boundary_body_motion
+  use controls_m, only : boundary_load, boundary_body_load, boundary_pressure, boundary_motion, &
+    boundary_body_motion
   use dyna_lines_m, only : line_size, add_line, number
   use kinds_m, only : wp
   use number_text_m, only : es

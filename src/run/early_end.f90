@@ -2,7 +2,7 @@
 !> Whether a run ends before its end time (*TERMINATION_NODE, _BODY, _CONTACT), and why.
 module early_end_m
   use contacts_m, only : told_as
-  use end_conditions_m, only : end_condition_t, end_node_place, end_node_touch, end_body_place, &
+  use controls_m, only : end_condition_t, end_node_place, end_node_touch, end_body_place, &
     end_body_way, end_contact
   use kinds_m, only : wp
   use log_m, only : to_text

@@ -5,7 +5,9 @@ module deck_control_m
   use log_m, only : to_text
   use text_m, only : upper_case
   use units_m, only : units_t, find_unit, set_force
-  use controls_m, only : length_by_side, length_by_diagonal, contact_step_warns, contact_step_rules
+  use controls_m, only : length_by_side, length_by_diagonal, contact_step_warns, &
+    contact_step_rules, end_condition_t, end_node_place, end_node_touch, end_body_place, &
+    end_body_way, end_contact
   use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t, field_text
   use deck_card_specs_m, only : field_number
@@ -18,8 +20,6 @@ module deck_control_m
   use deck_raw_m, only : raw_t, raw_end_t
   use deck_friction_m, only : take_default_friction
   use deck_part_m, only : hourglass_form, hourglass_coefficient, check_viscosity
-  use end_conditions_m, only : end_condition_t, end_node_place, end_node_touch, end_body_place, &
-    end_body_way, end_contact
   implicit none
   private
   public :: read_control, check_step, read_ends

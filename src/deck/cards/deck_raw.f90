@@ -9,11 +9,10 @@ module deck_raw_m
   use erosion_m, only : erosion_t
   use parts_m, only : section_t, material_t, hourglass_t
   use contacts_m, only : contact_t, friction_rule_t
-  use controls_m, only : controls_t
+  use controls_m, only : controls_t, end_condition_t
   use history_tables_m, only : n_table
   use walls_m, only : wall_t
   use deck_lines_m, only : place_t, deck_t
-  use end_conditions_m, only : end_condition_t
   use deck_raw_sets_m, only : raw_set_t, lengthen
   implicit none
   private

@@ -2,7 +2,7 @@
 !> Nodes, rigid bodies and interfaces that end a run.
 module deck_resolve_ends_m
   use contacts_m, only : n_told
-  use end_conditions_m, only : end_node_place, end_node_touch, end_body_place, end_body_way
+  use controls_m, only : end_node_place, end_node_touch, end_body_place, end_body_way
   use model_m, only : model_t
   use deck_cards_m, only : reject_field
   use deck_lines_m, only : deck_t

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Cross sections and force transducers: nodes and elements in place of their sets.
 module deck_resolve_sections_m
-  use cross_sections_m, only : cross_section_t, find_edges
+  use controls_m, only : cross_section_t, find_edges
   use log_m, only : to_text
   use model_m, only : model_t
   use deck_cards_m, only : reject_field

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Sets with indices in place of ids.
 module deck_resolve_sets_m
-  use force_groups_m, only : force_group_t
+  use controls_m, only : force_group_t
   use kinds_m, only : long
   use log_m, only : to_text
   use sets_m, only : segment_set_t

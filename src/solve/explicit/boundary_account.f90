@@ -4,7 +4,7 @@
 !> external work, but for those of body loads, rigid walls and interference.
 module boundary_account_m
   use boundary_filling_m, only : form_loads
-  use boundary_rows_m, only : boundary_load, boundary_body_load, boundary_pressure
+  use controls_m, only : boundary_load, boundary_body_load, boundary_pressure
   use constraints_m, only : is_active
   use explicit_prescribed_m, only : prescribed_reaction
   use kinds_m, only : wp

@@ -6,11 +6,10 @@
 module rank_model_m
   use packed_buffer_m, only : packed_buffer_t, part_of
   use buffer_sharing_m, only : hand, everyone
-  use inside_answers_m, only : answers_t
+  use others_memory_m, only : answers_t, others_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use model_m, only : model_t
-  use others_memory_m, only : others_t
   use rank_shares_m, only : shares_t, share_out, starts_from_all, others_of
   use ranks_m, only : ranks_t
   use state_m, only : state_t

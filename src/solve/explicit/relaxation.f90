@@ -20,13 +20,12 @@ module relaxation_m
   use parts_m, only : hourglass_viscous
   use rank_exchange_m, only : hear_requests
   use ranks_m, only : ranks_t, find_least, share_error
-  use relaxation_state_m, only : relaxation_state_t
+  use state_m, only : relaxation_state_t, state_t
   use requests_m, only : requests_t, echoes_t
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use scaled_step_m, only : scaled_step
   use skew_motion_m, only : hold_skew_nodes
-  use state_m, only : state_t
   use tile_forces_m, only : share_tile_forces, sum_special_forces
   use time_step_m, only : volume_step
   implicit none

@@ -18,8 +18,8 @@ module resting_tiles_m
   use tile_values_m, only : take_values, same_bits
   implicit none
   private
-  public :: rest_t, awake, flying, plan_rest, remember_tile, judge_tile, look_at_tile, follow_rest, &
-    report_rest
+  public :: rest_t, awake, flying, plan_rest, remember_tile, judge_tile, look_at_tile, &
+    follow_rest, report_rest
 
   !> Status of a tile: stepped in each cycle, or not as it rests or all of its nodes move by the
   !> same; above zero so many cycles are left in which it may come to rest.

@@ -11,7 +11,7 @@ module time_step_m
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, approach_step, &
     sharpness
   use contacts_m, only : is_tied, penalty_implicit
-  use friction_state_m, only : is_broken
+  use law_state_m, only : is_broken
   use controls_m, only : contact_step_rules, contact_step_free, contact_step_warns
   use curves_m, only : curve_value, curve_is_constant
   use errors_m, only : error_t, raise, status_input

@@ -29,7 +29,7 @@ module implicit_m
   use requests_m, only : requests_t, take_requests
   use restart_plan_m, only : wanted_files
   use state_m, only : state_t
-  use tie_state_m, only : tie_memory_t
+  use law_state_m, only : tie_memory_t
   use tied_interface_m, only : break_at_end
   use step_control_m, only : step_control_t, plan_step, grow_step, cut_step
   implicit none

@@ -3,7 +3,7 @@
 !> ask for them (bndout, nodfor).
 module implicit_boundary_m
   use boundary_filling_m, only : form_loads
-  use boundary_rows_m, only : boundary_motion
+  use controls_m, only : boundary_motion
   use constraints_m, only : is_active
   use element_mass_m, only : mass_times
   use implicit_forces_m, only : trial_t, net_force

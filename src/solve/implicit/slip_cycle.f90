@@ -4,7 +4,7 @@
 !> iterations it may take.
 module slip_cycle_m
   use contact_state_m, only : contact_state_t
-  use friction_state_m, only : slips
+  use law_state_m, only : slips
   use kinds_m, only : wp
   implicit none
   private

@@ -12,18 +12,16 @@ module start_m
   use element_start_m, only : start_elements, lump_mass
   use contact_log_m, only : log_softness
   use contacts_m, only : is_tied, n_told, told_as
-  use controls_m, only : is_asked
-  use cross_sections_m, only : n_cut
+  use controls_m, only : is_asked, n_cut
   use errors_m, only : error_t, raise, status_input
   use history_tables_m, only : table_nodfor
-  use inside_answers_m, only : answers_t
+  use others_memory_m, only : answers_t, others_t, known_nodes, known_slots
   use initial_values_m, only : start_motion
   use log_m, only : log_t, to_text
   use mass_log_m, only : log_added_mass
   use mass_scaling_m, only : scales_masses, start_mass_scaling
   use model_log_m, only : log_masses
   use model_m, only : model_t
-  use others_memory_m, only : others_t, known_nodes, known_slots
   use outlines_m, only : start_outlines
   use rigid_start_m, only : start_rigids
   use state_m, only : state_t
