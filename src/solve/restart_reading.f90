@@ -5,7 +5,7 @@ module restart_reading_m
   use archive_m, only : archive_t
   use errors_m, only : error_t, raise, status_input
   use explicit_cycle_m, only : explicit_cycle_t, read_cycle
-  use implicit_memory_m, only : implicit_memory_t, read_memory
+  use implicit_start_m, only : implicit_memory_t, read_memory
   use others_memory_m, only : answers_t, others_t, forgetters_of
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text

@@ -11,26 +11,24 @@ module explicit_m
   use contact_check_m, only : report_contact_end
   use element_dispatch_m, only : add_tile_forces
   use eroding_tiles_m, only : add_eroding_tile_forces
-  use erosion_account_m, only : report_erosion
+  use element_losses_m, only : report_erosion, report_failures
   use errors_m, only : error_t
   use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, exchange_tiles, &
     press_cycle, end_cycle
   use explicit_report_m, only : report_cycle
-  use failure_watch_m, only : report_failures
   use health_m, only : check_tile, judge_energies, judge_ratio, unaccounted
   use kinds_m, only : wp
   use mass_scaling_m, only : refine_limits
   use model_m, only : model_t
-  use motion_sums_m, only : sum_motion, sum_blocks
+  use load_work_m, only : sum_motion, sum_blocks
   use monitor_m, only : monitor_t
   use node_motion_m, only : leap_t, move_tile_nodes, move_special_nodes, move_damped_nodes
   use rank_exchange_m, only : report_exchange
   use ranks_m, only : share_error
   use resting_tiles_m, only : awake, flying, remember_tile, judge_tile, look_at_tile, report_rest
-  use skew_motion_m, only : hold_skew_nodes
+  use held_nodes_m, only : hold_skew_nodes, hold_nodes
   use state_m, only : state_t
   use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
-  use wall_motion_m, only : hold_nodes
   implicit none
   private
   public :: advance_explicit

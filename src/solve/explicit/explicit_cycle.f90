@@ -4,37 +4,36 @@
 module explicit_cycle_m
   use archive_m, only : archive_t
   use behind_ties_m, only : hear_tie, settle_with_tie
-  use boundary_account_m, only : count_boundary_loads, count_boundary_motions, &
-    count_boundary_bodies, count_groups
+  use prescribed_motion_m, only : count_boundary_loads, count_boundary_motions, &
+    count_boundary_bodies, count_groups, find_prescribed_velocities, impose_prescribed, &
+    prescribed_work
   use clock_m, only : lap, share_contact, phase_nodes
   use constraints_m, only : fix_nodes, update_activity, is_active
   use contact_account_m, only : plan_looks, follow_contact
-  use contact_inertia_m, only : weigh_contacts
+  use rigid_start_m, only : weigh_contacts
   use contact_pressing_m, only : pressing_t, press_contacts
   use contacts_m, only : told_as, penalty_implicit
-  use cycle_loads_m, only : apply_loads
+  use load_work_m, only : apply_loads, motion_sums_t, plan_sums, count_sums
   use early_end_m, only : find_early_end
-  use erosion_account_m, only : settle_elements, release_nodes
+  use element_losses_m, only : settle_elements, release_nodes, failure_watch_t, start_watch, &
+    follow_failures
   use errors_m, only : error_t
-  use explicit_prescribed_m, only : find_prescribed_velocities, impose_prescribed, prescribed_work
-  use failure_watch_m, only : failure_watch_t, start_watch, follow_failures
   use health_m, only : tile_check_t, are_sound, check_step, name_collapsed, check_cycle
   use history_tables_m, only : table_secforc
   use interface_m, only : apply_contact
   use kinds_m, only : wp
   use mass_growth_m, only : grow_state_masses
   use mass_scaling_m, only : needs_refinement
-  use mass_log_m, only : check_added_mass
+  use model_log_m, only : check_added_mass
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due
-  use motion_sums_m, only : motion_sums_t, plan_sums, count_sums
-  use node_damping_m, only : follow_damping
-  use node_motion_m, only : leap_t, make_leap
+  use node_motion_m, only : follow_damping, leap_t, make_leap
   use outlines_m, only : follow_outlines
   use progress_m, only : follow_progress
   use rank_borders_m, only : borders_t, plan_borders
   use rank_exchange_m, only : parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, &
-    exchange_erosion, exchange_history, gather_motion, gather_state, judge_elements, hear_requests
+    exchange_erosion, exchange_history, gather_motion, gather_state, judge_elements, &
+    hear_requests, cut_sections
   use rank_shares_m, only : shares_t, share_out
   use ranks_m, only : ranks_t, bring_integers, bring_reals, share_error
   use requests_m, only : requests_t, take_requests, echoes_t
@@ -43,14 +42,12 @@ module explicit_cycle_m
   use restart_plan_m, only : wanted_files
   use resting_tiles_m, only : rest_t, plan_rest, follow_rest
   use rigid_motion_m, only : solve_rigids, rigid_work, move_rigids
-  use section_cuts_m, only : cut_sections
-  use skew_motion_m, only : remember_common, move_common
+  use held_nodes_m, only : remember_common, move_common, count_walls
   use state_m, only : state_t
   use tile_forces_m, only : sum_special_forces
   use time_step_m, only : step_plan_t, start_steps, volume_step, next_step, obey_approach, &
     is_last, follow_springs, cycles_in, has_springs
   use visitor_m, only : visited_t, visitor_t
-  use wall_motion_m, only : count_walls
   implicit none
   private
   public :: explicit_cycle_t, start_cycles, begin_cycle, prepare_leap, exchange_tiles, &

@@ -1,47 +1,49 @@
 ! SPDX-License-Identifier: MIT
 !> A cycle of an explicit run that writes: what the elements have come to, and what is due from it.
 module explicit_report_m
-  use boundary_account_m, only : count_boundary_motions, count_boundary_bodies, count_groups
+  use prescribed_motion_m, only : count_boundary_motions, count_boundary_bodies, count_groups, &
+    start_prescribed, prescribed_work
   use boundary_filling_m, only : fill_boundaries
   use contact_check_m, only : report_contact_start
   use contact_judging_m, only : judge_contacts
   use contact_softness_m, only : follow_softness
+  use curves_m, only : curve_value
   use energies_m, only : energy_ratio, total_energy
-  use erosion_account_m, only : settle_elements, note_least_step
-  use explicit_prescribed_m, only : start_prescribed, prescribed_work
+  use element_losses_m, only : settle_elements, note_least_step
+  use explicit_cycle_m, only : explicit_cycle_t, prepare_leap, press_cycle
+  use time_step_m, only : first_change, first_step, shorten_first_step, obey_approach, &
+    obey_defaults, follow_springs
+  use health_m, only : check_energy, check_ratio, check_radii, made_by_springs, unaccounted
+  use history_elements_m, only : fill_history_elements
   use history_tables_m, only : table_glstat, table_rcforc, table_matsum, table_rwforc, &
     table_sleout, table_spcforc, table_contact, table_elout, table_rbdout, table_bndout, &
     table_nodfor, table_secforc
-  use history_elements_m, only : fill_history_elements
-  use first_change_m, only : first_change
-  use health_m, only : check_energy, check_ratio, check_radii, made_by_springs, unaccounted
   use kinds_m, only : wp
+  use layout_m, only : slot_part
   use leapfrog_balance_m, only : complete_balance
   use log_m, only : write_log, to_text
   use model_log_m, only : log_smallest_steps, judge_damping
   use model_m, only : model_t
   use monitor_m, only : monitor_t, write_due
-  use motion_sums_m, only : count_sums
-  use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, fill_rigids, &
-    fill_bodies
+  use load_work_m, only : count_sums
+  use node_motion_m, only : leap_t
   use progress_m, only : show_progress
-  use section_filling_m, only : fill_sections
   use rank_exchange_m, only : judge_elements
   use ranks_m, only : share_error, spread_values
-  use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, &
-    fill_plot
-  use skew_motion_m, only : hold_skew_nodes
-  use slowest_element_m, only : find_slowest
+  use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, fill_rigids, fill_bodies
+  use section_filling_m, only : fill_sections
+  use held_nodes_m, only : hold_skew_nodes, hold_nodes, count_walls, fill_walls
+  use smallest_steps_m, only : find_smallest_steps
+  use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, fill_plot
+  use snapshot_m, only : snapshot_t
   use state_m, only : state_t
-  use wall_motion_m, only : hold_nodes, count_walls, fill_walls
   use support_forces_m, only : fill_explicit_reactions
-  use time_step_m, only : first_step, shorten_first_step, obey_approach, obey_defaults, &
-    follow_springs
-  use explicit_cycle_m, only : explicit_cycle_t, prepare_leap, press_cycle
-  use node_motion_m, only : leap_t
   implicit none
   private
-  public :: report_cycle
+  public :: report_cycle, find_slowest
+
+  !> Part of DT2MS by which a step that mass scaling has set may differ from it.
+  real(wp), parameter :: round_off = 1.0e-9_wp
 
 contains
 
@@ -237,5 +239,30 @@ contains
     call hold_nodes(model, cycle%leap, 1, model%layout%n_special, state)
     call count_walls(model, .true., .false., state)
   end subroutine report_walls
+
+  !> Ids of the element with the smallest stable step, and of its part; 0 where the curve rules. And
+  !> whether that step is the one of DT2MS.
+  subroutine find_slowest(model, state, snapshot)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(snapshot_t), intent(inout) :: snapshot
+    integer, allocatable :: found(:)
+    real(wp), allocatable :: steps(:)
+
+    snapshot%slowest = 0
+    snapshot%by_dt2ms = 0
+    if (model%controls%dt_curve > 0) then
+      if (.not. abs(curve_value(model%curves(model%controls%dt_curve), state%time) - state%dt) &
+        > 0.0_wp) return
+    end if
+    call find_smallest_steps(model, state%elements, state%motion, 1, found, steps)
+    if (size(found) == 0) return
+    ! An element that is as large without added mass rules by itself.
+    if (snapshot%energies%tells_mass) snapshot%by_dt2ms = merge(1, 0, &
+      abs(steps(1)/abs(model%controls%mass_step) - 1.0_wp) <= round_off .or. &
+      (model%controls%mass_step > 0.0_wp .and. steps(1) > model%controls%mass_step))
+    snapshot%slowest = [model%mesh%element_id(found(1)), &
+      model%parts(slot_part(model%layout, model%layout%element_slot(found(1))))%id]
+  end subroutine find_slowest
 
 end module explicit_report_m

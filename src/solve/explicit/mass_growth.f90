@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Masses that grow during an explicit run, with all that is made of them.
 module mass_growth_m
-  use contact_inertia_m, only : weigh_contacts
+  use rigid_start_m, only : weigh_contacts
   use kinds_m, only : wp
   use mass_scaling_m, only : grow_masses
   use model_m, only : model_t

@@ -5,7 +5,7 @@
 !> them. To the others such a node is what an interior node of another process is.
 module rank_borders_m
   use model_m, only : model_t
-  use motion_sums_m, only : motion_sums_t
+  use load_work_m, only : motion_sums_t
   use rank_shares_m, only : shares_t
   use renumber_m, only : mark_moved_nodes
   implicit none

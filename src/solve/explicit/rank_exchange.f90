@@ -6,6 +6,7 @@
 !> ask for it.
 module rank_exchange_m
   use block_state_m, only : block_state_t
+  use cut_forces_m, only : find_cut_forces
   use errors_m, only : error_t
   use health_m, only : tile_check_t, check_elements, most_work
   use kinds_m, only : wp, long
@@ -13,7 +14,7 @@ module rank_exchange_m
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t
-  use motion_sums_m, only : motion_sums_t
+  use load_work_m, only : motion_sums_t
   use packed_buffer_m, only : packed_buffer_t, start_loading, start_unloading, choose_slots, &
     stream_starts
   use rank_borders_m, only : borders_t
@@ -24,7 +25,8 @@ module rank_exchange_m
   implicit none
   private
   public :: parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, exchange_erosion, &
-    exchange_history, gather_motion, gather_state, judge_elements, hear_requests, report_exchange
+    exchange_history, gather_motion, gather_state, judge_elements, hear_requests, report_exchange, &
+    cut_sections
 
   !> Values of the sums over the nodes of a tile.
   integer, parameter :: n_sum = 4
@@ -380,5 +382,41 @@ contains
     end function plain_text
 
   end subroutine report_exchange
+
+  !> Before the elements are stepped: each process steps its own on a copy, the first one gets all.
+  subroutine cut_sections(model, shares, ranks, state)
+    type(model_t), intent(in) :: model
+    type(shares_t), intent(in) :: shares
+    type(ranks_t), intent(inout) :: ranks
+    type(state_t), intent(inout) :: state
+    integer :: i, first, last, starts(0:ranks%n)
+
+    call find_cut_forces(model, [shares%chunks(ranks%mine), shares%chunks(ranks%mine + 1) - 1], &
+      state%motion, [state%time, state%dt_before], state%elements, state%cut_force)
+    if (ranks%n == 1) return
+    first = 1
+    do i = 1, size(model%controls%output%cross_sections)
+      associate (elements => model%controls%output%cross_sections(i)%elements)
+        last = first + size(elements) - 1
+        starts = starts_of(model, elements, shares)
+        call bring_reals(ranks, starts, 8, .false., state%cut_force(:, first:last))
+        first = last + 1
+      end associate
+    end do
+  end subroutine cut_sections
+
+  !> Where the elements of each process start among some by rising slot, then one beyond the last.
+  pure function starts_of(model, elements, shares) result(starts)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: elements(:)
+    type(shares_t), intent(in) :: shares
+    integer :: starts(0:ubound(shares%chunks, 1))
+    integer :: rank
+
+    do rank = 0, ubound(starts, 1)
+      starts(rank) = 1 + count(model%layout%element_slot(elements) &
+        <= (shares%chunks(rank) - 1)*chunk_size)
+    end do
+  end function starts_of
 
 end module rank_exchange_m

@@ -5,7 +5,7 @@
 module relaxation_m
   use block_state_m, only : block_state_t
   use clock_m, only : lap, phase_input
-  use cycle_loads_m, only : apply_loads
+  use load_work_m, only : apply_loads, motion_sums_t
   use element_dispatch_m, only : add_tile_forces
   use errors_m, only : error_t, raise, status_run, status_stopped
   use health_m, only : check_elements
@@ -15,7 +15,6 @@ module relaxation_m
   use mass_scaling_m, only : refine_limits, needs_refinement
   use model_m, only : model_t
   use monitor_m, only : monitor_t
-  use motion_sums_m, only : motion_sums_t
   use node_motion_m, only : leap_t, make_leap, move_tile_nodes, move_special_nodes
   use parts_m, only : hourglass_viscous
   use rank_exchange_m, only : hear_requests
@@ -25,7 +24,7 @@ module relaxation_m
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use scaled_step_m, only : scaled_step
-  use skew_motion_m, only : hold_skew_nodes
+  use held_nodes_m, only : hold_skew_nodes
   use tile_forces_m, only : share_tile_forces, sum_special_forces
   use time_step_m, only : volume_step
   implicit none

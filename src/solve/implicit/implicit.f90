@@ -14,12 +14,11 @@ module implicit_m
   use errors_m, only : error_t, raise, status_run
   use friction_m, only : has_slipped
   use health_m, only : check_static_step, what_would_do
-  use implicit_boundary_m, only : count_step_boundaries
+  use implicit_report_m, only : count_step_boundaries, reactions_work, report_step, held_energy, &
+    spent_energy
   use implicit_forces_m, only : trial_t, start_trial, damping_force, net_force, keep_sections
-  use implicit_memory_m, only : implicit_memory_t, write_files
+  use implicit_start_m, only : implicit_memory_t, write_files, begin_steps, plan_next, has_ended
   use implicit_prescribed_m, only : prescribe_step
-  use implicit_report_m, only : reactions_work, report_step, held_energy, spent_energy
-  use implicit_start_m, only : begin_steps, plan_next, has_ended
   use implicit_tangent_m, only : step_t, new_acceleration, new_velocity
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t

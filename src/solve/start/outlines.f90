@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Surfaces of interfaces follow the elements that leave the mesh.
 module outlines_m
-  use contact_inertia_m, only : weigh_contacts
+  use rigid_start_m, only : weigh_contacts
   use contacts_m, only : contact_t
   use erosion_state_m, only : stays
   use exposed_quads_m, only : find_exposed

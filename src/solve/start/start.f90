@@ -5,9 +5,8 @@ module start_m
   use kinds_m, only : wp
   use behind_ties_m, only : hear_tie
   use automatic_penalty_m, only : set_automatic_penalties
-  use common_start_m, only : start_common
+  use rigid_start_m, only : start_common, weigh_contacts, start_rigids
   use constraints_m, only : fix_nodes, update_activity
-  use contact_inertia_m, only : weigh_contacts
   use element_log_m, only : log_elements
   use element_start_m, only : start_elements, lump_mass
   use contact_log_m, only : log_softness
@@ -18,12 +17,10 @@ module start_m
   use others_memory_m, only : answers_t, others_t, known_nodes, known_slots
   use initial_values_m, only : start_motion
   use log_m, only : log_t, to_text
-  use mass_log_m, only : log_added_mass
+  use model_log_m, only : log_added_mass, log_masses
   use mass_scaling_m, only : scales_masses, start_mass_scaling
-  use model_log_m, only : log_masses
   use model_m, only : model_t
   use outlines_m, only : start_outlines
-  use rigid_start_m, only : start_rigids
   use state_m, only : state_t
   use stiffness_damping_m, only : start_retardation
   implicit none
