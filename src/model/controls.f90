@@ -12,8 +12,8 @@ module controls_m
   implicit none
   private
   public :: boundary_rows_t, list_boundaries, boundary_load, boundary_body_load, &
-    boundary_pressure, boundary_motion, boundary_body_motion, force_group_t, cross_section_t, &
-    find_edges, mark_corners, n_cut, end_condition_t, end_node_place, end_node_touch, &
+    boundary_pressure, boundary_motion, boundary_body_motion, force_group_t, group_nodes, &
+    cross_section_t, find_edges, mark_corners, n_cut, end_condition_t, end_node_place, end_node_touch, &
     end_body_place, end_body_way, end_contact, controls_t, relaxation_t, implicit_t, &
     output_plan_t, interval_t, is_asked, length_by_side, length_by_diagonal, contact_step_warns, &
     contact_step_free, contact_step_rules
@@ -232,6 +232,15 @@ contains
     call visitor%visit('id', self%id)
     call visitor%visit('nodes', self%nodes)
   end subroutine visit_group
+
+  !> Nodes of all groups, one group behind the other.
+  pure function group_nodes(groups) result(nodes)
+    type(force_group_t), intent(in) :: groups(:)
+    integer, allocatable :: nodes(:)
+    integer :: i
+
+    nodes = [(groups(i)%nodes, i=1, size(groups))]
+  end function group_nodes
 
   !> Elements of all sections.
   pure function n_cut(sections) result(n)

@@ -3,7 +3,6 @@
 !> Points that fail: the log tells the first, then each tenfold of what was told, and all at the
 !> end. One thread counts the chunks once a cycle, in models whose points may fail.
 module element_losses_m
-  use controls_m, only : controls_t
   use element_state_m, only : settle_erosion
   use failed_points_m, only : count_points, first_failed
   use kinds_m, only : wp
@@ -15,8 +14,8 @@ module element_losses_m
   use held_nodes_m, only : wall_work_ahead
   implicit none
   private
-  public :: settle_elements, release_nodes, note_least_step, report_erosion, failure_watch_t, &
-    start_watch, follow_failures, report_failures
+  public :: settle_elements, release_nodes, report_erosion, failure_watch_t, &
+    follow_failures, report_failures
 
   !> What has been told.
   type :: failure_watch_t
@@ -26,15 +25,6 @@ module element_losses_m
   end type failure_watch_t
 
 contains
-
-  !> The step below which ERODE takes elements: DTMIN times the first step, before TSSFAC.
-  subroutine note_least_step(controls, first_dt, state)
-    type(controls_t), intent(in) :: controls
-    real(wp), intent(in) :: first_dt
-    type(state_t), intent(inout) :: state
-
-    state%elements%erosion%least_step = controls%dt_floor*first_dt/controls%dt_scale
-  end subroutine note_least_step
 
   !> Elements that have left in this cycle, once all of its forces are known.
   subroutine settle_elements(model, state, log, freed)
@@ -62,7 +52,7 @@ contains
     type(state_t), intent(inout) :: state
     real(wp) :: before(2), after(2), half(2), keep(2), push(2)
     logical :: is_led(2)
-    integer :: i
+    integer :: i, k
 
     associate (took => state%elements%erosion%took)
       do i = 1, size(freed)
@@ -92,28 +82,21 @@ contains
         end associate
       end do
     end associate
-    if (allocated(model%conditions%common_motions)) call stop_empty_sets(model, state)
-  end subroutine release_nodes
-
-  !> Nodes that move alike and have no mass left stand still from here on: the half step ahead for
-  !> which their loads would have paid is not theirs any more.
-  subroutine stop_empty_sets(model, state)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    integer :: i, k
-
+    if (.not. allocated(model%conditions%common_motions)) return
+    ! Nodes that move alike and have no mass left stand still from here on: the half step ahead for
+    ! which their loads would have paid is not theirs any more.
     do i = 1, size(model%conditions%common_motions)
-      associate (set => model%conditions%common_motions(i))
+      associate (set => model%conditions%common_motions(i), took => state%elements%erosion%took(1))
         if (any(state%mass(set%nodes) > 0.0_wp)) cycle
         do k = 1, 2
           if (.not. set%along(k)) cycle
-          state%elements%erosion%took(1) = state%elements%erosion%took(1) - 0.5_wp*state%dt &
-            *state%motion(2 + k, set%nodes(1))*sum(state%force_special(k, set%nodes))
+          took = took - 0.5_wp*state%dt*state%motion(2 + k, set%nodes(1)) &
+            *sum(state%force_special(k, set%nodes))
           state%motion(2 + k, set%nodes) = 0.0_wp
         end do
       end associate
     end do
-  end subroutine stop_empty_sets
+  end subroutine release_nodes
 
   !> At the end of a run: how many elements have left, when first, and what they took along.
   subroutine report_erosion(model, state, log)
@@ -137,14 +120,6 @@ contains
       end do
     end associate
   end subroutine report_erosion
-
-  !> Nothing has been told yet.
-  pure subroutine start_watch(goes_on, watch)
-    logical, intent(in) :: goes_on !! from a restart file
-    type(failure_watch_t), intent(out) :: watch
-
-    watch%takes_up = goes_on
-  end subroutine start_watch
 
   !> Look at the cycle just done.
   subroutine follow_failures(model, state, watch, log)

@@ -9,12 +9,13 @@ module explicit_m
   use clock_m, only : lap, phase_elements, phase_nodes, phase_output
   use contact_account_m, only : report_contact_energies
   use contact_check_m, only : report_contact_end
+  use contact_pressing_m, only : press_contacts
   use element_dispatch_m, only : add_tile_forces
   use eroding_tiles_m, only : add_eroding_tile_forces
   use element_losses_m, only : report_erosion, report_failures
   use errors_m, only : error_t
   use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, exchange_tiles, &
-    press_cycle, end_cycle
+    end_cycle
   use explicit_report_m, only : report_cycle
   use health_m, only : check_tile, judge_energies, judge_ratio, unaccounted
   use kinds_m, only : wp
@@ -218,7 +219,9 @@ contains
     end do
     !$omp end do
     !$omp master
-    call press_cycle(model, state, monitor, cycle)
+    ! The step of cycle zero is found later on.
+    if (state%cycle > 0 .or. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
+      cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
     !$omp end master
     !$omp barrier
   end subroutine press_nodes

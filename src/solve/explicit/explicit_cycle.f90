@@ -4,26 +4,24 @@
 module explicit_cycle_m
   use archive_m, only : archive_t
   use behind_ties_m, only : hear_tie, settle_with_tie
-  use prescribed_motion_m, only : count_boundary_loads, count_boundary_motions, &
-    count_boundary_bodies, count_groups, find_prescribed_velocities, impose_prescribed, &
-    prescribed_work
+  use prescribed_motion_m, only : find_prescribed_velocities, impose_prescribed, count_motions, &
+    count_body_motions, count_boundary_loads, count_groups
   use clock_m, only : lap, share_contact, phase_nodes
+  use common_motion_m, only : common_velocity
   use constraints_m, only : fix_nodes, update_activity, is_active
   use contact_account_m, only : plan_looks, follow_contact
   use rigid_start_m, only : weigh_contacts
-  use contact_pressing_m, only : pressing_t, press_contacts
+  use contact_pressing_m, only : pressing_t
   use contacts_m, only : told_as, penalty_implicit
   use load_work_m, only : apply_loads, motion_sums_t, plan_sums, count_sums
   use early_end_m, only : find_early_end
-  use element_losses_m, only : settle_elements, release_nodes, failure_watch_t, start_watch, &
-    follow_failures
+  use element_losses_m, only : settle_elements, release_nodes, failure_watch_t, follow_failures
   use errors_m, only : error_t
   use health_m, only : tile_check_t, are_sound, check_step, name_collapsed, check_cycle
   use history_tables_m, only : table_secforc
   use interface_m, only : apply_contact
   use kinds_m, only : wp
-  use mass_growth_m, only : grow_state_masses
-  use mass_scaling_m, only : needs_refinement
+  use mass_scaling_m, only : needs_refinement, grow_masses
   use model_log_m, only : check_added_mass
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due
@@ -41,8 +39,8 @@ module explicit_cycle_m
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use resting_tiles_m, only : rest_t, plan_rest, follow_rest
-  use rigid_motion_m, only : solve_rigids, rigid_work, move_rigids
-  use held_nodes_m, only : remember_common, move_common, count_walls
+  use rigid_motion_m, only : solve_rigids, move_rigids
+  use held_nodes_m, only : move_common, count_walls
   use state_m, only : state_t
   use tile_forces_m, only : sum_special_forces
   use time_step_m, only : step_plan_t, start_steps, volume_step, next_step, obey_approach, &
@@ -51,7 +49,7 @@ module explicit_cycle_m
   implicit none
   private
   public :: explicit_cycle_t, start_cycles, begin_cycle, prepare_leap, exchange_tiles, &
-    press_cycle, end_cycle, read_cycle
+    end_cycle, read_cycle
 
   !> Shared by the team, written by one thread between barriers.
   type, extends(visited_t) :: explicit_cycle_t
@@ -125,7 +123,7 @@ contains
     cycle%reason = 'termination time reached'
     if (model%erodes) allocate (cycle%told, source=state%elements%erosion%n_eroded)
     cycle%steps = start_steps(model, state%time)
-    call start_watch(monitor%restarts%goes_on, cycle%failures)
+    cycle%failures%takes_up = monitor%restarts%goes_on
     if (.not. monitor%restarts%goes_on) return
     call read_cycle(model, state, monitor%restarts%source, cycle)
     ! The deck of this run says when it ends.
@@ -207,19 +205,12 @@ contains
       end associate
     end do
     call find_prescribed_velocities(model, state, cycle%velocity)
-    if (allocated(model%conditions%common_motions)) call remember_common(model, state, cycle%common)
+    if (allocated(model%conditions%common_motions)) then
+      associate (n => size(model%conditions%common_motions))
+        cycle%common = reshape([(common_velocity(model, i, state), i=1, n)], [2, n])
+      end associate
+    end if
   end subroutine prepare_leap
-
-  !> Contact forces that follow all others. The step of cycle zero is found later on.
-  subroutine press_cycle(model, state, monitor, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(explicit_cycle_t), intent(inout) :: cycle
-
-    if (state%cycle > 0 .or. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
-      cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
-  end subroutine press_cycle
 
   !> Inverse masses where some prescribed motion has just started or ended.
   subroutine follow_activity(model, state, cycle)
@@ -273,44 +264,13 @@ contains
     call lap(monitor%clock, phase_nodes)
   end subroutine exchange_tiles
 
-  !> Rigid bodies to their next places.
-  subroutine advance_rigids(model, state, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(explicit_cycle_t), intent(in) :: cycle
-    real(wp) :: before
-
-    if (.not. cycle%writes) call solve_rigids(model, cycle%damping, state)
-    before = merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes)
-    state%external_work = state%external_work + rigid_work(model, state, cycle%damping, before, &
-      0.5_wp*state%dt)
-    if (allocated(state%boundary_work)) call count_boundary_bodies(model, cycle%damping, &
-      .not. cycle%writes, .true., state)
-    call move_rigids(model, state)
-  end subroutine advance_rigids
-
-  !> Elements have left in this cycle: nodes that none holds any more, and surfaces of interfaces.
-  subroutine lose_elements(model, state, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(explicit_cycle_t), intent(inout) :: cycle
-
-    call release_nodes(model, cycle%leap, cycle%freed, state)
-    associate (n_eroded => state%elements%erosion%n_eroded)
-      call follow_outlines(model, n_eroded > cycle%told, state)
-      cycle%told = n_eroded
-    end associate
-    cycle%refines = needs_refinement(state%elements)
-    deallocate (cycle%freed)
-  end subroutine lose_elements
-
   !> Prescribed nodes to their places, health, and on to the next instant.
   subroutine end_cycle(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    real(wp) :: before, limit
+    real(wp) :: limit
 
     if (allocated(state%elements%n_failed)) call follow_failures(model, state, cycle%failures, &
       monitor%log)
@@ -326,22 +286,29 @@ contains
       end if
     end if
     if (size(cycle%velocity) > 0) then
-      before = merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes)
-      state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
-        cycle%damping, before, 0.5_wp*state%dt)
-      if (allocated(state%boundary_work)) call count_boundary_motions(model, cycle%velocity, &
-        cycle%damping, .not. cycle%writes, .true., state)
+      call count_motions(model, cycle%velocity, cycle%damping, [.not. cycle%writes, .true.], state)
       call impose_prescribed(model, cycle%velocity, cycle%displacement, state)
     end if
     if (allocated(cycle%common)) call move_common(model, cycle%leap, cycle%damping, cycle%common, &
       state)
-    if (allocated(state%walls)) call count_walls(model, .not. cycle%writes, .true., state)
-    if (size(state%rigids) > 0) call advance_rigids(model, state, cycle)
-    if (allocated(state%group_work)) call count_groups(model, .not. cycle%writes, .true., state)
+    if (allocated(state%walls)) call count_walls(model, [.not. cycle%writes, .true.], state)
+    if (size(state%rigids) > 0) then
+      if (.not. cycle%writes) call solve_rigids(model, cycle%damping, state)
+      call count_body_motions(model, cycle%damping, [.not. cycle%writes, .true.], state)
+      call move_rigids(model, state)
+    end if
+    if (allocated(state%group_work)) call count_groups(model, [.not. cycle%writes, .true.], state)
     if (allocated(cycle%freed)) then
       if (monitor%ranks%n > 1) call gather_motion(cycle%shares, cycle%borders, .true., &
         monitor%ranks, state)
-      call lose_elements(model, state, cycle)
+      ! Nodes that no element holds any more, and surfaces of interfaces.
+      call release_nodes(model, cycle%leap, cycle%freed, state)
+      associate (n_eroded => state%elements%erosion%n_eroded)
+        call follow_outlines(model, n_eroded > cycle%told, state)
+        cycle%told = n_eroded
+      end associate
+      cycle%refines = needs_refinement(state%elements)
+      deallocate (cycle%freed)
     end if
     state%cycle = state%cycle + 1
     state%former_dt = state%dt_before
@@ -387,23 +354,36 @@ contains
     end associate
   end function element_limit
 
-  !> Mass for elements that have become too small for DT2MS, where the deck lets it grow.
+  !> Mass for elements that have become too small for DT2MS, where the deck lets it grow, with all
+  !> that is made of masses. What it brings in kinetic energy comes from outside.
   subroutine follow_masses(model, ranks, state, cycle)
     type(model_t), intent(in) :: model
     type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(inout) :: cycle
-    logical :: has_grown
+    real(wp), allocatable :: before(:)
+    real(wp) :: work
+    integer :: i, n
 
     if (model%controls%masses_stay) return
     if (minval(cycle%checks(cycle%first_check:)%time_limit) >= abs(model%controls%mass_step)) return
     if (ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .true., ranks, state)
-    call grow_state_masses(model, state, has_grown)
-    if (has_grown .and. allocated(cycle%rates)) deallocate (cycle%rates)
+    before = state%mass
+    call grow_masses(model, state%motion, state%dt, state%elements, state%mass, work)
     ! The places of the next cycle have been looked at.
     cycle%checks%time_limit = max(cycle%checks%time_limit, abs(model%controls%mass_step))
-    if (has_grown .and. .not. allocated(cycle%error)) &
-      call check_added_mass(model, state%elements, cycle%error)
+    if (.not. any(state%mass > before)) return
+    state%external_work = state%external_work + work
+    do i = 1, size(before)
+      if (state%mass(i) > before(i)) where (state%inverse_mass(:, i) > 0.0_wp) &
+        state%inverse_mass(:, i) = 1.0_wp/state%mass(i)
+    end do
+    n = size(state%contact_mass)
+    where (state%mass(:n) > before(:n)) &
+      state%contact_mass = state%contact_mass + (state%mass(:n) - before(:n))
+    call weigh_contacts(model, state)
+    if (allocated(cycle%rates)) deallocate (cycle%rates)
+    if (.not. allocated(cycle%error)) call check_added_mass(model, state%elements, cycle%error)
   end subroutine follow_masses
 
   !> Stop, restart files, states and lines that are due or that someone asks for; for restart files

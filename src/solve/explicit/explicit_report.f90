@@ -1,16 +1,16 @@
 ! SPDX-License-Identifier: MIT
 !> A cycle of an explicit run that writes: what the elements have come to, and what is due from it.
 module explicit_report_m
-  use prescribed_motion_m, only : count_boundary_motions, count_boundary_bodies, count_groups, &
-    start_prescribed, prescribed_work
+  use prescribed_motion_m, only : count_motions, count_body_motions, count_groups, start_prescribed
   use boundary_filling_m, only : fill_boundaries
   use contact_check_m, only : report_contact_start
+  use contact_pressing_m, only : press_contacts
   use contact_judging_m, only : judge_contacts
   use contact_softness_m, only : follow_softness
   use curves_m, only : curve_value
   use energies_m, only : energy_ratio, total_energy
-  use element_losses_m, only : settle_elements, note_least_step
-  use explicit_cycle_m, only : explicit_cycle_t, prepare_leap, press_cycle
+  use element_losses_m, only : settle_elements
+  use explicit_cycle_m, only : explicit_cycle_t, prepare_leap
   use time_step_m, only : first_change, first_step, shorten_first_step, obey_approach, &
     obey_defaults, follow_springs
   use health_m, only : check_energy, check_ratio, check_radii, made_by_springs, unaccounted
@@ -26,11 +26,10 @@ module explicit_report_m
   use model_m, only : model_t
   use monitor_m, only : monitor_t, write_due
   use load_work_m, only : count_sums
-  use node_motion_m, only : leap_t
   use progress_m, only : show_progress
   use rank_exchange_m, only : judge_elements
   use ranks_m, only : share_error, spread_values
-  use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, fill_rigids, fill_bodies
+  use rigid_motion_m, only : solve_rigids, start_rigid_motions, fill_rigids, fill_bodies
   use section_filling_m, only : fill_sections
   use held_nodes_m, only : hold_skew_nodes, hold_nodes, count_walls, fill_walls
   use smallest_steps_m, only : find_smallest_steps
@@ -40,7 +39,7 @@ module explicit_report_m
   use support_forces_m, only : fill_explicit_reactions
   implicit none
   private
-  public :: report_cycle, find_slowest
+  public :: report_cycle
 
   !> Part of DT2MS by which a step that mass scaling has set may differ from it.
   real(wp), parameter :: round_off = 1.0e-9_wp
@@ -53,7 +52,9 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    real(wp), allocatable :: held(:, :)
+    real(wp), allocatable :: held(:, :)              !! (2, n_skew) forces of skew supports
+    integer, allocatable :: held_nodes(:)
+    logical, parameter :: due(2) = [.true., .false.] !! works of the half step before the instant
 
     call count_sums(cycle%sums, state%external_work, state%damping_work)
     if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
@@ -70,22 +71,34 @@ contains
     end if
     if (state%cycle == 0) then
       call bound_first_change(model, state, monitor, cycle)
-      if (model%erodes) call note_least_step(model%controls, cycle%steps%first_dt, state)
+      ! The step below which ERODE takes elements: DTMIN times the first step, before TSSFAC.
+      if (model%erodes) state%elements%erosion%least_step = model%controls%dt_floor &
+        *cycle%steps%first_dt/model%controls%dt_scale
       call prepare_leap(model, state, cycle)
       call start_prescribed(model, cycle%velocity, state)
-      if (cycle%presses) call press_cycle(model, state, monitor, cycle)
+      if (cycle%presses .and. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
+        cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
       call report_contact_start(model, state, monitor%log)
       if (monitor%ranks%mine == 0) call log_smallest_steps(model, state, monitor%log)
       call judge_damping(model, state%dt, monitor%log)
     end if
-    call report_rigids(model, state, cycle)
-    call report_walls(model, state, cycle)
-    if (allocated(model%conditions%skew_supports)) call report_skew(model, cycle%leap, state, held)
-    state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
-      cycle%damping, 0.5_wp*state%dt_before, 0.0_wp)
-    if (allocated(state%boundary_work)) call count_boundary_motions(model, cycle%velocity, &
-      cycle%damping, .true., .false., state)
-    if (allocated(state%group_work)) call count_groups(model, .true., .false., state)
+    if (size(state%rigids) > 0) then
+      call solve_rigids(model, cycle%damping, state)
+      if (state%cycle == 0) call start_rigid_motions(model, state)
+      call count_body_motions(model, cycle%damping, due, state)
+    end if
+    if (allocated(state%walls)) then
+      call hold_nodes(model, cycle%leap, 1, model%layout%n_special, state)
+      call count_walls(model, due, state)
+    end if
+    if (allocated(model%conditions%skew_supports)) then
+      held_nodes = model%conditions%skew_supports%node
+      held = -state%force_special(:, held_nodes)
+      call hold_skew_nodes(model, cycle%leap, 1, model%layout%n_special, state)
+      held = held + state%force_special(:, held_nodes)
+    end if
+    call count_motions(model, cycle%velocity, cycle%damping, due, state)
+    if (allocated(state%group_work)) call count_groups(model, due, state)
     if (monitor%ranks%mine == 0) call write_report(model, held, state, monitor, cycle)
     if (monitor%ranks%n > 1) call hear_report(model, state, monitor, cycle)
     cycle%finished = cycle%last .or. allocated(cycle%error)
@@ -192,53 +205,6 @@ contains
     state%initial_energy = energy(1)
     call share_error(monitor%ranks, cycle%error)
   end subroutine hear_report
-
-  !> Skew supports in a cycle that writes: their nodes are held, and by what force.
-  subroutine report_skew(model, leap, state, held)
-    type(model_t), intent(in) :: model
-    type(leap_t), intent(in) :: leap
-    type(state_t), intent(inout) :: state
-    real(wp), allocatable, intent(out) :: held(:, :) !! (2, n_skew)
-
-    integer :: i, n
-
-    n = size(model%conditions%skew_supports)
-    allocate (held(2, n))
-    do i = 1, n
-      held(:, i) = -state%force_special(:, model%conditions%skew_supports(i)%node)
-    end do
-    call hold_skew_nodes(model, leap, 1, model%layout%n_special, state)
-    do i = 1, n
-      held(:, i) = held(:, i) + state%force_special(:, model%conditions%skew_supports(i)%node)
-    end do
-  end subroutine report_skew
-
-  !> Rigid bodies in a cycle that writes: what their forces ask for, and the work of
-  !> prescribed motion so far.
-  subroutine report_rigids(model, state, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(explicit_cycle_t), intent(in) :: cycle
-
-    if (size(state%rigids) == 0) return
-    call solve_rigids(model, cycle%damping, state)
-    if (state%cycle == 0) call start_rigid_motions(model, state)
-    state%external_work = state%external_work + rigid_work(model, state, cycle%damping, &
-      0.5_wp*state%dt_before, 0.0_wp)
-    if (allocated(state%boundary_work)) call count_boundary_bodies(model, cycle%damping, &
-      .true., .false., state)
-  end subroutine report_rigids
-
-  !> Rigid walls in a cycle that writes: their forces, and their work so far.
-  subroutine report_walls(model, state, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(explicit_cycle_t), intent(in) :: cycle
-
-    if (.not. allocated(state%walls)) return
-    call hold_nodes(model, cycle%leap, 1, model%layout%n_special, state)
-    call count_walls(model, .true., .false., state)
-  end subroutine report_walls
 
   !> Ids of the element with the smallest stable step, and of its part; 0 where the curve rules. And
   !> whether that step is the one of DT2MS.

@@ -7,17 +7,17 @@ module prescribed_motion_m
   use boundary_filling_m, only : form_loads
   use conditions_m, only : motion_displacement, motion_velocity, prescribed_motion_t
   use constraints_m, only : is_active, next_velocity
-  use controls_m, only : boundary_load, boundary_body_load, boundary_pressure
+  use controls_m, only : boundary_load, boundary_body_load, boundary_pressure, group_nodes
   use kinds_m, only : wp
   use model_m, only : model_t
-  use rigid_motion_m, only : rigid_reaction
+  use part_damping_m, only : part_damping_rate
+  use rigid_motion_m, only : damping_of
   use snapshot_filling_m, only : damping_at
   use state_m, only : state_t
   implicit none
   private
-  public :: find_prescribed_velocities, start_prescribed, impose_prescribed, prescribed_work, &
-    prescribed_reaction, count_boundary_loads, count_boundary_motions, count_boundary_bodies, &
-    count_groups
+  public :: find_prescribed_velocities, start_prescribed, impose_prescribed, count_motions, &
+    count_body_motions, count_boundary_loads, count_groups
 
 contains
 
@@ -30,9 +30,12 @@ contains
     integer :: i, before
 
     do i = 1, size(model%conditions%motions)
-      associate (prescribed => model%conditions%motions(i))
-        before = max(1, i - 1)
-        if (i > before .and. has_same_velocity(prescribed, model%conditions%motions(before))) then
+      before = max(1, i - 1)
+      associate (prescribed => model%conditions%motions(i), &
+        other => model%conditions%motions(before))
+        if (i > before .and. prescribed%kind == motion_velocity .and. other%kind &
+          == motion_velocity .and. prescribed%curve == other%curve &
+          .and. abs(prescribed%scale - other%scale) <= 0.0_wp) then
           velocity(i) = velocity(before)
         else
           velocity(i) = next_velocity(model, prescribed, state%time, state%dt, state%dt_before, &
@@ -41,15 +44,6 @@ contains
       end associate
     end do
   end subroutine find_prescribed_velocities
-
-  !> Whether two motions have one velocity at all times.
-  pure function has_same_velocity(one, other) result(same)
-    type(prescribed_motion_t), intent(in) :: one, other
-    logical :: same
-
-    same = one%kind == motion_velocity .and. other%kind == motion_velocity .and. &
-      one%curve == other%curve .and. abs(one%scale - other%scale) <= 0.0_wp
-  end function has_same_velocity
 
   !> A node on a displacement curve starts with the velocity of its first step: from rest the start
   !> would be a blow of half its kinetic energy that no curve asks for.
@@ -71,43 +65,86 @@ contains
     end do
   end subroutine start_prescribed
 
-  !> Work R.v dt/2 of the reactions over half a step, with
-  !> R = m a + f_int - f_special - m g + D m v(n).
-  pure function prescribed_work(model, state, velocity, damping, factor_old, &
-      factor_new) result(work)
+  !> Reactions of the prescribed motions of nodes, R = m a + f_int - f_special - m g + D m v(n), and
+  !> their work.
+  subroutine count_motions(model, velocity, damping, due, state)
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    real(wp), intent(in) :: velocity(:)            !! (n_motion) v(n+1/2)
-    real(wp), intent(in) :: damping(2)             !! D per direction
-    real(wp), intent(in) :: factor_old, factor_new !! times v(n-1/2) and v(n+1/2)
-    real(wp) :: work
+    real(wp), intent(in) :: velocity(:)    !! (n_motion) v(n+1/2)
+    real(wp), intent(in) :: damping(2)     !! D per direction
+    logical, intent(in) :: due(2)          !! the half steps before and after the instant
+    type(state_t), intent(inout) :: state
+    real(wp) :: reactions(size(velocity)), d(2)
     integer :: i
 
-    work = 0.0_wp
-    do i = 1, size(model%conditions%motions)
-      if (.not. is_active(model%conditions%motions(i), state%time)) cycle
-      work = work + prescribed_reaction(model%conditions%motions(i), state, damping, &
-        state%prescribed_velocity(i), velocity(i))*(factor_old*state%prescribed_velocity(i) &
-        + factor_new*velocity(i))
+    do i = 1, size(velocity)
+      associate (node => model%conditions%motions(i)%node, &
+        k => model%conditions%motions(i)%direction, next => velocity(i), &
+        old => state%prescribed_velocity(i))
+        d = damping_at(state, damping, node)
+        reactions(i) = state%mass(node)*((next - old)/(0.5_wp*(state%dt + state%dt_before)) &
+          - state%body_acceleration(k) + 0.5_wp*d(k)*(next + old)) &
+          + state%internal_force(k, node) - state%force_special(k, node)
+      end associate
     end do
-  end function prescribed_work
+    call count_reactions(model%conditions%motions, reactions, state%prescribed_velocity, velocity, &
+      due, model%controls%output%boundaries%motion_rows, state)
+  end subroutine count_motions
 
-  !> Reaction of one prescribed motion, from its velocities before and behind the instant.
-  pure function prescribed_reaction(prescribed, state, damping, old, next) result(reaction)
-    type(prescribed_motion_t), intent(in) :: prescribed
-    type(state_t), intent(in) :: state
-    real(wp), intent(in) :: damping(2)  !! D per direction
-    real(wp), intent(in) :: old, next   !! v(n-1/2) and v(n+1/2)
-    real(wp) :: reaction
-    real(wp) :: d(2)
+  !> The same of rigid bodies.
+  subroutine count_body_motions(model, damping, due, state)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: damping(2)     !! D per direction
+    logical, intent(in) :: due(2)          !! the half steps before and after the instant
+    type(state_t), intent(inout) :: state
+    real(wp), dimension(size(model%conditions%rigid_motions)) :: reactions, old, next
+    real(wp) :: rate(3), body(3)
+    integer :: i
 
-    associate (node => prescribed%node, k => prescribed%direction)
-      d = damping_at(state, damping, node)
-      reaction = state%mass(node)*((next - old)/(0.5_wp*(state%dt + state%dt_before)) &
-        - state%body_acceleration(k) + 0.5_wp*d(k)*(next + old)) &
-        + state%internal_force(k, node) - state%force_special(k, node)
-    end associate
-  end function prescribed_reaction
+    body = [state%body_acceleration, 0.0_wp]
+    do i = 1, size(reactions)
+      associate (rigid => state%rigids(model%conditions%rigid_motions(i)%node), &
+        part => model%rigids(model%conditions%rigid_motions(i)%node)%part, &
+        k => model%conditions%rigid_motions(i)%direction)
+        old(i) = rigid%velocity(k)
+        next(i) = rigid%next_velocity(k)
+        rate = damping_of(rigid, damping + part_damping_rate(model, part, state%time))
+        reactions(i) = rigid%inertia(k)*((next(i) - old(i))/(0.5_wp*(state%dt + state%dt_before)) &
+          - body(k) + 0.5_wp*rate(k)*(next(i) + old(i))) - rigid%force(k)
+      end associate
+    end do
+    call count_reactions(model%conditions%rigid_motions, reactions, old, next, due, &
+      model%controls%output%boundaries%body_motion_rows, state)
+  end subroutine count_body_motions
+
+  !> Work R.v dt/2 of reactions over half steps, in that of the run and in their rows.
+  subroutine count_reactions(motions, reactions, old, next, due, rows, state)
+    type(prescribed_motion_t), intent(in) :: motions(:)
+    real(wp), intent(in) :: reactions(:), old(:), next(:) !! R, v(n-1/2), v(n+1/2)
+    logical, intent(in) :: due(2)
+    integer, allocatable, intent(in) :: rows(:)           !! of each motion; not there if not asked
+    type(state_t), intent(inout) :: state
+    real(wp) :: halves(2), work
+    integer :: i
+
+    halves = merge(0.5_wp*[state%dt_before, state%dt], 0.0_wp, due)
+    work = 0.0_wp
+    do i = 1, size(motions)
+      if (is_active(motions(i), state%time)) &
+        work = work + reactions(i)*(halves(1)*old(i) + halves(2)*next(i))
+    end do
+    state%external_work = state%external_work + work
+    if (.not. allocated(state%boundary_work)) return
+    if (due(1)) halves(1) = half_behind(state)
+    do i = 1, size(motions)
+      state%boundary_force(motions(i)%direction, rows(i)) = 0.0_wp
+    end do
+    do i = 1, size(motions)
+      if (.not. is_active(motions(i), state%time)) cycle
+      state%boundary_force(motions(i)%direction, rows(i)) = reactions(i)
+      state%boundary_work(rows(i)) = state%boundary_work(rows(i)) + reactions(i) &
+        *(halves(1)*old(i) + halves(2)*next(i))
+    end do
+  end subroutine count_reactions
 
   !> Put prescribed nodes where they belong; `displacement` is u(n), from before the nodes moved.
   subroutine impose_prescribed(model, velocity, displacement, state)
@@ -164,86 +201,22 @@ contains
     length = merge(0.0_wp, 0.5_wp*state%dt_before, state%cycle == state%boundary_since)
   end function half_behind
 
-  !> Reactions of prescribed motion of nodes, and their work over half a step before the instant and
-  !> half a step from it on.
-  subroutine count_boundary_motions(model, velocity, damping, before, after, state)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: velocity(:)    !! (n_motion) v(n+1/2)
-    real(wp), intent(in) :: damping(2)     !! D per direction
-    logical, intent(in) :: before, after
-    type(state_t), intent(inout) :: state
-    real(wp) :: reaction, factor_old, factor_new
-    integer :: i
-
-    factor_old = merge(half_behind(state), 0.0_wp, before)
-    factor_new = merge(0.5_wp*state%dt, 0.0_wp, after)
-    associate (rows => model%controls%output%boundaries%motion_rows, &
-      motions => model%conditions%motions)
-      do i = 1, size(motions)
-        state%boundary_force(motions(i)%direction, rows(i)) = 0.0_wp
-      end do
-      do i = 1, size(motions)
-        if (.not. is_active(motions(i), state%time)) cycle
-        reaction = prescribed_reaction(motions(i), state, damping, state%prescribed_velocity(i), &
-          velocity(i))
-        state%boundary_force(motions(i)%direction, rows(i)) = reaction
-        state%boundary_work(rows(i)) = state%boundary_work(rows(i)) + reaction &
-          *(factor_old*state%prescribed_velocity(i) + factor_new*velocity(i))
-      end do
-    end associate
-  end subroutine count_boundary_motions
-
-  !> The same of rigid bodies.
-  subroutine count_boundary_bodies(model, damping, before, after, state)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: damping(2)     !! D per direction
-    logical, intent(in) :: before, after
-    type(state_t), intent(inout) :: state
-    real(wp) :: reaction, factor_old, factor_new
-    integer :: i
-
-    factor_old = merge(half_behind(state), 0.0_wp, before)
-    factor_new = merge(0.5_wp*state%dt, 0.0_wp, after)
-    associate (rows => model%controls%output%boundaries%body_motion_rows, &
-      motions => model%conditions%rigid_motions)
-      do i = 1, size(motions)
-        state%boundary_force(motions(i)%direction, rows(i)) = 0.0_wp
-      end do
-      do i = 1, size(motions)
-        if (.not. is_active(motions(i), state%time)) cycle
-        reaction = rigid_reaction(model, motions(i), state, damping)
-        state%boundary_force(motions(i)%direction, rows(i)) = reaction
-        associate (rigid => state%rigids(motions(i)%node), k => motions(i)%direction)
-          state%boundary_work(rows(i)) = state%boundary_work(rows(i)) + reaction &
-            *(factor_old*rigid%velocity(k) + factor_new*rigid%next_velocity(k))
-        end associate
-      end do
-    end associate
-  end subroutine count_boundary_bodies
-
   !> Internal forces of groups of nodes, and their work up to the instant, and from it on once the
   !> nodes have moved.
-  subroutine count_groups(model, before, after, state)
+  subroutine count_groups(model, due, state)
     type(model_t), intent(in) :: model
-    logical, intent(in) :: before, after
+    logical, intent(in) :: due(2)          !! the half steps before and after the instant
     type(state_t), intent(inout) :: state
-    integer :: i, k, n
 
-    n = 0
-    do i = 1, size(model%controls%output%force_groups)
-      associate (nodes => model%controls%output%force_groups(i)%nodes)
-        do k = 1, size(nodes)
-          n = n + 1
-          state%group_force(:, n) = state%internal_force(:, nodes(k))
-          if (before) state%group_work(n) = state%group_work(n) + 0.5_wp*state%dt_before &
-            *dot_product(state%group_force(:, n), state%group_velocity(:, n))
-          if (.not. after) cycle
-          state%group_velocity(:, n) = state%motion(3:4, nodes(k))
-          state%group_work(n) = state%group_work(n) + 0.5_wp*state%dt &
-            *dot_product(state%group_force(:, n), state%group_velocity(:, n))
-        end do
-      end associate
-    end do
+    associate (nodes => group_nodes(model%controls%output%force_groups))
+      state%group_force = state%internal_force(:, nodes)
+      if (due(1)) state%group_work = state%group_work + 0.5_wp*state%dt_before &
+        *sum(state%group_force*state%group_velocity, 1)
+      if (.not. due(2)) return
+      state%group_velocity = state%motion(3:4, nodes)
+      state%group_work = state%group_work + 0.5_wp*state%dt &
+        *sum(state%group_force*state%group_velocity, 1)
+    end associate
   end subroutine count_groups
 
 end module prescribed_motion_m

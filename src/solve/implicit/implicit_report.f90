@@ -9,7 +9,7 @@ module implicit_report_m
   use constraints_m, only : is_active
   use contact_judging_m, only : judge_contacts
   use contact_softness_m, only : follow_softness
-  use controls_m, only : boundary_motion
+  use controls_m, only : boundary_motion, group_nodes
   use element_mass_m, only : mass_times, sum_part_motion
   use element_state_m, only : add_part_energies
   use energies_m, only : energy_ratio, total_energy
@@ -200,21 +200,14 @@ contains
     real(wp), intent(in) :: time                        !! at the end of the step
     real(wp), allocatable, intent(in) :: velocity(:, :) !! (2, n_node) there; not there in statics
     type(state_t), intent(inout) :: state               !! as the step has found it
-    integer :: i, k, n
 
     if (allocated(state%boundary_work)) &
       call count_boundaries(model, before, after, time, velocity, state)
     if (.not. allocated(state%group_work)) return
-    n = 0
-    do i = 1, size(model%controls%output%force_groups)
-      associate (nodes => model%controls%output%force_groups(i)%nodes)
-        do k = 1, size(nodes)
-          n = n + 1
-          state%group_work(n) = state%group_work(n) + 0.5_wp*sum((before%internal(:, nodes(k)) &
-            + after%internal(:, nodes(k)))*after%motion(3:4, nodes(k)))
-        end do
-      end associate
-    end do
+    associate (nodes => group_nodes(model%controls%output%force_groups))
+      state%group_work = state%group_work + 0.5_wp*sum((before%internal(:, nodes) &
+        + after%internal(:, nodes))*after%motion(3:4, nodes), 1)
+    end associate
   end subroutine count_step_boundaries
 
   !> Boundaries alone.
@@ -260,26 +253,9 @@ contains
       call form_loads(model, state%motion, state%time, state%boundary_force)
       call find_reactions(model, reaction, state)
     end if
-    if (allocated(state%group_work)) call find_group_forces(model, internal, state)
+    if (allocated(state%group_work)) state%group_force = internal(:, &
+      group_nodes(model%controls%output%force_groups))
   end subroutine find_forces
-
-  !> Internal forces of groups of nodes.
-  subroutine find_group_forces(model, internal, state)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: internal(:, :)
-    type(state_t), intent(inout) :: state
-    integer :: i, k, n
-
-    n = 0
-    do i = 1, size(model%controls%output%force_groups)
-      associate (nodes => model%controls%output%force_groups(i)%nodes)
-        do k = 1, size(nodes)
-          n = n + 1
-          state%group_force(:, n) = internal(:, nodes(k))
-        end do
-      end associate
-    end do
-  end subroutine find_group_forces
 
   !> Reactions of prescribed motion, into their rows.
   subroutine find_reactions(model, reaction, state)

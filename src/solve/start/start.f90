@@ -11,7 +11,7 @@ module start_m
   use element_start_m, only : start_elements, lump_mass
   use contact_log_m, only : log_softness
   use contacts_m, only : is_tied, n_told, told_as
-  use controls_m, only : is_asked, n_cut
+  use controls_m, only : is_asked, group_nodes, n_cut
   use errors_m, only : error_t, raise, status_input
   use history_tables_m, only : table_nodfor
   use others_memory_m, only : answers_t, others_t, known_nodes, known_slots
@@ -146,7 +146,7 @@ contains
   subroutine start_works(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    integer :: i, n
+    integer :: n
 
     associate (output => model%controls%output)
       if (allocated(output%boundaries%where)) then
@@ -157,10 +157,7 @@ contains
         allocate (state%cut_force(8, n_cut(output%cross_sections)), source=0.0_wp)
       if (.not. allocated(output%force_groups)) return
       if (.not. is_asked(output%histories(table_nodfor))) return
-      n = 0
-      do i = 1, size(output%force_groups)
-        n = n + size(output%force_groups(i)%nodes)
-      end do
+      n = size(group_nodes(output%force_groups))
       allocate (state%group_force(2, n), state%group_work(n), state%group_velocity(2, n), &
         source=0.0_wp)
     end associate
