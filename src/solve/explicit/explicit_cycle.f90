@@ -132,7 +132,7 @@ contains
     if (cycle%steps%constant > 0.0_wp) cycle%steps%n_cycle = &
       cycles_in(cycle%steps%end_time - cycle%steps%start_time, cycle%steps%constant)
     call close_restart(monitor%restarts%source, cycle%error)
-    if (allocated(model%controls%ends)) call heed_ends(model, state, cycle)
+    call find_early_end(model, state, cycle%last, cycle%reason)
   end subroutine start_cycles
 
   !> What a restart file says of it; the first thing that is wrong is an error of the archive.
@@ -328,7 +328,7 @@ contains
     end if
     if (.not. allocated(cycle%error)) call check_cycle(state%cycle, state%time, cycle%error)
     cycle%finished = allocated(cycle%error)
-    if (allocated(model%controls%ends)) call heed_ends(model, state, cycle)
+    call find_early_end(model, state, cycle%last, cycle%reason)
     if (.not. cycle%finished) call heed_requests(state, monitor, cycle)
     if (monitor%ranks%mine == 0) call follow_progress(monitor%progress, monitor%clock, &
       state%cycle, .false., state%time, state%dt, cycle%ratio)
@@ -393,47 +393,25 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    logical :: ends
+    logical :: ends, wanted(2) !! numbered_file, running_file
 
     if (monitor%ranks%n == 1) &
       call take_requests(state, cycle%ratio, .false., monitor, cycle%asked, cycle%error)
     cycle%plots = cycle%asked%plot
     ends = is_last(cycle%steps, state%cycle, state%time) .or. cycle%last
-    if (.not. allocated(cycle%error)) call write_files(wanted_files(monitor%restarts, &
-      state%cycle, cycle%asked%dump, ends, cycle%asked%signalled .and. .not. ends), state, &
-      monitor, cycle)
+    wanted = wanted_files(monitor%restarts, state%cycle, cycle%asked%dump, ends, &
+      cycle%asked%signalled .and. .not. ends)
+    if (any(wanted) .and. .not. allocated(cycle%error)) then
+      if (monitor%ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .false., &
+        monitor%ranks, state)
+      if (monitor%ranks%mine == 0) call write_restarts(wanted, state, monitor, cycle%error, cycle)
+      call share_error(monitor%ranks, cycle%error)
+    end if
     cycle%finished = allocated(cycle%error)
     if (ends .or. .not. cycle%asked%stop) return
     cycle%last = .true.
     cycle%reason = 'stopped on request'
   end subroutine heed_requests
-
-  !> What ends the run before its time: the cycle to come is then the last one.
-  subroutine heed_ends(model, state, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(explicit_cycle_t), intent(inout) :: cycle
-    character(:), allocatable :: reason
-
-    call find_early_end(model, state, reason)
-    if (.not. allocated(reason) .or. cycle%last) return
-    cycle%last = .true.
-    cycle%reason = reason
-  end subroutine heed_ends
-
-  !> Restart files, by the first process.
-  subroutine write_files(wanted, state, monitor, cycle)
-    logical, intent(in) :: wanted(:)   !! numbered_file, running_file
-    type(state_t), intent(inout) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(explicit_cycle_t), intent(inout) :: cycle
-
-    if (.not. any(wanted)) return
-    if (monitor%ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .false., &
-      monitor%ranks, state)
-    if (monitor%ranks%mine == 0) call write_restarts(wanted, state, monitor, cycle%error, cycle)
-    if (monitor%ranks%n > 1) call share_error(monitor%ranks, cycle%error)
-  end subroutine write_files
 
   !> What a cycle hands to the next besides the state.
   subroutine visit_cycle(self, visitor)

@@ -2,22 +2,16 @@
 !> A cycle of an explicit run that writes: what the elements have come to, and what is due from it.
 module explicit_report_m
   use prescribed_motion_m, only : count_motions, count_body_motions, count_groups, start_prescribed
-  use boundary_filling_m, only : fill_boundaries
   use contact_check_m, only : report_contact_start
   use contact_pressing_m, only : press_contacts
-  use contact_judging_m, only : judge_contacts
-  use contact_softness_m, only : follow_softness
   use curves_m, only : curve_value
-  use energies_m, only : energy_ratio, total_energy
+  use energies_m, only : energy_ratio
   use element_losses_m, only : settle_elements
   use explicit_cycle_m, only : explicit_cycle_t, prepare_leap
   use time_step_m, only : first_change, first_step, shorten_first_step, obey_approach, &
     obey_defaults, follow_springs
   use health_m, only : check_energy, check_ratio, check_radii, made_by_springs, unaccounted
-  use history_elements_m, only : fill_history_elements
-  use history_tables_m, only : table_glstat, table_rcforc, table_matsum, table_rwforc, &
-    table_sleout, table_spcforc, table_contact, table_elout, table_rbdout, table_bndout, &
-    table_nodfor, table_secforc
+  use history_tables_m, only : table_glstat, table_matsum, table_rwforc, table_spcforc, table_rbdout
   use kinds_m, only : wp
   use layout_m, only : slot_part
   use leapfrog_balance_m, only : complete_balance
@@ -26,14 +20,13 @@ module explicit_report_m
   use model_m, only : model_t
   use monitor_m, only : monitor_t, write_due
   use load_work_m, only : count_sums
-  use progress_m, only : show_progress
   use rank_exchange_m, only : judge_elements
   use ranks_m, only : share_error, spread_values
+  use reporting_m, only : note_energies, write_instant
   use rigid_motion_m, only : solve_rigids, start_rigid_motions, fill_rigids, fill_bodies
-  use section_filling_m, only : fill_sections
   use held_nodes_m, only : hold_skew_nodes, hold_nodes, count_walls, fill_walls
   use smallest_steps_m, only : find_smallest_steps
-  use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, fill_plot
+  use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts
   use snapshot_m, only : snapshot_t
   use state_m, only : state_t
   use support_forces_m, only : fill_explicit_reactions
@@ -156,30 +149,17 @@ contains
     if (follows) call fill_energies(model, state, cycle%damping, monitor%snapshot)
     if (cycle%due%tables(table_glstat)) call complete_balance(model, state, cycle%damping, &
       cycle%velocity, monitor%snapshot)
-    if (state%cycle == 0) then
-      state%initial_energy = total_energy(monitor%snapshot%energies)
-      monitor%snapshot%energies%initial = state%initial_energy
-    end if
-    if (follows) call follow_softness(model, monitor%snapshot%parts, monitor%bodies, state)
+    call note_energies(model, follows, state, monitor)
     if (cycle%due%tables(table_matsum)) call fill_parts(model, state%elements, &
       monitor%snapshot)
-    if (cycle%due%tables(table_glstat)) call find_slowest(model, state, monitor%snapshot)
-    if (any(cycle%due%tables([table_rcforc, table_sleout, table_contact]))) &
-      call fill_interfaces(model, state, monitor%snapshot)
+    if (cycle%due%tables(table_glstat)) then
+      call find_slowest(model, state, monitor%snapshot)
+      cycle%ratio = energy_ratio(monitor%snapshot%energies)
+    end if
     if (cycle%due%tables(table_spcforc)) &
       call fill_explicit_reactions(model, state, monitor%snapshot, held)
-    if (cycle%due%tables(table_elout)) call fill_history_elements(model, state, monitor%snapshot)
-    if (any(cycle%due%tables([table_bndout, table_nodfor]))) &
-      call fill_boundaries(state, monitor%snapshot)
-    if (cycle%due%tables(table_secforc)) call fill_sections(model, state, monitor%snapshot)
     if (cycle%due%tables(table_rbdout)) call fill_bodies(state, monitor%snapshot)
-    if (cycle%due%plot) call fill_plot(model, state, monitor%snapshot)
-    if (any(cycle%due%tables([table_sleout, table_contact]))) &
-      call judge_contacts(model, state, cycle%due%plot, monitor%rows, monitor%snapshot)
-    call write_due(model, cycle%due, state%dt, monitor, cycle%error)
-    if (cycle%due%tables(table_glstat)) cycle%ratio = energy_ratio(monitor%snapshot%energies)
-    if (cycle%due%plot .and. .not. allocated(cycle%error)) call show_progress(monitor%progress, &
-      monitor%clock, state%cycle, state%time, state%dt, cycle%ratio, 'write vtkhdf state')
+    call write_instant(model, cycle%due, state%dt, cycle%ratio, state, monitor, cycle%error)
     if (.not. allocated(cycle%error) .and. cycle%due%tables(table_glstat)) then
       call check_energy(model%controls, monitor%snapshot%energies, made_by_springs, cycle%error)
       if (.not. allocated(cycle%error)) call check_ratio(monitor%snapshot%energies, 0.0_wp, &

@@ -3,34 +3,28 @@
 !> the consistent mass; forces on boundaries and of groups of nodes, and their work, where histories
 !> ask for them (bndout, nodfor).
 module implicit_report_m
-  use block_state_m, only : block_state_t
-  use boundary_filling_m, only : fill_boundaries, form_loads
+  use boundary_filling_m, only : form_loads
   use clock_m, only : lap, phase_output
   use constraints_m, only : is_active
-  use contact_judging_m, only : judge_contacts
-  use contact_softness_m, only : follow_softness
   use controls_m, only : boundary_motion, group_nodes
   use element_mass_m, only : mass_times, sum_part_motion
   use element_state_m, only : add_part_energies
-  use energies_m, only : energy_ratio, total_energy
+  use energies_m, only : energy_ratio
   use equations_m, only : equations_t
   use errors_m, only : error_t
   use health_m, only : check_energy, check_ratio, check_radii, judge_energies, judge_ratio, &
     judge_contact, made_by_forces, unaccounted, dissipated
-  use history_elements_m, only : fill_history_elements
-  use history_tables_m, only : table_matsum, table_rcforc, table_sleout, table_spcforc, &
-    table_contact, table_elout, table_bndout, table_nodfor, table_secforc
+  use history_tables_m, only : table_matsum, table_spcforc, table_bndout, table_nodfor, &
+    table_secforc
   use implicit_forces_m, only : trial_t, net_force, cut_sections
   use implicit_start_m, only : implicit_memory_t
   use implicit_tangent_m, only : step_t
   use kinds_m, only : wp
   use model_m, only : model_t
-  use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
+  use monitor_m, only : monitor_t, due_t, find_due, any_due
   use output_schedule_m, only : output_reach
-  use progress_m, only : show_progress
-  use section_filling_m, only : fill_sections
-  use snapshot_filling_m, only : fill_energies, fill_parts, fill_interfaces, fill_plot
-  use snapshot_m, only : snapshot_t
+  use reporting_m, only : note_energies, write_instant
+  use snapshot_filling_m, only : fill_energies, fill_parts
   use state_m, only : state_t
   use support_forces_m, only : fill_reactions
   implicit none
@@ -40,7 +34,8 @@ module implicit_report_m
 
 contains
 
-  !> Write what is due; of a state that was reported before, only what was not written then.
+  !> Write what is due; of a state that was reported before, only what was not written then. The
+  !> memory learns the energy ratio.
   subroutine report_step(model, state, last, plots, monitor, memory, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -51,12 +46,15 @@ contains
                                           !! reported before, and becomes that of this one
     type(error_t), allocatable, intent(out) :: error
     type(due_t) :: due
-    real(wp) :: dt
+    real(wp) :: dt, kinetic(size(model%parts)), momentum(2, size(model%parts))
 
     dt = output_reach(model%controls, state%dt)
     due = find_due(monitor, state%time, dt, state%cycle == 0 .or. last)
     due%plot = due%plot .or. (plots .and. monitor%has_plot)
-    if (state%cycle == monitor%snapshot%cycle) due = without(due, memory%written)
+    if (state%cycle == monitor%snapshot%cycle) then
+      due%plot = due%plot .and. .not. memory%written%plot
+      due%tables = due%tables .and. .not. memory%written%tables
+    end if
     memory%written = due
     if (.not. any_due(due)) return
     associate (shot => monitor%snapshot, force => memory%step%old_force)
@@ -69,33 +67,21 @@ contains
       call fill_energies(model, state, [0.0_wp, 0.0_wp], shot)
       shot%energies%kinetic = 0.5_wp*sum(shot%velocity*mass_times(model, shot%velocity))
       shot%energies%made = max(0.0_wp, -shot%energies%contact)
-      if (state%cycle == 0) then
-        state%initial_energy = total_energy(shot%energies)
-        shot%energies%initial = state%initial_energy
+      call note_energies(model, .true., state, monitor)
+      if (due%tables(table_matsum)) then
+        call fill_parts(model, state%elements, shot)
+        call sum_part_motion(model, shot%velocity, kinetic, momentum)
+        shot%parts%kinetic = kinetic
+        shot%parts%momentum(1) = momentum(1, :)
+        shot%parts%momentum(2) = momentum(2, :)
       end if
-      call follow_softness(model, shot%parts, monitor%bodies, state)
-      if (due%tables(table_matsum)) call fill_consistent_parts(model, state%elements, shot)
-      if (any(due%tables([table_rcforc, table_sleout, table_contact]))) &
-        call fill_interfaces(model, state, shot)
       if (due%tables(table_spcforc)) call fill_reactions(model, &
         force + mass_times(model, shot%acceleration), shot)
-      if (any(due%tables([table_bndout, table_nodfor]))) then
-        call find_forces(model, force + mass_times(model, shot%acceleration), &
-          memory%trial%internal, state)
-        call fill_boundaries(state, shot)
-      end if
-      if (due%tables(table_secforc)) then
-        call cut_sections(model, memory%trial, state)
-        call fill_sections(model, state, shot)
-      end if
-      if (due%tables(table_elout)) call fill_history_elements(model, state, shot)
-      if (due%plot) call fill_plot(model, state, shot)
-      if (any(due%tables([table_sleout, table_contact]))) call judge_contacts(model, state, &
-        due%plot, monitor%rows, shot)
-      call write_due(model, due, dt, monitor, error)
-      if (due%plot .and. .not. allocated(error)) &
-        call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, &
-        energy_ratio(shot%energies), 'write vtkhdf state')
+      if (any(due%tables([table_bndout, table_nodfor]))) call find_forces(model, &
+        force + mass_times(model, shot%acceleration), memory%trial%internal, state)
+      if (due%tables(table_secforc)) call cut_sections(model, memory%trial, state)
+      memory%ratio = energy_ratio(shot%energies)
+      call write_instant(model, due, dt, memory%ratio, state, monitor, error)
       if (.not. allocated(error)) call check_energy(model%controls, shot%energies, made_by_forces, &
         error)
       if (.not. allocated(error)) call check_ratio(shot%energies, &
@@ -111,31 +97,6 @@ contains
     end associate
     call lap(monitor%clock, phase_output)
   end subroutine report_step
-
-  !> What is due and was not written.
-  pure function without(due, written) result(left)
-    type(due_t), intent(in) :: due, written
-    type(due_t) :: left
-
-    left%plot = due%plot .and. .not. written%plot
-    left%tables = due%tables .and. .not. written%tables
-  end function without
-
-  !> Parts with the consistent mass.
-  subroutine fill_consistent_parts(model, elements, shot)
-    type(model_t), intent(in) :: model
-    type(block_state_t), intent(in) :: elements
-    type(snapshot_t), intent(inout) :: shot
-    real(wp) :: kinetic(size(model%parts)), momentum(2, size(model%parts))
-    integer :: i
-
-    call fill_parts(model, elements, shot)
-    call sum_part_motion(model, shot%velocity, kinetic, momentum)
-    do i = 1, size(model%parts)
-      shot%parts(i)%kinetic = kinetic(i)
-      shot%parts(i)%momentum = momentum(:, i)
-    end do
-  end subroutine fill_consistent_parts
 
   !> All that a body at rest has taken of the work done on it, stored or dissipated, J/m.
   function held_energy(model, state) result(held)
