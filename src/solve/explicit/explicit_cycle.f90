@@ -43,7 +43,7 @@ module explicit_cycle_m
   use held_nodes_m, only : move_common, count_walls
   use state_m, only : state_t
   use tile_forces_m, only : sum_special_forces
-  use time_step_m, only : step_plan_t, start_steps, volume_step, next_step, obey_approach, &
+  use time_step_m, only : step_plan_t, volume_step, next_step, obey_approach, &
     is_last, follow_springs, cycles_in, has_springs
   use visitor_m, only : visited_t, visitor_t
   implicit none
@@ -122,13 +122,13 @@ contains
     end associate
     cycle%reason = 'termination time reached'
     if (model%erodes) allocate (cycle%told, source=state%elements%erosion%n_eroded)
-    cycle%steps = start_steps(model, state%time)
+    cycle%steps%start_time = state%time
     cycle%failures%takes_up = monitor%restarts%goes_on
-    if (.not. monitor%restarts%goes_on) return
-    call read_cycle(model, state, monitor%restarts%source, cycle)
+    if (monitor%restarts%goes_on) call read_cycle(model, state, monitor%restarts%source, cycle)
     ! The deck of this run says when it ends.
     cycle%steps%end_time = model%controls%end_time
     cycle%steps%end_cycle = model%controls%end_cycle
+    if (.not. monitor%restarts%goes_on) return
     if (cycle%steps%constant > 0.0_wp) cycle%steps%n_cycle = &
       cycles_in(cycle%steps%end_time - cycle%steps%start_time, cycle%steps%constant)
     call close_restart(monitor%restarts%source, cycle%error)

@@ -8,7 +8,7 @@ module explicit_report_m
   use energies_m, only : energy_ratio
   use element_losses_m, only : settle_elements
   use explicit_cycle_m, only : explicit_cycle_t, prepare_leap
-  use time_step_m, only : first_change, first_step, shorten_first_step, obey_approach, &
+  use time_step_m, only : first_change, first_step, largest_change, obey_approach, &
     obey_defaults, follow_springs
   use health_m, only : check_energy, check_ratio, check_radii, made_by_springs, unaccounted
   use history_tables_m, only : table_glstat, table_matsum, table_rwforc, table_spcforc, table_rbdout
@@ -125,7 +125,14 @@ contains
     end if
     call prepare_leap(model, state, cycle)
     call first_change(model, cycle%shares, cycle%leap, cycle%velocity, state, monitor%ranks, change)
-    call shorten_first_step(monitor%log, cycle%steps, state%dt, change)
+    if (change > largest_change) then
+      state%dt = state%dt*(largest_change/change)
+      cycle%steps%constant = 0.0_wp
+      call write_log(monitor%log, 'first time step shortened to '//to_text(state%dt) &
+        //': in the stable one the volume of an element would change by ' &
+        //to_text(100.0_wp*change)//' %')
+      change = largest_change
+    end if
     state%contacts%advance = state%contacts%advance*(state%dt/dt)
     ! What the elements of the first cycle could not yet tell the step of the second one.
     cycle%checks(cycle%first_check)%volume_change = change

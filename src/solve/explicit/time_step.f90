@@ -28,7 +28,7 @@ module time_step_m
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: step_plan_t, start_steps, first_step, shorten_first_step, volume_step, next_step, &
+  public :: step_plan_t, first_step, largest_change, volume_step, next_step, &
     is_last, cycles_in, obey_approach, obey_defaults, follow_springs, has_springs, first_change
 
   !> What a step must be allowed to rise by before it does.
@@ -59,17 +59,6 @@ module time_step_m
   end type step_plan_t
 
 contains
-
-  !> The plan at the start.
-  pure function start_steps(model, time) result(steps)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: time
-    type(step_plan_t) :: steps
-
-    steps%end_time = model%controls%end_time
-    steps%end_cycle = model%controls%end_cycle
-    steps%start_time = time
-  end function start_steps
 
   !> The first step, from the elements at time zero.
   subroutine first_step(model, elements, log, steps, dt, error)
@@ -102,21 +91,6 @@ contains
     if (allocated(steps%springs)) call write_log(log, 'stable step of elements and contact ' &
       //'springs '//to_text(limit))
   end subroutine first_step
-
-  !> A first step in which the volume of an element would change by more than it should.
-  subroutine shorten_first_step(log, steps, dt, change)
-    type(log_t), intent(inout) :: log
-    type(step_plan_t), intent(inout) :: steps
-    real(wp), intent(inout) :: dt            !! s
-    real(wp), intent(inout) :: change        !! largest change of ln V in it
-
-    if (change <= largest_change) return
-    dt = dt*(largest_change/change)
-    steps%constant = 0.0_wp
-    call write_log(log, 'first time step shortened to '//to_text(dt)//': in the stable one the ' &
-      //'volume of an element would change by '//to_text(100.0_wp*change)//' %')
-    change = largest_change
-  end subroutine shorten_first_step
 
   !> Step in which ln V of an element changes by no more than it should, from the change in an
   !> earlier step `dt`, since which a time `since` has passed. At a constant rate that is
@@ -218,6 +192,7 @@ contains
     real(wp), intent(inout) :: time           !! in: old, out: new
     real(wp), intent(inout) :: dt             !! in: step that led here, out: next one
     real(wp) :: wanted, before
+    logical :: changes
 
     before = time
     if (steps%constant > 0.0_wp) then
@@ -226,24 +201,16 @@ contains
       time = time + dt
     end if
     wanted = choose_step(model, stable_limit(element_limit, steps), time, log, steps)
-    if (must_change(model, before, wanted, dt)) dt = wanted
+    ! Leap-frog keeps energy without a trend only while its step is constant; the limits of elements
+    ! and springs beat with the vibrations of a body, and a step that follows them feeds those
+    ! (doc/theory/time_integration.md). So a step that a limit has set is held, whatever curve lies
+    ! above; one that a curve has set follows it.
+    changes = wanted < dt .or. wanted > (1.0_wp + least_rise)*dt
+    if (.not. changes .and. model%controls%dt_curve > 0) &
+      changes = dt >= curve_value(model%curves(model%controls%dt_curve), before)
+    if (changes) dt = wanted
     if (steps%warned) steps%constant = 0.0_wp
   end subroutine next_step
-
-  !> Whether a step gives way to the one that is wanted. Leap-frog keeps energy without a trend only
-  !> while its step is constant; the limits of elements and springs beat with the vibrations of a
-  !> body, and a step that follows them feeds those (doc/theory/time_integration.md). So a step that
-  !> a limit has set is held, whatever curve lies above; one that a curve has set follows it.
-  pure function must_change(model, before, wanted, dt) result(must)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: before     !! time at which `dt` was chosen
-    real(wp), intent(in) :: wanted, dt !! s
-    logical :: must
-
-    must = wanted < dt .or. wanted > (1.0_wp + least_rise)*dt
-    if (must .or. model%controls%dt_curve == 0) return
-    must = dt >= curve_value(model%curves(model%controls%dt_curve), before)
-  end function must_change
 
   !> Whether the cycle at `time` is the last: nint(ENDTIM/dt) cycles of a constant step, otherwise
   !> the first cycle at or after the end time.

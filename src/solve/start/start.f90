@@ -20,7 +20,6 @@ module start_m
   use model_log_m, only : log_added_mass, log_masses
   use mass_scaling_m, only : scales_masses, start_mass_scaling
   use model_m, only : model_t
-  use outlines_m, only : start_outlines
   use state_m, only : state_t
   use stiffness_damping_m, only : start_retardation
   implicit none
@@ -91,7 +90,7 @@ contains
       allocate (state%quiet_since(size(model%controls%ends)), source=-1.0_wp)
     call start_contacts(model, log, state, error, answers)
     if (allocated(error)) return
-    call start_outlines(model, state)
+    if (model%erodes) state%outlines = model%contacts
     call weigh_contacts(model, state)
     if (present(others)) then
       do i = 1, size(state%contacts)
