@@ -21,7 +21,7 @@ module contact_pressing_m
   use weighted_gaps_m, only : node_of
   implicit none
   private
-  public :: pressing_t, press_contacts, list_riders, ride
+  public :: pressing_t, press_contacts
 
   !> Of a leap: what an acceleration and the old velocity count, and what body forces add.
   integer, parameter :: half = 1, keep = 2, push = 3
@@ -40,7 +40,7 @@ contains
     type(state_t), intent(inout) :: state
     type(pressing_t), intent(inout) :: steps(:) !! (interfaces) of the call before
     logical :: are_solved !! rigid bodies: no two interfaces press one that moves
-    integer :: i
+    integer :: i, k
 
     are_solved = .false.
     call lap(clock, phase_nodes)
@@ -55,7 +55,12 @@ contains
       if (state%contacts(i)%points%n > 0) then
         call find_rows(steps(i), state%contacts(i))
         call foresee(leap, state%contacts(i)%nodes, state, steps(i))
-        call lead(model, velocity, state%time, steps(i))
+        do k = 1, size(steps(i)%led, 2)
+          associate (prescribed => model%conditions%motions(steps(i)%led(1, k)))
+            if (is_active(prescribed, state%time)) steps(i)%velocity(prescribed%direction, &
+              steps(i)%led(2, k)) = velocity(steps(i)%led(1, k))
+          end associate
+        end do
         if (size(steps(i)%riders, 2) > 0) then
           if (.not. are_solved) call solve_rigids(model, damping, state)
           are_solved = .true.
@@ -166,90 +171,35 @@ contains
     call ride(model, counted, state, step)
   end subroutine carry
 
-  !> What leads or carries which nodes of an interface.
+  !> Which motions lead which nodes of an interface, and which of its nodes belong to which body.
   subroutine list_company(model, nodes, step)
     type(model_t), intent(in) :: model
     integer, intent(in) :: nodes(:)
     type(pressing_t), intent(inout) :: step
-    integer :: local(model%mesh%n_node), i
+    integer :: local(model%mesh%n_node) !! number in the interface, 0: not of it
+    integer :: led(2, size(model%conditions%motions)), riders(3, size(nodes)), i, k, n
 
     local = 0
-    do i = 1, size(nodes)
-      local(nodes(i)) = i
-    end do
-    call list_led(model, local, step)
-    call list_riders(model, local, size(nodes), step)
-  end subroutine list_company
-
-  !> Which motions lead which nodes.
-  subroutine list_led(model, local, step)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: local(:) !! (n_node) number in the interface, 0: not of it
-    type(pressing_t), intent(inout) :: step
-    integer :: led(2, size(model%conditions%motions)), i, n
-
+    local(nodes) = [(i, i=1, size(nodes))]
     n = 0
-    do i = 1, size(model%conditions%motions)
+    do i = 1, size(led, 2)
       if (local(model%conditions%motions(i)%node) == 0) cycle
       n = n + 1
       led(:, n) = [i, local(model%conditions%motions(i)%node)]
     end do
-    allocate (step%led(2, n))
-    step%led(:, :) = led(:, :n)
-  end subroutine list_led
-
-  !> The nodes that are led.
-  subroutine lead(model, velocity, time, step)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: velocity(:)     !! (n_motion)
-    real(wp), intent(in) :: time            !! s
-    type(pressing_t), intent(inout) :: step
-    integer :: i
-
-    do i = 1, size(step%led, 2)
-      associate (prescribed => model%conditions%motions(step%led(1, i)))
-        if (is_active(prescribed, time)) &
-          step%velocity(prescribed%direction, step%led(2, i)) = velocity(step%led(1, i))
-      end associate
-    end do
-  end subroutine lead
-
-  !> Which nodes of an interface belong to which body.
-  subroutine list_riders(model, local, n_own, step)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: local(:) !! (n_node) number in the interface, 0: not of it
-    integer, intent(in) :: n_own    !! nodes of the interface
-    type(pressing_t), intent(inout) :: step
-    integer :: riders(3, n_own), i, k, n
-
+    step%led = led(:, :n)
     n = 0
     do i = 1, size(model%rigids)
-      associate (body => model%rigids(i)%nodes)
-        do k = 1, size(body)
-          if (local(body(k)) == 0) cycle
-          n = n + 1
-          riders(:, n) = [i, k, local(body(k))]
-        end do
-      end associate
+      do k = 1, size(model%rigids(i)%nodes)
+        if (local(model%rigids(i)%nodes(k)) == 0) cycle
+        n = n + 1
+        riders(:, n) = [i, k, local(model%rigids(i)%nodes(k))]
+      end do
     end do
-    allocate (step%riders(3, n), step%modes(2, n_own, 3*count_bodies(riders(1, :n))))
-    step%riders(:, :) = riders(:, :n)
-  end subroutine list_riders
-
-  !> How many bodies there are on a list that rises.
-  pure integer function count_bodies(bodies)
-    integer, intent(in) :: bodies(:)
-    integer :: i
-
-    count_bodies = 0
-    do i = 1, size(bodies)
-      if (i == 1) then
-        count_bodies = 1
-      else if (bodies(i) /= bodies(i - 1)) then
-        count_bodies = count_bodies + 1
-      end if
-    end do
-  end function count_bodies
+    step%riders = riders(:, :n)
+    k = count([(any(riders(1, :n) == i), i=1, size(model%rigids))])
+    allocate (step%modes(2, size(nodes), 3*k))
+  end subroutine list_company
 
   !> Velocities of the nodes of bodies whose v(n+1/2) without the interface is known, and the modes
   !> by which these are free to move, times the root of what a unit force along them makes.

@@ -27,10 +27,11 @@ module explicit_cycle_m
   use monitor_m, only : monitor_t, due_t, find_due, any_due
   use node_motion_m, only : follow_damping, leap_t, make_leap
   use outlines_m, only : follow_outlines
+  use packed_buffer_m, only : stream_starts
   use progress_m, only : follow_progress
   use rank_borders_m, only : borders_t, plan_borders
   use rank_exchange_m, only : parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, &
-    exchange_erosion, exchange_history, gather_motion, gather_state, judge_elements, &
+    exchange_erosion, gather_motion, gather_state, judge_elements, &
     hear_requests, cut_sections
   use rank_shares_m, only : shares_t, share_out
   use ranks_m, only : ranks_t, bring_integers, bring_reals, share_error
@@ -255,7 +256,8 @@ contains
         call bring_integers(ranks, shares%chunks, 1, .true., elements%n_failed)
         ! The log names the first one.
         if (cycle%failures%told == 0 .and. any(elements%n_failed > 0)) &
-          call exchange_history(ranks, shares, elements)
+          call bring_reals(ranks, stream_starts(shares%chunks, elements%history_start, &
+          size(elements%history)), 1, .false., elements%history)
       end if
       if (cycle%writes) call gather_state(shares, cycle%borders, .false., ranks, state)
       if (cycle%writes .and. ranks%mine == 0) call sum_special_forces(model%layout, &

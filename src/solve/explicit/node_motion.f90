@@ -1,9 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> The leap-frog motion of the nodes: v(n+1/2) = [(1 - D h/2) v(n-1/2) + h a]/(1 + D h/2), u(n+1) =
-!> u(n) + dt v(n+1/2), with h the mean of the two steps. The damping acts on the mean of the two
-!> velocities, so it never limits the step. D of each node where the deck damps parts
-!> (*DAMPING_PART_MASS) is the mean over the masses that elements bring to it, and those on nodes,
-!> which have the global damping alone; nodes of a rigid body have that of its part.
+!> The leap-frog motion of the nodes:
+!> v(n+1/2) = [(1 - D h/2) v(n-1/2) + h a]/(1 + D h/2), u(n+1) = u(n) + dt v(n+1/2),
+!> with h the mean of the two steps. The damping acts on the mean of the two velocities,
+!> so it never limits the step. Where the deck damps parts (*DAMPING_PART_MASS) a node has the mean
+!> D over the masses that elements bring to it, and those on nodes, which have the global damping
+!> alone; nodes of a rigid body have that of its part.
 module node_motion_m
   use element_shares_m, only : element_shares
   use kinds_m, only : wp
@@ -158,29 +159,14 @@ contains
     real(wp), allocatable, intent(inout) :: rates(:, :)  !! (2, n_part + 1) as `damping_rates` has
                                                          !! them
     type(state_t), intent(inout) :: state
-    real(wp) :: now(2, size(model%parts) + 1)
-    integer :: i
+    real(wp) :: now(2, size(model%parts) + 1), shares(4)
+    integer :: i, k, slot
 
     now = damping_rates(model, state%time)
     if (allocated(rates)) then
       if (all(abs(now - rates) <= 0.0_wp)) return
     end if
     rates = now
-    call spread_rates(model, rates, state)
-    do i = 1, size(model%rigids)
-      state%node_damping(1, model%rigids(i)%nodes) = rates(1, model%rigids(i)%part)
-      state%node_damping(2, model%rigids(i)%nodes) = rates(2, model%rigids(i)%part)
-    end do
-  end subroutine follow_damping
-
-  !> The mean of the rates over the mass of each node.
-  subroutine spread_rates(model, rates, state)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: rates(:, :)
-    type(state_t), intent(inout) :: state
-    real(wp) :: shares(4)
-    integer :: slot, k
-
     state%node_damping = 0.0_wp
     if (allocated(model%conditions%lumped_masses)) then
       do k = 1, size(model%conditions%lumped_masses)
@@ -204,6 +190,10 @@ contains
     do k = 1, size(state%mass)
       if (state%mass(k) > 0.0_wp) state%node_damping(:, k) = state%node_damping(:, k)/state%mass(k)
     end do
-  end subroutine spread_rates
+    do i = 1, size(model%rigids)
+      state%node_damping(1, model%rigids(i)%nodes) = rates(1, model%rigids(i)%part)
+      state%node_damping(2, model%rigids(i)%nodes) = rates(2, model%rigids(i)%part)
+    end do
+  end subroutine follow_damping
 
 end module node_motion_m

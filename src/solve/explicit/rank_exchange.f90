@@ -15,8 +15,7 @@ module rank_exchange_m
   use model_m, only : model_t
   use monitor_m, only : monitor_t
   use load_work_m, only : motion_sums_t
-  use packed_buffer_m, only : packed_buffer_t, start_loading, start_unloading, choose_slots, &
-    stream_starts
+  use packed_buffer_m, only : packed_buffer_t, start_loading, start_unloading, choose_slots
   use rank_borders_m, only : borders_t
   use rank_shares_m, only : shares_t
   use ranks_m, only : ranks_t, bring_reals, bring_integers, swap_reals, find_least, share_error
@@ -25,7 +24,7 @@ module rank_exchange_m
   implicit none
   private
   public :: parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, exchange_erosion, &
-    exchange_history, gather_motion, gather_state, judge_elements, hear_requests, report_exchange, &
+    gather_motion, gather_state, judge_elements, hear_requests, report_exchange, &
     cut_sections
 
   !> Values of the sums over the nodes of a tile.
@@ -229,16 +228,6 @@ contains
     end associate
   end subroutine exchange_erosion
 
-  !> The history of all elements for the first process, which looks for one of them.
-  subroutine exchange_history(ranks, shares, elements)
-    type(ranks_t), intent(inout) :: ranks
-    type(shares_t), intent(in) :: shares
-    type(block_state_t), intent(inout) :: elements
-
-    call bring_reals(ranks, stream_starts(shares%chunks, elements%history_start, &
-      size(elements%history)), 1, .false., elements%history)
-  end subroutine exchange_history
-
   !> Motion of all nodes that only some processes move, with the velocities that damped runs keep.
   subroutine gather_motion(shares, borders, to_all, ranks, state)
     type(shares_t), intent(in) :: shares
@@ -383,13 +372,14 @@ contains
 
   end subroutine report_exchange
 
-  !> Before the elements are stepped: each process steps its own on a copy, the first one gets all.
+  !> Forces of the elements of cross sections, before the elements are stepped: each process steps
+  !> its own on a copy, the first one gets all.
   subroutine cut_sections(model, shares, ranks, state)
     type(model_t), intent(in) :: model
     type(shares_t), intent(in) :: shares
     type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state
-    integer :: i, first, last, starts(0:ranks%n)
+    integer :: i, rank, first, last, starts(0:ranks%n)
 
     call find_cut_forces(model, [shares%chunks(ranks%mine), shares%chunks(ranks%mine + 1) - 1], &
       state%motion, [state%time, state%dt_before], state%elements, state%cut_force)
@@ -398,25 +388,13 @@ contains
     do i = 1, size(model%controls%output%cross_sections)
       associate (elements => model%controls%output%cross_sections(i)%elements)
         last = first + size(elements) - 1
-        starts = starts_of(model, elements, shares)
+        ! Their slots rise.
+        starts = [(1 + count(model%layout%element_slot(elements) <= (shares%chunks(rank) - 1) &
+          *chunk_size), rank=0, ranks%n)]
         call bring_reals(ranks, starts, 8, .false., state%cut_force(:, first:last))
         first = last + 1
       end associate
     end do
   end subroutine cut_sections
-
-  !> Where the elements of each process start among some by rising slot, then one beyond the last.
-  pure function starts_of(model, elements, shares) result(starts)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: elements(:)
-    type(shares_t), intent(in) :: shares
-    integer :: starts(0:ubound(shares%chunks, 1))
-    integer :: rank
-
-    do rank = 0, ubound(starts, 1)
-      starts(rank) = 1 + count(model%layout%element_slot(elements) &
-        <= (shares%chunks(rank) - 1)*chunk_size)
-    end do
-  end function starts_of
 
 end module rank_exchange_m

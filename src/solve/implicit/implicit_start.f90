@@ -32,8 +32,7 @@ module implicit_start_m
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: implicit_memory_t, write_files, read_memory, take_up_memory, begin_steps, plan_next, &
-    has_ended
+  public :: implicit_memory_t, read_memory, write_files, begin_steps, plan_next, has_ended
 
   !> What one step remembers of those before.
   type, extends(visited_t) :: implicit_memory_t
@@ -84,22 +83,6 @@ contains
     call source%part('driver', memory)
   end subroutine read_memory
 
-  !> Read it into a memory that is set up from the deck, and close the file.
-  subroutine take_up_memory(model, state, source, memory, error)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(archive_t), intent(inout) :: source
-    type(implicit_memory_t), intent(inout) :: memory
-    type(error_t), allocatable, intent(out) :: error
-
-    call read_memory(model, state, source, memory)
-    call close_restart(source, error)
-    if (allocated(error)) return
-    memory%step%old_force = net_force(memory%trial)
-    ! The end may have come nearer while a whole step is under way.
-    memory%control%target = min(memory%control%target, memory%control%end_time)
-  end subroutine take_up_memory
-
   !> What is remembered up to the first report, and the plan of the first step.
   subroutine begin_steps(model, state, monitor, memory, last, error)
     type(model_t), intent(in) :: model
@@ -114,12 +97,22 @@ contains
 
     call list_changes(model, changes)
     memory%control = start_step_control(model%controls, changes)
-    call set_scheme(model, memory%step)
+    associate (implicit => model%controls%implicit, step => memory%step)
+      step%is_dynamic = implicit%is_dynamic
+      step%alpha_m = implicit%alpha_m
+      step%alpha_f = implicit%alpha_f
+      step%gamma = implicit%gamma
+      step%beta = implicit%beta
+    end associate
     if (memory%step%is_dynamic) call set_lags(model, state)
     last = .false.
     if (monitor%restarts%goes_on) then
-      call take_up_memory(model, state, monitor%restarts%source, memory, error)
+      call read_memory(model, state, monitor%restarts%source, memory)
+      call close_restart(monitor%restarts%source, error)
       if (allocated(error)) return
+      memory%step%old_force = net_force(memory%trial)
+      ! The end may have come nearer while a whole step is under way.
+      memory%control%target = min(memory%control%target, memory%control%end_time)
       last = has_ended(model, state, memory%control)
     else
       call log_method(model, memory%control, monitor%log)
@@ -162,20 +155,6 @@ contains
     ended = is_over(control, state%time)
     if (model%controls%end_cycle > 0) ended = ended .or. state%cycle >= model%controls%end_cycle
   end function has_ended
-
-  !> The weights of the two instants of a step.
-  pure subroutine set_scheme(model, step)
-    type(model_t), intent(in) :: model
-    type(step_t), intent(inout) :: step
-
-    associate (implicit => model%controls%implicit)
-      step%is_dynamic = implicit%is_dynamic
-      step%alpha_m = implicit%alpha_m
-      step%alpha_f = implicit%alpha_f
-      step%gamma = implicit%gamma
-      step%beta = implicit%beta
-    end associate
-  end subroutine set_scheme
 
   !> Damping of what sticks, by the frequencies of the springs of contact at time zero.
   subroutine set_lags(model, state)

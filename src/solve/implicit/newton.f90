@@ -97,7 +97,6 @@ contains
     type(report_t) :: report
     type(slip_cycle_t) :: slip_cycle
     integer :: iteration, node, direction
-    logical :: solved
 
     trial%motion(1:2, :) = state%motion(1:2, :)
     call assemble_forces(model, state, step%time, .true., clock, trial)
@@ -111,8 +110,9 @@ contains
       if (iteration > 1) way%moved = 0.0_wp
       call find_way(model, state, step, clock, trial, matrix, way, report)
       if (iteration == 1) outcome%began_negative = report%is_negative
-      call judge_solution(report, outcome, solved)
-      if (.not. solved) return
+      if (report%is_singular) outcome%singular_equation = report%equation
+      outcome%reason = report%message
+      if (.not. report%is_solved) return
       now%energy = abs(dot_product(way%x, way%b))
       now%step = norm2(way%x)
       now%start = norm2(way%b)
@@ -178,21 +178,6 @@ contains
     call solve_linear(matrix, way%b, way%x, report)
     call lap(clock, phase_solver)
   end subroutine find_way
-
-  !> Whether the linear system had a solution.
-  subroutine judge_solution(report, outcome, solved)
-    type(report_t), intent(in) :: report
-    type(outcome_t), intent(inout) :: outcome
-    logical, intent(out) :: solved
-
-    solved = .false.
-    if (report%is_singular) outcome%singular_equation = report%equation
-    if (report%is_solved) then
-      solved = .true.
-    else
-      outcome%reason = report%message
-    end if
-  end subroutine judge_solution
 
   !> Norm of the residual and of the round-off that it must hold: that of forces, of displacements
   !> times stiffness, and of places in gaps times the springs of contact.
@@ -321,45 +306,44 @@ contains
     type(state_t), intent(in) :: state
     type(step_t), intent(in) :: step
     type(clock_t), intent(inout) :: clock
-    real(wp), intent(in) :: start(:, :)
+    real(wp), intent(in) :: start(:, :) !! (2, n_node) displacement where the way begins
     type(trial_t), intent(inout) :: trial
     type(way_t), intent(inout) :: way
-
-    call put_nodes(step%equations, start, way, trial%motion)
-    call assemble_forces(model, state, step%time, .false., clock, trial)
-    way%trouble = trouble_of(trial)
-  end subroutine go_part
-
-  !> Displacements at a part of the way.
-  pure subroutine put_nodes(equations, start, way, motion)
-    type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: start(:, :)      !! (2, n_node) displacement where the way begins
-    type(way_t), intent(in) :: way
-    real(wp), intent(inout) :: motion(:, :)  !! (4, n_node)
     integer :: j, k, n
 
     do j = 1, size(start, 2)
       do k = 1, 2
-        n = equations%number(k, j)
+        n = step%equations%number(k, j)
         if (n == 0) cycle
-        if (n <= equations%n_free) then
-          motion(k, j) = start(k, j) + way%factor*way%x(n)
+        if (n <= step%equations%n_free) then
+          trial%motion(k, j) = start(k, j) + way%factor*way%x(n)
         else
-          motion(k, j) = start(k, j) + way%moved(n - equations%n_free)
+          trial%motion(k, j) = start(k, j) + way%moved(n - step%equations%n_free)
         end if
       end do
     end do
-  end subroutine put_nodes
+    call assemble_forces(model, state, step%time, .false., clock, trial)
+    way%trouble = trouble_of(trial)
+  end subroutine go_part
 
   !> After an iteration. States that stay as they are make no cycle.
   pure subroutine watch_slips(contacts, residual, cycle)
     type(contact_state_t), intent(in) :: contacts(:)
     real(wp), intent(in) :: residual !! norm of the forces out of balance
     type(slip_cycle_t), intent(inout) :: cycle
-    integer, allocatable :: states(:)
+    integer, allocatable :: states(:) !! of the places of all interfaces with friction
     logical :: repeats
+    integer :: i
 
-    call gather_states(contacts, states)
+    allocate (states(0))
+    do i = 1, size(contacts)
+      if (.not. allocated(contacts(i)%friction%state)) cycle
+      ! Those that slip backwards are another state.
+      associate (friction => contacts(i)%friction)
+        states = [states, merge(-friction%state, friction%state, &
+          friction%state == slips .and. friction%traction < 0.0_wp)]
+      end associate
+    end do
     if (size(states) == 0) return
     repeats = .false.
     if (allocated(cycle%before)) then
@@ -375,28 +359,5 @@ contains
     cycle%residual_before = cycle%residual_last
     cycle%residual_last = residual
   end subroutine watch_slips
-
-  !> States of the places of all interfaces with friction; those that slip backwards are another.
-  pure subroutine gather_states(contacts, states)
-    type(contact_state_t), intent(in) :: contacts(:)
-    integer, allocatable, intent(out) :: states(:)
-    integer :: i, n, first
-
-    n = 0
-    do i = 1, size(contacts)
-      if (allocated(contacts(i)%friction%state)) n = n + size(contacts(i)%friction%state)
-    end do
-    allocate (states(n))
-    first = 1
-    do i = 1, size(contacts)
-      if (.not. allocated(contacts(i)%friction%state)) cycle
-      associate (friction => contacts(i)%friction)
-        n = size(friction%state)
-        states(first:first + n - 1) = merge(-friction%state, friction%state, &
-          friction%state == slips .and. friction%traction < 0.0_wp)
-        first = first + n
-      end associate
-    end do
-  end subroutine gather_states
 
 end module newton_m
