@@ -180,7 +180,9 @@ contains
     integer :: led(2, size(model%conditions%motions)), riders(3, size(nodes)), i, k, n
 
     local = 0
-    local(nodes) = [(i, i=1, size(nodes))]
+    do i = 1, size(nodes)
+      local(nodes(i)) = i
+    end do
     n = 0
     do i = 1, size(led, 2)
       if (local(model%conditions%motions(i)%node) == 0) cycle

@@ -136,7 +136,13 @@ contains
         i_tile = cycle%rest%watched(i)
         call look_at_tile(model%layout, i_tile, state%motion, cycle%rest)
         if (cycle%rest%status(i_tile) < awake) then
-          call carry_tile(model, i_tile, state, cycle)
+          associate (tile => model%layout%tiles(i_tile))
+            if (allocated(cycle%sums%parts)) call sum_motion(tile%first_node, tile%last_node, &
+              state, cycle%sums%parts(:, i_tile))
+            if (cycle%rest%status(i_tile) == flying .and. .not. cycle%writes) &
+              call move_tile_nodes(cycle%leap, tile%first_node, tile%last_node, &
+              cycle%rest%no_force, state%inverse_mass, state%motion)
+          end associate
         else
           call step_tile(model, i_tile, state, cycle, force)
         end if
@@ -186,22 +192,6 @@ contains
     end associate
   end subroutine step_tile
 
-  !> What is left to do for a tile that rests.
-  subroutine carry_tile(model, i_tile, state, cycle)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i_tile
-    type(state_t), intent(inout) :: state
-    type(explicit_cycle_t), intent(inout) :: cycle
-
-    associate (tile => model%layout%tiles(i_tile))
-      if (allocated(cycle%sums%parts)) call sum_motion(tile%first_node, tile%last_node, state, &
-        cycle%sums%parts(:, i_tile))
-      if (cycle%rest%status(i_tile) == flying .and. .not. cycle%writes) &
-        call move_tile_nodes(cycle%leap, tile%first_node, tile%last_node, cycle%rest%no_force, &
-        state%inverse_mass, state%motion)
-    end associate
-  end subroutine carry_tile
-
   !> Contact forces that follow all others, which are summed before.
   subroutine press_nodes(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
@@ -245,27 +235,27 @@ contains
           if (allocated(state%walls)) call hold_nodes(model, cycle%leap, first, last, state)
           if (allocated(model%conditions%skew_supports)) call hold_skew_nodes(model, cycle%leap, &
             first, last, state)
-          if (allocated(state%node_damping)) then
-            call move_damped(model, cycle%leap, first, last, state)
-          else
-            call move_special_nodes(cycle%leap, first, last, state)
-          end if
+          call move_run(model, cycle%leap, first, last, state)
         end if
       end associate
     end do
     !$omp end do
   end subroutine advance_special_nodes
 
-  !> Nodes of damped parts whose internal forces stand in the nodal array.
-  subroutine move_damped(model, leap, first, last, state)
+  !> Move the special nodes first .. last, whose internal forces stand in the nodal array.
+  subroutine move_run(model, leap, first, last, state)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
     integer, intent(in) :: first, last
     type(state_t), intent(inout) :: state
 
-    if (last >= first) call move_damped_nodes(leap, model%layout%n_special, first, last, &
-      state%internal_force(:, first:last), state)
-  end subroutine move_damped
+    if (allocated(state%node_damping)) then
+      if (last >= first) call move_damped_nodes(leap, model%layout%n_special, first, last, &
+        state%internal_force(:, first:last), state)
+    else
+      call move_special_nodes(leap, first, last, state)
+    end if
+  end subroutine move_run
 
   !> Move all nodes after a cycle that wrote.
   subroutine move_all_nodes(model, state, cycle)
@@ -278,7 +268,7 @@ contains
     do i = cycle%shares%first_tile, cycle%shares%last_tile
       associate (tile => model%layout%tiles(i))
         if (allocated(state%node_damping)) then
-          call move_damped(model, cycle%leap, tile%first_node, tile%last_node, state)
+          call move_run(model, cycle%leap, tile%first_node, tile%last_node, state)
         else if (tile%last_node >= tile%first_node) then
           call move_tile_nodes(cycle%leap, tile%first_node, tile%last_node, &
             state%internal_force(1, tile%first_node), state%inverse_mass, state%motion)
@@ -288,13 +278,8 @@ contains
     !$omp end do
     !$omp do schedule(static)
     do i = 1, size(cycle%rest%summed)
-      associate (first => cycle%borders%runs(1, cycle%rest%summed(i)), &
-        last => cycle%borders%runs(2, cycle%rest%summed(i)))
-        if (allocated(state%node_damping)) then
-          call move_damped(model, cycle%leap, first, last, state)
-        else
-          call move_special_nodes(cycle%leap, first, last, state)
-        end if
+      associate (run => cycle%borders%runs(:, cycle%rest%summed(i)))
+        call move_run(model, cycle%leap, run(1), run(2), state)
       end associate
     end do
     !$omp end do

@@ -75,7 +75,21 @@ contains
     end do
   end subroutine move_common
 
-  !> Add the forces of all walls to one special node, whose other forces are known, before it moves.
+  !> Add the forces of all walls to the special nodes first .. last, whose other forces are known,
+  !> before they move.
+  subroutine hold_nodes(model, leap, first, last, state)
+    type(model_t), intent(in) :: model
+    type(leap_t), intent(in) :: leap
+    integer, intent(in) :: first, last
+    type(state_t), intent(inout) :: state
+    integer :: node
+
+    do node = first, last
+      call hold_node(model, leap, node, state)
+    end do
+  end subroutine hold_nodes
+
+  !> One node.
   subroutine hold_node(model, leap, node, state)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
@@ -167,19 +181,6 @@ contains
     if (wall%friction < friction_sticks) more = max(-wall%friction*force - friction, &
       min(more, wall%friction*force - friction))
   end function missing_friction
-
-  !> The special nodes first .. last.
-  subroutine hold_nodes(model, leap, first, last, state)
-    type(model_t), intent(in) :: model
-    type(leap_t), intent(in) :: leap
-    integer, intent(in) :: first, last
-    type(state_t), intent(inout) :: state
-    integer :: node
-
-    do node = first, last
-      call hold_node(model, leap, node, state)
-    end do
-  end subroutine hold_nodes
 
   !> Impulse and work of the walls over the half steps before and after the instant. Together they
   !> do the work F h (v(n-1/2) + v(n+1/2))/2, which is the change of kinetic energy that F makes,

@@ -100,12 +100,18 @@ contains
     type(rest_t), intent(inout) :: rest
     real(wp), allocatable, intent(out) :: before(:) !! not there where it can not come to rest
     real(wp) :: one(4)
+    logical :: goes_on
     integer :: i
     type(packed_buffer_t) :: buffer
 
     one = motion_of(model%layout, model%layout%tiles(i_tile), state%motion)
-    rest%status(i_tile) = merge(rest%status(i_tile), awake, may_go_on(model, one, state) &
-      .and. moves_as_one(model%layout, model%layout%tiles(i_tile), one, state%motion))
+    ! Each element of a round body is strained by a radial motion, and damping of parts is not that
+    ! of one tile.
+    goes_on = moves_as_one(model%layout, model%layout%tiles(i_tile), one, state%motion)
+    if (model%is_round) goes_on = goes_on .and. same_bits(one(1:3:2), [0.0_wp, 0.0_wp])
+    if (allocated(state%node_damping)) &
+      goes_on = goes_on .and. same_bits(one(3:4), [0.0_wp, 0.0_wp])
+    if (.not. goes_on) rest%status(i_tile) = awake
     do i = model%layout%tiles(i_tile)%first_node, model%layout%tiles(i_tile)%last_node
       if (rest%status(i_tile) == awake) exit
       if (.not. same_bits(state%motion(:, i), one)) rest%status(i_tile) = awake
@@ -114,19 +120,6 @@ contains
     call take_values(model%layout%tiles(i_tile), state%elements, buffer)
     call move_alloc(buffer%values, before)
   end subroutine remember_tile
-
-  !> Whether the motion of a tile in one motion goes on as one: each element of a round body is
-  !> strained by a radial one, and damping of parts is not that of one tile.
-  pure function may_go_on(model, one, state) result(may)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: one(4)
-    type(state_t), intent(in) :: state
-    logical :: may
-
-    may = .true.
-    if (model%is_round) may = same_bits(one(1:3:2), [0.0_wp, 0.0_wp])
-    if (allocated(state%node_damping)) may = may .and. same_bits(one(3:4), [0.0_wp, 0.0_wp])
-  end function may_go_on
 
   !> Behind it: the tile rests if nothing has come of the step.
   subroutine judge_tile(model, i_tile, before, force, state, rest)
@@ -152,7 +145,8 @@ contains
       one = motion_of(model%layout, tile, state%motion)
       rest%status(i_tile) = merge(resting, flying, same_bits(one(3:4), [0.0_wp, 0.0_wp]))
       state%internal_force(:, tile%first_node:tile%last_node) = 0.0_wp
-      call count_one(rest%n_fallen)
+      !$omp atomic
+      rest%n_fallen = rest%n_fallen + 1
     end associate
   end subroutine judge_tile
 
@@ -167,16 +161,9 @@ contains
       if (moves_as_one(layout, tile, motion_of(layout, tile, motion), motion)) return
     end associate
     rest%status(i_tile) = awake
-    call count_one(rest%n_woken)
-  end subroutine look_at_tile
-
-  !> The threads of the team count one after the other.
-  subroutine count_one(n)
-    integer, intent(inout) :: n
-
     !$omp atomic
-    n = n + 1
-  end subroutine count_one
+    rest%n_woken = rest%n_woken + 1
+  end subroutine look_at_tile
 
   !> Motion of one node of a tile, an interior one if it has any.
   pure function motion_of(layout, tile, motion) result(one)
@@ -192,39 +179,27 @@ contains
     end if
   end function motion_of
 
-  !> Whether all special nodes of a tile have this motion.
+  !> Whether all special nodes of a tile have this motion, in its bits.
   pure function moves_as_one(layout, tile, one, motion) result(same)
     type(layout_t), intent(in) :: layout
     type(tile_t), intent(in) :: tile
     real(wp), intent(in) :: one(4)
     real(wp), intent(in), contiguous :: motion(:, :)
     logical :: same
-
-    same = .true.
-    if (tile%last_special < tile%first_special) return
-    same = .not. differs(tile%last_special - tile%first_special + 1, &
-      layout%special_node(tile%first_special), one, motion)
-  end function moves_as_one
-
-  !> Whether any of these nodes has another motion, in its bits.
-  pure function differs(n, nodes, one, motion)
-    integer, intent(in) :: n
-    integer, intent(in) :: nodes(n)
-    real(wp), intent(in) :: one(4)
-    real(wp), intent(in) :: motion(4, *)
-    logical :: differs
     integer(long) :: wanted(4), found(4)
     integer :: i, k
 
     wanted = transfer(one, wanted)
     found = 0_long
-    do i = 1, n
-      do k = 1, 4
-        found(k) = ior(found(k), ieor(transfer(motion(k, nodes(i)), 0_long), wanted(k)))
-      end do
+    do i = tile%first_special, tile%last_special
+      associate (node => layout%special_node(i))
+        do k = 1, 4
+          found(k) = ior(found(k), ieor(transfer(motion(k, node), 0_long), wanted(k)))
+        end do
+      end associate
     end do
-    differs = any(found /= 0_long)
-  end function differs
+    same = all(found == 0_long)
+  end function moves_as_one
 
   !> At the end of a cycle: steps that were not taken, and the tiles of the next one.
   subroutine follow_rest(model, rest)

@@ -22,7 +22,7 @@ module newton_m
   use state_m, only : state_t
   implicit none
   private
-  public :: outcome_t, find_equilibrium, way_t, move_nodes, slip_cycle_t, watch_slips
+  public :: outcome_t, find_equilibrium, slip_cycle_t, watch_slips
 
   !> How far above the estimate of the round-off in the residual it counts as reached.
   real(wp), parameter :: floor_margin = 4.0_wp
