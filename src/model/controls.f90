@@ -14,9 +14,9 @@ module controls_m
   public :: boundary_rows_t, list_boundaries, boundary_load, boundary_body_load, &
     boundary_pressure, boundary_motion, boundary_body_motion, force_group_t, group_nodes, &
     cross_section_t, find_edges, mark_corners, n_cut, end_condition_t, end_node_place, &
-    end_node_touch, end_body_place, end_body_way, end_contact, controls_t, relaxation_t, implicit_t, &
-    output_plan_t, interval_t, is_asked, length_by_side, length_by_diagonal, contact_step_warns, &
-    contact_step_free, contact_step_rules
+    end_node_touch, end_body_place, end_body_way, end_contact, controls_t, relaxation_t, &
+    implicit_t, output_plan_t, interval_t, is_asked, length_by_side, length_by_diagonal, &
+    contact_step_warns, contact_step_free, contact_step_rules
 
   !> What acts: a force on a node, on a body, pressure on edges of a node, prescribed motion of a
   !> node, of a body. Rows come in this order.
