@@ -122,7 +122,7 @@ contains
     type(mesh_t), intent(in) :: mesh
     type(layout_t), intent(inout) :: layout
     integer, allocatable :: local(:), special(:)
-    integer :: i_tile, n_special_slots
+    integer :: i_tile, slot, n_special_slots
 
     allocate (layout%slot_nodes(4, layout%n_slot), layout%slot_local(4, layout%n_slot))
     allocate (local(mesh%n_node), source=0)
@@ -131,17 +131,7 @@ contains
     do i_tile = 1, size(layout%tiles)
       call number_tile(mesh, i_tile, layout, local, special, n_special_slots)
     end do
-    call number_rest(mesh, layout)
-    layout%special_node = special(:n_special_slots)
-    call list_node_slots(layout)
-  end subroutine build_local_numbers
-
-  !> Nodes of the slots behind all tiles; they have no local numbers.
-  pure subroutine number_rest(mesh, layout)
-    type(mesh_t), intent(in) :: mesh
-    type(layout_t), intent(inout) :: layout
-    integer :: slot
-
+    ! Slots behind all tiles have no local numbers.
     do slot = last_slot(layout%tiles(size(layout%tiles))) + 1, layout%n_slot
       layout%slot_local(:, slot) = 0_local_kind
       if (layout%slot_element(slot) > 0) then
@@ -150,7 +140,9 @@ contains
         layout%slot_nodes(:, slot) = layout%slot_nodes(1, slot - 1)
       end if
     end do
-  end subroutine number_rest
+    layout%special_node = special(:n_special_slots)
+    call list_node_slots(layout)
+  end subroutine build_local_numbers
 
   !> Local numbers of one tile; its special nodes get the next force slots.
   subroutine number_tile(mesh, i_tile, layout, local, special, n_special_slots)
