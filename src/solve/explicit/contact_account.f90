@@ -51,7 +51,7 @@ contains
   end subroutine plan_looks
 
   !> After the forces of an interface: what its springs have made or lost, and a warning the first
-  !> time that this is much.
+  !> time that this is much, or where forces are limited again and again.
   subroutine follow_contact(model, i, state, log)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
@@ -60,7 +60,14 @@ contains
     real(wp) :: change
     integer :: sign_of
 
-    call follow_limit(model, i, state, log)
+    associate (limit => state%contacts(i)%limit)
+      if (limit%recent >= again_and_again .and. .not. limit%warned) then
+        limit%warned = .true.
+        call warn(log, 'interface '//to_text(model%contacts(i)%id)//': at cycle ' &
+          //to_text(state%cycle)//', time '//to_text(state%time)//', again and again' &
+          //limit_text(limit)//hint(has_made))
+      end if
+    end associate
     associate (contact => state%contacts(i), watch => state%contacts(i)%watch)
       if (.not. watch%has_looked) return
       ! What springs hold beyond what they were given is not returned (energy_limit).
@@ -91,22 +98,6 @@ contains
         //amount_text(model, i, sign_of, state)//hint(sign_of))
     end associate
   end subroutine follow_contact
-
-  !> A warning where the forces of an interface are limited again and again.
-  subroutine follow_limit(model, i, state, log)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i
-    type(state_t), intent(inout) :: state
-    type(log_t), intent(inout) :: log
-
-    associate (limit => state%contacts(i)%limit)
-      if (limit%recent < again_and_again .or. limit%warned) return
-      limit%warned = .true.
-      call warn(log, 'interface '//to_text(model%contacts(i)%id)//': at cycle ' &
-        //to_text(state%cycle)//', time '//to_text(state%time)//', again and again' &
-        //limit_text(limit)//hint(has_made))
-    end associate
-  end subroutine follow_limit
 
   !> How often forces were limited, and by how much.
   function limit_text(limit) result(text)

@@ -23,9 +23,6 @@ module contact_pressing_m
   private
   public :: pressing_t, press_contacts
 
-  !> Of a leap: what an acceleration and the old velocity count, and what body forces add.
-  integer, parameter :: half = 1, keep = 2, push = 3
-
 contains
 
   !> Pressures and forces of all such interfaces. One thread: what an interface is given by another
@@ -79,79 +76,32 @@ contains
   end subroutine press_contacts
 
   !> The step ahead as the nodes that have rows would make it without the interface, by the forces
-  !> that are known.
+  !> that are known: what a force adds to their velocities, and these; 0 where nothing moves them.
   subroutine foresee(leap, nodes, state, step)
     type(leap_t), intent(in) :: leap
-    integer, intent(in), contiguous :: nodes(:)
+    integer, intent(in), contiguous :: nodes(:) !! of the interface
     type(state_t), intent(in) :: state
     type(pressing_t), intent(inout) :: step
-    real(wp) :: factors(2, 3)
+    real(wp) :: half(2), keep(2), push(2), free(2)
     integer :: i
 
-    factors(:, half) = leap%half
-    factors(:, keep) = leap%keep
-    factors(:, push) = leap%half*leap%body
-    if (.not. allocated(state%node_damping)) then
-      call foresee_nodes(step%rows%node(:, :step%rows%n_node), nodes, factors, state, step)
-      return
-    end if
+    half = leap%half
+    keep = leap%keep
+    push = leap%half*leap%body
+    !GCC$ NOVECTOR
     do i = 1, step%rows%n_node
-      call find_factors(leap, state, nodes(step%rows%node(node_of, i)), factors(:, half), &
-        factors(:, keep))
-      factors(:, push) = factors(:, half)*leap%body
-      call foresee_nodes(step%rows%node(:, i:i), nodes, factors, state, step)
+      associate (l => step%rows%node(node_of, i), k => nodes(step%rows%node(node_of, i)))
+        if (allocated(state%node_damping)) then
+          call find_factors(leap, state, k, half, keep)
+          push = half*leap%body
+        end if
+        step%mobility(:, l) = half*state%inverse_mass(:, k)
+        free = keep*state%motion(3:4, k) + push + step%mobility(:, l)*(state%force_special(:, k) &
+          - state%internal_force(:, k))
+        step%velocity(:, l) = merge(free, 0.0_wp, step%mobility(:, l) > 0.0_wp)
+      end associate
     end do
   end subroutine foresee
-
-  !> Some of them, with the same factors.
-  pure subroutine foresee_nodes(listed, nodes, factors, state, step)
-    integer, intent(in), contiguous :: listed(:, :) !! of the list of nodes that have rows
-    integer, intent(in), contiguous :: nodes(:)     !! of the interface
-    real(wp), intent(in) :: factors(2, 3)
-    type(state_t), intent(in) :: state
-    type(pressing_t), intent(inout) :: step
-
-    call find_mobility(listed, nodes, factors(:, half), state%inverse_mass, step%mobility)
-    call find_free(listed, nodes, factors, step%mobility, state%motion, state%force_special, &
-      state%internal_force, step%velocity)
-  end subroutine foresee_nodes
-
-  !> What a force adds to their velocities.
-  pure subroutine find_mobility(listed, nodes, factor, inverse_mass, mobility)
-    integer, intent(in), contiguous :: listed(:, :)
-    integer, intent(in) :: nodes(*)
-    real(wp), intent(in) :: factor(2), inverse_mass(2, *)
-    real(wp), intent(inout) :: mobility(2, *)
-    integer :: i
-
-    !GCC$ NOVECTOR
-    do i = 1, size(listed, 2)
-      associate (l => listed(node_of, i))
-        mobility(:, l) = factor*inverse_mass(:, nodes(l))
-      end associate
-    end do
-  end subroutine find_mobility
-
-  !> Their velocities; 0 where nothing moves them.
-  pure subroutine find_free(listed, nodes, factors, mobility, motion, force, internal_force, &
-      velocity)
-    integer, intent(in), contiguous :: listed(:, :)
-    integer, intent(in) :: nodes(*)
-    real(wp), intent(in) :: factors(2, 3)
-    real(wp), intent(in) :: mobility(2, *), motion(4, *), force(2, *), internal_force(2, *)
-    real(wp), intent(inout) :: velocity(2, *)
-    real(wp) :: free(2)
-    integer :: i
-
-    !GCC$ NOVECTOR
-    do i = 1, size(listed, 2)
-      associate (l => listed(node_of, i), k => nodes(listed(node_of, i)))
-        free = factors(:, keep)*motion(3:4, k) + factors(:, push) &
-          + mobility(:, l)*(force(:, k) - internal_force(:, k))
-        velocity(:, l) = merge(free, 0.0_wp, mobility(:, l) > 0.0_wp)
-      end associate
-    end do
-  end subroutine find_free
 
   !> Nodes of rigid bodies, by the forces that are known.
   subroutine carry(model, leap, damping, state, step)

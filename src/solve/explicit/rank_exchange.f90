@@ -91,10 +91,10 @@ contains
     parcel%sent = parcel%sent - ranks%sent
     parcel%joined = parcel%joined - ranks%joined
     parcel%n_cycle = parcel%n_cycle + 1
-    call copy_slots(.true., borders%out_slots, state%force_slots, parcel%outgoing)
+    call copy_columns(.true., borders%out_slots, 2, state%force_slots, parcel%outgoing)
     call swap_reals(ranks, borders%peers, 2*borders%out_starts - 1, parcel%outgoing, &
       2*borders%in_starts - 1, parcel%incoming)
-    call copy_slots(.false., borders%in_slots, state%force_slots, parcel%incoming)
+    call copy_columns(.false., borders%in_slots, 2, state%force_slots, parcel%incoming)
     if (size(parcel%values) == 0) return
     call fill_piece(ranks%mine, .true.)
     call bring_reals(ranks, parcel%starts, 1, .true., parcel%values)
@@ -108,58 +108,41 @@ contains
     subroutine fill_piece(rank, puts)
       integer, intent(in) :: rank
       logical, intent(in) :: puts
-      integer :: at, first, last
+      integer :: at, i
 
       at = parcel%starts(rank + 1)
-      first = borders%common_starts(rank + 1)
-      last = borders%common_starts(rank + 2) - 1
-      if (last >= first) call copy_slots(puts, borders%common(first:last), state%force_slots, &
-        parcel%values(at))
-      at = at + 2*(last - first + 1)
+      associate (first => borders%common_starts(rank + 1), &
+        last => borders%common_starts(rank + 2) - 1)
+        if (last >= first) call copy_columns(puts, borders%common(first:last), 2, &
+          state%force_slots, parcel%values(at))
+        at = at + 2*(last - first + 1)
+      end associate
       if (.not. allocated(sums%parts)) return
-      first = shares%tiles(rank)
-      last = shares%tiles(rank + 1) - 1
-      if (last >= first) call copy_columns(puts, last - first + 1, n_sum, sums%parts(1, first), &
-        parcel%values(at))
-      at = at + n_sum*(last - first + 1)
       ! Those of blocks stand behind those of tiles.
-      first = size(sums%parts, 2) - size(sums%blocks, 2) + sums%starts(rank + 1)
-      last = first + sums%starts(rank + 2) - sums%starts(rank + 1) - 1
-      if (last >= first) call copy_columns(puts, last - first + 1, n_sum, sums%parts(1, first), &
-        parcel%values(at))
+      associate (columns => [(i, i=shares%tiles(rank), shares%tiles(rank + 1) - 1), &
+        (size(sums%parts, 2) - size(sums%blocks, 2) + i, i=sums%starts(rank + 1), &
+        sums%starts(rank + 2) - 1)])
+        if (size(columns) > 0) call copy_columns(puts, columns, n_sum, sums%parts, &
+          parcel%values(at))
+      end associate
     end subroutine fill_piece
 
   end subroutine exchange_parcel
 
-  !> Forces of some slots into the parcel, or out of it.
-  pure subroutine copy_slots(puts, slots, table, values)
+  !> Some columns of a table into the parcel, or out of it.
+  pure subroutine copy_columns(puts, columns, width, table, values)
     logical, intent(in) :: puts
-    integer, intent(in) :: slots(:)
-    real(wp), intent(inout) :: table(2, *), values(2, *)
+    integer, intent(in) :: columns(:), width
+    real(wp), intent(inout) :: table(width, *), values(width, *)
     integer :: i
 
-    if (puts) then
-      do i = 1, size(slots)
-        values(:, i) = table(:, slots(i))
-      end do
-    else
-      do i = 1, size(slots)
-        table(:, slots(i)) = values(:, i)
-      end do
-    end if
-  end subroutine copy_slots
-
-  !> Columns of a table into the parcel, or out of it.
-  pure subroutine copy_columns(puts, n, width, table, values)
-    logical, intent(in) :: puts
-    integer, intent(in) :: n, width
-    real(wp), intent(inout) :: table(width, n), values(width, n)
-
-    if (puts) then
-      values = table
-    else
-      table = values
-    end if
+    do i = 1, size(columns)
+      if (puts) then
+        values(:, i) = table(:, columns(i))
+      else
+        table(:, columns(i)) = values(:, i)
+      end if
+    end do
   end subroutine copy_columns
 
   !> The record of this process, from what the elements of its tiles have come to, becomes that of

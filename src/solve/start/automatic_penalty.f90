@@ -13,7 +13,7 @@ module automatic_penalty_m
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
     binding_bound, fitting_scale
   use contact_state_m, only : contact_state_t
-  use contacts_m, only : contact_t, is_tied, penalty_factor, penalty_share
+  use contacts_m, only : is_tied, penalty_factor, penalty_share
   use controls_m, only : contact_step_free, contact_step_warns
   use element_dispatch_m, only : add_tile_forces
   use errors_m, only : error_t, raise, status_input
@@ -43,7 +43,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(wp), dimension(size(model%contacts)) :: share, factor
     real(wp), allocatable :: force(:, :)
-    real(wp) :: limit, dt
+    real(wp) :: limit, tied, dt
     type(spring_bound_t) :: bounds(size(model%contacts))
     integer :: i
 
@@ -59,7 +59,14 @@ contains
       end associate
     end do
     limit = minval(state%elements%time_limit)
-    dt = scaled_step(model, limit_with_ties(model, state, limit), state%time)
+    ! Ties may lower it.
+    tied = limit
+    if (model%controls%contact_step /= contact_step_free .and. any(is_tied(model%contacts))) then
+      call bound_springs(model%contacts, state%contact_mass, state%contacts, &
+        merge(1.0_wp, 0.0_wp, is_tied(model%contacts)), bounds)
+      tied = minval(closed_step(limit, bounds))
+    end if
+    dt = scaled_step(model, tied, state%time)
     if (.not. dt < limit) then
       if (any(model%contacts%penalty_unit == penalty_share)) call raise(error, &
         'an automatic penalty (PUNIT 3) finds no room: the time step ' &
@@ -120,8 +127,8 @@ contains
   end subroutine tell_of_mean
 
   !> By interface the share of the largest stable penalty that the memory holds a penalty of: PEN
-  !> with PUNIT 3, 1 where a surface of soft and stiff materials may have no more than that, 0 for
-  !> penalties that stand as given.
+  !> with PUNIT 3; 1 where a surface of soft and stiff materials, whose mean it is, may have no more
+  !> than that, in an explicit run whose step does not follow it; 0 for penalties that stand as given.
   pure function sought_shares(model) result(share)
     type(model_t), intent(in) :: model
     real(wp) :: share(size(model%contacts))
@@ -130,44 +137,15 @@ contains
     share = 0.0_wp
     do i = 1, size(share)
       associate (contact => model%contacts(i))
-        if (contact%penalty_unit == penalty_share) then
-          share(i) = contact%penalty
-        else if (may_be_lowered(contact, model)) then
-          share(i) = 1.0_wp
-        end if
+        if (contact%penalty_unit == penalty_share) share(i) = contact%penalty
+        if (contact%penalty_unit /= penalty_factor .or. contact%behind > 0 &
+          .or. model%controls%contact_step /= contact_step_warns .or. is_tied(contact) &
+          .or. model%controls%implicit%is_on) cycle
+        if (max(spread_of_stiffness(contact%slave, model), spread_of_stiffness(contact%master, &
+          model)) >= much_stiffer) share(i) = 1.0_wp
       end associate
     end do
   end function sought_shares
-
-  !> Whether an interface has a mean of soft and stiff materials for its penalty, in an explicit run
-  !> whose step does not follow it.
-  pure function may_be_lowered(contact, model) result(may)
-    type(contact_t), intent(in) :: contact
-    type(model_t), intent(in) :: model
-    logical :: may
-
-    may = contact%penalty_unit == penalty_factor .and. contact%behind == 0 &
-      .and. model%controls%contact_step == contact_step_warns &
-      .and. .not. (is_tied(contact) .or. model%controls%implicit%is_on)
-    if (may) may = max(spread_of_stiffness(contact%slave, model), &
-      spread_of_stiffness(contact%master, model)) >= much_stiffer
-  end function may_be_lowered
-
-  !> The stable step of the elements, or what ties that lower it leave of it.
-  pure function limit_with_ties(model, state, element_limit) result(limit)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    real(wp), intent(in) :: element_limit !! s
-    real(wp) :: limit
-    type(spring_bound_t) :: bounds(size(model%contacts))
-
-    limit = element_limit
-    if (model%controls%contact_step == contact_step_free) return
-    if (.not. any(is_tied(model%contacts))) return
-    call bound_springs(model%contacts, state%contact_mass, state%contacts, &
-      merge(1.0_wp, 0.0_wp, is_tied(model%contacts)), bounds)
-    limit = minval(closed_step(element_limit, bounds))
-  end function limit_with_ties
 
   !> Factors on the penalties in the memories: 0 where there is no room, 1 for given penalties.
   pure subroutine find_factors(model, state, steps, share, factor)

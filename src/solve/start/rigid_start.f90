@@ -32,7 +32,15 @@ contains
         call weigh_body(model%mesh%coordinates(:, body%nodes), state%mass(body%nodes), rigid)
         call find_velocity(state%mass(body%nodes), state%motion(3:4, body%nodes), rigid)
         if (body%has_velocity) rigid%velocity = body%velocity
-        call constrain_velocity(model, i, rigid)
+        ! What is fixed rests; what has a prescribed velocity from the start has its first value.
+        where (body%is_fixed) rigid%velocity = 0.0_wp
+        do k = 1, size(model%conditions%rigid_motions)
+          associate (motion => model%conditions%rigid_motions(k))
+            if (motion%node == i .and. motion%kind == motion_velocity &
+              .and. is_active(motion, 0.0_wp)) rigid%velocity(motion%direction) = motion%scale &
+              *curve_value(model%curves(motion%curve), 0.0_wp)
+          end associate
+        end do
         do k = 1, size(body%nodes)
           state%motion(3:4, body%nodes(k)) = velocity_of(rigid%velocity, rigid%arms(:, k))
         end do
@@ -78,23 +86,6 @@ contains
     rigid%velocity(3) = sum(mass*(rigid%arms(1, :)*(velocity(2, :) - rigid%velocity(2)) &
       - rigid%arms(2, :)*(velocity(1, :) - rigid%velocity(1))))/rigid%inertia(3)
   end subroutine find_velocity
-
-  !> What is fixed rests; what has a prescribed velocity from the start has its first value.
-  pure subroutine constrain_velocity(model, i_body, rigid)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i_body
-    type(rigid_state_t), intent(inout) :: rigid
-    integer :: i
-
-    where (model%rigids(i_body)%is_fixed) rigid%velocity = 0.0_wp
-    do i = 1, size(model%conditions%rigid_motions)
-      associate (motion => model%conditions%rigid_motions(i))
-        if (motion%node /= i_body .or. motion%kind /= motion_velocity) cycle
-        if (is_active(motion, 0.0_wp)) rigid%velocity(motion%direction) = motion%scale &
-          *curve_value(model%curves(motion%curve), 0.0_wp)
-      end associate
-    end do
-  end subroutine constrain_velocity
 
   !> The mass of a body is shared among its nodes that contact can touch, in proportion to their
   !> lumped masses and so that no motion of the body gives these nodes more kinetic energy than the
@@ -160,27 +151,21 @@ contains
     share = 0.5_wp*(shift + turn + sqrt((shift - turn)**2 + 4.0_wp*mixed**2))
   end function largest_share
 
-  !> Mean over the masses of a set.
-  pure function common_mean(nodes, mass, values) result(mean)
-    integer, intent(in) :: nodes(:)
-    real(wp), intent(in) :: mass(:), values(:)  !! of all nodes
-    real(wp) :: mean
-
-    mean = values(nodes(1)) + sum(mass(nodes)*(values(nodes) - values(nodes(1))))/sum(mass(nodes))
-  end function common_mean
-
-  !> Velocities at time zero: momentum stays.
+  !> Nodes that move alike: their mean over the masses, so that momentum stays.
   subroutine start_common(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
+    real(wp) :: first
     integer :: i, k
 
     if (.not. allocated(model%conditions%common_motions)) return
     do i = 1, size(model%conditions%common_motions)
       associate (common => model%conditions%common_motions(i))
         do k = 1, 2
-          if (common%along(k)) state%motion(2 + k, common%nodes) = &
-            common_mean(common%nodes, state%mass, state%motion(2 + k, :))
+          if (.not. common%along(k)) cycle
+          first = state%motion(2 + k, common%nodes(1))
+          state%motion(2 + k, common%nodes) = first + sum(state%mass(common%nodes) &
+            *(state%motion(2 + k, common%nodes) - first))/sum(state%mass(common%nodes))
         end do
       end associate
     end do
@@ -193,14 +178,35 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     real(wp), allocatable :: inverse(:, :)
-    integer :: i
+    logical :: held(3)
+    integer :: i, k
 
     if (size(state%contacts) == 0) return
     allocate (inverse(2, model%layout%n_special))
     inverse = state%inverse_mass(:, :model%layout%n_special)
-    if (allocated(model%conditions%common_motions)) call weigh_common(model, state%mass, inverse)
+    ! Nodes that move alike: their own mass, the least that a force on one of them moves. Nodes that
+    ! have lost theirs with their last element have no contact any more.
+    if (allocated(model%conditions%common_motions)) then
+      do i = 1, size(model%conditions%common_motions)
+        associate (common => model%conditions%common_motions(i))
+          do k = 1, size(common%nodes)
+            associate (node => common%nodes(k))
+              if (state%mass(node) > 0.0_wp) inverse(:, node) = merge(1.0_wp/state%mass(node), &
+                inverse(:, node), common%along)
+            end associate
+          end do
+        end associate
+      end do
+    end if
     do i = 1, size(model%rigids)
-      call weigh_rigid(model, i, state%contact_mass, inverse)
+      held = is_held(model, i)
+      do k = 1, size(model%rigids(i)%nodes)
+        associate (node => model%rigids(i)%nodes(k))
+          if (node > model%layout%n_special) exit
+          inverse(:, node) = merge(0.0_wp, 1.0_wp/state%contact_mass(node), &
+            held(1:2) .and. held(3))
+        end associate
+      end do
     end do
     do i = 1, size(state%contacts)
       if (.not. allocated(state%contacts(i)%limit%inverse_mass)) cycle
@@ -212,41 +218,5 @@ contains
       end associate
     end do
   end subroutine weigh_contacts
-
-  !> Nodes that move alike: their own mass, the least that a force on one of them moves. Nodes that
-  !> have lost theirs with their last element have no contact any more.
-  subroutine weigh_common(model, mass, inverse)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: mass(:)            !! (n_node)
-    real(wp), intent(inout) :: inverse(:, :)   !! (2, n_special)
-    integer :: i, k
-
-    do i = 1, size(model%conditions%common_motions)
-      associate (common => model%conditions%common_motions(i))
-        do k = 1, size(common%nodes)
-          if (mass(common%nodes(k)) > 0.0_wp) inverse(:, common%nodes(k)) = merge(1.0_wp &
-            /mass(common%nodes(k)), inverse(:, common%nodes(k)), common%along)
-        end do
-      end associate
-    end do
-  end subroutine weigh_common
-
-  !> The nodes of one rigid body.
-  subroutine weigh_rigid(model, i_body, contact_mass, inverse)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i_body
-    real(wp), intent(in) :: contact_mass(:)    !! (n_special)
-    real(wp), intent(inout) :: inverse(:, :)   !! (2, n_special)
-    logical :: held(3)
-    integer :: k
-
-    held = is_held(model, i_body)
-    do k = 1, size(model%rigids(i_body)%nodes)
-      associate (node => model%rigids(i_body)%nodes(k))
-        if (node > model%layout%n_special) exit
-        inverse(:, node) = merge(0.0_wp, 1.0_wp/contact_mass(node), held(1:2) .and. held(3))
-      end associate
-    end do
-  end subroutine weigh_rigid
 
 end module rigid_start_m
