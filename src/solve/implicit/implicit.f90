@@ -19,7 +19,7 @@ module implicit_m
   use implicit_start_m, only : implicit_memory_t, write_files, begin_steps, plan_next, has_ended
   use implicit_prescribed_m, only : prescribe_step
   use implicit_tangent_m, only : step_t, new_acceleration, new_velocity
-  use log_m, only : log_t, write_log, warn, to_text
+  use log_m, only : write_log, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t
   use newton_m, only : outcome_t, find_equilibrium
@@ -172,7 +172,7 @@ contains
     type(step_t), intent(inout) :: step
     type(trial_t), intent(inout) :: attempt
     type(outcome_t), intent(out) :: outcome
-    integer :: i
+    integer :: i, k, n_new
     logical :: broke
 
     step%time = time
@@ -185,7 +185,17 @@ contains
       call start_trial(model, state, attempt)
       call find_equilibrium(model, state, step, monitor%log, monitor%clock, attempt, outcome)
       if (outcome%converged) then
-        call break_ties_of_step(model, time, attempt, state, monitor%log, broke)
+        ! What equilibrium breaks stays broken in the equilibrium that is then looked for, of the
+        ! same step: there are only so many places.
+        broke = .false.
+        do k = 1, size(model%contacts)
+          call break_at_end(model%contacts(k), time, attempt%contacts(k), n_new)
+          if (n_new == 0) cycle
+          broke = .true.
+          call write_log(monitor%log, 'step to '//to_text(time)//': of the ties of interface ' &
+            //to_text(model%contacts(k)%id)//' '//to_text(n_new)//' places break')
+          state%contacts(k)%ties = attempt%contacts(k)%ties
+        end do
         if (.not. broke) return
         cycle
       end if
@@ -198,28 +208,6 @@ contains
       i = i + 1
     end do
   end subroutine try_step
-
-  !> What equilibrium breaks stays broken in the equilibrium that is then looked for, of the same
-  !> step: there are only so many places.
-  subroutine break_ties_of_step(model, time, attempt, state, log, broke)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: time
-    type(trial_t), intent(inout) :: attempt
-    type(state_t), intent(inout) :: state
-    type(log_t), intent(inout) :: log
-    logical, intent(out) :: broke
-    integer :: i, n_new
-
-    broke = .false.
-    do i = 1, size(model%contacts)
-      call break_at_end(model%contacts(i), time, attempt%contacts(i), n_new)
-      if (n_new == 0) cycle
-      broke = .true.
-      call write_log(log, 'step to '//to_text(time)//': of the ties of interface ' &
-        //to_text(model%contacts(i)%id)//' '//to_text(n_new)//' places break')
-      state%contacts(i)%ties = attempt%contacts(i)%ties
-    end do
-  end subroutine break_ties_of_step
 
   !> The trial becomes the state; works of contact, loads, damping and prescribed motion by the
   !> trapezoidal rule.

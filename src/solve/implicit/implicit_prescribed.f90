@@ -6,7 +6,6 @@ module implicit_prescribed_m
   use conditions_m, only : prescribed_motion_t, motion_velocity, motion_acceleration, &
     motion_displacement
   use constraints_m, only : is_active
-  use controls_m, only : controls_t
   use curves_m, only : curve_t, curve_value, curve_integral
   use equations_m, only : equations_t
   use model_m, only : model_t
@@ -195,35 +194,29 @@ contains
       changes = [conditions%motions%birth, conditions%motions%death]
       if (.not. model%controls%implicit%is_automatic) return
       changes = [changes, conditions%pressures%arrival, model%contacts%birth, &
-        model%contacts%death, plot_times(model%controls)]
+        model%contacts%death]
+      ! Plot states, where they are no closer than the first step.
+      associate (controls => model%controls, interval => model%controls%output%plot%dt)
+        if (controls%output%plot%curve == 0 .and. interval >= controls%implicit%dt &
+          .and. controls%end_time < most_plots*interval) &
+          changes = [changes, [(i*interval, i=1, int(controls%end_time/interval))]]
+      end associate
       used = [conditions%motions%curve, conditions%nodal_loads%curve, conditions%body_loads%curve]
       if (allocated(conditions%damping)) used = [used, conditions%damping%curve]
       if (allocated(conditions%part_damping)) used = [used, conditions%part_damping%curve]
       do i = 1, size(model%curves)
         if (any(used == i)) changes = [changes, turning_points(model%curves(i))]
-        call add_pressure_turns(model, i, changes)
+      end do
+      ! Curves of pressures start at their arrival: once for each time of arrival in a row.
+      do i = 1, size(conditions%pressures)
+        associate (load => conditions%pressures(i), before => conditions%pressures(max(1, i - 1)))
+          if (i > 1 .and. load%curve == before%curve .and. abs(load%arrival - before%arrival) &
+            <= 0.0_wp) cycle
+          changes = [changes, load%arrival + turning_points(model%curves(load%curve))]
+        end associate
       end do
     end associate
   end subroutine list_changes
-
-  !> Turns of curve `i` in pressures, whose curves start at their arrival: once for each
-  !> time of arrival in a row.
-  pure subroutine add_pressure_turns(model, i, changes)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i
-    real(wp), allocatable, intent(inout) :: changes(:)
-    real(wp) :: told
-    integer :: k
-
-    told = -huge(told)
-    do k = 1, size(model%conditions%pressures)
-      associate (load => model%conditions%pressures(k))
-        if (load%curve /= i .or. abs(load%arrival - told) <= 0.0_wp) cycle
-        changes = [changes, load%arrival + turning_points(model%curves(i))]
-        told = load%arrival
-      end associate
-    end do
-  end subroutine add_pressure_turns
 
   !> Corners of a curve: where its slope changes sign, or by more than half of the steeper side.
   !> (The points of a finely sampled smooth curve are none.)
@@ -240,19 +233,5 @@ contains
     times = pack(curve%abscissa, abs(slope(1:n) - slope(0:n - 1)) &
       > corner*max(abs(slope(1:n)), abs(slope(0:n - 1))))
   end function turning_points
-
-  !> Times of plot states, where they are no closer than the first step.
-  pure function plot_times(controls) result(times)
-    type(controls_t), intent(in) :: controls
-    real(wp), allocatable :: times(:)
-    integer :: i
-
-    allocate (times(0))
-    associate (interval => controls%output%plot%dt)
-      if (controls%output%plot%curve > 0 .or. interval < controls%implicit%dt .or. &
-        .not. controls%end_time < most_plots*interval) return
-      times = [(i*interval, i=1, int(controls%end_time/interval))]
-    end associate
-  end function plot_times
 
 end module implicit_prescribed_m

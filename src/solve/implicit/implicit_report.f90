@@ -29,8 +29,7 @@ module implicit_report_m
   use support_forces_m, only : fill_reactions
   implicit none
   private
-  public :: report_step, reactions_work, held_energy, spent_energy, count_step_boundaries, &
-    find_forces
+  public :: report_step, reactions_work, held_energy, spent_energy, count_step_boundaries
 
 contains
 
@@ -47,6 +46,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(due_t) :: due
     real(wp) :: dt, kinetic(size(model%parts)), momentum(2, size(model%parts))
+    character(:), allocatable :: cause !! where missing energy has gone
 
     dt = output_reach(model%controls, state%dt)
     due = find_due(monitor, state%time, dt, state%cycle == 0 .or. last)
@@ -84,15 +84,17 @@ contains
       call write_instant(model, due, dt, memory%ratio, state, monitor, error)
       if (.not. allocated(error)) call check_energy(model%controls, shot%energies, made_by_forces, &
         error)
+      cause = unaccounted
+      if (memory%step%is_dynamic .and. memory%step%gamma > 0.5_wp*(1.0_wp + epsilon(1.0_wp))) &
+        cause = dissipated
       if (.not. allocated(error)) call check_ratio(shot%energies, &
-        spent_energy(state, memory%step), cause_of(memory%step), state%cycle, state%time, &
-        monitor%told_ratio, monitor%log)
+        spent_energy(state, memory%step), cause, state%cycle, state%time, monitor%told_ratio, &
+        monitor%log)
       call check_radii(model, state, monitor%told_radii, monitor%log)
       if (last .and. .not. allocated(error)) then
         call judge_contact(shot%energies, monitor%log)
         call judge_energies(shot%energies, monitor%log)
-        call judge_ratio(shot%energies, spent_energy(state, memory%step), &
-          cause_of(memory%step), monitor%log)
+        call judge_ratio(shot%energies, spent_energy(state, memory%step), cause, monitor%log)
       end if
     end associate
     call lap(monitor%clock, phase_output)
@@ -124,15 +126,6 @@ contains
     spent = merge(0.0_wp, max(0.0_wp, state%initial_energy), step%is_dynamic)
   end function spent_energy
 
-  !> Where missing energy has gone, in words.
-  pure function cause_of(step) result(words)
-    type(step_t), intent(in) :: step
-    character(:), allocatable :: words
-
-    words = unaccounted
-    if (step%is_dynamic .and. step%gamma > 0.5_wp*(1.0_wp + epsilon(step%gamma))) words = dissipated
-  end function cause_of
-
   !> Work of the forces that hold prescribed degrees of freedom to their curves: of inertia, change
   !> of momentum times mean velocity, which is the kinetic energy that they gain, also in a blow; of
   !> the others by the trapezoidal rule.
@@ -161,9 +154,29 @@ contains
     real(wp), intent(in) :: time                        !! at the end of the step
     real(wp), allocatable, intent(in) :: velocity(:, :) !! (2, n_node) there; not there in statics
     type(state_t), intent(inout) :: state               !! as the step has found it
+    real(wp), allocatable :: power(:, :), former(:, :)
+    integer :: i
 
-    if (allocated(state%boundary_work)) &
-      call count_boundaries(model, before, after, time, velocity, state)
+    if (allocated(state%boundary_work)) then
+      former = state%boundary_force
+      call form_loads(model, state%motion, state%time, former)
+      call form_loads(model, after%motion, time, state%boundary_force)
+      power = 0.5_wp*(net_force(before) + net_force(after))*after%motion(3:4, :)
+      if (allocated(velocity)) power = power + 0.5_wp*mass_times(model, velocity &
+        - state%motion(3:4, :))*(velocity + state%motion(3:4, :))
+      associate (rows => model%controls%output%boundaries, motions => model%conditions%motions, &
+        work => state%boundary_work)
+        do i = 1, size(rows%where)
+          if (rows%condition(i) == boundary_motion) cycle
+          work(i) = work(i) + 0.5_wp*sum((former(1:2, i) + state%boundary_force(1:2, i)) &
+            *after%motion(3:4, rows%where(i)))
+        end do
+        do i = 1, size(motions)
+          if (is_active(motions(i), 0.5_wp*(state%time + time))) work(rows%motion_rows(i)) &
+            = work(rows%motion_rows(i)) + power(motions(i)%direction, motions(i)%node)
+        end do
+      end associate
+    end if
     if (.not. allocated(state%group_work)) return
     associate (nodes => group_nodes(model%controls%output%force_groups))
       state%group_work = state%group_work + 0.5_wp*sum((before%internal(:, nodes) &
@@ -171,70 +184,29 @@ contains
     end associate
   end subroutine count_step_boundaries
 
-  !> Boundaries alone.
-  subroutine count_boundaries(model, before, after, time, velocity, state)
-    type(model_t), intent(in) :: model
-    type(trial_t), intent(in) :: before, after
-    real(wp), intent(in) :: time
-    real(wp), allocatable, intent(in) :: velocity(:, :)
-    type(state_t), intent(inout) :: state
-    real(wp), allocatable :: power(:, :)
-    real(wp) :: former(3, size(state%boundary_work))
-    integer :: i
-
-    former = state%boundary_force
-    call form_loads(model, state%motion, state%time, former)
-    call form_loads(model, after%motion, time, state%boundary_force)
-    power = 0.5_wp*(net_force(before) + net_force(after))*after%motion(3:4, :)
-    if (allocated(velocity)) power = power + 0.5_wp*mass_times(model, velocity &
-      - state%motion(3:4, :))*(velocity + state%motion(3:4, :))
-    associate (rows => model%controls%output%boundaries, motions => model%conditions%motions, &
-      work => state%boundary_work)
-      do i = 1, size(rows%where)
-        if (rows%condition(i) == boundary_motion) cycle
-        work(i) = work(i) + 0.5_wp*sum((former(1:2, i) + state%boundary_force(1:2, i)) &
-          *after%motion(3:4, rows%where(i)))
-      end do
-      do i = 1, size(motions)
-        if (.not. is_active(motions(i), 0.5_wp*(state%time + time))) cycle
-        work(rows%motion_rows(i)) = work(rows%motion_rows(i)) &
-          + power(motions(i)%direction, motions(i)%node)
-      end do
-    end associate
-  end subroutine count_boundaries
-
   !> Forces of the present instant, also where a run that goes on is the first to ask for them.
   subroutine find_forces(model, reaction, internal, state)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: reaction(:, :)   !! (2, n_node) of all degrees of freedom
     real(wp), intent(in) :: internal(:, :)   !! (2, n_node) divergence of stress
     type(state_t), intent(inout) :: state
+    integer :: i
 
     if (allocated(state%boundary_work)) then
       call form_loads(model, state%motion, state%time, state%boundary_force)
-      call find_reactions(model, reaction, state)
+      associate (rows => model%controls%output%boundaries%motion_rows, &
+        motions => model%conditions%motions)
+        do i = 1, size(motions)
+          state%boundary_force(motions(i)%direction, rows(i)) = 0.0_wp
+        end do
+        do i = 1, size(motions)
+          if (is_active(motions(i), state%time)) state%boundary_force(motions(i)%direction, &
+            rows(i)) = reaction(motions(i)%direction, motions(i)%node)
+        end do
+      end associate
     end if
     if (allocated(state%group_work)) state%group_force = internal(:, &
       group_nodes(model%controls%output%force_groups))
   end subroutine find_forces
-
-  !> Reactions of prescribed motion, into their rows.
-  subroutine find_reactions(model, reaction, state)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: reaction(:, :)   !! (2, n_node) of all degrees of freedom
-    type(state_t), intent(inout) :: state
-    integer :: i
-
-    associate (rows => model%controls%output%boundaries%motion_rows, &
-      motions => model%conditions%motions)
-      do i = 1, size(motions)
-        state%boundary_force(motions(i)%direction, rows(i)) = 0.0_wp
-      end do
-      do i = 1, size(motions)
-        if (is_active(motions(i), state%time)) state%boundary_force(motions(i)%direction, &
-          rows(i)) = reaction(motions(i)%direction, motions(i)%node)
-      end do
-    end associate
-  end subroutine find_reactions
 
 end module implicit_report_m

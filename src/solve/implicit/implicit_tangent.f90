@@ -128,8 +128,9 @@ contains
     real(wp), intent(in) :: time
     type(equations_t), intent(in) :: equations
     type(sparse_t), intent(inout) :: matrix
-    real(wp) :: half, block(4, 4)
-    integer :: rows(4)
+    real(wp), parameter :: share(2, 2) = reshape([2.0_wp, 1.0_wp, 1.0_wp, 2.0_wp], [2, 2])/3.0_wp
+    real(wp) :: half, block(4, 4), x(2, 2), force(2)
+    integer :: rows(4), a, b
 
     if (time < load%arrival) return
     half = 0.5_wp*load%scale*curve_value(model%curves(load%curve), time - load%arrival)
@@ -139,32 +140,22 @@ contains
     block([1, 3], 4) = half
     block([2, 4], 1) = half
     block([2, 4], 3) = -half
-    if (model%is_round) call weigh_with_radius(half, model%mesh%coordinates(:, load%nodes) &
-      + motion(1:2, load%nodes), block)
+    if (model%is_round) then
+      ! Node 1 gets (2 r_1 + r_2)/3 of the plane half, node 2 (r_1 + 2 r_2)/3.
+      x = model%mesh%coordinates(:, load%nodes) + motion(1:2, load%nodes)
+      force = half*[x(2, 1) - x(2, 2), x(1, 2) - x(1, 1)]
+      do a = 1, 2
+        associate (rows => block(2*a - 1:2*a, :))
+          rows = dot_product(share(:, a), x(1, :))*rows
+          do b = 1, 2
+            rows(:, 2*b - 1) = rows(:, 2*b - 1) - share(b, a)*force
+          end do
+        end associate
+      end do
+    end if
     rows = [equations%number(:, load%nodes(1)), equations%number(:, load%nodes(2))]
     call add_block(matrix, rows, rows, block)
   end subroutine add_pressure_stiffness
-
-  !> The same of a round body: node 1 gets (2 r_1 + r_2)/3 of the plane half, node 2
-  !> (r_1 + 2 r_2)/3.
-  pure subroutine weigh_with_radius(half, x, block)
-    real(wp), intent(in) :: half
-    real(wp), intent(in) :: x(2, 2)         !! both nodes, now
-    real(wp), intent(inout) :: block(4, 4)  !! of the plane
-    real(wp), parameter :: share(2, 2) = reshape([2.0_wp, 1.0_wp, 1.0_wp, 2.0_wp], [2, 2])/3.0_wp
-    real(wp) :: force(2)
-    integer :: a, b
-
-    force = half*[x(2, 1) - x(2, 2), x(1, 2) - x(1, 1)]
-    do a = 1, 2
-      associate (rows => block(2*a - 1:2*a, :))
-        rows = dot_product(share(:, a), x(1, :))*rows
-        do b = 1, 2
-          rows(:, 2*b - 1) = rows(:, 2*b - 1) - share(b, a)*force
-        end do
-      end associate
-    end do
-  end subroutine weigh_with_radius
 
   !> What a step hands to the next.
   subroutine visit_step(self, visitor)
