@@ -81,15 +81,20 @@ contains
     if (model%controls%implicit%is_on) &
       allocate (state%acceleration(2, model%mesh%n_node), source=0.0_wp)
     if (model%erodes) then
-      call read_status(source, state%elements%erosion%status)
+      ! Shapes of interfaces follow from which elements are there.
+      call source%enter('state')
+      call source%enter('elements')
+      call source%enter('erosion')
+      call source%visit('status', state%elements%erosion%status)
+      call source%leave()
+      call source%leave()
+      call source%leave()
       if (.not. allocated(source%error)) call resume_outlines(model, state)
     end if
     if (present(others)) source%forgetters = forgetters_of(others)
     if (.not. allocated(source%error)) call source%part('state', state)
     if (.not. allocated(source%error)) call check_state(model, state, source)
-    if (.not. allocated(source%error)) then
-      call resume_contacts(model, state)
-    end if
+    if (.not. allocated(source%error)) call resume_contacts(model, state)
     if (allocated(source%error)) then
       error = source%error
     else if (state%time - model%controls%end_time > merge(round_off, 1.0_wp, &
@@ -98,20 +103,6 @@ contains
         //', after the end time '//to_text(model%controls%end_time), status_input)
     end if
   end subroutine take_up_state
-
-  !> Which elements are there: shapes of interfaces follow from it.
-  subroutine read_status(source, status)
-    type(archive_t), intent(inout) :: source
-    integer, allocatable, intent(inout) :: status(:)
-
-    call source%enter('state')
-    call source%enter('elements')
-    call source%enter('erosion')
-    call source%visit('status', status)
-    call source%leave()
-    call source%leave()
-    call source%leave()
-  end subroutine read_status
 
   !> Look at what is read once the files are open, so that a file that is refused has emptied none:
   !> how far the outputs are, and what the driver keeps.

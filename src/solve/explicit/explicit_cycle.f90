@@ -196,10 +196,21 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(inout) :: cycle
+    logical, allocatable :: active(:)
     integer :: i
 
     cycle%leap = make_leap(state%dt_before, state%dt, cycle%damping, state%body_acceleration)
-    if (cycle%timed_motions) call follow_activity(model, state, cycle)
+    if (cycle%timed_motions) then
+      ! Inverse masses change where some prescribed motion has just started or ended.
+      active = is_active(model%conditions%motions, state%time)
+      if (.not. allocated(cycle%active)) allocate (cycle%active, source=.not. active)
+      if (any(active .neqv. cycle%active)) then
+        cycle%active = active
+        call update_activity(model, state%time, state%mass, state%inverse_mass)
+        call fix_nodes(model, state%inverse_mass)
+        call weigh_contacts(model, state)
+      end if
+    end if
     do i = 1, size(cycle%displacement)
       associate (prescribed => model%conditions%motions(i))
         cycle%displacement(i) = state%motion(prescribed%direction, prescribed%node)
@@ -212,24 +223,6 @@ contains
       end associate
     end if
   end subroutine prepare_leap
-
-  !> Inverse masses where some prescribed motion has just started or ended.
-  subroutine follow_activity(model, state, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(explicit_cycle_t), intent(inout) :: cycle
-    logical, allocatable :: active(:)
-
-    allocate (active(size(model%conditions%motions)))
-    active = is_active(model%conditions%motions, state%time)
-    if (allocated(cycle%active)) then
-      if (all(active .eqv. cycle%active)) return
-    end if
-    call move_alloc(active, cycle%active)
-    call update_activity(model, state%time, state%mass, state%inverse_mass)
-    call fix_nodes(model, state%inverse_mass)
-    call weigh_contacts(model, state)
-  end subroutine follow_activity
 
   !> What processes have to know of each other's tiles before special nodes move.
   subroutine exchange_tiles(model, state, monitor, cycle)

@@ -38,12 +38,17 @@ contains
     type(motion_sums_t), intent(inout) :: sums
     type(borders_t), intent(out) :: borders
     logical, dimension(model%layout%n_special) :: is_common, is_known, knows
+    logical, allocatable :: is_moved(:)
     integer, allocatable :: slots(:)
     integer :: rank, i
 
     is_known = .true.
     if (size(shares%tiles) > 2) then
-      call mark_common(model, is_common)
+      ! All processes know those that anything but elements touches, and nodes without elements.
+      call mark_moved_nodes(model, is_moved)
+      associate (n => model%layout%n_special, starts => model%layout%node_slots)
+        is_common = is_moved .or. starts(2:n + 1) == starts(:n)
+      end associate
       call share_blocks(shares, mine, sums, borders%block_nodes)
       is_known = known_nodes(model, shares, sums, borders, mine)
       allocate (borders%common(0), borders%peers(0), borders%out_slots(0), borders%in_slots(0))
@@ -75,19 +80,6 @@ contains
     end if
     call list_runs(model, is_known, borders)
   end subroutine plan_borders
-
-  !> Special nodes that all processes know: those that anything but elements touches, and nodes
-  !> without elements.
-  subroutine mark_common(model, is_common)
-    type(model_t), intent(in) :: model
-    logical, intent(out) :: is_common(:) !! (n_special)
-    logical, allocatable :: is_moved(:)
-
-    associate (n => model%layout%n_special, starts => model%layout%node_slots)
-      call mark_moved_nodes(model, is_moved)
-      is_common = is_moved .or. starts(2:n + 1) == starts(:n)
-    end associate
-  end subroutine mark_common
 
   !> Special nodes that the tiles of a process touch or that are in blocks that it sums.
   pure function known_nodes(model, shares, sums, borders, rank) result(is_known)

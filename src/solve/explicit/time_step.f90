@@ -322,10 +322,22 @@ contains
     type(ranks_t), intent(inout) :: ranks
     real(wp), intent(out) :: change
     real(wp), allocatable :: next(:, :)
-    real(wp) :: least(1)
-    integer :: i_tile, i_chunk, slot
+    real(wp) :: least(1), push(2)
+    integer :: i, i_tile, i_chunk, slot
 
-    next = next_velocities(model, leap, velocity, state)
+    ! v(1/2) of the nodes whose forces this process knows.
+    allocate (next(2, size(state%motion, 2)))
+    do i = 1, size(next, 2)
+      push = -state%internal_force(:, i)
+      if (i <= model%layout%n_special) push = push + state%force_special(:, i)
+      next(:, i) = state%motion(3:4, i) + leap%half*(push*state%inverse_mass(:, i) &
+        + merge(leap%body, 0.0_wp, state%inverse_mass(:, i) > 0.0_wp))
+    end do
+    do i = 1, size(velocity)
+      associate (motion => model%conditions%motions(i))
+        if (is_active(motion, state%time)) next(motion%direction, motion%node) = velocity(i)
+      end associate
+    end do
     change = 0.0_wp
     do i_tile = shares%first_tile, shares%last_tile
       do i_chunk = model%layout%tiles(i_tile)%first_chunk, model%layout%tiles(i_tile)%last_chunk
@@ -339,30 +351,6 @@ contains
     if (ranks%n > 1) call find_least(ranks, least)
     change = -least(1)
   end subroutine first_change
-
-  !> v(1/2) of the nodes whose forces this process knows.
-  pure function next_velocities(model, leap, velocity, state) result(next)
-    type(model_t), intent(in) :: model
-    type(leap_t), intent(in) :: leap
-    real(wp), intent(in) :: velocity(:)
-    type(state_t), intent(in) :: state
-    real(wp), allocatable :: next(:, :)  !! (2, n_node)
-    real(wp) :: push(2)
-    integer :: i
-
-    allocate (next(2, size(state%motion, 2)))
-    do i = 1, size(next, 2)
-      push = -state%internal_force(:, i)
-      if (i <= model%layout%n_special) push = push + state%force_special(:, i)
-      next(:, i) = state%motion(3:4, i) + leap%half*(push*state%inverse_mass(:, i) &
-        + merge(leap%body, 0.0_wp, state%inverse_mass(:, i) > 0.0_wp))
-    end do
-    do i = 1, size(velocity)
-      associate (motion => model%conditions%motions(i))
-        if (is_active(motion, state%time)) next(motion%direction, motion%node) = velocity(i)
-      end associate
-    end do
-  end function next_velocities
 
   !> Rate of ln V of the element in a slot, 1/s: of its area, and in bodies of revolution of the
   !> radius of its middle.

@@ -84,7 +84,6 @@ contains
       end associate
     end do
     call start_rigids(model, log, state)
-    call start_walls(model, state)
     call start_works(model, state)
     if (allocated(model%controls%ends)) &
       allocate (state%quiet_since(size(model%controls%ends)), source=-1.0_wp)
@@ -141,12 +140,23 @@ contains
     end do
   end subroutine start_vectors
 
-  !> Forces and works that histories ask for.
+  !> Memories of the walls, where the deck has any; forces and works that histories ask for.
   subroutine start_works(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    integer :: n
+    integer :: i, n
 
+    n = 0
+    if (allocated(model%walls)) n = size(model%walls)
+    if (n > 0) allocate (state%walls(n))
+    do i = 1, n
+      associate (wall => model%walls(i), memory => state%walls(i))
+        allocate (memory%force(size(wall%nodes)), memory%speed(size(wall%nodes)), source=0.0_wp)
+        allocate (memory%friction(merge(size(wall%nodes), 0, wall%friction > 0.0_wp)), &
+          source=0.0_wp)
+        allocate (memory%slip_speed, source=memory%friction)
+      end associate
+    end do
     associate (output => model%controls%output)
       if (allocated(output%boundaries%where)) then
         n = size(output%boundaries%where)
@@ -161,23 +171,6 @@ contains
         source=0.0_wp)
     end associate
   end subroutine start_works
-
-  !> Memories of the walls, where the deck has any.
-  subroutine start_walls(model, state)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    integer :: i, n
-
-    if (.not. allocated(model%walls)) return
-    if (size(model%walls) == 0) return
-    allocate (state%walls(size(model%walls)))
-    do i = 1, size(model%walls)
-      allocate (state%walls(i)%force(size(model%walls(i)%nodes)), &
-        state%walls(i)%speed(size(model%walls(i)%nodes)), source=0.0_wp)
-      n = merge(size(model%walls(i)%nodes), 0, model%walls(i)%friction > 0.0_wp)
-      allocate (state%walls(i)%friction(n), state%walls(i)%slip_speed(n), source=0.0_wp)
-    end do
-  end subroutine start_walls
 
   !> After a restart: what interfaces make anew of the memory that has been read.
   pure subroutine resume_contacts(model, state)
