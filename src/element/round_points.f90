@@ -10,7 +10,8 @@ module round_points_m
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: round_point_t, form_radii, add_hoop_strain, add_hoop_force, round_point_ratios
+  public :: round_point_t, form_radii, add_hoop_strain, add_hoop_force, round_point_ratios, &
+    along_a, along_b, along_h
 
   real(wp), parameter :: g = 0.25_wp*0.577350269189625764509148780501957455_wp !! 1/(4 sqrt(3))
   !> Shape functions at the points in the patterns: a quarter of s, and of a, b and h these.
