@@ -7,11 +7,9 @@ module element_tangent_m
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
     operator(/)
   use kinds_m, only : wp
-  use material_dispatch_m, only : form_tangent
+  use material_dispatch_m, only : form_tangent, has_mean_dilatation
   use parts_m, only : material_t
-  use quad_full_m, only : has_mean_dilatation
-  use quad_points_m, only : n_point, point_areas, shape_at_points, shift
-  use round_points_m, only : along_a, along_b, along_h
+  use quad_points_m, only : n_point, point_areas, shape_at_points, shift, along_a, along_b, along_h
   use rubbers_m, only : rubber_t
   use stress_point_m, only : stress_point_t
   use volumetric_m, only : log_ratio

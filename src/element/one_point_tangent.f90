@@ -2,10 +2,10 @@
 !> Internal force of a one-point quad with hourglass control by assumed strain in dual numbers, plane
 !> or round, as `element_tangent` has that of several points.
 module one_point_tangent_m
-  use assumed_strain_m, only : form_moduli
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
   use element_tangent_m, only : element_t, shape_t, n_pattern, form_gradient, find_stress, &
     pressure_of, start_volumes, twice_area, products, cross
+  use hourglass_m, only : form_moduli
   use kinds_m, only : wp
   use parts_m, only : hourglass_t, material_t
   implicit none

@@ -5,7 +5,7 @@ module slowest_element_m
   use kinds_m, only : wp
   use layout_m, only : slot_part
   use model_m, only : model_t
-  use smallest_steps_m, only : find_smallest_steps
+  use element_steps_m, only : find_smallest_steps
   use snapshot_m, only : snapshot_t
   use state_m, only : state_t
   implicit none

@@ -4,10 +4,10 @@ module model_log_m
   use curves_m, only : curve_value
   use kinds_m, only : wp
   use layout_m, only : slot_part
-  use round_state_m, only : element_volume
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
-  use smallest_steps_m, only : find_smallest_steps
+  use element_mass_m, only : element_volume
+  use element_steps_m, only : find_smallest_steps
   use state_m, only : state_t
   implicit none
   private

@@ -9,7 +9,8 @@ module start_m
   use constraints_m, only : fix_nodes, update_activity
   use contact_inertia_m, only : weigh_contacts
   use element_log_m, only : log_elements
-  use element_start_m, only : start_elements, lump_mass
+  use element_mass_m, only : lump_mass
+  use element_start_m, only : start_elements
   use contact_log_m, only : log_softness
   use contacts_m, only : is_tied, n_told, told_as
   use controls_m, only : is_asked
