@@ -6,7 +6,7 @@ module deck_cards_m
   use log_m, only : to_text
   use text_m, only : read_integer, number_good
   use deck_lines_m, only : deck_t, place_t, line_text, line_warning, replace_line, flag_blank, &
-    flag_parameter, block_of_line, keyword_of_line, format_standard, format_long
+    flag_parameter, block_of_line, format_standard, format_long
   use deck_card_specs_m, only : card_spec_t, make_spec, field_number, max_field
   use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error, place_error, &
     place_field
@@ -30,7 +30,7 @@ module deck_cards_m
 
   !> An error of a field of a card just read, by the field's name or its position.
   interface report_field
-    module procedure report_named_field, report_numbered_field
+    module procedure report_name, report_number, report_named_field, report_numbered_field
   end interface report_field
 
 contains
@@ -110,7 +110,8 @@ contains
     if (cursor%line > cursor%last) then
       card%line = deck%blocks(cursor%block)%keyword
       card%number = number
-      call name_fields(cursor%specs(number), card)
+      card%names = cursor%specs(number)%names
+      card%kinds = cursor%specs(number)%kinds
       call read_numbers(deck, cursor%specs(number), cursor%source, card)
       return
     end if
@@ -193,15 +194,6 @@ contains
       cursor%line = cursor%line + 1
   end subroutine skip_title
 
-  !> Let a card know its fields.
-  pure subroutine name_fields(spec, card)
-    type(card_spec_t), intent(in) :: spec
-    type(card_t), intent(inout) :: card
-
-    card%names = spec%names
-    card%kinds = spec%kinds
-  end subroutine name_fields
-
   !> Read one line as card `number`.
   subroutine read_line(deck, cursor, number, card)
     type(deck_t), intent(inout) :: deck
@@ -213,7 +205,6 @@ contains
     integer :: k
 
     associate (spec => cursor%specs(number))
-      call name_fields(spec, card)
       call cut_card(deck, spec, cursor%source, cursor%line, card)
       if (iand(deck%flags(cursor%line), flag_parameter) /= 0) then
         call substitute(deck, spec, cursor%source, card, text)
@@ -252,7 +243,7 @@ contains
     if (.not. asks) return
     name = trim(deck%blocks(block_of_line(deck, card%line))%name)
     if (spec%treatments(k) == 'r') then
-      call field_error(deck, spec, card, k, refusal_reason(trim(spec%names(k))))
+      call field_error(deck, card, k, refusal_reason(trim(spec%names(k))))
     else
       call line_warning(deck, card%line, 'field '//name//' '//spec%names(k)//to_text(spec%number), &
         'card '//to_text(spec%number)//' field '//to_text(k)//' ('//trim(spec%names(k))//'): "' &
@@ -293,6 +284,26 @@ contains
   end subroutine check_rest
 
   !> An error of the field of a name, of a card just read.
+  subroutine report_name(deck, card, name, message)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    character(*), intent(in) :: name
+    character(*), intent(in) :: message
+
+    call report_field(deck, card, field_number(card%names, name), message)
+  end subroutine report_name
+
+  !> An error of field `k` of a card just read.
+  subroutine report_number(deck, card, k, message)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    character(*), intent(in) :: message
+
+    if (.not. card%bad(k)) call field_error(deck, card, k, message)
+  end subroutine report_number
+
+  !> An error of the field of a name, of a card just read.
   subroutine report_named_field(deck, cursor, card, name, message)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
@@ -311,7 +322,7 @@ contains
     integer, intent(in) :: k
     character(*), intent(in) :: message
 
-    if (.not. card%bad(k)) call field_error(deck, cursor%specs(card%number), card, k, message)
+    if (.not. card%bad(k)) call field_error(deck, card, k, message)
   end subroutine report_numbered_field
 
   !> An error of a field that was given, on a card that was read some time ago.

@@ -6,14 +6,13 @@ module deck_contact_m
   use log_m, only : to_text
   use contact_types_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_nts_mar, &
     type_segmented_mortar, type_missing
-  use contacts_m, only : contact_kind_t, kind_text, penalty_factor, tie_none, tie_always, &
-    tie_breaks
+  use contacts_m, only : contact_kind_t, penalty_factor, tie_none, tie_always, tie_breaks
   use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &
     report_field
   use deck_values_m, only : integer_of, real_of, is_blank, is_bad, place_of, refuse_negative, &
-    refuse_outside, take_life
+    take_life
   use deck_contact_values_m, only : find_commanded, take_overrides, check_values, kind_names, &
     name_of, of_penalty, of_master_penalty
   use deck_friction_m, only : take_friction, take_stock_friction, take_penalty_friction
@@ -61,7 +60,7 @@ contains
     entry%contact%contact_type = stock_type(trim(deck%blocks(i_block)%name))
     select case (deck%blocks(i_block)%name)
     case ('CONTACT_2D_SLIDELINE')
-      call take_slideline(deck, cursor, cards, kinds, commanded, entry)
+      call take_slideline(deck, cursor, cards, commanded, entry)
       call take_tie(deck, cursor, cards, commanded, entry)
       call take_friction(deck, cursor, cards, overrides, entry)
     case ('CONTACT_2D_PENALTY', 'CONTACT_2D_PENALTY_FRICTION', 'CONTACT_2D_SLIDING_VOIDS')
@@ -160,11 +159,10 @@ contains
   end function of_itself
 
   !> *CONTACT_2D_SLIDELINE.
-  subroutine take_slideline(deck, cursor, cards, kinds, commanded, entry)
+  subroutine take_slideline(deck, cursor, cards, commanded, entry)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: cards(:)
-    type(contact_kind_t), intent(in) :: kinds(:)
     logical, intent(in) :: commanded(:)
     type(raw_contact_t), intent(inout) :: entry
 
@@ -182,10 +180,8 @@ contains
         call report_field(deck, cursor, cards(2), 'PENT', 'is not a penalty (more than 0)')
       call take_life(deck, cursor, cards(2), life, contact%birth, contact%death)
       entry%per_cent = real_of(cards(2), 'VDC')
-      call refuse_outside(deck, cursor, cards(2), 'IPF', 0, 1, &
-        'is not 0 or 1'//strict_names(kinds))
       contact%strict = integer_of(cards(2), 'IPF') == 1
-      call take_search(deck, cursor, cards(2), entry)
+      call take_search(cards(2), entry)
       if (.not. any(integer_of(cards(3), 'TIE') == [tie_always, tie_breaks])) &
         call refuse_negative(deck, cursor, cards(2), 'SRCH')
       contact%search_depth = real_of(cards(2), 'SRCH')
@@ -201,7 +197,6 @@ contains
     type(card_t), intent(inout) :: card
     type(raw_contact_t), intent(inout) :: entry
 
-    call refuse_negative(deck, cursor, card, 'LCINT')
     if (integer_of(card, 'LCINT') == 0) return
     if (integer_of(card, 'TIE') /= tie_none) call report_field(deck, cursor, card, 'LCINT', &
       'asks for an overlap that grows, which a tie does not have (it keeps its gaps)')
@@ -213,19 +208,6 @@ contains
     entry%interference = integer_of(card, 'LCINT')
     entry%interference_place = place_of(card, 'LCINT')
   end subroutine take_interference
-
-  !> What IPF = 1 asks for: `: the strict rule of name (type n)`.
-  pure function strict_names(kinds) result(text)
-    type(contact_kind_t), intent(in) :: kinds(:)
-    character(:), allocatable :: text
-    integer :: i
-
-    text = ''
-    do i = 1, size(kinds)
-      if (kinds(i)%has_strict_rule) text = text//trim(merge(': the strict rule of', &
-        ',                   ', len(text) == 0))//' '//kind_text(kinds(i))
-    end do
-  end function strict_names
 
   !> *CONTACT_2D_AUTOMATIC_: penalty as a factor on the built-in estimate.
   subroutine take_automatic(deck, cursor, cards, commanded, entry)
@@ -243,7 +225,7 @@ contains
         call report_field(deck, cursor, cards(1), 'SFACT', 'is negative')
       if (real_of(cards(1), 'SFACT') > 0.0_wp) contact%penalty = real_of(cards(1), 'SFACT')
       contact%master_penalty = contact%penalty
-      call take_search(deck, cursor, cards(1), entry)
+      call take_search(cards(1), entry)
       call take_life(deck, cursor, cards(2), life, contact%birth, contact%death)
       entry%per_cent = real_of(cards(3), 'VDC')
     end associate
@@ -277,16 +259,10 @@ contains
   end subroutine take_penalty
 
   !> FREQ: cycles between two searches. Their sum with the cycle of a run must stay a whole number.
-  subroutine take_search(deck, cursor, card, entry)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
+  subroutine take_search(card, entry)
+    type(card_t), intent(in) :: card
     type(raw_contact_t), intent(inout) :: entry
-    integer, parameter :: most_cycles = 1000000000
 
-    call refuse_negative(deck, cursor, card, 'FREQ')
-    if (integer_of(card, 'FREQ') > most_cycles) call report_field(deck, cursor, card, 'FREQ', &
-      'is not a number of cycles between two searches (at most 1000000000)')
     if (is_bad(card, 'FREQ')) return
     entry%contact%search_interval = integer_of(card, 'FREQ')
     entry%search_place = place_of(card, 'FREQ')

@@ -126,16 +126,10 @@ contains
   end subroutine take_penalty_friction
 
   !> SFRIC, DFRIC, EDC and VFC of *CONTROL_CONTACT.
-  subroutine take_default_friction(deck, cursor, card, raw)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
+  subroutine take_default_friction(card, raw)
+    type(card_t), intent(in) :: card
     type(raw_t), intent(inout) :: raw
 
-    call refuse_negative(deck, cursor, card, 'SFRIC')
-    call refuse_negative(deck, cursor, card, 'DFRIC')
-    call refuse_negative(deck, cursor, card, 'EDC')
-    call refuse_negative(deck, cursor, card, 'VFC')
     raw%friction = friction_rule_t(at_rest=real_of(card, 'SFRIC'), sliding=real_of(card, 'DFRIC'), &
       decay=real_of(card, 'EDC'), most=real_of(card, 'VFC'))
     call keep_zero(raw%friction)

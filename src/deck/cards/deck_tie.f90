@@ -4,13 +4,13 @@ module deck_tie_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use contacts_m, only : contact_t, friction_rule_t, is_tied, breaks, penalty_per_node, &
-    penalty_factor, penalty_share, tie_always, tie_breaks, tie_factor, tie_none
+    penalty_factor, penalty_share, tie_always, tie_breaks, tie_factor
   use deck_lines_m, only : deck_t, line_error, line_warning
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, report_field, warn_of_field
   use deck_contact_values_m, only : of_penalty, of_unit, of_damping
   use deck_overrides_m, only : overrides_t, override_phrase
-  use deck_values_m, only : integer_of, real_of, is_bad, place_of, refuse_outside
+  use deck_values_m, only : integer_of, real_of, is_bad, place_of
   use deck_raw_m, only : raw_contact_t
   implicit none
   private
@@ -26,8 +26,6 @@ contains
     logical, intent(in) :: commanded(:) !! values that the command line gives
     type(raw_contact_t), intent(inout) :: entry
 
-    call refuse_outside(deck, cursor, cards(3), 'TIE', tie_none, tie_breaks, 'is not 0 ' &
-      //'(contact), 1 (tied) or 2 (tied until it breaks)')
     call take_strength(deck, cursor, cards(3), entry)
     associate (contact => entry%contact)
       if (.not. any(integer_of(cards(3), 'TIE') == [tie_always, tie_breaks])) return

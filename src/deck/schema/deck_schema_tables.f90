@@ -6,7 +6,7 @@ module deck_schema_tables_m
   public :: table_control, table_mesh, table_conditions, table_contact, table_database
 
   !> Control of the deck and of the run.
-  character(98), parameter :: table_control(*) = [character(98) :: &
+  character(119), parameter :: table_control(*) = [character(119) :: &
     'KEYWORD', &
     'END', &
     'COMMENT', &
@@ -27,28 +27,28 @@ module deck_schema_tables_m
     'PARAMETER_DUPLICATION', &
     ' DFLAG:i', &
     'CONTROL_TERMINATION', &
-    ' ENDTIM:f ENDCYC:i DTMIN:f ENDENG:f ENDMAS:f NOSOL:i', &
+    ' ENDTIM:f ENDCYC:i>=0 DTMIN:f>=0<=1 ENDENG:f>=0 ENDMAS:f>=0 NOSOL:i|0|1', &
     'TERMINATION_NODE', &
-    ' NID:i STOP:i MAXC:f MINC:f', &
+    ' NID:i>=1 STOP:i|1|2|4 MAXC:f MINC:f', &
     'TERMINATION_BODY', &
-    ' PID:i STOP:i MAXC:f MINC:f', &
+    ' PID:i>=1 STOP:i|1|2|4 MAXC:f MINC:f', &
     'TERMINATION_CONTACT', &
-    ' CID:i ACTIM:f DUR:f THRES:f DOF:i', &
+    ' CID:i>=1 ACTIM:f>=0 DUR:f>=0 THRES:f>=0 DOF:i|0|1|2', &
     'CONTROL_TIMESTEP', &
-    ' DTINIT:f TSSFAC:f ISDO:i TSLIMT:fw DT2MS:f LCTM:i ERODE:i MS1ST:i', &
+    ' DTINIT:f>=0 TSSFAC:f ISDO:i|0|1 TSLIMT:fw DT2MS:f LCTM:i ERODE:i|0|1 MS1ST:i|0|1', &
     ' DT2MSF:fw DT2MSLC:iw IMSCL:iw -:x -:x RMSCL:fw EMSCL:fw IHDO:iw', &
     ' -:x IGADO:iw', &
     'CONTROL_DYNAMIC_RELAXATION', &
-    ' NRCYCK:i=250 DRTOL:f=0.001 DRFCTR:f=0.995 DRTERM:f TSSFDR:f IRELAL:ir' &
-    //' EDTTL:fs=0.04 IDRFLG:i', &
+    ' NRCYCK:i=250>=1 DRTOL:f=0.001>0<1 DRFCTR:f=0.995>0<1 DRTERM:f>=0 TSSFDR:f>=0 IRELAL:ir' &
+    //' EDTTL:fs=0.04 IDRFLG:i|0|1|-999', &
     'CONTROL_HOURGLASS', &
     ' IHQ:i QH:f', &
     'CONTROL_BULK_VISCOSITY', &
-    ' Q1:f~1.5 Q2:f~0.06 TYPE:i=1 BTYPE:iw TSTYPE:iw', &
+    ' Q1:f~1.5>=0<=100 Q2:f~0.06>=0<=100 TYPE:i=1|-1|0|1 BTYPE:iw TSTYPE:iw', &
     'CONTROL_CONTACT', &
-    ' SLSFAC:f RWPNAL:fs ISLCHK:is SHLTHK:is PENOPT:iw=1 THKCHG:is ORIEN:is ENMASS:iw', &
-    ' USRSTR:iw USRFRC:iw NSBCS:is INTERM:is XPENE:fs SSTHK:is ECDT:i TIEDPRJ:is', &
-    ' SFRIC:f DFRIC:f EDC:f VFC:f TH:fs TH_SF:fs PEN_SF:fs', &
+    ' SLSFAC:f>=0 RWPNAL:fs ISLCHK:is SHLTHK:is PENOPT:iw=1 THKCHG:is ORIEN:is ENMASS:iw', &
+    ' USRSTR:iw USRFRC:iw NSBCS:is INTERM:is XPENE:fs SSTHK:is ECDT:i|0|1|2 TIEDPRJ:is', &
+    ' SFRIC:f>=0 DFRIC:f>=0 EDC:f>=0 VFC:f>=0 TH:fs TH_SF:fs PEN_SF:fs', &
     ' IGNORE:iw FRCENG:is SKIPRWG:is OUTSEG:is SPOTSTP:is SPOTDEL:is SPOTHIN:fs', &
     ' ISYM:is NSEROD:is RWGAPS:is RWGDTH:fs RWKSF:fs ICOV:is SWRADF:fs ITHOFF:is', &
     ' SHLEDG:is PSTIFF:is ITHCNT:is TDCNOF:is FTALL:is -:x SHLTRW:fs IGACTC:is', &
@@ -59,30 +59,32 @@ module deck_schema_tables_m
     'CONTROL_ENERGY', &
     ' HGEN:is RWEN:is SLNTEN:is RYLEN:is IRGEN:is MATEN:is DRLEN:is DISEN:is', &
     'CONTROL_OUTPUT', &
-    ' NPOPT:is NEECHO:is NREFUP:is IACCOP:iw OPIFS:fs IPNINT:is IKEDIT:i IFLUSH:is', &
+    ' NPOPT:is NEECHO:is NREFUP:is IACCOP:iw OPIFS:fs IPNINT:is IKEDIT:i>=0 IFLUSH:is', &
     ' IPRTF:is IERODE:is TET10S8:is MSGMAX:is IPCURV:is GMDT:fs IP1DBLT:is EOCS:is', &
     ' TOLEV:is NEWLEG:is FRFREQ:is MINFO:is SOLSIG:is MSGFLG:is CDETOL:fs', &
     ' PHSCHNG:is DEMDEN:is ICRFILE:is SPC2BND:is PENOUT:is SHLSIG:is HISNOUT:is ENGOUT:is', &
     ' INSF:is ISOLSF:is IBSF:is ISSF:is MLKBAG:is', &
     'CONTROL_IMPLICIT_GENERAL', &
-    ' IMFLAG:i DT0:f IMFORM:is NSBS:is IGS:is CNSTN:iw FORM:is ZERO_V:iw', &
+    ' IMFLAG:i|0|1 DT0:f IMFORM:is NSBS:is IGS:is CNSTN:iw FORM:is ZERO_V:iw', &
     'CONTROL_IMPLICIT_DYNAMICS', &
-    ' IMASS:i GAMMA:f BETA:f TDYBIR:fr TDYDTH:fr=1e28 TDYBUR:fr=1e28 IRATE:iw ALPHA:f', &
+    ' IMASS:i|0|1 GAMMA:f BETA:f TDYBIR:fr TDYDTH:fr=1e28 TDYBUR:fr=1e28 IRATE:iw' &
+    //' ALPHA:f>=-0.3333333333333333<=0', &
     ' PSID:ir ANGLE:fs', &
     'CONTROL_IMPLICIT_SPECTRAL_RADIUS', &
-    ' RHO:f', &
+    ' RHO:f>=0<=1', &
     'CONTROL_IMPLICIT_SOLUTION', &
-    ' NSOLVR:i=12 ILIMIT:is MAXREF:i=15 DCTOL:f ECTOL:f RCTOL:f=1e10 LSTOL:f=0.9 ABSTOL:fw', &
+    ' NSOLVR:i=12|0|1|12 ILIMIT:is MAXREF:i=15>=0 DCTOL:f>=0 ECTOL:f>=0 RCTOL:f=1e10>=0' &
+    //' LSTOL:f=0.9>=0 ABSTOL:fw', &
     ' DNORM:is DIVERG:is ISTIF:is NLPRINT:is NLNORM:fs D3ITCTL:iw CPCHK:is', &
     ' DMTOL:fw EMTOL:fw RMTOL:fw -:x NTTOL:fw NRTOL:fw RTTOL:fw RRTOL:fw', &
     ' ARCCTL:ir ARCDIR:is ARCLEN:fs ARCMTH:is ARCDMP:is ARCPSI:fs ARCALF:fs ARCTIM:fs', &
     ' LSMTD:is LSDIR:is IRAD:fs SRAD:fs AWGT:fs SRED:fs', &
     'CONTROL_IMPLICIT_AUTO', &
-    ' IAUTO:i ITEOPT:i=11 ITEWIN:i=5 DTMIN:f DTMAX:f DTEXP:fw KFAIL:iw KCYCLE:iw', &
+    ' IAUTO:i|0|1 ITEOPT:i=11>=1 ITEWIN:i=5>=0 DTMIN:f>=0 DTMAX:f>=0 DTEXP:fw KFAIL:iw KCYCLE:iw', &
     ' HCMIN:fw HCMAX:fw HMMIN:fw HMMAX:fw HNTMAX:fw HNRMAX:fw HRTMAX:fw HRRMAX:fw']
 
   !> Mesh, parts, materials, curves, sets.
-  character(85), parameter :: table_mesh(*) = [character(85) :: &
+  character(84), parameter :: table_mesh(*) = [character(84) :: &
     'NODE', &
     ' NID:i8 X:f16 Y:f16 Z:f16 TC:i8 RC:is8', &
     'ELEMENT_SHELL', &
@@ -191,7 +193,7 @@ module deck_schema_tables_m
     ' PSID:i']
 
   !> Constraints, loads, initial values.
-  character(69), parameter :: table_conditions(*) = [character(69) :: &
+  character(66), parameter :: table_conditions(*) = [character(66) :: &
     'BOUNDARY_SPC_NODE t', &
     ' NID:i CID:i DOFX:i DOFY:i DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
     'BOUNDARY_SPC_SET t', &
@@ -249,48 +251,48 @@ module deck_schema_tables_m
   character(95), parameter :: table_contact(*) = [character(95) :: &
     'CONTACT_2D_SLIDELINE t', &
     ' SURFA:i SURFB:i CTYPE:i NGAUSS:i=2 PEN:f FS:f FD:f DC:f', &
-    ' TBIRTH:f TDEATH:f=1e20 PUNIT:i PENT:f VDC:f IPF:i FREQ:i SRCH:f', &
-    ' VC:f TFAC:f~1 TIE:i NFLS:f SFLS:f LCINT:i TARGET:f', &
+    ' TBIRTH:f TDEATH:f=1e20 PUNIT:i PENT:f VDC:f IPF:i|0|1 FREQ:i>=0<=1000000000 SRCH:f', &
+    ' VC:f TFAC:f~1 TIE:i|0|1|2 NFLS:f SFLS:f LCINT:i>=0 TARGET:f', &
     'CONTACT_2D_PENALTY t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
-    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &
-    //' FRCSCL:fw=0.1 ONEWAY:fr', &
+    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
+    //' ONEWAY:fr', &
     'CONTACT_2D_SLIDING_VOIDS t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
-    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &
-    //' FRCSCL:fw=0.1 ONEWAY:fr', &
+    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
+    //' ONEWAY:fr', &
     'CONTACT_2D_PENALTY_FRICTION t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
-    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &
-    //' FRCSCL:fw=0.1 ONEWAY:fr', &
+    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
+    //' ONEWAY:fr', &
     ' FRIC:f FRIC_L:f FRIC_H:f FRIC_S:fr', &
     'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i>=0<=1000000000 FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_MORTAR t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i>=0<=1000000000 FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_NODE_TO_SURFACE t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i>=0<=1000000000 FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE t', &
-    ' SURFA:i SURFB:iw SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:iw SFACT:f=1 FREQ:i>=0<=1000000000 FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE_MORTAR t', &
-    ' SURFA:i SURFB:iw SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:iw SFACT:f=1 FREQ:i>=0<=1000000000 FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_ONE_WAY_SURFACE_TO_SURFACE t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i>=0<=1000000000 FS:f FD:f DC:f', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
@@ -309,42 +311,42 @@ module deck_schema_tables_m
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_TIED_SLIDING t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
-    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &
-    //' FRCSCL:fw=0.1 ONEWAY:fr']
+    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
+    //' ONEWAY:fr']
 
   !> Output.
-  character(76), parameter :: table_database(*) = [character(76) :: &
+  character(88), parameter :: table_database(*) = [character(88) :: &
     'DATABASE_GLSTAT', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_MATSUM', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_RCFORC', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_NODOUT', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_RWFORC', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_SLEOUT', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_SPCFORC', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_ELOUT', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:is OPTION2:iw OPTION3:is OPTION4:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:is OPTION2:iw OPTION3:is OPTION4:is', &
     'DATABASE_RBDOUT', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_BNDOUT', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_NODFOR', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_SECFORC', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_BINARY_D3PLOT', &
-    ' DT:f LCDT:i BEAM:is NPLTC:i PSETID:iw', &
+    ' DT:f>=0 LCDT:i>=0 BEAM:is NPLTC:i>=0 PSETID:iw', &
     ' IOOPT:is RATE:fs CUTOFF:fs WINDOW:fs TYPE:is PSET:iw', &
     'DATABASE_BINARY_D3DUMP', &
-    ' CYCL:f NR:is BEAM:is NPLTC:iw PSETID:iw', &
+    ' CYCL:f>=0<=2e9 NR:is BEAM:is NPLTC:iw PSETID:iw', &
     'DATABASE_BINARY_RUNRSF', &
-    ' CYCL:f NR:iw=1 BEAM:is NPLTC:iw PSETID:iw', &
+    ' CYCL:f>=0<=2e9 NR:iw=1 BEAM:is NPLTC:iw PSETID:iw', &
     'DATABASE_HISTORY_NODE', &
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
     'DATABASE_HISTORY_NODE_ID', &
@@ -356,8 +358,8 @@ module deck_schema_tables_m
     'DATABASE_HISTORY_SHELL_SET', &
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
     'DATABASE_NODAL_FORCE_GROUP', &
-    ' NSID:i CID:ir', &
+    ' NSID:i>=1 CID:ir', &
     'DATABASE_CROSS_SECTION_SET t', &
-    ' NSID:i HSID:ir BSID:ir SSID:i TSID:ir DSID:ir ID:ir ITYPE:is']
+    ' NSID:i>=1 HSID:ir BSID:ir SSID:i>=1 TSID:ir DSID:ir ID:ir ITYPE:is']
 
 end module deck_schema_tables_m
