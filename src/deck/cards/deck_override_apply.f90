@@ -111,7 +111,7 @@ contains
     integer, allocatable :: used(:)
 
     used = [raw%curves%id, raw%tables%id, raw%outputs%curve, raw%hardenings%curve, &
-      raw%hardenings%rate_curve, raw%contacts%interference, raw%rows(:raw%n_row)%curve]
+      raw%hardenings%rate_curve, raw%contacts%interference]
     number = min(max(high, maxval(used)), huge(number) - 1) + 1
     do while (any(used == number))
       number = number - 1
