@@ -14,9 +14,9 @@ module deck_cards_m
   use deck_parameters_m, only : substitute
   implicit none
   private
-  public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_of, rows_of, next_text, &
-    next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field, find_field, &
-    find_keyword_field
+  public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_of, rows_of, &
+    next_text, next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field, &
+    find_field, find_keyword_field
 
   !> A place in a block.
   type :: cursor_t

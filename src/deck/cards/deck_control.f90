@@ -52,8 +52,8 @@ contains
     case ('CONTROL_DYNAMIC_RELAXATION')
       call take_relaxation(cards(1), raw)
     case ('CONTROL_HOURGLASS')
-      call hourglass_form(deck, cursor, cards(1), 'IHQ', raw%hourglass_default%form)
-      call hourglass_coefficient(deck, cursor, cards(1), 'QH', &
+      call hourglass_form(deck, cards(1), 'IHQ', raw%hourglass_default%form)
+      call hourglass_coefficient(deck, cards(1), 'QH', &
         raw%hourglass_default%coefficient)
     case ('CONTROL_BULK_VISCOSITY')
       call take_bulk_viscosity(cards(1), raw)

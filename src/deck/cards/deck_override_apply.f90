@@ -88,12 +88,11 @@ contains
       call replace_field(deck, 'CONTROL_IMPLICIT_GENERAL', 'DT0', text, tail)
       return
     end if
-    curve%id = unused_number(raw)
+    curve%id = unused_number(deck)
     allocate (curve%abscissa(2), curve%ordinate(2))
     curve%abscissa = [0.0_wp, 1.0e20_wp]
     curve%ordinate = dt
-    raw%curves = [raw%curves, curve]
-    raw%curve_line = [raw%curve_line, 0]
+    raw%step_curve = curve
     raw%dt_curve = curve%id
     raw%dt_curve_place = place_t(line=0, card=1, name='LCTM')
     call replace_field(deck, 'CONTROL_TIMESTEP', 'LCTM', to_text(curve%id), tail)
@@ -101,20 +100,17 @@ contains
       //'0.0,'//text//new_line('a')//'1.0e20,'//text//new_line('a')
   end subroutine override_step
 
-  !> A number for one more curve: above those of all curves and tables and all references, so that a
-  !> reference to nothing stays one. It starts high, so that the deck of changes that a restart may
-  !> have does not meet it by chance either.
-  pure function unused_number(raw) result(number)
-    type(raw_t), intent(in) :: raw
+  !> A number for one more curve: one whose digits stand nowhere in the deck, so that a reference to
+  !> nothing stays one. It starts high, so that the deck of changes that a restart may have does not
+  !> meet it by chance either.
+  pure function unused_number(deck) result(number)
+    type(deck_t), intent(in) :: deck
     integer :: number
-    integer, parameter :: high = 90000000
-    integer, allocatable :: used(:)
+    integer :: i
 
-    used = [raw%curves%id, raw%tables%id, raw%outputs%curve, raw%hardenings%curve, &
-      raw%hardenings%rate_curve, raw%contacts%interference]
-    number = min(max(high, maxval(used)), huge(number) - 1) + 1
-    do while (any(used == number))
-      number = number - 1
+    number = 90000001
+    do while (any([(index(deck%sources(i)%text, to_text(number)) > 0, i=1, deck%n_source)]))
+      number = number + 1
     end do
   end function unused_number
 
