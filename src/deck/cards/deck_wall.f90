@@ -36,7 +36,7 @@ contains
     if (integer_of(card, 'NSIDEX') < 0) call report_field(deck, cursor, card, 'NSIDEX', &
       'is not a node set')
     call refuse_negative(deck, cursor, card, 'OFFSET')
-    call take_life(deck, cursor, card, ['BIRTH', 'DEATH'], entry%wall%birth, entry%wall%death)
+    call take_life(deck, card, ['BIRTH', 'DEATH'], entry%wall%birth, entry%wall%death)
     entry%sets = [integer_of(card, 'NSID'), integer_of(card, 'NSIDEX')]
     entry%card_line = card%line
     entry%reach = real_of(card, 'OFFSET')

@@ -11,7 +11,7 @@ module deck_resolve_m
   use conditions_m, only : motion_acceleration
   use contacts_m, only : penalty_share, penalty_implicit
   use deck_cards_m, only : reject_field, warn_of_field
-  use deck_implicit_penalty_m, only : check_implicit_penalties, refuse_unit
+  use deck_implicit_penalty_m, only : check_implicit_penalties
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning
   use deck_maps_m, only : maps_t, make_maps, resolve_id
   use deck_raw_m, only : raw_t, raw_contact_t, history_t, row_damping, row_motion_node, &
@@ -93,8 +93,6 @@ contains
       if (raw%contacts(i)%contact%search_interval > 0) call warn_of_field(deck, &
         raw%contacts(i)%search_place, no_effect)
     end do
-    if (len(raw%scale_phrase) > 0) call line_warning(deck, 0, 'implicit tssfac', &
-      raw%scale_phrase//' '//no_effect)
     if (raw%controls%implicit%is_dynamic) return
     do i = 1, raw%n_row
       if (all(raw%rows(i)%kind /= [row_velocity, row_velocity_generation])) cycle
@@ -119,7 +117,8 @@ contains
     case default
       return
     end select
-    call refuse_unit(deck, entry, reason//', which the implicit method does not have (0, 1 or 2)')
+    call reject_field(deck, entry%unit_place, reason//', which the implicit method does not ' &
+      //'have (0, 1 or 2)')
   end subroutine check_penalty_unit
 
   !> Fill the model.
