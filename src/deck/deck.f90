@@ -11,6 +11,9 @@ module deck_m
   use model_m, only : model_t
   use deck_findings_m, only : list_findings
   use deck_report_m, only : emit_warnings, emit_errors
+  use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, a_curve, &
+    a_system, a_node_set, a_part_set, a_segment_set, a_shell_set
+  use deck_maps_m, only : lose
   use deck_lines_m, only : deck_t, line_error, line_warning, shown_text, file_paths
   use deck_reader_m, only : read_blocks, cut_deck
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
@@ -28,14 +31,11 @@ module deck_m
     read_crushable_foam, read_mooney_rivlin, read_blatz_ko, read_rigid, read_linear_polynomial, &
     read_gruneisen
   use deck_erosion_m, only : read_erosion
-  use deck_damping_m, only : read_part_damping
-  use deck_conditions_m, only : read_condition, read_initial_velocity
   use deck_control_m, only : read_control, check_step, read_ends
   use deck_empty_m, only : check_empty
   use deck_output_m, only : read_database, read_force_groups, read_cross_sections, read_transducer
   use deck_contact_m, only : read_contact
   use deck_friction_m, only : warn_of_unused
-  use deck_wall_m, only : read_wall
   use deck_resolve_m, only : resolve_model
   use deck_effective_m, only : forget_places, write_effective
   use deck_echo_m, only : echo_model
@@ -58,6 +58,9 @@ module deck_m
   character(*), parameter :: instead_of_cases = ' not available in slideline: run the deck once ' &
     //'for each, in a shell loop or by tools/batch/sweep.sh, with ctype=, p:NAME=VALUE of a ' &
     //'*PARAMETER and the like, and *INCLUDE what several decks share'
+
+  !> All kinds of sets.
+  integer, parameter :: sets(4) = [a_node_set, a_part_set, a_segment_set, a_shell_set]
 
 contains
 
@@ -99,6 +102,7 @@ contains
     type(raw_t), allocatable :: raw
     integer, allocatable :: known(:)
     integer :: i, pass
+    logical :: is_empty
 
     allocate (raw, deck%words(0))
     call start_raw(raw)
@@ -113,10 +117,16 @@ contains
     known = [known, (known_honoured, i=size(known) + 1, deck%n_block)]
     raw%controls%title = ''
     call reserve_lists(deck, raw)
+    do i = 1, deck%n_block
+      if (known(i) /= known_honoured) cycle
+      call check_empty(deck, i, is_empty)
+      if (is_empty) call note_lost(deck, i, raw)
+      deck%blocks(i)%is_honoured = .not. is_empty
+    end do
     ! Interfaces come last: friction of *CONTROL_CONTACT is known then.
     do pass = 1, 2
       do i = 1, deck%n_block
-        if (known(i) /= known_honoured) cycle
+        if (.not. deck%blocks(i)%is_honoured) cycle
         if ((index(deck%blocks(i)%name, 'CONTACT_') == 1) .eqv. pass == 2) &
           call read_block(deck, i, kinds, raw)
       end do
@@ -183,11 +193,11 @@ contains
             call line_error(deck, block%keyword, reason//' not available in slideline' &
               //meant(block%given))
           end if
-          call note_lost(block%given, raw)
+          call note_lost(deck, i, raw)
         case default
           call line_error(deck, block%keyword, 'is not a keyword that this version knows' &
             //meant(block%given))
-          call note_lost(block%given, raw)
+          call note_lost(deck, i, raw)
         end select
         if (block%name /= 'COMMENT' .and. index(' '//upper_case(block%rest), ' CID=') > 0) &
           call line_error(deck, block%keyword, 'keywords of one of several runs (CID=) are' &
@@ -207,26 +217,25 @@ contains
 
   !> What a refused keyword would have defined, by its name and by what that may have been meant
   !> for.
-  subroutine note_lost(given, raw)
-    character(*), intent(in) :: given
+  subroutine note_lost(deck, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     character(:), allocatable :: name
     integer :: i
 
-    name = trim(given)
+    name = deck%blocks(i_block)%given
     do i = 1, 2
-      associate (lost => raw%lost)
-        lost%nodes = lost%nodes .or. index(name, 'NODE') == 1 .or. index(name, 'INCLUDE') == 1
-        lost%elements = lost%elements .or. index(name, 'ELEMENT') == 1
-        lost%parts = lost%parts .or. index(name, 'PART') == 1
-        lost%sections = lost%sections .or. index(name, 'SECTION') == 1
-        lost%materials = lost%materials .or. index(name, 'MAT') == 1
-        lost%equations = lost%equations .or. index(name, 'EOS') == 1
-        lost%curves = lost%curves .or. index(name, 'DEFINE') == 1
-        lost%sets = lost%sets .or. index(name, 'SET') == 1
-      end associate
+      if (index(name, 'NODE') == 1 .or. index(name, 'INCLUDE') == 1) call lose(deck, [a_node])
+      if (index(name, 'ELEMENT') == 1) call lose(deck, [an_element])
+      if (index(name, 'PART') == 1) call lose(deck, [a_part])
+      if (index(name, 'SECTION') == 1) call lose(deck, [a_section])
+      if (index(name, 'MAT') == 1) call lose(deck, [a_material])
+      if (index(name, 'EOS') == 1) call lose(deck, [an_eos])
+      if (index(name, 'DEFINE') == 1) call lose(deck, [a_curve, a_system])
+      if (index(name, 'SET') == 1) call lose(deck, sets)
       raw%terminated = raw%terminated .or. name == 'CONTROL_TERMINATION'
-      name = trim(nearest_keyword(trim(given)))
+      name = trim(nearest_keyword(deck%blocks(i_block)%given))
     end do
   end subroutine note_lost
 
@@ -236,13 +245,7 @@ contains
     integer, intent(in) :: i
     type(contact_kind_t), intent(in) :: kinds(:)
     type(raw_t), intent(inout) :: raw
-    logical :: is_empty
 
-    call check_empty(deck, i, is_empty)
-    if (is_empty) then
-      call note_lost(deck%blocks(i)%name, raw)
-      return
-    end if
     select case (deck%blocks(i)%name)
     case ('TITLE')
       call read_title(deck, i, raw)
@@ -294,16 +297,8 @@ contains
       call read_curve(deck, i, raw)
     case ('DEFINE_TABLE')
       call read_table(deck, i, raw)
-    case ('INITIAL_VELOCITY', 'INITIAL_VELOCITY_GENERATION')
-      call read_initial_velocity(deck, i, raw)
-    case ('DAMPING_PART_MASS', 'DAMPING_PART_MASS_SET')
-      call read_part_damping(deck, i, raw)
     case ('DEFINE_COORDINATE_SYSTEM')
       call read_system(deck, i, raw)
-    case ('ELEMENT_MASS', 'ELEMENT_MASS_NODE_SET', 'CONSTRAINED_NODE_SET')
-      call read_condition(deck, i, raw)
-    case ('RIGIDWALL_PLANAR')
-      call read_wall(deck, i, raw)
     case default
       call read_family(deck, i, kinds, raw)
     end select
@@ -331,8 +326,6 @@ contains
       end if
     case ('TERMINATION_')
       call read_ends(deck, i, raw)
-    case ('BOUNDARY_', 'INITIAL_', 'LOAD_', 'DAMPING_')
-      call read_condition(deck, i, raw)
     end select
   end subroutine read_family
 

@@ -14,8 +14,9 @@ module deck_cards_m
   use deck_parameters_m, only : substitute
   implicit none
   private
-  public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_text, &
-    next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field, find_field
+  public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_of, rows_of, &
+    next_text, next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field, &
+    find_field
 
   !> A place in a block.
   type :: cursor_t
@@ -24,6 +25,7 @@ module deck_cards_m
     integer :: line = 1           !! next line
     integer :: last = 0           !! last line of the block
     integer :: n_card = 0         !! cards that the keyword has
+    character(27) :: head = ''    !! beginning of the keywords whose rows are read
     type(card_spec_t) :: specs(max_card)
   end type cursor_t
 
@@ -116,6 +118,38 @@ contains
     found = cursor%line <= cursor%last
     if (found) call read_line(deck, cursor, number, card)
   end subroutine next_row
+
+  !> Start at the first row of the first keyword that begins so; `next_of` goes on from keyword to
+  !> keyword.
+  pure subroutine rows_of(head, cursor)
+    character(*), intent(in) :: head
+    type(cursor_t), intent(out) :: cursor
+
+    cursor%head = head
+  end subroutine rows_of
+
+  !> The next row that is not blank, as card 1; `found` is false behind the last keyword.
+  subroutine next_of(deck, cursor, card, found)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(inout) :: cursor
+    type(card_t), intent(inout) :: card
+    logical, intent(out) :: found
+    character(len(cursor%head)) :: head
+    integer :: i
+
+    call next_row(deck, cursor, 1, card, found)
+    head = cursor%head
+    i = cursor%block
+    do while (.not. found .and. i < deck%n_block)
+      i = i + 1
+      if (.not. deck%blocks(i)%is_honoured) cycle
+      if (index(deck%blocks(i)%name, trim(head)) /= 1) cycle
+      call open_cursor(deck, i, cursor)
+      cursor%head = head
+      call skip_title(deck, cursor)
+      call next_row(deck, cursor, 1, card, found)
+    end do
+  end subroutine next_of
 
   !> Whether a line that is not blank is left.
   subroutine row_comes(deck, cursor, found)

@@ -3,6 +3,8 @@
 module deck_curves_m
   use kinds_m, only : wp
   use curves_m, only : curve_t
+  use deck_ids_m, only : a_curve, a_table
+  use deck_maps_m, only : lose
   use deck_lines_m, only : deck_t, line_error
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, first_card, next_row, report_field, find_field, next_card, &
@@ -36,7 +38,7 @@ contains
     call read_rows(deck, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
       'is not beyond the point before it: abscissas must increase', cursor, points)
     if (size(points, 2) == 0) call line_error(deck, head%line, 'the curve has no points')
-    if (is_bad(head, 'LCID')) raw%lost%curves = .true.
+    if (is_bad(head, 'LCID')) call lose(deck, [a_curve])
     if (is_bad(head, 'LCID')) return
     if (size(points, 2) == 0) points = reshape([0.0_wp, 0.0_wp], [2, 1])
     curve%id = integer_of(head, 'LCID')
@@ -64,7 +66,7 @@ contains
     call read_rows(deck, ['VALUE'], [scale], [real_of(head, 'OFFA')], &
       'is not beyond the value before it: the values of a table must increase', cursor, values)
     if (size(values, 2) == 0) call line_error(deck, head%line, 'the table has no values')
-    if (is_bad(head, 'TBID')) raw%lost%tables = .true.
+    if (is_bad(head, 'TBID')) call lose(deck, [a_table])
     if (is_bad(head, 'TBID')) return
     table = raw_table_t(integer_of(head, 'TBID'), head%line, i_block, values(1, :))
     raw%n_table = raw%n_table + 1
@@ -135,7 +137,7 @@ contains
     call next_card(deck, cursor, 2, cards(2))
     call check_rest(deck, cursor)
     call require_id(deck, cursor, cards(1), 'CID')
-    if (is_bad(cards(1), 'CID')) raw%lost%curves = .true.
+    if (is_bad(cards(1), 'CID')) call lose(deck, [a_curve])
     if (is_bad(cards(1), 'CID')) return
     system%id = integer_of(cards(1), 'CID')
     system%line = cards(1)%line

@@ -61,7 +61,7 @@ contains
     else if (.not. is_bad(rate, 'LCSS')) then
       call read_line(deck, cursor, card, hardening)
     end if
-    call append_material(raw, material, card)
+    call append_material(deck, raw, material, card)
     call check_rest(deck, cursor)
     if (is_bad(card, 'MID') .or. is_bad(rate, 'LCSS')) return
     hardening%material = raw%n_material
@@ -181,7 +181,7 @@ contains
       hardening%points%ordinate = [real_of(card, 'SIGY')]
       hardening%modulus = real_of(card, 'EH')
     end if
-    call append_material(raw, material, card)
+    call append_material(deck, raw, material, card)
     call check_rest(deck, cursor)
     if (is_bad(card, 'MID')) return
     hardening%material = raw%n_material
@@ -225,7 +225,7 @@ contains
     call take_bound(deck, cursor, stress, 'SIGMAX', material%flow%most_static)
     call take_bound(deck, cursor, stress, 'SIGSAT', material%flow%most)
     call take_failure(deck, cursor, stress, 'PSFAIL', material)
-    call append_material(raw, material, card)
+    call append_material(deck, raw, material, card)
     call check_rest(deck, cursor)
   end subroutine read_simplified_johnson_cook
 
@@ -261,7 +261,7 @@ contains
       report_field(deck, cursor, heat, 'D1', 'is 0 as D2 is: the strain at fracture would be 0')
     call refuse_negative(deck, cursor, damage, 'EFMIN')
     material%flow%least = max(real_of(damage, 'EFMIN'), tiny(1.0_wp))
-    call append_material(raw, material, card)
+    call append_material(deck, raw, material, card)
     call check_rest(deck, cursor)
   end subroutine read_johnson_cook
 

@@ -6,6 +6,8 @@ module deck_material_m
   use log_m, only : to_text
   use parts_m, only : material_t, law_elastic, law_plastic, law_null, law_crushable_foam, &
     law_mooney_rivlin, law_blatz_ko
+  use deck_ids_m, only : a_material, an_eos
+  use deck_maps_m, only : lose
   use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, first_card, next_card, check_rest, report_field
@@ -50,7 +52,7 @@ contains
     call first_card(deck, i_block, cursor, card)
     call elastic_constants(deck, cursor, card, material)
     material%law = law_elastic
-    call append_material(raw, material, card)
+    call append_material(deck, raw, material, card)
     call check_rest(deck, cursor)
   end subroutine read_elastic
 
@@ -76,7 +78,7 @@ contains
     if (.not. any(card%bad)) material%hardening = plastic_modulus(card)
     call next_card(deck, cursor, 2, rate)
     call take_failure(deck, cursor, rate, 'FS', material)
-    call append_material(raw, material, card)
+    call append_material(deck, raw, material, card)
     call check_rest(deck, cursor)
   end subroutine read_plastic_kinematic
 
@@ -182,12 +184,13 @@ contains
   end subroutine elastic_constants
 
   !> One more material.
-  subroutine append_material(raw, material, card)
+  subroutine append_material(deck, raw, material, card)
+    type(deck_t), intent(inout) :: deck
     type(raw_t), intent(inout) :: raw
     type(material_t), intent(in) :: material
     type(card_t), intent(in) :: card
 
-    if (is_bad(card, 'MID')) raw%lost%materials = .true.
+    if (is_bad(card, 'MID')) call lose(deck, [a_material])
     if (is_bad(card, 'MID')) return
     raw%n_material = raw%n_material + 1
     raw%materials(raw%n_material) = material
@@ -216,7 +219,7 @@ contains
     material%density = real_of(card, 'RO')
     material%viscosity = real_of(card, 'MU')
     call take_cutoff(deck, cursor, card, material)
-    call append_material(raw, material, card)
+    call append_material(deck, raw, material, card)
     call check_rest(deck, cursor)
   end subroutine read_null
 
@@ -238,7 +241,7 @@ contains
     material%law = law_crushable_foam
     material%tension = real_of(card, 'TSC')
     if (material%bulk > 0.0_wp) material%eos = eos_t(kind=eos_by_law, stiffness=material%bulk)
-    call append_material(raw, material, card)
+    call append_material(deck, raw, material, card)
     call check_rest(deck, cursor)
     if (is_bad(card, 'MID') .or. is_bad(card, 'LCID')) return
     foam%material = raw%n_material
@@ -283,7 +286,7 @@ contains
       material%shear = 2.0_wp*(a + b)
       call settle_moduli(poisson, material)
     end if
-    call append_material(raw, material, card)
+    call append_material(deck, raw, material, card)
     call check_rest(deck, cursor)
   end subroutine read_mooney_rivlin
 
@@ -303,7 +306,7 @@ contains
       material%rubber = blatz_ko(material%shear)
       call settle_moduli(blatz_ko_poisson, material)
     end if
-    call append_material(raw, material, card)
+    call append_material(deck, raw, material, card)
     call check_rest(deck, cursor)
   end subroutine read_blatz_ko
 
@@ -334,7 +337,7 @@ contains
     call next_card(deck, cursor, 2, constraints)
     call read_constraints(deck, cursor, constraints, material)
     call next_card(deck, cursor, 3, axes)
-    call append_material(raw, material, card)
+    call append_material(deck, raw, material, card)
     call check_rest(deck, cursor)
   end subroutine read_rigid
 
@@ -444,7 +447,7 @@ contains
     type(raw_t), intent(inout) :: raw
 
     call check_rest(deck, cursor)
-    if (is_bad(card, 'EOSID')) raw%lost%equations = .true.
+    if (is_bad(card, 'EOSID')) call lose(deck, [an_eos])
     if (is_bad(card, 'EOSID')) return
     eos%id = integer_of(card, 'EOSID')
     raw%n_equation = raw%n_equation + 1

@@ -6,6 +6,8 @@ module deck_part_m
   use log_m, only : to_text
   use parts_m, only : section_t, hourglass_t, hourglass_viscous, hourglass_stiffness, &
     hourglass_assumed, form_one_point, form_full, form_round_one_point, form_round_full
+  use deck_ids_m, only : a_part, a_section, an_hourglass
+  use deck_maps_m, only : lose
   use deck_lines_m, only : deck_t, line_text, line_error, line_warning, flag_blank
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
@@ -57,7 +59,7 @@ contains
       part%hourglass = integer_of(card, 'HGID')
       part%line = card%line
       if (is_bad(card, 'PID')) then
-        raw%lost%parts = .true.
+        call lose(deck, [a_part])
       else
         raw%n_part = raw%n_part + 1
         raw%parts(raw%n_part) = part
@@ -107,7 +109,7 @@ contains
       if (section%is_round) section%element_form = merge(form_round_full, form_round_one_point, &
         section%is_full)
       if (is_bad(card, 'SECID')) then
-        raw%lost%sections = .true.
+        call lose(deck, [a_section])
       else
         raw%n_section = raw%n_section + 1
         raw%sections(raw%n_section) = section
@@ -172,7 +174,7 @@ contains
       hourglass%quadratic = real_of(card, 'Q1')
       hourglass%linear = real_of(card, 'Q2')
       given = .not. [is_blank(card, 'Q1'), is_blank(card, 'Q2')]
-      if (is_bad(card, 'HGID')) raw%lost%hourglasses = .true.
+      if (is_bad(card, 'HGID')) call lose(deck, [an_hourglass])
       if (is_bad(card, 'HGID')) cycle
       raw%n_hourglass = raw%n_hourglass + 1
       raw%hourglasses(raw%n_hourglass) = hourglass

@@ -8,8 +8,9 @@ module deck_resolve_eos_m
   use model_m, only : model_t
   use parts_m, only : material_t
   use deck_cards_m, only : reject_field
+  use deck_ids_m, only : an_eos
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning
-  use deck_maps_m, only : maps_t, resolve_id
+  use deck_maps_m, only : resolve_id
   use deck_raw_m, only : raw_t
   implicit none
   private
@@ -19,10 +20,9 @@ contains
 
   !> Give every material its pressure. A material whose parts name different equations of state
   !> becomes as many materials.
-  subroutine resolve_equations(deck, raw, maps, model)
+  subroutine resolve_equations(deck, raw, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(inout) :: raw
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
     integer, allocatable :: base(:), taken(:) !! of each material: whose copy it is; its equation of
                                               !! state, 0 none, -1 not known yet
@@ -34,7 +34,7 @@ contains
     do i = 1, size(model%parts)
       m = model%parts(i)%material
       if (m == 0) cycle
-      call find_equation_of_state(deck, raw, maps, model%materials(m), i, k)
+      call find_equation_of_state(deck, raw, model%materials(m), i, k)
       if (k < 0) cycle
       if (taken(m) < 0) then
         taken(m) = k
@@ -64,10 +64,9 @@ contains
   end subroutine resolve_equations
 
   !> The equation of state of a part, 0 for none, -1 where there is a mistake.
-  subroutine find_equation_of_state(deck, raw, maps, material, i_part, found)
+  subroutine find_equation_of_state(deck, raw, material, i_part, found)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
     type(material_t), intent(in) :: material
     integer, intent(in) :: i_part
     integer, intent(out) :: found
@@ -78,7 +77,7 @@ contains
       place = place_t(part%line, 2, 'EOSID')
       if (part%eos > 0) then
         if (material%takes_eos) then
-          call resolve_id(deck, maps%equations, part%eos, 'equation of state', place, found)
+          call resolve_id(deck, an_eos, part%eos, place, found)
         else
           call reject_field(deck, place, 'is an equation of state, but material ' &
             //to_text(material%id)//' has a pressure of its own; leave it 0')

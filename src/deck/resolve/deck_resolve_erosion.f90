@@ -9,8 +9,9 @@ module deck_resolve_erosion_m
   use parts_m, only : material_t, law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
     law_hot_johnson_cook, law_null, hourglass_assumed
   use deck_cards_m, only : reject_field
+  use deck_ids_m, only : a_material
   use deck_lines_m, only : deck_t, line_error, line_warning
-  use deck_maps_m, only : maps_t, resolve_id
+  use deck_maps_m, only : resolve_id
   use deck_raw_m, only : raw_t
   implicit none
   private
@@ -23,16 +24,15 @@ module deck_resolve_erosion_m
 contains
 
   !> Give materials their criteria, before they get their pressures.
-  subroutine resolve_erosion(deck, raw, maps, model)
+  subroutine resolve_erosion(deck, raw, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
     integer :: i, m
 
     do i = 1, size(raw%erosions)
       if (raw%erosions(i)%material == 0) cycle
-      call resolve_id(deck, maps%materials, raw%erosions(i)%material, 'material', &
+      call resolve_id(deck, a_material, raw%erosions(i)%material, &
         raw%erosions(i)%place, m)
       if (m == 0) cycle
       if (allocated(model%materials(m)%erosion)) then

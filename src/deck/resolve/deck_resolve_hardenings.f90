@@ -8,8 +8,9 @@ module deck_resolve_hardenings_m
   use model_m, only : model_t
   use deck_cards_m, only : reject_field
   use deck_ids_m, only : index_of
+  use deck_ids_m, only : a_curve, a_table
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning
-  use deck_maps_m, only : maps_t, resolve_id
+  use deck_maps_m, only : resolve_id
   use deck_raw_m, only : raw_t, raw_hardening_t, raw_table_t
   implicit none
   private
@@ -18,16 +19,15 @@ module deck_resolve_hardenings_m
 contains
 
   !> Give every material of piecewise linear hardening its points.
-  subroutine resolve_hardenings(deck, raw, maps, model)
+  subroutine resolve_hardenings(deck, raw, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
     integer, allocatable :: curves(:, :)
     integer :: i, j, k
 
     do i = 1, size(raw%tables)
-      if (index_of(maps%curves, raw%tables(i)%id) > 0) call reject_field(deck, &
+      if (index_of(deck%maps(a_curve), raw%tables(i)%id) > 0) call reject_field(deck, &
         place_t(raw%tables(i)%line, 1, 'TBID'), 'is the number of a curve too')
     end do
     allocate (curves(2, size(raw%tables)))
@@ -39,15 +39,15 @@ contains
         if (entry%curve == 0) then
           if (allocated(entry%points%abscissa)) call take_curves(deck, raw, entry, [integer ::], &
             [0.0_wp], model)
-        else if (index_of(maps%tables, entry%curve) > 0) then
-          k = index_of(maps%tables, entry%curve)
+        else if (index_of(deck%maps(a_table), entry%curve) > 0) then
+          k = index_of(deck%maps(a_table), entry%curve)
           if (curves(2, k) >= curves(1, k)) call take_curves(deck, raw, entry, &
             [(j, j=curves(1, k), curves(2, k))], raw%tables(k)%values, model)
-        else if (index_of(maps%curves, entry%curve) > 0 .or. .not. maps%tables%incomplete) then
-          call resolve_id(deck, maps%curves, entry%curve, 'curve or table', entry%curve_place, k)
+        else if (index_of(deck%maps(a_curve), entry%curve) > 0 .or. .not. deck%maps(a_table)%incomplete) then
+          call resolve_id(deck, a_curve, entry%curve, entry%curve_place, k, ' (nor a table)')
           if (k > 0) call take_curves(deck, raw, entry, [k], [0.0_wp], model)
         end if
-        call take_rates(deck, maps, entry, model)
+        call take_rates(deck, entry, model)
       end associate
     end do
   end subroutine resolve_hardenings
@@ -75,7 +75,7 @@ contains
     end do
     if (n == size(table%values)) then
       if (n > 0) curves(2) = k
-    else if (.not. (raw%lost%curves .or. deck%incomplete)) then
+    else if (.not. deck%maps(a_curve)%lost) then
       call line_error(deck, table%line, 'table '//to_text(table%id)//' has ' &
         //to_text(size(table%values))//' values but '//to_text(n) &
         //' *DEFINE_CURVE right behind it: it takes one for each value, in that order')
@@ -140,7 +140,7 @@ contains
     character(:), allocatable :: name
 
     name = 'curve '//to_text(curve%id)//' is a yield stress against plastic strain (LCSS) and must '
-    if (raw%lost%curves) return
+    if (deck%maps(a_curve)%lost) return
     if (abs(curve%abscissa(1)) > 0.0_wp) call line_error(deck, line, name &
       //'start at plastic strain 0, not '//to_text(curve%abscissa(1)))
     if (.not. minval(curve%ordinate) > 0.0_wp) call line_error(deck, line, name &
@@ -148,15 +148,14 @@ contains
   end subroutine check_curve
 
   !> Rate effect: a table comes before LCSR, LCSR before C and P.
-  subroutine take_rates(deck, maps, entry, model)
+  subroutine take_rates(deck, entry, model)
     type(deck_t), intent(inout) :: deck
-    type(maps_t), intent(in) :: maps
     type(raw_hardening_t), intent(in) :: entry
     type(model_t), intent(inout) :: model
     integer :: k
 
     k = 0
-    if (entry%rate_curve > 0) call resolve_id(deck, maps%curves, entry%rate_curve, 'curve', &
+    if (entry%rate_curve > 0) call resolve_id(deck, a_curve, entry%rate_curve, &
       entry%rate_curve_place, k)
     associate (material => model%materials(entry%material), line => entry%curve_place%line)
       if (.not. allocated(material%curve)) return
@@ -214,21 +213,20 @@ contains
   end subroutine check_no_rates
 
   !> Give every foam its curve, which must not fall.
-  subroutine resolve_foams(deck, raw, maps, model)
+  subroutine resolve_foams(deck, raw, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
     character(:), allocatable :: name
     integer :: i, k
 
     do i = 1, size(raw%foams)
-      call resolve_id(deck, maps%curves, raw%foams(i)%curve, 'curve', raw%foams(i)%place, k)
+      call resolve_id(deck, a_curve, raw%foams(i)%curve, raw%foams(i)%place, k)
       if (k == 0) cycle
       associate (curve => model%curves(k))
         curve%is_of_time = .false.
         model%materials(raw%foams(i)%material)%crush = curve
-        if (raw%lost%curves) cycle
+        if (deck%maps(a_curve)%lost) cycle
         name = 'curve '//to_text(curve%id)//' is a yield stress against volumetric strain (LCID)'
         if (.not. minval(curve%ordinate) >= 0.0_wp .or. .not. maxval(curve%ordinate) > 0.0_wp) then
           call line_error(deck, raw%curve_line(k), name &

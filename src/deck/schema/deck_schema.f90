@@ -70,6 +70,26 @@ module deck_schema_m
     'VDC a damping in per cent of critical', &
     'IPF 0 or 1 (the strict rule of type 5)', &
     'FREQ a number of cycles between two searches', &
+    'DOFX 0 (free) or 1 (fixed)', &
+    'DOFY 0 (free) or 1 (fixed)', &
+    'BOUNDARY_PRESCRIBED_MOTION_RIGID.DOF a motion that a rigid body has here (1 x, 2 y, 7 turn ' &
+    //'about z)', &
+    'LOAD_RIGID_BODY.DOF a load on a rigid body that this version has (1 x, 2 y, 7 moment about z)', &
+    'CONSTRAINED.DOF a code of directions (1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)', &
+    'DOF a direction that this version has (1 x, 2 y)', &
+    'VAD a kind of motion that this version has (0 velocity, 1 acceleration, 2 displacement)', &
+    'DAMPING_PART.LCID a curve number (1 or more); the curve gives the damping over time', &
+    'BOUNDARY.LCID a curve number', &
+    'LOAD.LCID a curve number', &
+    'RIGIDWALL.NSID a node set, nor 0 (all nodes)', &
+    'STYP a kind of set (1 part set, 2 part, 3 node set)', &
+    'OMEGA a number of this size (at most 1e30)', &
+    'FLAG 0 or 1 (a second card with factors of the directions)', &
+    'COEF a share of critical damping (at most 1; below 0 it is a time)', &
+    'N1 a node number', &
+    'N2 a node number', &
+    'N3 a node number', &
+    'N4 a node number', &
     'TIE 0 (contact), 1 (tied) or 2 (tied until it breaks)']
   !> Characters by which a canonical name is longer than a short one at most (MAT_024).
   integer, parameter :: longest_addition = 24

@@ -92,9 +92,9 @@ module deck_schema_tables_m
     'ELEMENT_BEAM', &
     ' EID:is8 PID:i8 N1:i8 N2:i8 N3:is8 RT1:is8 RR1:is8 RT2:is8 RR2:is8 LOCAL:is8', &
     'ELEMENT_MASS', &
-    ' EID:is8 NID:i8 MASS:f16 PID:is8', &
+    ' EID:is8 NID:i8>=1 MASS:f16>=0 PID:is8', &
     'ELEMENT_MASS_NODE_SET', &
-    ' EID:is8 NSID:i8 MASS:f16 PID:is8', &
+    ' EID:is8 NSID:i8>=1 MASS:f16>=0 PID:is8', &
     'PART t', &
     ' HEADING:a80', &
     ' PID:i SECID:i MID:i EOSID:i HGID:i GRAV:iw ADPOPT:iw TMID:iw', &
@@ -193,59 +193,59 @@ module deck_schema_tables_m
     ' PSID:i']
 
   !> Constraints, loads, initial values.
-  character(66), parameter :: table_conditions(*) = [character(66) :: &
+  character(78), parameter :: table_conditions(*) = [character(78) :: &
     'BOUNDARY_SPC_NODE t', &
-    ' NID:i CID:i DOFX:i DOFY:i DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
+    ' NID:i>=1 CID:i DOFX:i|0|1 DOFY:i|0|1 DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
     'BOUNDARY_SPC_SET t', &
-    ' NSID:i CID:i DOFX:i DOFY:i DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
+    ' NSID:i>=1 CID:i DOFX:i|0|1 DOFY:i|0|1 DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
     'BOUNDARY_PRESCRIBED_MOTION_NODE t', &
-    ' NID:i DOF:i VAD:i LCID:i SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
+    ' NID:i>=1 DOF:i|1|2 VAD:i|0|1|2 LCID:i>=1 SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
     'BOUNDARY_PRESCRIBED_MOTION_SET t', &
-    ' NSID:i DOF:i VAD:i LCID:i SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
+    ' NSID:i>=1 DOF:i|1|2 VAD:i|0|1|2 LCID:i>=1 SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
     'BOUNDARY_PRESCRIBED_MOTION_RIGID t', &
-    ' PID:i DOF:i VAD:i LCID:i SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
+    ' PID:i>=1 DOF:i|1|2|7 VAD:i|0|1|2 LCID:i>=1 SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
     'INITIAL_VELOCITY', &
-    ' NSID:i NSIDEX:i BOXID:ir IRIGID:is ICID:ir', &
+    ' NSID:i>=0 NSIDEX:i>=0 BOXID:ir IRIGID:is ICID:ir', &
     ' VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:fw', &
     ' VXE:f VYE:f VZE:fw VXRE:fw VYRE:fw VZRE:fw', &
     'INITIAL_VELOCITY_NODE', &
-    ' NID:i VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:fw ICID:ir', &
+    ' NID:i>=1 VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:fw ICID:ir', &
     'INITIAL_VELOCITY_GENERATION', &
-    ' ID:i STYP:i~1 OMEGA:f VX:f VY:f VZ:fw IVATN:is ICID:ir', &
+    ' ID:i>=0 STYP:i~1|1|2|3 OMEGA:f>=-1e30<=1e30 VX:f VY:f VZ:fw IVATN:is ICID:ir', &
     ' XC:f YC:f ZC:fs NX:f NY:f NZ:f PHASE:ir IRIGID:is', &
     'INITIAL_VELOCITY_RIGID_BODY', &
-    ' PID:i VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:f ICID:ir', &
+    ' PID:i>=1 VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:f ICID:ir', &
     'LOAD_NODE_POINT', &
-    ' NID:i DOF:i LCID:i SF:f=1 CID:i M1:is M2:is M3:is', &
+    ' NID:i>=1 DOF:i|1|2 LCID:i>=1 SF:f=1 CID:i M1:is M2:is M3:is', &
     'LOAD_NODE_SET', &
-    ' NSID:i DOF:i LCID:i SF:f=1 CID:i M1:is M2:is M3:is', &
+    ' NSID:i>=1 DOF:i|1|2 LCID:i>=1 SF:f=1 CID:i M1:is M2:is M3:is', &
     'LOAD_RIGID_BODY', &
-    ' PID:i DOF:i~1 LCID:i SF:f=1 CID:i M1:is M2:is M3:is', &
+    ' PID:i>=1 DOF:i~1|1|2|7 LCID:i>=1 SF:f=1 CID:i M1:is M2:is M3:is', &
     'LOAD_SEGMENT t', &
-    ' LCID:i SF:f=1 AT:f N1:i N2:i N3:i N4:i N5:ir', &
+    ' LCID:i>=1 SF:f=1 AT:f>=0 N1:i>=1 N2:i>=1 N3:i N4:i N5:ir', &
     'LOAD_SEGMENT_SET t', &
-    ' SSID:i LCID:i SF:f=1 AT:f', &
+    ' SSID:i>=1 LCID:i>=1 SF:f=1 AT:f>=0', &
     'LOAD_BODY_X', &
-    ' LCID:i SF:f=1 LCIDDR:iw XC:fs YC:fs ZC:fs CID:ir', &
+    ' LCID:i>=1 SF:f=1 LCIDDR:iw XC:fs YC:fs ZC:fs CID:ir', &
     'LOAD_BODY_Y', &
-    ' LCID:i SF:f=1 LCIDDR:iw XC:fs YC:fs ZC:fs CID:ir', &
+    ' LCID:i>=1 SF:f=1 LCIDDR:iw XC:fs YC:fs ZC:fs CID:ir', &
     'RIGIDWALL_PLANAR t', &
-    ' NSID:i NSIDEX:i BOXID:ir OFFSET:f BIRTH:f DEATH:f=1e20 RWKSF:fs=1', &
+    ' NSID:i>=0 NSIDEX:i>=0 BOXID:ir OFFSET:f>=0 BIRTH:f DEATH:f=1e20 RWKSF:fs=1', &
     ' XT:f YT:f ZT:f XH:f YH:f ZH:f FRIC:f WVEL:fr', &
     'DAMPING_GLOBAL', &
-    ' LCID:i VALDMP:f STX:f STY:f STZ:fs SRX:fs SRY:fs SRZ:fs', &
+    ' LCID:i>=0 VALDMP:f>=0 STX:f>=0 STY:f>=0 STZ:fs SRX:fs SRY:fs SRZ:fs', &
     'DAMPING_PART_MASS', &
-    ' PID:i LCID:i SF:f=1 FLAG:i', &
-    ' STX:f STY:f STZ:fs SRX:fs SRY:fs SRZ:fs', &
+    ' PID:i>=1 LCID:i>=1 SF:f=1>=0 FLAG:i|0|1', &
+    ' STX:f>=0 STY:f>=0 STZ:fs SRX:fs SRY:fs SRZ:fs', &
     'DAMPING_PART_MASS_SET', &
-    ' PSID:i LCID:i SF:f=1 FLAG:i', &
-    ' STX:f STY:f STZ:fs SRX:fs SRY:fs SRZ:fs', &
+    ' PSID:i>=1 LCID:i>=1 SF:f=1>=0 FLAG:i|0|1', &
+    ' STX:f>=0 STY:f>=0 STZ:fs SRX:fs SRY:fs SRZ:fs', &
     'DAMPING_PART_STIFFNESS', &
-    ' PID:i COEF:f', &
+    ' PID:i>=1 COEF:f<=1', &
     'DAMPING_PART_STIFFNESS_SET', &
-    ' PSID:i COEF:f', &
+    ' PSID:i>=1 COEF:f<=1', &
     'CONSTRAINED_NODE_SET t', &
-    ' NSID:i DOF:i~1 TF:fr=1e20']
+    ' NSID:i>=1 DOF:i~1>=1<=7 TF:fr=1e20']
 
   !> Contact interfaces.
   character(104), parameter :: table_contact(*) = [character(104) :: &

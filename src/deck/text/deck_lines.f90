@@ -7,10 +7,12 @@
 module deck_lines_m
   use, intrinsic :: iso_fortran_env, only : int8
   use deck_report_m, only : report_t, spot_t, add_error, has_error, add_warning
+  use deck_ids_m, only : id_map_t, n_kind
+  use kinds_m, only : wp
   use log_m, only : to_text
   implicit none
   private
-  public :: deck_t, source_t, block_t, place_t, parameter_t, parameters_t, again_error, &
+  public :: deck_t, blocks_of, source_t, block_t, place_t, parameter_t, parameters_t, again_error, &
     file_paths, line_text, order_line, block_of_line, where_text, line_error, deck_error, &
     line_warning, replace_line, written_text, line_spot, keyword_of_line, shown_text, marked_line, &
     layout_mark, word_t, made_line_t, given_by, words_of, format_standard, format_long, &
@@ -47,6 +49,7 @@ module deck_lines_m
     integer :: layout = format_standard
     logical :: titled = .false.          !! _TITLE or _ID: a text line comes first
     logical :: dropped = .false.         !! not part of the effective deck
+    logical :: is_honoured = .false.     !! its cards are read
   end type block_t
 
   !> A field of a card, for messages after the card has been left.
@@ -112,6 +115,8 @@ module deck_lines_m
     character(:), allocatable :: default_zeros, kept_zeros !! fields with a 0 that means their
                                               !! default, and of which a 0 is 0 all the same
     type(parameters_t) :: parameters
+    type(id_map_t) :: maps(n_kind)            !! from user ids to indices, by kind
+    real(wp), allocatable :: axes(:, :, :)    !! (2, 2, n) x and y axis of each coordinate system
     type(report_t) :: report
   end type deck_t
 
@@ -144,6 +149,17 @@ contains
       text = deck%sources(source)%text(deck%first(line):deck%last(line))
     end if
   end function line_text
+
+  !> Blocks whose cards are read and whose keyword begins so, in the order of the deck.
+  pure function blocks_of(deck, head) result(blocks)
+    type(deck_t), intent(in) :: deck
+    character(*), intent(in) :: head
+    integer, allocatable :: blocks(:)
+    integer :: i
+
+    blocks = pack([(i, i=1, deck%n_block)], [(deck%blocks(i)%is_honoured &
+      .and. index(deck%blocks(i)%name, head) == 1, i=1, deck%n_block)])
+  end function blocks_of
 
   !> The block that holds a line (keyword line or data line); 0 before the first.
   pure function block_of_line(deck, line) result(i_block)
