@@ -74,7 +74,8 @@ module deck_schema_m
     'DOFY 0 (free) or 1 (fixed)', &
     'BOUNDARY_PRESCRIBED_MOTION_RIGID.DOF a motion that a rigid body has here (1 x, 2 y, 7 turn ' &
     //'about z)', &
-    'LOAD_RIGID_BODY.DOF a load on a rigid body that this version has (1 x, 2 y, 7 moment about z)', &
+    'LOAD_RIGID_BODY.DOF a load on a rigid body that this version has (1 x, 2 y, 7 moment about ' &
+    //'z)', &
     'CONSTRAINED.DOF a code of directions (1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)', &
     'DOF a direction that this version has (1 x, 2 y)', &
     'VAD a kind of motion that this version has (0 velocity, 1 acceleration, 2 displacement)', &
