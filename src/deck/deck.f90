@@ -19,9 +19,7 @@ module deck_m
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
   use deck_parameters_m, only : read_parameters
-  use deck_overrides_m, only : overrides_t, read_overrides, override_text, &
-    override_phrase
-  use deck_override_apply_m, only : apply_overrides
+  use deck_overrides_m, only : read_words, edit_controls, check_words
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
   use deck_raw_m, only : raw_t, start_raw, reserve_lists, trim_lists
   use deck_mesh_m, only : read_nodes, read_elements, read_beams, read_set, read_history_ids
@@ -29,7 +27,7 @@ module deck_m
   use deck_empty_m, only : check_empty
   use deck_output_m, only : read_database, read_force_groups, read_cross_sections, read_transducer
   use deck_contact_m, only : read_contact
-  use deck_friction_m, only : settle_friction
+  use deck_friction_m, only : warn_of_unused
   use deck_resolve_m, only : resolve_model
   use deck_effective_m, only : forget_places, write_effective
   use deck_echo_m, only : echo_model
@@ -93,29 +91,22 @@ contains
     type(model_t), intent(out) :: model
     character(:), allocatable, intent(out) :: effective
     type(error_t), allocatable, intent(out) :: error
-    type(overrides_t) :: overrides
     type(raw_t), allocatable :: raw
-    character(:), allocatable :: tail
     integer, allocatable :: known(:)
-    integer :: i
+    integer :: i, pass
     logical :: is_empty
 
-    allocate (raw)
+    allocate (raw, deck%words(0))
     call start_raw(raw)
     call know_blocks(deck, raw, known)
     if (deck%n_block == 0) then
       call emit_errors(deck%report, request%path, error)
       return
     end if
-    if (allocated(request%overrides)) then
-      call read_overrides(request%overrides, deck, overrides)
-    else
-      allocate (overrides%items(0))
-    end if
+    if (allocated(request%overrides)) call read_words(request%overrides, deck)
     call read_parameters(deck)
-    raw%end_given = len(override_text(overrides, 'ENDTIM', 0)) > 0
-    raw%step_phrase = override_phrase(overrides, 'DT', 0)
-    raw%scale_phrase = override_phrase(overrides, 'TSSFAC', 0)
+    call edit_controls(deck)
+    known = [known, (known_honoured, i=size(known) + 1, deck%n_block)]
     raw%controls%title = ''
     call reserve_lists(deck, raw)
     do i = 1, deck%n_block
@@ -124,14 +115,19 @@ contains
       if (is_empty) call note_lost(deck, i, raw)
       deck%blocks(i)%is_honoured = .not. is_empty
     end do
-    do i = 1, deck%n_block
-      if (deck%blocks(i)%is_honoured) call read_block(deck, i, kinds, overrides, raw)
+    ! Interfaces come last: friction of *CONTROL_CONTACT is known then.
+    do pass = 1, 2
+      do i = 1, deck%n_block
+        if (.not. deck%blocks(i)%is_honoured) cycle
+        if ((index(deck%blocks(i)%name, 'CONTACT_') == 1) .eqv. pass == 2) &
+          call read_block(deck, i, kinds, raw)
+      end do
     end do
     call trim_lists(raw)
-    call settle_friction(deck, overrides, raw)
-    call apply_overrides(deck, overrides, raw, tail)
+    call warn_of_unused(deck, raw)
+    call check_words(deck, raw%contacts%contact%id)
     call check_step(deck, raw)
-    if (.not. (raw%terminated .or. raw%end_given .or. deck%incomplete)) call line_error(deck, 0, &
+    if (.not. (raw%terminated .or. deck%incomplete)) call line_error(deck, 0, &
       'the deck has no end time (*CONTROL_TERMINATION)')
     call resolve_model(deck, raw, model)
     deallocate (raw) ! before the effective deck takes its place
@@ -144,7 +140,7 @@ contains
     if (allocated(deck%kept_zeros)) call write_log(log, 'a 0 in these fields is kept, where ' &
       //'LS-DYNA takes the default: '//deck%kept_zeros)
     call forget_places(deck)
-    call write_effective(deck, tail, effective)
+    call write_effective(deck, effective)
   end subroutine interpret_deck
 
   !> Look every keyword up: canonical names, options taken off; unknown and refused ones are errors,
@@ -236,11 +232,10 @@ contains
   end subroutine note_lost
 
   !> Read one block by its keyword.
-  subroutine read_block(deck, i, kinds, overrides, raw)
+  subroutine read_block(deck, i, kinds, raw)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i
     type(contact_kind_t), intent(in) :: kinds(:)
-    type(overrides_t), intent(in) :: overrides
     type(raw_t), intent(inout) :: raw
 
     select case (deck%blocks(i)%name)
@@ -257,16 +252,15 @@ contains
         'SET_2D_SEGMENT', 'SET_2D_SEGMENT_SET')
       call read_set(deck, i, raw)
     case default
-      call read_family(deck, i, kinds, overrides, raw)
+      call read_family(deck, i, kinds, raw)
     end select
   end subroutine read_block
 
   !> Keywords whose family says how they are read.
-  subroutine read_family(deck, i, kinds, overrides, raw)
+  subroutine read_family(deck, i, kinds, raw)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i
     type(contact_kind_t), intent(in) :: kinds(:)
-    type(overrides_t), intent(in) :: overrides
     type(raw_t), intent(inout) :: raw
     integer :: n
 
@@ -280,7 +274,7 @@ contains
       if (deck%blocks(i)%name == 'CONTACT_2D_FORCE_TRANSDUCER') then
         call read_transducer(deck, i, raw)
       else
-        call read_contact(deck, i, kinds, overrides, raw)
+        call read_contact(deck, i, kinds, raw)
       end if
     case ('TERMINATION_')
       call read_ends(deck, i, raw)

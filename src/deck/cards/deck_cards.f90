@@ -6,8 +6,8 @@ module deck_cards_m
   use log_m, only : to_text
   use text_m, only : read_integer, number_good
   use deck_lines_m, only : deck_t, place_t, line_text, line_warning, replace_line, flag_blank, &
-    flag_parameter, block_of_line, format_standard, format_long
-  use deck_card_specs_m, only : card_spec_t, make_spec, field_number, max_field
+    flag_parameter, block_of_line, given_by, format_long, max_field
+  use deck_card_specs_m, only : card_spec_t, make_spec, field_number
   use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error, place_error, &
     place_field
   use deck_schema_m, only : keyword_cards, refusal_reason, lost_effect, max_card
@@ -16,7 +16,7 @@ module deck_cards_m
   private
   public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_of, rows_of, &
     next_text, next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field, &
-    find_field, find_keyword_field
+    find_field
 
   !> A place in a block.
   type :: cursor_t
@@ -72,19 +72,6 @@ contains
       k = field_number(spec%names(:spec%n), name)
     end associate
   end function find_field
-
-  !> Position of a field on card 1 of a keyword, for decks that do not have the keyword.
-  function find_keyword_field(keyword, name) result(k)
-    character(*), intent(in) :: keyword, name
-    integer :: k
-    type(card_spec_t) :: spec
-    character(160) :: cards(max_card)
-    integer :: n_card
-
-    call keyword_cards(keyword, cards, n_card)
-    call make_spec(cards(1), 1, format_standard, spec)
-    k = field_number(spec%names(:spec%n), name)
-  end function find_keyword_field
 
   !> The cards of a block's keyword in its layout.
   subroutine get_specs(deck, i_block, specs, n_card)
@@ -298,6 +285,11 @@ contains
     call get_specs(deck, i_block, specs, n_card)
     associate (spec => specs(place%card))
       k = place_field(spec, place)
+      if (len(given_by(deck, place%line, k)) > 0) then
+        call line_warning(deck, 0, trim(spec%names(k))//message, given_by(deck, place%line, k) &
+          //' '//message)
+        return
+      end if
       call cut_card(deck, spec, deck%blocks(i_block)%source, place%line, card)
       call line_warning(deck, place%line, 'field '//trim(spec%names(k))//message, &
         'card '//to_text(spec%number)//' field '//to_text(k)//' ('//trim(spec%names(k))//'): "' &

@@ -6,14 +6,13 @@ module deck_control_m
   use text_m, only : upper_case
   use units_m, only : units_t, find_unit, set_force
   use controls_m, only : length_by_side, length_by_diagonal
-  use deck_lines_m, only : deck_t, line_warning
+  use deck_lines_m, only : deck_t, line_warning, given_by
   use deck_fields_m, only : card_t, field_text
   use deck_card_specs_m, only : field_number
   use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field, &
-    reject_field, warn_of_field, next_row
+    warn_of_field, next_row
   use deck_values_m, only : integer_of, real_of, place_of, is_blank
-  use deck_implicit_m, only : take_implicit, take_dynamics, take_spectral_radius, take_solution, &
-    take_automatic
+  use deck_implicit_m, only : take_implicit, take_dynamics, take_solution, take_automatic
   use deck_raw_m, only : raw_t, raw_end_t
   use deck_friction_m, only : take_default_friction
   use deck_part_m, only : hourglass_form, hourglass_coefficient
@@ -46,9 +45,9 @@ contains
     call warn_of_repetition(deck, i_block)
     select case (deck%blocks(i_block)%name)
     case ('CONTROL_TERMINATION')
-      call take_termination(deck, cursor, cards(1), raw)
+      call take_termination(cards(1), raw)
     case ('CONTROL_TIMESTEP')
-      call take_timestep(deck, cursor, cards(1), raw)
+      call take_timestep(cards(1), raw)
     case ('CONTROL_DYNAMIC_RELAXATION')
       call take_relaxation(cards(1), raw)
     case ('CONTROL_HOURGLASS')
@@ -56,19 +55,28 @@ contains
       call hourglass_coefficient(deck, cards(1), 'QH', &
         raw%hourglass_default%coefficient)
     case ('CONTROL_BULK_VISCOSITY')
-      call take_bulk_viscosity(cards(1), raw)
+      ! Off without the keyword; blank fields of it are LS-DYNA's defaults.
+      raw%hourglass_default%quadratic = real_of(cards(1), 'Q1')
+      raw%hourglass_default%linear = real_of(cards(1), 'Q2')
     case ('CONTROL_CONTACT')
-      call take_contact(cards, raw)
+      raw%controls%penalty_scale = 0.1_wp
+      if (real_of(cards(1), 'SLSFAC') > 0.0_wp) &
+        raw%controls%penalty_scale = real_of(cards(1), 'SLSFAC')
+      raw%controls%contact_step = integer_of(cards(2), 'ECDT')
+      call note_explicit(cards(2), 'ECDT', raw)
+      call take_default_friction(cards(3), raw)
     case ('CONTROL_IMPLICIT_GENERAL')
-      call take_implicit(deck, cursor, cards(1), raw)
+      call take_implicit(deck, cards(1), raw)
     case ('CONTROL_IMPLICIT_DYNAMICS')
-      call take_dynamics(deck, cursor, cards(1), raw)
+      call take_dynamics(deck, cards(1), raw)
     case ('CONTROL_IMPLICIT_SPECTRAL_RADIUS')
-      call take_spectral_radius(deck, cursor, cards(1), raw)
+      raw%spectral_radius = real_of(cards(1), 'RHO')
+      if (is_blank(cards(1), 'RHO')) call report_field(deck, cards(1), 'RHO', &
+        'is not a spectral radius (0 to 1)')
     case ('CONTROL_IMPLICIT_SOLUTION')
-      call take_solution(cards(1), raw)
+      call take_solution(cards(1), raw%controls%implicit)
     case ('CONTROL_IMPLICIT_AUTO')
-      call take_automatic(deck, cursor, cards(1), raw)
+      call take_automatic(deck, cards(1), raw%controls%implicit)
     case ('CONTROL_UNITS')
       call take_units(deck, cards(1), raw)
     case ('CONTROL_OUTPUT')
@@ -91,14 +99,10 @@ contains
   end subroutine warn_of_repetition
 
   !> *CONTROL_TERMINATION.
-  subroutine take_termination(deck, cursor, card, raw)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
+  subroutine take_termination(card, raw)
+    type(card_t), intent(in) :: card
     type(raw_t), intent(inout) :: raw
 
-    if (real_of(card, 'ENDTIM') <= 0.0_wp .and. .not. raw%end_given) call report_field(deck, &
-      cursor, card, 'ENDTIM', 'is not an end time (more than 0)')
     raw%terminated = .true.
     raw%controls%end_time = real_of(card, 'ENDTIM')
     raw%controls%end_cycle = integer_of(card, 'ENDCYC')
@@ -109,30 +113,28 @@ contains
   end subroutine take_termination
 
   !> *CONTROL_TIMESTEP.
-  subroutine take_timestep(deck, cursor, card, raw)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
+  subroutine take_timestep(card, raw)
+    type(card_t), intent(in) :: card
     type(raw_t), intent(inout) :: raw
-    if (real_of(card, 'TSSFAC') < 0.0_wp .and. len(raw%scale_phrase) == 0) call report_field( &
-      deck, cursor, card, 'TSSFAC', 'is negative: the scale of the step is more than 0 (blank ' &
-      //'and 0 mean 0.9)')
+    character(6), parameter :: names(5) = [character(6) :: 'DTINIT', 'TSSFAC', 'ISDO', 'LCTM', &
+      'DT2MS']
+    integer :: k
+
+    do k = 1, size(names)
+      call note_explicit(card, trim(names(k)), raw)
+    end do
     raw%erodes_by_step = integer_of(card, 'ERODE') == 1
-    call note_explicit(raw, card, 'DTINIT', real_of(card, 'DTINIT') > 0.0_wp)
-    call note_explicit(raw, card, 'TSSFAC', real_of(card, 'TSSFAC') > 0.0_wp)
-    call note_explicit(raw, card, 'ISDO', integer_of(card, 'ISDO') == 1)
-    call note_explicit(raw, card, 'LCTM', integer_of(card, 'LCTM') /= 0)
     raw%controls%dt_initial = real_of(card, 'DTINIT')
     raw%controls%dt_scale = 0.9_wp
     if (real_of(card, 'TSSFAC') > 0.0_wp) raw%controls%dt_scale = real_of(card, 'TSSFAC')
     raw%controls%length_rule = merge(length_by_diagonal, length_by_side, &
       integer_of(card, 'ISDO') == 1)
-    call note_explicit(raw, card, 'DT2MS', abs(real_of(card, 'DT2MS')) > 0.0_wp)
     raw%controls%mass_step = real_of(card, 'DT2MS')
     raw%controls%masses_stay = integer_of(card, 'MS1ST') == 1
     raw%step_line = card%line
     raw%dt_curve = integer_of(card, 'LCTM')
     raw%dt_curve_place = place_of(card, 'LCTM')
+    raw%scale_place = place_of(card, 'TSSFAC')
   end subroutine take_timestep
 
   !> *CONTROL_DYNAMIC_RELAXATION. Whether it takes place may depend on the curves too.
@@ -152,14 +154,16 @@ contains
     end associate
   end subroutine take_relaxation
 
-  !> A field that is given and that the implicit method leaves.
-  subroutine note_explicit(raw, card, name, is_given)
-    type(raw_t), intent(inout) :: raw
+  !> A field that the implicit method leaves, where it asks for something.
+  subroutine note_explicit(card, name, raw)
     type(card_t), intent(in) :: card
     character(*), intent(in) :: name
-    logical, intent(in) :: is_given
+    type(raw_t), intent(inout) :: raw
+    integer :: k
 
-    if (is_given) raw%explicit_only = [raw%explicit_only, place_of(card, name)]
+    k = field_number(card%names, name)
+    if (card%i(k) /= 0 .or. abs(card%r(k)) > 0.0_wp) &
+      raw%explicit_only = [raw%explicit_only, place_of(card, name)]
   end subroutine note_explicit
 
   !> Rules of the step, from the card or from a word.
@@ -168,39 +172,16 @@ contains
     type(raw_t), intent(in) :: raw
     character(:), allocatable :: given
 
-    if (raw%dt_curve < 0) call reject_field(deck, raw%dt_curve_place, 'is not a curve number')
-    if (raw%controls%implicit%is_on) return
-    given = raw%scale_phrase
+    if (raw%controls%implicit%is_on .or. raw%step_line == 0) return
+    given = given_by(deck, raw%step_line, raw%scale_place%field)
     if (len(given) == 0) given = 'TSSFAC'
-    if (raw%controls%dt_scale > 1.0_wp) call line_warning(deck, merge(raw%step_line, 0, &
-      len(raw%scale_phrase) == 0), 'tssfac', given//' is above 1: the run may become unstable')
-    given = raw%step_phrase
+    if (raw%controls%dt_scale > 1.0_wp) call line_warning(deck, raw%step_line, 'tssfac', given &
+      //' is above 1: the run may become unstable')
+    given = given_by(deck, raw%step_line, raw%dt_curve_place%field)
     if (len(given) == 0) given = 'the curve LCTM'
     if (raw%controls%dt_initial > 0.0_wp .and. raw%dt_curve > 0) call line_warning(deck, &
       raw%step_line, 'dtinit', 'DTINIT has no effect beside '//given)
   end subroutine check_step
-
-  !> *CONTROL_BULK_VISCOSITY: off without the keyword; blank fields of it are LS-DYNA's defaults.
-  subroutine take_bulk_viscosity(card, raw)
-    type(card_t), intent(in) :: card
-    type(raw_t), intent(inout) :: raw
-
-    raw%hourglass_default%quadratic = real_of(card, 'Q1')
-    raw%hourglass_default%linear = real_of(card, 'Q2')
-  end subroutine take_bulk_viscosity
-
-  !> *CONTROL_CONTACT.
-  subroutine take_contact(cards, raw)
-    type(card_t), intent(in) :: cards(:)
-    type(raw_t), intent(inout) :: raw
-
-    raw%controls%penalty_scale = 0.1_wp
-    if (real_of(cards(1), 'SLSFAC') > 0.0_wp) &
-      raw%controls%penalty_scale = real_of(cards(1), 'SLSFAC')
-    raw%controls%contact_step = integer_of(cards(2), 'ECDT')
-    call note_explicit(raw, cards(2), 'ECDT', raw%controls%contact_step /= 0)
-    call take_default_friction(cards(3), raw)
-  end subroutine take_contact
 
   !> *CONTROL_UNITS: names for messages alone. A word that is not known leaves them without.
   subroutine take_units(deck, card, raw)
@@ -245,11 +226,14 @@ contains
       entry = raw_end_t()
       select case (deck%blocks(i_block)%name)
       case ('TERMINATION_CONTACT')
-        call take_contact_end(card, entry)
+        entry%id_place = place_of(card, 'CID')
+        entry%condition = end_condition_t(kind=end_contact, id=integer_of(card, 'CID'), &
+          direction=integer_of(card, 'DOF'), start=real_of(card, 'ACTIM'), &
+          duration=real_of(card, 'DUR'), threshold=real_of(card, 'THRES'))
       case ('TERMINATION_NODE')
-        call take_bounds(deck, cursor, card, 'NID', end_node_place, end_node_touch, entry)
+        call take_bounds(deck, card, 'NID', end_node_place, end_node_touch, entry)
       case default
-        call take_bounds(deck, cursor, card, 'PID', end_body_place, end_body_way, entry)
+        call take_bounds(deck, card, 'PID', end_body_place, end_body_way, entry)
       end select
       if (any(card%bad)) cycle
       raw%n_end = raw%n_end + 1
@@ -258,9 +242,8 @@ contains
   end subroutine read_ends
 
   !> Bounds of a node or a rigid body. A bound that is blank, of bodies also 0, does not count.
-  subroutine take_bounds(deck, cursor, card, name, along, other, entry)
+  subroutine take_bounds(deck, card, name, along, other, entry)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     character(*), intent(in) :: name         !! of the field of what is bounded
     integer, intent(in) :: along, other      !! kind of STOP 1 and 2, of STOP 4
@@ -283,23 +266,12 @@ contains
     if (along == end_body_place) is_open = is_open .or. [abs(real_of(card, 'MAXC')), &
       abs(real_of(card, 'MINC'))] <= 0.0_wp
     if (entry%condition%kind == end_body_way) is_open(2) = .true.
-    if (all(is_open)) call report_field(deck, cursor, card, 'MAXC', 'is no bound, nor is MINC: ' &
+    if (all(is_open)) call report_field(deck, card, 'MAXC', 'is no bound, nor is MINC: ' &
       //'nothing would end the run')
     if (.not. is_open(1)) entry%condition%most = real_of(card, 'MAXC')
     if (.not. is_open(2)) entry%condition%least = real_of(card, 'MINC')
-    if (entry%condition%least >= entry%condition%most) call report_field(deck, cursor, card, &
+    if (entry%condition%least >= entry%condition%most) call report_field(deck, card, &
       'MINC', 'is not below MAXC')
   end subroutine take_bounds
-
-  !> An interface without force.
-  subroutine take_contact_end(card, entry)
-    type(card_t), intent(in) :: card
-    type(raw_end_t), intent(inout) :: entry
-
-    entry%id_place = place_of(card, 'CID')
-    entry%condition = end_condition_t(kind=end_contact, id=integer_of(card, 'CID'), &
-      direction=integer_of(card, 'DOF'), start=real_of(card, 'ACTIM'), &
-      duration=real_of(card, 'DUR'), threshold=real_of(card, 'THRES'))
-  end subroutine take_contact_end
 
 end module deck_control_m

@@ -17,7 +17,7 @@ module deck_parameters_m
   use deck_schema_m, only : keyword_cards, max_card
   implicit none
   private
-  public :: read_parameters, substitute, override_parameter
+  public :: read_parameters, substitute, look_up, override_parameter
 
   !> What happens when a name is defined again (*PARAMETER_DUPLICATION DFLAG); by default a second
   !> definition with another value is an error.

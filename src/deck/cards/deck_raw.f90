@@ -4,7 +4,6 @@
 !> are as long as the cards may make them before these are read, and of their true length behind.
 module deck_raw_m
   use kinds_m, only : wp
-  use curves_m, only : curve_t
   use parts_m, only : hourglass_t
   use contacts_m, only : contact_t, friction_rule_t
   use controls_m, only : controls_t
@@ -30,12 +29,8 @@ module deck_raw_m
     integer :: interference = 0         !! LCINT, user id of the curve
     type(place_t) :: interference_place
     type(place_t) :: search_place       !! FREQ, where it is given
-    type(place_t) :: unit_place         !! PUNIT; line 0 where a word gives it
-    character(:), allocatable :: unit_phrase !! then: which word, and where it stands
-    type(place_t) :: friction_place     !! FS, or what stands for it; line 0 as before
-    logical :: takes_default = .false.  !! friction of *CONTROL_CONTACT acts where it has none
-    character(80) :: kind = ''          !! name of the type
-    logical :: overridden = .false.     !! the command line changes values
+    type(place_t) :: unit_place         !! PUNIT
+    type(place_t) :: friction_place     !! FS, or what stands for it
   end type raw_contact_t
 
   !> One row of *TERMINATION_.
@@ -73,7 +68,6 @@ module deck_raw_m
     integer :: n_contact = 0, n_transducer = 0, n_end = 0, n_cut = 0
     logical :: erodes_by_step = .false.        !! ERODE of *CONTROL_TIMESTEP
     type(hourglass_t) :: hourglass_default
-    type(curve_t), allocatable :: step_curve   !! given by a word
     type(raw_set_t), allocatable :: node_sets(:), part_sets(:), segment_sets(:), shell_sets(:)
     integer :: n_node_set = 0, n_part_set = 0, n_segment_set = 0, n_shell_set = 0
     type(place_t), allocatable :: pressure_places(:)
@@ -84,9 +78,7 @@ module deck_raw_m
     type(controls_t) :: controls
     type(friction_rule_t) :: friction          !! of *CONTROL_CONTACT
     type(place_t) :: friction_place            !! SFRIC, line 0 without the keyword
-    logical :: end_given = .false.             !! a word gives ENDTIM
-    character(:), allocatable :: step_phrase, scale_phrase !! the words that give the step and
-                                               !! TSSFAC and where they stand, empty for none
+    logical :: friction_acts = .false.         !! some interface takes it
     logical :: terminated = .false.            !! the deck has *CONTROL_TERMINATION, be it misspelt
     real(wp) :: newmark(2) = 0.0_wp            !! GAMMA and BETA of the implicit method, 0 = blank
     real(wp) :: hht = 0.0_wp                   !! minus ALPHA of the implicit method
@@ -96,7 +88,7 @@ module deck_raw_m
     integer :: step_line = 0                   !! card of *CONTROL_TIMESTEP, 0 = none
     integer :: newmark_line = 0                !! card of *CONTROL_IMPLICIT_DYNAMICS, 0 = none
     integer :: dt_curve = 0                    !! LCTM, user id
-    type(place_t) :: dt_curve_place
+    type(place_t) :: dt_curve_place, scale_place !! LCTM, TSSFAC
     type(place_t), allocatable :: explicit_only(:) !! fields given that the implicit method leaves
     type(history_t) :: outputs(output_plot:n_table)
     type(raw_set_t) :: history_nodes, history_node_sets, history_shells, history_shell_sets, &
@@ -109,8 +101,6 @@ contains
   subroutine start_raw(raw)
     type(raw_t), intent(out) :: raw
 
-    raw%step_phrase = ''
-    raw%scale_phrase = ''
     allocate (raw%node_sets(16), raw%part_sets(16), &
       raw%segment_sets(16), raw%shell_sets(4), raw%explicit_only(0))
     call reserve_nodes(raw, 0)

@@ -61,7 +61,7 @@ contains
     call next_card(deck, cursor, 1, card)
     call next_card(deck, cursor, 2, place)
     call check_rest(deck, cursor)
-    call take_life(deck, cursor, card, ['BIRTH', 'DEATH'], wall%birth, wall%death)
+    call take_life(deck, card, ['BIRTH', 'DEATH'], wall%birth, wall%death)
     call take_plane(deck, place, wall)
     wall%friction = real_of(place, 'FRIC')
     if (any(.not. abs(wall%friction - [2.0_wp, 3.0_wp]) > 0.0_wp)) then

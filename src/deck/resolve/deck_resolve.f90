@@ -10,7 +10,7 @@ module deck_resolve_m
     table_secforc
   use model_m, only : model_t
   use contacts_m, only : is_tied, penalty_share, penalty_implicit
-  use deck_cards_m, only : warn_of_field
+  use deck_cards_m, only : reject_field, warn_of_field
   use eos_m, only : eos_t
   use hardenings_m, only : depends_on_rate
   use deck_curves_m, only : table_t, read_curves, read_systems
@@ -21,7 +21,7 @@ module deck_resolve_m
   use deck_damping_m, only : read_damping
   use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, an_hourglass, &
     a_curve, a_table, a_node_set, a_part_set, a_segment_set, a_shell_set, a_system
-  use deck_implicit_penalty_m, only : check_implicit_penalties, refuse_unit
+  use deck_implicit_penalty_m, only : check_implicit_penalties
   use deck_lines_m, only : deck_t, line_error, line_warning
   use deck_loads_m, only : read_nodal_loads, read_rigid_loads, read_body_loads, read_pressures, &
     read_masses, warn_of_bores
@@ -127,8 +127,6 @@ contains
       if (raw%contacts(i)%contact%search_interval > 0) call warn_of_field(deck, &
         raw%contacts(i)%search_place, no_effect)
     end do
-    if (len(raw%scale_phrase) > 0) call line_warning(deck, 0, 'implicit tssfac', &
-      raw%scale_phrase//' '//no_effect)
   end subroutine warn_of_explicit
 
   !> Automatic and implicit penalties are made for explicit steps.
@@ -145,7 +143,8 @@ contains
     case default
       return
     end select
-    call refuse_unit(deck, entry, reason//', which the implicit method does not have (0, 1 or 2)')
+    call reject_field(deck, entry%unit_place, reason//', which the implicit method does not ' &
+      //'have (0, 1 or 2)')
   end subroutine check_penalty_unit
 
   !> Fill the model.
@@ -165,7 +164,7 @@ contains
     if (model%controls%implicit%is_on) call settle_scheme(raw%newmark, raw%hht, &
       raw%spectral_radius, model%controls%implicit)
     call check_scheme(deck, raw%newmark_line, model%controls%implicit)
-    call read_curves(deck, raw%step_curve, model, tables)
+    call read_curves(deck, model, tables)
     call read_systems(deck)
     call read_materials(deck, tables, model)
     call read_equations(deck, equations)

@@ -56,7 +56,7 @@ contains
       if (deck%report%n_error > n_error) cycle
       call check_overlap(deck, raw%contacts(i), sides, model)
       ! The choice looks at conditions and materials: they have to be sound as well.
-      if (deck%report%n_error == 0) call choose_type(deck, raw%contacts(i), model, &
+      if (deck%report%n_error == 0) call choose_type(deck, raw%contacts(i)%block, model, &
         model%contacts(i))
     end do
     call append_behind(model%contacts)

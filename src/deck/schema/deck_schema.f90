@@ -24,12 +24,15 @@ module deck_schema_m
     table_conditions, table_contact, table_database]
   !> What fields are expected to be, for errors of their range, which follows in parentheses unless
   !> there are some: field, or beginning of keyword and field; the first that fits.
-  character(124), parameter :: expectations(*) = [character(124) :: &
+  character(188), parameter :: expectations(*) = [character(188) :: &
     'CONTROL_TERM.DTMIN a share of the first step', &
+    'ENDTIM an end time', &
     'NOSOL 0 or 1 (stop after the initialisation)', &
     'TERMINATION_NODE.STOP 1 (x), 2 (y) or 4 (contact)', &
     'TERMINATION_BODY.STOP 1 (x), 2 (y) or 4 (displacement)', &
     'TERMINATION_CONTACT.DOF 0 (both), 1 (x) or 2 (y)', &
+    'TSSFAC a scale of the step (above 0; blank and 0 mean 0.9)', &
+    'LCTM a curve number', &
     'ISDO an element length rule (0 area over longest side, 1 area over longest diagonal)', &
     'ERODE 0 or 1 (1: elements whose step falls below DTMIN times the first step, or whose ' &
     //'volume vanishes, leave the mesh)', &
@@ -57,6 +60,14 @@ module deck_schema_m
     'CYCL a number of cycles', &
     'DATABASE.NSID a node set number', &
     'DATABASE.SSID a shell set number', &
+    'NGAUSS a number of Gauss points', &
+    'PUNIT a unit of the penalty (0 force per length at each contact node, 1 stress, 2 factor on ' &
+    //'the built-in estimate, 3 share of the largest stable one, 4 factor on K L/A of implicit ' &
+    //'springs)', &
+    'PENT a penalty (above 0; blank and 0 mean PEN)', &
+    'TFAC a tangential over the normal penalty', &
+    'TARGET a target of the estimate of contact (above 0, below 1)', &
+    'VDC a damping in per cent of critical', &
     'IPF 0 or 1 (the strict rule of type 5)', &
     'FREQ a number of cycles between two searches', &
     'RO a density', &

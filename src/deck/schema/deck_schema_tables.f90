@@ -27,7 +27,7 @@ module deck_schema_tables_m
     'PARAMETER_DUPLICATION', &
     ' DFLAG:i', &
     'CONTROL_TERMINATION', &
-    ' ENDTIM:f ENDCYC:i>=0 DTMIN:f>=0<=1 ENDENG:f>=0 ENDMAS:f>=0 NOSOL:i|0|1', &
+    ' ENDTIM:f>0 ENDCYC:i>=0 DTMIN:f>=0<=1 ENDENG:f>=0 ENDMAS:f>=0 NOSOL:i|0|1', &
     'TERMINATION_NODE', &
     ' NID:i>=1 STOP:i|1|2|4 MAXC:f MINC:f', &
     'TERMINATION_BODY', &
@@ -35,7 +35,7 @@ module deck_schema_tables_m
     'TERMINATION_CONTACT', &
     ' CID:i>=1 ACTIM:f>=0 DUR:f>=0 THRES:f>=0 DOF:i|0|1|2', &
     'CONTROL_TIMESTEP', &
-    ' DTINIT:f>=0 TSSFAC:f ISDO:i|0|1 TSLIMT:fw DT2MS:f LCTM:i ERODE:i|0|1 MS1ST:i|0|1', &
+    ' DTINIT:f>=0 TSSFAC:f>=0 ISDO:i|0|1 TSLIMT:fw DT2MS:f LCTM:i>=0 ERODE:i|0|1 MS1ST:i|0|1', &
     ' DT2MSF:fw DT2MSLC:iw IMSCL:iw -:x -:x RMSCL:fw EMSCL:fw IHDO:iw', &
     ' -:x IGADO:iw', &
     'CONTROL_DYNAMIC_RELAXATION', &
@@ -253,70 +253,71 @@ module deck_schema_tables_m
     ' NSID:i>=1 DOF:i~1>=1<=7 TF:fr=1e20']
 
   !> Contact interfaces.
-  character(95), parameter :: table_contact(*) = [character(95) :: &
+  character(104), parameter :: table_contact(*) = [character(104) :: &
     'CONTACT_2D_SLIDELINE t', &
-    ' SURFA:i SURFB:i CTYPE:i NGAUSS:i=2 PEN:f FS:f FD:f DC:f', &
-    ' TBIRTH:f TDEATH:f=1e20 PUNIT:i PENT:f VDC:f IPF:i|0|1 FREQ:i>=0<=1000000000 SRCH:f', &
-    ' VC:f TFAC:f~1 TIE:i|0|1|2 NFLS:f SFLS:f LCINT:i>=0 TARGET:f', &
+    ' SURFA:i SURFB:i CTYPE:i NGAUSS:i=2>=1<=10 PEN:f FS:f>=0 FD:f>=0 DC:f>=0', &
+    ' TBIRTH:f TDEATH:f=1e20 PUNIT:i|0|1|2|3|4 PENT:f>=0 VDC:f>=0<=100 IPF:i|0|1' &
+    //' FREQ:i>=0<=1000000000 SRCH:f', &
+    ' VC:f>=0 TFAC:f~1>0<=1 TIE:i|0|1|2 NFLS:f SFLS:f LCINT:i>=0 TARGET:f>=0<1', &
     'CONTACT_2D_PENALTY t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
-    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
+    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1>=0 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
     //' ONEWAY:fr', &
     'CONTACT_2D_SLIDING_VOIDS t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
-    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
+    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1>=0 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
     //' ONEWAY:fr', &
     'CONTACT_2D_PENALTY_FRICTION t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
-    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
+    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1>=0 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
     //' ONEWAY:fr', &
-    ' FRIC:f FRIC_L:f FRIC_H:f FRIC_S:fr', &
+    ' FRIC:f>=0 FRIC_L:f>=0 FRIC_H:f>=0 FRIC_S:fr', &
     'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i>=0<=1000000000 FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:i SFACT:f=1>=0 FREQ:i>=0<=1000000000 FS:f>=0 FD:f>=0 DC:f>=0', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f>=0 VDC:f~10>=0<=100 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_MORTAR t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i>=0<=1000000000 FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:i SFACT:f=1>=0 FREQ:i>=0<=1000000000 FS:f>=0 FD:f>=0 DC:f>=0', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f>=0 VDC:f~10>=0<=100 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_NODE_TO_SURFACE t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i>=0<=1000000000 FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:i SFACT:f=1>=0 FREQ:i>=0<=1000000000 FS:f>=0 FD:f>=0 DC:f>=0', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f>=0 VDC:f~10>=0<=100 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE t', &
-    ' SURFA:i SURFB:iw SFACT:f=1 FREQ:i>=0<=1000000000 FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:iw SFACT:f=1>=0 FREQ:i>=0<=1000000000 FS:f>=0 FD:f>=0 DC:f>=0', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f>=0 VDC:f~10>=0<=100 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE_MORTAR t', &
-    ' SURFA:i SURFB:iw SFACT:f=1 FREQ:i>=0<=1000000000 FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:iw SFACT:f=1>=0 FREQ:i>=0<=1000000000 FS:f>=0 FD:f>=0 DC:f>=0', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f>=0 VDC:f~10>=0<=100 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_ONE_WAY_SURFACE_TO_SURFACE t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i>=0<=1000000000 FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:i SFACT:f=1>=0 FREQ:i>=0<=1000000000 FS:f>=0 FD:f>=0 DC:f>=0', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f>=0 VDC:f~10>=0<=100 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_FORCE_TRANSDUCER t', &
     ' SURFA:i SURFB:ir SFACT:fs=1 FREQ:is FS:fs FD:fs DC:fs', &
     ' TBIRTH:fw TDEATH:fw=1e20 SOA:fs=1 SOB:fs=1 NDA:is NDB:is COF:is INIT:is', &
     'CONTACT_2D_AUTOMATIC_TIED t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:iw FS:fw FD:fw DC:fw', &
+    ' SURFA:i SURFB:i SFACT:f=1>=0 FREQ:iw FS:fw FD:fw DC:fw', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:fw VDC:fw=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:f IGAPCL:ir TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_TIED_ONE_WAY t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:iw FS:fw FD:fw DC:fw', &
+    ' SURFA:i SURFB:i SFACT:f=1>=0 FREQ:iw FS:fw FD:fw DC:fw', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:fw VDC:fw=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:f IGAPCL:ir TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_TIED_SLIDING t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
-    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
+    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1>=0 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
     //' ONEWAY:fr']
 
   !> Output.

@@ -6,13 +6,10 @@ module deck_card_specs_m
   use, intrinsic :: iso_fortran_env, only : error_unit
   use text_m, only : read_real, read_integer
   use log_m, only : to_text
-  use deck_lines_m, only : format_long, format_i10
+  use deck_lines_m, only : format_long, format_i10, max_field
   implicit none
   private
-  public :: card_spec_t, make_spec, field_number, is_in_range, range_text, max_field
-
-  !> Fields of one card at most.
-  integer, parameter :: max_field = 16
+  public :: card_spec_t, make_spec, field_number, is_in_range, range_text
 
   !> What a card may hold.
   type :: card_spec_t

@@ -5,11 +5,12 @@ module deck_fields_m
   use kinds_m, only : wp
   use text_m, only : read_real, read_integer, number_good, number_range, number_fraction
   use log_m, only : to_text
-  use deck_card_specs_m, only : card_spec_t, field_number, is_in_range, range_text, max_field
+  use deck_card_specs_m, only : card_spec_t, field_number, is_in_range, range_text
   use deck_schema_m, only : expected
   use deck_report_m, only : spot_t, add_error, count_only
   use deck_lines_m, only : deck_t, place_t, line_text, where_text, line_warning, line_spot, &
-    keyword_of_line, written_text, shown_text, marked_line, flag_comma
+    deck_error, given_by, words_of, order_line, keyword_of_line, written_text, shown_text, &
+    marked_line, flag_comma, max_field
   implicit none
   private
   public :: card_t, cut_card, read_numbers, field_text, field_error, place_error, place_field, &
@@ -285,6 +286,10 @@ contains
     logical :: is_done
 
     card%bad(k) = .true.
+    if (len(given_by(deck, card%line, k)) > 0) then
+      call deck_error(deck, given_by(deck, card%line, k)//' '//message)
+      return
+    end if
     call count_only(deck%report, keyword_of_line(deck, card%line), card%names(k), message, is_done)
     if (is_done) return
     text = where_text(deck, card%line)//' card '//to_text(card%number)//' field '//to_text(k) &
@@ -300,7 +305,8 @@ contains
       card%first(k), max(card%last(k), card%first(k)))
     written = written_text(deck, card%line)
     if (len(written) > 0) text = text//new_line('a')//'  | written: '//trim(shown_text(written))
-    call add_error(deck%report, card%line, text, field_spot(deck, card, k, message))
+    call add_error(deck%report, order_line(deck, card%line), text//words_of(deck, card%line), &
+      field_spot(deck, card, k, message))
   end subroutine field_error
 
   !> A message that belongs to field `k`.
