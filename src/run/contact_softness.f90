@@ -9,9 +9,8 @@ module contact_softness_m
   use controls_m, only : controls_t, contact_step_rules
   use kinds_m, only : wp
   use layout_m, only : slot_part
-  use log_m, only : log_t, warn, write_log, to_text
+  use log_m, only : log_t, warn, write_log, to_text, percent
   use model_m, only : model_t
-  use share_text_m, only : percent
   use snapshot_m, only : part_result_t
   use state_m, only : state_t
   implicit none

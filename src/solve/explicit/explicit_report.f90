@@ -25,7 +25,7 @@ module explicit_report_m
   use reporting_m, only : note_energies, write_instant
   use rigid_motion_m, only : solve_rigids, start_rigid_motions, fill_rigids, fill_bodies
   use held_nodes_m, only : hold_skew_nodes, hold_nodes, count_walls, fill_walls
-  use smallest_steps_m, only : find_smallest_steps
+  use element_steps_m, only : find_smallest_steps
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts
   use snapshot_m, only : snapshot_t
   use state_m, only : state_t

@@ -6,7 +6,7 @@
 !> D over the masses that elements bring to it, and those on nodes, which have the global damping
 !> alone; nodes of a rigid body have that of its part.
 module node_motion_m
-  use element_shares_m, only : element_shares
+  use element_mass_m, only : element_shares
   use kinds_m, only : wp
   use layout_m, only : slot_part
   use model_m, only : model_t

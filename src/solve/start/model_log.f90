@@ -10,8 +10,8 @@ module model_log_m
   use log_m, only : log_t, write_log, warn, to_text
   use mass_scaling_m, only : added_masses
   use model_m, only : model_t
-  use round_state_m, only : element_volume
-  use smallest_steps_m, only : find_smallest_steps
+  use element_mass_m, only : element_volume
+  use element_steps_m, only : find_smallest_steps
   use state_m, only : state_t
   implicit none
   private

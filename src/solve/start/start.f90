@@ -8,7 +8,8 @@ module start_m
   use rigid_start_m, only : start_common, weigh_contacts, start_rigids
   use constraints_m, only : fix_nodes, update_activity
   use element_log_m, only : log_elements
-  use element_start_m, only : start_elements, lump_mass
+  use element_mass_m, only : lump_mass
+  use element_start_m, only : start_elements
   use contact_log_m, only : log_softness
   use contacts_m, only : is_tied, n_told, told_as
   use controls_m, only : is_asked, group_nodes, n_cut

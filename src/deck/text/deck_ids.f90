@@ -5,11 +5,23 @@ module deck_ids_m
   use sorting_m, only : sorted_order
   implicit none
   private
-  public :: id_map_t, map_ids, index_of, ids_between
+  public :: id_map_t, map_ids, index_of, ids_between, n_kind, kind_names, a_node, an_element, &
+    a_part, a_section, a_material, an_eos, an_hourglass, a_curve, a_table, a_node_set, a_part_set, &
+    a_segment_set, a_shell_set, a_system
+
+  !> Kinds of things that have user ids.
+  integer, parameter :: n_kind = 14, a_node = 1, an_element = 2, a_part = 3, a_section = 4, &
+    a_material = 5, an_eos = 6, an_hourglass = 7, a_curve = 8, a_table = 9, a_node_set = 10, &
+    a_part_set = 11, a_segment_set = 12, a_shell_set = 13, a_system = 14
+  character(17), parameter :: kind_names(n_kind) = [character(17) :: 'node', 'element', 'part', &
+    'section', 'material', 'equation of state', '*HOURGLASS', 'curve', 'table', 'node set', &
+    'part set', 'segment set', 'shell set', 'coordinate system']
 
   !> Index of every id of one kind.
   type :: id_map_t
-    logical :: incomplete = .false.          !! some definitions were refused: others may be meant
+    logical :: lost = .false.                !! some definitions were refused: others may be meant
+    logical :: incomplete = .false.          !! lost, or there is none where a deck has some
+    integer, allocatable :: lines(:)         !! where each is defined
     integer :: low = 1                       !! smallest id of the table
     integer, allocatable :: table(:)         !! index of id low, low + 1, ..., 0 where there is none
     integer, allocatable :: sorted(:)        !! ids in increasing order ...
