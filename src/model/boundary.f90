@@ -61,35 +61,31 @@ contains
     logical, intent(in) :: among(:)
     type(edge_table_t), intent(out) :: table
     integer, allocatable :: next(:)
-    integer :: i, k, a, b, node
+    integer :: pass, i, k, a, b, node
 
-    allocate (next(size(among) + 1), source=0)
-    do i = 1, size(element_nodes, 2)
-      if (.not. chosen(i)) cycle
-      do k = 1, 4
-        a = element_nodes(k, i)
-        b = element_nodes(mod(k, 4) + 1, i)
-        if (a /= b .and. among(a) .and. among(b)) next(min(a, b)) = next(min(a, b)) + 1
+    allocate (next(size(among) + 1))
+    do pass = 1, 2
+      next = 0
+      if (pass == 2) next = table%start
+      do i = 1, size(element_nodes, 2)
+        if (.not. chosen(i)) cycle
+        do k = 1, 4
+          a = element_nodes(k, i)
+          b = element_nodes(mod(k, 4) + 1, i)
+          if (a == b .or. .not. (among(a) .and. among(b))) cycle
+          node = min(a, b)
+          if (pass == 2) table%far(next(node)) = merge(b, -a, a < b)
+          if (pass == 2) table%owner(next(node)) = i
+          next(node) = next(node) + 1
+        end do
       end do
-    end do
-    allocate (table%start(size(next)))
-    table%start(1) = 1
-    do node = 1, size(among)
-      table%start(node + 1) = table%start(node) + next(node)
-    end do
-    allocate (table%far(table%start(size(next)) - 1), table%owner(table%start(size(next)) - 1))
-    next = table%start
-    do i = 1, size(element_nodes, 2)
-      if (.not. chosen(i)) cycle
-      do k = 1, 4
-        a = element_nodes(k, i)
-        b = element_nodes(mod(k, 4) + 1, i)
-        if (a == b .or. .not. (among(a) .and. among(b))) cycle
-        node = min(a, b)
-        table%far(next(node)) = merge(b, -a, a < b)
-        table%owner(next(node)) = i
-        next(node) = next(node) + 1
+      if (pass == 2) exit
+      allocate (table%start(size(next)))
+      table%start(1) = 1
+      do node = 1, size(among)
+        table%start(node + 1) = table%start(node) + next(node)
       end do
+      allocate (table%far(table%start(size(next)) - 1), table%owner(table%start(size(next)) - 1))
     end do
   end subroutine file_edges
 

@@ -7,7 +7,7 @@ module exposed_quads_m
   use model_m, only : model_t
   implicit none
   private
-  public :: find_exposed, list_exposed
+  public :: find_exposed
 
   !> From this share of the mass of a node on, what else is there weighs about half or less of it.
   real(wp), parameter :: main_share = 0.66_wp
@@ -62,23 +62,6 @@ contains
       if (.not. is_exposed(model, i, shares(:, i), is_surrounded)) shares(:, i) = 0.0_wp
     end do
   end function find_exposed
-
-  !> Slot and shares of each exposed element of a mesh that is whole.
-  pure subroutine list_exposed(model, slots, shares)
-    type(model_t), intent(in) :: model
-    integer, allocatable, intent(out) :: slots(:)
-    real(wp), allocatable, intent(out) :: shares(:, :)  !! (4, size(slots))
-    real(wp), allocatable :: all_shares(:, :)
-    integer, allocatable :: found(:)
-    logical, allocatable :: is_left(:)
-    integer :: i
-
-    allocate (is_left(model%mesh%n_element), source=.true.)
-    all_shares = find_exposed(model, is_left)
-    found = pack([(i, i = 1, size(is_left))], any(all_shares > 0.0_wp, 1))
-    slots = model%layout%element_slot(found)
-    shares = all_shares(:, found)
-  end subroutine list_exposed
 
   !> Lumped masses of the elements at their corners; 0 at the fourth of a triangle.
   pure function corner_masses(model, is_left) result(masses)

@@ -81,7 +81,11 @@ contains
       ends = own%nodes(own%segments(:, s))
       x = ends_of(model, own, s)
       place%beside = 0
-      if (is_same) place%beside = segments_beside(own, s)
+      if (is_same) then
+        place%beside(1:3) = [s, own%previous(s), own%next(s)]
+        if (place%beside(2) > 0) place%beside(4) = own%previous(place%beside(2))
+        if (place%beside(3) > 0) place%beside(5) = own%next(place%beside(3))
+      end if
       place%normal = 0.0_wp
       do i = 1, merge(2, 1, own%next(s) == 0)
         place%x = x(:, i)
@@ -100,18 +104,6 @@ contains
     end do
   end subroutine find_overlap
 
-  !> A segment, and two on either side of it, 0 where its chain ends.
-  pure function segments_beside(surface, segment) result(beside)
-    type(surface_t), intent(in) :: surface
-    integer, intent(in) :: segment
-    integer :: beside(5)
-
-    beside = 0
-    beside(1:3) = [segment, surface%previous(segment), surface%next(segment)]
-    if (beside(2) > 0) beside(4) = surface%previous(beside(2))
-    if (beside(3) > 0) beside(5) = surface%next(beside(3))
-  end function segments_beside
-
   !> Keep one place if it is too deep and the deepest so far.
   pure subroutine look_at_place(model, other, view, place, n_look, found)
     type(model_t), intent(in) :: model
@@ -122,6 +114,7 @@ contains
     type(overlap_t), intent(inout) :: found
     integer :: k, node, near(8)
     type(overlap_t) :: new
+    type(sight_t) :: sight
 
     if (.not. is_inside_body(view%finder, model, place%x, place%nodes)) return
     associate (corners => model%mesh%element_nodes(:, &
@@ -137,7 +130,10 @@ contains
     n_look = n_look + 1
     call measure(model, other, place, [(k, k=1, other%n_segment)], new)
     if (new%segment == 0 .or. new%depth < new%allowed) return
-    if (is_at_open_end(model, other, new%segment, place%x)) return
+    ! Beyond a segment at the end of an open chain.
+    sight = sight_from(model, other, new%segment, place%x)
+    if (sight%along < 0.0_wp .and. other%previous(new%segment) == 0) return
+    if (sight%along > sight%square .and. other%next(new%segment) == 0) return
     if (found%segment > 0) then
       if (new%depth*found%allowed <= found%depth*new%allowed) return
     end if
@@ -168,20 +164,6 @@ contains
     end do
     if (least%depth >= (1.0_wp - hair)*least%allowed) least%depth = max(least%depth, least%allowed)
   end subroutine measure
-
-  !> Whether a place lies beyond a segment at the end of an open chain.
-  pure function is_at_open_end(model, surface, segment, x) result(at_end)
-    type(model_t), intent(in) :: model
-    type(surface_t), intent(in) :: surface
-    integer, intent(in) :: segment
-    real(wp), intent(in) :: x(2)
-    logical :: at_end
-    type(sight_t) :: sight
-
-    sight = sight_from(model, surface, segment, x)
-    at_end = sight%along < 0.0_wp .and. surface%previous(segment) == 0 &
-      .or. sight%along > sight%square .and. surface%next(segment) == 0
-  end function is_at_open_end
 
   !> Outward unit normal of a segment with these ends.
   pure function normal_of(ends) result(normal)

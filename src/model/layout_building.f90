@@ -289,28 +289,42 @@ contains
     logical, intent(inout) :: is_special(:) !! (n_node) in: wanted special; out: all special nodes
     type(layout_t), intent(inout) :: layout
     integer, allocatable, intent(out) :: order(:) !! (n_node) present index of each new node
-    logical, allocatable :: placed(:)
-    integer, allocatable :: owner(:)
-    integer :: i_tile, n_placed
+    logical, allocatable :: is_placed(:)
+    integer, allocatable :: owner(:), marks(:), nodes(:)
+    integer :: i, k, n_placed
 
     call find_owners(mesh, is_rigid, layout, is_special, owner)
-    allocate (order(mesh%n_node))
-    allocate (placed(mesh%n_node), source=.false.)
+    allocate (order(mesh%n_node), marks(mesh%n_node), source=0)
+    allocate (is_placed(mesh%n_node), source=.false.)
     n_placed = 0
-    do i_tile = 1, size(layout%tiles)
-      layout%tiles(i_tile)%first_owned = n_placed + 1
-      call place_tile_nodes(mesh, layout, i_tile, owner, i_tile, placed, order, n_placed)
-      layout%tiles(i_tile)%last_owned = n_placed
+    do i = 1, size(layout%tiles)
+      layout%tiles(i)%first_owned = n_placed + 1
+      call list_nodes(mesh, layout%tiles(i), layout%slot_element, i, marks, nodes)
+      call place(pack(nodes, owner(nodes) == i))
+      layout%tiles(i)%last_owned = n_placed
     end do
-    call place_rest(is_special, placed, order, n_placed)
+    call place(pack([(k, k=1, mesh%n_node)], is_special .and. .not. is_placed))
     layout%tiles(size(layout%tiles))%last_owned = n_placed
     layout%n_special = n_placed
-    do i_tile = 1, size(layout%tiles)
-      layout%tiles(i_tile)%first_node = n_placed + 1
-      call place_tile_nodes(mesh, layout, i_tile, owner, no_owner, placed, order, n_placed)
-      layout%tiles(i_tile)%last_node = n_placed
+    do i = 1, size(layout%tiles)
+      layout%tiles(i)%first_node = n_placed + 1
+      call list_nodes(mesh, layout%tiles(i), layout%slot_element, -i, marks, nodes)
+      call place(pack(nodes, owner(nodes) == no_owner .and. .not. is_placed(nodes)))
+      layout%tiles(i)%last_node = n_placed
     end do
-    call place_rest(.not. is_special, placed, order, n_placed)
+    call place(pack([(k, k=1, mesh%n_node)], .not. (is_special .or. is_placed)))
+
+  contains
+
+    !> The next nodes.
+    subroutine place(next)
+      integer, intent(in) :: next(:)
+
+      order(n_placed + 1:n_placed + size(next)) = next
+      is_placed(next) = .true.
+      n_placed = n_placed + size(next)
+    end subroutine place
+
   end subroutine order_nodes
 
   !> Special nodes, and the tile that owns each. Nodes that several tiles touch are special; so is a
@@ -385,45 +399,5 @@ contains
     end do
     nodes = list(:n)
   end subroutine list_nodes
-
-  !> Place those nodes of a tile that have the given owner and are not yet placed.
-  subroutine place_tile_nodes(mesh, layout, i_tile, owner, wanted, placed, order, n_placed)
-    type(mesh_t), intent(in) :: mesh
-    type(layout_t), intent(in) :: layout
-    integer, intent(in) :: i_tile
-    integer, intent(in) :: owner(:)
-    integer, intent(in) :: wanted
-    logical, intent(inout) :: placed(:)
-    integer, intent(inout) :: order(:)
-    integer, intent(inout) :: n_placed
-    integer :: slot, k, node
-
-    do slot = first_slot(layout%tiles(i_tile)), last_slot(layout%tiles(i_tile))
-      if (layout%slot_element(slot) == 0) cycle
-      do k = 1, 4
-        node = mesh%element_nodes(k, layout%slot_element(slot))
-        if (placed(node) .or. owner(node) /= wanted) cycle
-        placed(node) = .true.
-        n_placed = n_placed + 1
-        order(n_placed) = node
-      end do
-    end do
-  end subroutine place_tile_nodes
-
-  !> Place nodes that are wanted and not yet placed.
-  pure subroutine place_rest(wanted, placed, order, n_placed)
-    logical, intent(in) :: wanted(:)
-    logical, intent(inout) :: placed(:)
-    integer, intent(inout) :: order(:)
-    integer, intent(inout) :: n_placed
-    integer :: node
-
-    do node = 1, size(wanted)
-      if (placed(node) .or. .not. wanted(node)) cycle
-      placed(node) = .true.
-      n_placed = n_placed + 1
-      order(n_placed) = node
-    end do
-  end subroutine place_rest
 
 end module layout_building_m

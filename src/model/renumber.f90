@@ -2,9 +2,9 @@
 !> Puts a finished model into the order of the step: nodes renumbered everywhere, layout built.
 module renumber_m
   use controls_m, only : list_boundaries, is_asked, mark_corners, end_node_place, end_node_touch
-  use exposed_quads_m, only : list_exposed
+  use exposed_quads_m, only : find_exposed
   use history_tables_m, only : table_bndout
-  use kinds_m, only : long
+  use kinds_m, only : wp, long
   use layout_building_m, only : build_slots, build_local_numbers, order_nodes
   use model_m, only : model_t
   use rigids_m, only : mark_rigid_nodes
@@ -21,6 +21,7 @@ contains
     type(model_t), intent(inout) :: model
     logical, allocatable :: is_special(:), is_rigid(:)
     integer, allocatable :: order(:), new_index(:)
+    real(wp), allocatable :: shares(:, :)
     integer :: i
 
     allocate (is_rigid(model%mesh%n_element))
@@ -47,8 +48,12 @@ contains
     call renumber_conditions(model, order, new_index)
     call renumber_bodies(model, new_index)
     call build_local_numbers(model%mesh, model%layout)
-    if (.not. model%controls%implicit%is_on) call list_exposed(model, model%layout%exposed, &
-      model%layout%exposed_shares)
+    if (.not. model%controls%implicit%is_on) then
+      shares = find_exposed(model, [(.true., i=1, model%mesh%n_element)])
+      order = pack([(i, i=1, model%mesh%n_element)], any(shares > 0.0_wp, 1))
+      model%layout%exposed = model%layout%element_slot(order)
+      model%layout%exposed_shares = shares(:, order)
+    end if
     if (allocated(model%controls%output%cross_sections)) call renumber_sections(model, new_index)
     model%conditions%n_support = count(mark_supports(model))
     associate (output => model%controls%output)

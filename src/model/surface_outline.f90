@@ -25,7 +25,8 @@ contains
     type(surface_t), intent(in) :: former !! of the deck, before anything left
     type(surface_t), intent(out) :: surface
     type(boundary_t) :: boundary
-    logical, allocatable :: chosen_part(:), is_chosen(:)
+    logical, allocatable :: chosen_part(:), is_chosen(:), is_near(:)
+    integer :: i
 
     if (allocated(former%parts)) then
       allocate (chosen_part(maxval(mesh%element_part)), source=.false.)
@@ -36,8 +37,13 @@ contains
         return
       end if
       is_chosen = is_chosen .and. is_left
-      call find_boundary(mesh%element_nodes, is_chosen, near_surface(mesh, is_left, former), &
-        boundary)
+      ! Nodes that the outline can have: those of the deck's, and of elements that have gone.
+      allocate (is_near(size(mesh%coordinates, 2)), source=.false.)
+      is_near(former%nodes) = .true.
+      do i = 1, size(is_left)
+        if (.not. is_left(i)) is_near(mesh%element_nodes(:, i)) = .true.
+      end do
+      call find_boundary(mesh%element_nodes, is_chosen, is_near, boundary)
       call walk_outline(mesh, is_chosen, boundary, surface)
       surface%parts = former%parts
     else
@@ -46,22 +52,6 @@ contains
     if (allocated(former%is_on_axis)) surface%is_on_axis = &
       .not. mesh%coordinates(1, surface%nodes) > 0.0_wp
   end subroutine surface_left
-
-  !> Nodes that the outline of what is left can have: those of the deck's outline, and of elements
-  !> that have gone.
-  pure function near_surface(mesh, is_left, former) result(is_near)
-    type(mesh_t), intent(in) :: mesh
-    logical, intent(in) :: is_left(:)
-    type(surface_t), intent(in) :: former !! of the deck
-    logical :: is_near(size(mesh%coordinates, 2))
-    integer :: i
-
-    is_near = .false.
-    is_near(former%nodes) = .true.
-    do i = 1, size(is_left)
-      if (.not. is_left(i)) is_near(mesh%element_nodes(:, i)) = .true.
-    end do
-  end function near_surface
 
   !> Segments of a surface whose elements are left.
   pure subroutine take_left(is_left, former, surface)

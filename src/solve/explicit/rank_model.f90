@@ -10,7 +10,7 @@ module rank_model_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use model_m, only : model_t
-  use rank_shares_m, only : shares_t, share_out, starts_from_all, others_of
+  use rank_shares_m, only : shares_t, share_out, needs_all, others_of
   use ranks_m, only : ranks_t
   use state_m, only : state_t
   use visitor_m, only : visited_t, visitor_t, of_elements, of_nodes, of_slots
@@ -66,7 +66,11 @@ contains
     if (ranks%n == 1) return
     call hand(ranks, everyone, buffer, model)
     deallocate (buffer%values)
-    has_all = starts_from_all(model)
+    ! Where each process looks at the state of all elements at the start, or steps them in dynamic
+    ! relaxation.
+    has_all = needs_all(model) .or. model%controls%relaxation%is_on &
+      .or. abs(model%controls%mass_step) > 0.0_wp &
+      .or. any(abs(model%parts%stiffness_damping) > 0.0_wp)
     n_node = model%mesh%n_node
     if (has_all) then
       call hand_range(ranks, everyone, of_nodes, [1, n_node], model)

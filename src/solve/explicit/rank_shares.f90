@@ -14,7 +14,7 @@ module rank_shares_m
   use state_m, only : state_t
   implicit none
   private
-  public :: shares_t, share_out, others_of, forget_others, starts_from_all
+  public :: shares_t, share_out, others_of, forget_others, needs_all
 
   !> All arrays (0:n): where the range of each process starts, then one beyond the last.
   type :: shares_t
@@ -104,16 +104,5 @@ contains
     needs = model%erodes .or. allocated(model%conditions%part_damping) &
       .or. (abs(model%controls%mass_step) > 0.0_wp .and. .not. model%controls%masses_stay)
   end function needs_all
-
-  !> Whether each process looks at the state of all elements at the start, or steps them in dynamic
-  !> relaxation.
-  pure function starts_from_all(model) result(starts)
-    type(model_t), intent(in) :: model
-    logical :: starts
-
-    starts = needs_all(model) .or. model%controls%relaxation%is_on &
-      .or. abs(model%controls%mass_step) > 0.0_wp &
-      .or. any(abs(model%parts%stiffness_damping) > 0.0_wp)
-  end function starts_from_all
 
 end module rank_shares_m
