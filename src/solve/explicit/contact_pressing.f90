@@ -13,7 +13,7 @@ module contact_pressing_m
   use log_m, only : log_t
   use model_m, only : model_t
   use node_motion_m, only : leap_t, find_factors
-  use part_damping_m, only : part_damping_rate
+  use external_force_m, only : part_damping_rate
   use pressing_m, only : pressing_t, start_pressing
   use rigid_motion_m, only : solve_rigids, damping_of
   use rigid_state_m, only : turn_of, shift_by_turn, velocity_of

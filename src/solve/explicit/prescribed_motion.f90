@@ -10,7 +10,7 @@ module prescribed_motion_m
   use controls_m, only : boundary_load, boundary_body_load, boundary_pressure, group_nodes
   use kinds_m, only : wp
   use model_m, only : model_t
-  use part_damping_m, only : part_damping_rate
+  use external_force_m, only : part_damping_rate
   use rigid_motion_m, only : damping_of
   use snapshot_filling_m, only : damping_at
   use state_m, only : state_t

@@ -6,7 +6,7 @@ module rigid_motion_m
   use conditions_m, only : motion_displacement
   use constraints_m, only : is_active, next_velocity
   use model_m, only : model_t
-  use part_damping_m, only : part_damping_rate
+  use external_force_m, only : part_damping_rate
   use rigid_state_m, only : rigid_state_t, turn_of, shift_by_turn, velocity_of
   use snapshot_m, only : snapshot_t
   use state_m, only : state_t

@@ -13,10 +13,9 @@ module implicit_forces_m
   use cut_forces_m, only : find_cut_forces, keep_cut_chunks
   use element_dispatch_m, only : add_tile_forces
   use element_mass_m, only : mass_times
-  use external_force_m, only : form_external_force, body_acceleration
+  use external_force_m, only : form_external_force, body_acceleration, damping_rates
   use packed_buffer_m, only : packed_buffer_t
   use model_m, only : model_t
-  use part_damping_m, only : damping_rates
   use state_m, only : state_t
   use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
   use visitor_m, only : visited_t, visitor_t

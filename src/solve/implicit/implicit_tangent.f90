@@ -13,7 +13,7 @@ module implicit_tangent_m
   use implicit_forces_m, only : trial_t, damping_force
   use implicit_prescribed_m, only : prescribed_step_t
   use model_m, only : model_t
-  use part_damping_m, only : damping_rates
+  use external_force_m, only : damping_rates
   use sparse_m, only : sparse_t, start_matrix, add_block
   use state_m, only : state_t
   use visitor_m, only : visited_t, visitor_t
