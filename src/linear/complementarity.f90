@@ -353,7 +353,7 @@ contains
 
     if (place(m) - place(1) == m - 1) then
       ! They follow each other.
-      call copy((width + 1)*m, band(0, place(1)), factor)
+      factor = band(:, place(1):place(m))
       return
     end if
     do j = 1, m
@@ -366,15 +366,6 @@ contains
       end do
     end do
   end subroutine take_rows
-
-  !> All columns in one loop.
-  pure subroutine copy(n, from, to)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: from(n)
-    real(wp), intent(inout) :: to(n)
-
-    to = from
-  end subroutine copy
 
   !> Cholesky factors of a band. A row whose pivot is zero takes no part.
   pure subroutine factorise(n, width, factor, diagonal, is_zero)
