@@ -15,7 +15,7 @@ module ranks_m
   public :: ranks_t, join_ranks, leave_ranks, bring_reals, bring_integers, swap_reals, &
     find_least, spread_values, share_error
 
-  integer, parameter :: real_bytes = storage_size(1.0_wp)/8, integer_bytes = storage_size(1)/8
+  integer, parameter :: real_bytes = storage_size(1.0_wp)/8
 
   !> This process among those of the run.
   type :: ranks_t
@@ -53,7 +53,8 @@ contains
     real(wp), intent(inout) :: values(*)
     integer :: counts(0:ranks%n - 1), places(0:ranks%n - 1), status
 
-    call lay_out(ranks, starts, width, counts, places)
+    counts = width*(starts(1:ranks%n) - starts(0:ranks%n - 1))
+    places = width*(starts(0:ranks%n - 1) - 1) ! values before those of each
     if (to_all) then
       call mpi_allgatherv(mpi_in_place, 0, mpi_datatype_null, values, counts, places, &
         mpi_double_precision, mpi_comm_world, status)
@@ -64,43 +65,24 @@ contains
       call mpi_gatherv(values(places(ranks%mine) + 1), counts(ranks%mine), mpi_double_precision, &
         values, counts, places, mpi_double_precision, 0, mpi_comm_world, status)
     end if
-    call count_joined(ranks, real_bytes, counts, to_all)
+    ranks%joined(1) = ranks%joined(1) + 1
+    if (to_all .or. ranks%mine == 0) ranks%joined(2) = ranks%joined(2) &
+      + int(real_bytes, long)*(sum(int(counts, long)) - counts(ranks%mine))
   end subroutine bring_reals
 
-  !> The same for integers.
+  !> The same for integers, which go as reals.
   subroutine bring_integers(ranks, starts, width, to_all, values)
     type(ranks_t), intent(inout) :: ranks
     integer, intent(in) :: starts(0:)     !! (0:n) item at which each piece starts, then one beyond
     integer, intent(in) :: width          !! values of an item
     logical, intent(in) :: to_all
     integer, intent(inout) :: values(*)
-    integer :: counts(0:ranks%n - 1), places(0:ranks%n - 1), status
+    real(wp), allocatable :: copies(:)
 
-    call lay_out(ranks, starts, width, counts, places)
-    if (to_all) then
-      call mpi_allgatherv(mpi_in_place, 0, mpi_datatype_null, values, counts, places, &
-        mpi_integer, mpi_comm_world, status)
-    else if (ranks%mine == 0) then
-      call mpi_gatherv(mpi_in_place, 0, mpi_datatype_null, values, counts, places, &
-        mpi_integer, 0, mpi_comm_world, status)
-    else
-      call mpi_gatherv(values(places(ranks%mine) + 1), counts(ranks%mine), mpi_integer, &
-        values, counts, places, mpi_integer, 0, mpi_comm_world, status)
-    end if
-    call count_joined(ranks, integer_bytes, counts, to_all)
+    copies = real(values(:width*(starts(ranks%n) - 1)), wp)
+    call bring_reals(ranks, starts, width, to_all, copies)
+    values(:size(copies)) = nint(copies)
   end subroutine bring_integers
-
-  !> Count a call by which pieces have come: those of the others.
-  pure subroutine count_joined(ranks, bytes, counts, to_all)
-    type(ranks_t), intent(inout) :: ranks
-    integer, intent(in) :: bytes      !! of a value
-    integer, intent(in) :: counts(0:) !! values of each process
-    logical, intent(in) :: to_all
-
-    ranks%joined(1) = ranks%joined(1) + 1
-    if (to_all .or. ranks%mine == 0) ranks%joined(2) = ranks%joined(2) &
-      + int(bytes, long)*(sum(int(counts, long)) - counts(ranks%mine))
-  end subroutine count_joined
 
   !> Values for some other processes, a message each, against what these have for this one.
   subroutine swap_reals(ranks, peers, out_starts, outgoing, in_starts, incoming)
@@ -141,17 +123,6 @@ contains
       mpi_comm_world, status)
     ranks%joined = ranks%joined + [1_long, int(real_bytes, long)*size(values)]
   end subroutine find_least
-
-  !> How many values each process has, and how many stand before them.
-  pure subroutine lay_out(ranks, starts, width, counts, places)
-    type(ranks_t), intent(in) :: ranks
-    integer, intent(in) :: starts(0:)
-    integer, intent(in) :: width
-    integer, intent(out) :: counts(0:), places(0:)
-
-    counts = width*(starts(1:ranks%n) - starts(0:ranks%n - 1))
-    places = width*(starts(0:ranks%n - 1) - 1)
-  end subroutine lay_out
 
   !> Values of the first process to all.
   subroutine spread_values(ranks, values)
