@@ -135,9 +135,10 @@ contains
     real(wp), intent(in) :: damping(2)
     type(snapshot_t), intent(in) :: snapshot !! may keep velocities
     real(wp) :: work
-    real(wp) :: velocity(2), acceleration(2)
+    real(wp) :: velocity(2), acceleration(2), d(2)
     integer :: i
 
+    d = damping
     work = 0.0_wp
     do i = 1, model%mesh%n_node
       if (allocated(snapshot%velocity)) then
@@ -145,7 +146,8 @@ contains
       else
         call find_motion(model%layout%n_special, state, damping, i, velocity, acceleration)
       end if
-      work = work + state%mass(i)*sum(damping_at(state, damping, i)*velocity*state%motion(3:4, i))
+      if (allocated(state%node_damping)) d = state%node_damping(:, i)
+      work = work + state%mass(i)*sum(d*velocity*state%motion(3:4, i))
     end do
     work = 0.5_wp*state%dt_before*work
   end function half_step_damping
