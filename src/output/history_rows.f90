@@ -6,13 +6,12 @@ module history_rows_m
   use controls_m, only : boundary_body_load, boundary_body_motion
   use contacts_m, only : n_told
   use csv_table_m, only : csv_table_t, add_row
-  use energies_m, only : total_energy, energy_ratio
+  use snapshot_m, only : total_energy, energy_ratio, snapshot_t, rubbed_t
   use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_contact, &
     table_matsum, table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout, &
     table_bndout, table_nodfor, table_secforc
   use kinds_m, only : wp
   use model_m, only : model_t
-  use snapshot_m, only : snapshot_t, rubbed_t
   implicit none
   private
   public :: append_rows

@@ -4,7 +4,7 @@ module health_m
   use block_state_m, only : block_state_t
   use contact_state_m, only : contact_state_t
   use controls_m, only : controls_t
-  use energies_m, only : energies_t, energy_ratio, total_energy
+  use snapshot_m, only : energies_t, energy_ratio, total_energy
   use element_state_m, only : smallest_ratio, is_gone
   use eos_pressure_m, only : is_too_dense
   use errors_m, only : error_t, raise, status_run

@@ -4,7 +4,7 @@ module reporting_m
   use boundary_filling_m, only : fill_boundaries
   use contact_judging_m, only : judge_contacts
   use contact_softness_m, only : follow_softness
-  use energies_m, only : total_energy
+  use snapshot_m, only : total_energy
   use errors_m, only : error_t
   use history_elements_m, only : fill_history_elements
   use history_tables_m, only : table_rcforc, table_sleout, table_contact, table_elout, &

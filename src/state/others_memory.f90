@@ -35,8 +35,9 @@ contains
     type(others_t), intent(in), optional :: others
     integer :: ranges(2, 3)
 
-    ranges = whole(model%mesh%n_node)
-    if (present(others)) ranges = between(others%nodes, model%mesh%n_node)
+    ranges = reshape([1, 0, 1, model%mesh%n_node, 1, 0], [2, 3])
+    if (present(others)) ranges = reshape([1, others%nodes(1) - 1, others%nodes(2) + 1, &
+      others%nodes(3) - 1, others%nodes(4) + 1, model%mesh%n_node], [2, 3])
   end function known_nodes
 
   !> The same of slots.
@@ -45,25 +46,10 @@ contains
     type(others_t), intent(in), optional :: others
     integer :: ranges(2, 3)
 
-    ranges = whole(model%layout%n_slot)
-    if (present(others)) ranges = between(others%slots, model%layout%n_slot)
+    ranges = reshape([1, 0, 1, model%layout%n_slot, 1, 0], [2, 3])
+    if (present(others)) ranges = reshape([1, others%slots(1) - 1, others%slots(2) + 1, &
+      others%slots(3) - 1, others%slots(4) + 1, model%layout%n_slot], [2, 3])
   end function known_slots
-
-  !> One range of all items and two that are empty.
-  pure function whole(n) result(ranges)
-    integer, intent(in) :: n
-    integer :: ranges(2, 3)
-
-    ranges = reshape([1, n, 1, 0, 1, 0], [2, 3])
-  end function whole
-
-  !> What two ranges leave of n items.
-  pure function between(items, n) result(ranges)
-    integer, intent(in) :: items(4), n
-    integer :: ranges(2, 3)
-
-    ranges = reshape([1, items(1) - 1, items(2) + 1, items(3) - 1, items(4) + 1, n], [2, 3])
-  end function between
 
   !> Who gives up the memory of others' nodes and slots: before and behind those of this process.
   pure function forgetters_of(others) result(forgetters)

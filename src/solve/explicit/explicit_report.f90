@@ -5,7 +5,7 @@ module explicit_report_m
   use contact_check_m, only : report_contact_start
   use contact_pressing_m, only : press_contacts
   use curves_m, only : curve_value
-  use energies_m, only : energy_ratio
+  use snapshot_m, only : energy_ratio, snapshot_t
   use element_losses_m, only : settle_elements
   use explicit_cycle_m, only : explicit_cycle_t, prepare_leap
   use time_step_m, only : first_change, first_step, largest_change, obey_approach, &
@@ -27,7 +27,6 @@ module explicit_report_m
   use held_nodes_m, only : hold_skew_nodes, hold_nodes, count_walls, fill_walls
   use element_steps_m, only : find_smallest_steps
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts
-  use snapshot_m, only : snapshot_t
   use state_m, only : state_t
   use support_forces_m, only : fill_explicit_reactions
   implicit none

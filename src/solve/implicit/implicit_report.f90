@@ -9,7 +9,7 @@ module implicit_report_m
   use controls_m, only : boundary_motion, group_nodes
   use element_mass_m, only : mass_times, sum_part_motion
   use element_state_m, only : add_part_energies
-  use energies_m, only : energy_ratio
+  use snapshot_m, only : energy_ratio
   use equations_m, only : equations_t
   use errors_m, only : error_t
   use health_m, only : check_energy, check_ratio, check_radii, judge_energies, judge_ratio, &
