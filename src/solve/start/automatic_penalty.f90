@@ -127,8 +127,8 @@ contains
   end subroutine tell_of_mean
 
   !> By interface the share of the largest stable penalty that the memory holds a penalty of: PEN
-  !> with PUNIT 3; 1 for the mean of soft and stiff materials, which may have no more than that, in an
-  !> explicit run whose step does not follow it; 0 for penalties that stand as given.
+  !> with PUNIT 3; 1 for the mean of soft and stiff materials, which may have no more than that, in
+  !> an explicit run whose step does not follow it; 0 for penalties that stand as given.
   pure function sought_shares(model) result(share)
     type(model_t), intent(in) :: model
     real(wp) :: share(size(model%contacts))
