@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Stable steps of the single elements, by the kernels of the step itself, and the elements that rule
-!> the time step.
+!> Stable steps of the single elements, by the kernels of the step itself, and the elements that
+!> rule the time step.
 module element_steps_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
@@ -16,7 +16,7 @@ module element_steps_m
   use parts_m, only : hourglass_t, hourglass_viscous, material_t, part_t, gives_pressure
   use quad_kinematics_m, only : form_shape, form_increments
   use quad_points_m, only : n_point, round_point_t, step_sums_t, form_point, form_radii, &
-    start_sums, add_point_sums
+    start_sums, add_point_sums, form_row_sums
   use stable_step_m, only : stable_step, round_step, full_step, round_full_step
   use stress_chunk_m, only : stress_chunk_t
   implicit none
@@ -94,8 +94,8 @@ contains
       call full_steps(material, part%hourglass, nodes, start, chunk, steps)
     else if (model%is_round) then
       call form_resistance(model%materials(part%material), part%hourglass, chunk)
-      call round_step(material, part%hourglass, start(1, reference_mass), chunk_size, chunk, limit, &
-        volume, steps)
+      call round_step(material, part%hourglass, start(1, reference_mass), chunk_size, chunk, &
+        limit, volume, steps)
     else
       call stable_step(model%controls%length_rule, material%sound_speed, part%hourglass, nodes, &
         chunk, limit, volume, steps)
@@ -137,8 +137,8 @@ contains
       end if
     end do
     if (chunk%is_round) then
-      call round_full_step(material, hourglass, shape(1, reference_mass), chunk_size, chunk, places, &
-        limit, volume, steps)
+      call form_row_sums(shape(1, reference_mass), chunk_size, places, sums)
+      call round_full_step(material, hourglass, chunk, sums, limit, volume, steps)
     else
       call full_step(material, hourglass, nodes, chunk, sums, limit, volume, steps)
     end if

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Internal force of a one-point quad with hourglass control by assumed strain in dual numbers, plane
-!> or round, as `element_tangent` has that of several points.
+!> Internal force of a one-point quad with hourglass control by assumed strain in dual numbers,
+!> plane or round, as `element_tangent` has that of several points.
 module one_point_tangent_m
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
   use element_tangent_m, only : element_t, shape_t, n_pattern, form_gradient, find_stress, &

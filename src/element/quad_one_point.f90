@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> One chunk of one-point quads, plane or round: from nodal motion to nodal forces, stress updated on
-!> the way.
+!> One chunk of one-point quads, plane or round: from nodal motion to nodal forces, stress updated
+!> on the way.
 module quad_one_point_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
