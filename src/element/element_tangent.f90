@@ -11,7 +11,7 @@ module element_tangent_m
   use parts_m, only : material_t
   use quad_points_m, only : n_point, point_areas, shape_at_points, shift, along_a, along_b, along_h
   use rubbers_m, only : rubber_t
-  use stress_point_m, only : stress_point_t
+  use stress_chunk_m, only : stress_point_t
   use volumetric_m, only : log_ratio
   implicit none
   private

@@ -4,8 +4,7 @@
 module eos_pressure_m
   use block_state_m, only : block_state_t
   use element_chunk_m, only : element_chunk_t
-  use eos_chunk_m, only : eos_chunk_t
-  use eos_dispatch_m, only : form_eos, advance_energy, find_stiffness
+  use eos_dispatch_m, only : eos_chunk_t, form_eos, advance_energy, find_stiffness
   use eos_m, only : eos_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
