@@ -1,21 +1,23 @@
 ! SPDX-License-Identifier: MIT
 !> Elements that leave the mesh, and what the output asks of elements.
 module element_state_m
+  use element_dispatch_m, only : point_count
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use erosion_state_m, only : erosion_state_t, stays, has_left, has_gone
   use layout_m, only : chunk_size, slot_part
-  use material_dispatch_m, only : history_size, column_temperature, column_damage, &
+  use material_dispatch_m, only : find_failed, history_size, column_temperature, column_damage, &
     has_plastic_strain, has_mean_dilatation
   use model_m, only : model_t
-  use parts_m, only : has_memory_of_heat
+  use parts_m, only : has_memory_of_heat, may_fail
   use quad_points_m, only : n_point, point_ratios, round_point_ratios
   use volumetric_m, only : log_ratio, volumetric_energy
   implicit none
   private
   public :: start_erosion, element_stresses, element_plastic_strains, &
     element_heats, add_part_energies, smallest_ratio, settle_erosion, element_erosion, is_gone, &
-    stress_of_slot, plastic_strain_of_slot, initial_volume, hoop_strains
+    stress_of_slot, plastic_strain_of_slot, initial_volume, hoop_strains, &
+    count_points, first_failed
 
 contains
 
@@ -411,5 +413,44 @@ contains
       end do
     end do
   end subroutine add_part_energies
+
+  !> Points that may fail.
+  pure function count_points(model, elements) result(n)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    integer :: n
+    integer :: i_chunk
+
+    n = 0
+    do i_chunk = 1, size(elements%n_failed)
+      associate (part => model%parts(model%layout%chunk_part(i_chunk)), &
+        slots => model%layout%slot_element((i_chunk - 1)*chunk_size + 1:i_chunk*chunk_size))
+        if (may_fail(model%materials(part%material))) n = n &
+          + point_count(model%sections(part%section))*count(slots > 0)
+      end associate
+    end do
+  end function count_points
+
+  !> The first slot with a failed point; there must be one.
+  pure function first_failed(model, elements) result(slot)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    integer :: slot
+    logical :: failed(chunk_size), one(chunk_size), ignored
+    integer :: i_chunk, k
+
+    i_chunk = findloc(elements%n_failed > 0, .true., dim=1)
+    failed = .false.
+    associate (part => model%parts(model%layout%chunk_part(i_chunk)))
+      associate (material => model%materials(part%material))
+        do k = 1, point_count(model%sections(part%section))
+          call find_failed(material, elements%history(elements%history_start(i_chunk) &
+            + (k - 1)*chunk_size*history_size(material)), one, ignored)
+          failed = failed .or. one
+        end do
+      end associate
+    end associate
+    slot = (i_chunk - 1)*chunk_size + findloc(failed, .true., dim=1)
+  end function first_failed
 
 end module element_state_m

@@ -6,8 +6,7 @@
 module mass_scaling_m
   use block_state_m, only : block_state_t
   use element_mass_m, only : element_shares
-  use element_steps_m, only : chunk_steps, scaled_step, is_damped
-  use exposed_step_m, only : has_exposed, exposed_step
+  use element_steps_m, only : chunk_steps, scaled_step, is_damped, has_exposed, exposed_step
   use kinds_m, only : wp
   use layout_m, only : chunk_size, slot_part, tile_t
   use model_m, only : model_t

@@ -6,11 +6,9 @@
 module quad_full_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
-  use bulk_viscosity_m, only : add_bulk_viscosity
   use element_chunk_m, only : element_chunk_t, gather_motion, reference_mass
-  use eos_pressure_m, only : finish_limits
-  use law_pressure_m, only : load_point_state, start_point_values, add_point_values, &
-    form_shared_pressure
+  use eos_pressure_m, only : finish_limits, load_point_state, start_point_values, &
+    add_point_values, form_shared_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress, history_size, has_mean_dilatation
   use model_m, only : model_t
@@ -22,7 +20,8 @@ module quad_full_m
     form_row_sums
   use stable_step_m, only : full_step, round_full_step
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
-  use viscous_stress_m, only : viscous_start, add_viscous_deviator, add_viscous_pressure, trace_of
+  use viscous_stress_m, only : add_bulk_viscosity, viscous_start, add_viscous_deviator, &
+    add_viscous_pressure, trace_of
   use volumetric_m, only : volumetric_stress, largest_size
   implicit none
   private

@@ -184,8 +184,8 @@ contains
     if (present(single)) single = coupled_step(hourglass%form, sums%strain + coupling_factor( &
       hourglass%form, material%density, sums%strain)*sums%coupling, sums%pattern/material%density)
     if (.not. (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp)) return
-    call form_viscous_rates(hourglass, material%sound_speed, chunk, sums%dilation)
-    limit = limit/(1.0_wp + 0.5_wp*limit*maxval(sums%dilation))
+    call form_viscous_rates(hourglass, material%sound_speed, chunk, sums%dilation, largest)
+    limit = limit/(1.0_wp + 0.5_wp*limit*largest)
     if (present(single)) single = single/(1.0_wp + 0.5_wp*single*sums%dilation)
   end subroutine round_step
 
@@ -219,19 +219,23 @@ contains
 
   !> Rates of bulk viscosity, which are added: x + y <= theta at a share theta <= 1 of the step
   !> without it. It counts in expansion too: two steps later the fastest mode is in compression.
-  pure subroutine form_viscous_rates(viscosity, sound_speed, chunk, dilation)
+  pure subroutine form_viscous_rates(viscosity, sound_speed, chunk, dilation, largest)
     type(hourglass_t), intent(in) :: viscosity
     real(wp), intent(in) :: sound_speed
     type(element_chunk_t), intent(in) :: chunk
     real(wp), intent(inout) :: dilation(chunk_size) !! bound of omega^2 by volume over lambda; then
                                                     !! the rates
+    real(wp), intent(out) :: largest
     real(wp) :: length
     integer :: i
 
+    largest = 0.0_wp
+    !$omp simd private(length) reduction(max : largest)
     do i = 1, chunk_size
       length = sqrt(abs(chunk%area(i)))
       dilation(i) = length/abs(1.0_wp + chunk%stretch(i))*(viscosity%linear*sound_speed &
         + viscosity%quadratic*length*abs(chunk%trace(i)))*dilation(i)
+      largest = max(largest, dilation(i))
     end do
   end subroutine form_viscous_rates
 
@@ -458,8 +462,8 @@ contains
     limit = 2.0_wp/sqrt(largest/material%density)
     if (present(single)) single = 2.0_wp/sqrt(squared/material%density)
     if (.not. (viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp)) return
-    call form_viscous_rates(viscosity, material%sound_speed, chunk, both)
-    limit = limit/(1.0_wp + 0.5_wp*limit*maxval(both))
+    call form_viscous_rates(viscosity, material%sound_speed, chunk, both, largest)
+    limit = limit/(1.0_wp + 0.5_wp*limit*largest)
     if (present(single)) single = single/(1.0_wp + 0.5_wp*single*both)
   end subroutine round_full_step
 
