@@ -33,7 +33,7 @@ module element_chunk_m
     real(wp), dimension(chunk_size) :: heat               !! work of the deviator in the step, for
                                                           !! an equation of state
     real(wp), dimension(chunk_size) :: law_mean, law_energy, law_bulk, law_shear !! where the law
-                                                          !! gives the pressure: see `law_pressure`
+                                                          !! gives the pressure: see `eos_pressure`
     real(wp), dimension(chunk_size) :: qx, qy             !! hourglass force amplitude
     real(wp), dimension(chunk_size) :: hourglass_work     !! its work in the step
     real(wp), dimension(2, chunk_size) :: force3, force4 !! x, y of nodes 3, 4 without hourglass

@@ -255,7 +255,7 @@ contains
       + 4.0_wp*material%shear/3.0_wp)*(1.0_wp + chunk%stretch)/material%density
   end subroutine form_eos_pressure
 
-  !> Bulk viscosity (see `bulk_viscosity`) with the speed of sound that each element had before.
+  !> Bulk viscosity (see `viscous_stress`) with the speed of sound that each element had before.
   pure subroutine form_viscous_pressure(viscosity, initial_density, speed_squared, chunk, q)
     type(hourglass_t), intent(in) :: viscosity
     real(wp), intent(in) :: initial_density
