@@ -10,7 +10,7 @@ module element_state_m
     has_plastic_strain, has_mean_dilatation
   use model_m, only : model_t
   use parts_m, only : has_memory_of_heat, may_fail
-  use quad_points_m, only : n_point, point_ratios, round_point_ratios
+  use quad_points_m, only : n_point, point_ratios, round_point_ratios, signed_area
   use volumetric_m, only : log_ratio, volumetric_energy
   implicit none
   private
@@ -263,8 +263,9 @@ contains
     x = model%mesh%coordinates(:, model%layout%slot_nodes(:, slot))
     call patterns(x, a, b, h, s)
     call patterns(u, da, db, dh, ds)
-    start = 0.25_wp*s*area(a, b) + (h(1)*cross(a, b) - 2.0_wp*a(1)*b(1)*h(2))/24.0_wp
-    stretch = 0.25_wp*(s*(area(a, db) + area(da, b + db)) + ds*area(a + da, b + db)) &
+    start = 0.25_wp*s*signed_area(a, b) + (h(1)*cross(a, b) - 2.0_wp*a(1)*b(1)*h(2))/24.0_wp
+    stretch = 0.25_wp*(s*(signed_area(a, db) + signed_area(da, b + db)) &
+      + ds*signed_area(a + da, b + db)) &
       + (h(1)*(cross(a, db) + cross(da, b + db)) + dh(1)*cross(a + da, b + db) &
       - 2.0_wp*(a(1)*b(1)*dh(2) + (a(1)*db(1) + da(1)*(b(1) + db(1)))*(h(2) + dh(2))))/24.0_wp
     stretch = stretch/start
@@ -315,7 +316,7 @@ contains
 
     call patterns(x, a, b, h, s)
     call patterns(values, da, db, dh, ds)
-    area_integral = 0.25_wp*ds*area(a, b) + (da(1)*(h(1)*b(2) - h(2)*b(1)) &
+    area_integral = 0.25_wp*ds*signed_area(a, b) + (da(1)*(h(1)*b(2) - h(2)*b(1)) &
       + db(1)*(h(1)*a(2) - h(2)*a(1)))/24.0_wp
   end function area_integral
 
@@ -329,13 +330,6 @@ contains
     h = (x(:, 1) - x(:, 2)) + (x(:, 3) - x(:, 4))
     s = sum(x(1, :))
   end subroutine patterns
-
-  !> Half of a_r b_z - b_r a_z.
-  pure real(wp) function area(a, b)
-    real(wp), intent(in) :: a(2), b(2)
-
-    area = 0.5_wp*(a(1)*b(2) - b(1)*a(2))
-  end function area
 
   !> a_r b_z + b_r a_z.
   pure real(wp) function cross(a, b)

@@ -326,7 +326,10 @@ contains
       nodal = motion(:, model%layout%slot_nodes(:, slot))
       ! Mirror images lie beyond the side where the least of the mass is its own.
       call form_gradients(shape, nodal, minloc(shares + cshift(shares, 1), 1), gradients, normal)
-      call turn_gradients(normal, gradients)
+      associate (x => normal(1)*gradients%x + normal(2)*gradients%y)
+        gradients%y = normal(1)*gradients%y - normal(2)*gradients%x
+        gradients%x = x
+      end associate
       weights = max(0.0_wp, 2.0_wp*shares - 1.0_wp)
       step = min(mode_step(now, part%hourglass, gradients, one, weights), &
         mode_step(now, part%hourglass, gradients, weights, one))
@@ -363,17 +366,6 @@ contains
     end select
     normal = [along(2), -along(1)]/max(norm2(along), tiny(1.0_wp))
   end subroutine form_gradients
-
-  !> Gradients in the frame whose first axis is a unit vector.
-  pure subroutine turn_gradients(axis, gradients)
-    real(wp), intent(in) :: axis(2)
-    type(gradients_t), intent(inout) :: gradients
-    real(wp) :: across(4)
-
-    across = axis(1)*gradients%y - axis(2)*gradients%x
-    gradients%x = axis(1)*gradients%x + axis(2)*gradients%y
-    gradients%y = across
-  end subroutine turn_gradients
 
   !> Stable step of the motions in which the nodes have these weights in the first and in the second
   !> direction: of dt^2 omega^2/4 + dt rate/2 <= 1, with the rate of bulk viscosity, whose pressure

@@ -385,9 +385,15 @@ contains
     type(material_t), intent(in) :: now
     real(wp), intent(in) :: stretch(chunk_size) !! V/V0 - 1
     real(wp), intent(inout) :: step, volume     !! smallest of the chunk
+    real(wp) :: damping
 
-    if (material%viscosity > 0.0_wp) step = viscous_fluid_step(material, now, 1.0_wp &
-      + maxval(stretch), step)
+    if (material%viscosity > 0.0_wp) then
+      ! Damping of the shortest waves by 4/3 of the viscosity: L/(Q + sqrt(Q^2 + c^2)) with
+      ! Q = 4/3 viscosity/(rho L); the largest volume thins the fluid most.
+      damping = 4.0_wp*material%viscosity*(1.0_wp + maxval(stretch)) &
+        /(3.0_wp*material%density*now%sound_speed**2*step)
+      step = step/(damping + sqrt(damping**2 + 1.0_wp))
+    end if
     if (any(is_too_dense(material%eos, stretch))) volume = 0.0_wp
   end subroutine finish_limits
 
@@ -399,20 +405,5 @@ contains
 
     yes = 1.0_wp + stretch < eos%least_ratio
   end function is_too_dense
-
-  !> Step of a viscous fluid from that without viscosity, L/c: damping of the shortest waves by
-  !> 4/3 of the viscosity, L/(Q + sqrt(Q^2 + c^2)) with Q = 4/3 viscosity/(rho L).
-  pure function viscous_fluid_step(material, now, largest_ratio, step) result(limit)
-    type(material_t), intent(in) :: material
-    type(material_t), intent(in) :: now
-    real(wp), intent(in) :: largest_ratio !! V/V0, thins the fluid most
-    real(wp), intent(in) :: step
-    real(wp) :: limit
-    real(wp) :: damping
-
-    damping = 4.0_wp*material%viscosity*largest_ratio/(3.0_wp*material%density*now%sound_speed**2 &
-      *step)
-    limit = step/(damping + sqrt(damping**2 + 1.0_wp))
-  end function viscous_fluid_step
 
 end module eos_pressure_m

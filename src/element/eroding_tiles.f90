@@ -51,7 +51,12 @@ contains
       first = (i_chunk - 1)*chunk_size + 1
       call take_nodes(model%layout%slot_nodes(:, first:first + chunk_size - 1), &
         elements%erosion%status(first:first + chunk_size - 1), nodes)
-      call keep_energies(i_chunk, elements, leaving)
+      leaving%energy = 0.0_wp
+      associate (i_eos => elements%eos_start(i_chunk))
+        if (i_eos > 0) leaving%energy = elements%eos_state(i_eos:i_eos + chunk_size - 1)
+      end associate
+      leaving%hourglass = elements%erosion%hourglass(first:first + chunk_size - 1)
+      leaving%work = elements%hourglass_work(i_chunk)
       call advance_chunk(model, i_chunk, nodes, motion, times(2), elements, chunk)
       if (times(2) > 0.0_wp) then
         call find_leaving(model, i_chunk, nodes, motion, times, elements, leaving%flags)
@@ -76,21 +81,6 @@ contains
       if (status(i) /= stays) nodes(:, i) = nodes(1, i)
     end do
   end subroutine take_nodes
-
-  !> What each element holds before the step, and the hourglass work of the chunk.
-  pure subroutine keep_energies(i_chunk, elements, leaving)
-    integer, intent(in) :: i_chunk
-    type(block_state_t), intent(in) :: elements
-    type(leaving_t), intent(inout) :: leaving
-    integer :: first
-
-    leaving%energy = 0.0_wp
-    first = elements%eos_start(i_chunk)
-    if (first > 0) leaving%energy = elements%eos_state(first:first + chunk_size - 1)
-    first = (i_chunk - 1)*chunk_size + 1
-    leaving%hourglass = elements%erosion%hourglass(first:first + chunk_size - 1)
-    leaving%work = elements%hourglass_work(i_chunk)
-  end subroutine keep_energies
 
   !> Elements that leave take their energies along; the limits of the chunk are those of the rest.
   subroutine take_out(model, i_chunk, motion, dt, leaving, elements, chunk)
