@@ -12,7 +12,7 @@ module cut_forces_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size, tile_t
   use model_m, only : model_t
-  use tile_values_m, only : take_values, put_values
+  use tile_forces_m, only : take_values, put_values
   implicit none
   private
   public :: find_cut_forces, keep_cut_chunks

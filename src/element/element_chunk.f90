@@ -33,15 +33,15 @@ module element_chunk_m
     real(wp), dimension(chunk_size) :: heat               !! work of the deviator in the step, for
                                                           !! an equation of state
     real(wp), dimension(chunk_size) :: law_mean, law_energy, law_bulk, law_shear !! where the law
-                                                          !! gives the pressure: see `law_pressure`
+                                                          !! gives the pressure: see `eos_pressure`
     real(wp), dimension(chunk_size) :: qx, qy             !! hourglass force amplitude
     real(wp), dimension(chunk_size) :: hourglass_work     !! its work in the step
     real(wp), dimension(2, chunk_size) :: force3, force4 !! x, y of nodes 3, 4 without hourglass
     real(wp) :: swing(2, chunk_size) !! hourglass amplitude q_x, q_y
     real(wp), dimension(chunk_size) :: resistance !! hourglass force over gamma.v, or its integral
-    ! What follows round quads have besides: x is the radius r, y the axis z. Of the gradients of the
-    ! volume `rad` is what belongs to dv_r/dr, `axi` to d/dz, `mean` to v_r/r (integrals of N_a over
-    ! A), each for the patterns d31, d42, h (s: all four nodes); mid_area is a volume.
+    ! What follows round quads have besides: x is the radius r, y the axis z. Of the gradients of
+    ! the volume `rad` is what belongs to dv_r/dr, `axi` to d/dz, `mean` to v_r/r (integrals of N_a
+    ! over A), each for the patterns d31, d42, h (s: all four nodes); mid_area is a volume.
     real(wp), dimension(chunk_size) :: us, vs !! sums of u_r and of v_r, 0 in padding. No pairs: a
                                               !! loop that reads one of two has a remainder
     real(wp), dimension(chunk_size) :: hoop   !! force in r on each of the four nodes
@@ -110,7 +110,8 @@ contains
     end do
   end subroutine gather_chunk
 
-  !> The same with the sums of the radial motion. All nodes of padding are one: it carries no strain.
+  !> The same with the sums of the radial motion. All nodes of padding are one: it carries no
+  !> strain.
   pure subroutine gather_round(nodes, motion, chunk)
     integer, intent(in) :: nodes(4, chunk_size)
     real(wp), intent(in) :: motion(4, *)   !! all nodes: u_r, u_z, v_r, v_z

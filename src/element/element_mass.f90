@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Masses. Lumped: a quarter of each quad, a third of each triangle to its nodes; in round bodies the
-!> row sums of the consistent mass. Consistent: rho times the integral of N_a N_b over the initial shape, which 2x2 Gauss points
-!> integrate exactly for quads and triangles; of N_a N_b r in round bodies, of one degree more than
-!> 2x2 points hold: 3x3.
+!> Masses. Lumped: a quarter of each quad, a third of each triangle to its nodes; in round bodies
+!> the row sums of the consistent mass. Consistent: rho times the integral of N_a N_b over the
+!> initial shape, which 2x2 Gauss points integrate exactly for quads and triangles; of N_a N_b r in
+!> round bodies, of one degree more than 2x2 points hold: 3x3.
 module element_mass_m
   use kinds_m, only : wp
   use layout_m, only : slot_part

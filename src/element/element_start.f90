@@ -6,9 +6,8 @@ module element_start_m
   use element_dispatch_m, only : point_count
   use element_mass_m, only : node_volumes
   use element_state_m, only : start_erosion
-  use eos_pressure_m, only : n_eos_value
+  use eos_pressure_m, only : n_eos_value, n_law_value
   use kinds_m, only : wp
-  use law_pressure_m, only : n_law_value
   use layout_m, only : chunk_size
   use material_dispatch_m, only : history_size
   use model_m, only : model_t

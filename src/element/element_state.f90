@@ -1,21 +1,23 @@
 ! SPDX-License-Identifier: MIT
 !> Elements that leave the mesh, and what the output asks of elements.
 module element_state_m
+  use element_dispatch_m, only : point_count
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use erosion_state_m, only : erosion_state_t, stays, has_left, has_gone
   use layout_m, only : chunk_size, slot_part
-  use material_dispatch_m, only : history_size, column_temperature, column_damage, &
+  use material_dispatch_m, only : find_failed, history_size, column_temperature, column_damage, &
     has_plastic_strain, has_mean_dilatation
   use model_m, only : model_t
-  use parts_m, only : has_memory_of_heat
-  use quad_points_m, only : n_point, point_ratios, round_point_ratios
+  use parts_m, only : has_memory_of_heat, may_fail
+  use quad_points_m, only : n_point, point_ratios, round_point_ratios, signed_area
   use volumetric_m, only : log_ratio, volumetric_energy
   implicit none
   private
   public :: start_erosion, element_stresses, element_plastic_strains, &
     element_heats, add_part_energies, smallest_ratio, settle_erosion, element_erosion, is_gone, &
-    stress_of_slot, plastic_strain_of_slot, initial_volume, hoop_strains
+    stress_of_slot, plastic_strain_of_slot, initial_volume, hoop_strains, &
+    count_points, first_failed
 
 contains
 
@@ -261,8 +263,9 @@ contains
     x = model%mesh%coordinates(:, model%layout%slot_nodes(:, slot))
     call patterns(x, a, b, h, s)
     call patterns(u, da, db, dh, ds)
-    start = 0.25_wp*s*area(a, b) + (h(1)*cross(a, b) - 2.0_wp*a(1)*b(1)*h(2))/24.0_wp
-    stretch = 0.25_wp*(s*(area(a, db) + area(da, b + db)) + ds*area(a + da, b + db)) &
+    start = 0.25_wp*s*signed_area(a, b) + (h(1)*cross(a, b) - 2.0_wp*a(1)*b(1)*h(2))/24.0_wp
+    stretch = 0.25_wp*(s*(signed_area(a, db) + signed_area(da, b + db)) &
+      + ds*signed_area(a + da, b + db)) &
       + (h(1)*(cross(a, db) + cross(da, b + db)) + dh(1)*cross(a + da, b + db) &
       - 2.0_wp*(a(1)*b(1)*dh(2) + (a(1)*db(1) + da(1)*(b(1) + db(1)))*(h(2) + dh(2))))/24.0_wp
     stretch = stretch/start
@@ -313,7 +316,7 @@ contains
 
     call patterns(x, a, b, h, s)
     call patterns(values, da, db, dh, ds)
-    area_integral = 0.25_wp*ds*area(a, b) + (da(1)*(h(1)*b(2) - h(2)*b(1)) &
+    area_integral = 0.25_wp*ds*signed_area(a, b) + (da(1)*(h(1)*b(2) - h(2)*b(1)) &
       + db(1)*(h(1)*a(2) - h(2)*a(1)))/24.0_wp
   end function area_integral
 
@@ -327,13 +330,6 @@ contains
     h = (x(:, 1) - x(:, 2)) + (x(:, 3) - x(:, 4))
     s = sum(x(1, :))
   end subroutine patterns
-
-  !> Half of a_r b_z - b_r a_z.
-  pure real(wp) function area(a, b)
-    real(wp), intent(in) :: a(2), b(2)
-
-    area = 0.5_wp*(a(1)*b(2) - b(1)*a(2))
-  end function area
 
   !> a_r b_z + b_r a_z.
   pure real(wp) function cross(a, b)
@@ -411,5 +407,44 @@ contains
       end do
     end do
   end subroutine add_part_energies
+
+  !> Points that may fail.
+  pure function count_points(model, elements) result(n)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    integer :: n
+    integer :: i_chunk
+
+    n = 0
+    do i_chunk = 1, size(elements%n_failed)
+      associate (part => model%parts(model%layout%chunk_part(i_chunk)), &
+        slots => model%layout%slot_element((i_chunk - 1)*chunk_size + 1:i_chunk*chunk_size))
+        if (may_fail(model%materials(part%material))) n = n &
+          + point_count(model%sections(part%section))*count(slots > 0)
+      end associate
+    end do
+  end function count_points
+
+  !> The first slot with a failed point; there must be one.
+  pure function first_failed(model, elements) result(slot)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    integer :: slot
+    logical :: failed(chunk_size), one(chunk_size), ignored
+    integer :: i_chunk, k
+
+    i_chunk = findloc(elements%n_failed > 0, .true., dim=1)
+    failed = .false.
+    associate (part => model%parts(model%layout%chunk_part(i_chunk)))
+      associate (material => model%materials(part%material))
+        do k = 1, point_count(model%sections(part%section))
+          call find_failed(material, elements%history(elements%history_start(i_chunk) &
+            + (k - 1)*chunk_size*history_size(material)), one, ignored)
+          failed = failed .or. one
+        end do
+      end associate
+    end associate
+    slot = (i_chunk - 1)*chunk_size + findloc(failed, .true., dim=1)
+  end function first_failed
 
 end module element_state_m

@@ -11,7 +11,7 @@ module element_tangent_m
   use parts_m, only : material_t
   use quad_points_m, only : n_point, point_areas, shape_at_points, shift, along_a, along_b, along_h
   use rubbers_m, only : rubber_t
-  use stress_point_m, only : stress_point_t
+  use stress_chunk_m, only : stress_point_t
   use volumetric_m, only : log_ratio
   implicit none
   private
@@ -294,7 +294,8 @@ contains
     point%cos2 = cosine%value**2 - sine**2
     point%sin2 = 2.0_wp*cosine%value*sine
     call form_tangent(material, point)
-    ! Of strain and angle, twice atan(tan_half), with xx yx xy yy of the gradient and the hoop strain.
+    ! Of strain and angle, twice atan(tan_half), with xx yx xy yy of the gradient and the hoop
+    ! strain.
     rates(4, :) = 0.5_wp/(1.0_wp + tan_half**2)*[0.0_wp, 1.0_wp, -1.0_wp, 0.0_wp, 0.0_wp]
     rates(1, :) = [0.5_wp, 0.0_wp, 0.0_wp, 0.5_wp, -1.0_wp]
     rates(2, :) = 0.5_wp*[cosine%value, -sine, -sine, -cosine%value, 0.0_wp] &

@@ -106,8 +106,8 @@ contains
     end if
   end subroutine form_resistance
 
-  !> Viscous form. Its work is that of the mean of the present force and of that of the step before: a
-  !> force acts over half of the step that it was formed from and half of the next.
+  !> Viscous form. Its work is that of the mean of the present force and of that of the step before:
+  !> a force acts over half of the step that it was formed from and half of the next.
   pure subroutine resist_viscously(dt, last_x, last_y, chunk, work)
     real(wp), intent(in) :: dt
     real(wp), intent(inout), dimension(chunk_size) :: last_x, last_y !! q of the step before; then
@@ -162,9 +162,10 @@ contains
     end do
   end subroutine resist_elastically
 
-  !> Assumed strain (Belytschko & Bindeman 1991, the field of optimal bending): the elastic stress of
-  !> the hourglass strain, in a frame that turns with the element, integrated in closed form
-  !> (doc/theory/elements.md, "Assumed strain"). Steps the generalised stress Q of the element's frame,
+  !> Assumed strain (Belytschko & Bindeman 1991, the field of optimal bending): the elastic stress
+  !> of the hourglass strain, in a frame that turns with the element, integrated in closed form
+  !> (doc/theory/elements.md, "Assumed strain"). Steps the generalised stress Q of the element's
+  !> frame,
   !>   Q' = factor [H_xx, -lateral H_xy; -lateral H_xy, H_yy] (gamma.v in that frame),
   !> with H of the mid-step shape, so that a motion and its reverse leave nothing behind.
   pure subroutine resist_by_assumed_strain(material, hourglass, stress, stress_x, stress_y, chunk, &

@@ -6,8 +6,7 @@
 module mass_scaling_m
   use block_state_m, only : block_state_t
   use element_mass_m, only : element_shares
-  use element_steps_m, only : chunk_steps, scaled_step, is_damped
-  use exposed_step_m, only : has_exposed, exposed_step
+  use element_steps_m, only : chunk_steps, scaled_step, is_damped, has_exposed, exposed_step
   use kinds_m, only : wp
   use layout_m, only : chunk_size, slot_part, tile_t
   use model_m, only : model_t
@@ -104,9 +103,14 @@ contains
     type(block_state_t), intent(inout) :: elements
     real(wp) :: steps(chunk_size), limit
     integer :: i, first
+    logical :: is_own !! scaled or damped
 
     first = (i_chunk - 1)*chunk_size + 1
-    if (.not. has_own_limits(elements, first)) then
+    is_own = .false.
+    if (allocated(elements%mass_ratio)) is_own = &
+      any(abs(elements%mass_ratio(first:first + chunk_size - 1) - 1.0_wp) > 0.0_wp)
+    if (allocated(elements%retardation)) is_own = is_own .or. elements%retardation(first) > 0.0_wp
+    if (.not. is_own) then
       if (.not. has_exposed(elements, i_chunk)) return
       do i = 1, model%layout%chunk_elements(i_chunk)
         elements%time_limit(i_chunk) = min(elements%time_limit(i_chunk), exposed_step(model, &
@@ -122,18 +126,6 @@ contains
     if (model%controls%mass_step > 0.0_wp) limit = min(limit, model%controls%mass_step)
     elements%time_limit(i_chunk) = limit
   end subroutine limit_chunk
-
-  !> Whether elements of a chunk are scaled or damped.
-  pure function has_own_limits(elements, first) result(has)
-    type(block_state_t), intent(in) :: elements
-    integer, intent(in) :: first  !! slot of the chunk
-    logical :: has
-
-    has = .false.
-    if (allocated(elements%mass_ratio)) has = &
-      any(abs(elements%mass_ratio(first:first + chunk_size - 1) - 1.0_wp) > 0.0_wp)
-    if (allocated(elements%retardation)) has = has .or. elements%retardation(first) > 0.0_wp
-  end function has_own_limits
 
   !> Mass for elements whose step has become too small since, on the geometry of the next cycle.
   !> Velocities stay: `work` is the kinetic energy that the new mass brings.

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Internal force of a one-point quad with hourglass control by assumed strain in dual numbers, plane
-!> or round, as `element_tangent` has that of several points.
+!> Internal force of a one-point quad with hourglass control by assumed strain in dual numbers,
+!> plane or round, as `element_tangent` has that of several points.
 module one_point_tangent_m
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
   use element_tangent_m, only : element_t, shape_t, n_pattern, form_gradient, find_stress, &
@@ -29,10 +29,14 @@ contains
     type(dual_t), intent(out) :: force(n_pattern)
     type(integrals_t) :: over
     type(dual_t) :: gradient(2, 2), hoop, growth(2), stress(4), q(2), cosine, area, shares(2)
+    real(wp) :: change_a(2), change_b(2)
     integer :: i, k
 
     associate (now => element%now, middle => element%middle, change => element%change)
-      call form_gradient(now, change%a%value, change%b%value, gradient)
+      ! By name: components of an array are copied.
+      change_a = change%a%value
+      change_b = change%b%value
+      call form_gradient(now, change_a, change_b, gradient)
       ! gamma.v, over the step.
       do i = 1, 2
         growth(i) = change%h(i) - products(gradient(i, 1), middle%h(1), gradient(i, 2), middle%h(2))

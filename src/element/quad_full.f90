@@ -6,11 +6,9 @@
 module quad_full_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
-  use bulk_viscosity_m, only : add_bulk_viscosity
   use element_chunk_m, only : element_chunk_t, gather_motion, reference_mass
-  use eos_pressure_m, only : finish_limits
-  use law_pressure_m, only : load_point_state, start_point_values, add_point_values, &
-    form_shared_pressure
+  use eos_pressure_m, only : finish_limits, load_point_state, start_point_values, &
+    add_point_values, form_shared_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress, history_size, has_mean_dilatation
   use model_m, only : model_t
@@ -18,17 +16,19 @@ module quad_full_m
   use quad_kinematics_m, only : form_shape, form_increments, form_forces, add_pressure_forces, &
     inverse_start
   use quad_points_m, only : n_point, round_point_t, step_sums_t, form_point, form_radii, &
-    add_hoop_strain, add_hoop_force, add_point_force, start_sums, add_point_sums
+    add_hoop_strain, add_hoop_force, add_point_force, start_sums, add_point_sums, &
+    form_row_sums
   use stable_step_m, only : full_step, round_full_step
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
-  use viscous_stress_m, only : viscous_start, add_viscous_deviator, add_viscous_pressure, trace_of
+  use viscous_stress_m, only : add_bulk_viscosity, viscous_start, add_viscous_deviator, &
+    add_viscous_pressure, trace_of
   use volumetric_m, only : volumetric_stress, largest_size
   implicit none
   private
   public :: advance_full
 
-  !> What the points leave: sums of the stable step of plane quads, or the points of round ones, and
-  !> the sum of deviator times volume.
+  !> What the points leave: what the stable step takes, round ones themselves, and the sum of
+  !> deviator times volume.
   type :: sums_t
     type(step_sums_t) :: step
     type(round_point_t) :: places(n_point)
@@ -48,6 +48,7 @@ contains
     real(wp), intent(in) :: dt
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk     !! forces out
+    type(element_chunk_t) :: point
     type(sums_t) :: sums
     integer :: first, j, k, n_slot
 
@@ -63,10 +64,15 @@ contains
       chunk%swing = 0.0_wp
       if (chunk%is_round) chunk%hoop = 0.0_wp
       sums%deviator = 0.0_wp
+      point%is_round = .false.
+      point%hu = 0.0_wp
+      point%hv = 0.0_wp
+      point%qx = 0.0_wp
+      point%qy = 0.0_wp
       if (.not. chunk%is_round) call start_sums(sums%step)
       elements%volume_change(i_chunk) = 0.0_wp
       do k = 1, n_point
-        call advance_point(i_chunk, k, material, dt, elements, chunk, sums)
+        call advance_point(i_chunk, k, material, dt, elements, chunk, point, sums)
       end do
       ! The mean deviator, for output.
       do j = 1, 3
@@ -93,7 +99,7 @@ contains
     integer, intent(in) :: nodes(4, chunk_size)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass
-    type(sums_t), intent(in) :: sums
+    type(sums_t), intent(inout) :: sums
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk
     type(material_t) :: now
@@ -112,14 +118,15 @@ contains
     integer, intent(in) :: nodes(4, chunk_size)
     type(material_t), intent(in) :: now           !! with its present moduli
     type(hourglass_t), intent(in) :: hourglass
-    type(sums_t), intent(in) :: sums
+    type(sums_t), intent(inout) :: sums
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(in) :: chunk
 
     if (chunk%is_round) then
-      call round_full_step(now, hourglass, elements%reference((i_chunk - 1)*chunk_size + 1, &
-        reference_mass), size(elements%reference, 1), chunk, sums%places, &
-        elements%time_limit(i_chunk), elements%volume_limit(i_chunk))
+      call form_row_sums(elements%reference((i_chunk - 1)*chunk_size + 1, reference_mass), &
+        size(elements%reference, 1), sums%places, sums%step)
+      call round_full_step(now, hourglass, chunk, sums%step, elements%time_limit(i_chunk), &
+        elements%volume_limit(i_chunk))
     else
       call full_step(now, hourglass, nodes, chunk, sums%step, elements%time_limit(i_chunk), &
         elements%volume_limit(i_chunk))
@@ -164,14 +171,13 @@ contains
   end subroutine form_mean_pressure
 
   !> Advance point `k` of a chunk and add its forces.
-  pure subroutine advance_point(i_chunk, k, material, dt, elements, chunk, sums)
+  pure subroutine advance_point(i_chunk, k, material, dt, elements, chunk, point, sums)
     integer, intent(in) :: i_chunk, k
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: dt
     type(block_state_t), intent(inout) :: elements
-    type(element_chunk_t), intent(inout) :: chunk
+    type(element_chunk_t), intent(inout) :: chunk, point
     type(sums_t), intent(inout) :: sums
-    type(element_chunk_t) :: point
     type(stress_chunk_t) :: stress
     integer :: first
 
@@ -225,11 +231,6 @@ contains
 
     first = (i_chunk - 1)*chunk_size + 1
     stride = size(elements%reference, 1)
-    point%is_round = .false.
-    point%hu = 0.0_wp
-    point%hv = 0.0_wp
-    point%qx = 0.0_wp
-    point%qy = 0.0_wp
     call form_point(k, stride, elements%reference(first, 1), chunk, reference, point)
     call form_shape(reference, chunk_size, point)
     call form_increments(dt, point, stress)

@@ -58,8 +58,8 @@ contains
     end if
   end function inverse_start
 
-  !> Of plane quads: present diagonals, area and volume ratio. A - A0 is formed from the displacement, so that a
-  !> nearly undeformed element keeps all digits of its strain.
+  !> Of plane quads: present diagonals, area and volume ratio. A - A0 is formed from the
+  !> displacement, so that a nearly undeformed element keeps all digits of its strain.
   pure subroutine form_present_shape(reference, stride, chunk)
     integer, intent(in) :: stride                 !! length of one stream
     real(wp), intent(in) :: reference(stride, *)  !! first slot of this chunk; X31 Y31 X42 Y42 h.X
@@ -164,10 +164,10 @@ contains
     end do
   end subroutine form_forces
 
-  !> Of round quads: present volume and its gradients, V/V0 - 1. V - V0 is formed from the displacement, so that a
-  !> nearly undeformed element keeps all digits of its strain. The hourglass pattern, (b x h)/(2 A)
-  !> and (h x a)/(2 A) of the diagonals, is -12/A and 12/A times the gradients M: who needs it takes
-  !> them.
+  !> Of round quads: present volume and its gradients, V/V0 - 1. V - V0 is formed from the
+  !> displacement, so that a nearly undeformed element keeps all digits of its strain. The hourglass
+  !> pattern, (b x h)/(2 A) and (h x a)/(2 A) of the diagonals, is -12/A and 12/A times the
+  !> gradients M: who needs it takes them.
   pure subroutine form_round_shape(reference, stride, chunk)
     integer, intent(in) :: stride                 !! length of one stream
     real(wp), intent(in) :: reference(stride, *)  !! first slot of this chunk, see `element_chunk`
@@ -331,8 +331,8 @@ contains
     end do
   end subroutine form_round_forces
 
-  !> Add the forces of the pressure that all points of an element share, of whose volume they sum the
-  !> gradient without error.
+  !> Add the forces of the pressure that all points of an element share, of whose volume they sum
+  !> the gradient without error.
   pure subroutine add_pressure_forces(chunk)
     type(element_chunk_t), intent(inout) :: chunk
     real(wp) :: half

@@ -1,15 +1,13 @@
 ! SPDX-License-Identifier: MIT
-!> One chunk of one-point quads, plane or round: from nodal motion to nodal forces, stress updated on
-!> the way.
+!> One chunk of one-point quads, plane or round: from nodal motion to nodal forces, stress updated
+!> on the way.
 module quad_one_point_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
-  use bulk_viscosity_m, only : add_bulk_viscosity
   use deformation_gradient_m, only : form_rubber_forces
   use element_chunk_m, only : element_chunk_t, gather_motion, reference_mass
-  use eos_pressure_m, only : finish_limits
+  use eos_pressure_m, only : finish_limits, load_point_state, form_element_pressure
   use hourglass_m, only : resist
-  use law_pressure_m, only : load_point_state, form_element_pressure
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress
   use model_m, only : model_t
@@ -19,7 +17,8 @@ module quad_one_point_m
     inverse_start
   use stable_step_m, only : stable_step, round_step
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
-  use viscous_stress_m, only : viscous_start, add_viscous_deviator, add_viscous_pressure
+  use viscous_stress_m, only : add_bulk_viscosity, viscous_start, add_viscous_deviator, &
+    add_viscous_pressure
   use volumetric_m, only : volumetric_stress, largest_size
   implicit none
   private

@@ -11,7 +11,8 @@ module quad_points_m
   private
   public :: n_point, shift, shape_at_points, form_point, add_point_force, point_ratios, &
     point_areas, signed_area, round_point_t, form_radii, add_hoop_strain, add_hoop_force, &
-    round_point_ratios, along_a, along_b, along_h, step_sums_t, start_sums, add_point_sums, row_sums
+    round_point_ratios, along_a, along_b, along_h, step_sums_t, start_sums, &
+    add_point_sums, form_row_sums
 
   !> Points of a quad.
   integer, parameter :: n_point = 4
@@ -45,10 +46,12 @@ module quad_points_m
   !> Radii below this share of those of the points are round-off.
   real(wp), parameter :: on_axis = 1.0e-12_wp
 
-  !> Of fully integrated plane quads: the scalar matrix in d31, d42 and h.x (11 22 12 13 23 33),
-  !> smallest J of a point.
+  !> What the stable step takes of the points. Of plane quads the scalar matrix in d31, d42 and h.x
+  !> (11 22 12 13 23 33), of round ones the largest row sums of H and T (`round_full_step`);
+  !> smallest J.
   type :: step_sums_t
     real(wp) :: h(chunk_size, 6)
+    real(wp), dimension(chunk_size) :: plane, hoop
     real(wp) :: volume(chunk_size)
   end type step_sums_t
 
@@ -269,14 +272,15 @@ contains
     end do
   end subroutine add_point_sums
 
-  !> Largest row sums of the matrices H and T (`round_full_step`) of the elements, over the volumes of the nodes. H is that of the
-  !> patterns (s11 s22 s12 s13 s23 s33), of which the nodes have (-1, 0, 1), (0, -1, -1), (1, 0, 1)
-  !> and (0, 1, -1); rows of T sum to the integral of N_a/r dA, but for what is held on the axis.
-  pure subroutine row_sums(inverse_mass, stride, points, plane, hoop)
+  !> Largest row sums of the matrices H and T (`round_full_step`) of the elements, over the volumes
+  !> of the nodes. H is that of the patterns (s11 s22 s12 s13 s23 s33), of which the nodes have (-1,
+  !> 0, 1), (0, -1, -1), (1, 0, 1) and (0, 1, -1); rows of T sum to the integral of N_a/r dA, but
+  !> for what is held on the axis.
+  pure subroutine form_row_sums(inverse_mass, stride, points, sums)
     integer, intent(in) :: stride
     real(wp), intent(in) :: inverse_mass(stride, *)
     type(round_point_t), intent(in) :: points(n_point)
-    real(wp), intent(out), dimension(chunk_size) :: plane, hoop
+    type(step_sums_t), intent(inout) :: sums
     real(wp), dimension(chunk_size, 6) :: s
     real(wp), dimension(chunk_size, 4) :: t, is_off
     real(wp) :: v, h11, h22, h33, h44, h12, h13, h14, h23, h24, h34, w3, only
@@ -284,6 +288,7 @@ contains
 
     s = 0.0_wp
     t = 0.0_wp
+    sums%volume = huge(1.0_wp)
     call mark_off_axis(points, is_off)
     do k = 1, n_point
       associate (place => points(k))
@@ -303,6 +308,8 @@ contains
           t(i, 2) = t(i, 2) + v*shape_at_points(2, k)
           t(i, 3) = t(i, 3) + v*shape_at_points(3, k)
           t(i, 4) = t(i, 4) + v*shape_at_points(4, k)
+          sums%volume(i) = min(sums%volume(i), place%stretch(i) + 1.0_wp, sign(1.0e3_wp, &
+            place%radius(i)))
         end do
       end associate
     end do
@@ -329,14 +336,14 @@ contains
       h14 = (1.0_wp - only)*h14
       h24 = (1.0_wp - only)*h24
       h34 = (1.0_wp - only)*h34
-      plane(i) = max(inverse_mass(i, 1)*(h11 + abs(h12) + abs(h13) + abs(h14)), &
+      sums%plane(i) = max(inverse_mass(i, 1)*(h11 + abs(h12) + abs(h13) + abs(h14)), &
         inverse_mass(i, 2)*(h22 + abs(h12) + abs(h23) + abs(h24)), &
         w3*(h33 + abs(h13) + abs(h23) + abs(h34)), &
         inverse_mass(i, 4)*(h44 + abs(h14) + abs(h24) + abs(h34)))
-      hoop(i) = max(inverse_mass(i, 1)*t(i, 1), inverse_mass(i, 2)*t(i, 2), w3*t(i, 3), &
+      sums%hoop(i) = max(inverse_mass(i, 1)*t(i, 1), inverse_mass(i, 2)*t(i, 2), w3*t(i, 3), &
         inverse_mass(i, 4)*t(i, 4))
     end do
-  end subroutine row_sums
+  end subroutine form_row_sums
 
   !> 1 at nodes off the axis, 0 on it.
   pure subroutine mark_off_axis(points, is_off)

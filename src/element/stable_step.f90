@@ -12,7 +12,7 @@ module stable_step_m
   use layout_m, only : chunk_size
   use material_dispatch_m, only : has_mean_dilatation
   use parts_m, only : hourglass_t, material_t, hourglass_viscous, hourglass_assumed
-  use quad_points_m, only : n_point, round_point_t, step_sums_t, row_sums
+  use quad_points_m, only : step_sums_t
   implicit none
   private
   public :: stable_step, round_step, full_step, round_full_step, harmless_coefficient
@@ -21,9 +21,9 @@ module stable_step_m
   !> initial area (doc/theory/elements.md).
   real(wp), parameter :: harmless_coefficient = 0.25_wp
 
-  !> Of one-point round quads, over the masses: bounds of omega^2 of strain and of its part by volume
-  !> (over lambda); of hourglass control its gamma.gamma, and the square of its coupling to strain,
-  !> both times the resistance.
+  !> Of one-point round quads, over the masses: bounds of omega^2 of strain and of its part by
+  !> volume (over lambda); of hourglass control its gamma.gamma, and the square of its coupling to
+  !> strain, both times the resistance.
   type :: round_sums_t
     real(wp), dimension(chunk_size) :: strain, dilation, pattern, coupling
   end type round_sums_t
@@ -141,11 +141,12 @@ contains
     steps = 2.0_wp/(sound_speed*sqrt(max(hourglass%coefficient*pattern, tiny(1.0_wp))))
   end function hourglass_steps
 
-  !> The same of one-point round quads, hourglass control and bulk viscosity included. With x = omega^2
-  !> dt^2/4 of strain, y the same of hourglass control and z^2 the coupling, the element is stable
-  !> where (1 - x)(1 - y) >= z^2, and so where y <= 1/2 and x + 2 z^2 <= 1. The volume is below 0
-  !> where an area is.
-  pure subroutine round_step(material, hourglass, inverse_mass, stride, chunk, limit, volume, single)
+  !> The same of one-point round quads, hourglass control and bulk viscosity included. With
+  !> x = omega^2 dt^2/4 of strain, y the same of hourglass control and z^2 the coupling, the element
+  !> is stable where (1 - x)(1 - y) >= z^2, and so where y <= 1/2 and x + 2 z^2 <= 1. The volume is
+  !> below 0 where an area is.
+  pure subroutine round_step(material, hourglass, inverse_mass, stride, chunk, limit, volume, &
+      single)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass      !! bulk viscosity too
     integer, intent(in) :: stride
@@ -183,8 +184,8 @@ contains
     if (present(single)) single = coupled_step(hourglass%form, sums%strain + coupling_factor( &
       hourglass%form, material%density, sums%strain)*sums%coupling, sums%pattern/material%density)
     if (.not. (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp)) return
-    call form_viscous_rates(hourglass, material%sound_speed, chunk, sums%dilation)
-    limit = limit/(1.0_wp + 0.5_wp*limit*maxval(sums%dilation))
+    call form_viscous_rates(hourglass, material%sound_speed, chunk, sums%dilation, largest)
+    limit = limit/(1.0_wp + 0.5_wp*limit*largest)
     if (present(single)) single = single/(1.0_wp + 0.5_wp*single*sums%dilation)
   end subroutine round_step
 
@@ -218,19 +219,23 @@ contains
 
   !> Rates of bulk viscosity, which are added: x + y <= theta at a share theta <= 1 of the step
   !> without it. It counts in expansion too: two steps later the fastest mode is in compression.
-  pure subroutine form_viscous_rates(viscosity, sound_speed, chunk, dilation)
+  pure subroutine form_viscous_rates(viscosity, sound_speed, chunk, dilation, largest)
     type(hourglass_t), intent(in) :: viscosity
     real(wp), intent(in) :: sound_speed
     type(element_chunk_t), intent(in) :: chunk
     real(wp), intent(inout) :: dilation(chunk_size) !! bound of omega^2 by volume over lambda; then
                                                     !! the rates
+    real(wp), intent(out) :: largest
     real(wp) :: length
     integer :: i
 
+    largest = 0.0_wp
+    !$omp simd private(length) reduction(max : largest)
     do i = 1, chunk_size
       length = sqrt(abs(chunk%area(i)))
       dilation(i) = length/abs(1.0_wp + chunk%stretch(i))*(viscosity%linear*sound_speed &
         + viscosity%quadratic*length*abs(chunk%trace(i)))*dilation(i)
+      largest = max(largest, dilation(i))
     end do
   end subroutine form_viscous_rates
 
@@ -266,11 +271,12 @@ contains
     end do
   end subroutine join_third_nodes
 
-  !> The sums over the nodes of round quads. With p, q, o, t, u, w the sums of b_r^2, b_z^2, b_r b_z, M^2, M b_r,
-  !> M b_z over m V: omega^2 <= 2G Lambda + lambda (p + q + t + 2 u), where Lambda is the largest
-  !> row sum (Gershgorin) of the matrix [p o u; o q w; u w t]. In the patterns nodes 1 and 3 have
-  !> b = h -+ a, nodes 2 and 4 have -h -+ b (M: s -+ a and s -+ b), so that the sum v and the
-  !> difference d of two opposite nodes' 1/m give the weights v a + d h and v h + d a of a pattern.
+  !> The sums over the nodes of round quads. With p, q, o, t, u, w the sums of b_r^2, b_z^2, b_r
+  !> b_z, M^2, M b_r, M b_z over m V: omega^2 <= 2G Lambda + lambda (p + q + t + 2 u), where Lambda
+  !> is the largest row sum (Gershgorin) of the matrix [p o u; o q w; u w t]. In the patterns nodes
+  !> 1 and 3 have b = h -+ a, nodes 2 and 4 have -h -+ b (M: s -+ a and s -+ b), so that the sum v
+  !> and the difference d of two opposite nodes' 1/m give the weights v a + d h and v h + d a of a
+  !> pattern.
   pure subroutine form_sums(lame, shear, inverse_mass, stride, chunk, sums)
     real(wp), intent(in) :: lame, shear            !! lambda/rho and 2G/rho
     integer, intent(in) :: stride
@@ -424,46 +430,40 @@ contains
     squared = 0.75_wp*sides*abs(chunk%inverse_area(i))
   end function triangle_part
 
-  !> Of fully integrated round quads, in their present shape, u_r = 0 on the axis. With H the matrix of
-  !> |grad v|^2 and T that of (v_r/r)^2 of nodes off the axis over the masses, their largest row sums
-  !> bound their eigenvalues, and with D:C:D <= 2G (|grad v|^2 + (v_r/r)^2) + lambda (div v + v_r/r)^2
+  !> Of fully integrated round quads, in their present shape, u_r = 0 on the axis. With H the matrix
+  !> of |grad v|^2 and T that of (v_r/r)^2 of nodes off the axis over the masses, their largest row
+  !> sums bound their eigenvalues, and with D:C:D <= 2G (|grad v|^2 + (v_r/r)^2) + lambda (div v +
+  !> v_r/r)^2
   !>   omega^2 <= 2G (H + T) + lambda (sqrt(2H) + sqrt(T))^2,   K for lambda with mean dilatation.
-  pure subroutine round_full_step(material, viscosity, inverse_mass, stride, chunk, points, limit, &
-    volume, single)
+  pure subroutine round_full_step(material, viscosity, chunk, sums, limit, volume, single)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: viscosity      !! its Q1 and Q2 count
-    integer, intent(in) :: stride
-    real(wp), intent(in) :: inverse_mass(stride, *) !! as above
     type(element_chunk_t), intent(in) :: chunk
-    type(round_point_t), intent(in) :: points(n_point)
+    type(step_sums_t), intent(in) :: sums
     real(wp), intent(out) :: limit                  !! s
     real(wp), intent(out) :: volume                 !! smallest J
     real(wp), intent(out), optional :: single(chunk_size) !! steps of the elements
     real(wp) :: modulus, largest
-    real(wp), dimension(chunk_size) :: plane, hoop, both, squared
-    integer :: i, k
+    real(wp), dimension(chunk_size) :: both, squared
+    integer :: i
 
     modulus = material%bulk
     if (.not. has_mean_dilatation(material)) &
       modulus = max(0.0_wp, material%bulk - 2.0_wp*material%shear/3.0_wp)
-    call row_sums(inverse_mass, stride, points, plane, hoop)
-    volume = huge(1.0_wp)
-    do k = 1, n_point
-      volume = min(volume, minval(points(k)%stretch) + 1.0_wp, &
-        sign(1.0e3_wp, minval(points(k)%radius)))
-    end do
     largest = 0.0_wp
-    !$omp simd reduction(max : largest)
+    volume = huge(1.0_wp)
+    !$omp simd reduction(max : largest) reduction(min : volume)
     do i = 1, chunk_size
-      both(i) = 2.0_wp*plane(i) + hoop(i) + 2.0_wp*sqrt(2.0_wp*plane(i)*hoop(i))
-      squared(i) = 2.0_wp*material%shear*(plane(i) + hoop(i)) + modulus*both(i)
+      both(i) = 2.0_wp*sums%plane(i) + sums%hoop(i) + 2.0_wp*sqrt(2.0_wp*sums%plane(i)*sums%hoop(i))
+      squared(i) = 2.0_wp*material%shear*(sums%plane(i) + sums%hoop(i)) + modulus*both(i)
       largest = max(largest, squared(i))
+      volume = min(volume, sums%volume(i))
     end do
     limit = 2.0_wp/sqrt(largest/material%density)
     if (present(single)) single = 2.0_wp/sqrt(squared/material%density)
     if (.not. (viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp)) return
-    call form_viscous_rates(viscosity, material%sound_speed, chunk, both)
-    limit = limit/(1.0_wp + 0.5_wp*limit*maxval(both))
+    call form_viscous_rates(viscosity, material%sound_speed, chunk, both, largest)
+    limit = limit/(1.0_wp + 0.5_wp*limit*largest)
     if (present(single)) single = single/(1.0_wp + 0.5_wp*single*both)
   end subroutine round_full_step
 

@@ -1,15 +1,47 @@
 ! SPDX-License-Identifier: MIT
-!> Stress in proportion to the rate of deformation, of damping by stiffness
-!> (doc/theory/elements.md, "Stiffness damping").
+!> Stresses of the rate of deformation: bulk viscosity (von Neumann & Richtmyer 1950, linear term of
+!> Landshoff), compression only, and damping in proportion to stiffness (*DAMPING_PART_STIFFNESS):
+!> the elastic law with the rate of deformation in place of the strain, times a retardation time of
+!> each element, beside the stress (doc/theory/elements.md, "Stiffness damping").
 module viscous_stress_m
+  use element_chunk_m, only : element_chunk_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use stress_chunk_m, only : stress_chunk_t, rotate_deviator
   implicit none
   private
-  public :: viscous_start, add_viscous_deviator, add_viscous_pressure, trace_of
+  public :: add_bulk_viscosity, viscous_start, add_viscous_deviator, add_viscous_pressure, trace_of
 
 contains
+
+  !> Add q = rho l (Q1 l t^2 - Q2 c t) as a pressure where the volumetric
+  !> strain rate t < 0; l = sqrt(A). Its work is that of the mean of it and of the one before: it
+  !> acts over half of the step that it was formed from and half of the next, in which the element
+  !> may expand.
+  pure subroutine add_bulk_viscosity(quadratic, linear, density, sound_speed, dt, chunk, last, work)
+    real(wp), intent(in) :: quadratic, linear     !! Q1, Q2
+    real(wp), intent(in) :: density               !! initial density
+    real(wp), intent(in) :: sound_speed
+    real(wp), intent(in) :: dt
+    type(element_chunk_t), intent(inout) :: chunk !! pressure in and out
+    real(wp), intent(inout) :: last(chunk_size)   !! q of the step before; then the present one
+    real(wp), intent(out) :: work                 !! dissipated in the step
+    real(wp) :: length, rate, q
+    integer :: i
+
+    work = 0.0_wp
+    !$omp simd private(length, rate, q) reduction(+ : work)
+    do i = 1, chunk_size
+      length = sqrt(abs(chunk%area(i)))
+      rate = min(0.0_wp, chunk%trace(i))
+      q = density/(1.0_wp + chunk%stretch(i))*length*rate &
+        *(quadratic*length*rate - linear*sound_speed)
+      chunk%pressure(i) = chunk%pressure(i) - q
+      work = work - (last(i) + q)*chunk%trace(i)*chunk%mid_area(i)
+      last(i) = q
+    end do
+    work = 0.5_wp*dt*work
+  end subroutine add_bulk_viscosity
 
   !> Where the memory of a chunk and point starts.
   pure function viscous_start(i_chunk, k) result(first)

@@ -6,16 +6,13 @@ module material_dispatch_m
   use parts_m, only : material_t, law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
     law_hot_johnson_cook, law_null, has_memory_of_heat, law_mooney_rivlin, law_blatz_ko, &
     law_crushable_foam
-  use stress_chunk_m, only : stress_chunk_t
-  use stress_point_m, only : stress_point_t
-  use material_blatz_ko_m, only : update_blatz_ko
+  use stress_chunk_m, only : stress_chunk_t, stress_point_t
   use material_crushable_foam_m, only : update_crushable_foam
-  use material_elastic_m, only : update_elastic, tangent_elastic
+  use material_elastic_m, only : update_elastic, tangent_elastic, update_null
   use material_j2_m, only : update_j2_isotropic, update_j2_mixed, tangent_j2
   use material_johnson_cook_m, only : update_johnson_cook, update_hot_johnson_cook
-  use material_mooney_rivlin_m, only : update_mooney_rivlin
-  use material_null_m, only : update_null
   use material_piecewise_m, only : update_piecewise, tangent_piecewise
+  use material_rubber_m, only : update_mooney_rivlin, update_blatz_ko
   implicit none
   private
   public :: update_stress, form_tangent, history_size, find_failed, break_points, &

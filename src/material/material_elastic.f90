@@ -1,13 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> Elastic deviator: Jaumann rate, s* = Q s Q^T + 2 G dev(D) dt (seed (A4)).
+!> Elastic deviator: Jaumann rate, s* = Q s Q^T + 2 G dev(D) dt (seed (A4)); and that of a fluid.
 module material_elastic_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
-  use stress_chunk_m, only : stress_chunk_t
-  use stress_point_m, only : stress_point_t, turn, turn_rate
+  use stress_chunk_m, only : stress_chunk_t, stress_point_t, turn, turn_rate
   implicit none
   private
-  public :: update_elastic, tangent_elastic
+  public :: update_elastic, tangent_elastic, update_null
 
 contains
 
@@ -51,5 +50,28 @@ contains
     end do
     point%tangent(:, 4) = turn_rate(turned)
   end subroutine tangent_elastic
+
+  !> A fluid: the deviator is that of its viscosity, 2 mu dev(D), and none without.
+  pure subroutine update_null(viscosity, chunk)
+    real(wp), intent(in) :: viscosity             !! mu, Pa s
+    type(stress_chunk_t), intent(inout) :: chunk  !! increments in, deviator and work out
+    real(wp) :: factor, third, oxx, oyy, oxy
+    integer :: i
+
+    factor = 0.0_wp
+    if (chunk%dt > 0.0_wp) factor = 2.0_wp*viscosity/chunk%dt
+    !$omp simd private(third, oxx, oyy, oxy)
+    do i = 1, chunk_size
+      third = (1.0_wp/3.0_wp)*(chunk%dxx(i) + chunk%dyy(i))
+      oxx = chunk%sxx(i)
+      oyy = chunk%syy(i)
+      oxy = chunk%sxy(i)
+      chunk%sxx(i) = factor*(chunk%dxx(i) - third)
+      chunk%syy(i) = factor*(chunk%dyy(i) - third)
+      chunk%sxy(i) = factor*chunk%dxy(i)
+      chunk%work(i) = 0.5_wp*((chunk%sxx(i) + oxx)*chunk%dxx(i) &
+        + (chunk%syy(i) + oyy)*chunk%dyy(i)) + (chunk%sxy(i) + oxy)*chunk%dxy(i)
+    end do
+  end subroutine update_null
 
 end module material_elastic_m

@@ -7,8 +7,7 @@ module material_j2_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use parts_m, only : material_t
-  use stress_chunk_m, only : stress_chunk_t, rotate_deviator
-  use stress_point_m, only : stress_point_t, turn, turn_rate
+  use stress_chunk_m, only : stress_chunk_t, rotate_deviator, stress_point_t, turn, turn_rate
   implicit none
   private
   public :: update_j2_isotropic, update_j2_mixed, tangent_j2, tangent_of_return, trial_mises

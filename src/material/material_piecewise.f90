@@ -11,8 +11,7 @@ module material_piecewise_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use material_j2_m, only : tangent_of_return, trial_mises
-  use stress_chunk_m, only : stress_chunk_t
-  use stress_point_m, only : stress_point_t
+  use stress_chunk_m, only : stress_chunk_t, stress_point_t
   use vector_functions_m, only : form_powers
   implicit none
   private

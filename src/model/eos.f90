@@ -66,7 +66,7 @@ contains
   end function initial_pressure
 
   !> Bound of the volume of Gruneisen's equation: V/V0 at the least mu > 0 where its denominator
-  !> (`eos_gruneisen_m`) is next to 0; 0 where it never is. With y = mu/(1 + mu) = 1 - v
+  !> (`form_gruneisen`) is next to 0; 0 where it never is. With y = mu/(1 + mu) = 1 - v
   !> the denominator is (1 - S1 y - S2 y^2 - S3 y^3)/(1 - y).
   pure function asymptote(s) result(ratio)
     real(wp), intent(in) :: s(3) !! S1 to S3

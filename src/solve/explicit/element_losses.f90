@@ -3,8 +3,7 @@
 !> Points that fail: the log tells the first, then each tenfold of what was told, and all at the
 !> end. One thread counts the chunks once a cycle, in models whose points may fail.
 module element_losses_m
-  use element_state_m, only : settle_erosion
-  use failed_points_m, only : count_points, first_failed
+  use element_state_m, only : settle_erosion, count_points, first_failed
   use kinds_m, only : wp
   use layout_m, only : slot_part
   use log_m, only : log_t, write_log, to_text

@@ -15,7 +15,7 @@ module resting_tiles_m
   use ranks_m, only : ranks_t, bring_reals
   use renumber_m, only : mark_moved_nodes
   use state_m, only : state_t
-  use tile_values_m, only : take_values, same_bits
+  use tile_forces_m, only : take_values, same_bits
   implicit none
   private
   public :: rest_t, awake, flying, plan_rest, remember_tile, judge_tile, look_at_tile, &

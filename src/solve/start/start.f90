@@ -10,6 +10,7 @@ module start_m
   use element_log_m, only : log_elements
   use element_mass_m, only : lump_mass
   use element_start_m, only : start_elements
+  use element_steps_m, only : start_retardation
   use contact_log_m, only : log_softness
   use contacts_m, only : is_tied, n_told, told_as
   use controls_m, only : is_asked, group_nodes, n_cut
@@ -22,7 +23,6 @@ module start_m
   use mass_scaling_m, only : scales_masses, start_mass_scaling
   use model_m, only : model_t
   use state_m, only : state_t
-  use stiffness_damping_m, only : start_retardation
   implicit none
   private
   public :: start_state, resume_contacts

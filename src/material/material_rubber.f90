@@ -4,13 +4,15 @@
 !>   tau = (2A + 4B + J U') 1 + 2B i 1 + 2 (A + B) e + 2B (i e - e e)
 !>   W   = U + (A + 2B) t - (A + B) q - (A + 2B) det e
 !> so that no digit of a small strain is lost (doc/theory/materials.md, "Rubber").
-module hyperelastic_m
+module material_rubber_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
+  use rubbers_m, only : rubber_t
   use stress_chunk_m, only : stress_chunk_t
+  use vector_functions_m, only : form_excesses, form_log_ratios
   implicit none
   private
-  public :: volumetric_t, form_hyperelastic
+  public :: update_mooney_rivlin, update_blatz_ko
 
   !> What a law gives of its U at the J of each slot.
   type :: volumetric_t
@@ -20,6 +22,52 @@ module hyperelastic_m
   end type volumetric_t
 
 contains
+
+  !> Rubber of Mooney and Rivlin: U = C (J^-4 - 1) + D (J^2 - 1)^2, C = A/2 + B.
+  pure subroutine update_mooney_rivlin(rubber, chunk)
+    type(rubber_t), intent(in) :: rubber
+    type(stress_chunk_t), intent(inout) :: chunk
+    type(volumetric_t) :: volumetric
+    real(wp) :: t, inverse
+    integer :: i
+
+    !$omp simd private(t, inverse)
+    do i = 1, chunk_size
+      t = chunk%stretch(i)*(2.0_wp + chunk%stretch(i)) ! J^2 - 1
+      inverse = 1.0_wp/(1.0_wp + t)**2                 ! J^-4
+      volumetric%excess(i) = 4.0_wp*t*(rubber%c*(2.0_wp + t)*inverse + rubber%d*(1.0_wp + t))
+      volumetric%potential(i) = t*t*(rubber%c*(3.0_wp + 2.0_wp*t)*inverse + rubber%d)
+      volumetric%second(i) = 20.0_wp*rubber%c*inverse + 4.0_wp*rubber%d*(1.0_wp + t) &
+        *(2.0_wp + 3.0_wp*t)
+    end do
+    call form_hyperelastic(rubber%a, rubber%b, volumetric, chunk)
+  end subroutine update_mooney_rivlin
+
+  !> Rubber of Blatz and Ko: B = 0, U = 2A (J^-m - 1)/m, m = 2 nu/(1 - 2 nu), 2A = G.
+  pure subroutine update_blatz_ko(rubber, chunk)
+    type(rubber_t), intent(in) :: rubber
+    type(stress_chunk_t), intent(inout) :: chunk
+    type(volumetric_t) :: volumetric
+    real(wp), parameter :: least = -1.0_wp + 1.0e-12_wp !! the run ends before
+    real(wp), dimension(chunk_size) :: safe, power, excess
+    real(wp) :: shear, share
+    integer :: i
+
+    shear = 2.0_wp*rubber%a
+    safe = max(chunk%stretch, least)
+    call form_log_ratios(chunk_size, safe, power)
+    power = -rubber%exponent*power ! ln(J^-m)
+    call form_excesses(chunk_size, power, excess)
+    !$omp simd private(share)
+    do i = 1, chunk_size
+      share = -excess(i)
+      volumetric%excess(i) = shear*share
+      volumetric%potential(i) = shear*(0.5_wp*chunk%stretch(i)*(2.0_wp + chunk%stretch(i)) &
+        - share/rubber%exponent)
+      volumetric%second(i) = shear*(rubber%exponent + 1.0_wp)*(1.0_wp - share)
+    end do
+    call form_hyperelastic(rubber%a, 0.0_wp, volumetric, chunk)
+  end subroutine update_blatz_ko
 
   !> Deviator, mean stress, energy and moduli. Where the dilatation is that of an element with
   !> several points, the deviator is that of a point of volume ratio `volume`.
@@ -94,4 +142,4 @@ contains
     end do
   end subroutine bound_stiffness
 
-end module hyperelastic_m
+end module material_rubber_m
