@@ -3,10 +3,10 @@
 !> rule), where histories ask for them (bndout, nodfor). The works of all boundaries add up to the
 !> external work, but for those of body loads, rigid walls and interference.
 module boundary_account_m
-  use boundary_filling_m, only : form_loads
   use boundary_rows_m, only : boundary_load, boundary_body_load, boundary_pressure
   use constraints_m, only : is_active
   use explicit_prescribed_m, only : prescribed_reaction
+  use history_filling_m, only : form_loads
   use kinds_m, only : wp
   use model_m, only : model_t
   use rigid_motion_m, only : rigid_reaction

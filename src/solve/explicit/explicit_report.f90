@@ -2,17 +2,17 @@
 !> A cycle of an explicit run that writes: what the elements have come to, and what is due from it.
 module explicit_report_m
   use boundary_account_m, only : count_boundary_motions, count_boundary_bodies, count_groups
-  use boundary_filling_m, only : fill_boundaries
   use contact_check_m, only : report_contact_start
   use contact_judging_m, only : judge_contacts
   use contact_softness_m, only : follow_softness
   use energies_m, only : energy_ratio, total_energy
   use erosion_account_m, only : settle_elements, note_least_step
   use explicit_prescribed_m, only : start_prescribed, prescribed_work
+  use history_filling_m, only : fill_boundaries, fill_history_elements, fill_sections, &
+    fill_explicit_reactions
   use history_tables_m, only : table_glstat, table_rcforc, table_matsum, table_rwforc, &
     table_sleout, table_spcforc, table_contact, table_elout, table_rbdout, table_bndout, &
     table_nodfor, table_secforc
-  use history_elements_m, only : fill_history_elements
   use first_change_m, only : first_change
   use health_m, only : check_energy, check_ratio, check_radii, made_by_springs, unaccounted
   use kinds_m, only : wp
@@ -25,7 +25,6 @@ module explicit_report_m
   use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, fill_rigids, &
     fill_bodies
   use progress_m, only : show_progress
-  use section_filling_m, only : fill_sections
   use rank_exchange_m, only : judge_elements
   use ranks_m, only : share_error, spread_values
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, &
@@ -34,7 +33,6 @@ module explicit_report_m
   use slowest_element_m, only : find_slowest
   use state_m, only : state_t
   use wall_motion_m, only : hold_nodes, count_walls, fill_walls
-  use support_forces_m, only : fill_explicit_reactions
   use time_step_m, only : first_step, shorten_first_step, obey_approach, obey_defaults, &
     follow_springs
   use explicit_cycle_m, only : explicit_cycle_t, prepare_leap, press_cycle

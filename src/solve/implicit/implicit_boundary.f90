@@ -2,10 +2,10 @@
 !> Forces on boundaries and of groups of nodes in implicit steps, and their work, where histories
 !> ask for them (bndout, nodfor).
 module implicit_boundary_m
-  use boundary_filling_m, only : form_loads
   use boundary_rows_m, only : boundary_motion
   use constraints_m, only : is_active
   use element_mass_m, only : mass_times
+  use history_filling_m, only : form_loads
   use implicit_forces_m, only : trial_t, net_force
   use kinds_m, only : wp
   use model_m, only : model_t

@@ -2,11 +2,11 @@
 !> What the implicit driver writes: motion, velocity and acceleration of one instant, energies
 !> with the consistent mass.
 module implicit_report_m
-  use boundary_filling_m, only : fill_boundaries
   use contact_judging_m, only : judge_contacts
   use contact_softness_m, only : follow_softness
+  use history_filling_m, only : fill_boundaries, fill_history_elements, fill_sections, &
+    fill_reactions
   use implicit_boundary_m, only : find_forces
-  use history_elements_m, only : fill_history_elements
   use history_tables_m, only : table_matsum, table_rcforc, table_sleout, table_spcforc, &
     table_contact, table_elout, table_bndout, table_nodfor, table_secforc
   use block_state_m, only : block_state_t
@@ -26,11 +26,9 @@ module implicit_report_m
   use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
   use output_schedule_m, only : output_reach
   use progress_m, only : show_progress
-  use section_filling_m, only : fill_sections
   use snapshot_m, only : snapshot_t
   use snapshot_filling_m, only : fill_energies, fill_parts, fill_interfaces, fill_plot
   use state_m, only : state_t
-  use support_forces_m, only : fill_reactions
   implicit none
   private
   public :: report_step, reactions_work, held_energy, spent_energy
