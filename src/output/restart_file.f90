@@ -19,7 +19,7 @@ module restart_file_m
   use file_facts_m, only : what_hinders
   use files_m, only : rename_file, remove_file, force_to_disk, is_endless, folder_of, &
     unfinished
-  use hdf5_library_m, only : open_library
+  use hdf5_writing_m, only : open_library
   use kinds_m, only : long
   use log_m, only : to_text
   use text_files_m, only : overwrite_start
