@@ -18,16 +18,15 @@ module run_m
   use text_files_m, only : write_whole
   use go_on_m, only : take_up_deck
   use heap_m, only : give_back_memory
-  use inside_answers_m, only : answers_t
+  use others_memory_m, only : answers_t, others_t
   use kinds_m, only : long
   use log_m, only : open_log, close_log, write_log, warn, to_text
   use memory_m, only : processor_name
   use model_m, only : model_t
-  use others_memory_m, only : others_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use progress_m, only : show_end
-  use rank_memory_m, only : forget_others
   use rank_model_m, only : hand_model, hand_others
+  use rank_shares_m, only : forget_others
   use ranks_m, only : ranks_t, share_error
   use relaxation_m, only : relax, leave_relaxation
   use renumber_m, only : renumber_model, forget_start

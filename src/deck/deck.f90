@@ -11,33 +11,23 @@ module deck_m
   use model_m, only : model_t
   use deck_findings_m, only : list_findings
   use deck_report_m, only : emit_warnings, emit_errors
+  use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, a_curve, &
+    a_system, a_node_set, a_part_set, a_segment_set, a_shell_set
+  use deck_maps_m, only : lose
   use deck_lines_m, only : deck_t, line_error, line_warning, shown_text, file_paths
   use deck_reader_m, only : read_blocks, cut_deck
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
   use deck_parameters_m, only : read_parameters
-  use deck_overrides_m, only : overrides_t, read_overrides, override_text, &
-    override_phrase
-  use deck_override_apply_m, only : apply_overrides
+  use deck_overrides_m, only : read_words, edit_controls, check_words
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
   use deck_raw_m, only : raw_t, start_raw, reserve_lists, trim_lists
   use deck_mesh_m, only : read_nodes, read_elements, read_beams, read_set, read_history_ids
-  use deck_part_m, only : read_part, read_section, read_hourglass
-  use deck_curves_m, only : read_curve, read_table, read_system
-  use deck_hardening_m, only : read_piecewise, read_hydro, read_johnson_cook, &
-    read_simplified_johnson_cook
-  use deck_material_m, only : read_elastic, read_plastic_kinematic, read_null, &
-    read_crushable_foam, read_mooney_rivlin, read_blatz_ko, read_rigid, read_linear_polynomial, &
-    read_gruneisen
-  use deck_erosion_m, only : read_erosion
-  use deck_damping_m, only : read_part_damping
-  use deck_conditions_m, only : read_condition, read_initial_velocity
   use deck_control_m, only : read_control, check_step, read_ends
   use deck_empty_m, only : check_empty
   use deck_output_m, only : read_database, read_force_groups, read_cross_sections, read_transducer
   use deck_contact_m, only : read_contact
-  use deck_friction_m, only : settle_friction
-  use deck_wall_m, only : read_wall
+  use deck_friction_m, only : warn_of_unused
   use deck_resolve_m, only : resolve_model
   use deck_effective_m, only : forget_places, write_effective
   use deck_echo_m, only : echo_model
@@ -60,6 +50,9 @@ module deck_m
   character(*), parameter :: instead_of_cases = ' not available in slideline: run the deck once ' &
     //'for each, in a shell loop or by tools/batch/sweep.sh, with ctype=, p:NAME=VALUE of a ' &
     //'*PARAMETER and the like, and *INCLUDE what several decks share'
+
+  !> All kinds of sets.
+  integer, parameter :: sets(4) = [a_node_set, a_part_set, a_segment_set, a_shell_set]
 
 contains
 
@@ -98,38 +91,43 @@ contains
     type(model_t), intent(out) :: model
     character(:), allocatable, intent(out) :: effective
     type(error_t), allocatable, intent(out) :: error
-    type(overrides_t) :: overrides
     type(raw_t), allocatable :: raw
-    character(:), allocatable :: tail
     integer, allocatable :: known(:)
-    integer :: i
+    integer :: i, pass
+    logical :: is_empty
 
-    allocate (raw)
+    allocate (raw, deck%words(0))
     call start_raw(raw)
     call know_blocks(deck, raw, known)
     if (deck%n_block == 0) then
       call emit_errors(deck%report, request%path, error)
       return
     end if
-    if (allocated(request%overrides)) then
-      call read_overrides(request%overrides, deck, overrides)
-    else
-      allocate (overrides%items(0))
-    end if
+    if (allocated(request%overrides)) call read_words(request%overrides, deck)
     call read_parameters(deck)
-    raw%end_given = len(override_text(overrides, 'ENDTIM', 0)) > 0
-    raw%step_phrase = override_phrase(overrides, 'DT', 0)
-    raw%scale_phrase = override_phrase(overrides, 'TSSFAC', 0)
+    call edit_controls(deck)
+    known = [known, (known_honoured, i=size(known) + 1, deck%n_block)]
     raw%controls%title = ''
     call reserve_lists(deck, raw)
     do i = 1, deck%n_block
-      if (known(i) == known_honoured) call read_block(deck, i, kinds, overrides, raw)
+      if (known(i) /= known_honoured) cycle
+      call check_empty(deck, i, is_empty)
+      if (is_empty) call note_lost(deck, i, raw)
+      deck%blocks(i)%is_honoured = .not. is_empty
+    end do
+    ! Interfaces come last: friction of *CONTROL_CONTACT is known then.
+    do pass = 1, 2
+      do i = 1, deck%n_block
+        if (.not. deck%blocks(i)%is_honoured) cycle
+        if ((index(deck%blocks(i)%name, 'CONTACT_') == 1) .eqv. pass == 2) &
+          call read_block(deck, i, kinds, raw)
+      end do
     end do
     call trim_lists(raw)
-    call settle_friction(deck, overrides, raw)
-    call apply_overrides(deck, overrides, raw, tail)
+    call warn_of_unused(deck, raw)
+    call check_words(deck, raw%contacts%contact%id)
     call check_step(deck, raw)
-    if (.not. (raw%terminated .or. raw%end_given .or. deck%incomplete)) call line_error(deck, 0, &
+    if (.not. (raw%terminated .or. deck%incomplete)) call line_error(deck, 0, &
       'the deck has no end time (*CONTROL_TERMINATION)')
     call resolve_model(deck, raw, model)
     deallocate (raw) ! before the effective deck takes its place
@@ -142,7 +140,7 @@ contains
     if (allocated(deck%kept_zeros)) call write_log(log, 'a 0 in these fields is kept, where ' &
       //'LS-DYNA takes the default: '//deck%kept_zeros)
     call forget_places(deck)
-    call write_effective(deck, tail, effective)
+    call write_effective(deck, effective)
   end subroutine interpret_deck
 
   !> Look every keyword up: canonical names, options taken off; unknown and refused ones are errors,
@@ -187,11 +185,11 @@ contains
             call line_error(deck, block%keyword, reason//' not available in slideline' &
               //meant(block%given))
           end if
-          call note_lost(block%given, raw)
+          call note_lost(deck, i, raw)
         case default
           call line_error(deck, block%keyword, 'is not a keyword that this version knows' &
             //meant(block%given))
-          call note_lost(block%given, raw)
+          call note_lost(deck, i, raw)
         end select
         if (block%name /= 'COMMENT' .and. index(' '//upper_case(block%rest), ' CID=') > 0) &
           call line_error(deck, block%keyword, 'keywords of one of several runs (CID=) are' &
@@ -211,43 +209,35 @@ contains
 
   !> What a refused keyword would have defined, by its name and by what that may have been meant
   !> for.
-  subroutine note_lost(given, raw)
-    character(*), intent(in) :: given
+  subroutine note_lost(deck, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     character(:), allocatable :: name
     integer :: i
 
-    name = trim(given)
+    name = deck%blocks(i_block)%given
     do i = 1, 2
-      associate (lost => raw%lost)
-        lost%nodes = lost%nodes .or. index(name, 'NODE') == 1 .or. index(name, 'INCLUDE') == 1
-        lost%elements = lost%elements .or. index(name, 'ELEMENT') == 1
-        lost%parts = lost%parts .or. index(name, 'PART') == 1
-        lost%sections = lost%sections .or. index(name, 'SECTION') == 1
-        lost%materials = lost%materials .or. index(name, 'MAT') == 1
-        lost%equations = lost%equations .or. index(name, 'EOS') == 1
-        lost%curves = lost%curves .or. index(name, 'DEFINE') == 1
-        lost%sets = lost%sets .or. index(name, 'SET') == 1
-      end associate
+      if (index(name, 'NODE') == 1 .or. index(name, 'INCLUDE') == 1) call lose(deck, [a_node])
+      if (index(name, 'ELEMENT') == 1) call lose(deck, [an_element])
+      if (index(name, 'PART') == 1) call lose(deck, [a_part])
+      if (index(name, 'SECTION') == 1) call lose(deck, [a_section])
+      if (index(name, 'MAT') == 1) call lose(deck, [a_material])
+      if (index(name, 'EOS') == 1) call lose(deck, [an_eos])
+      if (index(name, 'DEFINE') == 1) call lose(deck, [a_curve, a_system])
+      if (index(name, 'SET') == 1) call lose(deck, sets)
       raw%terminated = raw%terminated .or. name == 'CONTROL_TERMINATION'
-      name = trim(nearest_keyword(trim(given)))
+      name = trim(nearest_keyword(deck%blocks(i_block)%given))
     end do
   end subroutine note_lost
 
   !> Read one block by its keyword.
-  subroutine read_block(deck, i, kinds, overrides, raw)
+  subroutine read_block(deck, i, kinds, raw)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i
     type(contact_kind_t), intent(in) :: kinds(:)
-    type(overrides_t), intent(in) :: overrides
     type(raw_t), intent(inout) :: raw
-    logical :: is_empty
 
-    call check_empty(deck, i, is_empty)
-    if (is_empty) then
-      call note_lost(deck%blocks(i)%name, raw)
-      return
-    end if
     select case (deck%blocks(i)%name)
     case ('TITLE')
       call read_title(deck, i, raw)
@@ -261,65 +251,16 @@ contains
         'SET_PART_LIST_GENERATE', 'SET_SHELL_LIST', 'SET_SHELL_LIST_GENERATE', 'SET_SEGMENT', &
         'SET_2D_SEGMENT', 'SET_2D_SEGMENT_SET')
       call read_set(deck, i, raw)
-    case ('PART')
-      call read_part(deck, i, raw)
-    case ('SECTION_SHELL')
-      call read_section(deck, i, raw)
-    case ('HOURGLASS')
-      call read_hourglass(deck, i, raw)
-    case ('MAT_ELASTIC')
-      call read_elastic(deck, i, raw)
-    case ('MAT_PLASTIC_KINEMATIC')
-      call read_plastic_kinematic(deck, i, raw)
-    case ('MAT_PIECEWISE_LINEAR_PLASTICITY')
-      call read_piecewise(deck, i, raw)
-    case ('MAT_NULL')
-      call read_null(deck, i, raw)
-    case ('MAT_ELASTIC_PLASTIC_HYDRO')
-      call read_hydro(deck, i, raw)
-    case ('MAT_JOHNSON_COOK')
-      call read_johnson_cook(deck, i, raw)
-    case ('MAT_SIMPLIFIED_JOHNSON_COOK')
-      call read_simplified_johnson_cook(deck, i, raw)
-    case ('MAT_MOONEY-RIVLIN_RUBBER')
-      call read_mooney_rivlin(deck, i, raw)
-    case ('MAT_BLATZ-KO_RUBBER')
-      call read_blatz_ko(deck, i, raw)
-    case ('MAT_CRUSHABLE_FOAM')
-      call read_crushable_foam(deck, i, raw)
-    case ('MAT_ADD_EROSION')
-      call read_erosion(deck, i, raw)
-    case ('EOS_LINEAR_POLYNOMIAL')
-      call read_linear_polynomial(deck, i, raw)
-    case ('EOS_GRUNEISEN')
-      call read_gruneisen(deck, i, raw)
-    case ('MAT_RIGID')
-      call read_rigid(deck, i, raw)
-    case ('DEFINE_CURVE')
-      call read_curve(deck, i, raw)
-    case ('DEFINE_TABLE')
-      call read_table(deck, i, raw)
-    case ('INITIAL_VELOCITY', 'INITIAL_VELOCITY_GENERATION')
-      call read_initial_velocity(deck, i, raw)
-    case ('DAMPING_PART_MASS', 'DAMPING_PART_MASS_SET')
-      call read_part_damping(deck, i, raw)
-    case ('DEFINE_COORDINATE_SYSTEM')
-      call read_system(deck, i, raw)
-    case ('ELEMENT_MASS', 'ELEMENT_MASS_NODE_SET', 'CONSTRAINED_NODE_SET')
-      call read_condition(deck, i, raw)
-    case ('RIGIDWALL_PLANAR')
-      call read_wall(deck, i, raw)
     case default
-      call read_family(deck, i, kinds, overrides, raw)
+      call read_family(deck, i, kinds, raw)
     end select
   end subroutine read_block
 
   !> Keywords whose family says how they are read.
-  subroutine read_family(deck, i, kinds, overrides, raw)
+  subroutine read_family(deck, i, kinds, raw)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i
     type(contact_kind_t), intent(in) :: kinds(:)
-    type(overrides_t), intent(in) :: overrides
     type(raw_t), intent(inout) :: raw
     integer :: n
 
@@ -333,12 +274,10 @@ contains
       if (deck%blocks(i)%name == 'CONTACT_2D_FORCE_TRANSDUCER') then
         call read_transducer(deck, i, raw)
       else
-        call read_contact(deck, i, kinds, overrides, raw)
+        call read_contact(deck, i, kinds, raw)
       end if
     case ('TERMINATION_')
       call read_ends(deck, i, raw)
-    case ('BOUNDARY_', 'INITIAL_', 'LOAD_', 'DAMPING_')
-      call read_condition(deck, i, raw)
     end select
   end subroutine read_family
 

@@ -3,7 +3,7 @@
 !> rows of one instant. Columns are those of `history_tables`, by their number; forces and energies
 !> per unit depth.
 module dyna_layouts_m
-  use boundary_rows_m, only : boundary_load, boundary_body_load, boundary_pressure, &
+  use controls_m, only : boundary_load, boundary_body_load, boundary_pressure, &
     boundary_motion, boundary_body_motion
   use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_matsum, &
     table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout, table_bndout, &

@@ -3,7 +3,7 @@
 !> table that is not open are ignored, so that a driver may hand every snapshot to every table that
 !> is due.
 module history_rows_m
-  use boundary_rows_m, only : boundary_body_load, boundary_body_motion
+  use controls_m, only : boundary_body_load, boundary_body_motion
   use contacts_m, only : n_told
   use csv_table_m, only : csv_table_t, add_row
   use energies_m, only : total_energy, energy_ratio

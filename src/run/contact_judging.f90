@@ -3,7 +3,7 @@
 !> puts on a face, and the stress of the elements behind it (doc/theory/contact.md, section 8.1).
 !> At instants that are written, and in words at the end.
 module contact_judging_m
-  use contact_estimate_m, only : contact_estimate_t
+  use law_state_m, only : contact_estimate_t
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step
   use contacts_m, only : contact_t, n_told, penalty_implicit
   use controls_m, only : is_asked

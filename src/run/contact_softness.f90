@@ -2,7 +2,7 @@
 !> Whether the springs of an interface have a part in the answer: what they store beside the bodies
 !> that they hold apart (doc/theory/contact.md, section 8.2). Followed at instants that are written.
 module contact_softness_m
-  use contact_estimate_m, only : contact_estimate_t
+  use law_state_m, only : contact_estimate_t
   use contact_facets_m, only : follow_arcs, report_facets
   use contacts_m, only : contact_t, is_tied, told_as, penalty_factor, penalty_share, &
     penalty_implicit

@@ -3,9 +3,7 @@
 !> groups of nodes (bndout, nodfor) and cross sections (secforc). Both drivers fill them into the
 !> snapshot where they are due.
 module history_filling_m
-  use boundary_rows_m, only : boundary_load, boundary_pressure
-  use controls_m, only : is_asked
-  use cross_sections_m, only : cross_section_t
+  use controls_m, only : cross_section_t, is_asked, boundary_load, boundary_pressure
   use element_state_m, only : stress_of_slot, plastic_strain_of_slot, is_gone
   use external_force_m, only : add_nodal_loads, add_pressures
   use history_tables_m, only : table_spcforc, table_elout

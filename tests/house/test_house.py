@@ -16,7 +16,7 @@ LAYERS = {
     "linear": {"base"},
     "parallel": {"base"},
     "model": {"base"},
-    "deck_text": {"base", "model"}, "deck_schema": {"base"},
+    "deck_schema": {"base"}, "deck_text": {"base", "model", "deck_schema"},
     "deck_cards": {"base", "model", "deck_text", "deck_schema"},
     "deck_resolve": {"base", "model", "deck_text", "deck_cards"},
     "deck_effective": {"base", "model", "deck_text"},

@@ -35,7 +35,7 @@ def keywords_of_the_reader():
         card, column = card + 1, 1
         for word in line.split():
             name, kind, treatment, width, default = re.fullmatch(
-                r"([^:]+):([ifax])([swr]?)(\d*)(?:[=~](\S+))?", word).groups()
+                r"([^:]+):([ifax])([swr]?)(\d*)(?:[=~]([^<>|]+))?(?:[<>|]\S+)?", word).groups()
             width = int(width or 10)
             if name != "-":
                 rows.append((str(card), name, f"{column}-{column + width - 1}", KINDS[kind],

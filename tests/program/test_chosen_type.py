@@ -93,7 +93,7 @@ def same_bits(slideline, tmp_path, deck):
 def test_type_and_reason(slideline, chosen, tmp_path, wanted, words, scene):
     found, reason, effective = chosen(press(pen=1.0e6 if scene.get("punit") is None else None, **scene))
     assert found == wanted and words in reason
-    card = effective.split("*CONTACT_2D_SLIDELINE_TITLE\n")[1].split("\n")[1]
+    card = effective.split("*CONTACT_2D_SLIDELINE\n")[1].split("\n")[0]
     assert card.split(",")[2] == str(wanted)
     same_bits(slideline, tmp_path, press(ctype=wanted, pen=1.0e6 if scene.get("punit") is None else None, **scene))
 
@@ -102,7 +102,7 @@ def test_type_and_reason(slideline, chosen, tmp_path, wanted, words, scene):
 def test_penalty_that_is_left_to_the_program(slideline, chosen, tmp_path, implicit, unit, factor):
     """Explicit: the largest that the step bears, without a warning; implicit: K L/A."""
     _, _, effective = chosen(press(implicit=implicit))
-    cards = effective.split("*CONTACT_2D_SLIDELINE_TITLE\n")[1].split("\n")[1:3]
+    cards = effective.split("*CONTACT_2D_SLIDELINE\n")[1].split("\n")[:2]
     assert float(cards[0].split(",")[4]) == factor and cards[1].split(",")[2] == str(unit)
     assert "its penalty demands" not in (tmp_path / "out/job.log").read_text()
     same_bits(slideline, tmp_path, press(ctype=2, pen=factor, punit=unit, implicit=implicit))
@@ -123,8 +123,8 @@ def test_target(slideline, chosen, tmp_path, target, wanted, words, scene):
     deck = press(pen=1.0e6, **scene)
     found, reason, effective = chosen(deck, f"target={target}")
     assert (found, words in reason) == (wanted, True)
-    cards = effective.split("*CONTACT_2D_SLIDELINE_TITLE\n")[1].split("\n")
-    assert cards[1].split(",")[2] == str(wanted) and float(cards[3].split(",")[6]) == target
+    cards = effective.split("*CONTACT_2D_SLIDELINE\n")[1].split("\n")
+    assert cards[0].split(",")[2] == str(wanted) and float(cards[2].split(",")[6]) == target
     same_bits(slideline, tmp_path, press(ctype=wanted, pen=1.0e6, **scene))
     told = {re.search(r"interface 1: the target .*", (tmp_path / folder / "job.log").read_text())[0]
             for folder in ("out",) + ("again",) * (not IS_SHORT)}

@@ -78,7 +78,7 @@ def test_what_erode_passes_over_is_named(slideline, tmp_path, law, stays):
 @pytest.mark.parametrize("cards, words, line", [
     ("*PARAMETER_EXPRESSION\n,2*3", "a parameter needs a name", ()),
     ("*PARAMETER\nR stiff,2.0", 'p:STIFF on the command line: "hard" is not a number', ("p:stiff=hard",)),
-    ("", "is not a share of the largest stable one", ("punit=3", "pen=2.0")),
+    ("", "is not a share of the largest stable penalty", ("punit=3", "pen=2.0")),
 ])
 def test_small_mistakes(slideline, tmp_path, cards, words, line):
     status, said = said_by(slideline, tmp_path, cards, words=line)

@@ -117,7 +117,7 @@ def test_blank_or_bad_field_that_the_command_line_gives(slideline, said, tmp_pat
     ("2,,2.0e5,", ",,\n0.0,1.5", "tfac=1.5", '"{0}1.5" {1}is not a tangential over the normal penalty (above 0, at most 1)'),
     ("2,,-1.0,", None, "pen=-1.0", '"{0}-1.0" {1}is not a penalty (more than 0)'),
     ("9,,2.0e5,", None, "ctype=9", '"{0}9" {1}is not a contact type (1 classical NTS, 2 NTS-AR'),
-    ("2,11,2.0e5,", None, "ngauss=11", '"{0}11" {1}is not a number of Gauss points from 1 to 10'),
+    ("2,11,2.0e5,", None, "ngauss=11", '"{0}11" {1}is not a number of Gauss points (1 to 10)'),
     ("2,,2.0e5,", ",,5", "punit=5", '"{0}5" {1}is not a unit of the penalty (0 force per length at each contact node, 1 stress'),
 ])
 def test_one_rule_for_card_and_command_line(said, card_1, card_2, word, message):
@@ -226,8 +226,9 @@ TIE = SLIDELINE + "\n\n,,1"
     (SLIDELINE, "tssfac=1.2", "{0} is above 1: the run may become unstable"),
     (SLIDELINE, "dt=5e-5", "DTINIT has no effect beside {0}"),
     (SLIDELINE, "punit=4 ctype=7 vdc=5", "{0} asks for implicit springs, which in this version have no damping"),
-    (SLIDELINE, "punit=3 pen=2", 'with {1} and {0} the penalty "2.000000E+00" is not a share'),
-    (SLIDELINE, "punit=3", 'with {0} the penalty "2.000000E+05" is not a share'),
+    (SLIDELINE, "punit=3 pen=2", '{1} is not a share of the largest stable penalty (PUNIT 3: above 0, at most 1)'),
+    (SLIDELINE, "punit=3", "card 1 field 5 (PEN): \"2.0e5\" is not a share of the largest stable penalty (PUNIT 3: above 0, at most 1)\n"
+                              "  | -2,-3,2,,2.0e5,\n  |          ^^^^^\n  | with {0}"),
     (TIE, "vdc=20", "interface 1 is tied: ties have no contact damping; {0} has no effect on it"),
     (TIE, "punit=3 pen=0.5", "interface 1 is tied: its penalty can not be a share of the largest stable one; {0} has no effect on it"),
     (TIE, "fs=0.1", "interface 1 is tied: {0} has no effect on it"),

@@ -98,7 +98,7 @@ def test_many_interfaces_changed_by_the_command_line(slideline, tmp_path):
         for name in ("glstat", "rcforc"):
             assert (tmp_path / f"{folder}/job.{name}.csv").read_bytes() == (tmp_path / f"given/job.{name}.csv").read_bytes()
     effective = (tmp_path / "changed/job.effective.k").read_text()
-    assert len(re.findall(r"^-2,-3,5,2,2500$", effective, re.MULTILINE)) == 80
+    assert len(re.findall(r"^-2,-3,5,2,2500.0,$", effective, re.MULTILINE)) == 80
 
 
 def flying(offset, rigid=False):

@@ -6,17 +6,17 @@ module deck_cards_m
   use log_m, only : to_text
   use text_m, only : read_integer, number_good
   use deck_lines_m, only : deck_t, place_t, line_text, line_warning, replace_line, flag_blank, &
-    flag_parameter, block_of_line, keyword_of_line, format_standard, format_long
-  use deck_card_specs_m, only : card_spec_t, make_spec, field_number, max_field
+    flag_parameter, block_of_line, given_by, format_long, max_field
+  use deck_card_specs_m, only : card_spec_t, make_spec, field_number
   use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error, place_error, &
     place_field
   use deck_schema_m, only : keyword_cards, refusal_reason, lost_effect, max_card
   use deck_parameters_m, only : substitute
   implicit none
   private
-  public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_text, &
-    next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field, find_field, &
-    find_keyword_field
+  public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_of, rows_of, &
+    next_text, next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field, &
+    find_field
 
   !> A place in a block.
   type :: cursor_t
@@ -25,12 +25,13 @@ module deck_cards_m
     integer :: line = 1           !! next line
     integer :: last = 0           !! last line of the block
     integer :: n_card = 0         !! cards that the keyword has
+    character(27) :: head = ''    !! beginning of the keywords whose rows are read
     type(card_spec_t) :: specs(max_card)
   end type cursor_t
 
   !> An error of a field of a card just read, by the field's name or its position.
   interface report_field
-    module procedure report_named_field, report_numbered_field
+    module procedure report_name, report_number, report_named_field, report_numbered_field
   end interface report_field
 
 contains
@@ -72,19 +73,6 @@ contains
     end associate
   end function find_field
 
-  !> Position of a field on card 1 of a keyword, for decks that do not have the keyword.
-  function find_keyword_field(keyword, name) result(k)
-    character(*), intent(in) :: keyword, name
-    integer :: k
-    type(card_spec_t) :: spec
-    character(160) :: cards(max_card)
-    integer :: n_card
-
-    call keyword_cards(keyword, cards, n_card)
-    call make_spec(cards(1), 1, format_standard, spec)
-    k = field_number(spec%names(:spec%n), name)
-  end function find_keyword_field
-
   !> The cards of a block's keyword in its layout.
   subroutine get_specs(deck, i_block, specs, n_card)
     type(deck_t), intent(in) :: deck
@@ -110,7 +98,8 @@ contains
     if (cursor%line > cursor%last) then
       card%line = deck%blocks(cursor%block)%keyword
       card%number = number
-      call name_fields(cursor%specs(number), card)
+      card%names = cursor%specs(number)%names
+      card%kinds = cursor%specs(number)%kinds
       call read_numbers(deck, cursor%specs(number), cursor%source, card)
       return
     end if
@@ -129,6 +118,38 @@ contains
     found = cursor%line <= cursor%last
     if (found) call read_line(deck, cursor, number, card)
   end subroutine next_row
+
+  !> Start at the first row of the first keyword that begins so; `next_of` goes on from keyword to
+  !> keyword.
+  pure subroutine rows_of(head, cursor)
+    character(*), intent(in) :: head
+    type(cursor_t), intent(out) :: cursor
+
+    cursor%head = head
+  end subroutine rows_of
+
+  !> The next row that is not blank, as card 1; `found` is false behind the last keyword.
+  subroutine next_of(deck, cursor, card, found)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(inout) :: cursor
+    type(card_t), intent(inout) :: card
+    logical, intent(out) :: found
+    character(len(cursor%head)) :: head
+    integer :: i
+
+    call next_row(deck, cursor, 1, card, found)
+    head = cursor%head
+    i = cursor%block
+    do while (.not. found .and. i < deck%n_block)
+      i = i + 1
+      if (.not. deck%blocks(i)%is_honoured) cycle
+      if (index(deck%blocks(i)%name, trim(head)) /= 1) cycle
+      call open_cursor(deck, i, cursor)
+      cursor%head = head
+      call skip_title(deck, cursor)
+      call next_row(deck, cursor, 1, card, found)
+    end do
+  end subroutine next_of
 
   !> Whether a line that is not blank is left.
   subroutine row_comes(deck, cursor, found)
@@ -193,15 +214,6 @@ contains
       cursor%line = cursor%line + 1
   end subroutine skip_title
 
-  !> Let a card know its fields.
-  pure subroutine name_fields(spec, card)
-    type(card_spec_t), intent(in) :: spec
-    type(card_t), intent(inout) :: card
-
-    card%names = spec%names
-    card%kinds = spec%kinds
-  end subroutine name_fields
-
   !> Read one line as card `number`.
   subroutine read_line(deck, cursor, number, card)
     type(deck_t), intent(inout) :: deck
@@ -213,7 +225,6 @@ contains
     integer :: k
 
     associate (spec => cursor%specs(number))
-      call name_fields(spec, card)
       call cut_card(deck, spec, cursor%source, cursor%line, card)
       if (iand(deck%flags(cursor%line), flag_parameter) /= 0) then
         call substitute(deck, spec, cursor%source, card, text)
@@ -252,7 +263,7 @@ contains
     if (.not. asks) return
     name = trim(deck%blocks(block_of_line(deck, card%line))%name)
     if (spec%treatments(k) == 'r') then
-      call field_error(deck, spec, card, k, refusal_reason(trim(spec%names(k))))
+      call field_error(deck, card, k, refusal_reason(trim(spec%names(k))))
     else
       call line_warning(deck, card%line, 'field '//name//' '//spec%names(k)//to_text(spec%number), &
         'card '//to_text(spec%number)//' field '//to_text(k)//' ('//trim(spec%names(k))//'): "' &
@@ -274,6 +285,11 @@ contains
     call get_specs(deck, i_block, specs, n_card)
     associate (spec => specs(place%card))
       k = place_field(spec, place)
+      if (len(given_by(deck, place%line, k)) > 0) then
+        call line_warning(deck, 0, trim(spec%names(k))//message, given_by(deck, place%line, k) &
+          //' '//message)
+        return
+      end if
       call cut_card(deck, spec, deck%blocks(i_block)%source, place%line, card)
       call line_warning(deck, place%line, 'field '//trim(spec%names(k))//message, &
         'card '//to_text(spec%number)//' field '//to_text(k)//' ('//trim(spec%names(k))//'): "' &
@@ -291,6 +307,26 @@ contains
     if (found) call line_warning(deck, cursor%line, 'rest'//to_text(cursor%line), &
       'from here to the next keyword ignored: more lines than the keyword has cards')
   end subroutine check_rest
+
+  !> An error of the field of a name, of a card just read.
+  subroutine report_name(deck, card, name, message)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    character(*), intent(in) :: name
+    character(*), intent(in) :: message
+
+    call report_field(deck, card, field_number(card%names, name), message)
+  end subroutine report_name
+
+  !> An error of field `k` of a card just read.
+  subroutine report_number(deck, card, k, message)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    character(*), intent(in) :: message
+
+    if (.not. card%bad(k)) call field_error(deck, card, k, message)
+  end subroutine report_number
 
   !> An error of the field of a name, of a card just read.
   subroutine report_named_field(deck, cursor, card, name, message)
@@ -311,7 +347,7 @@ contains
     integer, intent(in) :: k
     character(*), intent(in) :: message
 
-    if (.not. card%bad(k)) call field_error(deck, cursor%specs(card%number), card, k, message)
+    if (.not. card%bad(k)) call field_error(deck, card, k, message)
   end subroutine report_numbered_field
 
   !> An error of a field that was given, on a card that was read some time ago.

@@ -5,21 +5,18 @@ module deck_control_m
   use log_m, only : to_text
   use text_m, only : upper_case
   use units_m, only : units_t, find_unit, set_force
-  use controls_m, only : length_by_side, length_by_diagonal, contact_step_warns, contact_step_rules
-  use deck_lines_m, only : deck_t, line_warning
+  use controls_m, only : length_by_side, length_by_diagonal, end_condition_t, end_node_place, &
+    end_node_touch, end_body_place, end_body_way, end_contact
+  use deck_lines_m, only : deck_t, line_warning, given_by
   use deck_fields_m, only : card_t, field_text
   use deck_card_specs_m, only : field_number
   use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field, &
-    reject_field, warn_of_field, next_row
-  use deck_values_m, only : integer_of, real_of, place_of, is_blank, is_bad, refuse_negative, &
-    refuse_outside
-  use deck_implicit_m, only : take_implicit, take_dynamics, take_spectral_radius, take_solution, &
-    take_automatic
+    warn_of_field, next_row
+  use deck_values_m, only : integer_of, real_of, place_of, is_blank
+  use deck_implicit_m, only : take_implicit, take_dynamics, take_solution, take_automatic
   use deck_raw_m, only : raw_t, raw_end_t
   use deck_friction_m, only : take_default_friction
-  use deck_part_m, only : hourglass_form, hourglass_coefficient, check_viscosity
-  use end_conditions_m, only : end_condition_t, end_node_place, end_node_touch, end_body_place, &
-    end_body_way, end_contact
+  use deck_part_m, only : hourglass_form, hourglass_coefficient
   implicit none
   private
   public :: read_control, check_step, read_ends
@@ -47,33 +44,41 @@ contains
     call warn_of_repetition(deck, i_block)
     select case (deck%blocks(i_block)%name)
     case ('CONTROL_TERMINATION')
-      call take_termination(deck, cursor, cards(1), raw)
+      call take_termination(cards(1), raw)
     case ('CONTROL_TIMESTEP')
-      call take_timestep(deck, cursor, cards(1), raw)
+      call take_timestep(cards(1), raw)
     case ('CONTROL_DYNAMIC_RELAXATION')
-      call take_relaxation(deck, cursor, cards(1), raw)
+      call take_relaxation(cards(1), raw)
     case ('CONTROL_HOURGLASS')
-      call hourglass_form(deck, cursor, cards(1), 'IHQ', raw%hourglass_default%form)
-      call hourglass_coefficient(deck, cursor, cards(1), 'QH', &
+      call hourglass_form(deck, cards(1), 'IHQ', raw%hourglass_default%form)
+      call hourglass_coefficient(deck, cards(1), 'QH', &
         raw%hourglass_default%coefficient)
     case ('CONTROL_BULK_VISCOSITY')
-      call take_bulk_viscosity(deck, cursor, cards(1), raw)
+      ! Off without the keyword; blank fields of it are LS-DYNA's defaults.
+      raw%hourglass_default%quadratic = real_of(cards(1), 'Q1')
+      raw%hourglass_default%linear = real_of(cards(1), 'Q2')
     case ('CONTROL_CONTACT')
-      call take_contact(deck, cursor, cards, raw)
+      raw%controls%penalty_scale = 0.1_wp
+      if (real_of(cards(1), 'SLSFAC') > 0.0_wp) &
+        raw%controls%penalty_scale = real_of(cards(1), 'SLSFAC')
+      raw%controls%contact_step = integer_of(cards(2), 'ECDT')
+      call note_explicit(cards(2), 'ECDT', raw)
+      call take_default_friction(cards(3), raw)
     case ('CONTROL_IMPLICIT_GENERAL')
-      call take_implicit(deck, cursor, cards(1), raw)
+      call take_implicit(deck, cards(1), raw)
     case ('CONTROL_IMPLICIT_DYNAMICS')
-      call take_dynamics(deck, cursor, cards(1), raw)
+      call take_dynamics(deck, cards(1), raw)
     case ('CONTROL_IMPLICIT_SPECTRAL_RADIUS')
-      call take_spectral_radius(deck, cursor, cards(1), raw)
+      raw%spectral_radius = real_of(cards(1), 'RHO')
+      if (is_blank(cards(1), 'RHO')) call report_field(deck, cards(1), 'RHO', &
+        'is not a spectral radius (0 to 1)')
     case ('CONTROL_IMPLICIT_SOLUTION')
-      call take_solution(deck, cursor, cards(1), raw)
+      call take_solution(cards(1), raw%controls%implicit)
     case ('CONTROL_IMPLICIT_AUTO')
-      call take_automatic(deck, cursor, cards(1), raw)
+      call take_automatic(deck, cards(1), raw%controls%implicit)
     case ('CONTROL_UNITS')
       call take_units(deck, cards(1), raw)
     case ('CONTROL_OUTPUT')
-      call refuse_negative(deck, cursor, cards(1), 'IKEDIT')
       raw%controls%output%status_interval = integer_of(cards(1), 'IKEDIT')
     end select
   end subroutine read_control
@@ -93,22 +98,10 @@ contains
   end subroutine warn_of_repetition
 
   !> *CONTROL_TERMINATION.
-  subroutine take_termination(deck, cursor, card, raw)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
+  subroutine take_termination(card, raw)
+    type(card_t), intent(in) :: card
     type(raw_t), intent(inout) :: raw
 
-    if (real_of(card, 'ENDTIM') <= 0.0_wp .and. .not. raw%end_given) call report_field(deck, &
-      cursor, card, 'ENDTIM', 'is not an end time (more than 0)')
-    call refuse_negative(deck, cursor, card, 'ENDCYC')
-    call refuse_negative(deck, cursor, card, 'DTMIN')
-    if (real_of(card, 'DTMIN') > 1.0_wp) call report_field(deck, cursor, card, 'DTMIN', &
-      'is not a share of the first step (at most 1): the run would end at once')
-    call refuse_negative(deck, cursor, card, 'ENDENG')
-    call refuse_negative(deck, cursor, card, 'ENDMAS')
-    call refuse_outside(deck, cursor, card, 'NOSOL', 0, 1, &
-      'is not 0 or 1 (stop after the initialisation)')
     raw%terminated = .true.
     raw%controls%end_time = real_of(card, 'ENDTIM')
     raw%controls%end_cycle = integer_of(card, 'ENDCYC')
@@ -119,57 +112,35 @@ contains
   end subroutine take_termination
 
   !> *CONTROL_TIMESTEP.
-  subroutine take_timestep(deck, cursor, card, raw)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
+  subroutine take_timestep(card, raw)
+    type(card_t), intent(in) :: card
     type(raw_t), intent(inout) :: raw
-    call refuse_negative(deck, cursor, card, 'DTINIT')
-    if (real_of(card, 'TSSFAC') < 0.0_wp .and. len(raw%scale_phrase) == 0) call report_field( &
-      deck, cursor, card, 'TSSFAC', 'is negative: the scale of the step is more than 0 (blank ' &
-      //'and 0 mean 0.9)')
-    call refuse_outside(deck, cursor, card, 'ISDO', 0, 1, &
-      'is not an element length rule (0 area over longest side, 1 area over longest diagonal)')
-    call refuse_outside(deck, cursor, card, 'ERODE', 0, 1, 'is not 0 or 1 (1: elements whose ' &
-      //'step falls below DTMIN times the first step, or whose volume vanishes, leave the mesh)')
+    character(6), parameter :: names(5) = [character(6) :: 'DTINIT', 'TSSFAC', 'ISDO', 'LCTM', &
+      'DT2MS']
+    integer :: k
+
+    do k = 1, size(names)
+      call note_explicit(card, trim(names(k)), raw)
+    end do
     raw%erodes_by_step = integer_of(card, 'ERODE') == 1
-    call note_explicit(raw, card, 'DTINIT', real_of(card, 'DTINIT') > 0.0_wp)
-    call note_explicit(raw, card, 'TSSFAC', real_of(card, 'TSSFAC') > 0.0_wp)
-    call note_explicit(raw, card, 'ISDO', integer_of(card, 'ISDO') == 1)
-    call note_explicit(raw, card, 'LCTM', integer_of(card, 'LCTM') /= 0)
     raw%controls%dt_initial = real_of(card, 'DTINIT')
     raw%controls%dt_scale = 0.9_wp
     if (real_of(card, 'TSSFAC') > 0.0_wp) raw%controls%dt_scale = real_of(card, 'TSSFAC')
     raw%controls%length_rule = merge(length_by_diagonal, length_by_side, &
       integer_of(card, 'ISDO') == 1)
-    call refuse_outside(deck, cursor, card, 'MS1ST', 0, 1, 'is not 0 or 1 (masses are scaled at ' &
-      //'the start alone)')
-    call note_explicit(raw, card, 'DT2MS', abs(real_of(card, 'DT2MS')) > 0.0_wp)
     raw%controls%mass_step = real_of(card, 'DT2MS')
     raw%controls%masses_stay = integer_of(card, 'MS1ST') == 1
     raw%step_line = card%line
     raw%dt_curve = integer_of(card, 'LCTM')
     raw%dt_curve_place = place_of(card, 'LCTM')
+    raw%scale_place = place_of(card, 'TSSFAC')
   end subroutine take_timestep
 
   !> *CONTROL_DYNAMIC_RELAXATION. Whether it takes place may depend on the curves too.
-  subroutine take_relaxation(deck, cursor, card, raw)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
+  subroutine take_relaxation(card, raw)
+    type(card_t), intent(in) :: card
     type(raw_t), intent(inout) :: raw
 
-    if (all(integer_of(card, 'IDRFLG') /= [0, 1, -999])) call report_field(deck, cursor, card, &
-      'IDRFLG', 'is not a kind of dynamic relaxation that this version has (0 where a curve asks ' &
-      //'for it, 1 in any case, -999 in no case)')
-    if (integer_of(card, 'NRCYCK') < 1) call report_field(deck, cursor, card, 'NRCYCK', &
-      'is not a number of cycles (1 or more)')
-    if (.not. (real_of(card, 'DRTOL') > 0.0_wp .and. real_of(card, 'DRTOL') < 1.0_wp)) call &
-      report_field(deck, cursor, card, 'DRTOL', 'is not a share between 0 and 1')
-    if (.not. (real_of(card, 'DRFCTR') > 0.0_wp .and. real_of(card, 'DRFCTR') < 1.0_wp)) call &
-      report_field(deck, cursor, card, 'DRFCTR', 'is not a factor between 0 and 1')
-    call refuse_negative(deck, cursor, card, 'DRTERM')
-    call refuse_negative(deck, cursor, card, 'TSSFDR')
     associate (relaxation => raw%controls%relaxation)
       relaxation%is_on = integer_of(card, 'IDRFLG') == 1
       raw%never_relaxes = integer_of(card, 'IDRFLG') == -999
@@ -182,14 +153,16 @@ contains
     end associate
   end subroutine take_relaxation
 
-  !> A field that is given and that the implicit method leaves.
-  subroutine note_explicit(raw, card, name, is_given)
-    type(raw_t), intent(inout) :: raw
+  !> A field that the implicit method leaves, where it asks for something.
+  subroutine note_explicit(card, name, raw)
     type(card_t), intent(in) :: card
     character(*), intent(in) :: name
-    logical, intent(in) :: is_given
+    type(raw_t), intent(inout) :: raw
+    integer :: k
 
-    if (is_given) raw%explicit_only = [raw%explicit_only, place_of(card, name)]
+    k = field_number(card%names, name)
+    if (card%i(k) /= 0 .or. abs(card%r(k)) > 0.0_wp) &
+      raw%explicit_only = [raw%explicit_only, place_of(card, name)]
   end subroutine note_explicit
 
   !> Rules of the step, from the card or from a word.
@@ -198,51 +171,16 @@ contains
     type(raw_t), intent(in) :: raw
     character(:), allocatable :: given
 
-    if (raw%dt_curve < 0) call reject_field(deck, raw%dt_curve_place, 'is not a curve number')
-    if (raw%controls%implicit%is_on) return
-    given = raw%scale_phrase
+    if (raw%controls%implicit%is_on .or. raw%step_line == 0) return
+    given = given_by(deck, raw%step_line, raw%scale_place%field)
     if (len(given) == 0) given = 'TSSFAC'
-    if (raw%controls%dt_scale > 1.0_wp) call line_warning(deck, merge(raw%step_line, 0, &
-      len(raw%scale_phrase) == 0), 'tssfac', given//' is above 1: the run may become unstable')
-    given = raw%step_phrase
+    if (raw%controls%dt_scale > 1.0_wp) call line_warning(deck, raw%step_line, 'tssfac', given &
+      //' is above 1: the run may become unstable')
+    given = given_by(deck, raw%step_line, raw%dt_curve_place%field)
     if (len(given) == 0) given = 'the curve LCTM'
     if (raw%controls%dt_initial > 0.0_wp .and. raw%dt_curve > 0) call line_warning(deck, &
       raw%step_line, 'dtinit', 'DTINIT has no effect beside '//given)
   end subroutine check_step
-
-  !> *CONTROL_BULK_VISCOSITY: off without the keyword; blank fields of it are LS-DYNA's defaults.
-  subroutine take_bulk_viscosity(deck, cursor, card, raw)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    type(raw_t), intent(inout) :: raw
-
-    call check_viscosity(deck, cursor, card, 'Q1')
-    call check_viscosity(deck, cursor, card, 'Q2')
-    call refuse_outside(deck, cursor, card, 'TYPE', -1, 1, &
-      'is not a kind of bulk viscosity that this version has (1 standard)')
-    raw%hourglass_default%quadratic = real_of(card, 'Q1')
-    raw%hourglass_default%linear = real_of(card, 'Q2')
-  end subroutine take_bulk_viscosity
-
-  !> *CONTROL_CONTACT.
-  subroutine take_contact(deck, cursor, cards, raw)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: cards(:)
-    type(raw_t), intent(inout) :: raw
-
-    call refuse_negative(deck, cursor, cards(1), 'SLSFAC')
-    raw%controls%penalty_scale = 0.1_wp
-    if (real_of(cards(1), 'SLSFAC') > 0.0_wp) &
-      raw%controls%penalty_scale = real_of(cards(1), 'SLSFAC')
-    call refuse_outside(deck, cursor, cards(2), 'ECDT', contact_step_warns, &
-      contact_step_rules, 'is not 0, 1 or 2 (a warning where contact needs a smaller step, no ' &
-      //'warning, a step that is stable with contact)')
-    raw%controls%contact_step = integer_of(cards(2), 'ECDT')
-    call note_explicit(raw, cards(2), 'ECDT', raw%controls%contact_step /= 0)
-    call take_default_friction(deck, cursor, cards(3), raw)
-  end subroutine take_contact
 
   !> *CONTROL_UNITS: names for messages alone. A word that is not known leaves them without.
   subroutine take_units(deck, card, raw)
@@ -287,11 +225,14 @@ contains
       entry = raw_end_t()
       select case (deck%blocks(i_block)%name)
       case ('TERMINATION_CONTACT')
-        call take_contact_end(deck, cursor, card, entry)
+        entry%id_place = place_of(card, 'CID')
+        entry%condition = end_condition_t(kind=end_contact, id=integer_of(card, 'CID'), &
+          direction=integer_of(card, 'DOF'), start=real_of(card, 'ACTIM'), &
+          duration=real_of(card, 'DUR'), threshold=real_of(card, 'THRES'))
       case ('TERMINATION_NODE')
-        call take_bounds(deck, cursor, card, 'NID', end_node_place, end_node_touch, entry)
+        call take_bounds(deck, card, 'NID', end_node_place, end_node_touch, entry)
       case default
-        call take_bounds(deck, cursor, card, 'PID', end_body_place, end_body_way, entry)
+        call take_bounds(deck, card, 'PID', end_body_place, end_body_way, entry)
       end select
       if (any(card%bad)) cycle
       raw%n_end = raw%n_end + 1
@@ -300,9 +241,8 @@ contains
   end subroutine read_ends
 
   !> Bounds of a node or a rigid body. A bound that is blank, of bodies also 0, does not count.
-  subroutine take_bounds(deck, cursor, card, name, along, other, entry)
+  subroutine take_bounds(deck, card, name, along, other, entry)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     character(*), intent(in) :: name         !! of the field of what is bounded
     integer, intent(in) :: along, other      !! kind of STOP 1 and 2, of STOP 4
@@ -310,8 +250,6 @@ contains
     logical :: is_open(2)
 
     entry%id_place = place_of(card, name)
-    if (integer_of(card, name) < 1) call report_field(deck, cursor, card, name, &
-      'is not a number of 1 or more')
     entry%condition%id = integer_of(card, name)
     select case (integer_of(card, 'STOP'))
     case (1, 2)
@@ -320,8 +258,6 @@ contains
     case (4)
       entry%condition%kind = other
     case default
-      call report_field(deck, cursor, card, 'STOP', 'is none of 1 (x), 2 (y) and 4 (' &
-        //trim(merge('contact     ', 'displacement', other == end_node_touch))//')')
       return
     end select
     if (other == end_node_touch .and. entry%condition%kind == other) return
@@ -329,31 +265,12 @@ contains
     if (along == end_body_place) is_open = is_open .or. [abs(real_of(card, 'MAXC')), &
       abs(real_of(card, 'MINC'))] <= 0.0_wp
     if (entry%condition%kind == end_body_way) is_open(2) = .true.
-    if (all(is_open)) call report_field(deck, cursor, card, 'MAXC', 'is no bound, nor is MINC: ' &
+    if (all(is_open)) call report_field(deck, card, 'MAXC', 'is no bound, nor is MINC: ' &
       //'nothing would end the run')
     if (.not. is_open(1)) entry%condition%most = real_of(card, 'MAXC')
     if (.not. is_open(2)) entry%condition%least = real_of(card, 'MINC')
-    if (entry%condition%least >= entry%condition%most) call report_field(deck, cursor, card, &
+    if (entry%condition%least >= entry%condition%most) call report_field(deck, card, &
       'MINC', 'is not below MAXC')
   end subroutine take_bounds
-
-  !> An interface without force.
-  subroutine take_contact_end(deck, cursor, card, entry)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    type(raw_end_t), intent(inout) :: entry
-
-    entry%id_place = place_of(card, 'CID')
-    if (integer_of(card, 'CID') < 1) call report_field(deck, cursor, card, 'CID', &
-      'is not a number of 1 or more')
-    call refuse_negative(deck, cursor, card, 'ACTIM')
-    call refuse_negative(deck, cursor, card, 'DUR')
-    call refuse_negative(deck, cursor, card, 'THRES')
-    call refuse_outside(deck, cursor, card, 'DOF', 0, 2, 'is none of 0 (both), 1 (x) and 2 (y)')
-    entry%condition = end_condition_t(kind=end_contact, id=integer_of(card, 'CID'), &
-      direction=integer_of(card, 'DOF'), start=real_of(card, 'ACTIM'), &
-      duration=real_of(card, 'DUR'), threshold=real_of(card, 'THRES'))
-  end subroutine take_contact_end
 
 end module deck_control_m

@@ -6,13 +6,12 @@ module deck_implicit_m
   use controls_m, only : implicit_t
   use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t
-  use deck_cards_m, only : cursor_t, report_field
-  use deck_values_m, only : integer_of, real_of, is_blank, refuse_negative, refuse_outside
+  use deck_cards_m, only : report_field
+  use deck_values_m, only : integer_of, real_of
   use deck_raw_m, only : raw_t
   implicit none
   private
-  public :: take_implicit, take_dynamics, take_spectral_radius, take_solution, take_automatic, &
-    settle_scheme, check_scheme
+  public :: take_implicit, take_dynamics, take_solution, take_automatic, settle_scheme, check_scheme
 
   !> Spectral radius at infinite frequency where the deck gives none.
   real(wp), parameter :: default_radius = 0.8_wp
@@ -20,26 +19,21 @@ module deck_implicit_m
 contains
 
   !> *CONTROL_IMPLICIT_GENERAL.
-  subroutine take_implicit(deck, cursor, card, raw)
+  subroutine take_implicit(deck, card, raw)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     type(raw_t), intent(inout) :: raw
 
-    call refuse_outside(deck, cursor, card, 'IMFLAG', 0, 1, &
-      'is not a method that this version has (0 explicit, 1 implicit; no switching)')
     raw%controls%implicit%is_on = integer_of(card, 'IMFLAG') == 1
     raw%controls%implicit%dt = real_of(card, 'DT0')
-    if (raw%controls%implicit%is_on .and. raw%controls%implicit%dt <= 0.0_wp .and. &
-      len(raw%step_phrase) == 0) call report_field(deck, cursor, card, 'DT0', &
-      'is not a step (more than 0)')
+    if (raw%controls%implicit%is_on .and. raw%controls%implicit%dt <= 0.0_wp) call report_field( &
+      deck, card, 'DT0', 'is not a step (more than 0)')
   end subroutine take_implicit
 
   !> *CONTROL_IMPLICIT_DYNAMICS: GAMMA and BETA ask for Newmark's method, ALPHA below 0 for HHT;
   !> blank fields leave the generalised-alpha method with its spectral radius.
-  subroutine take_dynamics(deck, cursor, card, raw)
+  subroutine take_dynamics(deck, card, raw)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     type(raw_t), intent(inout) :: raw
     real(wp), parameter :: most = 10.0_wp
@@ -49,87 +43,48 @@ contains
     gamma = real_of(card, 'GAMMA')
     beta = real_of(card, 'BETA')
     alpha = real_of(card, 'ALPHA')
-    call refuse_outside(deck, cursor, card, 'IMASS', 0, 1, &
-      'is not 0 (static) or 1 (dynamic)')
     raw%controls%implicit%is_dynamic = integer_of(card, 'IMASS') == 1
     if (gamma < 0.0_wp .or. (gamma > 0.0_wp .and. gamma < 0.5_wp)) call report_field(deck, &
-      cursor, card, 'GAMMA', 'is not a stable GAMMA of Newmark''s method (0.5 or more)')
-    if (gamma > most) call report_field(deck, cursor, card, 'GAMMA', too_large)
-    if (beta > most) call report_field(deck, cursor, card, 'BETA', too_large)
-    if (beta < 0.0_wp .or. (beta > 0.0_wp .and. beta < 0.25_wp)) call report_field(deck, cursor, &
+      card, 'GAMMA', 'is not a stable GAMMA of Newmark''s method (0.5 or more)')
+    if (gamma > most) call report_field(deck, card, 'GAMMA', too_large)
+    if (beta > most) call report_field(deck, card, 'BETA', too_large)
+    if (beta < 0.0_wp .or. (beta > 0.0_wp .and. beta < 0.25_wp)) call report_field(deck, &
       card, 'BETA', 'is not a stable BETA of Newmark''s method (0.25 or more)')
-    if (alpha > 0.0_wp .or. alpha < -1.0_wp/3.0_wp) call report_field(deck, cursor, card, &
-      'ALPHA', 'is not ALPHA of the HHT method (-1/3 to 0); Bathe''s method is not supported')
     raw%newmark_line = card%line
     raw%newmark = [gamma, beta]
     raw%hht = -alpha
   end subroutine take_dynamics
 
-  !> *CONTROL_IMPLICIT_SPECTRAL_RADIUS, our own keyword.
-  subroutine take_spectral_radius(deck, cursor, card, raw)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    type(raw_t), intent(inout) :: raw
+  !> *CONTROL_IMPLICIT_SOLUTION. Every iteration forms the tangent anew (full Newton), whatever
+  !> ILIMIT.
+  subroutine take_solution(card, implicit)
+    type(card_t), intent(in) :: card
+    type(implicit_t), intent(inout) :: implicit
 
-    raw%spectral_radius = real_of(card, 'RHO')
-    if (is_blank(card, 'RHO') .or. raw%spectral_radius < 0.0_wp .or. raw%spectral_radius > 1.0_wp) &
-      call report_field(deck, cursor, card, 'RHO', 'is not a spectral radius (0 to 1)')
-  end subroutine take_spectral_radius
-
-  !> *CONTROL_IMPLICIT_SOLUTION. Every iteration forms the tangent anew (full
-  !> Newton), whatever ILIMIT.
-  subroutine take_solution(deck, cursor, card, raw)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    type(raw_t), intent(inout) :: raw
-
-    if (all(integer_of(card, 'NSOLVR') /= [0, 1, 12])) call report_field(deck, cursor, card, &
-      'NSOLVR', 'is not a solution method that this version has (1 linear, 12 Newton)')
-    call refuse_negative(deck, cursor, card, 'MAXREF')
-    call refuse_negative(deck, cursor, card, 'DCTOL')
-    call refuse_negative(deck, cursor, card, 'ECTOL')
-    call refuse_negative(deck, cursor, card, 'RCTOL')
-    call refuse_negative(deck, cursor, card, 'LSTOL')
-    associate (implicit => raw%controls%implicit)
-      implicit%is_linear = integer_of(card, 'NSOLVR') == 1
-      if (integer_of(card, 'MAXREF') > 0) implicit%max_iteration = integer_of(card, 'MAXREF')
-      implicit%step_tolerance = real_of(card, 'DCTOL')
-      if (real_of(card, 'ECTOL') > 0.0_wp) implicit%energy_tolerance = real_of(card, 'ECTOL')
-      implicit%residual_tolerance = real_of(card, 'RCTOL')
-      if (implicit%residual_tolerance >= 1.0e10_wp) implicit%residual_tolerance = 0.0_wp
-      if (real_of(card, 'LSTOL') > 0.0_wp) implicit%search_tolerance = real_of(card, 'LSTOL')
-    end associate
+    implicit%is_linear = integer_of(card, 'NSOLVR') == 1
+    if (integer_of(card, 'MAXREF') > 0) implicit%max_iteration = integer_of(card, 'MAXREF')
+    implicit%step_tolerance = real_of(card, 'DCTOL')
+    if (real_of(card, 'ECTOL') > 0.0_wp) implicit%energy_tolerance = real_of(card, 'ECTOL')
+    implicit%residual_tolerance = real_of(card, 'RCTOL')
+    if (implicit%residual_tolerance >= 1.0e10_wp) implicit%residual_tolerance = 0.0_wp
+    if (real_of(card, 'LSTOL') > 0.0_wp) implicit%search_tolerance = real_of(card, 'LSTOL')
   end subroutine take_solution
 
   !> *CONTROL_IMPLICIT_AUTO.
-  subroutine take_automatic(deck, cursor, card, raw)
+  subroutine take_automatic(deck, card, implicit)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
-    type(raw_t), intent(inout) :: raw
+    type(implicit_t), intent(inout) :: implicit
     integer, parameter :: many = 1000000
 
-    call refuse_outside(deck, cursor, card, 'IAUTO', 0, 1, &
-      'is not 0 (constant step) or 1 (automatic)')
-    if (integer_of(card, 'ITEOPT') < 1) call report_field(deck, cursor, card, 'ITEOPT', &
-      'is not a number of iterations')
-    call refuse_negative(deck, cursor, card, 'ITEWIN')
-    call refuse_negative(deck, cursor, card, 'DTMIN')
-    if (real_of(card, 'DTMAX') < 0.0_wp) call report_field(deck, cursor, card, 'DTMAX', &
-      'is negative: a curve of largest steps is not supported')
-    if (real_of(card, 'DTMAX') > 0.0_wp .and. real_of(card, 'DTMIN') > real_of(card, 'DTMAX')) &
-      call report_field(deck, cursor, card, 'DTMAX', &
-      'is below the smallest step DTMIN = '//to_text(real_of(card, 'DTMIN')))
-    associate (implicit => raw%controls%implicit)
-      implicit%is_automatic = integer_of(card, 'IAUTO') == 1
-      ! Their sum must stay a whole number.
-      implicit%best_iterations = min(integer_of(card, 'ITEOPT'), many)
-      implicit%iteration_window = min(integer_of(card, 'ITEWIN'), many)
-      implicit%dt_least = real_of(card, 'DTMIN')
-      implicit%dt_most = real_of(card, 'DTMAX')
-    end associate
+    implicit%is_automatic = integer_of(card, 'IAUTO') == 1
+    ! Their sum must stay a whole number.
+    implicit%best_iterations = min(integer_of(card, 'ITEOPT'), many)
+    implicit%iteration_window = min(integer_of(card, 'ITEWIN'), many)
+    implicit%dt_least = real_of(card, 'DTMIN')
+    implicit%dt_most = real_of(card, 'DTMAX')
+    if (implicit%dt_most > 0.0_wp .and. implicit%dt_least > implicit%dt_most) call report_field( &
+      deck, card, 'DTMAX', 'is below the smallest step DTMIN = '//to_text(implicit%dt_least))
   end subroutine take_automatic
 
   !> Parameters of the time integration from what the cards gave (Chung & Hulbert 1993, eqs. 17, 20,

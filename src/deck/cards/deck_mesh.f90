@@ -3,6 +3,8 @@
 module deck_mesh_m
   use kinds_m, only : wp
   use log_m, only : to_text
+  use deck_ids_m, only : a_node, a_node_set, a_part_set, a_segment_set, a_shell_set, an_element
+  use deck_maps_m, only : lose
   use deck_lines_m, only : deck_t, line_warning
   use deck_fields_m, only : card_t, field_text
   use deck_cards_m, only : cursor_t, open_cursor, next_text, next_card, next_row, report_field, &
@@ -42,7 +44,7 @@ contains
         'is not a node number (1 or more)')
       if (card%i(code) < 0 .or. card%i(code) > 7) call report_field(deck, cursor, card, code, &
         'is not a boundary code (0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)')
-      if (card%bad(id)) raw%lost%nodes = .true.
+      if (card%bad(id)) call lose(deck, [a_node])
       if (card%bad(id)) cycle
       n = raw%n_node + 1
       raw%n_node = n
@@ -85,7 +87,7 @@ contains
       end do
       if (card%i(last) < 0) call report_field(deck, cursor, card, last, &
         'is not a node number (1 or more)')
-      if (any(card%bad)) raw%lost%elements = .true.
+      if (any(card%bad)) call lose(deck, [an_element])
       if (any(card%bad)) cycle
       if (card%i(last) == 0) card%i(last) = card%i(last - 1)
       n = raw%n_element + 1
@@ -121,7 +123,7 @@ contains
           'is not a node number (1 or more)')
       end do
       if (card%bad(part) .or. any(card%bad(first:first + 1))) then
-        raw%lost%sets = .true.
+        call lose(deck, [a_node_set, a_part_set, a_segment_set, a_shell_set])
         cycle
       end if
       call line_warning(deck, card%line, 'beams', 'beams are no elements of a plane mesh: the ' &
@@ -197,7 +199,7 @@ contains
       end select
       set%damaged = set%damaged .or. any(card%bad)
     end do
-    if (is_bad(head, 'SID')) raw%lost%sets = .true.
+    if (is_bad(head, 'SID')) call lose(deck, [a_node_set, a_part_set, a_segment_set, a_shell_set])
     if (is_bad(head, 'SID')) return
     select case (deck%blocks(i_block)%name)
     case ('SET_SEGMENT', 'SET_2D_SEGMENT', 'SET_2D_SEGMENT_SET')

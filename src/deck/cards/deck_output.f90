@@ -7,16 +7,13 @@ module deck_output_m
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, next_row, row_comes, &
     check_rest, report_field
-  use deck_values_m, only : integer_of, real_of, place_of, is_bad, refuse_negative, refuse_outside
+  use deck_values_m, only : integer_of, real_of, place_of, is_bad
   use deck_raw_m, only : raw_t, raw_section_t, history_t, output_plot, raw_contact_t
   use deck_raw_sets_m, only : append_member
-  use history_tables_m, only : history_tables, table_of_keyword, text_none
+  use history_tables_m, only : table_of_keyword
   implicit none
   private
   public :: read_database, read_force_groups, read_cross_sections, read_transducer, settle_number
-
-  !> Most cycles between two restart files.
-  real(wp), parameter :: most_cycles = 2.0e9_wp
 
 contains
 
@@ -50,18 +47,12 @@ contains
       file = table_of_keyword(deck%blocks(i_block)%name)
     end select
     curve = merge('LCDT', 'LCUR', file == output_plot)
-    call refuse_negative(deck, cursor, card, 'DT')
-    if (integer_of(card, curve) < 0) call report_field(deck, cursor, card, curve, &
-      'is not a curve number')
     history%dt = real_of(card, 'DT')
     history%curve = integer_of(card, curve)
     history%place = place_of(card, curve)
     if (file == output_plot) then
-      call refuse_negative(deck, cursor, card, 'NPLTC')
       history%n_state = max(integer_of(card, 'NPLTC'), 0)
-    else if (history_tables(file)%text /= text_none) then
-      call refuse_outside(deck, cursor, card, 'BINARY', 0, 3, &
-        'is none of 0, 1 (text file), 2 (binout) and 3 (both)')
+    else
       history%is_text = integer_of(card, 'BINARY') /= 2
       history%is_binout = integer_of(card, 'BINARY') >= 2
     end if
@@ -82,7 +73,7 @@ contains
     do
       call next_row(deck, cursor, 1, card, found)
       if (.not. found) exit
-      call take_set(deck, cursor, card, 'NSID', 'node', id)
+      id = integer_of(card, 'NSID')
       if (id > 0) call append_member(raw%force_groups, id, card%line, 1)
     end do
   end subroutine read_force_groups
@@ -106,27 +97,13 @@ contains
       if (entry%id == 0) entry%id = raw%n_cut + 1
       call next_card(deck, cursor, 1, card)
       entry%line = card%line
-      call take_set(deck, cursor, card, 'NSID', 'node', entry%nodes)
-      call take_set(deck, cursor, card, 'SSID', 'shell', entry%shells)
+      entry%nodes = max(integer_of(card, 'NSID'), 0)
+      entry%shells = max(integer_of(card, 'SSID'), 0)
       raw%n_cut = raw%n_cut + 1
       raw%cuts(raw%n_cut) = entry
       call row_comes(deck, cursor, found)
     end do
   end subroutine read_cross_sections
-
-  !> A set that has to be given; 0 if it is not.
-  subroutine take_set(deck, cursor, card, name, what, id)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    character(*), intent(in) :: name, what   !! of the field, of the members
-    integer, intent(out) :: id
-
-    id = 0
-    if (integer_of(card, name) < 1) call report_field(deck, cursor, card, name, 'is not a '//what &
-      //' set number (1 or more)')
-    if (.not. is_bad(card, name)) id = integer_of(card, name)
-  end subroutine take_set
 
   !> Cycles between two restart files.
   subroutine take_cycles(deck, cursor, card, cycles)
@@ -139,9 +116,8 @@ contains
 
     cycles = 0
     given = real_of(card, 'CYCL')
-    if (.not. (given >= 0.0_wp .and. given <= most_cycles)) then
-      call report_field(deck, cursor, card, 'CYCL', 'is not a number of cycles')
-    else if (abs(given - anint(given)) > 0.0_wp) then
+    if (is_bad(card, 'CYCL')) return
+    if (abs(given - anint(given)) > 0.0_wp) then
       call report_field(deck, cursor, card, 'CYCL', 'is not a whole number of cycles')
     else
       cycles = nint(given)

@@ -1,39 +1,27 @@
 ! SPDX-License-Identifier: MIT
-!> What the command line changes of a deck: `name=value`, `name.interface=value`, `p:NAME=value`.
+!> What the command line changes of a deck, `name=value`, `name.interface=value` and
+!> `p:NAME=value`: edits of its text before the cards are read.
 module deck_overrides_m
   use kinds_m, only : wp
-  use text_m, only : upper_case, read_real, read_integer, number_good, number_wrong
+  use log_m, only : to_text
+  use text_m, only : upper_case, read_real, read_integer, number_good
   use deck_fields_m, only : largest_value, smallest_value
-  use deck_lines_m, only : deck_t, line_error
+  use deck_lines_m, only : deck_t, word_t, line_error, line_warning
+  use deck_edits_m, only : given_number, set_field, append_block
   use deck_parameters_m, only : override_parameter
   implicit none
   private
-  public :: overrides_t, is_override, override_mistake, read_overrides, override_text, &
-    override_phrase, override_real, override_integer, contact_names, run_names
+  public :: is_override, override_mistake, read_words, edit_controls, edit_contact, find_word, &
+    has_words, check_words, contact_names, run_names
 
-  !> Overrides of interfaces; the others are those of the run.
-  integer, parameter :: n_contact_name = 12
-  character(6), parameter :: contact_names(n_contact_name) = [character(6) :: 'CTYPE', 'NGAUSS', &
-    'PEN', 'PUNIT', 'PENT', 'VDC', 'FS', 'FD', 'DC', 'VC', 'TFAC', &
-    'TARGET']
-  !> Those that may be 0.
-  character(6), parameter :: zero_names(5) = [character(6) :: 'VDC', 'FS', 'FD', 'DC', 'VC']
-  !> PUNIT 4 has a meaning of PEN below 0; interfaces check the sign with their unit.
-  character(6), parameter :: signed_names(1) = [character(6) :: 'PEN']
+  !> Values of interfaces, fields of *CONTACT_2D_SLIDELINE; the others are those of the run.
+  character(6), parameter :: contact_names(12) = [character(6) :: 'CTYPE', 'NGAUSS', 'PEN', &
+    'PUNIT', 'PENT', 'VDC', 'FS', 'FD', 'DC', 'VC', 'TFAC', 'TARGET']
   character(6), parameter :: run_names(3) = [character(6) :: 'ENDTIM', 'DT', 'TSSFAC']
-
-  !> One override.
-  type :: override_t
-    character(:), allocatable :: name   !! upper case
-    integer :: interface = 0            !! 0 = all
-    character(:), allocatable :: text   !! value
-    character(:), allocatable :: phrase !! `"WORD" on the command line`, for messages
-  end type override_t
-
-  !> All of them, in the order of the command line.
-  type :: overrides_t
-    type(override_t), allocatable :: items(:)
-  end type overrides_t
+  !> Those that may be 0, whole numbers, and friction.
+  character(6), parameter :: zero_names(5) = [character(6) :: 'VDC', 'FS', 'FD', 'DC', 'VC'], &
+    whole_names(3) = [character(6) :: 'CTYPE', 'NGAUSS', 'PUNIT'], &
+    friction_names(5) = [character(6) :: 'FS', 'FD', 'DC', 'VC', 'TFAC']
 
 contains
 
@@ -52,176 +40,282 @@ contains
   end function is_override
 
   !> What is wrong with an override by itself, whatever the deck has; empty where nothing is.
-  pure function override_mistake(word) result(mistake)
-    character(*), intent(in) :: word
+  pure function override_mistake(text) result(mistake)
+    character(*), intent(in) :: text
     character(:), allocatable :: mistake
-    type(override_t) :: item
+    type(word_t) :: word
 
-    call take_apart(word, item, mistake)
-    if (len(mistake) > 0) mistake = '"'//word//'"'//mistake
+    call take_apart(text, word, mistake)
+    if (len(mistake) > 0) mistake = '"'//text//'"'//mistake
   end function override_mistake
 
-  !> Take the texts apart; those of parameters go straight to the parameters.
-  subroutine read_overrides(texts, deck, overrides)
+  !> Take the words of the command line apart; those of parameters go to the parameters.
+  subroutine read_words(texts, deck)
     character(*), intent(in) :: texts(:)
     type(deck_t), intent(inout) :: deck
-    type(overrides_t), intent(out) :: overrides
-    type(override_t) :: item
+    type(word_t) :: word
     character(:), allocatable :: mistake
     integer :: i
 
-    allocate (overrides%items(0))
     do i = 1, size(texts)
-      call take_apart(texts(i), item, mistake)
-      item%phrase = '"'//trim(adjustl(texts(i)))//'" on the command line'
-      if (len(mistake) > 0) call line_error(deck, 0, item%phrase//mistake)
-      if (index(item%name, 'P:') == 1) then
-        call override_parameter(deck%parameters, item%name(3:), item%text)
-      else if (len(item%name) > 0) then
-        overrides%items = [overrides%items, item]
+      call take_apart(texts(i), word, mistake)
+      if (len(mistake) > 0) then
+        call line_error(deck, 0, word%phrase//mistake)
+      else if (index(word%name, 'P:') == 1) then
+        call override_parameter(deck%parameters, word%name(3:), word%text)
+      else
+        deck%words = [deck%words, word]
       end if
     end do
-  end subroutine read_overrides
+  end subroutine read_words
 
-  !> Name, interface and value of a text; what is wrong with it goes on from `"TEXT"`.
-  pure subroutine take_apart(text, item, mistake)
+  !> Name, interface and value of a word; what is wrong with it goes on from `"WORD"`.
+  pure subroutine take_apart(text, word, mistake)
     character(*), intent(in) :: text
-    type(override_t), intent(out) :: item              !! without a name where it is none, without
-                                                       !! a value where that is wrong
+    type(word_t), intent(out) :: word
     character(:), allocatable, intent(out) :: mistake  !! empty: none
     integer :: equals, dot, status
 
     mistake = ''
-    item%name = ''
+    word%phrase = '"'//trim(adjustl(text))//'" on the command line'
     equals = index(text, '=')
     if (equals < 2 .or. len_trim(text(equals + 1:)) == 0) then
       mistake = ' is not NAME=VALUE'
       return
     end if
-    item%name = upper_case(trim(adjustl(text(:equals - 1))))
-    item%text = trim(adjustl(text(equals + 1:)))
-    if (index(item%name, 'P:') == 1) return
-    status = number_good
-    if (.not. is_override(item%name)) status = number_wrong
-    dot = index(item%name, '.')
+    word%name = upper_case(trim(adjustl(text(:equals - 1))))
+    word%text = trim(adjustl(text(equals + 1:)))
+    if (index(word%name, 'P:') == 1) return
+    status = merge(number_good, number_good + 1, is_override(word%name))
+    dot = index(word%name, '.')
     if (status == number_good .and. dot > 1) then
-      call read_integer(item%name(dot + 1:), item%interface, status)
-      item%name = item%name(:dot - 1)
+      call read_integer(word%name(dot + 1:), word%interface, status)
+      word%name = word%name(:dot - 1)
     end if
-    if (status /= number_good) then
-      item%name = ''
+    if (status == number_good) then
+      mistake = value_mistake(word)
+    else
       mistake = ' is not known: endtim=, dt=, tssfac=; ctype=, ngauss=, pen=, punit=, pent=, ' &
         //'vdc=, fs=, fd=, dc=, vc=, tfac=, target= for all interfaces or, as in ctype.2=, for ' &
         //'one; p:NAME= for a parameter'
-      return
     end if
-    call check_number(item, mistake)
   end subroutine take_apart
 
-  !> The value must be a number of the right kind.
-  pure subroutine check_number(item, mistake)
-    type(override_t), intent(inout) :: item
-    character(:), allocatable, intent(inout) :: mistake
-    character(:), allocatable :: range
+  !> What is wrong with the number of a word: PEN may be below 0, with a meaning of its own.
+  pure function value_mistake(word) result(mistake)
+    type(word_t), intent(in) :: word
+    character(:), allocatable :: mistake
     integer :: whole, status
     real(wp) :: value
 
-    select case (item%name)
-    case ('CTYPE', 'NGAUSS', 'PUNIT')
-      call read_integer(item%text, whole, status)
-      if (status == number_good) return
-      mistake = ': the value is not a whole number'
-    case default
-      call read_real(item%text, value, status)
-      if (status == number_good) then
-        if (any(signed_names == item%name)) value = abs(value)
-        if (value >= smallest_value .and. value <= largest_value) return
-        if (any(zero_names == item%name) .and. .not. abs(value) > 0.0_wp) return
-      end if
-      range = 'above 0'
-      if (any(zero_names == item%name)) range = 'of 0 or more'
-      if (any(signed_names == item%name)) range = 'other than 0'
-      mistake = ': the value is not a number '//range//' (numbers reach 1e40)'
-    end select
-    item%text = ''
-  end subroutine check_number
+    mistake = ''
+    if (any(whole_names == word%name)) then
+      call read_integer(word%text, whole, status)
+      if (status /= number_good) mistake = ': the value is not a whole number'
+      return
+    end if
+    call read_real(word%text, value, status)
+    if (word%name == 'PEN') value = abs(value)
+    if (status == number_good .and. value >= smallest_value .and. value <= largest_value) return
+    if (status == number_good .and. any(zero_names == word%name) .and. .not. abs(value) > 0.0_wp) &
+      return
+    mistake = 'above 0'
+    if (any(zero_names == word%name)) mistake = 'of 0 or more'
+    if (word%name == 'PEN') mistake = 'other than 0'
+    mistake = ': the value is not a number '//mistake//' (numbers reach 1e40)'
+  end function value_mistake
 
-  !> Value text for an interface (0: the run), the last one given; empty when there is none.
-  pure function override_text(overrides, name, interface) result(text)
-    type(overrides_t), intent(in) :: overrides
-    character(*), intent(in) :: name
-    integer, intent(in) :: interface
-    character(:), allocatable :: text
-    integer :: i
-
-    text = ''
-    i = find_override(overrides, name, interface)
-    if (i > 0) text = overrides%items(i)%text
-  end function override_text
-
-  !> Where a value is given, as in `"ctype.2=5" on the command line`; empty when it is nowhere.
-  pure function override_phrase(overrides, name, interface) result(text)
-    type(overrides_t), intent(in) :: overrides
-    character(*), intent(in) :: name
-    integer, intent(in) :: interface
-    character(:), allocatable :: text
-    integer :: i
-
-    text = ''
-    i = find_override(overrides, name, interface)
-    if (i > 0) text = overrides%items(i)%phrase
-  end function override_phrase
-
-  !> The override that counts for an interface (0: the run), the last one given; 0 when there is
-  !> none.
-  pure function find_override(overrides, name, interface) result(found)
-    type(overrides_t), intent(in) :: overrides
+  !> The word of a name that counts for an interface (0: the run), the last one given, one that
+  !> names the interface before one for all; 0: none.
+  pure function find_word(deck, name, interface) result(found)
+    type(deck_t), intent(in) :: deck
     character(*), intent(in) :: name
     integer, intent(in) :: interface
     integer :: found
     integer :: i
 
     found = 0
-    do i = 1, size(overrides%items)
-      if (overrides%items(i)%name == name .and. overrides%items(i)%interface == 0) found = i
+    do i = 1, size(deck%words)
+      if (deck%words(i)%name /= name) cycle
+      if (all(deck%words(i)%interface /= [0, interface])) cycle
+      if (found > 0) then
+        if (deck%words(found)%interface > deck%words(i)%interface) cycle
+      end if
+      found = i
     end do
-    ! What is meant for one interface wins over what is meant for all.
-    do i = 1, size(overrides%items)
-      if (overrides%items(i)%name /= name .or. overrides%items(i)%interface == 0) cycle
-      if (overrides%items(i)%interface == interface) found = i
+  end function find_word
+
+  !> Whether the command line changes an interface.
+  pure function has_words(deck, interface) result(has)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: interface
+    logical :: has
+    integer :: k
+
+    has = any([(find_word(deck, trim(contact_names(k)), interface) > 0, k=1, size(contact_names))])
+  end function has_words
+
+  !> Values of the run. dt= is DT0 where the deck is implicit; otherwise a constant curve, named as
+  !> LCTM.
+  subroutine edit_controls(deck)
+    type(deck_t), intent(inout) :: deck
+    character(:), allocatable :: number, text
+    real(wp) :: is_implicit
+    integer :: i, word
+
+    call edit_control(deck, 'CONTROL_TERMINATION', 'ENDTIM', find_word(deck, 'ENDTIM', 0))
+    call edit_control(deck, 'CONTROL_TIMESTEP', 'TSSFAC', find_word(deck, 'TSSFAC', 0))
+    word = find_word(deck, 'DT', 0)
+    if (word == 0) return
+    is_implicit = 0.0_wp
+    do i = 1, deck%n_block
+      if (deck%blocks(i)%name == 'CONTROL_IMPLICIT_GENERAL') &
+        call given_number(deck, i, 'IMFLAG', is_implicit)
     end do
-  end function find_override
+    if (is_implicit > 0.0_wp) then
+      call edit_control(deck, 'CONTROL_IMPLICIT_GENERAL', 'DT0', word)
+      return
+    end if
+    number = unused_number(deck)
+    call edit_control(deck, 'CONTROL_TIMESTEP', 'LCTM', word, number)
+    text = ','//deck%words(word)%text//new_line('a')
+    call append_block(deck, 'DEFINE_CURVE', number//','//new_line('a')//'0.0'//text//'1.0e20'//text)
+  end subroutine edit_controls
 
-  !> Replace a real by its override, if there is one.
-  pure subroutine override_real(overrides, name, interface, value, changed)
-    type(overrides_t), intent(in) :: overrides
-    character(*), intent(in) :: name
-    integer, intent(in) :: interface
-    real(wp), intent(inout) :: value
-    logical, intent(inout) :: changed   !! set when there is one
-    character(:), allocatable :: text
-    integer :: status
+  !> Put the value of a word into a field of all keywords of a name, of a new one where there is
+  !> none.
+  subroutine edit_control(deck, keyword, field, word, text)
+    type(deck_t), intent(inout) :: deck
+    character(*), intent(in) :: keyword, field
+    integer, intent(in) :: word                      !! 0: none
+    character(*), intent(in), optional :: text       !! in place of the value
+    character(:), allocatable :: value
+    integer :: i
+    logical :: found
 
-    text = override_text(overrides, name, interface)
-    if (len(text) == 0) return
-    call read_real(text, value, status)
-    changed = .true.
-  end subroutine override_real
+    if (word == 0) return
+    value = deck%words(word)%text
+    if (present(text)) value = text
+    found = any([(deck%blocks(i)%name == keyword, i=1, deck%n_block)])
+    if (.not. found) call append_block(deck, keyword, '')
+    do i = 1, deck%n_block
+      if (deck%blocks(i)%name == keyword) call set_field(deck, i, field, value, word)
+    end do
+  end subroutine edit_control
 
-  !> Replace an integer by its override, if there is one.
-  pure subroutine override_integer(overrides, name, interface, value, changed)
-    type(overrides_t), intent(in) :: overrides
-    character(*), intent(in) :: name
-    integer, intent(in) :: interface
-    integer, intent(inout) :: value
-    logical, intent(inout) :: changed
-    character(:), allocatable :: text
-    integer :: status
+  !> A number that nothing in the deck holds, for one more curve, so that a reference to nothing
+  !> stays one. It is high, so that the deck of changes that a restart may have does not meet it by
+  !> chance either.
+  function unused_number(deck) result(number)
+    type(deck_t), intent(in) :: deck
+    character(:), allocatable :: number
+    integer, parameter :: high = 90000001
+    integer :: i, k
+    logical :: is_used
 
-    text = override_text(overrides, name, interface)
-    if (len(text) == 0) return
-    call read_integer(text, value, status)
-    changed = .true.
-  end subroutine override_integer
+    do k = high, huge(k) - 1
+      number = to_text(k)
+      is_used = .false.
+      do i = 1, deck%n_source
+        is_used = is_used .or. index(deck%sources(i)%text, number) > 0
+      end do
+      do i = 1, deck%parameters%n
+        is_used = is_used .or. index(deck%parameters%items(i)%text, number) > 0
+      end do
+      if (.not. is_used) return
+    end do
+  end function unused_number
+
+  !> Values of an interface, whose block is one of *CONTACT_2D_SLIDELINE. PENT and FD follow PEN and
+  !> FS where the deck makes them the same; a type that the command line names is not the program's
+  !> to change.
+  subroutine edit_contact(deck, i_block, id)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    integer, intent(in) :: id                     !! of the interface
+    real(wp) :: value, other, given
+    integer :: k, word, status
+    logical :: passed(size(contact_names))
+
+    call pass_tie(deck, i_block, id, passed)
+    do k = 1, size(contact_names)
+      if (passed(k)) cycle
+      word = find_word(deck, trim(contact_names(k)), id)
+      if (word == 0) cycle
+      call given_number(deck, i_block, trim(contact_names(k)), value)
+      select case (contact_names(k))
+      case ('PEN')
+        call given_number(deck, i_block, 'PENT', other)
+        if (.not. abs(value - other) > 0.0_wp) call set_field(deck, i_block, 'PENT', '')
+      case ('FS')
+        call given_number(deck, i_block, 'FD', other)
+        call read_real(deck%words(word)%text, given, status)
+        ! FD of a stock card of 0 is the smallest number beside FS.
+        if (.not. abs(value - other) > 0.0_wp .or. max(given, abs(other)) <= smallest_value) &
+          call set_field(deck, i_block, 'FD', '')
+      case ('CTYPE')
+        if (verify(deck%words(word)%text, '+-0') > 0) call set_field(deck, i_block, 'TARGET', '')
+      end select
+      call set_field(deck, i_block, trim(contact_names(k)), deck%words(word)%text, word)
+    end do
+  end subroutine edit_contact
+
+  !> What ties do not have passes them by, with a warning: friction, damping, a share of the largest
+  !> stable penalty. Ties that break hand friction and damping to the contact behind them.
+  subroutine pass_tie(deck, i_block, id, passed)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    integer, intent(in) :: id
+    logical, intent(out) :: passed(:)             !! of `contact_names`
+    character(:), allocatable :: why
+    real(wp) :: tie, value
+    integer :: k, word, status
+
+    passed = .false.
+    call given_number(deck, i_block, 'TIE', tie)
+    if (nint(tie) < 1 .or. nint(tie) > 2) return
+    do k = 1, size(contact_names)
+      word = find_word(deck, trim(contact_names(k)), id)
+      if (word == 0) cycle
+      call read_real(deck%words(word)%text, value, status)
+      why = ''
+      if (contact_names(k) == 'PUNIT' .and. nint(value) == 3) then
+        why = 'its penalty can not be a share of the largest stable one; '
+        where (contact_names == 'PEN' .or. contact_names == 'PENT') passed = .true.
+      else if (nint(tie) == 2) then
+        cycle
+      else if (contact_names(k) == 'VDC' .and. value > 0.0_wp) then
+        why = 'ties have no contact damping; '
+      else if (all(friction_names /= contact_names(k))) then
+        cycle
+      end if
+      passed(k) = .true.
+      call line_warning(deck, deck%blocks(i_block)%keyword, 'override '//contact_names(k) &
+        //' of a tie'//to_text(id), 'interface '//to_text(id)//' is tied: '//why &
+        //deck%words(word)%phrase//' has no effect on it')
+    end do
+  end subroutine pass_tie
+
+  !> What is meant for one interface must find it; what is meant for all says so where there is
+  !> none.
+  subroutine check_words(deck, ids)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: ids(:) !! of the interfaces
+    integer :: i
+
+    do i = 1, size(deck%words)
+      associate (word => deck%words(i))
+        if (.not. any(contact_names == word%name)) cycle
+        if (word%interface /= 0) then
+          if (deck%incomplete .or. any(ids == word%interface)) cycle
+          call line_error(deck, 0, word%phrase//' changes interface '//to_text(word%interface) &
+            //', which the deck does not have')
+        else if (size(ids) == 0) then
+          call line_warning(deck, 0, 'override '//word%name, word%phrase//' changes ' &
+            //word%name//' of all interfaces, but the deck has none')
+        end if
+      end associate
+    end do
+  end subroutine check_words
 
 end module deck_overrides_m

@@ -17,7 +17,7 @@ module deck_parameters_m
   use deck_schema_m, only : keyword_cards, max_card
   implicit none
   private
-  public :: read_parameters, substitute, override_parameter
+  public :: read_parameters, substitute, look_up, override_parameter
 
   !> What happens when a name is defined again (*PARAMETER_DUPLICATION DFLAG); by default a second
   !> definition with another value is an error.
@@ -86,7 +86,7 @@ contains
       do k = 1, 8, 2
         if (card%blank(k) .and. card%blank(k + 1)) cycle
         if (card%blank(k) .or. card%blank(k + 1)) then
-          call field_error(deck, spec, card, k, 'a parameter needs a name and a value (without a ' &
+          call field_error(deck, card, k, 'a parameter needs a name and a value (without a ' &
             //'comma a field ends at its column)')
           cycle
         end if
@@ -94,7 +94,7 @@ contains
         if (index(text, '&') > 0) &
           call look_up(deck%parameters, text, deck%blocks(i_block)%source, text)
         if (len(text) == 0) then
-          call field_error(deck, spec, card, k + 1, 'is not defined by *PARAMETER up to here')
+          call field_error(deck, card, k + 1, 'is not defined by *PARAMETER up to here')
         else
           call define(deck, spec, card, k, text, local_source(deck, i_block))
         end if
@@ -125,6 +125,7 @@ contains
       if (len_trim(text) > 0) then
         card%line = line
         card%number = 1
+        card%names = spec%names
         card%present = .true.
         card%bad = .false.
         card%first(1) = verify(text, ' ')
@@ -142,7 +143,7 @@ contains
       call evaluate(formula, named_values(deck%parameters, deck%blocks(i_block)%source, &
         formula), value, trouble)
       if (allocated(trouble)) then
-        call field_error(deck, spec, card, 1, 'cannot be computed: '//trouble)
+        call field_error(deck, card, 1, 'cannot be computed: '//trouble)
       else
         call define(deck, spec, card, 1, shortest(value), local_source(deck, i_block))
       end if
@@ -174,7 +175,7 @@ contains
     call read_integer(field_text(deck, card, 1), deck%parameters%again, status)
     if (status == number_good .and. deck%parameters%again >= 1 .and. &
       deck%parameters%again <= 5) return
-    call field_error(deck, spec, card, 1, 'is not a policy from 1 to 5')
+    call field_error(deck, card, 1, 'is not a policy from 1 to 5')
     deck%parameters%again = again_error
   end subroutine read_policy
 
@@ -217,7 +218,7 @@ contains
     kind = name(1:1)
     name = trim(adjustl(name(2:)))
     if (scan(kind, 'RIC') == 0 .or. len(name) == 0 .or. len(name) > 20) then
-      call field_error(deck, spec, card, k, 'is not a type letter (R, I or C) and a name')
+      call field_error(deck, card, k, 'is not a type letter (R, I or C) and a name')
       return
     end if
     text = given
@@ -225,14 +226,14 @@ contains
     if (kind /= 'C') then
       call read_real(text, value, status)
       if (status /= number_good) then
-        call field_error(deck, spec, card, min(k + 1, spec%n), 'is not a number')
+        call field_error(deck, card, min(k + 1, spec%n), 'is not a number')
         return
       end if
       if (kind == 'I') then
         ! An expression may miss a whole number by rounding; otherwise the fraction is cut off.
         if (abs(value - anint(value)) <= 1.0e-9_wp*max(1.0_wp, abs(value))) value = anint(value)
         if (abs(value) > real(huge(number), wp)) then
-          call field_error(deck, spec, card, k, 'is too large for an integer parameter')
+          call field_error(deck, card, k, 'is too large for an integer parameter')
           return
         end if
         number = int(value)
@@ -262,7 +263,7 @@ contains
       if (index(field, '&') == 1 .or. index(field, '-&') == 1 .or. index(field, '+&') == 1) then
         if (index(field, '&(') == 0) then
           call look_up(deck%parameters, field, source, value)
-          if (len(value) == 0 .and. .not. deck%incomplete) call field_error(deck, spec, card, k, &
+          if (len(value) == 0 .and. .not. deck%incomplete) call field_error(deck, card, k, &
             'is not defined by any *PARAMETER')
           field = value
         end if

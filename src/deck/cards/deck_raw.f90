@@ -4,112 +4,19 @@
 !> are as long as the cards may make them before these are read, and of their true length behind.
 module deck_raw_m
   use kinds_m, only : wp
-  use curves_m, only : curve_t
-  use eos_m, only : eos_t
-  use erosion_m, only : erosion_t
-  use parts_m, only : section_t, material_t, hourglass_t
+  use parts_m, only : hourglass_t
   use contacts_m, only : contact_t, friction_rule_t
-  use controls_m, only : controls_t
+  use controls_m, only : controls_t, end_condition_t
   use history_tables_m, only : n_table
-  use walls_m, only : wall_t
   use deck_lines_m, only : place_t, deck_t
-  use end_conditions_m, only : end_condition_t
   use deck_raw_sets_m, only : raw_set_t, lengthen
   implicit none
   private
-  public :: raw_t, start_raw, raw_hardening_t, raw_table_t, raw_part_t, raw_contact_t, &
-    raw_erosion_t, raw_wall_t, raw_foam_t, raw_end_t, row_t, history_t, reserve_rows, append_row, &
-    reserve_velocities, append_velocity, reserve_nodes, reserve_elements, row_spc_node, &
-    row_spc_set, row_motion_node, row_motion_set, row_velocity, row_velocity_node, &
-    row_velocity_generation, row_load_node, row_load_set, row_pressure, row_pressure_set, &
-    row_body, row_damping, row_motion_rigid, row_velocity_rigid, row_damping_part, &
-    row_damping_part_set, row_stiffness, row_stiffness_set, row_load_rigid, row_mass, &
-    row_mass_set, row_common, raw_system_t, raw_section_t, output_plot, id_fields, id_place, &
-    reserve_lists, trim_lists
+  public :: raw_t, start_raw, raw_contact_t, raw_end_t, history_t, reserve_nodes, &
+    reserve_elements, raw_section_t, output_plot, reserve_lists, trim_lists
 
-  !> Kinds of `row_t`.
-  integer, parameter :: row_spc_node = 1, row_spc_set = 2, row_motion_node = 3, &
-    row_motion_set = 4, row_velocity = 5, row_velocity_node = 6, row_velocity_generation = 7, &
-    row_load_node = 8, row_load_set = 9, row_pressure = 10, row_pressure_set = 11, &
-    row_body = 12, row_damping = 13, row_motion_rigid = 14, row_velocity_rigid = 15, &
-    row_damping_part = 16, row_damping_part_set = 17, row_stiffness = 18, row_stiffness_set = 19, &
-    row_load_rigid = 20, row_mass = 21, row_mass_set = 22, row_common = 23
   !> Files of the output plan: states, and histories by their `table_` constants.
   integer, parameter :: output_plot = 0
-
-  !> One card of a condition. What its keyword does not have is left as it is.
-  type :: row_t
-    integer :: kind = 0
-    integer :: line = 0
-    integer :: id = 0            !! the field named by `id_fields`
-    integer :: direction = 0     !! DOF; of a body load 1 x, 2 y
-    integer :: motion = 0        !! VAD
-    integer :: curve = 0         !! LCID
-    integer :: others = 0        !! NSIDEX
-    integer :: set_kind = 0      !! STYP
-    integer :: system = 0        !! CID
-    integer :: nodes(2) = 0      !! N1, N2
-    logical :: fixed(2) = .false.            !! DOFX, DOFY
-    real(wp) :: scale = 0.0_wp               !! SF; of damping VALDMP, COEF; MASS
-    real(wp) :: birth = 0.0_wp, death = 0.0_wp, arrival = 0.0_wp
-    real(wp) :: velocity(3) = 0.0_wp         !! VX, VY, VZR
-    real(wp) :: other_velocity(2) = 0.0_wp   !! VXE, VYE
-    real(wp) :: spin = 0.0_wp, centre(2) = 0.0_wp !! OMEGA about +z, XC and YC
-    real(wp) :: factor(2) = 1.0_wp           !! STX, STY; 1 where all six are 0
-  end type row_t
-
-  !> Field of what a row is about, by its kind; LCID where there is nothing but a curve.
-  character(4), parameter :: id_fields(23) = [character(4) :: 'NID', 'NSID', 'NID', 'NSID', &
-    'NSID', 'NID', 'ID', 'NID', 'NSID', 'LCID', 'SSID', 'LCID', 'LCID', 'PID', 'PID', 'PID', &
-    'PSID', 'PID', 'PSID', 'PID', 'NID', 'NSID', 'NSID']
-
-  !> One card of *INITIAL_VELOCITY_NODE: a large deck may have one for each node.
-  type :: node_velocity_t
-    integer :: line = 0
-    integer :: node = 0          !! user id
-    integer :: n_row = 0         !! rows that the deck has before
-    real(wp) :: velocity(2) = 0.0_wp
-  end type node_velocity_t
-
-  !> Hardening of a *MAT_PIECEWISE_LINEAR_PLASTICITY, until its curves are known.
-  type :: raw_hardening_t
-    integer :: material = 0              !! index
-    type(curve_t) :: points              !! of the card, where LCSS is 0: EPS and ES, or SIGY alone
-    real(wp) :: modulus = 0.0_wp         !! plastic modulus behind a single point
-    integer :: curve = 0, rate_curve = 0 !! LCSS, LCSR, user ids
-    type(place_t) :: curve_place, rate_curve_place, rate_place, form_place
-    real(wp) :: rate_constant = 0.0_wp, rate_power = 0.0_wp !! C, P
-    logical :: is_viscoplastic = .false. !! VP = 1
-  end type raw_hardening_t
-
-  !> Curve of a *MAT_CRUSHABLE_FOAM, until it is known.
-  type :: raw_foam_t
-    integer :: material = 0   !! index
-    integer :: curve = 0      !! LCID, user id
-    type(place_t) :: place
-  end type raw_foam_t
-
-  !> One *MAT_ADD_EROSION.
-  type :: raw_erosion_t
-    integer :: material = 0 !! user id
-    type(place_t) :: place  !! MID
-    type(erosion_t) :: erosion
-  end type raw_erosion_t
-
-  !> One *DEFINE_TABLE: its values; its curves are those of the blocks that come next.
-  type :: raw_table_t
-    integer :: id = 0
-    integer :: line = 0
-    integer :: block = 0
-    real(wp), allocatable :: values(:)
-  end type raw_table_t
-
-  !> One *PART.
-  type :: raw_part_t
-    integer :: id = 0, section = 0, material = 0, eos = 0, hourglass = 0
-    integer :: line = 0
-    character(:), allocatable :: title
-  end type raw_part_t
 
   !> One interface.
   type :: raw_contact_t
@@ -121,12 +28,8 @@ module deck_raw_m
     integer :: interference = 0         !! LCINT, user id of the curve
     type(place_t) :: interference_place
     type(place_t) :: search_place       !! FREQ, where it is given
-    type(place_t) :: unit_place         !! PUNIT; line 0 where a word gives it
-    character(:), allocatable :: unit_phrase !! then: which word, and where it stands
-    type(place_t) :: friction_place     !! FS, or what stands for it; line 0 as before
-    logical :: takes_default = .false.  !! friction of *CONTROL_CONTACT acts where it has none
-    character(80) :: kind = ''          !! name of the type
-    logical :: overridden = .false.     !! the command line changes values
+    type(place_t) :: unit_place         !! PUNIT
+    type(place_t) :: friction_place     !! FS, or what stands for it
   end type raw_contact_t
 
   !> One row of *TERMINATION_.
@@ -135,14 +38,6 @@ module deck_raw_m
     type(place_t) :: id_place           !! NID, PID, CID
   end type raw_end_t
 
-  !> One *RIGIDWALL_PLANAR.
-  type :: raw_wall_t
-    type(wall_t) :: wall
-    integer :: line = 0, card_line = 0  !! of the keyword, of card 1
-    integer :: sets(2) = 0              !! NSID, NSIDEX
-    real(wp) :: reach = 0.0_wp          !! OFFSET
-  end type raw_wall_t
-
   !> One *DATABASE_CROSS_SECTION_SET.
   type :: raw_section_t
     integer :: id = 0
@@ -150,13 +45,6 @@ module deck_raw_m
     integer :: line = 0                 !! of its card
     integer :: nodes = 0, shells = 0    !! NSID, SSID
   end type raw_section_t
-
-  !> One *DEFINE_COORDINATE_SYSTEM.
-  type :: raw_system_t
-    integer :: id = 0
-    integer :: line = 0
-    real(wp) :: axes(2, 2) = 0.0_wp     !! its x axis, its y axis
-  end type raw_system_t
 
   !> Output of one file: its interval is completed when curves and ENDTIM are known.
   type :: history_t
@@ -167,16 +55,8 @@ module deck_raw_m
     type(place_t) :: place              !! of the curve's field
   end type history_t
 
-  !> Kinds of which a definition was refused, so that a reference to it is no further mistake.
-  type :: lost_t
-    logical :: nodes = .false., elements = .false., parts = .false., sections = .false.
-    logical :: materials = .false., hourglasses = .false., curves = .false., sets = .false.
-    logical :: tables = .false., equations = .false.
-  end type lost_t
-
   !> Everything.
   type :: raw_t
-    type(lost_t) :: lost
     integer :: n_node = 0, n_element = 0
     integer, allocatable :: node_id(:), node_line(:), node_code(:)
     real(wp), allocatable :: coordinates(:, :) !! (2, n)
@@ -184,45 +64,20 @@ module deck_raw_m
     integer :: z_line = 0                      !! first node whose z differs from the first node's
     integer, allocatable :: element_id(:), element_part(:), element_nodes(:, :), element_line(:)
     ! Lists with a number of entries beside them: while the cards are read they may be longer.
-    integer :: n_part = 0, n_section = 0, n_material = 0, n_equation = 0, n_erosion = 0
-    integer :: n_hardening = 0, n_foam = 0, n_table = 0, n_hourglass = 0, n_curve = 0
-    integer :: n_contact = 0, n_transducer = 0, n_wall = 0, n_end = 0, n_system = 0, n_cut = 0
-    type(raw_part_t), allocatable :: parts(:)
-    type(section_t), allocatable :: sections(:)
-    integer, allocatable :: section_line(:)
-    type(material_t), allocatable :: materials(:)
-    integer, allocatable :: material_line(:)
-    type(eos_t), allocatable :: equations(:)   !! of state
-    integer, allocatable :: equation_line(:)
-    type(raw_erosion_t), allocatable :: erosions(:)
+    integer :: n_contact = 0, n_transducer = 0, n_end = 0, n_cut = 0
     logical :: erodes_by_step = .false.        !! ERODE of *CONTROL_TIMESTEP
-    type(raw_hardening_t), allocatable :: hardenings(:)
-    type(raw_foam_t), allocatable :: foams(:)
-    type(raw_table_t), allocatable :: tables(:)
-    type(hourglass_t), allocatable :: hourglasses(:)
-    integer, allocatable :: hourglass_line(:)
-    logical, allocatable :: bulk_given(:, :)   !! (2, n) Q1 and Q2 of *HOURGLASS are not blank
     type(hourglass_t) :: hourglass_default
-    type(curve_t), allocatable :: curves(:)
-    integer, allocatable :: curve_line(:)
     type(raw_set_t), allocatable :: node_sets(:), part_sets(:), segment_sets(:), shell_sets(:)
     integer :: n_node_set = 0, n_part_set = 0, n_segment_set = 0, n_shell_set = 0
-    type(row_t), allocatable :: rows(:)
-    integer :: n_row = 0
-    type(node_velocity_t), allocatable :: node_velocities(:)
-    integer :: n_node_velocity = 0
+    type(place_t), allocatable :: pressure_places(:)
     type(raw_contact_t), allocatable :: contacts(:)
     type(raw_contact_t), allocatable :: transducers(:) !! with one side
-    type(raw_wall_t), allocatable :: walls(:)
     type(raw_end_t), allocatable :: ends(:)
-    type(raw_system_t), allocatable :: systems(:)
     type(raw_section_t), allocatable :: cuts(:)
     type(controls_t) :: controls
     type(friction_rule_t) :: friction          !! of *CONTROL_CONTACT
     type(place_t) :: friction_place            !! SFRIC, line 0 without the keyword
-    logical :: end_given = .false.             !! a word gives ENDTIM
-    character(:), allocatable :: step_phrase, scale_phrase !! the words that give the step and
-                                               !! TSSFAC and where they stand, empty for none
+    logical :: friction_acts = .false.         !! some interface takes it
     logical :: terminated = .false.            !! the deck has *CONTROL_TERMINATION, be it misspelt
     real(wp) :: newmark(2) = 0.0_wp            !! GAMMA and BETA of the implicit method, 0 = blank
     real(wp) :: hht = 0.0_wp                   !! minus ALPHA of the implicit method
@@ -232,7 +87,7 @@ module deck_raw_m
     integer :: step_line = 0                   !! card of *CONTROL_TIMESTEP, 0 = none
     integer :: newmark_line = 0                !! card of *CONTROL_IMPLICIT_DYNAMICS, 0 = none
     integer :: dt_curve = 0                    !! LCTM, user id
-    type(place_t) :: dt_curve_place
+    type(place_t) :: dt_curve_place, scale_place !! LCTM, TSSFAC
     type(place_t), allocatable :: explicit_only(:) !! fields given that the implicit method leaves
     type(history_t) :: outputs(output_plot:n_table)
     type(raw_set_t) :: history_nodes, history_node_sets, history_shells, history_shell_sets, &
@@ -245,68 +100,11 @@ contains
   subroutine start_raw(raw)
     type(raw_t), intent(out) :: raw
 
-    raw%step_phrase = ''
-    raw%scale_phrase = ''
-    allocate (raw%rows(64), raw%node_velocities(0), raw%node_sets(16), raw%part_sets(16), &
+    allocate (raw%node_sets(16), raw%part_sets(16), &
       raw%segment_sets(16), raw%shell_sets(4), raw%explicit_only(0))
     call reserve_nodes(raw, 0)
     call reserve_elements(raw, 0)
   end subroutine start_raw
-
-  !> Where the id of a row stands.
-  pure function id_place(row) result(place)
-    type(row_t), intent(in) :: row
-    type(place_t) :: place
-
-    place = place_t(line=row%line, card=1, name=id_fields(row%kind))
-  end function id_place
-
-  !> Room for `n_more` rows.
-  subroutine reserve_rows(raw, n_more)
-    type(raw_t), intent(inout) :: raw
-    integer, intent(in) :: n_more
-    type(row_t), allocatable :: longer(:)
-
-    if (raw%n_row + n_more <= size(raw%rows)) return
-    allocate (longer(raw%n_row + max(n_more, raw%n_row)))
-    longer(:raw%n_row) = raw%rows(:raw%n_row)
-    call move_alloc(longer, raw%rows)
-  end subroutine reserve_rows
-
-  !> One more row.
-  subroutine append_row(raw, row)
-    type(raw_t), intent(inout) :: raw
-    type(row_t), intent(in) :: row
-
-    call reserve_rows(raw, 1)
-    raw%n_row = raw%n_row + 1
-    raw%rows(raw%n_row) = row
-  end subroutine append_row
-
-  !> Room for `n_more` velocities of nodes.
-  subroutine reserve_velocities(raw, n_more)
-    type(raw_t), intent(inout) :: raw
-    integer, intent(in) :: n_more
-    type(node_velocity_t), allocatable :: longer(:)
-
-    associate (n => raw%n_node_velocity)
-      if (n + n_more <= size(raw%node_velocities)) return
-      allocate (longer(n + max(n_more, n)))
-      longer(:n) = raw%node_velocities(:n)
-    end associate
-    call move_alloc(longer, raw%node_velocities)
-  end subroutine reserve_velocities
-
-  !> One more velocity of a node.
-  subroutine append_velocity(raw, line, node, velocity)
-    type(raw_t), intent(inout) :: raw
-    integer, intent(in) :: line, node
-    real(wp), intent(in) :: velocity(2)
-
-    call reserve_velocities(raw, 1)
-    raw%n_node_velocity = raw%n_node_velocity + 1
-    raw%node_velocities(raw%n_node_velocity) = node_velocity_t(line, node, raw%n_row, velocity)
-  end subroutine append_velocity
 
   !> Room for `n_more` nodes.
   subroutine reserve_nodes(raw, n_more)
@@ -360,21 +158,8 @@ contains
     type(raw_t), intent(inout) :: raw
     integer :: n
 
-    allocate (raw%parts(n_line('PART')))
-    n = n_line('SECTION_')
-    allocate (raw%sections(n), raw%section_line(n))
-    n = n_block('MAT_')
-    allocate (raw%materials(n), raw%material_line(n), raw%hardenings(n), raw%foams(n), &
-      raw%erosions(n))
-    n = n_block('EOS_')
-    allocate (raw%equations(n), raw%equation_line(n))
-    n = n_line('HOURGLASS')
-    allocate (raw%hourglasses(n), raw%hourglass_line(n), raw%bulk_given(2, n))
-    n = n_block('DEFINE_CURVE')
-    allocate (raw%curves(n), raw%curve_line(n))
-    allocate (raw%tables(n_block('DEFINE_TABLE')), raw%systems(n_block('DEFINE_COORDINATE')))
     n = n_block('CONTACT_')
-    allocate (raw%contacts(n), raw%transducers(n), raw%walls(n_block('RIGIDWALL_')))
+    allocate (raw%contacts(n), raw%transducers(n))
     allocate (raw%ends(n_line('TERMINATION_')), raw%cuts(n_line('DATABASE_CROSS_SECTION')))
 
   contains
@@ -410,27 +195,9 @@ contains
   subroutine trim_lists(raw)
     type(raw_t), intent(inout) :: raw
 
-    raw%parts = raw%parts(:raw%n_part)
-    raw%sections = raw%sections(:raw%n_section)
-    raw%section_line = raw%section_line(:raw%n_section)
-    raw%materials = raw%materials(:raw%n_material)
-    raw%material_line = raw%material_line(:raw%n_material)
-    raw%equations = raw%equations(:raw%n_equation)
-    raw%equation_line = raw%equation_line(:raw%n_equation)
-    raw%erosions = raw%erosions(:raw%n_erosion)
-    raw%hardenings = raw%hardenings(:raw%n_hardening)
-    raw%foams = raw%foams(:raw%n_foam)
-    raw%tables = raw%tables(:raw%n_table)
-    raw%hourglasses = raw%hourglasses(:raw%n_hourglass)
-    raw%hourglass_line = raw%hourglass_line(:raw%n_hourglass)
-    raw%bulk_given = raw%bulk_given(:, :raw%n_hourglass)
-    raw%curves = raw%curves(:raw%n_curve)
-    raw%curve_line = raw%curve_line(:raw%n_curve)
     raw%contacts = raw%contacts(:raw%n_contact)
     raw%transducers = raw%transducers(:raw%n_transducer)
-    raw%walls = raw%walls(:raw%n_wall)
     raw%ends = raw%ends(:raw%n_end)
-    raw%systems = raw%systems(:raw%n_system)
     raw%cuts = raw%cuts(:raw%n_cut)
   end subroutine trim_lists
 

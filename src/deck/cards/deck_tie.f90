@@ -4,13 +4,11 @@ module deck_tie_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use contacts_m, only : contact_t, friction_rule_t, is_tied, breaks, penalty_per_node, &
-    penalty_factor, penalty_share, tie_always, tie_breaks, tie_factor, tie_none
+    penalty_factor, penalty_share, tie_always, tie_breaks, tie_factor
   use deck_lines_m, only : deck_t, line_error, line_warning
   use deck_fields_m, only : card_t
-  use deck_cards_m, only : cursor_t, report_field, warn_of_field
-  use deck_contact_values_m, only : of_penalty, of_unit, of_damping
-  use deck_overrides_m, only : overrides_t, override_phrase
-  use deck_values_m, only : integer_of, real_of, is_bad, place_of, refuse_outside
+  use deck_cards_m, only : report_field, warn_of_field
+  use deck_values_m, only : integer_of, real_of, is_bad, place_of
   use deck_raw_m, only : raw_contact_t
   implicit none
   private
@@ -18,48 +16,37 @@ module deck_tie_m
 
 contains
 
-  !> *CONTACT_2D_SLIDELINE: with TIE 1 or 2 SRCH is the reach of the tie.
-  subroutine take_tie(deck, cursor, cards, commanded, entry)
+  !> *CONTACT_2D_SLIDELINE: with TIE 1 or 2 SRCH is the reach of the tie. Without PEN its penalty is
+  !> the factor of the program where the unit is a factor, or not given (blank and 0 are the same);
+  !> PENT stays where it is given.
+  subroutine take_tie(deck, cards, entry)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: cards(:)
-    logical, intent(in) :: commanded(:) !! values that the command line gives
     type(raw_contact_t), intent(inout) :: entry
 
-    call refuse_outside(deck, cursor, cards(3), 'TIE', tie_none, tie_breaks, 'is not 0 ' &
-      //'(contact), 1 (tied) or 2 (tied until it breaks)')
-    call take_strength(deck, cursor, cards(3), entry)
+    call take_strength(deck, cards(3), entry)
     associate (contact => entry%contact)
       if (.not. any(integer_of(cards(3), 'TIE') == [tie_always, tie_breaks])) return
       contact%tie = integer_of(cards(3), 'TIE')
       contact%tie_reach = contact%search_depth
       contact%search_depth = 0.0_wp
-      if (.not. (abs(contact%penalty) > 0.0_wp .or. any(commanded([of_penalty, of_unit]))) .and. &
-        abs(contact%master_penalty) > 0.0_wp .and. contact%penalty_unit == penalty_per_node) &
-        call report_field(deck, cursor, cards(2), 'PENT', 'is a force per length (PUNIT 0) ' &
-        //'beside a blank PEN, which ties take as a factor on the built-in estimate; give PEN ' &
-        //'too, or PUNIT 2')
+      if (abs(contact%penalty) > 0.0_wp) return
+      if (all(contact%penalty_unit /= [penalty_factor, penalty_per_node])) return
+      if (abs(contact%master_penalty) > 0.0_wp) then
+        if (contact%penalty_unit == penalty_per_node) call report_field(deck, cards(2), 'PENT', &
+          'is a force per length (PUNIT 0) beside a blank PEN, which ties take as a factor on ' &
+          //'the built-in estimate; give PEN too, or PUNIT 2')
+      else
+        contact%master_penalty = tie_factor
+      end if
+      contact%penalty_unit = penalty_factor
+      contact%penalty = tie_factor
     end associate
   end subroutine take_tie
 
-  !> The factor of the program where there is no PEN and the unit is a factor, or is not given
-  !> (blank and 0 are the same). PENT stays where it is given.
-  pure subroutine take_default(has_unit, contact)
-    logical, intent(in) :: has_unit !! the command line gives it
-    type(contact_t), intent(inout) :: contact
-
-    if (abs(contact%penalty) > 0.0_wp) return
-    if (contact%penalty_unit /= penalty_factor .and. (has_unit .or. contact%penalty_unit &
-      /= penalty_per_node)) return
-    contact%penalty_unit = penalty_factor
-    contact%penalty = tie_factor
-    if (.not. abs(contact%master_penalty) > 0.0_wp) contact%master_penalty = tie_factor
-  end subroutine take_default
-
   !> NFLS and SFLS: both, where ties break.
-  subroutine take_strength(deck, cursor, card, entry)
+  subroutine take_strength(deck, card, entry)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     type(raw_contact_t), intent(inout) :: entry
     character(4), parameter :: names(2) = ['NFLS', 'SFLS']
@@ -69,8 +56,8 @@ contains
       entry%contact%strength(k) = real_of(card, names(k))
       if (integer_of(card, 'TIE') == tie_breaks) then
         if (.not. entry%contact%strength(k) > 0.0_wp .and. .not. is_bad(card, names(k))) &
-          call report_field(deck, cursor, card, names(k), 'is not a strength: ties that break ' &
-          //'(TIE 2) need NFLS and SFLS, more than 0')
+          call report_field(deck, card, names(k), 'is not a strength: ties that break (TIE 2) ' &
+          //'need NFLS and SFLS, more than 0')
       else if (abs(entry%contact%strength(k)) > 0.0_wp) then
         call warn_of_field(deck, place_of(card, names(k)), 'has no effect: only ties that break ' &
           //'(TIE 2) have strengths')
@@ -95,42 +82,24 @@ contains
     entry%per_cent = 0.0_wp
   end subroutine take_stock_tie
 
-  !> What ties do not have. What the command line asks of all interfaces passes them by; what the
-  !> deck asks for is an error, or has no effect. Ties that break hand damping, friction and FREQ to
-  !> the contact behind them.
-  subroutine check_tie(deck, line, overrides, commanded, before, entry)
+  !> What ties do not have: an error, or without effect. Ties that break hand damping, friction and
+  !> FREQ to the contact behind them.
+  subroutine check_tie(deck, line, entry)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line !! of the keyword
-    type(overrides_t), intent(in) :: overrides
-    logical, intent(in) :: commanded(:)         !! values that the command line gives
-    type(raw_contact_t), intent(in) :: before   !! it was so before the command line
     type(raw_contact_t), intent(inout) :: entry
     character(:), allocatable :: what
 
     if (.not. is_tied(entry%contact)) return
-    what = 'interface '//to_text(entry%contact%id)//' is tied'
-    if (entry%contact%is_self) call line_error(deck, line, what &
-      //': a surface can not be tied to itself (SURFB 0)')
     associate (contact => entry%contact)
-      if (commanded(of_unit) .and. contact%penalty_unit == penalty_share) then
-        call pass_by('PUNIT', 'its penalty can not be a share of the largest stable one')
-        contact%penalty_unit = before%contact%penalty_unit
-        contact%penalty = before%contact%penalty
-        contact%master_penalty = before%contact%master_penalty
-        call take_default(.false., contact)
-      else if (.not. commanded(of_penalty)) then
-        call take_default(commanded(of_unit), contact)
-      end if
+      what = 'interface '//to_text(contact%id)//' is tied'
+      if (contact%is_self) call line_error(deck, line, what &
+        //': a surface can not be tied to itself (SURFB 0)')
       if (contact%penalty_unit == penalty_share) call line_error(deck, line, what//': its ' &
         //'penalty can not be a share of the largest stable one (PUNIT 3)')
       if (contact%birth > 0.0_wp) call line_error(deck, line, what//' in the reference geometry: ' &
         //'a time from which on it acts (TBIRTH) is not supported')
       if (breaks(contact)) return
-      if (commanded(of_damping) .and. entry%per_cent > 0.0_wp) then
-        call pass_by('VDC', 'ties have no contact damping')
-        entry%per_cent = before%per_cent
-        contact%damping = entry%per_cent/100.0_wp
-      end if
       if (entry%per_cent > 0.0_wp) call line_error(deck, line, what &
         //': contact damping (VDC) of ties is not supported')
       if (len(useless_fields(contact)) > 0) call line_warning(deck, line, &
@@ -139,18 +108,6 @@ contains
       contact%friction = friction_rule_t()
       contact%search_interval = 0
     end associate
-
-  contains
-
-    !> A value of the command line that this interface does not take.
-    subroutine pass_by(name, why)
-      character(*), intent(in) :: name, why
-
-      call line_warning(deck, line, 'override '//name//' of a tie'//to_text(entry%contact%id), &
-        what//': '//why//'; '//override_phrase(overrides, name, entry%contact%id) &
-        //' has no effect on it')
-    end subroutine pass_by
-
   end subroutine check_tie
 
   !> Names of the fields that are given and that ties have no use for.

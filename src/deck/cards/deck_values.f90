@@ -99,9 +99,8 @@ contains
 
   !> Times from which and until when something acts; the default of the end, also that of 0, is
   !> never.
-  subroutine take_life(deck, cursor, card, names, birth, death)
+  subroutine take_life(deck, card, names, birth, death)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     character(*), intent(in) :: names(2)     !! of the two fields
     real(wp), intent(out) :: birth, death
@@ -109,10 +108,10 @@ contains
     birth = real_of(card, names(1))
     death = real_of(card, names(2))
     if (death <= birth) then
-      call report_field(deck, cursor, card, names(2), 'is not after '//trim(names(1))//' "' &
+      call report_field(deck, card, names(2), 'is not after '//trim(names(1))//' "' &
         //to_text(birth)//'"')
     else if (death <= 0.0_wp) then
-      call report_field(deck, cursor, card, names(2), 'is before the run begins (0 means never)')
+      call report_field(deck, card, names(2), 'is before the run begins (0 means never)')
     end if
   end subroutine take_life
 

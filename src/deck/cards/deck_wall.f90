@@ -1,55 +1,90 @@
 ! SPDX-License-Identifier: MIT
-!> *RIGIDWALL_PLANAR: the card.
+!> *RIGIDWALL_PLANAR, and the nodes that see each wall.
 module deck_wall_m
   use kinds_m, only : wp
-  use walls_m, only : wall_t, friction_sticks
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &
-    report_field
-  use deck_values_m, only : integer_of, real_of, reals_of, refuse_negative, take_life
+  use log_m, only : to_text
+  use model_m, only : model_t
+  use rigids_m, only : mark_rigid_nodes
+  use walls_m, only : wall_t, wall_distance, friction_sticks
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, report_field
   use deck_fields_m, only : card_t
-  use deck_lines_m, only : deck_t
-  use deck_raw_m, only : raw_t, raw_wall_t
+  use deck_ids_m, only : a_node_set
+  use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
+  use deck_maps_m, only : find_id, refuse_again
+  use deck_supports_m, only : mark_massive
+  use deck_values_m, only : integer_of, real_of, reals_of, take_life
   implicit none
   private
-  public :: read_wall
+  public :: read_walls
 
 contains
 
-  !> *RIGIDWALL_PLANAR.
-  subroutine read_wall(deck, i_block, raw)
+  !> All walls. Conditions and rigid bodies have been read.
+  subroutine read_walls(deck, model)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(inout) :: model
+    integer, allocatable :: blocks(:), lines(:)
+    logical, allocatable :: has_number(:)
+    integer :: i
+
+    blocks = blocks_of(deck, 'RIGIDWALL_PLANAR')
+    if (size(blocks) == 0) return
+    lines = deck%blocks(blocks)%keyword
+    if (model%controls%implicit%is_on) call line_error(deck, lines(1), &
+      'rigid walls: the implicit method does not have them')
+    allocate (model%walls(size(blocks)))
+    do i = 1, size(blocks)
+      call read_wall(deck, blocks(i), model, model%walls(i))
+      call look_at_nodes(deck, lines(i), model, model%walls(i))
+      call look_at_motions(deck, lines(i), model, model%walls(i))
+    end do
+    has_number = model%walls%id > 0
+    call refuse_again(deck, pack(model%walls%id, has_number), pack(lines, has_number), &
+      'wall number ', 'wall')
+    call number_walls(model%walls)
+  end subroutine read_walls
+
+  !> One wall and its nodes.
+  subroutine read_wall(deck, i_block, model, wall)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
+    type(model_t), intent(in) :: model
+    type(wall_t), intent(inout) :: wall
     type(cursor_t) :: cursor
     type(card_t) :: card, place
-    type(raw_wall_t) :: entry
     character(:), allocatable :: title
+    logical :: sees(model%mesh%n_node)
+    integer :: k
 
     call open_cursor(deck, i_block, cursor)
-    entry%line = deck%blocks(i_block)%keyword
-    if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%wall%id, title)
+    if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, wall%id, title)
     call next_card(deck, cursor, 1, card)
     call next_card(deck, cursor, 2, place)
     call check_rest(deck, cursor)
-    if (integer_of(card, 'NSID') < 0) call report_field(deck, cursor, card, 'NSID', &
-      'is not a node set, nor 0 (all nodes)')
-    if (integer_of(card, 'NSIDEX') < 0) call report_field(deck, cursor, card, 'NSIDEX', &
-      'is not a node set')
-    call refuse_negative(deck, cursor, card, 'OFFSET')
-    call take_life(deck, cursor, card, ['BIRTH', 'DEATH'], entry%wall%birth, entry%wall%death)
-    entry%sets = [integer_of(card, 'NSID'), integer_of(card, 'NSIDEX')]
-    entry%card_line = card%line
-    entry%reach = real_of(card, 'OFFSET')
-    call take_plane(deck, cursor, place, entry%wall)
-    call take_friction(deck, cursor, place, entry%wall)
-    raw%n_wall = raw%n_wall + 1
-    raw%walls(raw%n_wall) = entry
+    call take_life(deck, card, ['BIRTH', 'DEATH'], wall%birth, wall%death)
+    call take_plane(deck, place, wall)
+    wall%friction = real_of(place, 'FRIC')
+    if (any(.not. abs(wall%friction - [2.0_wp, 3.0_wp]) > 0.0_wp)) then
+      call report_field(deck, place, 'FRIC', 'asks for welding of nodes to the wall, which this ' &
+        //'version does not have (0 none, 1 sticks, between: coefficient of friction)')
+    else if (wall%friction < 0.0_wp .or. wall%friction > friction_sticks) then
+      call report_field(deck, place, 'FRIC', 'is not the friction of a wall (0 none, 1 sticks, ' &
+        //'between: coefficient of friction)')
+    end if
+    call find_nodes(deck, card, deck%blocks(i_block)%keyword, model, sees)
+    sees = sees .and. mark_massive(deck, model)
+    if (real_of(card, 'OFFSET') > 0.0_wp) then
+      do k = 1, size(sees)
+        sees(k) = sees(k) .and. wall_distance(wall, model%mesh%coordinates(:, k), &
+          [0.0_wp, 0.0_wp]) <= real_of(card, 'OFFSET')
+      end do
+    end if
+    wall%nodes = pack([(k, k=1, model%mesh%n_node)], sees)
   end subroutine read_wall
 
   !> Tail and head: a point of the wall, and its normal.
-  subroutine take_plane(deck, cursor, card, wall)
+  subroutine take_plane(deck, card, wall)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     type(wall_t), intent(inout) :: wall
     real(wp) :: arrow(2)
@@ -57,10 +92,10 @@ contains
     wall%foot = reals_of(card, 'XT', 'YT')
     arrow = reals_of(card, 'XH', 'YH') - wall%foot
     if (abs(real_of(card, 'ZH') - real_of(card, 'ZT')) > 0.0_wp) then
-      call report_field(deck, cursor, card, 'ZH', &
+      call report_field(deck, card, 'ZH', &
         'is not ZT: the normal of the wall must lie in the plane of the mesh')
     else if (.not. maxval(abs(arrow)) > 0.0_wp) then
-      call report_field(deck, cursor, card, 'XH', &
+      call report_field(deck, card, 'XH', &
         'with YH gives the tail again: the normal points from tail (XT, YT) to head (XH, YH)')
     else
       arrow = arrow/maxval(abs(arrow))
@@ -68,23 +103,107 @@ contains
     end if
   end subroutine take_plane
 
-  !> FRIC: 2 and 3 weld nodes that hit the wall fast enough.
-  subroutine take_friction(deck, cursor, card, wall)
+  !> NSID without NSIDEX and nodes of rigid bodies.
+  subroutine find_nodes(deck, card, line, model, sees)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
-    type(wall_t), intent(inout) :: wall
-    real(wp), parameter :: welds(2) = [2.0_wp, 3.0_wp]
+    integer, intent(in) :: line        !! of the keyword
+    type(model_t), intent(in) :: model
+    logical, intent(out) :: sees(:)
+    logical :: is_rigid(size(sees))
+    integer :: k
 
-    wall%friction = real_of(card, 'FRIC')
-    if (any(.not. abs(wall%friction - welds) > 0.0_wp)) then
-      call report_field(deck, cursor, card, 'FRIC', &
-        'asks for welding of nodes to the wall, which this version does not have ' &
-        //'(0 none, 1 sticks, between: coefficient of friction)')
-    else if (wall%friction < 0.0_wp .or. wall%friction > friction_sticks) then
-      call report_field(deck, cursor, card, 'FRIC', &
-        'is not the friction of a wall (0 none, 1 sticks, between: coefficient of friction)')
+    sees = integer_of(card, 'NSID') == 0
+    if (integer_of(card, 'NSID') > 0) then
+      call find_id(deck, a_node_set, card, 'NSID', k)
+      if (k > 0) sees(model%node_sets(k)%nodes) = .true.
     end if
-  end subroutine take_friction
+    if (integer_of(card, 'NSIDEX') > 0) then
+      call find_id(deck, a_node_set, card, 'NSIDEX', k)
+      if (k > 0) sees(model%node_sets(k)%nodes) = .false.
+    end if
+    is_rigid = sees .and. mark_rigid_nodes(model%rigids, size(sees))
+    if (any(is_rigid)) call line_warning(deck, line, 'wall and rigid body'//to_text(line), &
+      to_text(count(is_rigid))//' node(s) of rigid bodies do not see the wall')
+    sees = sees .and. .not. is_rigid
+  end subroutine find_nodes
+
+  !> Numbers of walls that have none (0): the position in the deck, or the next number that is free.
+  pure subroutine number_walls(walls)
+    type(wall_t), intent(inout) :: walls(:)
+    logical :: is_taken(2*size(walls))
+    integer :: i, k
+
+    is_taken = .false.
+    do i = 1, size(walls)
+      if (walls(i)%id > 0 .and. walls(i)%id <= size(is_taken)) is_taken(walls(i)%id) = .true.
+    end do
+    do i = 1, size(walls)
+      if (walls(i)%id > 0) cycle
+      k = findloc(is_taken(i:), .false., 1) + i - 1
+      walls(i)%id = k
+      is_taken(k) = .true.
+    end do
+  end subroutine number_walls
+
+  !> A wall without nodes, and nodes that start behind it.
+  subroutine look_at_nodes(deck, line, model, wall)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line
+    type(model_t), intent(in) :: model
+    type(wall_t), intent(in) :: wall
+    real(wp) :: size_of_mesh
+    integer :: i, n, first
+
+    if (size(wall%nodes) == 0) call line_warning(deck, line, 'wall'//to_text(line), &
+      'no node sees this wall')
+    size_of_mesh = maxval(abs(model%mesh%coordinates))
+    n = 0
+    first = 0
+    do i = 1, size(wall%nodes)
+      if (wall_distance(wall, model%mesh%coordinates(:, wall%nodes(i)), [0.0_wp, 0.0_wp]) &
+        >= -1.0e-12_wp*size_of_mesh) cycle
+      n = n + 1
+      if (first == 0) first = wall%nodes(i)
+    end do
+    if (n > 0) call line_warning(deck, line, 'behind the wall'//to_text(line), to_text(n) &
+      //' node(s) start behind the wall, the first is '//to_text(model%mesh%node_id(first)) &
+      //': they are kept from going further, not brought back')
+  end subroutine look_at_nodes
+
+  !> Nodes that can not give way: wherever the wall pushes, a motion is prescribed or the
+  !> node is fixed. Nodes that are fixed in all such directions never come nearer, so they
+  !> are no reason for a warning.
+  subroutine look_at_motions(deck, line, model, wall)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line
+    type(model_t), intent(in) :: model
+    type(wall_t), intent(in) :: wall
+    logical :: is_free(2, model%mesh%n_node), is_moved(model%mesh%n_node)
+    integer, allocatable :: blind(:)
+    integer :: i
+
+    is_free = spread(abs(wall%normal) > 0.0_wp, 2, model%mesh%n_node)
+    is_moved = .false.
+    associate (conditions => model%conditions)
+      do i = 1, size(conditions%fixed_nodes)
+        is_free(conditions%fixed_directions(i), conditions%fixed_nodes(i)) = .false.
+      end do
+      do i = 1, size(conditions%motions)
+        associate (motion => conditions%motions(i))
+          is_moved(motion%node) = is_moved(motion%node) .or. is_free(motion%direction, motion%node)
+        end associate
+      end do
+      do i = 1, size(conditions%motions)
+        is_free(conditions%motions(i)%direction, conditions%motions(i)%node) = .false.
+      end do
+    end associate
+    is_moved = is_moved .and. .not. any(is_free, 1)
+    blind = pack(wall%nodes, is_moved(wall%nodes))
+    if (size(blind) > 0) call line_warning(deck, line, 'wall and motion'//to_text(line), &
+      to_text(size(blind))//' node(s) do not see the wall while their motion is prescribed ' &
+      //'(*BOUNDARY_PRESCRIBED_MOTION), the first is '//to_text(model%mesh%node_id(blind(1))) &
+      //': they pass through it')
+  end subroutine look_at_motions
 
 end module deck_wall_m

@@ -26,23 +26,21 @@ contains
   end subroutine forget_places
 
   !> The text of the effective deck. The files that it is made of are given up on the way.
-  subroutine write_effective(deck, tail, effective)
+  subroutine write_effective(deck, effective)
     type(deck_t), intent(inout) :: deck
-    character(*), intent(in) :: tail  !! keywords besides those of the deck
     character(:), allocatable, intent(out) :: effective
     type(buffer_t) :: buffer
 
-    call compose(deck, tail, buffer)
+    call compose(deck, buffer)
     allocate (character(buffer%n) :: buffer%text)
     buffer%n = 0
-    call compose(deck, tail, buffer)
+    call compose(deck, buffer)
     call move_alloc(buffer%text, effective)
   end subroutine write_effective
 
   !> Put the deck together; only counted while the buffer has no text.
-  subroutine compose(deck, tail, buffer)
+  subroutine compose(deck, buffer)
     type(deck_t), intent(inout) :: deck !! loses its text when it is written
-    character(*), intent(in) :: tail
     type(buffer_t), intent(inout) :: buffer
     integer :: i, line, source, last_block(deck%n_source)
 
@@ -64,10 +62,6 @@ contains
         end associate
       end if
       if (deck%blocks(i)%dropped) cycle
-      if (allocated(deck%blocks(i)%replacement)) then
-        call put_text(buffer, deck%blocks(i)%replacement)
-        cycle
-      end if
       call put(buffer, '*'//deck%blocks(i)%given//layout_mark(deck%blocks(i)%layout))
       source = deck%blocks(i)%source
       do line = deck%blocks(i)%first, deck%blocks(i)%last
@@ -78,7 +72,6 @@ contains
         end if
       end do
     end do
-    call put_text(buffer, tail)
     call put(buffer, '*END')
   end subroutine compose
 

@@ -7,10 +7,8 @@ module deck_choose_type_m
   use contact_types_m, only : type_nts_ar, type_nts_mar, type_segmented_mortar
   use contacts_m, only : contact_t, has_friction, is_tied, penalty_factor, penalty_share, &
     penalty_implicit, tie_factor
-  use deck_contact_values_m, only : leaves_type
+  use deck_contact_m, only : leaves_type, write_choice
   use deck_lines_m, only : deck_t
-  use deck_override_apply_m, only : contact_text
-  use deck_raw_m, only : raw_contact_t
   use kinds_m, only : wp
   use log_m, only : to_text
   use model_m, only : model_t
@@ -31,12 +29,11 @@ module deck_choose_type_m
 contains
 
   !> Choose for one interface that asks for it; one with a target has its kind of scene.
-  subroutine choose_type(deck, entry, model, contact)
+  subroutine choose_type(deck, i_block, model, contact)
     type(deck_t), intent(inout) :: deck
-    type(raw_contact_t), intent(in) :: entry
+    integer, intent(in) :: i_block       !! of the interface
     type(model_t), intent(in) :: model
     type(contact_t), intent(inout) :: contact
-    type(raw_contact_t) :: chosen
     logical :: has_target
 
     has_target = contact%target > 0.0_wp
@@ -50,13 +47,7 @@ contains
     if (.not. has_target) contact%target = default_target
     if (.not. abs(contact%penalty) > 0.0_wp) call take_penalty(model%controls%implicit%is_on, &
       contact)
-    chosen = entry
-    chosen%contact%contact_type = contact%contact_type
-    chosen%contact%penalty_unit = contact%penalty_unit
-    chosen%contact%penalty = contact%penalty
-    chosen%contact%master_penalty = contact%master_penalty
-    chosen%contact%target = contact%target
-    deck%blocks(entry%block)%replacement = contact_text(chosen)
+    call write_choice(deck, i_block, contact)
   end subroutine choose_type
 
   !> The penalty where the deck has none: the largest that an explicit step bears; K L/A of implicit

@@ -3,14 +3,14 @@
 module deck_implicit_penalty_m
   use contacts_m, only : is_tied, penalty_implicit
   use deck_cards_m, only : reject_field
-  use deck_lines_m, only : deck_t, deck_error
+  use deck_lines_m, only : deck_t
   use deck_raw_m, only : raw_t, raw_contact_t
   use kinds_m, only : wp
   use log_m, only : to_text
   use model_m, only : model_t
   implicit none
   private
-  public :: check_implicit_penalties, refuse_unit
+  public :: check_implicit_penalties
 
 contains
 
@@ -135,20 +135,8 @@ contains
     type(raw_contact_t), intent(in) :: entry
     character(*), intent(in) :: message
 
-    call refuse_unit(deck, entry, 'asks for implicit springs, which in this version '//message)
+    call reject_field(deck, entry%unit_place, 'asks for implicit springs, which in this version ' &
+      //message)
   end subroutine refuse
-
-  !> An error where the unit of the penalty was given.
-  subroutine refuse_unit(deck, entry, message)
-    type(deck_t), intent(inout) :: deck
-    type(raw_contact_t), intent(in) :: entry
-    character(*), intent(in) :: message
-
-    if (entry%unit_place%line > 0) then
-      call reject_field(deck, entry%unit_place, message)
-    else
-      call deck_error(deck, entry%unit_phrase//' '//message)
-    end if
-  end subroutine refuse_unit
 
 end module deck_implicit_penalty_m

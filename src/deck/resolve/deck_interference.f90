@@ -7,9 +7,10 @@ module deck_interference_m
   use curves_m, only : curve_t
   use model_m, only : model_t
   use units_m, only : in_units
+  use deck_ids_m, only : a_curve
   use deck_lines_m, only : deck_t, line_warning
   use deck_cards_m, only : reject_field
-  use deck_maps_m, only : maps_t, resolve_id
+  use deck_maps_m, only : resolve_id
   use deck_raw_m, only : raw_contact_t
   implicit none
   private
@@ -21,16 +22,15 @@ module deck_interference_m
 contains
 
   !> Give the interface its curve, which must lead from 0 to 1.
-  subroutine resolve_interference(deck, entry, maps, model, contact)
+  subroutine resolve_interference(deck, entry, model, contact)
     type(deck_t), intent(inout) :: deck
     type(raw_contact_t), intent(in) :: entry
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(in) :: model
     type(contact_t), intent(inout) :: contact
     integer :: found, n
 
     found = 0
-    if (entry%interference > 0) call resolve_id(deck, maps%curves, entry%interference, 'curve', &
+    if (entry%interference > 0) call resolve_id(deck, a_curve, entry%interference, &
       entry%interference_place, found)
     if (found == 0) return
     associate (curve => model%curves(found))

@@ -1,36 +1,41 @@
 ! SPDX-License-Identifier: MIT
 !> Raw deck to model: every id becomes an index, every set its nodes.
 module deck_resolve_m
-  use kinds_m, only : wp
+  use kinds_m, only : wp, long
   use log_m, only : to_text
+  use sorting_m, only : sorted_order
   use controls_m, only : interval_t, is_asked
   use deck_implicit_m, only : settle_scheme, check_scheme
   use history_tables_m, only : history_tables, n_table, table_nodout, table_elout, table_nodfor, &
     table_secforc
   use model_m, only : model_t
-  use conditions_m, only : motion_acceleration
-  use contacts_m, only : penalty_share, penalty_implicit
+  use contacts_m, only : is_tied, penalty_share, penalty_implicit
   use deck_cards_m, only : reject_field, warn_of_field
-  use deck_implicit_penalty_m, only : check_implicit_penalties, refuse_unit
-  use deck_lines_m, only : deck_t, place_t, line_error, line_warning
-  use deck_maps_m, only : maps_t, make_maps, resolve_id
-  use deck_raw_m, only : raw_t, raw_contact_t, history_t, row_damping, row_motion_node, &
-    row_motion_set, row_velocity, row_velocity_generation, output_plot
-  use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh, settle_points, check_unsound_mesh
-  use deck_resolve_eos_m, only : resolve_equations, check_implicit_laws
-  use deck_resolve_erosion_m, only : resolve_erosion, check_erosion_points, check_eroding_contacts
-  use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates, resolve_foams
+  use eos_m, only : eos_t
+  use hardenings_m, only : depends_on_rate
+  use deck_curves_m, only : table_t, read_curves, read_systems
+  use deck_eos_m, only : read_equations, settle_pressures
+  use deck_erosion_m, only : read_erosions
+  use deck_material_m, only : read_materials
+  use deck_part_m, only : read_parts, read_sections
+  use deck_damping_m, only : read_damping
+  use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, an_hourglass, &
+    a_curve, a_table, a_node_set, a_part_set, a_segment_set, a_shell_set, a_system
+  use deck_implicit_penalty_m, only : check_implicit_penalties
+  use deck_lines_m, only : deck_t, line_error, line_warning
+  use deck_loads_m, only : read_nodal_loads, read_rigid_loads, read_body_loads, read_pressures, &
+    read_masses, warn_of_bores
+  use deck_maps_m, only : map_kind, resolve_id, refuse_again
+  use deck_raw_m, only : raw_t, raw_contact_t, history_t, output_plot
+  use deck_resolve_mesh_m, only : resolve_mesh, check_unsound_mesh, settle_axis
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
-  use deck_resolve_conditions_m, only : resolve_conditions
   use deck_resolve_sections_m, only : resolve_cross_sections, resolve_transducers
-  use deck_resolve_damping_m, only : resolve_damping, refuse_static, settle_relaxation
-  use deck_resolve_rigids_m, only : resolve_rigids
-  use deck_resolve_round_m, only : settle_form, settle_axis, mark_round_contacts, &
-    check_loads_of_round, check_velocities_of_round
-  use deck_resolve_velocity_m, only : resolve_velocity
   use deck_resolve_ends_m, only : resolve_ends
   use deck_resolve_contacts_m, only : resolve_contacts
-  use deck_resolve_walls_m, only : resolve_walls
+  use deck_rigids_m, only : make_rigids
+  use deck_supports_m, only : read_supports, read_motions, read_common_motions
+  use deck_velocity_m, only : read_velocities
+  use deck_wall_m, only : read_walls
   implicit none
   private
   public :: resolve_model
@@ -47,23 +52,12 @@ contains
     do i = 1, size(model%parts)
       associate (part => model%parts(i))
         if (part%hourglass%quadratic > 0.0_wp .or. part%hourglass%linear > 0.0_wp) &
-          call line_error(deck, raw%parts(i)%line, 'part '//to_text(part%id)//' has bulk ' &
-          //'viscosity (*CONTROL_BULK_VISCOSITY or *HOURGLASS), which the implicit method ' &
+          call line_error(deck, deck%maps(a_part)%lines(i), 'part '//to_text(part%id)//' has ' &
+          //'bulk viscosity (*CONTROL_BULK_VISCOSITY or *HOURGLASS), which the implicit method ' &
           //'does not have')
       end associate
     end do
-    call check_no_rates(deck, raw, model)
-    call check_implicit_laws(deck, raw, model)
-    do i = 1, raw%n_row
-      associate (row => raw%rows(i))
-        if (row%kind == row_damping) call refuse_static(deck, model, row%line, '*DAMPING_GLOBAL')
-        if ((row%kind == row_motion_node .or. row%kind == row_motion_set) &
-          .and. row%motion == motion_acceleration .and. .not. model%controls%implicit%is_dynamic) &
-          call reject_field(deck, place_t(row%line, 1, 'VAD'), &
-          'is an acceleration, which has no meaning in statics ' &
-          //'(0 velocity or 2 displacement, or IMASS 1 of *CONTROL_IMPLICIT_DYNAMICS)')
-      end associate
-    end do
+    call check_implicit_laws(deck, model)
     do i = 1, deck%n_block
       if (deck%blocks(i)%name == 'CONTROL_TERMINATION' .and. raw%controls%dt_floor > 0.0_wp) &
         call line_warning(deck, deck%blocks(i)%keyword, 'implicit step floor', &
@@ -79,6 +73,46 @@ contains
     call warn_of_explicit(deck, raw)
   end subroutine check_implicit
 
+  !> Laws with rates, heat, energy or failure have no tangent.
+  subroutine check_implicit_laws(deck, model)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(in) :: model
+    character(:), allocatable :: reason
+    integer :: i
+
+    do i = 1, size(model%materials)
+      associate (material => model%materials(i))
+        reason = ''
+        if (allocated(material%flow)) then
+          reason = 'a flow stress of Johnson and Cook'
+        else if (material%failure_strain < huge(1.0_wp)) then
+          reason = 'a plastic strain at failure'
+        else if (allocated(material%crush)) then
+          reason = 'the law of a crushable foam'
+        else if ((allocated(material%eos) .or. material%needs_eos) .and. .not. &
+          allocated(material%rubber)) then
+          reason = 'an equation of state'
+        end if
+        if (len(reason) > 0) call refuse(reason)
+        if (.not. allocated(material%curve)) cycle
+        if (depends_on_rate(material%curve)) call refuse( &
+          'a yield stress that depends on the strain rate (C, LCSR or a table)')
+      end associate
+    end do
+
+  contains
+
+    !> One error.
+    subroutine refuse(what)
+      character(*), intent(in) :: what
+
+      call line_error(deck, deck%maps(a_material)%lines(i), 'material ' &
+        //to_text(model%materials(i)%id)//' has '//what &
+        //', which the implicit method does not have')
+    end subroutine refuse
+
+  end subroutine check_implicit_laws
+
   !> What the deck and its words give for an explicit run alone: one warning for each.
   subroutine warn_of_explicit(deck, raw)
     type(deck_t), intent(inout) :: deck
@@ -93,16 +127,6 @@ contains
       if (raw%contacts(i)%contact%search_interval > 0) call warn_of_field(deck, &
         raw%contacts(i)%search_place, no_effect)
     end do
-    if (len(raw%scale_phrase) > 0) call line_warning(deck, 0, 'implicit tssfac', &
-      raw%scale_phrase//' '//no_effect)
-    if (raw%controls%implicit%is_dynamic) return
-    do i = 1, raw%n_row
-      if (all(raw%rows(i)%kind /= [row_velocity, row_velocity_generation])) cycle
-      call line_warning(deck, raw%rows(i)%line, 'static velocity', &
-        'an initial velocity has no effect in statics')
-    end do
-    if (raw%n_node_velocity > 0) call line_warning(deck, raw%node_velocities(1)%line, &
-      'static velocity', 'an initial velocity has no effect in statics')
   end subroutine warn_of_explicit
 
   !> Automatic and implicit penalties are made for explicit steps.
@@ -119,7 +143,8 @@ contains
     case default
       return
     end select
-    call refuse_unit(deck, entry, reason//', which the implicit method does not have (0, 1 or 2)')
+    call reject_field(deck, entry%unit_place, reason//', which the implicit method does not ' &
+      //'have (0, 1 or 2)')
   end subroutine check_penalty_unit
 
   !> Fill the model.
@@ -127,65 +152,200 @@ contains
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(inout) :: raw
     type(model_t), intent(inout) :: model
-    type(maps_t) :: maps
-    logical, allocatable :: is_sound(:) !! (n_element)
+    type(table_t), allocatable :: tables(:)
+    type(eos_t), allocatable :: equations(:)
+    logical, allocatable :: is_sound(:), fixed(:, :) !! (n_element), (2, n_node)
+    integer, allocatable :: owner(:)
     logical :: sound
     integer :: i
 
-    call make_maps(deck, raw, maps)
+    call make_maps(deck, raw)
     model%controls = raw%controls
     if (model%controls%implicit%is_on) call settle_scheme(raw%newmark, raw%hht, &
       raw%spectral_radius, model%controls%implicit)
     call check_scheme(deck, raw%newmark_line, model%controls%implicit)
-    call resolve_parts(deck, raw, maps, model)
-    call settle_form(deck, raw, model)
-    call settle_points(deck, raw, model)
-    call resolve_hardenings(deck, raw, maps, model)
-    call resolve_foams(deck, raw, maps, model)
-    call resolve_erosion(deck, raw, maps, model)
-    call check_erosion_points(deck, raw, model)
-    call resolve_equations(deck, raw, maps, model)
-    call resolve_mesh(deck, raw, maps, model, is_sound, sound)
-    call settle_axis(deck, raw, model)
-    call resolve_sets(deck, raw, maps, model)
-    call resolve_history(deck, raw, maps, model)
-    if (size(raw%cuts) > 0) call resolve_cross_sections(deck, raw, maps, model)
-    if (raw%dt_curve > 0) call resolve_id(deck, maps%curves, raw%dt_curve, 'curve', &
-      raw%dt_curve_place, model%controls%dt_curve)
-    if (model%controls%dt_curve > 0) then
-      if (minval(model%curves(model%controls%dt_curve)%ordinate) <= 0.0_wp) call line_error(deck, &
-        raw%curve_line(model%controls%dt_curve), 'curve '//to_text(raw%dt_curve) &
-        //' caps the time step (LCTM) and must be above 0 everywhere')
-    end if
+    call read_curves(deck, model, tables)
+    call read_systems(deck)
+    call read_materials(deck, tables, model)
+    call read_equations(deck, equations)
+    call read_sections(deck, model)
+    call read_parts(deck, raw%hourglass_default, equations, model)
+    call read_erosions(deck, raw%erodes_by_step, raw%step_line, model)
+    call settle_pressures(deck, equations, model)
+    call resolve_mesh(deck, raw, model, is_sound, sound)
+    call settle_axis(deck, model)
+    call resolve_sets(deck, raw, model)
+    call resolve_history(deck, raw, model)
+    if (size(raw%cuts) > 0) call resolve_cross_sections(deck, raw, model)
+    call settle_step_curve(deck, raw, model)
     associate (output => model%controls%output)
-      call take_interval(deck, maps, raw%outputs(output_plot), model, output%plot)
+      call take_interval(deck, raw%outputs(output_plot), model, output%plot)
       do i = 1, n_table
-        call take_interval(deck, maps, raw%outputs(i), model, output%histories(i))
+        call take_interval(deck, raw%outputs(i), model, output%histories(i))
       end do
     end associate
     call warn_of_empty(deck, raw, model)
     if (model%controls%implicit%is_on) call check_implicit(deck, raw, model)
-    call resolve_conditions(deck, raw, maps, model)
-    call resolve_rigids(deck, raw, maps, model)
-    call resolve_damping(deck, raw, maps, model)
+    call make_rigids(deck, model, owner)
+    call read_supports(deck, raw%node_code, owner, model, fixed)
+    call read_motions(deck, owner, fixed, model)
+    call read_nodal_loads(deck, model)
+    call read_rigid_loads(deck, model)
+    call read_body_loads(deck, model)
+    call read_pressures(deck, model, raw%pressure_places)
+    call read_masses(deck, model)
+    call read_common_motions(deck, model)
+    call read_damping(deck, model)
+    call read_velocities(deck, model)
+    call read_walls(deck, model)
+    call warn_of_bores(deck, model)
     call settle_relaxation(deck, raw, model)
-    call resolve_velocity(deck, raw, maps, model)
-    call check_loads_of_round(deck, raw, model)
-    call check_velocities_of_round(deck, raw, model)
-    call resolve_walls(deck, raw, maps, model)
     allocate (model%mesh%deck_node(model%mesh%n_node))
     model%mesh%deck_node = [(i, i=1, model%mesh%n_node)]
     if (sound) then
-      call resolve_contacts(deck, raw, maps, model)
+      call resolve_contacts(deck, raw, model)
       call check_eroding_contacts(deck, raw, model)
-      call resolve_transducers(deck, raw, maps, model)
+      call resolve_transducers(deck, raw, model)
       if (model%is_round) call mark_round_contacts(model)
     else
-      call check_unsound_mesh(deck, raw, maps, is_sound, model)
+      call check_unsound_mesh(deck, raw, is_sound, model)
     end if
     call check_implicit_penalties(deck, raw, model, sound)
-    call resolve_ends(deck, raw, maps, model, sound)
+    call resolve_ends(deck, raw, model, sound)
   end subroutine resolve_model
+
+  !> The curve that caps the time step.
+  subroutine settle_step_curve(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(inout) :: model
+
+    if (raw%dt_curve < 1) return
+    associate (k => model%controls%dt_curve)
+      call resolve_id(deck, a_curve, raw%dt_curve, raw%dt_curve_place, k)
+      if (k == 0) return
+      if (minval(model%curves(k)%ordinate) <= 0.0_wp) call line_error(deck, &
+        deck%maps(a_curve)%lines(k), 'curve '//to_text(raw%dt_curve) &
+        //' caps the time step (LCTM) and must be above 0 everywhere')
+    end associate
+  end subroutine settle_step_curve
+
+  !> All maps, and numbers of interfaces, transducers and cross sections, which nothing refers to by
+  !> id.
+  subroutine make_maps(deck, raw)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    character(*), parameter :: position = ' (without a number it is the position in the deck)'
+    integer, allocatable :: ids(:), lines(:), order(:)
+
+    call map_kind(deck, a_node, raw%node_id(:raw%n_node), raw%node_line(:raw%n_node), 'NID')
+    call map_kind(deck, an_element, raw%element_id(:raw%n_element), &
+      raw%element_line(:raw%n_element), 'EID')
+    call map_kind(deck, a_node_set, [raw%node_sets(:raw%n_node_set)%id], &
+      [raw%node_sets(:raw%n_node_set)%line], 'SID', &
+      [raw%node_sets(:raw%n_node_set)%of_beams])
+    call map_kind(deck, a_part_set, [raw%part_sets(:raw%n_part_set)%id], &
+      [raw%part_sets(:raw%n_part_set)%line], 'SID')
+    call map_kind(deck, a_segment_set, [raw%segment_sets(:raw%n_segment_set)%id], &
+      [raw%segment_sets(:raw%n_segment_set)%line], 'SID', &
+      [raw%segment_sets(:raw%n_segment_set)%of_beams])
+    call map_kind(deck, a_shell_set, [raw%shell_sets(:raw%n_shell_set)%id], &
+      [raw%shell_sets(:raw%n_shell_set)%line], 'SID')
+    ids = [raw%contacts%contact%id, raw%transducers%contact%id]
+    lines = deck%blocks([raw%contacts%block, raw%transducers%block])%keyword
+    order = sorted_order(int(lines, long))
+    call refuse_again(deck, [ids(order)], [lines(order)], 'interface number ', &
+      'interface'//position)
+    ids = raw%cuts%id
+    lines = raw%cuts%line
+    call refuse_again(deck, ids, lines, 'number ', 'cross section'//position)
+  end subroutine make_maps
+
+  !> Whether the run begins with dynamic relaxation, and what may not be in it.
+  subroutine settle_relaxation(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(inout) :: model
+    integer :: i, line
+
+    associate (relaxation => model%controls%relaxation, conditions => model%conditions)
+      do i = 1, size(model%curves)
+        if (model%curves(i)%phase > 0 .and. .not. raw%never_relaxes) relaxation%is_on = .true.
+      end do
+      if (.not. relaxation%is_on) return
+      line = raw%relaxation_line
+      if (line == 0) line = deck%maps(a_curve)%lines(findloc(model%curves%phase > 0, .true., &
+        dim=1))
+      if (model%controls%implicit%is_on) call refuse('with the implicit method')
+      if (size(raw%contacts) > 0) call refuse('with contact')
+      if (model%erodes) call refuse('with elements that may leave the mesh')
+      if (allocated(model%walls)) call refuse('with rigid walls')
+      if (size(model%rigids) > 0) call refuse('with rigid bodies')
+      if (size(conditions%motions) > 0) call refuse('with prescribed motion')
+      if (allocated(conditions%common_motions)) call refuse('with *CONSTRAINED_NODE_SET')
+    end associate
+
+  contains
+
+    !> One error.
+    subroutine refuse(what)
+      character(*), intent(in) :: what
+
+      call line_error(deck, line, 'asks for dynamic relaxation '//what &
+        //', which this version does not have')
+    end subroutine refuse
+
+  end subroutine settle_relaxation
+
+  !> Contacts of an axisymmetric deck know it, and which of their nodes are on the axis.
+  pure subroutine mark_round_contacts(model)
+    type(model_t), intent(inout) :: model
+    integer :: i
+
+    model%contacts%is_round = .true.
+    do i = 1, size(model%contacts)
+      associate (slave => model%contacts(i)%slave, master => model%contacts(i)%master, &
+        radii => model%mesh%coordinates(1, :))
+        slave%is_on_axis = .not. radii(slave%nodes) > 0.0_wp
+        master%is_on_axis = .not. radii(master%nodes) > 0.0_wp
+      end associate
+    end do
+  end subroutine mark_round_contacts
+
+  !> Ties and initial overlaps do not follow surfaces that change.
+  subroutine check_eroding_contacts(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(in) :: model
+    logical :: may_go(size(model%materials))
+    integer :: i, m
+
+    if (.not. model%erodes) return
+    do m = 1, size(model%materials)
+      may_go(m) = allocated(model%materials(m)%erosion)
+    end do
+    do i = 1, size(raw%contacts)
+      associate (contact => model%contacts(i))
+        if (.not. (is_tied(contact) .or. allocated(contact%interference))) cycle
+        if (.not. (touches(contact%slave%segment_element) &
+          .or. touches(contact%master%segment_element))) cycle
+        call line_error(deck, deck%blocks(raw%contacts(i)%block)%keyword, trim(merge( &
+          'ties                  ', 'has an overlap (LCINT)', is_tied(contact)))//' on elements ' &
+          //'that may leave the mesh, which this version does not have')
+      end associate
+    end do
+
+  contains
+
+    !> Whether some of the elements may leave.
+    pure function touches(elements)
+      integer, intent(in) :: elements(:)
+      logical :: touches
+
+      touches = any(may_go(model%parts(model%mesh%element_part(elements))%material))
+    end function touches
+
+  end subroutine check_eroding_contacts
 
   !> Histories that are asked for and have no file, for want of a keyword that says of what.
   subroutine warn_of_empty(deck, raw, model)
@@ -215,9 +375,8 @@ contains
   end subroutine warn_of_empty
 
   !> Interval of one output file.
-  subroutine take_interval(deck, maps, history, model, interval)
+  subroutine take_interval(deck, history, model, interval)
     type(deck_t), intent(inout) :: deck
-    type(maps_t), intent(in) :: maps
     type(history_t), intent(in) :: history
     type(model_t), intent(in) :: model
     type(interval_t), intent(out) :: interval
@@ -227,7 +386,7 @@ contains
     interval%is_binout = history%is_binout
     if (history%n_state > 0) interval%dt = model%controls%end_time/real(history%n_state, wp)
     if (history%curve == 0) return
-    call resolve_id(deck, maps%curves, history%curve, 'curve', history%place, interval%curve)
+    call resolve_id(deck, a_curve, history%curve, history%place, interval%curve)
     if (interval%curve == 0) return
     if (.not. minval(model%curves(interval%curve)%ordinate) > 0.0_wp) call line_error(deck, &
       history%place%line, 'curve '//to_text(history%curve) &

@@ -12,13 +12,12 @@ module deck_resolve_contacts_m
   use deck_lines_m, only : deck_t
   use deck_cards_m, only : reject_field
   use deck_choose_type_m, only : choose_type
-  use deck_maps_m, only : maps_t
-  use deck_resolve_pressures_m, only : resolve_pressures
+  use deck_loads_m, only : settle_pressures
   use deck_resolve_sides_m, only : find_side, resolve_side, side_nodes, side_segments
   use deck_interference_m, only : resolve_interference
-  use deck_raw_m, only : raw_t, raw_contact_t, row_pressure, row_pressure_set
+  use deck_raw_m, only : raw_t, raw_contact_t
   use units_m, only : in_units
-  use body_view_m, only : body_view_t, view_body
+  use element_finder_m, only : body_view_t, view_body
   use initial_overlap_m, only : overlap_t, find_crossing, find_overlap
   implicit none
   private
@@ -27,10 +26,9 @@ module deck_resolve_contacts_m
 contains
 
   !> Interfaces and pressure loads.
-  subroutine resolve_contacts(deck, raw, maps, model)
+  subroutine resolve_contacts(deck, raw, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
     type(boundary_t) :: outside
     type(surface_t) :: sides(2)
@@ -39,26 +37,26 @@ contains
 
     allocate (among(model%mesh%n_node), source=.false.)
     allocate (all_elements(model%mesh%n_element), source=.true.)
-    call mark_nodes(raw, maps, model, among)
+    call mark_nodes(deck, raw, model, among)
     call find_boundary(model%mesh%element_nodes, all_elements, among, outside)
-    call resolve_pressures(deck, raw, maps, outside, model)
+    call settle_pressures(deck, raw%pressure_places, outside, model)
     allocate (model%contacts(size(raw%contacts)))
     do i = 1, size(raw%contacts)
       n_error = deck%report%n_error
       do k = 1, merge(1, 2, raw%contacts(i)%contact%is_self)
-        call resolve_side(deck, raw, i, k, maps, outside, model, sides(k))
+        call resolve_side(deck, raw, i, k, outside, model, sides(k))
       end do
       if (raw%contacts(i)%contact%is_self) sides(2) = sides(1)
       model%contacts(i) = raw%contacts(i)%contact
       model%contacts(i)%slave = sides(1)
       model%contacts(i)%master = sides(2)
-      call resolve_interference(deck, raw%contacts(i), maps, model, model%contacts(i))
+      call resolve_interference(deck, raw%contacts(i), model, model%contacts(i))
       if (.not. raw%contacts(i)%contact%is_self) &
         call check_common_nodes(deck, raw%contacts(i), sides, model)
       if (deck%report%n_error > n_error) cycle
       call check_overlap(deck, raw%contacts(i), sides, model)
       ! The choice looks at conditions and materials: they have to be sound as well.
-      if (deck%report%n_error == 0) call choose_type(deck, raw%contacts(i), model, &
+      if (deck%report%n_error == 0) call choose_type(deck, raw%contacts(i)%block, model, &
         model%contacts(i))
     end do
     call append_behind(model%contacts)
@@ -85,17 +83,16 @@ contains
   end subroutine append_behind
 
   !> Nodes of contact node and segment sets and of pressure edges: only their edges are looked for.
-  subroutine mark_nodes(raw, maps, model, among)
-    use deck_ids_m, only : index_of
+  subroutine mark_nodes(deck, raw, model, among)
+    type(deck_t), intent(in) :: deck
     type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(in) :: model
     logical, intent(inout) :: among(:)
     integer :: i, k, kind, found
 
     do i = 1, size(raw%contacts)
       do k = 1, 2
-        call find_side(raw%contacts(i), k, maps, kind, found)
+        call find_side(deck, raw%contacts(i), k, kind, found)
         if (kind == side_nodes) then
           among(model%node_sets(found)%nodes) = .true.
         else if (kind == side_segments) then
@@ -104,19 +101,8 @@ contains
         end if
       end do
     end do
-    do i = 1, raw%n_row
-      if (raw%rows(i)%kind == row_pressure) then
-        do k = 1, 2
-          found = index_of(maps%nodes, raw%rows(i)%nodes(k))
-          if (found > 0) among(found) = .true.
-        end do
-      else if (raw%rows(i)%kind == row_pressure_set) then
-        found = index_of(maps%segment_sets, raw%rows(i)%id)
-        if (found == 0) cycle
-        do k = 1, 2
-          among(model%segment_sets(found)%nodes(k, :)) = .true.
-        end do
-      end if
+    do i = 1, size(model%conditions%pressures)
+      among(model%conditions%pressures(i)%nodes) = .true.
     end do
   end subroutine mark_nodes
 

@@ -2,11 +2,12 @@
 !> Nodes, rigid bodies and interfaces that end a run.
 module deck_resolve_ends_m
   use contacts_m, only : n_told
-  use end_conditions_m, only : end_node_place, end_node_touch, end_body_place, end_body_way
+  use controls_m, only : end_node_place, end_node_touch, end_body_place, end_body_way
   use model_m, only : model_t
   use deck_cards_m, only : reject_field
+  use deck_ids_m, only : a_node, a_part
   use deck_lines_m, only : deck_t
-  use deck_maps_m, only : maps_t, resolve_id
+  use deck_maps_m, only : resolve_id
   use deck_raw_m, only : raw_t
   implicit none
   private
@@ -15,10 +16,9 @@ module deck_resolve_ends_m
 contains
 
   !> All of them. Rigid bodies and interfaces of the model are known.
-  subroutine resolve_ends(deck, raw, maps, model, sound)
+  subroutine resolve_ends(deck, raw, model, sound)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
     logical, intent(in) :: sound !! the interfaces have their surfaces
     integer :: i, part
@@ -30,13 +30,13 @@ contains
         ending = entry%condition
         select case (ending%kind)
         case (end_node_place, end_node_touch)
-          call resolve_id(deck, maps%nodes, ending%id, 'node', entry%id_place, ending%where)
+          call resolve_id(deck, a_node, ending%id, entry%id_place, ending%where)
           if (ending%kind == end_node_touch .and. ending%where > 0 .and. sound) then
             if (.not. is_in_contact(model, ending%where)) call reject_field(deck, &
               entry%id_place, 'is no node of an interface')
           end if
         case (end_body_place, end_body_way)
-          call resolve_id(deck, maps%parts, ending%id, 'part', entry%id_place, part)
+          call resolve_id(deck, a_part, ending%id, entry%id_place, part)
           if (part == 0) cycle
           ending%where = findloc(model%rigids%part, part, 1)
           if (ending%where == 0 .and. model%parts(part)%material > 0) call reject_field(deck, &

@@ -5,70 +5,57 @@
 module deck_resolve_mesh_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use parts_m, only : hourglass_t, form_full, form_round_full, hourglass_assumed, section_t
   use mesh_m, only : mesh_t
   use model_m, only : model_t
+  use deck_ids_m, only : a_node, an_element, a_part
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning
   use deck_cards_m, only : reject_field
-  use deck_maps_m, only : maps_t, resolve_id
+  use deck_maps_m, only : resolve_id
   use deck_raw_m, only : raw_t
   use boundary_m, only : boundary_t, find_boundary
   use deck_interference_m, only : resolve_interference
   use deck_resolve_contacts_m, only : check_common_nodes
-  use deck_resolve_pressures_m, only : resolve_pressures
+  use deck_loads_m, only : settle_pressures
   use deck_resolve_sides_m, only : find_side, require_side, resolve_side, side_nodes, side_segments
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: resolve_parts, resolve_mesh, settle_points, check_unsound_mesh
+  public :: resolve_mesh, check_unsound_mesh, settle_axis
 
   !> Fields of the coordinates and of the first three nodes.
+  !> Radii below this share of the largest are the axis.
+  real(wp), parameter :: axis_share = 1.0e-10_wp
   character(1), parameter :: axes(2) = ['X', 'Y']
   character(2), parameter :: node_fields(3) = ['N1', 'N2', 'N3']
 
 contains
 
-  !> Parts with their section, material and hourglass control.
-  subroutine resolve_parts(deck, raw, maps, model)
+  !> Radii must not be below zero; those that are none are made exactly zero.
+  subroutine settle_axis(deck, model)
     type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
-    type(hourglass_t) :: hourglass
-    integer :: i, k, line
+    real(wp) :: reach
+    integer :: i
 
-    model%sections = raw%sections
-    model%materials = raw%materials
-    model%curves = raw%curves
-    allocate (model%parts(size(raw%parts)))
-    do i = 1, size(raw%parts)
-      line = raw%parts(i)%line
-      model%parts(i)%id = raw%parts(i)%id
-      model%parts(i)%title = raw%parts(i)%title
-      ! A bad field has been reported; its number is then not looked for.
-      if (raw%parts(i)%section > 0) call resolve_id(deck, maps%sections, &
-        raw%parts(i)%section, 'section', place_t(line, 2, 'SECID'), model%parts(i)%section)
-      if (raw%parts(i)%material > 0) call resolve_id(deck, maps%materials, &
-        raw%parts(i)%material, 'material', place_t(line, 2, 'MID'), model%parts(i)%material)
-      hourglass = raw%hourglass_default
-      if (raw%parts(i)%hourglass > 0) then
-        call resolve_id(deck, maps%hourglasses, raw%parts(i)%hourglass, '*HOURGLASS', &
-          place_t(line, 2, 'HGID'), k)
-        if (k > 0) then
-          hourglass = raw%hourglasses(k)
-          if (.not. raw%bulk_given(1, k)) hourglass%quadratic = raw%hourglass_default%quadratic
-          if (.not. raw%bulk_given(2, k)) hourglass%linear = raw%hourglass_default%linear
+    if (.not. model%is_round .or. model%mesh%n_node == 0) return
+    reach = axis_share*maxval(model%mesh%coordinates(1, :))
+    associate (x => model%mesh%coordinates)
+      do i = 1, model%mesh%n_node
+        if (x(1, i) < -reach) then
+          call reject_field(deck, place_t(deck%maps(a_node)%lines(i), 1, 'X'), ': node ' &
+            //to_text(model%mesh%node_id(i))//' lies at a radius below 0 (an axisymmetric deck ' &
+            //'turns about x = 0, and x is the radius)')
+        else if (x(1, i) <= reach) then
+          x(1, i) = 0.0_wp
         end if
-      end if
-      model%parts(i)%hourglass = hourglass
-    end do
-  end subroutine resolve_parts
+      end do
+    end associate
+  end subroutine settle_axis
 
   !> Nodes and elements. `sound` tells whether the elements may be looked at further.
-  subroutine resolve_mesh(deck, raw, maps, model, is_sound, sound)
+  subroutine resolve_mesh(deck, raw, model, is_sound, sound)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(inout) :: raw   !! its node and element arrays move into the model
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
     logical, allocatable, intent(out) :: is_sound(:) !! (n_element) of each whether its edges are
                                                      !! those that were meant
@@ -78,9 +65,9 @@ contains
 
     sound = .false.
     n_before = deck%report%n_error
-    if (raw%n_node == 0 .and. .not. (raw%lost%nodes .or. deck%incomplete)) &
+    if (raw%n_node == 0 .and. .not. deck%maps(a_node)%lost) &
       call line_error(deck, 0, 'the deck has no nodes (*NODE)')
-    if (raw%n_element == 0 .and. .not. (raw%lost%elements .or. deck%incomplete)) call &
+    if (raw%n_element == 0 .and. .not. deck%maps(an_element)%lost) call &
       line_error(deck, 0, 'the deck has no elements (*ELEMENT_SHELL)')
     call check_plane(deck, raw)
     has_place = deck%report%n_error == n_before
@@ -90,14 +77,14 @@ contains
     model%mesh%coordinates = raw%coordinates(:, :raw%n_node)
     model%mesh%element_id = raw%element_id(:raw%n_element)
     deallocate (raw%node_id, raw%coordinates, raw%element_id)
-    call resolve_elements(deck, raw, maps, model%mesh)
+    call resolve_elements(deck, raw, model%mesh)
     allocate (is_sound(raw%n_element))
     do i = 1, raw%n_element
       is_sound(i) = all(model%mesh%element_nodes(:, i) > 0)
     end do
     if (has_place) call check_shapes(deck, raw, model%mesh, is_sound)
     ! A part or node that was lost with its own mistake is not told again where it is named.
-    if (.not. has_place .or. raw%lost%nodes .or. raw%lost%elements .or. deck%incomplete) &
+    if (.not. has_place .or. deck%maps(a_node)%lost .or. deck%maps(an_element)%lost) &
       is_sound = .false.
     sound = deck%report%n_error == n_before .and. raw%n_node > 0 .and. raw%n_element > 0 &
       .and. all(is_sound) .and. all(model%mesh%element_part > 0)
@@ -124,10 +111,9 @@ contains
   end subroutine check_plane
 
   !> Node and part indices of the elements.
-  subroutine resolve_elements(deck, raw, maps, mesh)
+  subroutine resolve_elements(deck, raw, mesh)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(inout) :: raw
-    type(maps_t), intent(in) :: maps
     type(mesh_t), intent(inout) :: mesh
     integer :: i, k, n, line, ids(4)
 
@@ -142,15 +128,15 @@ contains
     end if
     do i = 1, n
       line = raw%element_line(i)
-      call resolve_id(deck, maps%parts, mesh%element_part(i), 'part', place_t(line, 1, 'PID'), k)
+      call resolve_id(deck, a_part, mesh%element_part(i), place_t(line, 1, 'PID'), k)
       mesh%element_part(i) = k
       ids = mesh%element_nodes(:, i)
       do k = 1, 3
-        call resolve_id(deck, maps%nodes, ids(k), 'node', place_t(line, 1, node_fields(k)), &
+        call resolve_id(deck, a_node, ids(k), place_t(line, 1, node_fields(k)), &
           mesh%element_nodes(k, i))
       end do
       mesh%element_nodes(4, i) = mesh%element_nodes(3, i)
-      if (ids(4) /= ids(3)) call resolve_id(deck, maps%nodes, ids(4), 'node', &
+      if (ids(4) /= ids(3)) call resolve_id(deck, a_node, ids(4), &
         place_t(line, 1, 'N4'), mesh%element_nodes(4, i))
     end do
   end subroutine resolve_elements
@@ -230,74 +216,10 @@ contains
       .or. nodes(4) == nodes(1) .or. nodes(4) == nodes(2)
   end function repeated
 
-  !> Parts of one-point quads: those with assumed strain must resist shear; in implicit runs those
-  !> without it, or of rubber, whose tangent is that of full integration, are fully integrated,
-  !> whatever the deck says.
-  subroutine settle_points(deck, raw, model)
-    type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(in) :: raw
-    type(model_t), intent(inout) :: model
-    character(:), allocatable :: changed
-    integer :: twins(size(model%sections)) !! fully integrated ones, 0 where there is none
-    integer :: i, line
-
-    changed = ''
-    twins = 0
-    do i = 1, size(model%parts)
-      associate (part => model%parts(i))
-        if (part%section == 0 .or. part%material == 0) cycle
-        if (model%sections(part%section)%is_full .or. model%materials(part%material)%is_rigid) cycle
-        if (part%hourglass%form == hourglass_assumed .and. .not. (model%controls%implicit%is_on &
-          .and. allocated(model%materials(part%material)%rubber))) then
-          call check_shear(deck, raw%parts(i)%line, i, model)
-        else if (model%controls%implicit%is_on) then
-          if (len(changed) == 0) line = raw%section_line(part%section)
-          changed = changed//', '//to_text(part%id)
-          if (twins(part%section) == 0) call add_full_section(part%section, model, twins)
-          part%section = twins(part%section)
-        end if
-      end associate
-    end do
-    if (len(changed) > 0) call line_warning(deck, line, 'implicit points', 'the implicit method ' &
-      //'takes parts whose NIP is not 4 as NIP 4 where hourglass control is not by ' &
-      //'assumed strain (IHQ 6), which would keep them as they are (but for rubber): '//changed(3:))
-  end subroutine settle_points
-
-  !> The stiffness of assumed strain is that of shear.
-  subroutine check_shear(deck, line, i, model)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: line     !! card of the part
-    integer, intent(in) :: i        !! part
-    type(model_t), intent(in) :: model
-
-    associate (part => model%parts(i))
-      if (model%materials(part%material)%shear > 0.0_wp) return
-      if (.not. model%materials(part%material)%needs_eos) return ! told as a field
-      call line_error(deck, line, 'part '//to_text(part%id)//' has hourglass control by assumed ' &
-        //'strain (IHQ 6), whose stiffness comes from the shear modulus, and its material ' &
-        //to_text(model%materials(part%material)%id)//' has none (take IHQ 1 to 3)')
-    end associate
-  end subroutine check_shear
-
-  !> The fully integrated twin of a section, which other parts may go on sharing as it is.
-  pure subroutine add_full_section(section, model, twins)
-    integer, value :: section             !! index
-    type(model_t), intent(inout) :: model
-    integer, intent(inout) :: twins(:)    !! index, by that of the section
-    type(section_t) :: twin
-
-    twin = model%sections(section)
-    twin%is_full = .true.
-    twin%element_form = merge(form_round_full, form_full, twin%is_round)
-    model%sections = [model%sections, twin]
-    twins(section) = size(model%sections)
-  end subroutine add_full_section
-
   !> Wrong numbers always; edges where no refused element has their nodes.
-  subroutine check_unsound_mesh(deck, raw, maps, is_sound, model)
+  subroutine check_unsound_mesh(deck, raw, is_sound, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
     logical, intent(in) :: is_sound(:)    !! (n_element)
     type(model_t), intent(inout) :: model !! gets interfaces without surfaces
     type(boundary_t) :: outside
@@ -314,24 +236,23 @@ contains
     end do
     allocate (all_nodes(model%mesh%n_node), source=.true.)
     call find_boundary(model%mesh%element_nodes, is_sound, all_nodes, outside)
-    call resolve_pressures(deck, raw, maps, outside, model, in_doubt)
+    call settle_pressures(deck, raw%pressure_places, outside, model, in_doubt)
     allocate (model%contacts(size(raw%contacts)))
     do i = 1, size(raw%contacts)
-      call check_sides(deck, raw, i, maps, outside, in_doubt, model)
+      call check_sides(deck, raw, i, outside, in_doubt, model)
       model%contacts(i) = raw%contacts(i)%contact
-      call resolve_interference(deck, raw%contacts(i), maps, model, model%contacts(i))
+      call resolve_interference(deck, raw%contacts(i), model, model%contacts(i))
     end do
     do i = 1, size(raw%transducers)
-      call require_side(deck, raw%transducers(i), 1, maps, kind, found)
+      call require_side(deck, raw%transducers(i), 1, kind, found)
     end do
   end subroutine check_unsound_mesh
 
   !> Sides of nodes or segments without doubt as in a sound mesh, of others whether they exist.
-  subroutine check_sides(deck, raw, i, maps, outside, in_doubt, model)
+  subroutine check_sides(deck, raw, i, outside, in_doubt, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
     integer, intent(in) :: i
-    type(maps_t), intent(in) :: maps
     type(boundary_t), intent(in) :: outside
     logical, intent(in) :: in_doubt(:)
     type(model_t), intent(in) :: model
@@ -340,12 +261,12 @@ contains
 
     n_known = 0
     do k = 1, merge(1, 2, raw%contacts(i)%contact%is_self)
-      call find_side(raw%contacts(i), k, maps, kind, found)
+      call find_side(deck, raw%contacts(i), k, kind, found)
       if (is_certain(kind, found)) then
-        call resolve_side(deck, raw, i, k, maps, outside, model, sides(k))
+        call resolve_side(deck, raw, i, k, outside, model, sides(k))
         n_known = n_known + 1
       else
-        call require_side(deck, raw%contacts(i), k, maps, kind, found)
+        call require_side(deck, raw%contacts(i), k, kind, found)
       end if
     end do
     if (n_known == 2) call check_common_nodes(deck, raw%contacts(i), sides, model)

@@ -1,12 +1,13 @@
 ! SPDX-License-Identifier: MIT
 !> Cross sections and force transducers: nodes and elements in place of their sets.
 module deck_resolve_sections_m
-  use cross_sections_m, only : cross_section_t, find_edges
+  use controls_m, only : cross_section_t, find_edges
   use log_m, only : to_text
   use model_m, only : model_t
   use deck_cards_m, only : reject_field
+  use deck_ids_m, only : a_node_set, a_shell_set
   use deck_lines_m, only : deck_t, place_t, line_warning
-  use deck_maps_m, only : maps_t, resolve_id
+  use deck_maps_m, only : resolve_id
   use deck_raw_m, only : raw_t, raw_section_t
   use deck_resolve_sets_m, only : keep_first
   use deck_resolve_sides_m, only : require_side, side_parts, side_nodes, side_segments
@@ -17,10 +18,9 @@ module deck_resolve_sections_m
 contains
 
   !> All of the deck. Called with the sets and the mesh known.
-  subroutine resolve_cross_sections(deck, raw, maps, model)
+  subroutine resolve_cross_sections(deck, raw, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
     type(cross_section_t), allocatable :: sections(:)
     type(cross_section_t) :: section
@@ -34,9 +34,9 @@ contains
       associate (cut => raw%cuts(i))
         nodes = 0
         shells = 0
-        if (cut%nodes > 0) call resolve_id(deck, maps%node_sets, cut%nodes, 'node set', &
+        if (cut%nodes > 0) call resolve_id(deck, a_node_set, cut%nodes, &
           place_t(cut%line, 1, 'NSID'), nodes)
-        if (cut%shells > 0) call resolve_id(deck, maps%shell_sets, cut%shells, 'shell set', &
+        if (cut%shells > 0) call resolve_id(deck, a_shell_set, cut%shells, &
           place_t(cut%line, 1, 'SSID'), shells)
         if (nodes == 0 .or. shells == 0) cycle
         section%id = cut%id
@@ -89,10 +89,9 @@ contains
 
   !> Of each surface the nodes that interfaces have: no others carry contact forces. Called with the
   !> interfaces of the model known.
-  subroutine resolve_transducers(deck, raw, maps, model)
+  subroutine resolve_transducers(deck, raw, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
     logical, allocatable :: touches(:), is_on(:)
     integer :: i, k
@@ -106,7 +105,7 @@ contains
       touches(model%contacts(i)%master%nodes) = .true.
     end do
     do i = 1, size(raw%transducers)
-      call mark_surface(deck, raw, i, maps, model, is_on)
+      call mark_surface(deck, raw, i, model, is_on)
       associate (transducer => model%transducers(i), entry => raw%transducers(i))
         transducer%id = entry%contact%id
         transducer%title = entry%contact%title
@@ -119,18 +118,17 @@ contains
   end subroutine resolve_transducers
 
   !> The nodes of one surface; of parts all, since the inner ones carry no contact.
-  subroutine mark_surface(deck, raw, i, maps, model, is_on)
+  subroutine mark_surface(deck, raw, i, model, is_on)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
     integer, intent(in) :: i
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(in) :: model
     logical, intent(inout) :: is_on(:)
     logical :: is_of_part(size(model%parts))
     integer :: kind, found, k
 
     is_on = .false.
-    call require_side(deck, raw%transducers(i), 1, maps, kind, found)
+    call require_side(deck, raw%transducers(i), 1, kind, found)
     select case (kind)
     case (side_parts)
       is_of_part = .false.

@@ -1,16 +1,17 @@
 ! SPDX-License-Identifier: MIT
 !> Sets with indices in place of ids.
 module deck_resolve_sets_m
-  use force_groups_m, only : force_group_t
+  use controls_m, only : force_group_t
   use kinds_m, only : long
   use log_m, only : to_text
   use sets_m, only : segment_set_t
   use sorting_m, only : sorted_order
   use boundary_m, only : boundary_t, find_boundary
   use model_m, only : model_t
+  use deck_ids_m, only : a_node, a_node_set, a_part, a_part_set, a_shell_set, an_element
   use deck_lines_m, only : deck_t, place_t, line_error
-  use deck_ids_m, only : id_map_t, map_ids, ids_between
-  use deck_maps_m, only : maps_t, resolve_id
+  use deck_ids_m, only : id_map_t, map_ids, ids_between, kind_names
+  use deck_maps_m, only : resolve_id
   use deck_cards_m, only : reject_field
   use deck_raw_m, only : raw_t
   use deck_raw_sets_m, only : raw_set_t, add_all, add_parts, of_part, of_part_set
@@ -21,10 +22,9 @@ module deck_resolve_sets_m
 contains
 
   !> All sets of the deck.
-  subroutine resolve_sets(deck, raw, maps, model)
+  subroutine resolve_sets(deck, raw, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
     integer :: i
 
@@ -34,33 +34,32 @@ contains
       model%node_sets(i)%id = raw%node_sets(i)%id
       if (allocated(raw%node_sets(i)%title)) model%node_sets(i)%title = raw%node_sets(i)%title
       if (allocated(raw%node_sets(i)%actions)) then
-        call resolve_general(deck, raw%node_sets(i), maps, model, model%node_sets(i)%nodes)
+        call resolve_general(deck, raw%node_sets(i), model, model%node_sets(i)%nodes)
       else
-        call resolve_members(deck, raw%node_sets(i), maps%nodes, 'node', &
+        call resolve_members(deck, raw%node_sets(i), a_node, &
           merge(1, 2, raw%node_sets(i)%of_beams), model%node_sets(i)%nodes)
       end if
     end do
     do i = 1, raw%n_part_set
       model%part_sets(i)%id = raw%part_sets(i)%id
-      call resolve_members(deck, raw%part_sets(i), maps%parts, 'part', 2, &
+      call resolve_members(deck, raw%part_sets(i), a_part, 2, &
         model%part_sets(i)%parts)
     end do
     do i = 1, raw%n_shell_set
       model%shell_sets(i)%id = raw%shell_sets(i)%id
-      call resolve_members(deck, raw%shell_sets(i), maps%elements, 'element', 2, &
+      call resolve_members(deck, raw%shell_sets(i), an_element, 2, &
         model%shell_sets(i)%elements)
     end do
     do i = 1, raw%n_segment_set
       model%segment_sets(i)%id = raw%segment_sets(i)%id
-      call resolve_segments(deck, raw%segment_sets(i), maps, model, model%segment_sets(i))
+      call resolve_segments(deck, raw%segment_sets(i), model, model%segment_sets(i))
     end do
   end subroutine resolve_sets
 
   !> Edges of one segment set: those of its cards, or the boundary of its parts.
-  subroutine resolve_segments(deck, set, maps, model, segments)
+  subroutine resolve_segments(deck, set, model, segments)
     type(deck_t), intent(inout) :: deck
     type(raw_set_t), intent(in) :: set
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(in) :: model
     type(segment_set_t), intent(inout) :: segments
     integer, allocatable :: members(:)
@@ -68,15 +67,15 @@ contains
 
     select case (set%boundary)
     case (of_part)
-      call resolve_members(deck, set, maps%parts, 'part', 2, segments%parts)
+      call resolve_members(deck, set, a_part, 2, segments%parts)
     case (of_part_set)
-      call resolve_members(deck, set, maps%part_sets, 'part set', 2, members)
+      call resolve_members(deck, set, a_part_set, 2, members)
       allocate (segments%parts(0))
       do i = 1, size(members)
         segments%parts = [segments%parts, model%part_sets(members(i))%parts]
       end do
     case default
-      call resolve_members(deck, set, maps%nodes, 'node', merge(1, 2, set%of_beams), members)
+      call resolve_members(deck, set, a_node, merge(1, 2, set%of_beams), members)
       if (size(members) /= set%n) members = members(:0)
       segments%nodes = reshape(members, [2, size(members)/2])
       return
@@ -109,10 +108,9 @@ contains
 
   !> A general set: its rows add nodes and take them out, one after the other. Each node stands in
   !> it once, where it was added.
-  subroutine resolve_general(deck, set, maps, model, nodes)
+  subroutine resolve_general(deck, set, model, nodes)
     type(deck_t), intent(inout) :: deck
     type(raw_set_t), intent(in) :: set
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(in) :: model
     integer, allocatable, intent(out) :: nodes(:)
     integer, allocatable :: place(:), order(:)
@@ -126,7 +124,7 @@ contains
           call take(k, .true.)
         end do
       else if (abs(set%actions(i)) == add_parts) then
-        call resolve_id(deck, maps%parts, set%members(i), 'part', &
+        call resolve_id(deck, a_part, set%members(i), &
           place_t(set%lines(i), 2, field=set%fields(i)), found)
         if (found == 0) cycle
         do k = 1, model%mesh%n_element
@@ -136,7 +134,7 @@ contains
           end do
         end do
       else
-        call resolve_id(deck, maps%nodes, set%members(i), 'node', &
+        call resolve_id(deck, a_node, set%members(i), &
           place_t(set%lines(i), 2, field=set%fields(i)), found)
         call take(found, set%actions(i) > 0)
       end if
@@ -166,11 +164,10 @@ contains
   end subroutine resolve_general
 
   !> Members of one set; those that do not exist are errors and left out.
-  subroutine resolve_members(deck, set, map, what, card, members)
+  subroutine resolve_members(deck, set, kind, card, members)
     type(deck_t), intent(inout) :: deck
     type(raw_set_t), intent(in) :: set
-    type(id_map_t), intent(in) :: map
-    character(*), intent(in) :: what
+    integer, intent(in) :: kind
     integer, intent(in) :: card            !! number of the card that members stand on
     integer, allocatable, intent(out) :: members(:)
     integer, allocatable :: block(:)
@@ -179,17 +176,18 @@ contains
     if (set%generate) then
       allocate (members(0))
       do i = 1, set%n, 2
-        call ids_between(map, set%members(i), set%members(i + 1), block)
-        if (size(block) == 0 .and. .not. map%incomplete) call reject_field(deck, &
+        call ids_between(deck%maps(kind), set%members(i), set%members(i + 1), block)
+        if (size(block) == 0 .and. .not. deck%maps(kind)%incomplete) call reject_field(deck, &
           place_t(set%lines(i), card, field=set%fields(i)), 'to "' &
-          //to_text(set%members(i + 1))//'": there is no '//what//' in this block')
+          //to_text(set%members(i + 1))//'": there is no ' &
+          //trim(kind_names(kind))//' in this block')
         members = [members, block]
       end do
     else
       allocate (members(set%n))
       n = 0
       do i = 1, set%n
-        call resolve_id(deck, map, set%members(i), what, &
+        call resolve_id(deck, kind, set%members(i), &
           place_t(set%lines(i), card, field=set%fields(i)), found)
         if (found == 0) cycle
         n = n + 1
@@ -202,34 +200,32 @@ contains
   end subroutine resolve_members
 
   !> Nodes and elements of *DATABASE_HISTORY_, each once, in deck order.
-  subroutine resolve_history(deck, raw, maps, model)
+  subroutine resolve_history(deck, raw, model)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
     integer, allocatable :: members(:), sets(:)
     integer :: i
 
-    call resolve_members(deck, raw%history_nodes, maps%nodes, 'node', 1, members)
-    call resolve_members(deck, raw%history_node_sets, maps%node_sets, 'node set', 1, sets)
+    call resolve_members(deck, raw%history_nodes, a_node, 1, members)
+    call resolve_members(deck, raw%history_node_sets, a_node_set, 1, sets)
     do i = 1, size(sets)
       members = [members, model%node_sets(sets(i))%nodes]
     end do
     call keep_first(members, model%mesh%n_node, model%controls%output%history_nodes)
-    call resolve_members(deck, raw%history_shells, maps%elements, 'element', 1, members)
-    call resolve_members(deck, raw%history_shell_sets, maps%shell_sets, 'shell set', 1, sets)
+    call resolve_members(deck, raw%history_shells, an_element, 1, members)
+    call resolve_members(deck, raw%history_shell_sets, a_shell_set, 1, sets)
     do i = 1, size(sets)
       members = [members, model%shell_sets(sets(i))%elements]
     end do
     call keep_first(members, model%mesh%n_element, model%controls%output%history_elements)
-    if (raw%force_groups%n > 0) call resolve_groups(deck, raw%force_groups, maps, model)
+    if (raw%force_groups%n > 0) call resolve_groups(deck, raw%force_groups, model)
   end subroutine resolve_history
 
   !> Force groups: node sets, none of them twice.
-  subroutine resolve_groups(deck, set, maps, model)
+  subroutine resolve_groups(deck, set, model)
     type(deck_t), intent(inout) :: deck
     type(raw_set_t), intent(in) :: set
-    type(maps_t), intent(in) :: maps
     type(model_t), intent(inout) :: model
     type(force_group_t), allocatable :: groups(:)
     type(id_map_t) :: map
@@ -248,7 +244,7 @@ contains
           'is the node set of another force group')
         cycle
       end if
-      call resolve_id(deck, maps%node_sets, set%members(i), 'node set', &
+      call resolve_id(deck, a_node_set, set%members(i), &
         place_t(set%lines(i), 1, 'NSID'), found)
       if (found == 0) cycle
       n = n + 1

@@ -9,9 +9,10 @@ module deck_resolve_sides_m
   use surface_building_m, only : boundary_surface, chain_surface, chain_turned, chain_ordered, &
     chain_broken, chain_repeated, chain_short
   use deck_ids_m, only : index_of
+  use deck_ids_m, only : a_node_set, a_part, a_part_set, a_segment_set, a_shell_set
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_cards_m, only : reject_field
-  use deck_maps_m, only : maps_t, resolve_id
+  use deck_maps_m, only : resolve_id
   use deck_raw_m, only : raw_t, raw_contact_t
   use deck_raw_sets_m, only : raw_set_t
   implicit none
@@ -27,72 +28,70 @@ contains
 
   !> The set of one side: a part set (more than 0) or a node set (less than 0), or the segment set
   !> where the deck has no such set of that number.
-  subroutine find_side(entry, side, maps, kind, found)
+  subroutine find_side(deck, entry, side, kind, found)
+    type(deck_t), intent(in) :: deck
     type(raw_contact_t), intent(in) :: entry
     integer, intent(in) :: side
-    type(maps_t), intent(in) :: maps
     integer, intent(out) :: kind  !! one of the `side_` constants
     integer, intent(out) :: found !! index of the set, 0 for none
 
     associate (id => entry%sides(side))
       kind = merge(side_parts, side_nodes, id > 0)
       found = 0
-      if (id > 0) found = index_of(maps%part_sets, id)
-      if (id < 0) found = index_of(maps%node_sets, -id)
+      if (id > 0) found = index_of(deck%maps(a_part_set), id)
+      if (id < 0) found = index_of(deck%maps(a_node_set), -id)
       if (found > 0) return
       kind = side_segments
-      if (id /= 0) found = index_of(maps%segment_sets, abs(id))
+      if (id /= 0) found = index_of(deck%maps(a_segment_set), abs(id))
       if (found == 0) kind = side_none
     end associate
   end subroutine find_side
 
   !> The same, with an error where there is no such set.
-  subroutine require_side(deck, entry, side, maps, kind, found)
+  subroutine require_side(deck, entry, side, kind, found)
     type(deck_t), intent(inout) :: deck
     type(raw_contact_t), intent(in) :: entry
     integer, intent(in) :: side
-    type(maps_t), intent(in) :: maps
     integer, intent(out) :: kind, found
 
-    call find_side(entry, side, maps, kind, found)
+    call find_side(deck, entry, side, kind, found)
     if (kind /= side_none) return
-    if (entry%sides(side) > 0) call resolve_id(deck, maps%part_sets, entry%sides(side), &
-      'part set', entry%places(side), found, namesakes(entry%sides(side), maps))
-    if (entry%sides(side) < 0) call resolve_id(deck, maps%node_sets, -entry%sides(side), &
-      'node set', entry%places(side), found, namesakes(entry%sides(side), maps))
+    if (entry%sides(side) > 0) call resolve_id(deck, a_part_set, entry%sides(side), &
+      entry%places(side), found, namesakes(deck, entry%sides(side)))
+    if (entry%sides(side) < 0) call resolve_id(deck, a_node_set, -entry%sides(side), &
+      entry%places(side), found, namesakes(deck, entry%sides(side)))
   end subroutine require_side
 
   !> What else has the number of a set that is not there, for a message; nothing where nothing has.
-  pure function namesakes(side, maps) result(text)
+  pure function namesakes(deck, side) result(text)
+    type(deck_t), intent(in) :: deck
     integer, intent(in) :: side  !! as on the card, with its sign
-    type(maps_t), intent(in) :: maps
     character(:), allocatable :: text
     character(:), allocatable :: number
 
     number = ' '//to_text(abs(side))//' exists'
     text = ''
-    if (index_of(maps%node_sets, abs(side)) > 0) text = text//', node set'//number
-    if (index_of(maps%part_sets, abs(side)) > 0) text = text//', part set'//number
-    if (index_of(maps%shell_sets, abs(side)) > 0) text = text//', shell set'//number
-    if (index_of(maps%parts, abs(side)) > 0) text = text//', part'//number
+    if (index_of(deck%maps(a_node_set), abs(side)) > 0) text = text//', node set'//number
+    if (index_of(deck%maps(a_part_set), abs(side)) > 0) text = text//', part set'//number
+    if (index_of(deck%maps(a_shell_set), abs(side)) > 0) text = text//', shell set'//number
+    if (index_of(deck%maps(a_part), abs(side)) > 0) text = text//', part'//number
     if (len(text) > 0) text(1:1) = ';'
   end function namesakes
 
   !> The surface of one side of an interface; without nodes where some of a node set do not exist,
   !> which has been told.
-  subroutine resolve_side(deck, raw, i, side, maps, outside, model, surface)
+  subroutine resolve_side(deck, raw, i, side, outside, model, surface)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
     integer, intent(in) :: i      !! interface
     integer, intent(in) :: side
-    type(maps_t), intent(in) :: maps
     type(boundary_t), intent(in) :: outside
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
     integer :: kind, found
 
     associate (entry => raw%contacts(i))
-      call require_side(deck, entry, side, maps, kind, found)
+      call require_side(deck, entry, side, kind, found)
       select case (kind)
       case (side_parts)
         call surface_of_parts(deck, model%part_sets(found)%parts, entry%places(side), model, &

@@ -3,10 +3,11 @@
 !>
 !> A line of the table that starts with a letter names a keyword, how it is treated and its
 !> options; the indented lines after it are its cards, fields in order as
-!> `NAME:kind[treatment][width][=default]`. Kinds: i integer, f real, a text, x not used.
+!> `NAME:kind[treatment][width][=default][range]`. Kinds: i integer, f real, a text, x not used.
 !> Treatments: none honoured, s silently without effect, w warning when given, r refused when given.
 !> A 0 in an honoured field means its default, as in LS-DYNA; `~default` is that of blank fields
-!> alone, and a 0 stays 0.
+!> alone, and a 0 stays 0. Ranges are `>0`, `>=0`, `<1`, `<=1`, two of these as in `>=0<1`, or the
+!> whole numbers allowed, as in `|1|2|4`. Values, defaults too, are checked where a card is read.
 !> Widths are 10 unless said. A field asks for something when it is neither 0 nor its default.
 module deck_schema_m
   use deck_schema_others_m, only : table_others
@@ -15,12 +16,110 @@ module deck_schema_m
     table_database
   implicit none
   private
-  public :: keyword_cards, find_keyword, nearest_keyword, refusal_reason, lost_effect, max_card, &
-    known_honoured, known_ignored, known_refused, known_not
+  public :: keyword_cards, find_keyword, nearest_keyword, expected, refusal_reason, lost_effect, &
+    max_card, known_honoured, known_ignored, known_refused, known_not
 
   !> All keywords that are honoured, and their cards.
-  character(98), parameter :: table(*) = [character(98) :: table_control, table_mesh, &
+  character(131), parameter :: table(*) = [character(131) :: table_control, table_mesh, &
     table_conditions, table_contact, table_database]
+  !> What fields are expected to be, for errors of their range, which follows in parentheses unless
+  !> there are some: field, or beginning of keyword and field; the first that fits.
+  character(188), parameter :: expectations(*) = [character(188) :: &
+    'CONTROL_TERM.DTMIN a share of the first step', &
+    'ENDTIM an end time', &
+    'NOSOL 0 or 1 (stop after the initialisation)', &
+    'TERMINATION_NODE.STOP 1 (x), 2 (y) or 4 (contact)', &
+    'TERMINATION_BODY.STOP 1 (x), 2 (y) or 4 (displacement)', &
+    'TERMINATION_CONTACT.DOF 0 (both), 1 (x) or 2 (y)', &
+    'TSSFAC a scale of the step (above 0; blank and 0 mean 0.9)', &
+    'LCTM a curve number', &
+    'ISDO an element length rule (0 area over longest side, 1 area over longest diagonal)', &
+    'ERODE 0 or 1 (1: elements whose step falls below DTMIN times the first step, or whose ' &
+    //'volume vanishes, leave the mesh)', &
+    'MS1ST 0 or 1 (masses are scaled at the start alone)', &
+    'NRCYCK a number of cycles', &
+    'DRTOL a share', &
+    'DRFCTR a factor', &
+    'IDRFLG 0 (relaxation where a curve asks for it), 1 (in any case) or -999 (in no case)', &
+    'CONTROL_BULK_VISCOSITY.TYPE a kind of bulk viscosity that this version has (1 standard)', &
+    'Q1 a coefficient of bulk viscosity (0 to 100; Q1 1.5 and Q2 0.06 are usual)', &
+    'Q2 a coefficient of bulk viscosity (0 to 100; Q1 1.5 and Q2 0.06 are usual)', &
+    'ECDT 0 (a warning where contact needs a smaller step), 1 (none) or 2 (a step stable with ' &
+    //'it)', &
+    'IMFLAG a method that this version has (0 explicit, 1 implicit; no switching)', &
+    'IMASS 0 (static) or 1 (dynamic)', &
+    'ALPHA ALPHA of the HHT method (-1/3 to 0); Bathe''s method is not supported', &
+    'RHO a spectral radius', &
+    'NSOLVR a solution method that this version has (1 linear, 12 Newton)', &
+    'IAUTO 0 (constant step) or 1 (automatic)', &
+    'ITEOPT a number of iterations', &
+    'CONTROL_IMPLICIT_AUTO.DTMAX a longest step (0 or more; curves of it are not supported)', &
+    'BINARY 0, 1 (text file), 2 (binout) or 3 (both)', &
+    'DATABASE.LCUR a curve number', &
+    'DATABASE.LCDT a curve number', &
+    'CYCL a number of cycles', &
+    'DATABASE.NSID a node set number', &
+    'DATABASE.SSID a shell set number', &
+    'NGAUSS a number of Gauss points', &
+    'PUNIT a unit of the penalty (0 force per length at each contact node, 1 stress, 2 factor on ' &
+    //'the built-in estimate, 3 share of the largest stable one, 4 factor on K L/A of implicit ' &
+    //'springs)', &
+    'PENT a penalty (above 0; blank and 0 mean PEN)', &
+    'TFAC a tangential over the normal penalty', &
+    'TARGET a target of the estimate of contact (above 0, below 1)', &
+    'VDC a damping in per cent of critical', &
+    'IPF 0 or 1 (the strict rule of type 5)', &
+    'FREQ a number of cycles between two searches', &
+    'RO a density', &
+    'E a Young''s modulus', &
+    'MAT_MOONEY-RIVLIN.PR a Poisson''s ratio of this law (more than 0 and less than 0.5; 0.49 ' &
+    //'and more is usual)', &
+    'PR a Poisson''s ratio', &
+    'G a shear modulus', &
+    'MAT_PLASTIC.SIGY a yield stress', &
+    'MAT_PLASTIC.BETA between 0 (kinematic) and 1 (isotropic hardening)', &
+    'MAT_PLASTIC.FS a plastic strain at failure (0 or more; 0 means never)', &
+    'MAT_ELASTIC.FS a plastic strain at failure (0 or more; 0 means never)', &
+    'FAIL a plastic strain at failure (0 or more; 0 means never)', &
+    'PC a cut-off, the least pressure, of tension (0 or less; 0 means none)', &
+    'LCSS a curve or table number', &
+    'LCSR a curve number', &
+    'MAT_PIECEWISE.VP a rate form that this version has (0 scales the yield stress with the ' &
+    //'total strain rate)', &
+    'VP a rate form (0 counts the total strain rate, 1 that of the plastic strain)', &
+    'MAT_JOHNSON.A a yield stress', &
+    'MAT_SIMPLIFIED.A a yield stress', &
+    'EPSO a strain rate', &
+    'SPALL 1 (least pressure), 2 (largest stress) or 3 (largest tension)', &
+    'MAT_CRUSHABLE.LCID the number of a curve: yield stress against volumetric strain 1 - V', &
+    'NUMFIP a number of points of an element (1 to 4)', &
+    'EOS_GRUNEISEN.C a speed (more than 0, at most 1e12): shocks of no strength run with it', &
+    'V0 the volume of the density RO (0 or 1), with which bodies start in this version', &
+    'CMO 0 (no constraints) or 1 (constraints in global axes)', &
+    'NIP a number of points (0, 1, 2 or blank: one point; 4: two by two, full integration)', &
+    'SIDR a phase (0 run, 1 dynamic relaxation, 2 both)', &
+    'DOFX 0 (free) or 1 (fixed)', &
+    'DOFY 0 (free) or 1 (fixed)', &
+    'BOUNDARY_PRESCRIBED_MOTION_RIGID.DOF a motion that a rigid body has here (1 x, 2 y, 7 turn ' &
+    //'about z)', &
+    'LOAD_RIGID_BODY.DOF a load on a rigid body that this version has (1 x, 2 y, 7 moment ' &
+    //'about z)', &
+    'CONSTRAINED.DOF a code of directions (1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)', &
+    'DOF a direction that this version has (1 x, 2 y)', &
+    'VAD a kind of motion that this version has (0 velocity, 1 acceleration, 2 displacement)', &
+    'DAMPING_PART.LCID a curve number (1 or more); the curve gives the damping over time', &
+    'BOUNDARY.LCID a curve number', &
+    'LOAD.LCID a curve number', &
+    'RIGIDWALL.NSID a node set, nor 0 (all nodes)', &
+    'STYP a kind of set (1 part set, 2 part, 3 node set)', &
+    'OMEGA a number of this size (at most 1e30)', &
+    'FLAG 0 or 1 (a second card with factors of the directions)', &
+    'COEF a share of critical damping (at most 1; below 0 it is a time)', &
+    'N1 a node number', &
+    'N2 a node number', &
+    'N3 a node number', &
+    'N4 a node number', &
+    'TIE 0 (contact), 1 (tied) or 2 (tied until it breaks)']
   !> Characters by which a canonical name is longer than a short one at most (MAT_024).
   integer, parameter :: longest_addition = 24
   !> Cards of one keyword at most.
@@ -257,6 +356,23 @@ contains
     text = ''
     if (field == 'DAMP') text = ': the viscous damping of the foam, its rate effect, is left out'
   end function lost_effect
+
+  !> What a field is expected to be, where its range alone says too little; blank for the others.
+  pure function expected(keyword, field) result(text)
+    character(*), intent(in) :: keyword, field
+    character(:), allocatable :: text
+    integer :: i, at, dot
+
+    text = ''
+    do i = 1, size(expectations)
+      at = index(expectations(i), ' ')
+      dot = index(expectations(i)(:at), '.')
+      if (expectations(i)(dot + 1:at) /= field) cycle
+      if (index(keyword, expectations(i)(:dot - 1)) /= 1) cycle
+      text = trim(expectations(i)(at + 1:))
+      return
+    end do
+  end function expected
 
   !> Why a field with treatment r may not be used.
   pure function refusal_reason(field) result(text)

@@ -6,7 +6,7 @@ module deck_schema_tables_m
   public :: table_control, table_mesh, table_conditions, table_contact, table_database
 
   !> Control of the deck and of the run.
-  character(98), parameter :: table_control(*) = [character(98) :: &
+  character(119), parameter :: table_control(*) = [character(119) :: &
     'KEYWORD', &
     'END', &
     'COMMENT', &
@@ -27,28 +27,28 @@ module deck_schema_tables_m
     'PARAMETER_DUPLICATION', &
     ' DFLAG:i', &
     'CONTROL_TERMINATION', &
-    ' ENDTIM:f ENDCYC:i DTMIN:f ENDENG:f ENDMAS:f NOSOL:i', &
+    ' ENDTIM:f>0 ENDCYC:i>=0 DTMIN:f>=0<=1 ENDENG:f>=0 ENDMAS:f>=0 NOSOL:i|0|1', &
     'TERMINATION_NODE', &
-    ' NID:i STOP:i MAXC:f MINC:f', &
+    ' NID:i>=1 STOP:i|1|2|4 MAXC:f MINC:f', &
     'TERMINATION_BODY', &
-    ' PID:i STOP:i MAXC:f MINC:f', &
+    ' PID:i>=1 STOP:i|1|2|4 MAXC:f MINC:f', &
     'TERMINATION_CONTACT', &
-    ' CID:i ACTIM:f DUR:f THRES:f DOF:i', &
+    ' CID:i>=1 ACTIM:f>=0 DUR:f>=0 THRES:f>=0 DOF:i|0|1|2', &
     'CONTROL_TIMESTEP', &
-    ' DTINIT:f TSSFAC:f ISDO:i TSLIMT:fw DT2MS:f LCTM:i ERODE:i MS1ST:i', &
+    ' DTINIT:f>=0 TSSFAC:f>=0 ISDO:i|0|1 TSLIMT:fw DT2MS:f LCTM:i>=0 ERODE:i|0|1 MS1ST:i|0|1', &
     ' DT2MSF:fw DT2MSLC:iw IMSCL:iw -:x -:x RMSCL:fw EMSCL:fw IHDO:iw', &
     ' -:x IGADO:iw', &
     'CONTROL_DYNAMIC_RELAXATION', &
-    ' NRCYCK:i=250 DRTOL:f=0.001 DRFCTR:f=0.995 DRTERM:f TSSFDR:f IRELAL:ir' &
-    //' EDTTL:fs=0.04 IDRFLG:i', &
+    ' NRCYCK:i=250>=1 DRTOL:f=0.001>0<1 DRFCTR:f=0.995>0<1 DRTERM:f>=0 TSSFDR:f>=0 IRELAL:ir' &
+    //' EDTTL:fs=0.04 IDRFLG:i|0|1|-999', &
     'CONTROL_HOURGLASS', &
     ' IHQ:i QH:f', &
     'CONTROL_BULK_VISCOSITY', &
-    ' Q1:f~1.5 Q2:f~0.06 TYPE:i=1 BTYPE:iw TSTYPE:iw', &
+    ' Q1:f~1.5>=0<=100 Q2:f~0.06>=0<=100 TYPE:i=1|-1|0|1 BTYPE:iw TSTYPE:iw', &
     'CONTROL_CONTACT', &
-    ' SLSFAC:f RWPNAL:fs ISLCHK:is SHLTHK:is PENOPT:iw=1 THKCHG:is ORIEN:is ENMASS:iw', &
-    ' USRSTR:iw USRFRC:iw NSBCS:is INTERM:is XPENE:fs SSTHK:is ECDT:i TIEDPRJ:is', &
-    ' SFRIC:f DFRIC:f EDC:f VFC:f TH:fs TH_SF:fs PEN_SF:fs', &
+    ' SLSFAC:f>=0 RWPNAL:fs ISLCHK:is SHLTHK:is PENOPT:iw=1 THKCHG:is ORIEN:is ENMASS:iw', &
+    ' USRSTR:iw USRFRC:iw NSBCS:is INTERM:is XPENE:fs SSTHK:is ECDT:i|0|1|2 TIEDPRJ:is', &
+    ' SFRIC:f>=0 DFRIC:f>=0 EDC:f>=0 VFC:f>=0 TH:fs TH_SF:fs PEN_SF:fs', &
     ' IGNORE:iw FRCENG:is SKIPRWG:is OUTSEG:is SPOTSTP:is SPOTDEL:is SPOTHIN:fs', &
     ' ISYM:is NSEROD:is RWGAPS:is RWGDTH:fs RWKSF:fs ICOV:is SWRADF:fs ITHOFF:is', &
     ' SHLEDG:is PSTIFF:is ITHCNT:is TDCNOF:is FTALL:is -:x SHLTRW:fs IGACTC:is', &
@@ -59,30 +59,32 @@ module deck_schema_tables_m
     'CONTROL_ENERGY', &
     ' HGEN:is RWEN:is SLNTEN:is RYLEN:is IRGEN:is MATEN:is DRLEN:is DISEN:is', &
     'CONTROL_OUTPUT', &
-    ' NPOPT:is NEECHO:is NREFUP:is IACCOP:iw OPIFS:fs IPNINT:is IKEDIT:i IFLUSH:is', &
+    ' NPOPT:is NEECHO:is NREFUP:is IACCOP:iw OPIFS:fs IPNINT:is IKEDIT:i>=0 IFLUSH:is', &
     ' IPRTF:is IERODE:is TET10S8:is MSGMAX:is IPCURV:is GMDT:fs IP1DBLT:is EOCS:is', &
     ' TOLEV:is NEWLEG:is FRFREQ:is MINFO:is SOLSIG:is MSGFLG:is CDETOL:fs', &
     ' PHSCHNG:is DEMDEN:is ICRFILE:is SPC2BND:is PENOUT:is SHLSIG:is HISNOUT:is ENGOUT:is', &
     ' INSF:is ISOLSF:is IBSF:is ISSF:is MLKBAG:is', &
     'CONTROL_IMPLICIT_GENERAL', &
-    ' IMFLAG:i DT0:f IMFORM:is NSBS:is IGS:is CNSTN:iw FORM:is ZERO_V:iw', &
+    ' IMFLAG:i|0|1 DT0:f IMFORM:is NSBS:is IGS:is CNSTN:iw FORM:is ZERO_V:iw', &
     'CONTROL_IMPLICIT_DYNAMICS', &
-    ' IMASS:i GAMMA:f BETA:f TDYBIR:fr TDYDTH:fr=1e28 TDYBUR:fr=1e28 IRATE:iw ALPHA:f', &
+    ' IMASS:i|0|1 GAMMA:f BETA:f TDYBIR:fr TDYDTH:fr=1e28 TDYBUR:fr=1e28 IRATE:iw' &
+    //' ALPHA:f>=-0.3333333333333333<=0', &
     ' PSID:ir ANGLE:fs', &
     'CONTROL_IMPLICIT_SPECTRAL_RADIUS', &
-    ' RHO:f', &
+    ' RHO:f>=0<=1', &
     'CONTROL_IMPLICIT_SOLUTION', &
-    ' NSOLVR:i=12 ILIMIT:is MAXREF:i=15 DCTOL:f ECTOL:f RCTOL:f=1e10 LSTOL:f=0.9 ABSTOL:fw', &
+    ' NSOLVR:i=12|0|1|12 ILIMIT:is MAXREF:i=15>=0 DCTOL:f>=0 ECTOL:f>=0 RCTOL:f=1e10>=0' &
+    //' LSTOL:f=0.9>=0 ABSTOL:fw', &
     ' DNORM:is DIVERG:is ISTIF:is NLPRINT:is NLNORM:fs D3ITCTL:iw CPCHK:is', &
     ' DMTOL:fw EMTOL:fw RMTOL:fw -:x NTTOL:fw NRTOL:fw RTTOL:fw RRTOL:fw', &
     ' ARCCTL:ir ARCDIR:is ARCLEN:fs ARCMTH:is ARCDMP:is ARCPSI:fs ARCALF:fs ARCTIM:fs', &
     ' LSMTD:is LSDIR:is IRAD:fs SRAD:fs AWGT:fs SRED:fs', &
     'CONTROL_IMPLICIT_AUTO', &
-    ' IAUTO:i ITEOPT:i=11 ITEWIN:i=5 DTMIN:f DTMAX:f DTEXP:fw KFAIL:iw KCYCLE:iw', &
+    ' IAUTO:i|0|1 ITEOPT:i=11>=1 ITEWIN:i=5>=0 DTMIN:f>=0 DTMAX:f>=0 DTEXP:fw KFAIL:iw KCYCLE:iw', &
     ' HCMIN:fw HCMAX:fw HMMIN:fw HMMAX:fw HNTMAX:fw HNRMAX:fw HRTMAX:fw HRRMAX:fw']
 
   !> Mesh, parts, materials, curves, sets.
-  character(85), parameter :: table_mesh(*) = [character(85) :: &
+  character(131), parameter :: table_mesh(*) = [character(131) :: &
     'NODE', &
     ' NID:i8 X:f16 Y:f16 Z:f16 TC:i8 RC:is8', &
     'ELEMENT_SHELL', &
@@ -90,74 +92,79 @@ module deck_schema_tables_m
     'ELEMENT_BEAM', &
     ' EID:is8 PID:i8 N1:i8 N2:i8 N3:is8 RT1:is8 RR1:is8 RT2:is8 RR2:is8 LOCAL:is8', &
     'ELEMENT_MASS', &
-    ' EID:is8 NID:i8 MASS:f16 PID:is8', &
+    ' EID:is8 NID:i8>=1 MASS:f16>=0 PID:is8', &
     'ELEMENT_MASS_NODE_SET', &
-    ' EID:is8 NSID:i8 MASS:f16 PID:is8', &
+    ' EID:is8 NSID:i8>=1 MASS:f16>=0 PID:is8', &
     'PART t', &
     ' HEADING:a80', &
-    ' PID:i SECID:i MID:i EOSID:i HGID:i GRAV:iw ADPOPT:iw TMID:iw', &
+    ' PID:i>=1 SECID:i>=1 MID:i>=1 EOSID:i>=0 HGID:i>=0 GRAV:iw ADPOPT:iw TMID:iw', &
     'SECTION_SHELL t', &
-    ' SECID:i ELFORM:i=2 SHRF:fs NIP:i PROPT:fs QR_IRID:is ICOMP:ir SETYP:ir=1', &
+    ' SECID:i>=1 ELFORM:i=2 SHRF:fs NIP:i|0|1|2|4 PROPT:fs QR_IRID:is ICOMP:ir SETYP:ir=1', &
     ' T1:fs T2:fs T3:fs T4:fs NLOC:fs MAREA:fs IDOF:fs EDGSET:is', &
     'HOURGLASS t', &
-    ' HGID:i IHQ:i QM:f IBQ:is Q1:f Q2:f QB_VDC:fs QW:fs', &
+    ' HGID:i>=1 IHQ:i QM:f>=0 IBQ:is Q1:f>=0<=100 Q2:f>=0<=100 QB_VDC:fs QW:fs', &
     'MAT_ELASTIC t', &
-    ' MID:i RO:f E:f PR:f DA:fw DB:fw', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 DA:fw DB:fw', &
     'MAT_PLASTIC_KINEMATIC t', &
-    ' MID:i RO:f E:f PR:f SIGY:f ETAN:f BETA:f', &
-    ' SRC:fr SRP:fr FS:f VP:fw', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 SIGY:f>0 ETAN:f>=0 BETA:f>=0<=1', &
+    ' SRC:fr SRP:fr FS:f>=0 VP:fw', &
     'MAT_PIECEWISE_LINEAR_PLASTICITY t', &
-    ' MID:i RO:f E:f PR:f SIGY:f ETAN:f FAIL:f TDEL:fr', &
-    ' C:f P:f LCSS:i LCSR:i VP:f', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 SIGY:f>=0 ETAN:f>=0' &
+    //' FAIL:f>=0 TDEL:fr', &
+    ' C:f>=0 P:f>=0 LCSS:i>=0 LCSR:i>=0 VP:f|0|1', &
     ' EPS1:f EPS2:f EPS3:f EPS4:f EPS5:f EPS6:f EPS7:f EPS8:f', &
     ' ES1:f ES2:f ES3:f ES4:f ES5:f ES6:f ES7:f ES8:f', &
     'MAT_NULL t', &
-    ' MID:i RO:f PC:f MU:f TEROD:fr CEROD:fr YM:fs PR:fs', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 PC:f<=0 MU:f>=0<=1e30 TEROD:fr CEROD:fr YM:fs PR:fs', &
     'MAT_ELASTIC_PLASTIC_HYDRO t', &
-    ' MID:i RO:f G:f SIGY:f EH:f PC:f FS:f CHARL:fr', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 G:f>=1e-30<=1e30 SIGY:f>=0 EH:f>=0 PC:f<=0 FS:f>=0 CHARL:fr', &
     ' EPS1:f EPS2:f EPS3:f EPS4:f EPS5:f EPS6:f EPS7:f EPS8:f', &
     ' EPS9:f EPS10:f EPS11:f EPS12:f EPS13:f EPS14:f EPS15:f EPS16:f', &
     ' ES1:f ES2:f ES3:f ES4:f ES5:f ES6:f ES7:f ES8:f', &
     ' ES9:f ES10:f ES11:f ES12:f ES13:f ES14:f ES15:f ES16:f', &
     'MAT_JOHNSON_COOK t', &
-    ' MID:i RO:f G:f E:f PR:f DTF:fr VP:f RATEOP:fr', &
-    ' A:f B:f N:f C:f M:f TM:f TR:f EPSO:f', &
-    ' CP:f PC:f SPALL:f=2 IT:fs D1:f D2:f D3:f D4:f', &
-    ' D5:f C2_P_XNP_D:fr EROD:f EFMIN:f=1e-6 NUMINT:fr K:fr EPS1:fr', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 G:f>=1e-30<=1e30 E:f>=0<=1e30 PR:f>-1<0.5 DTF:fr' &
+    //' VP:f|0|1 RATEOP:fr', &
+    ' A:f>0 B:f>=0 N:f>=0 C:f>=0 M:f TM:f TR:f EPSO:f>0', &
+    ' CP:f>=0 PC:f<=0 SPALL:f=2|1|2|3 IT:fs D1:f D2:f D3:f D4:f', &
+    ' D5:f C2_P_XNP_D:fr EROD:f EFMIN:f=1e-6>=0 NUMINT:fr K:fr EPS1:fr', &
     'MAT_SIMPLIFIED_JOHNSON_COOK t', &
-    ' MID:i RO:f E:f PR:f VP:f', &
-    ' A:f B:f N:f C:f PSFAIL:f=1e17 SIGMAX:f=1e28 SIGSAT:f=1e28 EPSO:f=1', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 VP:f|0|1', &
+    ' A:f>0 B:f>=0 N:f>=0 C:f>=0 PSFAIL:f=1e17>=0 SIGMAX:f=1e28 SIGSAT:f=1e28 EPSO:f=1>0', &
     'MAT_MOONEY-RIVLIN_RUBBER t', &
-    ' MID:i RO:f PR:f A:f B:f REF:fr', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 PR:f>0<0.5 A:f>=0<=1e30 B:f>=0<=1e30 REF:fr', &
     ' SGL:fr SW:fr ST:fr LCID:ir', &
     'MAT_BLATZ-KO_RUBBER t', &
-    ' MID:i RO:f G:f REF:fr', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 G:f>=1e-30<=1e30 REF:fr', &
     'MAT_CRUSHABLE_FOAM t', &
-    ' MID:i RO:f E:f PR:f LCID:i TSC:f DAMP:fw MODEL:ir', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 LCID:i>=1 TSC:f>=0 DAMP:fw' &
+    //' MODEL:ir', &
     'MAT_ADD_EROSION t', &
-    ' MID:i EXCL:f MXPRES:f MNEPS:f EFFEPS:f VOLEPS:f NUMFIP:f=1 NCS:f=1', &
+    ' MID:i>=1 EXCL:f MXPRES:f MNEPS:f EFFEPS:f VOLEPS:f NUMFIP:f=1>=0<=4 NCS:f=1>=0', &
     ' MNPRES:f SIGP1:f SIGVM:f MXEPS:f EPSSH:f SIGTH:f IMPULSE:f FAILTM:f', &
     ' IDAM:ir -:x -:x -:x -:x -:x -:x LCREGD:ir', &
     ' LCFLD:ir NSFF:is=10 EPSTHIN:fr ENGCRT:fr RADCRT:fr LCEPS12:ir LCEPS13:ir LCEPSMX:ir', &
-    ' DTEFLT:fw VOLFRAC:fw MXTMP:fr DTMIN:f', &
+    ' DTEFLT:fw VOLFRAC:fw MXTMP:fr DTMIN:f>=0', &
     'EOS_LINEAR_POLYNOMIAL t', &
-    ' EOSID:i C0:f C1:f C2:f C3:f C4:f C5:f C6:f', &
-    ' E0:f V0:f=1', &
+    ' EOSID:i>=1 C0:f>=-1e30<=1e30 C1:f>=-1e30<=1e30 C2:f>=-1e30<=1e30 C3:f>=-1e30<=1e30' &
+    //' C4:f>=-100<=100 C5:f>=-100<=100 C6:f>=-100<=100', &
+    ' E0:f>=-1e30<=1e30 V0:f=1>=1<=1', &
     'EOS_GRUNEISEN t', &
-    ' EOSID:i C:f S1:f S2:f S3:f GAMAO:f A:f E0:f', &
-    ' V0:f=1 -:x LCID:ir', &
+    ' EOSID:i>=1 C:f>0<=1e12 S1:f>=-100<=100 S2:f>=-100<=100 S3:f>=-100<=100' &
+    //' GAMAO:f>=0<=100 A:f>=-100<=100 E0:f>=-1e30<=1e30', &
+    ' V0:f=1>=1<=1 -:x LCID:ir', &
     'MAT_RIGID t', &
-    ' MID:i RO:f E:f PR:f N:fr COUPLE:fr M:fr ALIAS:ar', &
-    ' CMO:i CON1:i CON2:i', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 N:fr COUPLE:fr M:fr ALIAS:ar', &
+    ' CMO:i|0|1|-1 CON1:i CON2:i', &
     ' LCO_OR_A1:fw A2:fw A3:fw V1:fw V2:fw V3:fw', &
     'DEFINE_CURVE t', &
-    ' LCID:i SIDR:i SFA:f=1 SFO:f=1 OFFA:f OFFO:f DATTYP:is LCINT:is', &
+    ' LCID:i>=1 SIDR:i|0|1|2 SFA:f=1>=0 SFO:f=1 OFFA:f OFFO:f DATTYP:is LCINT:is', &
     ' A1:f20 O1:f20', &
     'DEFINE_COORDINATE_SYSTEM t', &
-    ' CID:i XO:f YO:f ZO:f XL:f YL:f ZL:f CIDL:ir', &
+    ' CID:i>=1 XO:f YO:f ZO:f XL:f YL:f ZL:f CIDL:ir', &
     ' XP:f YP:f ZP:f', &
     'DEFINE_TABLE t', &
-    ' TBID:i SFA:f=1 OFFA:f', &
+    ' TBID:i>=1 SFA:f=1>=0 OFFA:f', &
     ' VALUE:f20', &
     'SET_NODE_LIST t', &
     ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
@@ -191,160 +198,161 @@ module deck_schema_tables_m
     ' PSID:i']
 
   !> Constraints, loads, initial values.
-  character(69), parameter :: table_conditions(*) = [character(69) :: &
+  character(78), parameter :: table_conditions(*) = [character(78) :: &
     'BOUNDARY_SPC_NODE t', &
-    ' NID:i CID:i DOFX:i DOFY:i DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
+    ' NID:i>=1 CID:i DOFX:i|0|1 DOFY:i|0|1 DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
     'BOUNDARY_SPC_SET t', &
-    ' NSID:i CID:i DOFX:i DOFY:i DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
+    ' NSID:i>=1 CID:i DOFX:i|0|1 DOFY:i|0|1 DOFZ:is DOFRX:is DOFRY:is DOFRZ:is', &
     'BOUNDARY_PRESCRIBED_MOTION_NODE t', &
-    ' NID:i DOF:i VAD:i LCID:i SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
+    ' NID:i>=1 DOF:i|1|2 VAD:i|0|1|2 LCID:i>=1 SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
     'BOUNDARY_PRESCRIBED_MOTION_SET t', &
-    ' NSID:i DOF:i VAD:i LCID:i SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
+    ' NSID:i>=1 DOF:i|1|2 VAD:i|0|1|2 LCID:i>=1 SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
     'BOUNDARY_PRESCRIBED_MOTION_RIGID t', &
-    ' PID:i DOF:i VAD:i LCID:i SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
+    ' PID:i>=1 DOF:i|1|2|7 VAD:i|0|1|2 LCID:i>=1 SF:f=1 VID:ir DEATH:f=1e28 BIRTH:f', &
     'INITIAL_VELOCITY', &
-    ' NSID:i NSIDEX:i BOXID:ir IRIGID:is ICID:ir', &
+    ' NSID:i>=0 NSIDEX:i>=0 BOXID:ir IRIGID:is ICID:ir', &
     ' VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:fw', &
     ' VXE:f VYE:f VZE:fw VXRE:fw VYRE:fw VZRE:fw', &
     'INITIAL_VELOCITY_NODE', &
-    ' NID:i VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:fw ICID:ir', &
+    ' NID:i>=1 VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:fw ICID:ir', &
     'INITIAL_VELOCITY_GENERATION', &
-    ' ID:i STYP:i~1 OMEGA:f VX:f VY:f VZ:fw IVATN:is ICID:ir', &
+    ' ID:i>=0 STYP:i~1|1|2|3 OMEGA:f>=-1e30<=1e30 VX:f VY:f VZ:fw IVATN:is ICID:ir', &
     ' XC:f YC:f ZC:fs NX:f NY:f NZ:f PHASE:ir IRIGID:is', &
     'INITIAL_VELOCITY_RIGID_BODY', &
-    ' PID:i VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:f ICID:ir', &
+    ' PID:i>=1 VX:f VY:f VZ:fw VXR:fw VYR:fw VZR:f ICID:ir', &
     'LOAD_NODE_POINT', &
-    ' NID:i DOF:i LCID:i SF:f=1 CID:i M1:is M2:is M3:is', &
+    ' NID:i>=1 DOF:i|1|2 LCID:i>=1 SF:f=1 CID:i M1:is M2:is M3:is', &
     'LOAD_NODE_SET', &
-    ' NSID:i DOF:i LCID:i SF:f=1 CID:i M1:is M2:is M3:is', &
+    ' NSID:i>=1 DOF:i|1|2 LCID:i>=1 SF:f=1 CID:i M1:is M2:is M3:is', &
     'LOAD_RIGID_BODY', &
-    ' PID:i DOF:i~1 LCID:i SF:f=1 CID:i M1:is M2:is M3:is', &
+    ' PID:i>=1 DOF:i~1|1|2|7 LCID:i>=1 SF:f=1 CID:i M1:is M2:is M3:is', &
     'LOAD_SEGMENT t', &
-    ' LCID:i SF:f=1 AT:f N1:i N2:i N3:i N4:i N5:ir', &
+    ' LCID:i>=1 SF:f=1 AT:f>=0 N1:i>=1 N2:i>=1 N3:i N4:i N5:ir', &
     'LOAD_SEGMENT_SET t', &
-    ' SSID:i LCID:i SF:f=1 AT:f', &
+    ' SSID:i>=1 LCID:i>=1 SF:f=1 AT:f>=0', &
     'LOAD_BODY_X', &
-    ' LCID:i SF:f=1 LCIDDR:iw XC:fs YC:fs ZC:fs CID:ir', &
+    ' LCID:i>=1 SF:f=1 LCIDDR:iw XC:fs YC:fs ZC:fs CID:ir', &
     'LOAD_BODY_Y', &
-    ' LCID:i SF:f=1 LCIDDR:iw XC:fs YC:fs ZC:fs CID:ir', &
+    ' LCID:i>=1 SF:f=1 LCIDDR:iw XC:fs YC:fs ZC:fs CID:ir', &
     'RIGIDWALL_PLANAR t', &
-    ' NSID:i NSIDEX:i BOXID:ir OFFSET:f BIRTH:f DEATH:f=1e20 RWKSF:fs=1', &
+    ' NSID:i>=0 NSIDEX:i>=0 BOXID:ir OFFSET:f>=0 BIRTH:f DEATH:f=1e20 RWKSF:fs=1', &
     ' XT:f YT:f ZT:f XH:f YH:f ZH:f FRIC:f WVEL:fr', &
     'DAMPING_GLOBAL', &
-    ' LCID:i VALDMP:f STX:f STY:f STZ:fs SRX:fs SRY:fs SRZ:fs', &
+    ' LCID:i>=0 VALDMP:f>=0 STX:f>=0 STY:f>=0 STZ:fs SRX:fs SRY:fs SRZ:fs', &
     'DAMPING_PART_MASS', &
-    ' PID:i LCID:i SF:f=1 FLAG:i', &
-    ' STX:f STY:f STZ:fs SRX:fs SRY:fs SRZ:fs', &
+    ' PID:i>=1 LCID:i>=1 SF:f=1>=0 FLAG:i|0|1', &
+    ' STX:f>=0 STY:f>=0 STZ:fs SRX:fs SRY:fs SRZ:fs', &
     'DAMPING_PART_MASS_SET', &
-    ' PSID:i LCID:i SF:f=1 FLAG:i', &
-    ' STX:f STY:f STZ:fs SRX:fs SRY:fs SRZ:fs', &
+    ' PSID:i>=1 LCID:i>=1 SF:f=1>=0 FLAG:i|0|1', &
+    ' STX:f>=0 STY:f>=0 STZ:fs SRX:fs SRY:fs SRZ:fs', &
     'DAMPING_PART_STIFFNESS', &
-    ' PID:i COEF:f', &
+    ' PID:i>=1 COEF:f<=1', &
     'DAMPING_PART_STIFFNESS_SET', &
-    ' PSID:i COEF:f', &
+    ' PSID:i>=1 COEF:f<=1', &
     'CONSTRAINED_NODE_SET t', &
-    ' NSID:i DOF:i~1 TF:fr=1e20']
+    ' NSID:i>=1 DOF:i~1>=1<=7 TF:fr=1e20']
 
   !> Contact interfaces.
-  character(95), parameter :: table_contact(*) = [character(95) :: &
+  character(104), parameter :: table_contact(*) = [character(104) :: &
     'CONTACT_2D_SLIDELINE t', &
-    ' SURFA:i SURFB:i CTYPE:i NGAUSS:i=2 PEN:f FS:f FD:f DC:f', &
-    ' TBIRTH:f TDEATH:f=1e20 PUNIT:i PENT:f VDC:f IPF:i FREQ:i SRCH:f', &
-    ' VC:f TFAC:f~1 TIE:i NFLS:f SFLS:f LCINT:i TARGET:f', &
+    ' SURFA:i SURFB:i CTYPE:i NGAUSS:i=2>=1<=10 PEN:f FS:f>=0 FD:f>=0 DC:f>=0', &
+    ' TBIRTH:f TDEATH:f=1e20 PUNIT:i|0|1|2|3|4 PENT:f>=0 VDC:f>=0<=100 IPF:i|0|1' &
+    //' FREQ:i>=0<=1000000000 SRCH:f', &
+    ' VC:f>=0 TFAC:f~1>0<=1 TIE:i|0|1|2 NFLS:f SFLS:f LCINT:i>=0 TARGET:f>=0<1', &
     'CONTACT_2D_PENALTY t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
-    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &
-    //' FRCSCL:fw=0.1 ONEWAY:fr', &
+    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1>=0 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
+    //' ONEWAY:fr', &
     'CONTACT_2D_SLIDING_VOIDS t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
-    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &
-    //' FRCSCL:fw=0.1 ONEWAY:fr', &
+    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1>=0 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
+    //' ONEWAY:fr', &
     'CONTACT_2D_PENALTY_FRICTION t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
-    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &
-    //' FRCSCL:fw=0.1 ONEWAY:fr', &
-    ' FRIC:f FRIC_L:f FRIC_H:f FRIC_S:fr', &
+    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1>=0 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
+    //' ONEWAY:fr', &
+    ' FRIC:f>=0 FRIC_L:f>=0 FRIC_H:f>=0 FRIC_S:fr', &
     'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:i SFACT:f=1>=0 FREQ:i>=0<=1000000000 FS:f>=0 FD:f>=0 DC:f>=0', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f>=0 VDC:f~10>=0<=100 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_MORTAR t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:i SFACT:f=1>=0 FREQ:i>=0<=1000000000 FS:f>=0 FD:f>=0 DC:f>=0', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f>=0 VDC:f~10>=0<=100 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_NODE_TO_SURFACE t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:i SFACT:f=1>=0 FREQ:i>=0<=1000000000 FS:f>=0 FD:f>=0 DC:f>=0', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f>=0 VDC:f~10>=0<=100 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE t', &
-    ' SURFA:i SURFB:iw SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:iw SFACT:f=1>=0 FREQ:i>=0<=1000000000 FS:f>=0 FD:f>=0 DC:f>=0', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f>=0 VDC:f~10>=0<=100 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_SINGLE_SURFACE_MORTAR t', &
-    ' SURFA:i SURFB:iw SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:iw SFACT:f=1>=0 FREQ:i>=0<=1000000000 FS:f>=0 FD:f>=0 DC:f>=0', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f>=0 VDC:f~10>=0<=100 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_ONE_WAY_SURFACE_TO_SURFACE t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:i FS:f FD:f DC:f', &
+    ' SURFA:i SURFB:i SFACT:f=1>=0 FREQ:i>=0<=1000000000 FS:f>=0 FD:f>=0 DC:f>=0', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
-    ' VC:f VDC:f~10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
+    ' VC:f>=0 VDC:f~10>=0<=100 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:fs IGAPCL:is TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_FORCE_TRANSDUCER t', &
     ' SURFA:i SURFB:ir SFACT:fs=1 FREQ:is FS:fs FD:fs DC:fs', &
     ' TBIRTH:fw TDEATH:fw=1e20 SOA:fs=1 SOB:fs=1 NDA:is NDB:is COF:is INIT:is', &
     'CONTACT_2D_AUTOMATIC_TIED t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:iw FS:fw FD:fw DC:fw', &
+    ' SURFA:i SURFB:i SFACT:f=1>=0 FREQ:iw FS:fw FD:fw DC:fw', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:fw VDC:fw=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:f IGAPCL:ir TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_AUTOMATIC_TIED_ONE_WAY t', &
-    ' SURFA:i SURFB:i SFACT:f=1 FREQ:iw FS:fw FD:fw DC:fw', &
+    ' SURFA:i SURFB:i SFACT:f=1>=0 FREQ:iw FS:fw FD:fw DC:fw', &
     ' TBIRTH:f TDEATH:f=1e20 SOA:fw=1 SOB:fw=1 NDA:iw NDB:iw COF:iw INIT:iw', &
     ' VC:fw VDC:fw=10 IPF:iw SLIDE:iw ISTIFF:iw TIEDGAP:f IGAPCL:ir TIETYP:is', &
     ' SLDSOA:fr SLDSOB:fr TDPEN:fw', &
     'CONTACT_2D_TIED_SLIDING t', &
     ' SURFA:i SURFB:i TBIRTH:f TDEATH:f=1e20', &
-    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1 TOLOFF:fw=0.25' &
-    //' FRCSCL:fw=0.1 ONEWAY:fr']
+    ' EXT_PAS:iw THETA1:fw THETA2:fw TOL_IG:fw=1e-3 PEN:f=0.1>=0 TOLOFF:fw=0.25 FRCSCL:fw=0.1' &
+    //' ONEWAY:fr']
 
   !> Output.
-  character(76), parameter :: table_database(*) = [character(76) :: &
+  character(88), parameter :: table_database(*) = [character(88) :: &
     'DATABASE_GLSTAT', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_MATSUM', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_RCFORC', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_NODOUT', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_RWFORC', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_SLEOUT', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_SPCFORC', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_ELOUT', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:is OPTION2:iw OPTION3:is OPTION4:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:is OPTION2:iw OPTION3:is OPTION4:is', &
     'DATABASE_RBDOUT', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_BNDOUT', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_NODFOR', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_SECFORC', &
-    ' DT:f BINARY:i LCUR:i IOOPT:is OPTION1:fs OPTION2:is', &
+    ' DT:f>=0 BINARY:i|0|1|2|3 LCUR:i>=0 IOOPT:is OPTION1:fs OPTION2:is', &
     'DATABASE_BINARY_D3PLOT', &
-    ' DT:f LCDT:i BEAM:is NPLTC:i PSETID:iw', &
+    ' DT:f>=0 LCDT:i>=0 BEAM:is NPLTC:i>=0 PSETID:iw', &
     ' IOOPT:is RATE:fs CUTOFF:fs WINDOW:fs TYPE:is PSET:iw', &
     'DATABASE_BINARY_D3DUMP', &
-    ' CYCL:f NR:is BEAM:is NPLTC:iw PSETID:iw', &
+    ' CYCL:f>=0<=2e9 NR:is BEAM:is NPLTC:iw PSETID:iw', &
     'DATABASE_BINARY_RUNRSF', &
-    ' CYCL:f NR:iw=1 BEAM:is NPLTC:iw PSETID:iw', &
+    ' CYCL:f>=0<=2e9 NR:iw=1 BEAM:is NPLTC:iw PSETID:iw', &
     'DATABASE_HISTORY_NODE', &
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
     'DATABASE_HISTORY_NODE_ID', &
@@ -356,8 +364,8 @@ module deck_schema_tables_m
     'DATABASE_HISTORY_SHELL_SET', &
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
     'DATABASE_NODAL_FORCE_GROUP', &
-    ' NSID:i CID:ir', &
+    ' NSID:i>=1 CID:ir', &
     'DATABASE_CROSS_SECTION_SET t', &
-    ' NSID:i HSID:ir BSID:ir SSID:i TSID:ir DSID:ir ID:ir ITYPE:is']
+    ' NSID:i>=1 HSID:ir BSID:ir SSID:i>=1 TSID:ir DSID:ir ID:ir ITYPE:is']
 
 end module deck_schema_tables_m

@@ -5,10 +5,12 @@ module deck_fields_m
   use kinds_m, only : wp
   use text_m, only : read_real, read_integer, number_good, number_range, number_fraction
   use log_m, only : to_text
-  use deck_card_specs_m, only : card_spec_t, field_number, max_field
+  use deck_card_specs_m, only : card_spec_t, field_number, is_in_range, range_text
+  use deck_schema_m, only : expected
   use deck_report_m, only : spot_t, add_error, count_only
   use deck_lines_m, only : deck_t, place_t, line_text, where_text, line_warning, line_spot, &
-    keyword_of_line, written_text, shown_text, marked_line, flag_comma
+    deck_error, given_by, words_of, order_line, keyword_of_line, written_text, shown_text, &
+    marked_line, flag_comma, max_field
   implicit none
   private
   public :: card_t, cut_card, read_numbers, field_text, field_error, place_error, place_field, &
@@ -48,6 +50,8 @@ contains
 
     card%line = line
     card%number = spec%number
+    card%names = spec%names
+    card%kinds = spec%kinds
     card%present = .true.
     card%bad = .false.
     first = deck%first(line)
@@ -123,9 +127,12 @@ contains
       card%r(k) = spec%defaults(k)
       card%i(k) = 0
       if (spec%kinds(k) == 'i') card%i(k) = nint(spec%defaults(k))
-      if (card%blank(k)) cycle
-      status = number_good
       if (spec%kinds(k) == 'x' .or. spec%kinds(k) == 'a') cycle
+      if (card%blank(k)) then
+        call check_range(deck, spec, card, k)
+        cycle
+      end if
+      status = number_good
       if (first < 0) then
         shift = -first - 1
         call read_field(deck%patch(shift + card%first(k):shift + card%last(k)), spec%kinds(k))
@@ -136,9 +143,10 @@ contains
       end if
       if (status /= number_good) then
         call number_error(deck, spec, card, k, status)
-      else if (spec%zeros(k) /= ' ') then
-        call take_zero(deck, spec, card, k)
+        cycle
       end if
+      if (spec%zeros(k) /= ' ') call take_zero(deck, spec, card, k)
+      call check_range(deck, spec, card, k)
     end do
 
   contains
@@ -158,6 +166,34 @@ contains
     end subroutine read_field
 
   end subroutine read_numbers
+
+  !> An error of a number that the range of its field does not hold.
+  subroutine check_range(deck, spec, card, k)
+    type(deck_t), intent(inout) :: deck
+    type(card_spec_t), intent(in) :: spec
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    real(wp) :: value
+    character(:), allocatable :: words, range
+
+    if (spec%ranges(k) == ' ' .or. card%bad(k)) return
+    value = card%r(k)
+    if (spec%kinds(k) == 'i') value = real(card%i(k), wp)
+    if (is_in_range(spec, k, value)) return
+    words = expected(keyword_of_line(deck, card%line), trim(spec%names(k)))
+    range = range_text(spec%ranges(k))
+    if (len(words) == 0 .and. spec%ranges(k)(:3) == '>=0' .and. value < 0.0_wp) then
+      call field_error(deck, card, k, 'is negative')
+      return
+    else if (len(words) == 0) then
+      words = range
+      if (spec%ranges(k)(1:1) /= '|') words = 'a number '//trim(merge('of', '  ', &
+        range(1:1) <= '9'))//' '//range
+    else if (index(words, '(') == 0) then
+      words = words//' ('//range//')'
+    end if
+    call field_error(deck, card, k, 'is not '//words)
+  end subroutine check_range
 
   !> A 0 in a field whose default is another value: LS-DYNA takes the default. The log names the
   !> first field of each name and keyword.
@@ -208,18 +244,18 @@ contains
 
     text = field_text(deck, card, k)
     if (text(1:1) == '<' .or. index(text, '&(') == 1 .or. index(text, '-&(') == 1) then
-      call field_error(deck, spec, card, k, 'is an inline expression, which is not read here; ' &
+      call field_error(deck, card, k, 'is an inline expression, which is not read here; ' &
         //'give it a name with *PARAMETER_EXPRESSION')
     else if (status == number_fraction) then
-      call field_error(deck, spec, card, k, 'is not a whole number')
+      call field_error(deck, card, k, 'is not a whole number')
     else if (status == number_range .and. spec%kinds(k) == 'i') then
-      call field_error(deck, spec, card, k, 'is too large: whole numbers reach 2147483647')
+      call field_error(deck, card, k, 'is too large: whole numbers reach 2147483647')
     else if (status == number_range) then
-      call field_error(deck, spec, card, k, 'is too large: numbers reach 1e40')
+      call field_error(deck, card, k, 'is too large: numbers reach 1e40')
     else if (spec%kinds(k) == 'i') then
-      call field_error(deck, spec, card, k, 'is not a whole number')
+      call field_error(deck, card, k, 'is not a whole number')
     else
-      call field_error(deck, spec, card, k, 'is not a number')
+      call field_error(deck, card, k, 'is not a number')
     end if
     card%i(k) = 0
     if (spec%kinds(k) == 'i') card%i(k) = nint(spec%defaults(k))
@@ -241,9 +277,8 @@ contains
 
   !> An error of a field: `file:line: *KEYWORD card c field k (NAME): "text" message`, the card and
   !> a mark under the field.
-  subroutine field_error(deck, spec, card, k, message)
+  subroutine field_error(deck, card, k, message)
     type(deck_t), intent(inout) :: deck
-    type(card_spec_t), intent(in) :: spec
     type(card_t), intent(inout) :: card
     integer, intent(in) :: k
     character(*), intent(in) :: message
@@ -251,10 +286,14 @@ contains
     logical :: is_done
 
     card%bad(k) = .true.
-    call count_only(deck%report, keyword_of_line(deck, card%line), spec%names(k), message, is_done)
+    if (len(given_by(deck, card%line, k)) > 0) then
+      call deck_error(deck, given_by(deck, card%line, k)//' '//message)
+      return
+    end if
+    call count_only(deck%report, keyword_of_line(deck, card%line), card%names(k), message, is_done)
     if (is_done) return
-    text = where_text(deck, card%line)//' card '//to_text(spec%number)//' field '//to_text(k) &
-      //' ('//trim(spec%names(k))//'): '
+    text = where_text(deck, card%line)//' card '//to_text(card%number)//' field '//to_text(k) &
+      //' ('//trim(card%names(k))//'): '
     if (card%present .and. .not. card%blank(k)) then
       text = text//'"'//printable(field_text(deck, card, k))//'"'
     else
@@ -266,22 +305,22 @@ contains
       card%first(k), max(card%last(k), card%first(k)))
     written = written_text(deck, card%line)
     if (len(written) > 0) text = text//new_line('a')//'  | written: '//trim(shown_text(written))
-    call add_error(deck%report, card%line, text, field_spot(deck, spec, card, k, message))
+    call add_error(deck%report, order_line(deck, card%line), text//words_of(deck, card%line), &
+      field_spot(deck, card, k, message))
   end subroutine field_error
 
   !> A message that belongs to field `k`.
-  pure function field_spot(deck, spec, card, k, message) result(spot)
+  pure function field_spot(deck, card, k, message) result(spot)
     type(deck_t), intent(in) :: deck
-    type(card_spec_t), intent(in) :: spec
     type(card_t), intent(in) :: card
     integer, intent(in) :: k
     character(*), intent(in) :: message
     type(spot_t) :: spot
 
     spot = line_spot(deck, card%line, message)
-    spot%card = spec%number
+    spot%card = card%number
     spot%field = k
-    spot%name = spec%names(k)
+    spot%name = card%names(k)
     spot%found = printable(field_text(deck, card, k))
     if (.not. card%present .or. len(written_text(deck, card%line)) > 0) return
     spot%first = card%first(k)
@@ -310,7 +349,7 @@ contains
     type(card_t) :: card
 
     call cut_card(deck, spec, source, place%line, card)
-    call field_error(deck, spec, card, place_field(spec, place), message)
+    call field_error(deck, card, place_field(spec, place), message)
   end subroutine place_error
 
   !> Position of the field of a place.

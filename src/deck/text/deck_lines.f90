@@ -7,20 +7,23 @@
 module deck_lines_m
   use, intrinsic :: iso_fortran_env, only : int8
   use deck_report_m, only : report_t, spot_t, add_error, has_error, add_warning
+  use deck_ids_m, only : id_map_t, n_kind
+  use kinds_m, only : wp
   use log_m, only : to_text
   implicit none
   private
-  public :: deck_t, source_t, block_t, place_t, parameter_t, parameters_t, again_error, &
-    file_paths, line_text, block_of_line, where_text, line_error, deck_error, line_warning, &
-    replace_line, written_text, line_spot, keyword_of_line, shown_text, marked_line, layout_mark, &
-    format_standard, format_long, format_i10, flag_comma, flag_parameter, flag_blank, max_source
+  public :: deck_t, blocks_of, source_t, block_t, place_t, parameter_t, parameters_t, again_error, &
+    file_paths, line_text, order_line, block_of_line, where_text, line_error, deck_error, &
+    line_warning, replace_line, written_text, line_spot, keyword_of_line, shown_text, marked_line, &
+    layout_mark, word_t, made_line_t, given_by, words_of, format_standard, format_long, &
+    format_i10, flag_comma, flag_parameter, flag_blank, max_source, max_field
 
   !> Column layout of a block.
   integer, parameter :: format_standard = 0, format_long = 1, format_i10 = 2
   !> Bits of `flags`.
   integer(int8), parameter :: flag_comma = 1_int8, flag_parameter = 2_int8, flag_blank = 4_int8
-  !> Files in one deck.
-  integer, parameter :: max_source = 1000
+  !> Files in one deck, fields of one card.
+  integer, parameter :: max_source = 1000, max_field = 16
 
   !> A second definition of a parameter with another value is an error.
   integer, parameter :: again_error = 0
@@ -46,7 +49,7 @@ module deck_lines_m
     integer :: layout = format_standard
     logical :: titled = .false.          !! _TITLE or _ID: a text line comes first
     logical :: dropped = .false.         !! not part of the effective deck
-    character(:), allocatable :: replacement !! what the effective deck says in its place
+    logical :: is_honoured = .false.     !! its cards are read
   end type block_t
 
   !> A field of a card, for messages after the card has been left.
@@ -76,6 +79,20 @@ module deck_lines_m
     integer :: again = again_error
   end type parameters_t
 
+  !> A word of the command line that changes the deck.
+  type :: word_t
+    character(:), allocatable :: name   !! upper case
+    integer :: interface = 0            !! 0 = all
+    character(:), allocatable :: text   !! value
+    character(:), allocatable :: phrase !! `"WORD" on the command line`, for messages
+  end type word_t
+
+  !> A line that the program made in place of those of a block.
+  type :: made_line_t
+    integer :: block = 0
+    integer :: words(max_field) = 0     !! the word that gives each field, 0 = none
+  end type made_line_t
+
   !> The whole deck.
   type :: deck_t
     type(source_t), allocatable :: sources(:)
@@ -84,6 +101,9 @@ module deck_lines_m
     integer, allocatable :: number(:)         !! line number in its file
     integer(int8), allocatable :: flags(:)
     integer :: n_line = 0
+    integer :: n_written = huge(1)            !! lines of the files; those behind are `made`
+    type(made_line_t), allocatable :: made(:)
+    type(word_t), allocatable :: words(:)
     type(block_t), allocatable :: blocks(:)
     integer :: n_block = 0
     character(:), allocatable :: patch        !! text of changed lines
@@ -95,6 +115,8 @@ module deck_lines_m
     character(:), allocatable :: default_zeros, kept_zeros !! fields with a 0 that means their
                                               !! default, and of which a 0 is 0 all the same
     type(parameters_t) :: parameters
+    type(id_map_t) :: maps(n_kind)            !! from user ids to indices, by kind
+    real(wp), allocatable :: axes(:, :, :)    !! (2, 2, n) x and y axis of each coordinate system
     type(report_t) :: report
   end type deck_t
 
@@ -128,6 +150,17 @@ contains
     end if
   end function line_text
 
+  !> Blocks whose cards are read and whose keyword begins so, in the order of the deck.
+  pure function blocks_of(deck, head) result(blocks)
+    type(deck_t), intent(in) :: deck
+    character(*), intent(in) :: head
+    integer, allocatable :: blocks(:)
+    integer :: i
+
+    blocks = pack([(i, i=1, deck%n_block)], [(deck%blocks(i)%is_honoured &
+      .and. index(deck%blocks(i)%name, head) == 1, i=1, deck%n_block)])
+  end function blocks_of
+
   !> The block that holds a line (keyword line or data line); 0 before the first.
   pure function block_of_line(deck, line) result(i_block)
     type(deck_t), intent(in) :: deck
@@ -135,6 +168,10 @@ contains
     integer :: i_block
     integer :: low, high
 
+    if (line > deck%n_written) then
+      i_block = deck%made(line - deck%n_written)%block
+      return
+    end if
     low = 0
     high = deck%n_block + 1
     do while (high - low > 1)
@@ -160,9 +197,54 @@ contains
       text = deck%sources(1)%path
       return
     end if
-    text = deck%sources(deck%blocks(i_block)%source)%path//':'//to_text(deck%number(line)) &
-      //': *'//deck%blocks(i_block)%given
+    text = deck%sources(deck%blocks(i_block)%source)%path
+    if (deck%number(line) > 0) text = text//':'//to_text(deck%number(line))
+    text = text//': *'//deck%blocks(i_block)%given
   end function where_text
+
+  !> The word that gives field `k` of a line, `"ctype.2=5" on the command line`; empty where the
+  !> deck does.
+  pure function given_by(deck, line, k) result(phrase)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: line, k
+    character(:), allocatable :: phrase
+
+    phrase = ''
+    if (line <= deck%n_written) return
+    associate (word => deck%made(line - deck%n_written)%words(k))
+      if (word > 0) phrase = deck%words(word)%phrase
+    end associate
+  end function given_by
+
+  !> The words that change the block of a line, a line of a message each.
+  pure function words_of(deck, line) result(text)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: line
+    character(:), allocatable :: text
+    integer :: i, k
+
+    text = ''
+    if (line <= deck%n_written) return
+    associate (block => deck%blocks(block_of_line(deck, line)))
+      do i = block%first, block%last
+        do k = 1, max_field
+          if (len(given_by(deck, i, k)) > 0) text = text//new_line('a')//'  | with ' &
+            //given_by(deck, i, k)
+        end do
+      end do
+    end associate
+  end function words_of
+
+  !> The line of a message that stands for one that was made, for the order of messages.
+  pure function order_line(deck, line)
+    type(deck_t), intent(in) :: deck
+    integer, intent(in) :: line
+    integer :: order_line
+
+    order_line = line
+    if (line > deck%n_written) order_line = deck%blocks(block_of_line(deck, line))%keyword
+    if (order_line > deck%n_written) order_line = deck%n_written
+  end function order_line
 
   !> An error of a whole line, with the line under it.
   subroutine line_error(deck, line, message)
@@ -174,7 +256,8 @@ contains
       call add_error(deck%report, line, where_text(deck, line)//': '//message, &
         line_spot(deck, line, message))
     else
-      call add_error(deck%report, line, where_text(deck, line)//': '//message//new_line('a') &
+      call add_error(deck%report, order_line(deck, line), where_text(deck, line)//': '//message &
+        //new_line('a') &
         //'  | '//trim(shown_text(line_text(deck, line))), line_spot(deck, line, message))
     end if
   end subroutine line_error
@@ -195,8 +278,8 @@ contains
     character(*), intent(in) :: key
     character(*), intent(in) :: message
 
-    call add_warning(deck%report, line, key, where_text(deck, line)//': '//message, &
-      line_spot(deck, line, message))
+    call add_warning(deck%report, order_line(deck, line), key, &
+      where_text(deck, line)//': '//message, line_spot(deck, line, message))
   end subroutine line_warning
 
   !> A message that belongs to a line as a whole.
@@ -248,6 +331,7 @@ contains
     deck%last(line) = deck%n_patch
     deck%flags(line) = 0_int8
     if (index(text, ',') > 0) deck%flags(line) = flag_comma
+    if (index(text, '&') > 0) deck%flags(line) = ior(deck%flags(line), flag_parameter)
     if (len_trim(text) == 0) deck%flags(line) = flag_blank
   end subroutine replace_line
 

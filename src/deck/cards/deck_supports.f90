@@ -1,0 +1,442 @@
+! SPDX-License-Identifier: MIT
+!> What holds and moves nodes and rigid bodies: TC of *NODE, *BOUNDARY_SPC_,
+!> *BOUNDARY_PRESCRIBED_MOTION_ and *CONSTRAINED_NODE_SET.
+module deck_supports_m
+  use kinds_m, only : wp
+  use log_m, only : to_text
+  use conditions_m, only : prescribed_motion_t, skew_support_t, common_motion_t, &
+    motion_acceleration
+  use model_m, only : model_t
+  use rigids_m, only : mark_rigid_nodes
+  use supports_m, only : mark_meshed_nodes
+  use deck_cards_m, only : cursor_t, next_of, rows_of, report_field, reject_field
+  use deck_fields_m, only : card_t
+  use deck_ids_m, only : a_node, an_element, a_part, a_curve, a_node_set, a_system
+  use deck_lines_m, only : deck_t, place_t, line_warning, line_error
+  use deck_maps_m, only : find_id
+  use deck_values_m, only : integer_of, real_of, has_field, take_life
+  implicit none
+  private
+  public :: read_supports, read_motions, read_common_motions, card_nodes, mark_axis, mark_massive
+
+  !> Directions of the codes TC and DOF: 0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz.
+  logical, parameter :: along_axes(2, 0:7) = reshape([.false., .false., .true., .false., .false., &
+    .true., .false., .false., .true., .true., .false., .true., .true., .false., .true., .true.], &
+    [2, 8])
+  !> Why a rigid body of an axisymmetric deck does not go where it is told to.
+  character(*), parameter, public :: across_axis = 'asks a rigid body of an axisymmetric deck ' &
+    //'(ELFORM 15) to move in r or to turn; it moves along the axis alone'
+
+contains
+
+  !> Nodes of the field NID or NSID of a card, each once. Empty when the id is wrong.
+  subroutine card_nodes(deck, card, model, nodes)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    type(model_t), intent(in) :: model
+    integer, allocatable, intent(out) :: nodes(:)
+    logical, allocatable :: first(:), listed(:)
+    integer :: found, i
+
+    if (.not. has_field(card, 'NSID')) then
+      call find_id(deck, a_node, card, 'NID', found)
+      nodes = pack([found], [found > 0])
+      return
+    end if
+    call find_id(deck, a_node_set, card, 'NSID', found)
+    allocate (nodes(0))
+    if (found > 0) nodes = model%node_sets(found)%nodes
+    if (size(nodes) < 2) return
+    allocate (first(size(nodes)), listed(model%mesh%n_node), source=.false.)
+    do i = 1, size(nodes)
+      first(i) = .not. listed(nodes(i))
+      listed(nodes(i)) = .true.
+    end do
+    nodes = pack(nodes, first)
+  end subroutine card_nodes
+
+  !> (n_node) nodes on the axis of an axisymmetric deck.
+  pure function mark_axis(model) result(is_there)
+    type(model_t), intent(in) :: model
+    logical :: is_there(model%mesh%n_node)
+
+    is_there = .false.
+    if (model%is_round) is_there = .not. model%mesh%coordinates(1, :) > 0.0_wp
+  end function mark_axis
+
+  !> (n_node) nodes that some element has, all where elements have been refused.
+  pure function mark_massive(deck, model) result(is_massive)
+    type(deck_t), intent(in) :: deck
+    type(model_t), intent(in) :: model
+    logical :: is_massive(model%mesh%n_node)
+
+    is_massive = deck%maps(an_element)%lost
+    if (.not. deck%maps(an_element)%lost) is_massive = mark_meshed_nodes(model)
+  end function mark_massive
+
+  !> Fixed degrees of freedom: codes of *NODE, *BOUNDARY_SPC_, nodes without an element.
+  subroutine read_supports(deck, codes, owner, model, fixed)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: codes(:), owner(:) !! (n_node) TC, rigid body or 0
+    type(model_t), intent(inout) :: model
+    logical, allocatable, intent(out) :: fixed(:, :) !! (2, n_node)
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    logical :: is_free(model%mesh%n_node), along(2), found
+    integer, allocatable :: nodes(:)
+    integer :: i
+
+    is_free = .not. mark_massive(deck, model)
+    allocate (fixed(2, model%mesh%n_node), source=.false.)
+    do i = 1, model%mesh%n_node
+      if (codes(i) >= 0 .and. codes(i) <= 7) fixed(:, i) = along_axes(:, codes(i))
+      if (owner(i) > 0 .and. any(fixed(:, i))) call reject_field(deck, &
+        place_t(deck%maps(a_node)%lines(i), 1, 'TC'), ': node '//follows(model, i, owner(i)) &
+        //'CON1 and CON2 of *MAT_RIGID hold the body')
+      if (is_free(i)) fixed(:, i) = .true.
+    end do
+    if (any(is_free) .and. model%mesh%n_element > 0 .and. deck%report%n_error == 0) then
+      i = findloc(is_free, .true., dim=1)
+      call line_warning(deck, deck%maps(a_node)%lines(i), 'free', to_text(count(is_free)) &
+        //' node(s) belong to no element and are fixed; the first is ' &
+        //to_text(model%mesh%node_id(i)))
+    end if
+    call rows_of('BOUNDARY_SPC_', cursor)
+    do
+      call next_of(deck, cursor, card, found)
+      if (.not. found) exit
+      if (any(card%bad)) cycle
+      call card_nodes(deck, card, model, nodes)
+      along = [integer_of(card, 'DOFX'), integer_of(card, 'DOFY')] == 1
+      if (any(along)) call refuse_rigid(deck, card, nodes, owner, model, &
+        'CON1 and CON2 of *MAT_RIGID hold the body')
+      if (integer_of(card, 'CID') /= 0) then
+        call fix_along_axes(deck, card, along, nodes, model, fixed)
+      else
+        fixed(1, nodes) = fixed(1, nodes) .or. along(1)
+        fixed(2, nodes) = fixed(2, nodes) .or. along(2)
+      end if
+    end do
+    where (mark_axis(model)) fixed(1, :) = .true.
+    call list_fixed(fixed, model)
+  end subroutine read_supports
+
+  !> Fix nodes along the axes of a coordinate system. Axes along x and y, and both of any two, are
+  !> plain supports; a node that two skew supports hold does not move at all.
+  subroutine fix_along_axes(deck, card, along, nodes, model, fixed)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    logical, intent(in) :: along(2)
+    integer, intent(in) :: nodes(:)
+    type(model_t), intent(inout) :: model
+    logical, intent(inout) :: fixed(:, :)
+    type(skew_support_t) :: support
+    integer :: system, k, j
+    real(wp), parameter :: aligned = 1.0e-12_wp
+
+    call find_id(deck, a_system, card, 'CID', system)
+    if (system == 0 .or. .not. any(along)) return
+    if (all(along)) then
+      fixed(:, nodes) = .true.
+      return
+    end if
+    support%normal = deck%axes(:, merge(1, 2, along(1)), system)
+    k = maxloc(abs(support%normal), 1)
+    if (abs(support%normal(3 - k)) < aligned) then
+      fixed(k, nodes) = .true.
+      return
+    end if
+    if (model%controls%implicit%is_on) call report_field(deck, card, 'CID', &
+      'is a coordinate system of a support, which the implicit method does not have')
+    associate (conditions => model%conditions)
+      if (.not. allocated(conditions%skew_supports)) allocate (conditions%skew_supports(0))
+      do k = 1, size(nodes)
+        support%node = nodes(k)
+        do j = size(conditions%skew_supports), 1, -1
+          if (conditions%skew_supports(j)%node == nodes(k)) exit
+        end do
+        if (j == 0) then
+          conditions%skew_supports = [conditions%skew_supports, support]
+        else
+          associate (a => conditions%skew_supports(j)%normal, b => support%normal)
+            ! Along two axes; the same axis twice is one.
+            if (abs(a(1)*b(2) - a(2)*b(1)) >= aligned) fixed(:, nodes(k)) = .true.
+          end associate
+        end if
+      end do
+    end associate
+  end subroutine fix_along_axes
+
+  !> Nodes of a rigid body follow the body: nothing else may hold or move them. (LS-DYNA passes over
+  !> such constraints or turns them into some of the body, according to its version.) One error for
+  !> each card.
+  subroutine refuse_rigid(deck, card, nodes, owner, model, advice)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: nodes(:), owner(:)
+    type(model_t), intent(in) :: model
+    character(*), intent(in) :: advice
+    integer :: i
+
+    i = findloc(owner(nodes) > 0, .true., dim=1)
+    if (i > 0) call report_field(deck, card, 1, ': node '//follows(model, nodes(i), &
+      owner(nodes(i)))//advice)
+  end subroutine refuse_rigid
+
+  !> Node and body of a message.
+  pure function follows(model, node, body) result(text)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: node, body
+    character(:), allocatable :: text
+
+    text = to_text(model%mesh%node_id(node))//' belongs to rigid part ' &
+      //to_text(model%parts(model%rigids(body)%part)%id)//' and follows it; '
+  end function follows
+
+  !> Fixed pairs of node and direction as lists.
+  pure subroutine list_fixed(fixed, model)
+    logical, intent(in) :: fixed(:, :)
+    type(model_t), intent(inout) :: model
+    integer :: i, k
+
+    associate (conditions => model%conditions)
+      conditions%fixed_nodes = pack(spread([(i, i=1, size(fixed, 2))], 1, 2), fixed)
+      conditions%fixed_directions = pack(spread([(k, k=1, 2)], 2, size(fixed, 2)), fixed)
+    end associate
+  end subroutine list_fixed
+
+  !> *BOUNDARY_PRESCRIBED_MOTION_: of nodes and of rigid bodies.
+  subroutine read_motions(deck, owner, fixed, model)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: owner(:)      !! (n_node) rigid body or 0
+    logical, intent(in) :: fixed(:, :)   !! (2, n_node)
+    type(model_t), intent(inout) :: model
+    type(prescribed_motion_t), allocatable :: motions(:)
+    type(prescribed_motion_t) :: motion
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    integer, allocatable :: nodes(:), lines(:), rigid_lines(:)
+    integer :: k, n
+    logical :: found, is_sound, is_static
+
+    allocate (motions(64), lines(64), rigid_lines(0), model%conditions%rigid_motions(0))
+    is_static = model%controls%implicit%is_on .and. .not. model%controls%implicit%is_dynamic
+    n = 0
+    call rows_of('BOUNDARY_PRESCRIBED_MOTION_', cursor)
+    do
+      call next_of(deck, cursor, card, found)
+      if (.not. found) exit
+      call take_motion(deck, card, motion, is_sound)
+      if (.not. is_sound) cycle
+      if (has_field(card, 'PID')) then
+        call take_rigid_motion(deck, card, motion, rigid_lines, model)
+        cycle
+      end if
+      call card_nodes(deck, card, model, nodes)
+      call refuse_rigid(deck, card, nodes, owner, model, &
+        '*BOUNDARY_PRESCRIBED_MOTION_RIGID moves the body')
+      if (motion%kind == motion_acceleration .and. is_static) call report_field(deck, card, 'VAD', &
+        'is an acceleration, which has no meaning in statics ' &
+        //'(0 velocity or 2 displacement, or IMASS 1 of *CONTROL_IMPLICIT_DYNAMICS)')
+      if (motion%curve == 0) cycle
+      do k = 1, size(nodes)
+        if (n == size(motions)) then
+          motions = [motions, motions]
+          lines = [lines, lines]
+        end if
+        n = n + 1
+        motions(n) = motion
+        motions(n)%node = nodes(k)
+        lines(n) = card%line
+      end do
+    end do
+    model%conditions%motions = motions(:n)
+    call check_motions(deck, model, lines(:n), fixed)
+  end subroutine read_motions
+
+  !> A moved degree of freedom may not be fixed, nor moved twice at one time, nor without mass. One
+  !> error for each card.
+  subroutine check_motions(deck, model, lines, fixed)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: lines(:)      !! of the card of each motion
+    logical, intent(in) :: fixed(:, :)   !! (2, n_node)
+    integer :: last(2, model%mesh%n_node), before(size(lines)), i, j
+    logical :: is_massive(model%mesh%n_node), is_skew(model%mesh%n_node)
+    character(:), allocatable :: message
+
+    is_massive = mark_massive(deck, model)
+    is_skew = .false.
+    if (allocated(model%conditions%skew_supports)) &
+      is_skew(model%conditions%skew_supports%node) = .true.
+    last = 0
+    message = ''
+    do i = 1, size(lines)
+      associate (motion => model%conditions%motions(i))
+        ! Motions of one degree of freedom are chained backwards.
+        before(i) = last(motion%direction, motion%node)
+        last(motion%direction, motion%node) = i
+        if (i > 1) then
+          if (len(message) > 0 .and. lines(i) == lines(i - 1)) cycle
+        end if
+        message = ''
+        j = before(i)
+        do while (j > 0 .and. len(message) == 0)
+          if (min(model%conditions%motions(j)%death, motion%death) &
+            > max(model%conditions%motions(j)%birth, motion%birth)) message = &
+            'is moved in this direction by another card at the same time (line ' &
+            //to_text(deck%number(lines(j)))//')'
+          j = before(j)
+        end do
+        if (is_skew(motion%node)) message = 'has a support along an axis of a coordinate system ' &
+          //'(CID) and cannot be moved by this card too'
+        if (fixed(motion%direction, motion%node)) message = &
+          'is fixed in this direction and cannot be moved by this card too'
+        if (model%is_round .and. motion%direction == 1 .and. .not. &
+          model%mesh%coordinates(1, motion%node) > 0.0_wp) message = &
+          'lies on the axis (x = 0) of an axisymmetric deck and can not move in r'
+        if (.not. is_massive(motion%node)) message = &
+          'belongs to no element, so it has no mass to be moved'
+        if (len(message) > 0) call reject_field(deck, place_t(lines(i), 1, field=1), ': node ' &
+          //to_text(model%mesh%node_id(motion%node))//' '//message)
+      end associate
+    end do
+  end subroutine check_motions
+
+  !> What the cards of nodes and of rigid bodies share.
+  subroutine take_motion(deck, card, motion, is_sound)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    type(prescribed_motion_t), intent(inout) :: motion
+    logical, intent(out) :: is_sound     !! no field is out of its range
+
+    call take_life(deck, card, ['BIRTH', 'DEATH'], motion%birth, motion%death)
+    is_sound = .not. any(card%bad)
+    if (.not. is_sound) return
+    motion%direction = integer_of(card, 'DOF')
+    motion%kind = integer_of(card, 'VAD')
+    motion%scale = real_of(card, 'SF')
+    call find_id(deck, a_curve, card, 'LCID', motion%curve)
+  end subroutine take_motion
+
+  !> *BOUNDARY_PRESCRIBED_MOTION_RIGID. A moved degree of freedom may not be fixed, nor moved twice
+  !> at one time.
+  subroutine take_rigid_motion(deck, card, motion, lines, model)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    type(prescribed_motion_t), intent(inout) :: motion
+    integer, allocatable, intent(inout) :: lines(:) !! of the motions so far
+    type(model_t), intent(inout) :: model
+    integer :: i, part
+
+    call find_id(deck, a_part, card, 'PID', part)
+    if (part == 0 .or. motion%curve == 0) return
+    if (model%parts(part)%material == 0) return
+    motion%node = findloc(model%rigids%part, part, dim=1)
+    if (motion%direction == 7) motion%direction = 3
+    if (motion%node == 0) then
+      call report_field(deck, card, 'PID', 'is not a rigid part (*MAT_RIGID); ' &
+        //'*BOUNDARY_PRESCRIBED_MOTION_SET moves nodes')
+      return
+    else if (model%is_round .and. motion%direction /= 2) then
+      call report_field(deck, card, 'DOF', across_axis)
+    else if (model%rigids(motion%node)%is_fixed(motion%direction)) then
+      call report_field(deck, card, 'DOF', 'is fixed by CON1 or CON2 of the part''s *MAT_RIGID ' &
+        //'and cannot be moved by this card too')
+    end if
+    do i = 1, size(lines)
+      associate (other => model%conditions%rigid_motions(i))
+        if (other%node == motion%node .and. other%direction == motion%direction &
+          .and. min(other%death, motion%death) > max(other%birth, motion%birth)) call &
+          report_field(deck, card, 'DOF', 'is moved by another card at the same time (line ' &
+          //to_text(deck%number(lines(i)))//')')
+      end associate
+    end do
+    model%conditions%rigid_motions = [model%conditions%rigid_motions, motion]
+    lines = [lines, card%line]
+  end subroutine take_rigid_motion
+
+  !> *CONSTRAINED_NODE_SET: the sets whose nodes nothing else holds or moves.
+  subroutine read_common_motions(deck, model)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(inout) :: model
+    type(common_motion_t) :: common
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    logical :: taken(2, model%mesh%n_node), is_rigid(model%mesh%n_node), meshed(model%mesh%n_node)
+    logical :: found
+    integer :: k
+
+    call mark_taken(model, taken)
+    meshed = mark_meshed_nodes(model)
+    is_rigid = mark_rigid_nodes(model%rigids, model%mesh%n_node)
+    call rows_of('CONSTRAINED_NODE_SET', cursor)
+    do
+      call next_of(deck, cursor, card, found)
+      if (.not. found) exit
+      if (any(card%bad)) cycle
+      if (model%controls%implicit%is_on) call line_error(deck, card%line, &
+        '*CONSTRAINED_NODE_SET is a constraint that the implicit method does not have')
+      call card_nodes(deck, card, model, common%nodes)
+      common%along = along_axes(:, integer_of(card, 'DOF'))
+      if (.not. any(common%along) .or. size(common%nodes) == 0) cycle
+      call check_common(deck, card, model, common, meshed, is_rigid, taken)
+      if (any(card%bad)) cycle
+      do k = 1, 2
+        if (common%along(k)) taken(k, common%nodes) = .true.
+      end do
+      if (.not. allocated(model%conditions%common_motions)) &
+        allocate (model%conditions%common_motions(0))
+      model%conditions%common_motions = [model%conditions%common_motions, common]
+    end do
+  end subroutine read_common_motions
+
+  !> Nodes that move alike may not be held or moved otherwise along the same direction: an error of
+  !> the first that is.
+  subroutine check_common(deck, card, model, common, meshed, is_rigid, taken)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    type(model_t), intent(in) :: model
+    type(common_motion_t), intent(in) :: common
+    logical, intent(in) :: meshed(:), is_rigid(:)   !! (n_node)
+    logical, intent(in) :: taken(:, :)              !! (2, n_node)
+    character(:), allocatable :: message
+    integer :: i
+
+    do i = 1, size(common%nodes)
+      associate (node => common%nodes(i))
+        if (.not. meshed(node)) then
+          message = 'belongs to no element'
+        else if (is_rigid(node)) then
+          message = 'belongs to a rigid part and follows it'
+        else if (any(taken(:, node) .and. common%along)) then
+          message = 'is held, moved or in another such set along the same direction'
+        else
+          cycle
+        end if
+        call report_field(deck, card, 'NSID', ': node '//to_text(model%mesh%node_id(node))//' ' &
+          //message)
+        return
+      end associate
+    end do
+  end subroutine check_common
+
+  !> Degrees of freedom that something holds or moves.
+  pure subroutine mark_taken(model, taken)
+    type(model_t), intent(in) :: model
+    logical, intent(out) :: taken(:, :) !! (2, n_node)
+    integer :: i
+
+    taken = .false.
+    associate (conditions => model%conditions)
+      do i = 1, size(conditions%fixed_nodes)
+        taken(conditions%fixed_directions(i), conditions%fixed_nodes(i)) = .true.
+      end do
+      do i = 1, size(conditions%motions)
+        taken(conditions%motions(i)%direction, conditions%motions(i)%node) = .true.
+      end do
+      if (allocated(conditions%skew_supports)) taken(:, conditions%skew_supports%node) = .true.
+    end associate
+  end subroutine mark_taken
+
+end module deck_supports_m

@@ -1,0 +1,128 @@
+! SPDX-License-Identifier: MIT
+!> User ids to indices: a direct table where ids lie close together, a sorted list elsewhere.
+module deck_ids_m
+  use kinds_m, only : long
+  use sorting_m, only : sorted_order
+  implicit none
+  private
+  public :: id_map_t, map_ids, index_of, ids_between, n_kind, kind_names, a_node, an_element, &
+    a_part, a_section, a_material, an_eos, an_hourglass, a_curve, a_table, a_node_set, a_part_set, &
+    a_segment_set, a_shell_set, a_system
+
+  !> Kinds of things that have user ids.
+  integer, parameter :: n_kind = 14, a_node = 1, an_element = 2, a_part = 3, a_section = 4, &
+    a_material = 5, an_eos = 6, an_hourglass = 7, a_curve = 8, a_table = 9, a_node_set = 10, &
+    a_part_set = 11, a_segment_set = 12, a_shell_set = 13, a_system = 14
+  character(17), parameter :: kind_names(n_kind) = [character(17) :: 'node', 'element', 'part', &
+    'section', 'material', 'equation of state', '*HOURGLASS', 'curve', 'table', 'node set', &
+    'part set', 'segment set', 'shell set', 'coordinate system']
+
+  !> Index of every id of one kind.
+  type :: id_map_t
+    logical :: lost = .false.                !! some definitions were refused: others may be meant
+    logical :: incomplete = .false.          !! lost, or there is none where a deck has some
+    integer, allocatable :: lines(:)         !! where each is defined
+    integer :: low = 1                       !! smallest id of the table
+    integer, allocatable :: table(:)         !! index of id low, low + 1, ..., 0 where there is none
+    integer, allocatable :: sorted(:)        !! ids in increasing order ...
+    integer, allocatable :: order(:)         !! ... and their indices
+  end type id_map_t
+
+contains
+
+  !> Make the map; `twice` lists the positions of ids that have come before.
+  subroutine map_ids(ids, map, twice)
+    integer, intent(in) :: ids(:)
+    type(id_map_t), intent(out) :: map
+    integer, allocatable, intent(out) :: twice(:)
+    logical, allocatable :: again(:)
+    integer :: i, n
+
+    n = size(ids)
+    allocate (twice(0))
+    if (n == 0) then
+      allocate (map%table(0))
+      return
+    end if
+    allocate (again(n), source=.false.)
+    map%low = minval(ids)
+    if (int(maxval(ids), long) - map%low < 4_long*n + 1024) then
+      allocate (map%table(maxval(ids) - map%low + 1), source=0)
+      do i = 1, n
+        again(i) = map%table(ids(i) - map%low + 1) > 0
+        if (.not. again(i)) map%table(ids(i) - map%low + 1) = i
+      end do
+    else
+      map%order = sorted_order(int(ids, long))
+      map%sorted = ids(map%order)
+      do i = 2, n
+        again(map%order(i)) = map%sorted(i) == map%sorted(i - 1)
+      end do
+    end if
+    if (any(again)) twice = pack([(i, i=1, n)], again)
+  end subroutine map_ids
+
+  !> Index of an id, or 0.
+  pure function index_of(map, id) result(found)
+    type(id_map_t), intent(in) :: map
+    integer, intent(in) :: id
+    integer :: found
+    integer :: place
+
+    found = 0
+    if (allocated(map%table)) then
+      if (id < map%low .or. id - map%low >= size(map%table)) return
+      found = map%table(id - map%low + 1)
+    else if (allocated(map%sorted)) then
+      place = first_place(map%sorted, id)
+      if (place > size(map%sorted)) return
+      if (map%sorted(place) == id) found = map%order(place)
+    end if
+  end function index_of
+
+  !> Indices of all ids from `first` to `last`, in increasing order of id.
+  subroutine ids_between(map, first, last, found)
+    type(id_map_t), intent(in) :: map
+    integer, intent(in) :: first, last
+    integer, allocatable, intent(out) :: found(:)
+    integer :: from, to
+
+    allocate (found(0))
+    if (allocated(map%table)) then
+      if (last < map%low .or. size(map%table) == 0) return
+      from = max(first, map%low) - map%low + 1
+      to = min(last - map%low + 1, size(map%table))
+      if (from > to) return
+      found = pack(map%table(from:to), map%table(from:to) > 0)
+    else if (allocated(map%sorted)) then
+      from = first_place(map%sorted, first)
+      to = from
+      do while (to <= size(map%sorted))
+        if (map%sorted(to) > last) exit
+        to = to + 1
+      end do
+      found = map%order(from:to - 1)
+    end if
+  end subroutine ids_between
+
+  !> First place in an increasing list that holds `id` or more.
+  pure function first_place(sorted, id) result(place)
+    integer, intent(in) :: sorted(:)
+    integer, intent(in) :: id
+    integer :: place
+    integer :: low, high
+
+    low = 0
+    high = size(sorted) + 1
+    do while (high - low > 1)
+      place = low + (high - low)/2
+      if (sorted(place) < id) then
+        low = place
+      else
+        high = place
+      end if
+    end do
+    place = high
+  end function first_place
+
+end module deck_ids_m

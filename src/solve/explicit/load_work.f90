@@ -1,0 +1,285 @@
+! SPDX-License-Identifier: MIT
+!> What acts from outside in an explicit cycle, and its work. That of body loads and global damping
+!> needs sums over all nodes; the team forms them tile by tile while a tile's nodes are in cache,
+!> before they move. Damping acts on the mean of two half-step velocities, so its work is told one
+!> cycle later, from the velocities of the step behind and of that before, which damped runs keep.
+!> Partial sums are added in their order, so that the bits do not depend on the number of threads.
+module load_work_m
+  use curves_m, only : curve_value
+  use external_force_m, only : form_external_force, body_acceleration, damping_rate
+  use kinds_m, only : wp
+  use layout_m, only : layout_t
+  use model_m, only : model_t
+  use state_m, only : state_t
+  implicit none
+  private
+  public :: apply_loads, motion_sums_t, plan_sums, sum_motion, sum_blocks, count_sums
+
+  !> Nodes of one partial sum where no tile moves them.
+  integer, parameter :: block_size = 512
+
+  !> Partial sums of one cycle, and what they are for.
+  type :: motion_sums_t
+    integer, allocatable :: blocks(:, :) !! (2, blocks) first and last node
+    integer :: n_special = 0             !! so many of them are of special nodes; the first ones
+    integer :: first = 1, last = 0       !! which of these this process sums
+    integer, allocatable :: starts(:)    !! (processes + 1) where those of each start, if there are
+                                         !! several
+    real(wp), allocatable :: parts(:, :) !! (4, tiles and then blocks) m v_x, m v_y, and what
+                                         !! `sum_drag` gives; allocated only where the deck has
+                                         !! body loads or damping
+    real(wp) :: share(4) = 0.0_wp        !! what each counts: two in external work, two in that of
+                                         !! damping
+  end type motion_sums_t
+
+contains
+
+  !> Loads from outside and their work (trapezoidal rule), body acceleration and damping; the work
+  !> of these two is counted once the sums over all nodes are there.
+  subroutine apply_loads(model, state, damping, sums)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    real(wp), intent(inout) :: damping(2) !! D per direction: that before in, that of now out
+    type(motion_sums_t), intent(inout) :: sums
+    real(wp) :: half, body(2), former(2)
+
+    half = 0.5_wp*state%dt_before
+    if (allocated(state%external)) then
+      state%external_work = state%external_work + half*power(state%external, state%motion)
+      call form_external_force(model, state%motion, state%time, state%external)
+      state%external_work = state%external_work + half*power(state%external, state%motion)
+      state%force_special = state%external
+    else
+      call clear_forces(model, state)
+    end if
+    if (allocated(model%conditions%rigid_loads)) call apply_rigid_loads(model, half, state)
+    if (size(model%conditions%body_loads) > 0) then
+      body = body_acceleration(model%conditions, model%curves, state%time)
+      sums%share(1:2) = half*(body + state%body_acceleration)
+      state%body_acceleration = body
+    end if
+    if (allocated(model%conditions%damping)) then
+      former = damping
+      damping = damping_rate(model%conditions, model%curves, state%time)
+      sums%share(3:4) = former ! the sums belong to the cycle before
+    end if
+    if (allocated(state%node_damping)) sums%share(3:4) = 1.0_wp ! they hold the rates
+  end subroutine apply_loads
+
+  !> Loads on rigid bodies and their work.
+  subroutine apply_rigid_loads(model, half, state)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: half     !! of the step behind
+    type(state_t), intent(inout) :: state
+    integer :: i
+
+    do i = 1, size(state%rigids)
+      associate (rigid => state%rigids(i))
+        state%external_work = state%external_work + half*sum(rigid%load*rigid%velocity)
+        rigid%load = 0.0_wp
+      end associate
+    end do
+    do i = 1, size(model%conditions%rigid_loads)
+      associate (load => model%conditions%rigid_loads(i))
+        associate (force => state%rigids(load%node)%load(load%direction))
+          force = force + load%scale*curve_value(model%curves(load%curve), state%time)
+        end associate
+      end associate
+    end do
+    do i = 1, size(state%rigids)
+      associate (rigid => state%rigids(i))
+        state%external_work = state%external_work + half*sum(rigid%load*rigid%velocity)
+      end associate
+    end do
+  end subroutine apply_rigid_loads
+
+  !> No force yet on the nodes of interfaces and walls. On the others there never is one: to write
+  !> zeros there would only take them out of the caches of other threads.
+  subroutine clear_forces(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    integer :: i
+
+    do i = 1, size(state%contacts)
+      call clear(state%contacts(i)%nodes)
+    end do
+    if (allocated(model%conditions%skew_supports)) then
+      do i = 1, size(model%conditions%skew_supports)
+        call clear([model%conditions%skew_supports(i)%node])
+      end do
+    end if
+    if (.not. allocated(state%walls)) return
+    do i = 1, size(model%walls)
+      call clear(model%walls(i)%nodes)
+    end do
+
+  contains
+
+    subroutine clear(nodes)
+      integer, intent(in), contiguous :: nodes(:)
+      integer :: k
+
+      do k = 1, size(nodes)
+        state%force_special(:, nodes(k)) = 0.0_wp
+      end do
+    end subroutine clear
+
+  end subroutine clear_forces
+
+  !> Power of forces on the first nodes.
+  pure function power(force, motion)
+    real(wp), intent(in), contiguous :: force(:, :)  !! (2, n)
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n or more)
+    real(wp) :: power
+    integer :: i
+
+    power = 0.0_wp
+    do i = 1, size(force, 2)
+      power = power + (force(1, i)*motion(3, i) + force(2, i)*motion(4, i))
+    end do
+  end function power
+
+  !> Set up the sums that a model needs, if any: over its tiles and over blocks of the nodes that no
+  !> tile moves, special ones and those inside rigid bodies.
+  pure subroutine plan_sums(model, sums)
+    type(model_t), intent(in) :: model
+    type(motion_sums_t), intent(out) :: sums
+    integer :: n_tile, n_special, n_moved, n_block, i
+
+    if (size(model%conditions%body_loads) == 0 .and. .not. allocated(model%conditions%damping) &
+      .and. .not. allocated(model%conditions%part_damping)) return
+    n_tile = size(model%layout%tiles)
+    n_special = model%layout%n_special
+    n_moved = n_special
+    if (n_tile > 0) n_moved = model%layout%tiles(n_tile)%last_node
+    n_block = blocks_of(n_special)
+    sums%n_special = n_block
+    sums%last = n_block
+    allocate (sums%blocks(2, n_block + blocks_of(model%mesh%n_node - n_moved)))
+    do i = 1, size(sums%blocks, 2)
+      if (i <= n_block) then
+        sums%blocks(:, i) = [(i - 1)*block_size + 1, min(i*block_size, n_special)]
+      else
+        sums%blocks(:, i) = [n_moved + (i - n_block - 1)*block_size + 1, &
+          min(n_moved + (i - n_block)*block_size, model%mesh%n_node)]
+      end if
+    end do
+    allocate (sums%parts(4, n_tile + size(sums%blocks, 2)), source=0.0_wp)
+  end subroutine plan_sums
+
+  !> Blocks that hold so many nodes.
+  pure function blocks_of(n_node) result(n_block)
+    integer, intent(in) :: n_node
+    integer :: n_block
+
+    n_block = (n_node + block_size - 1)/block_size
+  end function blocks_of
+
+  !> Sums over the nodes first .. last; those of damping where the state keeps former velocities,
+  !> which become the present ones.
+  subroutine sum_motion(first, last, state, sums)
+    integer, intent(in) :: first, last
+    type(state_t), intent(inout) :: state
+    real(wp), intent(out) :: sums(4) !! m v_x, m v_y, and those of `sum_drag`
+
+    sums(1:2) = sum_momentum(first, last, state%mass, state%motion)
+    sums(3:4) = 0.0_wp
+    if (allocated(state%former_damping)) then
+      call sum_own_drag(first, last, state, sums(3:4))
+      return
+    end if
+    if (allocated(state%former_velocity)) call sum_drag(first, last, state%mass, state%motion, &
+      [state%former_dt, state%dt_before], state%former_velocity, sums(3:4))
+  end subroutine sum_motion
+
+  !> Momentum of the nodes first .. last. Two by two, so that an addition need
+  !> not wait for the one before.
+  pure function sum_momentum(first, last, mass, motion) result(sums)
+    integer, intent(in) :: first, last
+    real(wp), intent(in) :: mass(*)      !! of all nodes
+    real(wp), intent(in) :: motion(4, *) !! of all nodes
+    real(wp) :: sums(2)                  !! m v_x, m v_y
+    real(wp) :: odd(2), even(2)
+    integer :: i
+
+    odd = 0.0_wp
+    even = 0.0_wp
+    do i = first, last - 1, 2
+      odd = odd + mass(i)*motion(3:4, i)
+      even = even + mass(i + 1)*motion(3:4, i + 1)
+    end do
+    if (i == last) odd = odd + mass(i)*motion(3:4, i)
+    sums = odd + even
+  end function sum_momentum
+
+  !> What damping with D = 1 took in the cycle before from the nodes first .. last: forces m w with
+  !> the mean w of former and present velocity act over half of the step before and half of the step
+  !> behind.
+  pure subroutine sum_drag(first, last, mass, motion, steps, former, sums)
+    integer, intent(in) :: first, last
+    real(wp), intent(in) :: mass(*)         !! of all nodes
+    real(wp), intent(in) :: motion(4, *)    !! of all nodes
+    real(wp), intent(in) :: steps(2)        !! that before, that behind
+    real(wp), intent(inout) :: former(2, *) !! velocities of the step before; then the present ones
+    real(wp), intent(out) :: sums(2)        !! J/m over D, along x and y
+    real(wp) :: v(2)
+    integer :: i
+
+    sums = 0.0_wp
+    do i = first, last
+      v = motion(3:4, i)
+      sums = sums + 0.25_wp*mass(i)*((former(:, i) + v)*(steps(1)*former(:, i) + steps(2)*v))
+      former(:, i) = v
+    end do
+  end subroutine sum_drag
+
+  !> The same where each node has its own damping, which the sums then hold.
+  pure subroutine sum_own_drag(first, last, state, sums)
+    integer, intent(in) :: first, last
+    type(state_t), intent(inout) :: state
+    real(wp), intent(out) :: sums(2)        !! J/m, along x and y
+    real(wp) :: v(2)
+    integer :: i
+
+    sums = 0.0_wp
+    do i = first, last
+      v = state%motion(3:4, i)
+      associate (former => state%former_velocity(:, i))
+        sums = sums + 0.25_wp*state%mass(i)*state%former_damping(:, i)*((former + v) &
+          *(state%former_dt*former + state%dt_before*v))
+      end associate
+      state%former_velocity(:, i) = v
+      state%former_damping(:, i) = state%node_damping(:, i)
+    end do
+  end subroutine sum_own_drag
+
+  !> The blocks, shared by the team, which does not wait: nothing moves these
+  !> nodes while tiles advance.
+  subroutine sum_blocks(layout, state, sums)
+    type(layout_t), intent(in) :: layout
+    type(state_t), intent(inout) :: state
+    type(motion_sums_t), intent(inout) :: sums
+    integer :: i
+
+    !$omp do schedule(static)
+    do i = sums%first, size(sums%blocks, 2)
+      if (i > sums%last .and. i <= sums%n_special) cycle
+      call sum_motion(sums%blocks(1, i), sums%blocks(2, i), state, &
+        sums%parts(:, size(layout%tiles) + i))
+    end do
+    !$omp end do nowait
+  end subroutine sum_blocks
+
+  !> Work since the last instant, once the sums are complete.
+  pure subroutine count_sums(sums, external_work, damping_work)
+    type(motion_sums_t), intent(in) :: sums
+    real(wp), intent(inout) :: external_work, damping_work
+    real(wp) :: work(4)
+
+    if (.not. allocated(sums%parts)) return
+    work = sums%share*sum(sums%parts, 2)
+    external_work = external_work + (work(1) + work(2))
+    damping_work = damping_work + (work(3) + work(4))
+  end subroutine count_sums
+
+end module load_work_m
