@@ -187,6 +187,7 @@ contains
     integer(hid_t), intent(in) :: group                !! the open group /VTKHDF
     integer, intent(in) :: n_planned                   !! states
     type(error_t), allocatable, intent(inout) :: error
+    character(len(fields%name)) :: name
     integer :: i, content
 
     call make_group(group, 'Steps', error)
@@ -208,11 +209,10 @@ contains
     call link_growing(file%steps(step_zeros), group, 'Steps/CellDataOffsets/part_id', error)
     call link_growing(file%steps(step_points), group, 'Steps/PointOffsets', error)
     do i = 2, size(file%which)
-      associate (name => fields(file%which(i))%name)
-        call link_growing(file%steps(merge(step_cells, step_points, &
-          fields(file%which(i))%of_cells)), group, 'Steps/'//name(:index(name, '/') - 1) &
-          //'Offsets'//trim(name(index(name, '/'):)), error)
-      end associate
+      name = fields(file%which(i))%name
+      content = merge(step_cells, step_points, fields(file%which(i))%of_cells)
+      call link_growing(file%steps(content), group, 'Steps/'//name(:index(name, '/') - 1) &
+        //'Offsets'//trim(name(index(name, '/'):)), error)
     end do
   end subroutine create_steps
 
