@@ -8,6 +8,8 @@ module arguments_m
   use deck_overrides_m, only : is_override, override_mistake, contact_names, run_names
   use deck_spelling_m, only : first_too_far, keep_nearer
   use errors_m, only : error_t, raise, status_input
+  use files_m, only : folder_of
+  use log_m, only : to_text
   implicit none
   private
   public :: arguments_t, read_arguments, help_text, file_stem, only_end_time, timing_by_interface, &
@@ -63,7 +65,8 @@ contains
     do i = 1, command_argument_count()
       call get_command_argument(i, word, length=length)
       if (length > argument_length) then
-        call refuse_length(word, length, mistakes)
+        call note('"'//shown_text(word(:60))//'..." has '//to_text(length)//' characters: an ' &
+          //'argument may have '//to_text(argument_length), mistakes)
         cycle
       end if
       if (i > 1) arguments%line = arguments%line//' '
@@ -72,12 +75,11 @@ contains
       if (i > 1 .or. .not. arguments%check) call read_word(trim(word), arguments, mistakes)
     end do
     if (arguments%help .or. arguments%version) return
-    if (.not. allocated(arguments%deck) .and. .not. allocated(arguments%restart)) &
-      mistakes = mistakes//'no deck given: expected i=DECK (or r=FILE to go on)'//new_line('a')
-    if (arguments%check .and. allocated(arguments%restart)) mistakes = mistakes &
-      //'check looks at a deck: r= has no meaning'//new_line('a')
-    if (arguments%json .and. .not. arguments%check) mistakes = mistakes &
-      //'--json goes with check'//new_line('a')
+    if (.not. (allocated(arguments%deck) .or. allocated(arguments%restart))) &
+      call note('no deck given: expected i=DECK (or r=FILE to go on)', mistakes)
+    if (arguments%check .and. allocated(arguments%restart)) &
+      call note('check looks at a deck: r= has no meaning', mistakes)
+    if (arguments%json .and. .not. arguments%check) call note('--json goes with check', mistakes)
     if (len(mistakes) > 0) then
       ! Else the deck tells them with its own.
       do i = 1, size(arguments%overrides)
@@ -93,20 +95,6 @@ contains
     if (.not. (allocated(arguments%directory) .or. arguments%check)) arguments%directory = '.'
     if (.not. allocated(arguments%job)) arguments%job = file_stem(arguments%deck)
   end subroutine read_arguments
-
-  !> An argument of which only the first part was read.
-  pure subroutine refuse_length(word, length, mistakes)
-    character(*), intent(in) :: word !! as far as it was read
-    integer, intent(in) :: length
-    character(:), allocatable, intent(inout) :: mistakes
-    integer, parameter :: shown = 60
-    character(12) :: found, limit
-
-    write (found, '(ss,i0)') length
-    write (limit, '(ss,i0)') argument_length
-    mistakes = mistakes//'"'//shown_text(word(:shown))//'..." has '//trim(found) &
-      //' characters: an argument may have '//trim(limit)//new_line('a')
-  end subroutine refuse_length
 
   !> Understand one argument.
   subroutine read_word(word, arguments, mistakes)
@@ -147,35 +135,41 @@ contains
       if (lower_case(value) /= 'nodump') call take(arguments%directory, value, 'd=', mistakes)
     case ('jobid')
       call take(arguments%job, value, 'jobid=', mistakes)
-      if (index(value, '/') > 0) mistakes = mistakes//'jobid="'//value &
-        //'": expected a name without /'//new_line('a')
+      if (index(value, '/') > 0) &
+        call note('jobid="'//value//'": expected a name without /', mistakes)
     case ('ncpu')
       ! LS-DYNA's may have a minus before it.
       call read_count(name, value(1 + index(value(:min(1, len(value))), '-'):), 1024, &
-        arguments%n_thread, mistake)
-      call note(mistake, mistakes)
+        arguments%n_thread, mistakes)
     case ('c')
-      call read_count(name, value, 1000000000, arguments%cpu_seconds, mistake)
-      call note(mistake, mistakes)
+      call read_count(name, value, 1000000000, arguments%cpu_seconds, mistakes)
     case ('quiet')
       arguments%quiet = value == '1'
-      if (value /= '0' .and. value /= '1') mistakes = mistakes//'quiet="'//value &
-        //'": expected 0 or 1'//new_line('a')
+      if (value /= '0' .and. value /= '1') &
+        call note('quiet="'//value//'": expected 0 or 1', mistakes)
     case ('perthread')
-      call read_count(name, value, 1000000000, arguments%thread_share, mistake)
-      call note(mistake, mistakes)
+      call read_count(name, value, 1000000000, arguments%thread_share, mistakes)
     case ('timing')
-      call read_timing(value, arguments%timing, mistakes)
+      select case (lower_case(value))
+      case ('phase')
+        arguments%timing = timing_by_phase
+      case ('interface')
+        arguments%timing = timing_by_interface
+      case ('off')
+        arguments%timing = timing_off
+      case default
+        call note('timing="'//value//'": expected phase, interface or off', mistakes)
+      end select
     case ('memory', 'memory2')
       continue ! memory is taken as it is needed
     case ('o', 'g', 's', 'f', 'a', 'x', 'para')
-      call ignore(name//'=', arguments%ignored)
+      if (index(' '//arguments%ignored, ' '//name//'=') == 0) &
+        arguments%ignored = trim(adjustl(arguments%ignored//' '//name//'='))
     case default
       if (is_override(name)) then
         arguments%overrides = [character(argument_length) :: arguments%overrides, word]
       else
-        mistakes = mistakes//'unknown argument "'//word//'"'//meant_word(word) &
-          //new_line('a')
+        call note('unknown argument "'//word//'"'//meant_word(word), mistakes)
       end if
     end select
   end subroutine read_word
@@ -205,16 +199,6 @@ contains
     if (len_trim(nearest) > 0) text = '; did you mean '//trim(nearest)//'?'
   end function meant_word
 
-  !> Note a word of LS-DYNA that has no effect, once.
-  pure subroutine ignore(word, ignored)
-    character(*), intent(in) :: word
-    character(:), allocatable, intent(inout) :: ignored
-
-    if (index(' '//ignored//' ', ' '//word//' ') > 0) return
-    if (len(ignored) > 0) ignored = ignored//' '
-    ignored = ignored//word
-  end subroutine ignore
-
   !> What is wrong with a word that has control characters, which would make lines of their own in
   !> logs and status.out, or act on terminals; empty where nothing is.
   pure function control_mistake(word) result(mistake)
@@ -240,44 +224,22 @@ contains
   end subroutine note
 
   !> Understand a number from 1 to `most`.
-  pure subroutine read_count(name, value, most, count, mistake)
+  pure subroutine read_count(name, value, most, count, mistakes)
     character(*), intent(in) :: name, value
     integer, intent(in) :: most
     integer, intent(inout) :: count !! kept where the value is wrong
-    character(:), allocatable, intent(out) :: mistake !! empty: none
-    character(12) :: limit
+    character(:), allocatable, intent(inout) :: mistakes
     integer :: number, status
 
-    mistake = ''
     number = 0
     status = verify(value, '0123456789')
     if (status == 0) read (value, *, iostat=status) number
     if (status == 0 .and. number >= 1 .and. number <= most) then
       count = number
-      return
+    else
+      call note(name//'="'//value//'": expected a number from 1 to '//to_text(most), mistakes)
     end if
-    write (limit, '(ss,i0)') most
-    mistake = name//'="'//value//'": expected a number from 1 to '//trim(limit)
   end subroutine read_count
-
-  !> Understand the value of timing=.
-  subroutine read_timing(value, timing, mistakes)
-    character(*), intent(in) :: value
-    integer, intent(inout) :: timing
-    character(:), allocatable, intent(inout) :: mistakes
-
-    select case (lower_case(value))
-    case ('phase')
-      timing = timing_by_phase
-    case ('interface')
-      timing = timing_by_interface
-    case ('off')
-      timing = timing_off
-    case default
-      mistakes = mistakes//'timing="'//value//'": expected phase, interface or off' &
-        //new_line('a')
-    end select
-  end subroutine read_timing
 
   !> Set a text once.
   subroutine take(target_text, value, name, mistakes)
@@ -286,12 +248,11 @@ contains
     character(:), allocatable, intent(inout) :: mistakes
 
     if (allocated(target_text)) then
-      mistakes = mistakes//name//' is given twice: "'//target_text//'" and "'//value//'"' &
-        //new_line('a')
-      if (name == 'deck') mistakes = mistakes &
-        //'(the one command that may come before a deck is check)'//new_line('a')
+      call note(name//' is given twice: "'//target_text//'" and "'//value//'"', mistakes)
+      if (name == 'deck') &
+        call note('(the one command that may come before a deck is check)', mistakes)
     else if (len_trim(value) == 0) then
-      mistakes = mistakes//name//' is empty'//new_line('a')
+      call note(name//' is empty', mistakes)
     else
       target_text = value
     end if
@@ -320,15 +281,6 @@ contains
       only = only .and. lower_case(arguments%overrides(i)(:7)) == 'endtim='
     end do
   end function only_end_time
-
-  !> The folder that a file lies in.
-  pure function folder_of(path) result(folder)
-    character(*), intent(in) :: path
-    character(:), allocatable :: folder
-
-    folder = path(:index(path, '/', back=.true.))
-    if (len(folder) == 0) folder = '.'
-  end function folder_of
 
   !> File name without folders and last extension.
   pure function file_stem(path) result(stem)

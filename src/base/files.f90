@@ -9,7 +9,8 @@ module files_m
   use kinds_m, only : long
   implicit none
   private
-  public :: join_path, parent_path, file_exists, is_directory, make_directory, remove_file, &
+  public :: join_path, parent_path, folder_of, file_exists, is_directory, make_directory, &
+    remove_file, &
     rename_file, force_to_disk, lengthen_file, is_endless, fill_standard_streams, open_failure, &
     unfinished
 
@@ -57,6 +58,15 @@ contains
     end do
     parent = path(:last)
   end function parent_path
+
+  !> The directory that a file lies in, `.` of a bare name.
+  pure function folder_of(path) result(folder)
+    character(*), intent(in) :: path
+    character(:), allocatable :: folder
+
+    folder = parent_path(path)
+    if (len(folder) == 0) folder = '.'
+  end function folder_of
 
   !> Whether there is something of this name (a file or a directory). Blanks at the end of the name
   !> are significant to the file system but not to Fortran: they are not seen here.

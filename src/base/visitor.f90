@@ -278,10 +278,8 @@ contains
     if (present(of)) item%of = of
     if (allocated(values)) item%extents(:1) = shape(values)
     if (.not. visitor%is_partial) call visitor%find(item)
-    if (item%is_new) then
-      if (allocated(values)) deallocate (values)
-      if (item%extents(1) /= absent) allocate (values(item%extents(1)))
-    end if
+    if (item%is_new .and. allocated(values)) deallocate (values)
+    if (item%is_new .and. item%extents(1) /= absent) allocate (values(item%extents(1)))
     place = c_null_ptr
     if (allocated(values)) place = c_loc(values)
     call visitor%pass(item, place)
@@ -318,10 +316,8 @@ contains
     if (present(of)) item%of = of
     if (allocated(values)) item%extents(:1) = shape(values)
     if (.not. visitor%is_partial) call visitor%find(item)
-    if (item%is_new) then
-      if (allocated(values)) deallocate (values)
-      if (item%extents(1) /= absent) allocate (values(item%extents(1)))
-    end if
+    if (item%is_new .and. allocated(values)) deallocate (values)
+    if (item%is_new .and. item%extents(1) /= absent) allocate (values(item%extents(1)))
     place = c_null_ptr
     if (allocated(values)) place = c_loc(values)
     call visitor%pass(item, place)
@@ -358,10 +354,9 @@ contains
     if (present(of)) item%of = of
     if (allocated(values)) item%extents = shape(values)
     if (.not. visitor%is_partial) call visitor%find(item)
-    if (item%is_new) then
-      if (allocated(values)) deallocate (values)
-      if (item%extents(1) /= absent) allocate (values(item%extents(1), item%extents(2)))
-    end if
+    if (item%is_new .and. allocated(values)) deallocate (values)
+    if (item%is_new .and. item%extents(1) /= absent) &
+      allocate (values(item%extents(1), item%extents(2)))
     place = c_null_ptr
     if (allocated(values)) place = c_loc(values)
     call visitor%pass(item, place)
@@ -384,10 +379,9 @@ contains
     if (present(of)) item%of = of
     if (allocated(values)) item%extents = shape(values)
     if (.not. visitor%is_partial) call visitor%find(item)
-    if (item%is_new) then
-      if (allocated(values)) deallocate (values)
-      if (item%extents(1) /= absent) allocate (values(item%extents(1), item%extents(2)))
-    end if
+    if (item%is_new .and. allocated(values)) deallocate (values)
+    if (item%is_new .and. item%extents(1) /= absent) &
+      allocate (values(item%extents(1), item%extents(2)))
     place = c_null_ptr
     if (allocated(values)) place = c_loc(values)
     call visitor%pass(item, place)

@@ -15,8 +15,7 @@ module archive_m
     h5sget_simple_extent_ndims_f, h5sget_simple_extent_type_f, h5tclose_f, h5tequal_f
   use errors_m, only : status_files, status_input
   use packed_buffer_m, only : forgetter_t
-  use hdf5_library_m, only : read_text
-  use hdf5_writing_m, only : memory_type, file_type, make_group, write_text
+  use hdf5_writing_m, only : read_text, memory_type, file_type, make_group, write_text
   use kinds_m, only : wp
   use log_m, only : to_text
   use visitor_m, only : visitor_t, item_t, absent, any_length, as_integer, whole, &

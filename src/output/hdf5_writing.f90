@@ -1,29 +1,32 @@
 ! SPDX-License-Identifier: MIT
-!> Small helpers over HDF5 for the results file. They and the results file are the only places that
-!> see an HDF5 status.
+!> Small helpers over HDF5 for restart files and the results file, which are the only other places
+!> that see an HDF5 status; and how this program opens the library.
 !>
 !> Here `error` is carried along: a procedure that is handed an error does nothing, so that a
 !> sequence of calls needs one question at its end.
 module hdf5_writing_m
-  use, intrinsic :: iso_c_binding, only : c_ptr, c_loc, c_char, c_null_char
-  use hdf5, only : hid_t, hsize_t, size_t, H5_INTEGER_KIND, H5P_DATASET_CREATE_F, H5S_SCALAR_F, &
-    H5S_SELECT_SET_F, H5S_UNLIMITED_F, H5D_FILL_TIME_NEVER_F, H5T_CSET_UTF8_F, &
+  use, intrinsic :: iso_c_binding, only : c_ptr, c_loc, c_char, c_int, c_null_char, c_size_t
+  use hdf5, only : haddr_t, hid_t, hsize_t, size_t, H5_INTEGER_KIND, H5P_DATASET_CREATE_F, &
+    H5S_SCALAR_F, H5S_SELECT_SET_F, H5S_UNLIMITED_F, H5D_FILL_TIME_NEVER_F, H5T_CSET_UTF8_F, &
     H5T_STR_NULLTERM_F, H5T_FORTRAN_S1, H5T_STRING, H5T_NATIVE_DOUBLE, H5T_NATIVE_INTEGER, &
-    H5T_IEEE_F64LE, H5T_STD_I32LE, H5T_STD_I64LE, h5kind_to_type, &
-    h5aclose_f, h5acreate_f, h5awrite_f, h5dclose_f, h5dcreate_anon_f, h5dcreate_f, &
-    h5dget_space_f, h5dset_extent_f, h5dwrite_f, h5gclose_f, h5gcreate_f, h5olink_f, h5pclose_f, &
-    h5pcreate_f, h5pset_chunk_f, h5pset_fill_time_f, h5sclose_f, h5screate_f, &
-    h5screate_simple_f, h5sselect_hyperslab_f, h5tclose_f, h5tcopy_f, h5tset_cset_f, &
-    h5tset_size_f, h5tset_strpad_f
+    H5T_IEEE_F64LE, H5T_STD_I32LE, H5T_STD_I64LE, h5kind_to_type, h5aclose_f, h5acreate_f, &
+    h5awrite_f, h5dclose_f, h5dcreate_anon_f, h5dcreate_f, h5dget_space_f, h5dset_extent_f, &
+    h5dwrite_f, h5gclose_f, h5gcreate_f, h5olink_f, h5pclose_f, h5pcreate_f, h5pset_chunk_f, &
+    h5pset_fill_time_f, h5sclose_f, h5screate_f, h5screate_simple_f, h5sselect_hyperslab_f, &
+    h5tclose_f, h5tcopy_f, h5tset_cset_f, h5tset_size_f, h5tset_strpad_f, H5T_STRING_F, &
+    H5T_STR_SPACEPAD_F, h5dont_atexit_f, h5open_f, h5eset_auto_f, h5dopen_f, &
+    h5dget_storage_size_f, h5dget_type_f, h5dread_f, h5sget_simple_extent_type_f, &
+    h5tget_class_f, h5tget_size_f, h5tget_strpad_f, h5tis_variable_str_f
   use kinds_m, only : long
   use errors_m, only : error_t, raise, status_files
+  use refused_memory_m, only : need_memory
   use visitor_m, only : as_real, as_integer, as_index
   implicit none
   private
   public :: growing_t, hid_t, as_real, as_integer, as_index, &
     create_growing, link_growing, append_rows, close_growing, &
     make_group, write_rows, write_string_attribute, write_index_attribute, write_text, &
-    check_status, memory_type, file_type
+    check_status, memory_type, file_type, open_library, end_of_file, read_text
 
   !> A dataset that grows by whole rows.
   type :: growing_t
@@ -34,7 +37,54 @@ module hdf5_writing_m
     integer(long) :: n_row = 0               !! rows so far
   end type growing_t
 
+  !> Bytes that HDF5 takes for itself and a small file. It crashes while it is opened, and while it
+  !> makes a file, where memory is refused (1.10.8).
+  integer(c_size_t), parameter :: own_memory = 4*1024**2
+
+  interface
+    !> POSIX setenv; 0 on success.
+    function c_setenv(name, text, overwrite) bind(c, name='setenv') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: name(*), text(*) !! end with a null
+      integer(c_int), value :: overwrite   !! 0: what the user has set stays
+      integer(c_int) :: status
+    end function c_setenv
+
+    !> How long a file is once all of it is written (there is no Fortran name for it); < 0 on
+    !> failure.
+    function c_get_eoa(id, length) bind(c, name='H5Fget_eoa') result(status)
+      import :: c_int, haddr_t, hid_t
+      integer(hid_t), value :: id
+      integer(haddr_t), intent(out) :: length !! bytes
+      integer(c_int) :: status
+    end function c_get_eoa
+  end interface
+
 contains
+
+  !> Open the library; harmless when it is open. HDF5's lock is switched off unless the user's
+  !> environment says otherwise: viewers may open files while the run still writes them, and these
+  !> may live on network file systems without locks.
+  subroutine open_library(status)
+    integer, intent(out) :: status !! < 0 on failure
+    integer :: ignored, second
+    integer(c_int) :: lock
+
+    call need_memory(own_memory)
+    lock = c_setenv('HDF5_USE_FILE_LOCKING'//c_null_char, 'FALSE'//c_null_char, 0_c_int)
+    call h5dont_atexit_f(ignored) ! HDF5's own clean-up crashes after a full disk
+    call h5open_f(status)
+    call h5eset_auto_f(0, second) ! statuses become errors here; HDF5 itself stays quiet
+    status = min(status, second)
+  end subroutine open_library
+
+  !> How long an open file will be when all that waits is written, bytes; 0 where HDF5 can not tell.
+  function end_of_file(id) result(length)
+    integer(hid_t), intent(in) :: id
+    integer(haddr_t) :: length
+
+    if (c_get_eoa(id, length) < 0) length = 0
+  end function end_of_file
 
   !> Turn an HDF5 status into an error that names the file operation.
   subroutine check_status(status, what, error)
@@ -282,5 +332,48 @@ contains
     call h5tclose_f(type_id, status(1))
     call h5sclose_f(space, status(2))
   end subroutine write_text
+
+  !> Read a text of any size from a scalar string dataset, whose bytes must all be stored.
+  subroutine read_text(parent, name, text, is_good)
+    integer(hid_t), intent(in) :: parent
+    character(*), intent(in) :: name                   !! path below `parent`
+    character(:), allocatable, intent(out), target :: text
+    logical, intent(out) :: is_good                    !! it is a text of that kind
+    integer(hid_t) :: dataset, type_id, space
+    integer(size_t) :: length
+    integer(hsize_t) :: stored
+    type(c_ptr) :: first
+    integer :: status(9), kind_of_space, class, padding, i
+    logical :: varies
+
+    text = ''
+    is_good = .false.
+    call h5dopen_f(parent, name, dataset, status(1))
+    if (status(1) < 0) return
+    call h5dget_type_f(dataset, type_id, status(1))
+    call h5tget_class_f(type_id, class, status(2))
+    call h5tget_size_f(type_id, length, status(3))
+    call h5dget_space_f(dataset, space, status(4))
+    call h5sget_simple_extent_type_f(space, kind_of_space, status(5))
+    call h5dget_storage_size_f(dataset, stored, status(6))
+    is_good = minval(status(:6)) >= 0 .and. class == H5T_STRING_F &
+      .and. kind_of_space == H5S_SCALAR_F
+    varies = .true.
+    if (is_good) call h5tis_variable_str_f(type_id, varies, status(7))
+    if (is_good) call h5tget_strpad_f(type_id, padding, status(8))
+    is_good = is_good .and. .not. varies
+    if (is_good) is_good = length > 0 .and. int(length, hsize_t) <= stored &
+      .and. padding == H5T_STR_SPACEPAD_F
+    if (is_good) then
+      deallocate (text)
+      allocate (character(length) :: text)
+      first = c_loc(text)
+      call h5dread_f(dataset, type_id, first, status(9))
+      is_good = status(9) >= 0
+    end if
+    call h5tclose_f(type_id, i)
+    call h5sclose_f(space, i)
+    call h5dclose_f(dataset, i)
+  end subroutine read_text
 
 end module hdf5_writing_m

@@ -14,7 +14,7 @@ module history_file_m
   use history_tables_m, only : history_tables, n_table, asked_alone, asked_by_states, each_run, &
     each_contact, each_history_node, each_part, each_wall, each_support, each_history_element, &
     each_body, each_boundary, each_group_node, each_section, text_none, text_rows
-  use visitor_m, only : visited_t, visitor_t
+  use visitor_m, only : visited_t, visitor_t, length
   implicit none
   private
   public :: histories_t, plan_histories, open_histories, check_histories, flush_histories, &
@@ -92,36 +92,23 @@ contains
     integer :: n, i
 
     n = 0
-    select case (history_tables(i_table)%each)
-    case (each_run)
-      n = 1
-    case (each_contact)
-      if (allocated(model%contacts)) n = n_told(model%contacts)
-    case (each_history_node)
-      if (allocated(model%controls%output%history_nodes)) &
-        n = size(model%controls%output%history_nodes)
-    case (each_part)
-      if (allocated(model%parts)) n = size(model%parts)
-    case (each_wall)
-      if (allocated(model%walls)) n = size(model%walls)
-    case (each_support)
-      n = model%conditions%n_support
-    case (each_history_element)
-      if (allocated(model%controls%output%history_elements)) &
-        n = size(model%controls%output%history_elements)
-    case (each_body)
-      if (allocated(model%rigids)) n = size(model%rigids)
-    case (each_boundary)
-      if (allocated(model%controls%output%boundaries%where)) &
-        n = size(model%controls%output%boundaries%where)
-    case (each_group_node)
-      if (allocated(model%controls%output%force_groups)) n = sum([(size( &
-        model%controls%output%force_groups(i)%nodes), i=1, &
-        size(model%controls%output%force_groups))])
-    case (each_section)
-      if (allocated(model%controls%output%cross_sections)) &
-        n = size(model%controls%output%cross_sections)
-    end select
+    associate (plan => model%controls%output)
+      select case (history_tables(i_table)%each)
+      case (each_run); n = 1
+      case (each_contact); if (allocated(model%contacts)) n = n_told(model%contacts)
+      case (each_history_node); n = length(plan%history_nodes)
+      case (each_part); n = length(model%parts)
+      case (each_wall); n = length(model%walls)
+      case (each_support); n = model%conditions%n_support
+      case (each_history_element); n = length(plan%history_elements)
+      case (each_body); n = length(model%rigids)
+      case (each_boundary); n = length(plan%boundaries%where)
+      case (each_group_node)
+        if (allocated(plan%force_groups)) &
+          n = sum([(size(plan%force_groups(i)%nodes), i=1, size(plan%force_groups))])
+      case (each_section); n = length(plan%cross_sections)
+      end select
+    end associate
   end function n_each
 
   !> The first failure that any table has had so far.

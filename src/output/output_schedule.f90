@@ -9,7 +9,7 @@ module output_schedule_m
   use visitor_m, only : visited_t, visitor_t, any_length
   implicit none
   private
-  public :: schedule_t, start_schedule, is_due, mark_written, is_active, output_reach, &
+  public :: schedule_t, start_schedule, is_due, mark_written, output_reach, &
     go_on_with
 
   !> A tie of two cycles round an output time goes to the first, although sums of steps carry
@@ -49,14 +49,6 @@ contains
     schedule%active = schedule%varies .or. interval%dt > 0.0_wp
     schedule%interval = max(interval%dt, shortest*end_time)
   end subroutine start_schedule
-
-  !> Whether this output was asked for at all.
-  elemental function is_active(schedule) result(active)
-    type(schedule_t), intent(in) :: schedule
-    logical :: active
-
-    active = schedule%active
-  end function is_active
 
   !> The step by which the state nearest to an output time is found. A planned implicit step may be
   !> cut: then the state at or after an output time counts, not the nearest.

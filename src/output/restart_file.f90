@@ -17,9 +17,9 @@ module restart_file_m
   use checksum_m, only : add_bytes, checksum_text
   use errors_m, only : error_t, raise, status_files, status_input
   use file_facts_m, only : what_hinders
-  use files_m, only : rename_file, remove_file, force_to_disk, is_endless, parent_path, &
+  use files_m, only : rename_file, remove_file, force_to_disk, is_endless, folder_of, &
     unfinished
-  use hdf5_library_m, only : open_library
+  use hdf5_writing_m, only : open_library
   use kinds_m, only : long
   use log_m, only : to_text
   use text_files_m, only : overwrite_start
@@ -90,15 +90,6 @@ contains
     if (index(error%message, archive%path) == 0) error%message = archive%path//': '//error%message
     call remove_file(archive%path//unfinished, ignored)
   end subroutine finish_restart
-
-  !> The directory that a file lies in.
-  pure function folder_of(path) result(folder)
-    character(*), intent(in) :: path
-    character(:), allocatable :: folder
-
-    folder = parent_path(path)
-    if (len(folder) == 0) folder = '.'
-  end function folder_of
 
   !> Length and checksum of what follows the head.
   subroutine write_head(path, error)

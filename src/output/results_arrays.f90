@@ -19,33 +19,40 @@ module results_arrays_m
   use files_m, only : remove_file, unfinished
   use mesh_m, only : mesh_t
   use controls_m, only : controls_t
-  use hdf5_library_m, only : open_library
-  use hdf5_writing_m, only : growing_t, as_real, as_index, create_growing, link_growing, &
-    make_group, check_status
+  use hdf5_writing_m, only : open_library, growing_t, as_real, as_index, create_growing, &
+    link_growing, make_group, check_status
   implicit none
   private
   public :: results_file_t, create_file, create_steps, create_fields, planned_states, &
-    states_per_chunk, block_rows, n_point_field, n_cell_field, n_step_array, &
-    point_names, point_columns, cell_names, cell_columns, plane_fields, round_field, heat_fields, &
-    eroded_field, &
-    step_values, step_points, step_ones
+    states_per_chunk, block_rows, fields, n_step_array, step_values, step_points, step_ones
 
-  !> Fields, in the order in which `append_state` writes them, and their numbers of columns.
-  integer, parameter :: n_point_field = 9, n_cell_field = 8
-  character(16), parameter :: point_names(n_point_field) = [character(16) :: 'Points', &
-    'displacement', 'velocity', 'contact_force', 'contact_pressure', 'gap', 'contact_traction', &
-    'contact_slip', 'contact_state']
-  integer, parameter :: point_columns(n_point_field) = [3, 3, 3, 3, 0, 0, 0, 0, 0]
-  !> Without friction the fields from that one on are left out.
-  integer, parameter :: n_plain_field = 6
-  character(16), parameter :: cell_names(n_cell_field) = [character(16) :: 'stress', &
-    'plastic_strain', 'pressure', 'mises', 'hoop_strain', 'temperature', 'damage', &
-    'eroded']
-  integer, parameter :: cell_columns(n_cell_field) = [6, 0, 0, 0, 0, 0, 0, 0]
-  !> What every file has of them, what round bodies have, what bodies that keep heat have, and what
-  !> those have whose elements may leave the mesh.
-  integer, parameter :: plane_fields(4) = [1, 2, 3, 4], round_field = 5, heat_fields(2) = [6, 7], &
-    eroded_field = 8
+  !> A field of points or cells.
+  type :: field_t
+    character(26) :: name     !! below /VTKHDF
+    integer :: n_column       !! 0: one number
+    logical :: of_cells
+  end type field_t
+
+  !> Fields, in the order in which a state writes them.
+  integer, parameter :: n_field = 17
+  type(field_t), parameter :: fields(n_field) = [ &
+    field_t('Points', 3, .false.), &
+    field_t('PointData/displacement', 3, .false.), &
+    field_t('PointData/velocity', 3, .false.), &
+    field_t('PointData/contact_force', 3, .false.), &
+    field_t('PointData/contact_pressure', 0, .false.), &
+    field_t('PointData/gap', 0, .false.), &
+    field_t('PointData/contact_traction', 0, .false.), &
+    field_t('PointData/contact_slip', 0, .false.), &
+    field_t('PointData/contact_state', 0, .false.), &
+    field_t('CellData/stress', 6, .true.), &
+    field_t('CellData/plastic_strain', 0, .true.), &
+    field_t('CellData/pressure', 0, .true.), &
+    field_t('CellData/mises', 0, .true.), &
+    field_t('CellData/hoop_strain', 0, .true.), &
+    field_t('CellData/temperature', 0, .true.), &
+    field_t('CellData/damage', 0, .true.), &
+    field_t('CellData/eroded', 0, .true.)]
   !> Arrays below Steps: times, first point of a state, first cell, zeros and ones.
   integer, parameter :: n_step_array = 5, step_values = 1, step_points = 2, step_cells = 3, &
     step_zeros = 4, step_ones = 5
@@ -74,10 +81,8 @@ module results_arrays_m
     integer(hid_t) :: n_steps = -1              !! open attribute NSteps
     integer(long) :: n_state = 0                !! states in the file
     real(wp), allocatable :: times(:)           !! (n_state or more) their times
-    integer :: n_point_field = n_plain_field    !! of those above that the file has
-    integer, allocatable :: cells(:)            !! which of the cell fields
-    type(growing_t) :: point_fields(n_point_field)
-    type(growing_t) :: cell_fields(n_cell_field)
+    integer, allocatable :: which(:)            !! fields that the file has
+    type(growing_t) :: fields(n_field)
     type(growing_t) :: steps(n_step_array)
     real(wp), allocatable :: rows(:)            !! (3*rows, at most block_rows) of one write
   end type results_file_t
@@ -158,25 +163,18 @@ contains
     type(mesh_t), intent(in) :: mesh
     integer, intent(in) :: n_planned                   !! states
     type(error_t), allocatable, intent(inout) :: error
-    character(:), allocatable :: name
-    integer :: i, point_rows, cell_rows
+    integer :: k, i, chunk_rows
 
-    point_rows = mesh%n_node*states_per_chunk(mesh%n_node, n_planned)
-    cell_rows = mesh%n_element*states_per_chunk(2*mesh%n_element, n_planned)
     call make_group(group, 'PointData', error)
     call make_group(group, 'CellData', error)
-    do i = 1, file%n_point_field
-      name = trim(point_names(i))
-      if (i > 1) name = 'PointData/'//name
-      call create_growing(file%id, name, as_real, point_columns(i), point_rows, &
-        file%point_fields(i), error)
-      call link_growing(file%point_fields(i), group, name, error)
-    end do
-    do i = 1, size(file%cells)
-      name = 'CellData/'//trim(cell_names(file%cells(i)))
-      call create_growing(file%id, name, as_real, cell_columns(file%cells(i)), cell_rows, &
-        file%cell_fields(i), error)
-      call link_growing(file%cell_fields(i), group, name, error)
+    do k = 1, size(file%which)
+      i = file%which(k)
+      chunk_rows = mesh%n_node*states_per_chunk(mesh%n_node, n_planned)
+      if (fields(i)%of_cells) &
+        chunk_rows = mesh%n_element*states_per_chunk(2*mesh%n_element, n_planned)
+      call create_growing(file%id, trim(fields(i)%name), as_real, fields(i)%n_column, chunk_rows, &
+        file%fields(i), error)
+      call link_growing(file%fields(i), group, trim(fields(i)%name), error)
     end do
   end subroutine create_fields
 
@@ -189,6 +187,7 @@ contains
     integer(hid_t), intent(in) :: group                !! the open group /VTKHDF
     integer, intent(in) :: n_planned                   !! states
     type(error_t), allocatable, intent(inout) :: error
+    character(len(fields%name)) :: name
     integer :: i, content
 
     call make_group(group, 'Steps', error)
@@ -209,13 +208,11 @@ contains
     call link_growing(file%steps(step_zeros), group, 'Steps/CellDataOffsets/element_id', error)
     call link_growing(file%steps(step_zeros), group, 'Steps/CellDataOffsets/part_id', error)
     call link_growing(file%steps(step_points), group, 'Steps/PointOffsets', error)
-    do i = 2, file%n_point_field
-      call link_growing(file%steps(step_points), group, &
-        'Steps/PointDataOffsets/'//trim(point_names(i)), error)
-    end do
-    do i = 1, size(file%cells)
-      call link_growing(file%steps(step_cells), group, &
-        'Steps/CellDataOffsets/'//trim(cell_names(file%cells(i))), error)
+    do i = 2, size(file%which)
+      name = fields(file%which(i))%name
+      content = merge(step_cells, step_points, fields(file%which(i))%of_cells)
+      call link_growing(file%steps(content), group, 'Steps/'//name(:index(name, '/') - 1) &
+        //'Offsets'//trim(name(index(name, '/'):)), error)
     end do
   end subroutine create_steps
 

@@ -9,12 +9,10 @@ module results_copy_m
   use archive_m, only : archive_t, is_hard, is_stored_within
   use errors_m, only : error_t, raise, status_files, status_input
   use files_m, only : file_exists
-  use hdf5_library_m, only : open_library
-  use hdf5_writing_m, only : append_rows, as_real, memory_type
+  use hdf5_writing_m, only : open_library, append_rows, as_real, memory_type
   use kinds_m, only : wp, long
   use model_m, only : model_t
-  use results_arrays_m, only : results_file_t, point_names, &
-    point_columns, cell_names, cell_columns
+  use results_arrays_m, only : results_file_t, fields
   use results_file_m, only : append_instant, take_name, note_failure
   implicit none
   private
@@ -71,12 +69,8 @@ contains
 
     call check_own('Steps/Values')
     call check_own('PointData/node_id')
-    call check_own(point_names(1))
-    do i = 2, size(point_names)
-      call check_own('PointData/'//point_names(i))
-    end do
-    do i = 1, size(cell_names)
-      call check_own('CellData/'//cell_names(i))
+    do i = 1, size(fields)
+      call check_own(fields(i)%name)
     end do
 
   contains
@@ -151,8 +145,9 @@ contains
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: times(:)
     type(error_t), allocatable, intent(out) :: error
+    real(wp), allocatable, target :: rows(:)
     integer(hid_t) :: old
-    integer :: status, k
+    integer :: status, i, k, n
 
     if (size(times) == 0) return
     call h5fopen_f(file%path, H5F_ACC_RDONLY_F, old, status)
@@ -161,42 +156,22 @@ contains
       return
     end if
     do k = 1, size(times)
-      call copy_state(file, old, model, k, error)
+      do i = 1, size(file%which)
+        associate (field => fields(file%which(i)))
+          n = merge(model%mesh%n_element, model%mesh%n_node, field%of_cells)
+          allocate (rows(n*max(field%n_column, 1)))
+          call read_rows(old, 'VTKHDF/'//trim(field%name), field%n_column, (k - 1)*int(n, long), &
+            n, c_loc(rows), error)
+        end associate
+        call append_rows(file%fields(file%which(i)), n, c_loc(rows), error)
+        deallocate (rows)
+      end do
       call append_instant(file, model, times(k), error)
     end do
     call h5fclose_f(old, status)
     call take_name(file, error)
     call note_failure(file, error)
   end subroutine copy_states
-
-  !> Copy the fields of one state.
-  subroutine copy_state(file, old, model, k, error)
-    type(results_file_t), intent(inout) :: file
-    integer(hid_t), intent(in) :: old      !! the open old file
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: k               !! which state
-    type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable, target :: rows(:)
-    integer :: i, n
-
-    n = model%mesh%n_node
-    do i = 1, file%n_point_field
-      allocate (rows(n*max(point_columns(i), 1)))
-      call read_rows(old, 'VTKHDF/'//trim(merge('          ', 'PointData/', i == 1)) &
-        //trim(point_names(i)), point_columns(i), (k - 1)*int(n, long), n, c_loc(rows), error)
-      call append_rows(file%point_fields(i), n, c_loc(rows), error)
-      deallocate (rows)
-    end do
-    n = model%mesh%n_element
-    do i = 1, size(file%cells)
-      allocate (rows(n*max(cell_columns(file%cells(i)), 1)))
-      call read_rows(old, 'VTKHDF/CellData/'//trim(cell_names(file%cells(i))), &
-        cell_columns(file%cells(i)), &
-        (k - 1)*int(n, long), n, c_loc(rows), error)
-      call append_rows(file%cell_fields(i), n, c_loc(rows), error)
-      deallocate (rows)
-    end do
-  end subroutine copy_state
 
   !> Read rows of a dataset of reals.
   subroutine read_rows(id, name, n_column, first, n_row, values, error)

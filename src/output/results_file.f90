@@ -23,12 +23,9 @@ module results_file_m
   use results_tables_m, only : run_info_t, write_run, write_histories
   use results_mesh_m, only : write_mesh, deck_nodes
   use results_arrays_m, only : results_file_t, create_file, create_steps, create_fields, &
-    planned_states, block_rows, n_point_field, n_step_array, plane_fields, round_field, &
-    heat_fields, eroded_field, &
-    step_values, step_points, step_ones
-  use hdf5_library_m, only : end_of_file
-  use hdf5_writing_m, only : append_rows, close_growing, make_group, write_string_attribute, &
-    write_index_attribute, check_status
+    planned_states, block_rows, fields, n_step_array, step_values, step_points, step_ones
+  use hdf5_writing_m, only : end_of_file, append_rows, close_growing, make_group, &
+    write_string_attribute, write_index_attribute, check_status
   implicit none
   private
   public :: results_file_t, run_info_t, open_results, append_state, append_instant, publish, &
@@ -47,7 +44,7 @@ contains
     logical, intent(in) :: goes_on      !! a restart: what stands under the name stays for now
     type(error_t), allocatable, intent(out) :: error
     integer(hid_t) :: group
-    integer :: status, n_planned
+    integer :: status, n_planned, i
 
     group = -1
     n_planned = planned_states(model%controls)
@@ -55,11 +52,8 @@ contains
     if (.not. goes_on) call remove_file(path, error)
     if (allocated(error)) return
     allocate (file%times(n_planned))
-    if (any(has_shear(model%contacts))) file%n_point_field = n_point_field
-    file%cells = plane_fields
-    if (model%is_round) file%cells = [file%cells, round_field]
-    if (any(has_memory_of_heat(model%materials))) file%cells = [file%cells, heat_fields]
-    if (model%erodes) file%cells = [file%cells, eroded_field]
+    file%which = pack([(i, i=1, size(fields))], [(has_field(fields(i)%name, model), i=1, &
+      size(fields))])
     call create_file(file, error)
     if (allocated(error)) return
     call make_group(file%id, 'VTKHDF', error)
@@ -77,6 +71,26 @@ contains
     call note_failure(file, error)
   end subroutine open_results
 
+  !> Whether the file of a run has a field.
+  pure function has_field(name, model) result(has)
+    character(*), intent(in) :: name
+    type(model_t), intent(in) :: model
+    logical :: has
+
+    select case (name)
+    case ('PointData/contact_traction', 'PointData/contact_slip', 'PointData/contact_state')
+      has = any(has_shear(model%contacts))
+    case ('CellData/hoop_strain')
+      has = model%is_round
+    case ('CellData/temperature', 'CellData/damage')
+      has = any(has_memory_of_heat(model%materials))
+    case ('CellData/eroded')
+      has = model%erodes
+    case default
+      has = .true.
+    end select
+  end function has_field
+
   !> Append one state and bring it into the file whole.
   subroutine append_state(file, model, snapshot, error)
     type(results_file_t), intent(inout), target :: file
@@ -86,8 +100,7 @@ contains
 
     if (file%id < 0 .or. file%is_broken) return
     call check_untouched(file, error)
-    call append_point_fields(file, model, snapshot, error)
-    call append_cell_fields(file, snapshot, error)
+    call append_fields(file, model, snapshot, error)
     call append_instant(file, model, snapshot%time, error)
     call take_name(file, error)
     call note_failure(file, error)
@@ -127,36 +140,65 @@ contains
     file%is_named = .not. allocated(error)
   end subroutine take_name
 
-  !> Append the fields of the nodes, in deck order; those that are missing are zero.
-  subroutine append_point_fields(file, model, snapshot, error)
+  !> Append the fields, nodes in deck order; what is missing is zero. Stress is xx yy zz xy yz xz,
+  !> of round bodies zz is the hoop stress.
+  subroutine append_fields(file, model, snapshot, error)
     type(results_file_t), intent(inout), target :: file
     type(model_t), intent(in) :: model
-    type(snapshot_t), intent(in) :: snapshot
+    type(snapshot_t), intent(in), target :: snapshot
     type(error_t), allocatable, intent(inout) :: error
-    integer :: i, first, n
+    integer :: i, k, first, n, n_row
 
-    do i = 1, file%n_point_field
+    do k = 1, size(file%which)
+      i = file%which(k)
+      if (fields(i)%name == 'CellData/stress') then
+        call append_rows(file%fields(i), size(snapshot%stress, 2), c_loc(snapshot%stress), error)
+        cycle
+      end if
+      n_row = merge(model%mesh%n_element, model%mesh%n_node, fields(i)%of_cells)
       file%rows = 0.0_wp
-      do first = 1, model%mesh%n_node, block_rows
-        n = min(block_rows, model%mesh%n_node - first + 1)
-        associate (nodes => deck_nodes(model%mesh, first, n))
-          select case (i)
-          case (1); call gather_vectors(nodes, snapshot%displacement, file%rows, &
-            model%mesh%coordinates)
-          case (2); call gather_vectors(nodes, snapshot%displacement, file%rows)
-          case (3); call gather_vectors(nodes, snapshot%velocity, file%rows)
-          case (4); call gather_vectors(nodes, snapshot%contact_force, file%rows)
-          case (5); call gather_scalars(nodes, snapshot%contact_pressure, file%rows)
-          case (6); call gather_scalars(nodes, snapshot%gap, file%rows)
-          case (7); call gather_scalars(nodes, snapshot%contact_traction, file%rows)
-          case (8); call gather_scalars(nodes, snapshot%contact_slip, file%rows)
-          case (9); call gather_scalars(nodes, snapshot%contact_state, file%rows)
-          end select
-        end associate
-        call append_rows(file%point_fields(i), n, c_loc(file%rows), error)
+      do first = 1, n_row, block_rows
+        n = min(block_rows, n_row - first + 1)
+        if (fields(i)%of_cells) then
+          call gather_cells(fields(i)%name, first, n, snapshot, file%rows)
+        else
+          call gather_points(fields(i)%name, deck_nodes(model%mesh, first, n), model, snapshot, &
+            file%rows)
+        end if
+        call append_rows(file%fields(i), n, c_loc(file%rows), error)
       end do
     end do
-  end subroutine append_point_fields
+  end subroutine append_fields
+
+  !> Rows of a field of some nodes.
+  pure subroutine gather_points(name, nodes, model, snapshot, rows)
+    character(*), intent(in) :: name
+    integer, intent(in), contiguous :: nodes(:)
+    type(model_t), intent(in) :: model
+    type(snapshot_t), intent(in) :: snapshot
+    real(wp), intent(inout), contiguous :: rows(:)
+
+    select case (name)
+    case ('Points')
+      call gather_vectors(nodes, snapshot%displacement, rows, model%mesh%coordinates)
+    case ('PointData/displacement')
+      call gather_vectors(nodes, snapshot%displacement, rows)
+    case ('PointData/velocity')
+      call gather_vectors(nodes, snapshot%velocity, rows)
+    case ('PointData/contact_force')
+      call gather_vectors(nodes, snapshot%contact_force, rows)
+    case ('PointData/contact_pressure')
+      call gather_scalars(nodes, snapshot%contact_pressure, rows)
+    case ('PointData/gap')
+      call gather_scalars(nodes, snapshot%gap, rows)
+    case ('PointData/contact_traction')
+      call gather_scalars(nodes, snapshot%contact_traction, rows)
+    case ('PointData/contact_slip')
+      call gather_scalars(nodes, snapshot%contact_slip, rows)
+    case ('PointData/contact_state')
+      call gather_scalars(nodes, snapshot%contact_state, rows)
+    end select
+  end subroutine gather_points
 
   !> Rows (x, y, 0) of some nodes; the third component stays as it is, and all of them
   !> where there are no vectors.
@@ -188,44 +230,34 @@ contains
     if (allocated(values)) rows(:size(nodes)) = values(nodes)
   end subroutine gather_scalars
 
-  !> Append the fields of the elements: stress (xx yy zz xy yz xz), plastic strain, pressure,
-  !> mises, of round bodies the hoop strain (zz is their hoop stress), and where some material keeps
-  !> them temperature and damage.
-  subroutine append_cell_fields(file, snapshot, error)
-    type(results_file_t), intent(inout), target :: file
-    type(snapshot_t), intent(in), target :: snapshot
-    type(error_t), allocatable, intent(inout) :: error
-    integer :: i, first, n, n_cell
+  !> Rows of a field of `n` elements from the element `first` on.
+  pure subroutine gather_cells(name, first, n, snapshot, rows)
+    character(*), intent(in) :: name
+    integer, intent(in) :: first, n
+    type(snapshot_t), intent(in) :: snapshot
+    real(wp), intent(inout), contiguous :: rows(:)
+    integer :: last
 
-    n_cell = size(snapshot%stress, 2)
-    call append_rows(file%cell_fields(1), n_cell, c_loc(snapshot%stress), error)
-    do i = 2, size(file%cells)
-      file%rows = 0.0_wp
-      do first = 1, n_cell, block_rows
-        n = min(block_rows, n_cell - first + 1)
-        associate (stress => snapshot%stress(:, first:first + n - 1))
-          select case (file%cells(i))
-          case (2)
-            if (allocated(snapshot%plastic_strain)) &
-              file%rows(:n) = snapshot%plastic_strain(first:first + n - 1)
-          case (3)
-            file%rows(:n) = -sum(stress(:3, :), 1)/3.0_wp
-          case (4)
-            file%rows(:n) = mises_stress(stress(1, :), stress(2, :), stress(3, :), stress(4, :))
-          case (5)
-            file%rows(:n) = snapshot%hoop_strain(first:first + n - 1)
-          case (6)
-            file%rows(:n) = snapshot%temperature(first:first + n - 1)
-          case (7)
-            file%rows(:n) = snapshot%damage(first:first + n - 1)
-          case (8)
-            file%rows(:n) = snapshot%eroded(first:first + n - 1)
-          end select
-        end associate
-        call append_rows(file%cell_fields(i), n, c_loc(file%rows), error)
-      end do
-    end do
-  end subroutine append_cell_fields
+    last = first + n - 1
+    associate (stress => snapshot%stress(:, first:last))
+      select case (name)
+      case ('CellData/plastic_strain')
+        if (allocated(snapshot%plastic_strain)) rows(:n) = snapshot%plastic_strain(first:last)
+      case ('CellData/pressure')
+        rows(:n) = -sum(stress(:3, :), 1)/3.0_wp
+      case ('CellData/mises')
+        rows(:n) = mises_stress(stress(1, :), stress(2, :), stress(3, :), stress(4, :))
+      case ('CellData/hoop_strain')
+        rows(:n) = snapshot%hoop_strain(first:last)
+      case ('CellData/temperature')
+        rows(:n) = snapshot%temperature(first:last)
+      case ('CellData/damage')
+        rows(:n) = snapshot%damage(first:last)
+      case ('CellData/eroded')
+        rows(:n) = snapshot%eroded(first:last)
+      end select
+    end associate
+  end subroutine gather_cells
 
   !> Von Mises stress of a plane-strain state: sqrt(3/2 s:s).
   elemental function mises_stress(xx, yy, zz, xy) result(mises)
@@ -323,11 +355,8 @@ contains
     integer :: i, status
 
     call h5aclose_f(file%n_steps, status)
-    do i = 1, file%n_point_field
-      call close_growing(file%point_fields(i), error)
-    end do
-    do i = 1, size(file%cells)
-      call close_growing(file%cell_fields(i), error)
+    do i = 1, size(fields)
+      call close_growing(file%fields(i), error)
     end do
     do i = 1, n_step_array
       call close_growing(file%steps(i), error)

@@ -13,7 +13,7 @@ module contact_judging_m
   use model_m, only : model_t
   use rows_behind_m, only : face_rows_t, find_rows, face_pressure, face_inertia, &
     elastic_energy, has_stress
-  use shared_faces_m, only : others_t, find_others, face_share
+  use shared_faces_m, only : others_t, find_others, face_share, present_contact
   use snapshot_filling_m, only : fill_slaves, join_slaves
   use snapshot_m, only : snapshot_t, interface_result_t
   use state_m, only : state_t
@@ -48,6 +48,9 @@ contains
     type(face_rows_t), intent(inout) :: rows
     type(snapshot_t), intent(inout) :: snapshot
     type(others_t), allocatable :: others(:)
+    type(contact_t) :: contact
+    type(side_t) :: side
+    real(wp), allocatable :: unused(:)
     integer :: i
 
     if (size(model%contacts) == 0) return
@@ -60,46 +63,27 @@ contains
       call join_slaves(model, snapshot)
     end if
     call find_limits(model, state, snapshot%interfaces)
-    allocate (others(n_told(model%contacts)))
+    allocate (others(2*n_told(model%contacts)))
     if (rows%are_shared) call find_others(model, state, snapshot%slaves, others)
     do i = 1, n_told(model%contacts)
-      if (state%contacts(i)%facing%is_used) then
-        call judge(model, state, rows, i, state%contacts(i)%facing%present, others(i), snapshot)
-      else if (model%erodes) then
-        call judge(model, state, rows, i, state%outlines(i), others(i), snapshot)
-      else
-        call judge(model, state, rows, i, model%contacts(i), others(i), snapshot)
-      end if
+      contact = present_contact(model, state, i)
+      side = side_t()
+      associate (slaves => snapshot%slaves(i), result => snapshot%interfaces(i))
+        call add_side(model, state, rows, contact%slave, slaves%pressure, &
+          others(2*i - 1)%pressure, side, slaves%row_stress)
+        ! Of a surface with itself all is on the slave.
+        if (.not. contact%is_self) call add_side(model, state, rows, contact%master, &
+          slaves%master_pressure, others(2*i)%pressure, side, unused)
+        ! Accelerations of nodes that rigid walls or common motions hold are others than these.
+        side%still = min(side%still, side%misfit)
+        result%row_energy = side%row_energy
+        result%estimate = 0.0_wp
+        if (side%load > 0.0_wp) result%estimate = sqrt(side%misfit/side%load)
+        if (state%cycle > state%estimates(i)%cycle) call sum_up(state%cycle, state%dt, side, &
+          result, state%estimates(i))
+      end associate
     end do
   end subroutine judge_contacts
-
-  !> Judge one interface between the surfaces of `contact`.
-  subroutine judge(model, state, rows, i, contact, others, snapshot)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(face_rows_t), intent(in) :: rows
-    integer, intent(in) :: i
-    type(contact_t), intent(in) :: contact
-    type(others_t), intent(in) :: others !! with something in it only where interfaces share nodes
-    type(snapshot_t), intent(inout) :: snapshot
-    type(side_t) :: side
-    real(wp), allocatable :: unused(:)
-
-    associate (slaves => snapshot%slaves(i), result => snapshot%interfaces(i))
-      call add_side(model, state, rows, contact%slave, slaves%pressure, others%slave, side, &
-        slaves%row_stress)
-      ! Of a surface with itself all is on the slave.
-      if (.not. contact%is_self) call add_side(model, state, rows, contact%master, &
-        slaves%master_pressure, others%master, side, unused)
-      ! Accelerations of nodes that rigid walls or common motions hold are others than these.
-      side%still = min(side%still, side%misfit)
-      result%row_energy = side%row_energy
-      result%estimate = 0.0_wp
-      if (side%load > 0.0_wp) result%estimate = sqrt(side%misfit/side%load)
-      if (state%cycle > state%estimates(i)%cycle) call sum_up(state%cycle, state%dt, side, result, &
-        state%estimates(i))
-    end associate
-  end subroutine judge
 
   !> One side: the pressure of each loaded node against that of the elements behind, the mean over
   !> the faces next to it, each by what the node has of it. Rigid bodies have none.

@@ -117,15 +117,13 @@ contains
           if (all(abs(contact%force(:, k)) <= huge(1.0_wp))) cycle
           call raise(error, 'a contact force that is not finite at node ' &
             //to_text(model%mesh%node_id(contact%nodes(k)))//' of interface ' &
-            //to_text(model%contacts(i)%id)//' at cycle '//to_text(state%cycle)//', time ' &
-            //to_text(state%time), status_run)
+            //to_text(model%contacts(i)%id)//instant_text(state), status_run)
           return
         end do
         if (abs(contact%energy) <= most_work) cycle
         call raise(error, 'the work '//to_text(-contact%energy) &
-          //' of the contact forces of interface '//to_text(model%contacts(i)%id)//' at cycle ' &
-          //to_text(state%cycle)//', time '//to_text(state%time)//' is beyond all measure', &
-          status_run)
+          //' of the contact forces of interface '//to_text(model%contacts(i)%id) &
+          //instant_text(state)//' is beyond all measure', status_run)
         return
       end associate
     end do
@@ -138,7 +136,7 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(error_t), allocatable, intent(out) :: error
-    integer :: slot, element
+    integer :: slot, element, first, last
     real(wp) :: ratio
 
     do slot = 1, model%layout%n_slot
@@ -159,10 +157,17 @@ contains
       return
     end do
     call name_dense_element(model, state, error)
-    if (.not. allocated(error)) call name_wild_chunk(model, state, error)
+    if (allocated(error)) return
+    ! The element under the largest stress of those whose chunk has done work beyond all measure.
+    associate (work => abs(state%elements%deviatoric_work) + abs(state%elements%hourglass_work))
+      first = (maxloc(work, 1) - 1)*chunk_size + 1
+      last = min(first + chunk_size - 1, model%layout%n_slot)
+      if (any(work > 0.5_wp*most_work)) call blame(model, state, first - 1 &
+        + maxloc(maxval(abs(state%elements%deviator(first:last, :)), 2), 1, &
+        model%layout%slot_element(first:last) > 0), 'work beyond all measure', error)
+    end associate
     if (.not. allocated(error)) call raise(error, &
-      'negative area or values that are not finite at cycle '//to_text(state%cycle)//', time ' &
-      //to_text(state%time), status_run)
+      'negative area or values that are not finite'//instant_text(state), status_run)
   end subroutine name_bad_chunk
 
   !> The element whose equation of state has next to no bound at its volume.
@@ -188,27 +193,6 @@ contains
     end do
   end subroutine name_dense_element
 
-  !> The element that is under the largest stress of those whose chunk has
-  !> done work beyond all measure.
-  subroutine name_wild_chunk(model, state, error)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(error_t), allocatable, intent(out) :: error
-    integer :: chunk, first, last
-
-    associate (work => abs(state%elements%deviatoric_work) + abs(state%elements%hourglass_work))
-      chunk = maxloc(work, 1)
-      if (.not. any(work > 0.5_wp*most_work)) return
-      first = (chunk - 1)*chunk_size + 1
-      last = min(chunk*chunk_size, model%layout%n_slot)
-      associate (elements => model%layout%slot_element(first:last), &
-        stress => maxval(abs(state%elements%deviator(first:last, :)), 2))
-        call blame(model, state, first - 1 + maxloc(stress, 1, elements > 0), &
-          'work beyond all measure', error)
-      end associate
-    end associate
-  end subroutine name_wild_chunk
-
   !> The error that names the element in a slot.
   subroutine blame(model, state, slot, what, error)
     type(model_t), intent(in) :: model
@@ -217,11 +201,27 @@ contains
     character(*), intent(in) :: what
     type(error_t), allocatable, intent(out) :: error
 
-    call raise(error, trim(what)//' in element '//to_text(model%mesh%element_id( &
-      model%layout%slot_element(slot)))//' of part ' &
-      //to_text(model%parts(slot_part(model%layout, slot))%id)//' at cycle ' &
-      //to_text(state%cycle)//', time '//to_text(state%time), status_run)
+    call raise(error, trim(what)//' in '//element_text(model, slot)//instant_text(state), &
+      status_run)
   end subroutine blame
+
+  !> An element with its part.
+  pure function element_text(model, slot) result(text)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: slot
+    character(:), allocatable :: text
+
+    text = 'element '//to_text(model%mesh%element_id(model%layout%slot_element(slot))) &
+      //' of part '//to_text(model%parts(slot_part(model%layout, slot))%id)
+  end function element_text
+
+  !> Where a run is.
+  pure function instant_text(state) result(text)
+    type(state_t), intent(in) :: state
+    character(:), allocatable :: text
+
+    text = ' at cycle '//to_text(state%cycle)//', time '//to_text(state%time)
+  end function instant_text
 
   !> The step must stay above its floor: DTMIN of *CONTROL_TERMINATION, and in any case a millionth
   !> of the first step (such a run would never end) and what the time can still resolve.
@@ -258,9 +258,8 @@ contains
       worst = slot
     end do
     if (worst == 0) return
-    error%message = error%message//'; element '//to_text(model%mesh%element_id( &
-      model%layout%slot_element(worst)))//' of part '//to_text(model%parts(slot_part( &
-      model%layout, worst))%id)//' has collapsed to V/V0 '//to_text(smallest)//remedy
+    error%message = error%message//'; '//element_text(model, worst)//' has collapsed to V/V0 ' &
+      //to_text(smallest)//remedy
   end subroutine name_collapsed
 
   !> Cycles are counted no further than a default integer reaches.

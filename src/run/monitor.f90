@@ -11,8 +11,7 @@ module monitor_m
   use kinds_m, only : wp
   use log_m, only : log_t, write_log
   use model_m, only : model_t
-  use output_schedule_m, only : schedule_t, start_schedule, is_active, is_due, &
-    mark_written
+  use output_schedule_m, only : schedule_t, start_schedule, is_due, mark_written
   use progress_m, only : progress_t, start_progress
   use ranks_m, only : ranks_t
   use restart_plan_m, only : restarts_t, plan_restarts
@@ -61,6 +60,8 @@ contains
     type(run_info_t), intent(in) :: run_info
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable :: names
+    integer :: k
 
     monitor%has_plot = is_asked(model%controls%output%plot)
     if (monitor%ranks%mine > 0) then
@@ -69,27 +70,17 @@ contains
     end if
     call open_histories(monitor%histories, prefix, model, error)
     if (allocated(error)) return
-    call log_empty(model, monitor%log)
-    if (monitor%has_plot) &
-      call open_results(monitor%results, prefix//'.vtkhdf', model, run_info, &
-        monitor%restarts%goes_on, error)
-  end subroutine open_files
-
-  !> Histories that the deck asks for and the model has nothing for.
-  subroutine log_empty(model, log)
-    type(model_t), intent(in) :: model
-    type(log_t), intent(inout) :: log
-    character(:), allocatable :: names
-    integer :: k
-
     names = ''
     do k = 1, n_table
       if (is_asked(model%controls%output%histories(k)) .and. .not. has_rows(model, k)) &
         names = names//', '//trim(history_tables(k)%name)
     end do
-    if (len(names) > 0) call write_log(log, 'no file, since the model has nothing for it: ' &
-      //names(3:))
-  end subroutine log_empty
+    if (len(names) > 0) call write_log(monitor%log, 'no file, since the model has nothing for ' &
+      //'it: '//names(3:))
+    if (monitor%has_plot) &
+      call open_results(monitor%results, prefix//'.vtkhdf', model, run_info, &
+        monitor%restarts%goes_on, error)
+  end subroutine open_files
 
   !> Schedules, progress lines and the snapshot.
   subroutine start_monitor(model, has_history, monitor)
@@ -132,7 +123,7 @@ contains
           interval = plan%plot
         call start_schedule(monitor%tables(k), interval, model%curves, end_time)
       end do
-      monitor%scheduled = pack([(k, k=1, n_table)], is_active(monitor%tables))
+      monitor%scheduled = pack([(k, k=1, n_table)], monitor%tables%active)
     end associate
   end subroutine start_schedules
 

@@ -63,26 +63,18 @@ contains
     integer, intent(in) :: cycle
     logical, intent(in) :: steps_are_long
     real(wp), intent(in) :: time, dt, ratio
+    logical :: is_due
 
     if (steps_are_long .or. mod(cycle, look_cycles) == 0) call look_at_clock(clock)
-    if (wants_line(progress, cycle, clock%last)) then
+    is_due = clock%last >= progress%next_tick
+    if (progress%status_interval > 0 .and. .not. progress%terminal) &
+      is_due = is_due .or. mod(cycle, progress%status_interval) == 0
+    if (is_due) then
       call show_progress(progress, clock, cycle, time, dt, ratio, '')
     else if (clock%last >= progress%status%next_tick) then
       call keep_status(progress%status, clock, cycle, time, dt, ratio)
     end if
   end subroutine follow_progress
-
-  !> Whether a line is due. `tick` is a clock tick read for another purpose.
-  pure function wants_line(progress, cycle, tick) result(wanted)
-    type(progress_t), intent(in) :: progress
-    integer, intent(in) :: cycle
-    integer(long), intent(in) :: tick
-    logical :: wanted
-
-    wanted = tick >= progress%next_tick
-    if (progress%status_interval > 0 .and. .not. progress%terminal) &
-      wanted = wanted .or. mod(cycle, progress%status_interval) == 0
-  end function wants_line
 
   !> One line. `event` says what was written, blank for none; `ratio` is
   !> the last energy ratio known. A pipe gets a line where the next share of the run is done, or
@@ -157,7 +149,7 @@ contains
     progress%status%cycle = cycle
     progress%status%time = time
     call write_status(progress%status, clock, trim(merge('normal termination', &
-      'error termination ', normal))//': '//first_line(reason))
+      'error termination ', normal))//': '//reason(:scan(reason//new_line('a'), new_line('a')) - 1))
     seconds = phase_seconds(clock)
     elapsed = elapsed_seconds(clock)
     cost = 0.0_wp
@@ -222,14 +214,6 @@ contains
 
     lines = lines//trim(text)//new_line('a')
   end subroutine add
-
-  !> The first line of a text.
-  pure function first_line(text) result(line)
-    character(*), intent(in) :: text
-    character(:), allocatable :: line
-
-    line = text(:scan(text//new_line('a'), new_line('a')) - 1)
-  end function first_line
 
   !> A number of 0 or more with `digits` behind the point and at least one before it.
   pure function fixed(number, digits) result(text)

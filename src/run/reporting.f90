@@ -1,19 +1,17 @@
 ! SPDX-License-Identifier: MIT
 !> What is due of an instant: the part of it that both drivers do.
 module reporting_m
-  use boundary_filling_m, only : fill_boundaries
   use contact_judging_m, only : judge_contacts
   use contact_softness_m, only : follow_softness
   use snapshot_m, only : total_energy
   use errors_m, only : error_t
-  use history_elements_m, only : fill_history_elements
+  use history_filling_m, only : fill_boundaries, fill_history_elements, fill_sections
   use history_tables_m, only : table_rcforc, table_sleout, table_contact, table_elout, &
     table_bndout, table_nodfor, table_secforc
   use kinds_m, only : wp
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, write_due
   use progress_m, only : show_progress
-  use section_filling_m, only : fill_sections
   use snapshot_filling_m, only : fill_interfaces, fill_plot
   use state_m, only : state_t
   implicit none

@@ -36,67 +36,31 @@ contains
     type(error_t), allocatable, intent(out) :: error
     class(visited_t), intent(inout), optional :: driver !! what it remembers besides the state
     type(archive_t) :: archive
+    character(:), allocatable :: effective_deck, path, line
     integer :: kind
 
     if (.not. any(wanted)) return
     if (present(driver)) call lap(monitor%clock, phase_nodes)
     do kind = 1, size(wanted)
       if (.not. wanted(kind) .or. allocated(error)) cycle
-      call begin_file(kind, state, monitor, archive)
+      if (kind == numbered_file) monitor%restarts%n_dump = monitor%restarts%n_dump + 1
+      path = running_path(monitor%restarts)
+      if (kind == numbered_file) path = dump_path(monitor%restarts, monitor%restarts%n_dump)
+      call create_restart(path, archive)
+      call read_effective_deck(monitor%restarts, archive, effective_deck)
+      call keep_run(archive, monitor%restarts, effective_deck)
+      if (allocated(effective_deck)) deallocate (effective_deck)
+      call keep_outputs(archive, state%time, state%dt_before, monitor)
+      call archive%part('state', state)
       if (present(driver)) call archive%part('driver', driver)
-      call end_file(kind, state, monitor, archive, error)
+      call finish_restart(archive, error)
+      if (allocated(error)) cycle
+      line = 'restart file '//path//place_text(state)
+      if (kind == numbered_file) call show_note(monitor%progress, monitor%log, line)
+      if (kind /= numbered_file) call write_log(monitor%log, line)
     end do
     if (present(driver)) call lap(monitor%clock, phase_output)
   end subroutine write_restarts
-
-  !> What every file has.
-  subroutine begin_file(kind, state, monitor, archive)
-    integer, intent(in) :: kind                  !! numbered_file or running_file
-    type(state_t), intent(inout) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(archive_t), intent(out) :: archive
-    character(:), allocatable :: effective_deck
-
-    if (kind == numbered_file) monitor%restarts%n_dump = monitor%restarts%n_dump + 1
-    call create_restart(path_of(kind, monitor%restarts), archive)
-    call read_effective_deck(monitor%restarts, archive, effective_deck)
-    call keep_run(archive, monitor%restarts, effective_deck)
-    if (allocated(effective_deck)) deallocate (effective_deck)
-    call keep_outputs(archive, state%time, state%dt_before, monitor)
-    call archive%part('state', state)
-  end subroutine begin_file
-
-  !> Complete it, and say so.
-  subroutine end_file(kind, state, monitor, archive, error)
-    integer, intent(in) :: kind                  !! numbered_file or running_file
-    type(state_t), intent(in) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(archive_t), intent(inout) :: archive
-    type(error_t), allocatable, intent(out) :: error
-    character(:), allocatable :: line
-
-    call finish_restart(archive, error)
-    if (allocated(error)) return
-    line = 'restart file '//path_of(kind, monitor%restarts)//place_text(state)
-    if (kind == numbered_file) then
-      call show_note(monitor%progress, monitor%log, line)
-    else
-      call write_log(monitor%log, line)
-    end if
-  end subroutine end_file
-
-  !> Path of the file of a kind that is written now.
-  pure function path_of(kind, restarts) result(path)
-    integer, intent(in) :: kind
-    type(restarts_t), intent(in) :: restarts
-    character(:), allocatable :: path
-
-    if (kind == numbered_file) then
-      path = dump_path(restarts, restarts%n_dump)
-    else
-      path = running_path(restarts)
-    end if
-  end function path_of
 
   !> The deck as run, from the file that the run has written at its start: a large one is not kept
   !> in memory.

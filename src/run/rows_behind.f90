@@ -18,7 +18,8 @@ module rows_behind_m
 
   !> What lies across the edges of the elements behind contact surfaces.
   type :: face_rows_t
-    integer, allocatable :: elements(:)  !! (n_row) rising
+    integer, allocatable :: elements(:)  !! (n_row)
+    integer, allocatable :: row_of(:)    !! (n_element) 0: none
     integer, allocatable :: across(:, :) !! (4, n_row) element across the edge from node k to the
                                          !! next, 0: none
     logical :: are_shared = .false.      !! interfaces share nodes
@@ -42,6 +43,8 @@ contains
     end do
     allocate (rows%elements(count(is_behind)))
     rows%elements = pack([(i, i=1, size(is_behind))], is_behind)
+    allocate (rows%row_of(size(is_behind)), source=0)
+    rows%row_of(rows%elements) = [(i, i=1, size(rows%elements))]
     call find_across(model, rows)
     rows%are_shared = shares_nodes(model)
   end subroutine find_rows
@@ -211,7 +214,7 @@ contains
     integer :: i, k
 
     beyond = 0
-    i = place_in(rows%elements, element)
+    i = rows%row_of(element)
     if (i == 0) return
     associate (nodes => model%layout%slot_nodes(:, model%layout%element_slot(element)))
       if (nodes(4) == nodes(3)) return
@@ -222,27 +225,6 @@ contains
     end associate
   end function element_beyond
 
-  !> Where a value stands in a rising list, 0: nowhere.
-  pure function place_in(list, value) result(place)
-    integer, intent(in) :: list(:), value
-    integer :: place
-    integer :: low, high
-
-    low = 1
-    high = size(list)
-    do while (low < high)
-      place = (low + high)/2
-      if (list(place) < value) then
-        low = place + 1
-      else
-        high = place
-      end if
-    end do
-    place = 0
-    if (low > size(list)) return
-    if (list(low) == value) place = low
-  end function place_in
-
   !> Elastic energy of an element by its stress and the moduli of its material, J per metre or per
   !> radian: of laws with others it is a measure.
   function elastic_energy(model, state, element) result(energy)
@@ -250,7 +232,7 @@ contains
     type(state_t), intent(in) :: state
     integer, intent(in) :: element
     real(wp) :: energy
-    real(wp) :: s(4), d31(2), d42(2), volume, mean, shear_square
+    real(wp) :: s(4), d31(2), d42(2), centre(2), volume, mean, shear_square
 
     associate (slot => model%layout%element_slot(element))
       associate (nodes => model%layout%slot_nodes(:, slot), &
@@ -259,11 +241,8 @@ contains
         d31 = place_of(model, state, nodes(3)) - place_of(model, state, nodes(1))
         d42 = place_of(model, state, nodes(4)) - place_of(model, state, nodes(2))
         volume = 0.5_wp*(d31(1)*d42(2) - d42(1)*d31(2))
-        if (model%is_round) then
-          associate (centre => centre_of(model, state, element))
-            volume = volume*centre(1)
-          end associate
-        end if
+        centre = centre_of(model, state, element)
+        if (model%is_round) volume = volume*centre(1)
         mean = sum(s(:3))/3.0_wp
         shear_square = sum((s(:3) - mean)**2) + 2.0_wp*s(4)**2
         energy = 0.0_wp

@@ -10,16 +10,16 @@ module shared_faces_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: others_t, shares_nodes, find_others, face_share
+  public :: others_t, shares_nodes, present_contact, find_others, face_share
 
-  !> Pressure of other interfaces on the faces at the nodes of one, Pa.
+  !> Pressure of other interfaces on the faces at the nodes of one side of an interface, Pa.
   type :: others_t
-    real(wp), allocatable :: slave(:), master(:)
+    real(wp), allocatable :: pressure(:)
   end type others_t
 
-  !> A face of one side of an interface.
+  !> A face of a side; sides are the slave and the master of each interface.
   type :: face_t
-    integer :: interface = 0, side = 0 !! 1 slave, 2 master
+    integer :: side = 0
     integer :: element = 0             !! behind it
     integer :: ends(2) = 0             !! local numbers of its nodes in that side
     integer :: nodes(2) = 0            !! the same in the mesh
@@ -64,106 +64,61 @@ contains
     end if
   end function present_contact
 
-  !> What other interfaces put on the faces of each. The pressure of a node acts on all of its faces
-  !> in an interface alike.
+  !> What other interfaces put on the faces of each side. The pressure of a node acts on all of its
+  !> faces in an interface alike.
   subroutine find_others(model, state, slaves, others)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(slave_result_t), intent(in) :: slaves(:) !! (n_interface)
-    type(others_t), intent(inout) :: others(:) !! (interfaces that are told), empty before
-    type(contact_t) :: contacts(n_told(model%contacts))
+    type(others_t), intent(inout) :: others(:) !! (2, interfaces that are told), empty before
+    type(surface_t) :: surfaces(size(others))
     type(face_t), allocatable :: faces(:)
+    type(contact_t) :: contact
     integer, allocatable :: first(:), next(:) !! faces by the node that they start at
-    real(wp) :: share(2), pressure(2)
-    integer :: i, k, m
+    real(wp) :: pressure(2)
+    integer :: i, k, m, s
 
-    do i = 1, size(contacts)
-      contacts(i) = present_contact(model, state, i)
-      allocate (others(i)%slave(contacts(i)%slave%n_node), &
-        others(i)%master(contacts(i)%master%n_node), source=0.0_wp)
+    do i = 1, size(others)/2
+      contact = present_contact(model, state, i)
+      surfaces(2*i - 1) = contact%slave
+      surfaces(2*i) = contact%master
+      ! Of a surface with itself all is on the slave.
+      if (contact%is_self) surfaces(2*i)%n_segment = 0
     end do
-    call list_faces(contacts, faces)
-    allocate (first(model%mesh%n_node), next(size(faces)), source=0)
-    do k = 1, size(faces)
-      next(k) = first(faces(k)%nodes(1))
-      first(faces(k)%nodes(1)) = k
+    allocate (faces(sum(surfaces%n_segment)), next(sum(surfaces%n_segment)))
+    allocate (first(model%mesh%n_node), source=0)
+    k = 0
+    do i = 1, size(others)
+      allocate (others(i)%pressure(surfaces(i)%n_node), source=0.0_wp)
+      do s = 1, surfaces(i)%n_segment
+        k = k + 1
+        associate (ends => surfaces(i)%segments(:, s))
+          faces(k) = face_t(i, surfaces(i)%segment_element(s), ends, surfaces(i)%nodes(ends))
+        end associate
+        next(k) = first(faces(k)%nodes(1))
+        first(faces(k)%nodes(1)) = k
+      end do
     end do
     do k = 1, size(faces)
       m = first(faces(k)%nodes(1))
       do while (m > 0)
-        if (faces(m)%element == faces(k)%element .and. faces(m)%interface /= faces(k)%interface) &
-          then
-          share = face_share(model, state, faces(k)%nodes)
-          pressure = end_pressure(slaves, faces(m))
-          call add_face(share*pressure, faces(k), others)
+        if (faces(m)%element == faces(k)%element .and. &
+          (faces(m)%side + 1)/2 /= (faces(k)%side + 1)/2) then
+          associate (result => slaves((faces(m)%side + 1)/2), &
+            mine => others(faces(k)%side)%pressure)
+            if (mod(faces(m)%side, 2) == 1) pressure = result%pressure(faces(m)%ends)
+            if (mod(faces(m)%side, 2) == 0) pressure = result%master_pressure(faces(m)%ends)
+            mine(faces(k)%ends) = mine(faces(k)%ends) + face_share(model, state, faces(k)%nodes) &
+              *pressure
+          end associate
         end if
         m = next(m)
       end do
     end do
-    do i = 1, size(contacts)
-      call divide_by_areas(model, state, contacts(i)%slave, others(i)%slave)
-      call divide_by_areas(model, state, contacts(i)%master, others(i)%master)
+    do i = 1, size(others)
+      call divide_by_areas(model, state, surfaces(i), others(i)%pressure)
     end do
   end subroutine find_others
-
-  !> All faces of interfaces; of a surface with itself all is on the slave.
-  subroutine list_faces(contacts, faces)
-    type(contact_t), intent(in) :: contacts(:)
-    type(face_t), allocatable, intent(out) :: faces(:)
-    integer :: i, n
-
-    n = sum(contacts%slave%n_segment) + sum(contacts%master%n_segment, .not. contacts%is_self)
-    allocate (faces(n))
-    n = 0
-    do i = 1, size(contacts)
-      call list_side(contacts(i)%slave, i, 1, faces, n)
-      if (.not. contacts(i)%is_self) call list_side(contacts(i)%master, i, 2, faces, n)
-    end do
-  end subroutine list_faces
-
-  !> The faces of one side, behind the `n` that are there.
-  pure subroutine list_side(surface, interface, side, faces, n)
-    type(surface_t), intent(in) :: surface
-    integer, intent(in) :: interface, side
-    type(face_t), intent(inout) :: faces(:)
-    integer, intent(inout) :: n
-    integer :: s, ends(2), nodes(2)
-
-    do s = 1, surface%n_segment
-      n = n + 1
-      ends = surface%segments(:, s)
-      nodes = surface%nodes(ends)
-      faces(n) = face_t(interface, side, surface%segment_element(s), ends, nodes)
-    end do
-  end subroutine list_side
-
-  !> Pressure at the ends of a face in its own interface.
-  pure function end_pressure(slaves, face) result(pressure)
-    type(slave_result_t), intent(in) :: slaves(:)
-    type(face_t), intent(in) :: face
-    real(wp) :: pressure(2)
-
-    if (face%side == 1) then
-      pressure = slaves(face%interface)%pressure(face%ends)
-    else
-      pressure = slaves(face%interface)%master_pressure(face%ends)
-    end if
-  end function end_pressure
-
-  !> What another interface puts on the ends of a face.
-  pure subroutine add_face(force, face, others)
-    real(wp), intent(in) :: force(2)
-    type(face_t), intent(in) :: face
-    type(others_t), intent(inout) :: others(:)
-
-    associate (mine => others(face%interface))
-      if (face%side == 1) then
-        mine%slave(face%ends) = mine%slave(face%ends) + force
-      else
-        mine%master(face%ends) = mine%master(face%ends) + force
-      end if
-    end associate
-  end subroutine add_face
 
   !> Forces of nodes to pressures.
   subroutine divide_by_areas(model, state, surface, pressure)
@@ -171,15 +126,14 @@ contains
     type(state_t), intent(in) :: state
     type(surface_t), intent(in) :: surface
     real(wp), intent(inout) :: pressure(:)
-    real(wp) :: area(surface%n_node), share(2)
-    integer :: s, ends(2), nodes(2)
+    real(wp) :: area(surface%n_node)
+    integer :: s
 
     area = 0.0_wp
     do s = 1, surface%n_segment
-      ends = surface%segments(:, s)
-      nodes = surface%nodes(ends)
-      share = face_share(model, state, nodes)
-      area(ends) = area(ends) + share
+      associate (ends => surface%segments(:, s))
+        area(ends) = area(ends) + face_share(model, state, surface%nodes(ends))
+      end associate
     end do
     where (area > 0.0_wp) pressure = pressure/area
   end subroutine divide_by_areas

@@ -2,6 +2,7 @@
 !> Fills a snapshot from the state, only what is due. Forces, energies and motion of one cycle
 !> belong to one instant: v(n) = v(n-1/2) + a(n) dt/2.
 module snapshot_filling_m
+  use history_filling_m, only : find_history_elements, find_supports
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use common_motion_m, only : fill_common
@@ -12,15 +13,13 @@ module snapshot_filling_m
     element_heats, element_erosion, hoop_strains
   use contacts_m, only : transducer_t, has_shear, n_told, told_as
   use controls_m, only : is_asked
-  use history_elements_m, only : find_history_elements
   use history_tables_m, only : table_matsum, table_rbdout
   use layout_m, only : slot_part
   use mass_scaling_m, only : scales_masses, added_masses
   use model_m, only : model_t
   use parts_m, only : has_memory_of_heat
-  use snapshot_m, only : snapshot_t, interface_result_t, rubbed_t, slave_result_t
+  use snapshot_m, only : snapshot_t, interface_result_t, slave_result_t
   use state_m, only : state_t
-  use support_forces_m, only : find_supports
   implicit none
   private
   public :: start_snapshot, fill_motion, find_motion, damping_at, fill_energies, fill_parts, &
@@ -102,8 +101,19 @@ contains
     end do
     if (allocated(model%conditions%common_motions)) &
       call fill_common(model, state, damping, snapshot%velocity, snapshot%acceleration)
-    if (allocated(snapshot%displacement)) &
-      call fill_prescribed(model, state, velocity_next, snapshot)
+    if (.not. allocated(snapshot%displacement) .or. .not. state%dt > 0.0_wp) return
+    ! Prescribed degrees of freedom: the mean of their two half-step velocities.
+    do i = 1, size(model%conditions%motions)
+      associate (prescribed => model%conditions%motions(i), &
+        k => model%conditions%motions(i)%direction)
+        if (.not. is_active(prescribed, state%time)) cycle
+        acceleration(k) = (velocity_next(i) - state%prescribed_velocity(i)) &
+          /(0.5_wp*(state%dt + state%dt_before))
+        snapshot%acceleration(k, prescribed%node) = acceleration(k)
+        snapshot%velocity(k, prescribed%node) = state%prescribed_velocity(i) &
+          + 0.5_wp*state%dt_before*acceleration(k)
+      end associate
+    end do
   end subroutine fill_motion
 
   !> D of a node: that of all nodes, or its own where the deck damps parts.
@@ -127,8 +137,7 @@ contains
     real(wp) :: force, a, d(2)
     integer :: k
 
-    d = damping
-    if (allocated(state%node_damping)) d = state%node_damping(:, node)
+    d = damping_at(state, damping, node)
     do k = 1, 2
       force = -state%internal_force(k, node)
       if (node <= n_special) force = force + state%force_special(k, node)
@@ -140,28 +149,6 @@ contains
     end do
   end subroutine find_motion
 
-  !> Prescribed degrees of freedom: the mean of their two half-step velocities.
-  subroutine fill_prescribed(model, state, velocity_next, snapshot)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    real(wp), intent(in) :: velocity_next(:)
-    type(snapshot_t), intent(inout) :: snapshot
-    real(wp) :: acceleration
-    integer :: i
-
-    if (.not. state%dt > 0.0_wp) return
-    do i = 1, size(model%conditions%motions)
-      associate (prescribed => model%conditions%motions(i))
-        if (.not. is_active(prescribed, state%time)) cycle
-        acceleration = (velocity_next(i) - state%prescribed_velocity(i)) &
-          /(0.5_wp*(state%dt + state%dt_before))
-        snapshot%acceleration(prescribed%direction, prescribed%node) = acceleration
-        snapshot%velocity(prescribed%direction, prescribed%node) = state%prescribed_velocity(i) &
-          + 0.5_wp*state%dt_before*acceleration
-      end associate
-    end do
-  end subroutine fill_prescribed
-
   !> The energy account; motion must be filled where it is kept.
   subroutine fill_energies(model, state, damping, snapshot)
     type(model_t), intent(in) :: model
@@ -170,8 +157,8 @@ contains
     type(snapshot_t), intent(inout) :: snapshot
     real(wp) :: internal(size(model%parts)), hourglass(size(model%parts)), &
       viscous(size(model%parts)), v(2, block_size)
-    real(wp) :: added(size(model%parts)), own(size(model%parts)), total
-    integer :: first, n
+    real(wp) :: added(size(model%parts)), own(size(model%parts)), total, a(2)
+    integer :: first, n, i
 
     internal = 0.0_wp
     hourglass = 0.0_wp
@@ -187,7 +174,13 @@ contains
       snapshot%mean_velocity = 0.0_wp
       do first = 1, model%mesh%n_node, block_size
         n = min(block_size, model%mesh%n_node - first + 1)
-        call find_velocities(model%layout%n_special, state, damping, first, n, snapshot, v)
+        do i = 1, n
+          if (allocated(snapshot%velocity)) then
+            v(:, i) = snapshot%velocity(:, first + i - 1)
+          else
+            call find_motion(model%layout%n_special, state, damping, first + i - 1, v(:, i), a)
+          end if
+        end do
         call add_motion(n, state%mass(first), v, energies%kinetic, snapshot%mean_velocity)
       end do
       total = sum(state%mass) ! none where all elements have left
@@ -211,26 +204,6 @@ contains
       energies%mass_increase = 100.0_wp*sum(added)/max(sum(own), tiny(total))
     end associate
   end subroutine fill_energies
-
-  !> Present velocities of `n` nodes from the node `first` on.
-  pure subroutine find_velocities(n_special, state, damping, first, n, snapshot, velocities)
-    integer, intent(in) :: n_special
-    type(state_t), intent(in) :: state
-    real(wp), intent(in) :: damping(2)
-    integer, intent(in) :: first, n
-    type(snapshot_t), intent(in) :: snapshot !! may keep them
-    real(wp), intent(inout) :: velocities(:, :)
-    real(wp) :: acceleration(2)
-    integer :: i
-
-    do i = 1, n
-      if (allocated(snapshot%velocity)) then
-        velocities(:, i) = snapshot%velocity(:, first + i - 1)
-      else
-        call find_motion(n_special, state, damping, first + i - 1, velocities(:, i), acceleration)
-      end if
-    end do
-  end subroutine find_velocities
 
   !> Add kinetic energy and momentum of some nodes. Products first, then sums: fused multiply-adds
   !> in one copy of a loop and not in another would make the bits depend on where a block ends.
@@ -388,7 +361,19 @@ contains
           if (rows%pressure(k) > 0.0_wp) snapshot%gap(rows%node(k)) = &
             min(snapshot%gap(rows%node(k)), rows%gap(k))
         end do
-        if (allocated(rows%rubbed)) call fill_friction(memory%nodes, rows%rubbed, snapshot)
+        if (.not. allocated(rows%rubbed)) cycle
+        ! Nodes of several have the sum of their tractions, the largest slip and the last of their
+        ! states.
+        do k = 1, size(memory%nodes)
+          associate (rubbed => rows%rubbed(k), node => memory%nodes(k))
+            associate (traction => snapshot%contact_traction(node), &
+              slip => snapshot%contact_slip(node), now => snapshot%contact_state(node))
+              traction = traction + rubbed%traction
+              if (abs(rubbed%slip) > abs(slip)) slip = rubbed%slip
+              now = max(now, real(rubbed%state, wp))
+            end associate
+          end associate
+        end do
       end associate
     end do
     call join_slaves(model, snapshot)
@@ -422,23 +407,5 @@ contains
       call join_rows(snapshot%slaves(i), snapshot%slaves(told_as(model%contacts, i)))
     end do
   end subroutine join_slaves
-
-  !> Friction at the nodes of an interface. Nodes of several have the sum of their tractions, the
-  !> largest slip and the last of their states.
-  pure subroutine fill_friction(nodes, rubbed, snapshot)
-    integer, intent(in) :: nodes(:)         !! (n_slave + n_master)
-    type(rubbed_t), intent(in) :: rubbed(:)
-    type(snapshot_t), intent(inout) :: snapshot
-    integer :: k
-
-    do k = 1, size(nodes)
-      associate (traction => snapshot%contact_traction(nodes(k)), &
-        slip => snapshot%contact_slip(nodes(k)), now => snapshot%contact_state(nodes(k)))
-        traction = traction + rubbed(k)%traction
-        if (abs(rubbed(k)%slip) > abs(slip)) slip = rubbed(k)%slip
-        now = max(now, real(rubbed(k)%state, wp))
-      end associate
-    end do
-  end subroutine fill_friction
 
 end module snapshot_filling_m

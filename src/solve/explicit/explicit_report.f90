@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> A cycle of an explicit run that writes: what the elements have come to, and what is due from it.
 module explicit_report_m
+  use history_filling_m, only : fill_explicit_reactions
   use prescribed_motion_m, only : count_motions, count_body_motions, count_groups, start_prescribed
   use contact_check_m, only : report_contact_start
   use contact_pressing_m, only : press_contacts
@@ -28,7 +29,6 @@ module explicit_report_m
   use element_steps_m, only : find_smallest_steps
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts
   use state_m, only : state_t
-  use support_forces_m, only : fill_explicit_reactions
   implicit none
   private
   public :: report_cycle

@@ -4,10 +4,10 @@
 !> histories ask for them (bndout, nodfor). The works of all boundaries add up to the external work,
 !> but for those of body loads, rigid walls and interference.
 module prescribed_motion_m
-  use boundary_filling_m, only : form_loads
   use conditions_m, only : motion_displacement, motion_velocity, prescribed_motion_t
   use constraints_m, only : is_active, next_velocity
   use controls_m, only : boundary_load, boundary_body_load, boundary_pressure, group_nodes
+  use history_filling_m, only : form_loads
   use kinds_m, only : wp
   use model_m, only : model_t
   use external_force_m, only : part_damping_rate

@@ -3,7 +3,6 @@
 !> the consistent mass; forces on boundaries and of groups of nodes, and their work, where histories
 !> ask for them (bndout, nodfor).
 module implicit_report_m
-  use boundary_filling_m, only : form_loads
   use clock_m, only : lap, phase_output
   use constraints_m, only : is_active
   use controls_m, only : boundary_motion, group_nodes
@@ -14,6 +13,7 @@ module implicit_report_m
   use errors_m, only : error_t
   use health_m, only : check_energy, check_ratio, check_radii, judge_energies, judge_ratio, &
     judge_contact, made_by_forces, unaccounted, dissipated
+  use history_filling_m, only : fill_reactions, form_loads
   use history_tables_m, only : table_matsum, table_spcforc, table_bndout, table_nodfor, &
     table_secforc
   use implicit_forces_m, only : trial_t, net_force, cut_sections
@@ -26,7 +26,6 @@ module implicit_report_m
   use reporting_m, only : note_energies, write_instant
   use snapshot_filling_m, only : fill_energies, fill_parts
   use state_m, only : state_t
-  use support_forces_m, only : fill_reactions
   implicit none
   private
   public :: report_step, reactions_work, held_energy, spent_energy, count_step_boundaries
