@@ -23,14 +23,6 @@ module deck_m
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
   use deck_raw_m, only : raw_t, start_raw, reserve_lists, trim_lists
   use deck_mesh_m, only : read_nodes, read_elements, read_beams, read_set, read_history_ids
-  use deck_part_m, only : read_part, read_section, read_hourglass
-  use deck_curves_m, only : read_curve, read_table, read_system
-  use deck_hardening_m, only : read_piecewise, read_hydro, read_johnson_cook, &
-    read_simplified_johnson_cook
-  use deck_material_m, only : read_elastic, read_plastic_kinematic, read_null, &
-    read_crushable_foam, read_mooney_rivlin, read_blatz_ko, read_rigid, read_linear_polynomial, &
-    read_gruneisen
-  use deck_erosion_m, only : read_erosion
   use deck_control_m, only : read_control, check_step, read_ends
   use deck_empty_m, only : check_empty
   use deck_output_m, only : read_database, read_force_groups, read_cross_sections, read_transducer
@@ -259,46 +251,6 @@ contains
         'SET_PART_LIST_GENERATE', 'SET_SHELL_LIST', 'SET_SHELL_LIST_GENERATE', 'SET_SEGMENT', &
         'SET_2D_SEGMENT', 'SET_2D_SEGMENT_SET')
       call read_set(deck, i, raw)
-    case ('PART')
-      call read_part(deck, i, raw)
-    case ('SECTION_SHELL')
-      call read_section(deck, i, raw)
-    case ('HOURGLASS')
-      call read_hourglass(deck, i, raw)
-    case ('MAT_ELASTIC')
-      call read_elastic(deck, i, raw)
-    case ('MAT_PLASTIC_KINEMATIC')
-      call read_plastic_kinematic(deck, i, raw)
-    case ('MAT_PIECEWISE_LINEAR_PLASTICITY')
-      call read_piecewise(deck, i, raw)
-    case ('MAT_NULL')
-      call read_null(deck, i, raw)
-    case ('MAT_ELASTIC_PLASTIC_HYDRO')
-      call read_hydro(deck, i, raw)
-    case ('MAT_JOHNSON_COOK')
-      call read_johnson_cook(deck, i, raw)
-    case ('MAT_SIMPLIFIED_JOHNSON_COOK')
-      call read_simplified_johnson_cook(deck, i, raw)
-    case ('MAT_MOONEY-RIVLIN_RUBBER')
-      call read_mooney_rivlin(deck, i, raw)
-    case ('MAT_BLATZ-KO_RUBBER')
-      call read_blatz_ko(deck, i, raw)
-    case ('MAT_CRUSHABLE_FOAM')
-      call read_crushable_foam(deck, i, raw)
-    case ('MAT_ADD_EROSION')
-      call read_erosion(deck, i, raw)
-    case ('EOS_LINEAR_POLYNOMIAL')
-      call read_linear_polynomial(deck, i, raw)
-    case ('EOS_GRUNEISEN')
-      call read_gruneisen(deck, i, raw)
-    case ('MAT_RIGID')
-      call read_rigid(deck, i, raw)
-    case ('DEFINE_CURVE')
-      call read_curve(deck, i, raw)
-    case ('DEFINE_TABLE')
-      call read_table(deck, i, raw)
-    case ('DEFINE_COORDINATE_SYSTEM')
-      call read_system(deck, i, raw)
     case default
       call read_family(deck, i, kinds, raw)
     end select

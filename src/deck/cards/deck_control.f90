@@ -51,8 +51,8 @@ contains
     case ('CONTROL_DYNAMIC_RELAXATION')
       call take_relaxation(cards(1), raw)
     case ('CONTROL_HOURGLASS')
-      call hourglass_form(deck, cursor, cards(1), 'IHQ', raw%hourglass_default%form)
-      call hourglass_coefficient(deck, cursor, cards(1), 'QH', &
+      call hourglass_form(deck, cards(1), 'IHQ', raw%hourglass_default%form)
+      call hourglass_coefficient(deck, cards(1), 'QH', &
         raw%hourglass_default%coefficient)
     case ('CONTROL_BULK_VISCOSITY')
       ! Off without the keyword; blank fields of it are LS-DYNA's defaults.

@@ -2,38 +2,74 @@
 !> *DEFINE_CURVE, *DEFINE_TABLE and *DEFINE_COORDINATE_SYSTEM (axes in the plane).
 module deck_curves_m
   use kinds_m, only : wp
+  use log_m, only : to_text
   use curves_m, only : curve_t
-  use deck_ids_m, only : a_curve, a_table
-  use deck_maps_m, only : lose
-  use deck_lines_m, only : deck_t, line_error
+  use model_m, only : model_t
+  use deck_ids_m, only : a_curve, a_table, a_system, index_of
+  use deck_lines_m, only : deck_t, blocks_of, line_error
   use deck_fields_m, only : card_t
-  use deck_cards_m, only : cursor_t, first_card, next_row, report_field, find_field, next_card, &
-    check_rest
-  use deck_values_m, only : integer_of, real_of, reals_of, is_bad, require_id, refuse_outside
-  use deck_raw_m, only : raw_t, raw_table_t, raw_system_t
+  use deck_cards_m, only : cursor_t, first_card, next_row, report_field, find_field, &
+    next_card, check_rest
+  use deck_maps_m, only : map_kind, lose
+  use deck_values_m, only : integer_of, real_of, reals_of, is_bad
   implicit none
   private
-  public :: read_curve, read_table, read_system
+  public :: table_t, read_curves, read_systems
+
+  !> One *DEFINE_TABLE: its values, and the first and last of its curves, which are those of the
+  !> blocks that come next. The last lies before the first where there are not enough.
+  type :: table_t
+    real(wp), allocatable :: values(:)
+    integer :: curves(2) = [1, 0]
+  end type table_t
 
 contains
 
+  !> All curves and tables.
+  subroutine read_curves(deck, step_curve, model, tables)
+    type(deck_t), intent(inout) :: deck
+    type(curve_t), allocatable, intent(in) :: step_curve !! given by a word
+    type(model_t), intent(inout) :: model
+    type(table_t), allocatable, intent(out) :: tables(:)
+    type(curve_t), allocatable :: curves(:)
+    integer, allocatable :: blocks(:), lines(:)
+    integer :: of_block(deck%n_block), i, n
+
+    blocks = blocks_of(deck, 'DEFINE_CURVE')
+    allocate (curves(size(blocks) + 1), lines(size(blocks) + 1))
+    of_block = 0
+    n = 0
+    do i = 1, size(blocks)
+      call read_curve(deck, blocks(i), curves(n + 1), lines(n + 1))
+      if (curves(n + 1)%id < 1) cycle
+      n = n + 1
+      of_block(blocks(i)) = n
+    end do
+    if (allocated(step_curve)) then
+      n = n + 1
+      curves(n) = step_curve
+      lines(n) = 0
+    end if
+    model%curves = curves(:n)
+    call map_kind(deck, a_curve, model%curves%id, lines(:n), 'LCID')
+    call read_tables(deck, of_block, tables)
+  end subroutine read_curves
+
   !> *DEFINE_CURVE: points, then scale factors and offsets applied, x = SFA*(x + OFFA).
-  subroutine read_curve(deck, i_block, raw)
+  subroutine read_curve(deck, i_block, curve, line)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
+    type(curve_t), intent(out) :: curve   !! its id is 0 where it was refused
+    integer, intent(out) :: line
     type(cursor_t) :: cursor
     type(card_t) :: head
-    type(curve_t) :: curve
     real(wp), allocatable :: points(:, :)
     real(wp) :: scale(2)
 
-    call read_head(deck, i_block, ['LCID', 'SFA '], 'is negative: it would turn the curve round', &
-      cursor, head)
+    call first_card(deck, i_block, cursor, head)
+    line = head%line
     scale = reals_of(head, 'SFA', 'SFO')
     scale(1) = abs(scale(1)) ! a negative one has been refused
-    call refuse_outside(deck, cursor, head, 'SIDR', 0, 2, &
-      'is not a phase (0 run, 1 dynamic relaxation, 2 both)')
     curve%phase = integer_of(head, 'SIDR')
     call read_rows(deck, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
       'is not beyond the point before it: abscissas must increase', cursor, points)
@@ -44,48 +80,61 @@ contains
     curve%id = integer_of(head, 'LCID')
     curve%abscissa = points(1, :)
     curve%ordinate = points(2, :)
-    raw%n_curve = raw%n_curve + 1
-    raw%curves(raw%n_curve) = curve
-    raw%curve_line(raw%n_curve) = head%line
   end subroutine read_curve
 
   !> *DEFINE_TABLE: a number, and a value for each of the curves that come next.
-  subroutine read_table(deck, i_block, raw)
+  subroutine read_tables(deck, of_block, tables)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
+    integer, intent(in) :: of_block(:)   !! curve of each block, 0 for none
+    type(table_t), allocatable, intent(out) :: tables(:)
     type(cursor_t) :: cursor
     type(card_t) :: head
-    type(raw_table_t) :: table
     real(wp), allocatable :: values(:, :)
-    real(wp) :: scale
+    integer, allocatable :: blocks(:), ids(:), lines(:)
+    integer :: i, n
 
-    call read_head(deck, i_block, ['TBID', 'SFA '], 'is negative: it would turn the table round', &
-      cursor, head)
-    scale = abs(real_of(head, 'SFA')) ! a negative one has been refused
-    call read_rows(deck, ['VALUE'], [scale], [real_of(head, 'OFFA')], &
-      'is not beyond the value before it: the values of a table must increase', cursor, values)
-    if (size(values, 2) == 0) call line_error(deck, head%line, 'the table has no values')
-    if (is_bad(head, 'TBID')) call lose(deck, [a_table])
-    if (is_bad(head, 'TBID')) return
-    table = raw_table_t(integer_of(head, 'TBID'), head%line, i_block, values(1, :))
-    raw%n_table = raw%n_table + 1
-    raw%tables(raw%n_table) = table
-  end subroutine read_table
+    blocks = blocks_of(deck, 'DEFINE_TABLE')
+    allocate (tables(size(blocks)), ids(size(blocks)), lines(size(blocks)))
+    n = 0
+    do i = 1, size(blocks)
+      call first_card(deck, blocks(i), cursor, head)
+      call read_rows(deck, ['VALUE'], [abs(real_of(head, 'SFA'))], [real_of(head, 'OFFA')], &
+        'is not beyond the value before it: the values of a table must increase', cursor, values)
+      if (size(values, 2) == 0) call line_error(deck, head%line, 'the table has no values')
+      if (is_bad(head, 'TBID')) call lose(deck, [a_table])
+      if (is_bad(head, 'TBID')) cycle
+      n = n + 1
+      ids(n) = integer_of(head, 'TBID')
+      lines(n) = head%line
+      tables(n)%values = values(1, :)
+      if (index_of(deck%maps(a_curve), ids(n)) > 0) call report_field(deck, head, 'TBID', &
+        'is the number of a curve too')
+      call find_table_curves(deck, of_block, blocks(i), ids(n), lines(n), tables(n))
+    end do
+    call map_kind(deck, a_table, ids(:n), lines(:n), 'TBID')
+  end subroutine read_tables
 
-  !> The first card: the number, and the scale factor of what must increase.
-  subroutine read_head(deck, i_block, names, negative, cursor, head)
+  !> The curves of a table: those of the blocks that come next, one for each value.
+  subroutine find_table_curves(deck, of_block, i_block, id, line, table)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    character(*), intent(in) :: names(2)    !! of the number and of the factor
-    character(*), intent(in) :: negative    !! what to say of a factor below 0
-    type(cursor_t), intent(out) :: cursor
-    type(card_t), intent(out) :: head
+    integer, intent(in) :: of_block(:), i_block, id, line
+    type(table_t), intent(inout) :: table
+    integer :: i, n
 
-    call first_card(deck, i_block, cursor, head)
-    call require_id(deck, cursor, head, names(1))
-    if (real_of(head, names(2)) < 0.0_wp) call report_field(deck, cursor, head, names(2), negative)
-  end subroutine read_head
+    n = 0
+    do i = i_block + 1, deck%n_block
+      if (n == size(table%values)) exit
+      if (deck%blocks(i)%dropped) cycle
+      if (deck%blocks(i)%name /= 'DEFINE_CURVE') exit
+      n = n + 1
+      if (of_block(i) == 0) return ! its own mistake has been reported
+      if (n == 1) table%curves(1) = of_block(i)
+      if (n == size(table%values)) table%curves(2) = of_block(i)
+    end do
+    if (n < size(table%values) .and. .not. deck%maps(a_curve)%lost) call line_error(deck, line, &
+      'table '//to_text(id)//' has '//to_text(size(table%values))//' values but '//to_text(n) &
+      //' *DEFINE_CURVE right behind it: it takes one for each value, in that order')
+  end subroutine find_table_curves
 
   !> The rows behind it, scale*(value + offset) in each column; the first column must increase.
   subroutine read_rows(deck, names, scale, offset, not_beyond, cursor, rows)
@@ -112,7 +161,7 @@ contains
       rows(:, n) = scale*(card%r(columns) + offset)
       is_sound = is_sound .and. .not. card%bad(columns(1))
       if (card%bad(columns(1))) cycle
-      if (rows(1, n) <= last) call report_field(deck, cursor, card, columns(1), not_beyond)
+      if (rows(1, n) <= last) call report_field(deck, card, columns(1), not_beyond)
       is_sound = is_sound .and. rows(1, n) > last
       last = rows(1, n)
     end do
@@ -121,46 +170,64 @@ contains
     if (.not. is_sound) rows(1, :) = [(real(i, wp), i=0, n - 1)]
   end subroutine read_rows
 
+  !> *DEFINE_COORDINATE_SYSTEM.
+  subroutine read_systems(deck)
+    type(deck_t), intent(inout) :: deck
+    real(wp) :: axes(2, 2)
+    integer, allocatable :: blocks(:), ids(:), lines(:)
+    integer :: i, n
+
+    blocks = blocks_of(deck, 'DEFINE_COORDINATE_SYSTEM')
+    allocate (deck%axes(2, 2, size(blocks)), ids(size(blocks)), lines(size(blocks)))
+    n = 0
+    do i = 1, size(blocks)
+      call read_system(deck, blocks(i), ids(n + 1), lines(n + 1), axes)
+      if (ids(n + 1) < 1) cycle
+      n = n + 1
+      deck%axes(:, :, n) = axes
+    end do
+    call map_kind(deck, a_system, ids(:n), lines(:n), 'CID')
+  end subroutine read_systems
+
   !> The x axis goes from the origin to the point L; the point P is on the side of the y axis.
-  subroutine read_system(deck, i_block, raw)
+  subroutine read_system(deck, i_block, id, line, axes)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
+    integer, intent(out) :: id, line      !! id: 0 where it was refused
+    real(wp), intent(out) :: axes(2, 2)
     character(*), parameter :: leaves = 'takes the axes out of the plane of the model'
     type(cursor_t) :: cursor
     type(card_t) :: cards(2)
-    type(raw_system_t) :: system
     real(wp) :: origin(2), to_p(2), across
     logical :: in_plane
 
     call first_card(deck, i_block, cursor, cards(1))
     call next_card(deck, cursor, 2, cards(2))
     call check_rest(deck, cursor)
-    call require_id(deck, cursor, cards(1), 'CID')
-    if (is_bad(cards(1), 'CID')) call lose(deck, [a_curve])
+    id = 0
+    line = cards(1)%line
+    axes = 0.0_wp
+    if (is_bad(cards(1), 'CID')) call lose(deck, [a_curve, a_system])
     if (is_bad(cards(1), 'CID')) return
-    system%id = integer_of(cards(1), 'CID')
-    system%line = cards(1)%line
+    id = integer_of(cards(1), 'CID')
     in_plane = .not. abs(real_of(cards(1), 'ZL') - real_of(cards(1), 'ZO')) > 0.0_wp
-    if (.not. in_plane) call report_field(deck, cursor, cards(1), 'ZL', leaves)
+    if (.not. in_plane) call report_field(deck, cards(1), 'ZL', leaves)
     if (abs(real_of(cards(2), 'ZP') - real_of(cards(1), 'ZO')) > 0.0_wp) &
-      call report_field(deck, cursor, cards(2), 'ZP', leaves)
+      call report_field(deck, cards(2), 'ZP', leaves)
     origin = reals_of(cards(1), 'XO', 'YO')
-    system%axes(:, 1) = reals_of(cards(1), 'XL', 'YL') - origin
+    axes(:, 1) = reals_of(cards(1), 'XL', 'YL') - origin
     to_p = reals_of(cards(2), 'XP', 'YP') - origin
-    across = system%axes(1, 1)*to_p(2) - system%axes(2, 1)*to_p(1)
-    if (.not. norm2(system%axes(:, 1)) > 0.0_wp) then
-      if (in_plane) call report_field(deck, cursor, cards(1), 'XL', &
+    across = axes(1, 1)*to_p(2) - axes(2, 1)*to_p(1)
+    if (.not. norm2(axes(:, 1)) > 0.0_wp) then
+      if (in_plane) call report_field(deck, cards(1), 'XL', &
         ': the point on the x axis is the origin')
-      system%axes(:, 1) = [1.0_wp, 0.0_wp]
+      axes(:, 1) = [1.0_wp, 0.0_wp]
     else if (.not. abs(across) > 0.0_wp) then
-      call report_field(deck, cursor, cards(2), 'XP', &
+      call report_field(deck, cards(2), 'XP', &
         ': the point in the plane of the axes lies on the x axis')
     end if
-    system%axes(:, 1) = system%axes(:, 1)/norm2(system%axes(:, 1))
-    system%axes(:, 2) = sign(1.0_wp, across)*[-system%axes(2, 1), system%axes(1, 1)]
-    raw%n_system = raw%n_system + 1
-    raw%systems(raw%n_system) = system
+    axes(:, 1) = axes(:, 1)/norm2(axes(:, 1))
+    axes(:, 2) = sign(1.0_wp, across)*[-axes(2, 1), axes(1, 1)]
   end subroutine read_system
 
 end module deck_curves_m

@@ -7,8 +7,8 @@ module deck_damping_m
   use conditions_m, only : damping_t, part_damping_t
   use model_m, only : model_t
   use parts_m, only : gives_pressure
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_of, rows_of, row_comes, &
-    check_rest, report_field
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_of, rows_of, &
+    row_comes, check_rest, report_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_part, a_part_set, a_curve
   use deck_lines_m, only : deck_t, blocks_of, line_text, line_error

@@ -1,166 +1,220 @@
 ! SPDX-License-Identifier: MIT
-!> *MAT_ADD_EROSION.
+!> *MAT_ADD_EROSION, and which materials may leave the mesh.
 module deck_erosion_m
   use kinds_m, only : wp
   use erosion_m, only : erosion_t
   use log_m, only : to_text
-  use deck_lines_m, only : deck_t
+  use model_m, only : model_t
+  use parts_m, only : material_t, law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
+    law_hot_johnson_cook, law_null, hourglass_assumed
+  use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, first_card, next_card, check_rest, report_field
-  use deck_values_m, only : integer_of, real_of, is_blank, place_of, require_id, refuse_negative
-  use deck_raw_m, only : raw_t, raw_erosion_t
+  use deck_ids_m, only : a_material, a_part
+  use deck_maps_m, only : find_id
+  use deck_values_m, only : real_of, is_blank, is_bad
   implicit none
   private
-  public :: read_erosion
+  public :: read_erosions
 
-  !> Most integration points of an element.
-  integer, parameter :: most_points = 4
+  !> Laws whose pressure can be lost.
+  integer, parameter :: can_go(6) = [law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
+    law_hot_johnson_cook, law_null]
 
 contains
 
+  !> Give materials their criteria, before they get their pressures. Parts are known.
+  subroutine read_erosions(deck, by_step, step_line, model)
+    type(deck_t), intent(inout) :: deck
+    logical, intent(in) :: by_step       !! ERODE
+    integer, intent(in) :: step_line     !! of the card with ERODE
+    type(model_t), intent(inout) :: model
+    integer, allocatable :: blocks(:)
+    integer :: i, m
+
+    blocks = blocks_of(deck, 'MAT_ADD_EROSION')
+    do i = 1, size(blocks)
+      call read_erosion(deck, blocks(i), model)
+    end do
+    do m = 1, size(model%materials)
+      call add_criteria_of_law(by_step, model%materials(m))
+      model%erodes = model%erodes .or. allocated(model%materials(m)%erosion)
+    end do
+    if (.not. model%controls%implicit%is_on) then
+      call check_parts(deck, by_step, step_line, model)
+      return
+    end if
+    if (by_step .and. model%erodes) call line_error(deck, step_line, 'ERODE lets elements leave ' &
+      //'the mesh, which the implicit method does not have')
+    model%erodes = .false.
+    do m = 1, size(model%materials)
+      if (allocated(model%materials(m)%erosion)) deallocate (model%materials(m)%erosion)
+    end do
+  end subroutine read_erosions
+
   !> Criteria of one material. A field that is blank, or equal to EXCL, is none.
-  subroutine read_erosion(deck, i_block, raw)
+  subroutine read_erosion(deck, i_block, model)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
+    type(model_t), intent(inout) :: model
     type(cursor_t) :: cursor
-    type(card_t) :: card, more, unused, rest
-    type(raw_erosion_t) :: entry
-    real(wp) :: none
+    type(card_t) :: cards(5)
+    type(erosion_t) :: erosion
+    integer :: i, m
 
-    call first_card(deck, i_block, cursor, card)
-    call require_id(deck, cursor, card, 'MID')
-    call next_card(deck, cursor, 2, more)
-    call next_card(deck, cursor, 3, unused)
-    call next_card(deck, cursor, 4, unused)
-    call next_card(deck, cursor, 5, rest)
+    call first_card(deck, i_block, cursor, cards(1))
+    do i = 2, 5
+      call next_card(deck, cursor, i, cards(i))
+    end do
     call check_rest(deck, cursor)
-    none = real_of(card, 'EXCL')
-    entry%material = integer_of(card, 'MID')
-    entry%place = place_of(card, 'MID')
-    call take_first(deck, cursor, card, none, entry%erosion)
-    call take_second(deck, cursor, more, none, entry%erosion)
-    call refuse_negative(deck, cursor, rest, 'DTMIN')
-    if (real_of(rest, 'DTMIN') > 0.0_wp) entry%erosion%least_step = real_of(rest, 'DTMIN')
-    call take_counts(deck, cursor, card, entry%erosion)
-    raw%n_erosion = raw%n_erosion + 1
-    raw%erosions(raw%n_erosion) = entry
+    call take_criteria(deck, cards(1), cards(2), erosion)
+    erosion%least_step = max(0.0_wp, real_of(cards(5), 'DTMIN'))
+    call take_counts(deck, cards(1), erosion)
+    call find_id(deck, a_material, cards(1), 'MID', m)
+    if (m == 0) return
+    associate (material => model%materials(m))
+      if (allocated(material%erosion)) then
+        call report_field(deck, cards(1), 'MID', 'has criteria of erosion already')
+      else if (.not. any(can_go == material%law) .or. material%is_rigid) then
+        call report_field(deck, cards(1), 'MID', &
+          'is a material whose elements can not leave the mesh')
+      else
+        if (model%controls%implicit%is_on) call line_error(deck, cards(1)%line, &
+          'lets elements leave the mesh, which the implicit method does not have')
+        do i = m, size(model%materials)
+          if (model%materials(i)%id == material%id) model%materials(i)%erosion = erosion
+        end do
+      end if
+      do i = 1, size(model%parts)
+        if (model%parts(i)%material == 0 .or. model%parts(i)%section == 0) cycle
+        if (model%materials(model%parts(i)%material)%id /= material%id) cycle
+        if (erosion%n_point == 1 .or. model%sections(model%parts(i)%section)%is_full) cycle
+        call report_field(deck, cards(1), 'NUMFIP', 'asks for '//to_text(erosion%n_point) &
+          //' points, but elements of part '//to_text(model%parts(i)%id)//' have one')
+      end do
+    end associate
   end subroutine read_erosion
 
-  !> Whether a field gives a criterion.
-  function is_given(card, name, none) result(given)
-    type(card_t), intent(in) :: card
-    character(*), intent(in) :: name
-    real(wp), intent(in) :: none !! EXCL
-    logical :: given
-
-    given = .not. is_blank(card, name) .and. abs(real_of(card, name) - none) > 0.0_wp
-  end function is_given
-
-  !> A criterion that is above 0.
-  subroutine take_positive(deck, cursor, card, name, none, value, n_given)
+  !> Cards 1 and 2.
+  subroutine take_criteria(deck, card, more, erosion)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    character(*), intent(in) :: name
-    real(wp), intent(in) :: none
-    real(wp), intent(inout) :: value
-    integer, intent(inout) :: n_given
+    type(card_t), intent(inout) :: card, more
+    type(erosion_t), intent(inout) :: erosion
 
-    if (.not. is_given(card, name, none)) return
-    n_given = n_given + 1
-    if (real_of(card, name) > 0.0_wp) then
-      value = real_of(card, name)
-    else
-      call report_field(deck, cursor, card, name, 'is not a limit of this version (more than 0; ' &
-        //'below 0 it would be a curve)')
+    call take(card, 'MXPRES', erosion%most_pressure)
+    call take(card, 'MNEPS', erosion%least_strain)
+    call take(card, 'EFFEPS', erosion%effective_strain)
+    if (is_given(card, 'VOLEPS')) then
+      if (real_of(card, 'VOLEPS') > 0.0_wp) call take(card, 'VOLEPS', erosion%most_volume)
+      if (real_of(card, 'VOLEPS') < 0.0_wp) call take(card, 'VOLEPS', erosion%least_volume)
+      if (.not. abs(real_of(card, 'VOLEPS')) > 0.0_wp) then
+        erosion%n_given = erosion%n_given + 1
+        call report_field(deck, card, 'VOLEPS', 'is no volumetric strain at failure (more than 0 ' &
+          //'in tension, less than 0 in compression)')
+      end if
     end if
-  end subroutine take_positive
-
-  !> A criterion of either sign.
-  subroutine take_any(card, name, none, value, n_given)
-    type(card_t), intent(in) :: card
-    character(*), intent(in) :: name
-    real(wp), intent(in) :: none
-    real(wp), intent(inout) :: value
-    integer, intent(inout) :: n_given
-
-    if (.not. is_given(card, name, none)) return
-    n_given = n_given + 1
-    value = real_of(card, name)
-  end subroutine take_any
-
-  !> Card 1.
-  subroutine take_first(deck, cursor, card, none, erosion)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    real(wp), intent(in) :: none
-    type(erosion_t), intent(inout) :: erosion
-
-    associate (n => erosion%n_given)
-      call take_any(card, 'MXPRES', none, erosion%most_pressure, n)
-      call take_any(card, 'MNEPS', none, erosion%least_strain, n)
-      call take_positive(deck, cursor, card, 'EFFEPS', none, erosion%effective_strain, n)
-      if (.not. is_given(card, 'VOLEPS', none)) return
-      n = n + 1
-      if (real_of(card, 'VOLEPS') > 0.0_wp) erosion%most_volume = real_of(card, 'VOLEPS')
-      if (real_of(card, 'VOLEPS') < 0.0_wp) erosion%least_volume = real_of(card, 'VOLEPS')
-      if (.not. abs(real_of(card, 'VOLEPS')) > 0.0_wp) call report_field(deck, cursor, card, &
-        'VOLEPS', 'is no volumetric strain at failure (more than 0 in tension, less than 0 in ' &
-        //'compression)')
-    end associate
-  end subroutine take_first
-
-  !> Card 2.
-  subroutine take_second(deck, cursor, card, none, erosion)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    real(wp), intent(in) :: none
-    type(erosion_t), intent(inout) :: erosion
-
-    associate (n => erosion%n_given)
-      call take_any(card, 'MNPRES', none, erosion%least_pressure, n)
-      call take_positive(deck, cursor, card, 'SIGP1', none, erosion%principal_stress, n)
-      call take_positive(deck, cursor, card, 'SIGVM', none, erosion%mises, n)
-      call take_positive(deck, cursor, card, 'MXEPS', none, erosion%most_strain, n)
-      call take_positive(deck, cursor, card, 'EPSSH', none, erosion%shear_strain, n)
-      call take_positive(deck, cursor, card, 'IMPULSE', none, erosion%impulse, n)
-      call take_positive(deck, cursor, card, 'FAILTM', none, erosion%time, n)
-    end associate
-    if (.not. is_given(card, 'SIGTH', none)) return
-    call refuse_negative(deck, cursor, card, 'SIGTH')
-    erosion%threshold = max(0.0_wp, real_of(card, 'SIGTH'))
-    if (.not. is_given(card, 'IMPULSE', none)) call report_field(deck, cursor, card, 'SIGTH', &
+    call take(more, 'MNPRES', erosion%least_pressure)
+    call take(more, 'SIGP1', erosion%principal_stress)
+    call take(more, 'SIGVM', erosion%mises)
+    call take(more, 'MXEPS', erosion%most_strain)
+    call take(more, 'EPSSH', erosion%shear_strain)
+    call take(more, 'IMPULSE', erosion%impulse)
+    call take(more, 'FAILTM', erosion%time)
+    if (.not. is_given(more, 'SIGTH')) return
+    if (real_of(more, 'SIGTH') < 0.0_wp) call report_field(deck, more, 'SIGTH', 'is negative')
+    erosion%threshold = max(0.0_wp, real_of(more, 'SIGTH'))
+    if (.not. is_given(more, 'IMPULSE')) call report_field(deck, more, 'SIGTH', &
       'is a threshold without the impulse IMPULSE that it belongs to')
-  end subroutine take_second
+
+  contains
+
+    !> Whether a field gives a criterion.
+    function is_given(card_of, name) result(given)
+      type(card_t), intent(in) :: card_of
+      character(*), intent(in) :: name
+      logical :: given
+
+      given = .not. is_blank(card_of, name) &
+        .and. abs(real_of(card_of, name) - real_of(card, 'EXCL')) > 0.0_wp
+    end function is_given
+
+    !> A criterion: of either sign where it may be, else above 0.
+    subroutine take(card_of, name, value)
+      type(card_t), intent(inout) :: card_of
+      character(*), intent(in) :: name
+      real(wp), intent(inout) :: value
+
+      if (.not. is_given(card_of, name)) return
+      erosion%n_given = erosion%n_given + 1
+      if (real_of(card_of, name) > 0.0_wp .or. any(name == ['MXPRES', 'MNEPS ', 'MNPRES', &
+        'VOLEPS'])) then
+        value = real_of(card_of, name)
+      else
+        call report_field(deck, card_of, name, 'is not a limit of this version (more than 0; ' &
+          //'below 0 it would be a curve)')
+      end if
+    end subroutine take
+
+  end subroutine take_criteria
 
   !> NUMFIP and NCS.
-  subroutine take_counts(deck, cursor, card, erosion)
+  subroutine take_counts(deck, card, erosion)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     type(erosion_t), intent(inout) :: erosion
-    real(wp) :: points, criteria
 
-    points = real_of(card, 'NUMFIP')
-    criteria = real_of(card, 'NCS')
-    if (.not. (points >= 0.0_wp .and. points <= most_points)) then
-      call report_field(deck, cursor, card, 'NUMFIP', 'is not a number of points of an element ' &
-        //'(1 to '//to_text(most_points)//')')
-    else
-      erosion%n_point = max(1, nint(points))
-    end if
+    if (.not. is_bad(card, 'NUMFIP')) erosion%n_point = max(1, nint(real_of(card, 'NUMFIP')))
     if (erosion%n_given == 0 .and. .not. erosion%least_step > 0.0_wp) then
-      call report_field(deck, cursor, card, 'MID', 'gets no criterion: all of them are blank or ' &
-        //'EXCL')
-    else if (.not. (criteria >= 0.0_wp .and. criteria <= max(1, erosion%n_given))) then
-      call report_field(deck, cursor, card, 'NCS', 'is not a number of criteria that may hold at ' &
+      call report_field(deck, card, 'MID', 'gets no criterion: all of them are blank or EXCL')
+    else if (real_of(card, 'NCS') > max(1, erosion%n_given)) then
+      call report_field(deck, card, 'NCS', 'is not a number of criteria that may hold at ' &
         //'once (1 to '//to_text(max(1, erosion%n_given))//', which are given)')
     else
-      erosion%n_criteria = max(1, nint(criteria))
+      erosion%n_criteria = max(1, nint(real_of(card, 'NCS')))
     end if
   end subroutine take_counts
+
+  !> What the law itself and ERODE ask for.
+  pure subroutine add_criteria_of_law(by_step, material)
+    logical, intent(in) :: by_step
+    type(material_t), intent(inout) :: material
+    logical :: by_law
+
+    if (material%is_rigid .or. .not. any(can_go == material%law)) return
+    by_law = material%failure_strain < huge(1.0_wp)
+    if (allocated(material%flow)) by_law = by_law .or. (material%flow%has_damage &
+      .and. .not. material%flow%keeps_broken)
+    if (.not. (by_law .or. by_step)) return
+    if (.not. allocated(material%erosion)) allocate (material%erosion)
+    material%erosion%by_law = by_law
+    material%erosion%by_step = by_step
+  end subroutine add_criteria_of_law
+
+  !> Hourglass works of each element are those of the viscous and the stiffness form; ERODE passes
+  !> over rubber and foam, which can not lose their pressure.
+  subroutine check_parts(deck, by_step, step_line, model)
+    type(deck_t), intent(inout) :: deck
+    logical, intent(in) :: by_step
+    integer, intent(in) :: step_line
+    type(model_t), intent(in) :: model
+    integer :: k
+
+    do k = 1, size(model%parts)
+      associate (part => model%parts(k))
+        if (part%material == 0 .or. part%section == 0) cycle
+        associate (material => model%materials(part%material))
+          if (by_step .and. .not. (material%is_rigid .or. any(can_go == material%law))) call &
+            line_warning(deck, step_line, 'ERODE and part '//to_text(part%id), &
+            'ERODE takes no elements of part '//to_text(part%id)//', which is rubber or foam: a ' &
+            //'step of theirs below DTMIN ends the run')
+          if (.not. allocated(material%erosion)) cycle
+          if (model%sections(part%section)%is_full) cycle
+          if (part%hourglass%form == hourglass_assumed) call line_error(deck, &
+            deck%maps(a_part)%lines(k), 'part '//to_text(part%id)//' has hourglass control by ' &
+            //'assumed strain (IHQ 6), and elements that may leave the mesh, which have IHQ 1 to 5')
+        end associate
+      end associate
+    end do
+  end subroutine check_parts
 
 end module deck_erosion_m

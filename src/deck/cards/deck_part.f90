@@ -1,71 +1,88 @@
 ! SPDX-License-Identifier: MIT
-!> *PART, *SECTION_SHELL and *HOURGLASS cards.
+!> *PART, *SECTION_SHELL and *HOURGLASS, and what parts of a deck have to have in common.
 module deck_part_m
   use kinds_m, only : wp
   use text_m, only : read_integer, number_good
   use log_m, only : to_text
-  use parts_m, only : section_t, hourglass_t, hourglass_viscous, hourglass_stiffness, &
+  use eos_m, only : eos_t
+  use model_m, only : model_t
+  use parts_m, only : section_t, hourglass_t, part_t, hourglass_viscous, hourglass_stiffness, &
     hourglass_assumed, form_one_point, form_full, form_round_one_point, form_round_full
-  use deck_ids_m, only : a_part, a_section, an_hourglass
-  use deck_maps_m, only : lose
-  use deck_lines_m, only : deck_t, line_text, line_error, line_warning, flag_blank
+  use deck_eos_m, only : take_equation
+  use deck_ids_m, only : a_part, a_section, a_material, an_hourglass
+  use deck_lines_m, only : deck_t, place_t, blocks_of, line_text, line_error, line_warning, &
+    flag_blank
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
-    row_comes, report_field, find_field
-  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, require_id, refuse_negative
-  use deck_raw_m, only : raw_t, raw_part_t
+    next_of, rows_of, row_comes, report_field, reject_field, find_field
+  use deck_maps_m, only : map_kind, lose, find_id
+  use deck_values_m, only : integer_of, real_of, is_blank, is_bad
   implicit none
   private
-  public :: read_part, read_section, read_hourglass, hourglass_form, hourglass_coefficient, &
-    check_viscosity
+  public :: read_parts, read_sections, hourglass_form, hourglass_coefficient
 
-  !> Largest coefficients: they have no unit, and the stable step falls with them to none.
-  real(wp), parameter :: most_hourglass = 10.0_wp, most_viscosity = 100.0_wp
+  !> Largest hourglass coefficient: it has no unit, and the stable step falls with it to none.
+  real(wp), parameter :: most_hourglass = 10.0_wp
 
 contains
 
-  !> *PART: a heading and a card for each part.
-  subroutine read_part(deck, i_block, raw)
+  !> *PART: a heading and a card for each part. Sections and materials are known.
+  subroutine read_parts(deck, default, equations, model)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
+    type(hourglass_t), intent(in) :: default     !! of parts that name no control of their own
+    type(eos_t), intent(in) :: equations(:)
+    type(model_t), intent(inout) :: model
+    type(hourglass_t), allocatable :: hourglasses(:)
+    type(part_t), allocatable :: parts(:)
+    type(part_t) :: part
     type(cursor_t) :: cursor
     type(card_t) :: card
-    type(raw_part_t) :: part
+    integer, allocatable :: blocks(:), lines(:), taken(:)
+    integer :: i, k, n
     logical :: found
 
-    call open_cursor(deck, i_block, cursor)
-    do
-      call skip_separators(deck, cursor)
-      if (cursor%line > cursor%last) exit
-      call next_text(deck, cursor, part%title)
-      part%title = trim(adjustl(part%title))
-      call next_row(deck, cursor, 2, card, found)
-      if (.not. found) then
-        call line_error(deck, cursor%line - 1, 'a heading without the card of its part after it')
-        exit
-      end if
-      call require_id(deck, cursor, card, 'PID')
-      call require_id(deck, cursor, card, 'SECID')
-      call require_id(deck, cursor, card, 'MID')
-      if (integer_of(card, 'EOSID') < 0) call report_field(deck, cursor, card, 'EOSID', &
-        'is not a number of 0 or more')
-      if (integer_of(card, 'HGID') < 0) call report_field(deck, cursor, card, 'HGID', &
-        'is not a number of 0 or more')
-      part%id = integer_of(card, 'PID')
-      part%section = integer_of(card, 'SECID')
-      part%material = integer_of(card, 'MID')
-      part%eos = integer_of(card, 'EOSID')
-      part%hourglass = integer_of(card, 'HGID')
-      part%line = card%line
-      if (is_bad(card, 'PID')) then
-        call lose(deck, [a_part])
-      else
-        raw%n_part = raw%n_part + 1
-        raw%parts(raw%n_part) = part
-      end if
+    call read_hourglasses(deck, default, hourglasses)
+    taken = spread(-1, 1, size(model%materials))
+    blocks = blocks_of(deck, 'PART')
+    n = sum(deck%blocks(blocks)%last - deck%blocks(blocks)%first + 1)
+    allocate (parts(n), lines(n))
+    n = 0
+    do i = 1, size(blocks)
+      call open_cursor(deck, blocks(i), cursor)
+      do
+        call skip_separators(deck, cursor)
+        if (cursor%line > cursor%last) exit
+        call next_text(deck, cursor, part%title)
+        part%title = trim(adjustl(part%title))
+        call next_row(deck, cursor, 2, card, found)
+        if (.not. found) then
+          call line_error(deck, cursor%line - 1, 'a heading without the card of its part after it')
+          exit
+        end if
+        if (is_bad(card, 'PID')) then
+          call lose(deck, [a_part])
+          cycle
+        end if
+        part%id = integer_of(card, 'PID')
+        call find_id(deck, a_section, card, 'SECID', part%section)
+        call find_id(deck, a_material, card, 'MID', part%material)
+        if (part%material > 0) call take_equation(deck, card, equations, model, taken, &
+          part%material)
+        part%hourglass = default
+        if (integer_of(card, 'HGID') > 0) then
+          call find_id(deck, an_hourglass, card, 'HGID', k)
+          if (k > 0) part%hourglass = hourglasses(k)
+        end if
+        n = n + 1
+        parts(n) = part
+        lines(n) = card%line
+      end do
     end do
-  end subroutine read_part
+    model%parts = parts(:n)
+    call map_kind(deck, a_part, model%parts%id, lines(:n), 'PID')
+    call settle_form(deck, model)
+    call settle_points(deck, model)
+  end subroutine read_parts
 
   !> Move past blank lines between parts; a blank line right before a card of numbers is a heading.
   subroutine skip_separators(deck, cursor)
@@ -88,105 +105,97 @@ contains
   end subroutine skip_separators
 
   !> *SECTION_SHELL: two cards each; only the element form matters.
-  subroutine read_section(deck, i_block, raw)
+  subroutine read_sections(deck, model)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
+    type(model_t), intent(inout) :: model
+    type(section_t) :: section
     type(cursor_t) :: cursor
     type(card_t) :: card, thickness
-    type(section_t) :: section
+    integer, allocatable :: blocks(:), lines(:)
+    integer :: i
     logical :: found
 
-    call open_cursor(deck, i_block, cursor)
-    do
-      call skip_title(deck, cursor)
-      call next_card(deck, cursor, 1, card)
-      call check_section(deck, cursor, card)
-      section%id = integer_of(card, 'SECID')
-      section%is_full = integer_of(card, 'NIP') == 4
-      section%is_round = integer_of(card, 'ELFORM') == 15
-      section%element_form = merge(form_full, form_one_point, section%is_full)
-      if (section%is_round) section%element_form = merge(form_round_full, form_round_one_point, &
-        section%is_full)
-      if (is_bad(card, 'SECID')) then
-        call lose(deck, [a_section])
-      else
-        raw%n_section = raw%n_section + 1
-        raw%sections(raw%n_section) = section
-        raw%section_line(raw%n_section) = card%line
-      end if
-      call next_card(deck, cursor, 2, thickness)
-      call row_comes(deck, cursor, found)
-      if (.not. found) exit
+    blocks = blocks_of(deck, 'SECTION_SHELL')
+    allocate (model%sections(0), lines(0))
+    do i = 1, size(blocks)
+      call open_cursor(deck, blocks(i), cursor)
+      found = .true.
+      do while (found)
+        call skip_title(deck, cursor)
+        call next_card(deck, cursor, 1, card)
+        call next_card(deck, cursor, 2, thickness)
+        call row_comes(deck, cursor, found)
+        call check_form(deck, card)
+        section%id = integer_of(card, 'SECID')
+        section%is_full = integer_of(card, 'NIP') == 4
+        section%is_round = integer_of(card, 'ELFORM') == 15
+        section%element_form = merge(form_full, form_one_point, section%is_full)
+        if (section%is_round) section%element_form = merge(form_round_full, form_round_one_point, &
+          section%is_full)
+        if (is_bad(card, 'SECID')) call lose(deck, [a_section])
+        if (is_bad(card, 'SECID')) cycle
+        model%sections = [model%sections, section]
+        lines = [lines, card%line]
+      end do
     end do
-  end subroutine read_section
+    call map_kind(deck, a_section, model%sections%id, lines, 'SECID')
+  end subroutine read_sections
 
-  !> Fields of card 1 of *SECTION_SHELL.
-  subroutine check_section(deck, cursor, card)
+  !> ELFORM.
+  subroutine check_form(deck, card)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
 
-    call require_id(deck, cursor, card, 'SECID')
     select case (integer_of(card, 'ELFORM'))
     case (13, 15)
       continue
     case (12)
-      call report_field(deck, cursor, card, 'ELFORM', 'is plane stress, which this version does ' &
-        //'not have; 13 (plane strain) and 15 (axisymmetric) are what it has')
+      call report_field(deck, card, 'ELFORM', 'is plane stress, which this version does not ' &
+        //'have; 13 (plane strain) and 15 (axisymmetric) are what it has')
     case (14)
-      call report_field(deck, cursor, card, 'ELFORM', 'is axisymmetric and area weighted, which ' &
-        //'this version does not have; 15 (axisymmetric, volume weighted) is what it has')
+      call report_field(deck, card, 'ELFORM', 'is axisymmetric and area weighted, which this ' &
+        //'version does not have; 15 (axisymmetric, volume weighted) is what it has')
     case default
-      call report_field(deck, cursor, card, 'ELFORM', 'is not an element form for the plane; 13 ' &
-        //'(plane strain) and 15 (axisymmetric) are what this version has')
+      call report_field(deck, card, 'ELFORM', 'is not an element form for the plane; 13 (plane ' &
+        //'strain) and 15 (axisymmetric) are what this version has')
     end select
-    select case (integer_of(card, 'NIP'))
-    case (0:2, 4)
-      continue
-    case default
-      call report_field(deck, cursor, card, 'NIP', 'is not a number of points (0, 1, 2 or blank: ' &
-        //'one point; 4: two by two, full integration)')
-    end select
-  end subroutine check_section
+  end subroutine check_form
 
   !> *HOURGLASS: one card each.
-  subroutine read_hourglass(deck, i_block, raw)
+  subroutine read_hourglasses(deck, default, hourglasses)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
+    type(hourglass_t), intent(in) :: default   !! bulk viscosity where a card leaves it blank
+    type(hourglass_t), allocatable, intent(out) :: hourglasses(:)
+    type(hourglass_t) :: hourglass
     type(cursor_t) :: cursor
     type(card_t) :: card
-    type(hourglass_t) :: hourglass
-    logical :: found, given(2)
+    integer, allocatable :: lines(:)
+    logical :: found
 
-    call open_cursor(deck, i_block, cursor)
+    allocate (hourglasses(0), lines(0))
+    call rows_of('HOURGLASS', cursor)
     do
-      call skip_title(deck, cursor)
-      call next_row(deck, cursor, 1, card, found)
+      call next_of(deck, cursor, card, found)
       if (.not. found) exit
-      call require_id(deck, cursor, card, 'HGID')
+      call skip_title(deck, cursor)
       hourglass%id = integer_of(card, 'HGID')
-      call hourglass_form(deck, cursor, card, 'IHQ', hourglass%form)
-      call hourglass_coefficient(deck, cursor, card, 'QM', hourglass%coefficient)
-      call check_viscosity(deck, cursor, card, 'Q1')
-      call check_viscosity(deck, cursor, card, 'Q2')
-      hourglass%quadratic = real_of(card, 'Q1')
-      hourglass%linear = real_of(card, 'Q2')
-      given = .not. [is_blank(card, 'Q1'), is_blank(card, 'Q2')]
+      call hourglass_form(deck, card, 'IHQ', hourglass%form)
+      call hourglass_coefficient(deck, card, 'QM', hourglass%coefficient)
+      hourglass%quadratic = default%quadratic
+      hourglass%linear = default%linear
+      if (.not. is_blank(card, 'Q1')) hourglass%quadratic = real_of(card, 'Q1')
+      if (.not. is_blank(card, 'Q2')) hourglass%linear = real_of(card, 'Q2')
       if (is_bad(card, 'HGID')) call lose(deck, [an_hourglass])
       if (is_bad(card, 'HGID')) cycle
-      raw%n_hourglass = raw%n_hourglass + 1
-      raw%hourglasses(raw%n_hourglass) = hourglass
-      raw%hourglass_line(raw%n_hourglass) = card%line
-      raw%bulk_given(:, raw%n_hourglass) = given
+      hourglasses = [hourglasses, hourglass]
+      lines = [lines, card%line]
     end do
-  end subroutine read_hourglass
+    call map_kind(deck, an_hourglass, hourglasses%id, lines, 'HGID')
+  end subroutine read_hourglasses
 
   !> The form in the field of a name.
-  subroutine hourglass_form(deck, cursor, card, name, form)
+  subroutine hourglass_form(deck, card, name, form)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     character(*), intent(in) :: name
     integer, intent(out) :: form
@@ -200,31 +209,18 @@ contains
     case (6)
       form = hourglass_assumed
     case (7)
-      call report_field(deck, cursor, card, name, 'is the total form of 6, whose forces pull ' &
+      call report_field(deck, card, name, 'is the total form of 6, whose forces pull ' &
         //'back to the initial shape whatever has yielded since; this version has the form in ' &
         //'increments (6), which is the same while the strains are small and elastic')
     case default
-      call report_field(deck, cursor, card, name, &
+      call report_field(deck, card, name, &
         'is not an hourglass form (1 to 3 viscous, 4 and 5 stiffness, 6 assumed strain)')
     end select
   end subroutine hourglass_form
 
-  !> A coefficient of bulk viscosity in the field of a name.
-  subroutine check_viscosity(deck, cursor, card, name)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    character(*), intent(in) :: name
-
-    call refuse_negative(deck, cursor, card, name)
-    if (real_of(card, name) > most_viscosity) call report_field(deck, cursor, card, name, &
-      'is not a coefficient of bulk viscosity (at most 100; Q1 1.5 and Q2 0.06 are usual)')
-  end subroutine check_viscosity
-
   !> Hourglass coefficient in the field of a name: 0 and blank are 0.1, as in LS-DYNA.
-  subroutine hourglass_coefficient(deck, cursor, card, name, coefficient)
+  subroutine hourglass_coefficient(deck, card, name, coefficient)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     character(*), intent(in) :: name
     real(wp), intent(out) :: coefficient
@@ -232,10 +228,8 @@ contains
 
     coefficient = 0.1_wp
     given = real_of(card, name)
-    if (given < 0.0_wp) then
-      call report_field(deck, cursor, card, name, 'is negative')
-    else if (given > most_hourglass) then
-      call report_field(deck, cursor, card, name, &
+    if (given > most_hourglass) then
+      call report_field(deck, card, name, &
         'is not an hourglass coefficient (at most 10; 0.05 to 0.15 are usual)')
     else if (given > 0.0_wp) then
       coefficient = given
@@ -245,5 +239,99 @@ contains
         //'none')
     end if
   end subroutine hourglass_coefficient
+
+  !> Whether the deck is axisymmetric: all of its parts, or none.
+  subroutine settle_form(deck, model)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(inout) :: model
+    logical :: is_round(size(model%parts)), is_known(size(model%parts))
+    integer :: i, first
+
+    is_known = model%parts%section > 0
+    is_round = .false.
+    do i = 1, size(model%parts)
+      if (is_known(i)) is_round(i) = model%sections(model%parts(i)%section)%is_round
+    end do
+    model%is_round = any(is_round)
+    if (.not. any(is_known)) return
+    first = findloc(is_known, .true., dim=1)
+    do i = 1, size(model%parts)
+      if (.not. is_known(i) .or. (is_round(i) .eqv. is_round(first))) cycle
+      call reject_field(deck, place_t(deck%maps(a_part)%lines(i), 2, 'SECID'), 'is a section of ' &
+        //form_name(is_round(i))//', but part '//to_text(model%parts(first)%id)//' is of ' &
+        //form_name(is_round(first))//': a deck is of one kind')
+    end do
+  end subroutine settle_form
+
+  !> An element form in words.
+  pure function form_name(is_round) result(name)
+    logical, intent(in) :: is_round
+    character(:), allocatable :: name
+
+    name = 'plane strain (ELFORM 13)'
+    if (is_round) name = 'axisymmetry (ELFORM 15)'
+  end function form_name
+
+  !> Parts of one-point quads: those with assumed strain must resist shear; in implicit runs those
+  !> without it, or of rubber, whose tangent is that of full integration, are fully integrated,
+  !> whatever the deck says.
+  subroutine settle_points(deck, model)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(inout) :: model
+    character(:), allocatable :: changed
+    integer :: twins(size(model%sections)) !! fully integrated ones, 0 where there is none
+    integer :: i, line
+
+    changed = ''
+    twins = 0
+    do i = 1, size(model%parts)
+      associate (part => model%parts(i))
+        if (part%section == 0 .or. part%material == 0) cycle
+        if (model%sections(part%section)%is_full .or. model%materials(part%material)%is_rigid) cycle
+        if (part%hourglass%form == hourglass_assumed .and. .not. (model%controls%implicit%is_on &
+          .and. allocated(model%materials(part%material)%rubber))) then
+          call check_shear(deck, deck%maps(a_part)%lines(i), i, model)
+        else if (model%controls%implicit%is_on) then
+          if (len(changed) == 0) line = deck%maps(a_section)%lines(part%section)
+          changed = changed//', '//to_text(part%id)
+          if (twins(part%section) == 0) call add_full_section(part%section, model, twins)
+          part%section = twins(part%section)
+        end if
+      end associate
+    end do
+    if (len(changed) > 0) call line_warning(deck, line, 'implicit points', 'the implicit method ' &
+      //'takes parts whose NIP is not 4 as NIP 4 where hourglass control is not by ' &
+      //'assumed strain (IHQ 6), which would keep them as they are (but for rubber): '//changed(3:))
+  end subroutine settle_points
+
+  !> The stiffness of assumed strain is that of shear.
+  subroutine check_shear(deck, line, i, model)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line     !! card of the part
+    integer, intent(in) :: i        !! part
+    type(model_t), intent(in) :: model
+
+    associate (part => model%parts(i))
+      if (model%materials(part%material)%shear > 0.0_wp) return
+      if (.not. model%materials(part%material)%needs_eos) return ! told as a field
+      call line_error(deck, line, 'part '//to_text(part%id)//' has hourglass control by assumed ' &
+        //'strain (IHQ 6), whose stiffness comes from the shear modulus, and its material ' &
+        //to_text(model%materials(part%material)%id)//' has none (take IHQ 1 to 3)')
+    end associate
+  end subroutine check_shear
+
+  !> The fully integrated twin of a section, which other parts may go on sharing as it is.
+  pure subroutine add_full_section(section, model, twins)
+    integer, value :: section             !! index
+    type(model_t), intent(inout) :: model
+    integer, intent(inout) :: twins(:)    !! index, by that of the section
+    type(section_t) :: twin
+
+    twin = model%sections(section)
+    twin%is_full = .true.
+    twin%element_form = merge(form_round_full, form_full, twin%is_round)
+    model%sections = [model%sections, twin]
+    twins(section) = size(model%sections)
+  end subroutine add_full_section
 
 end module deck_part_m

@@ -5,9 +5,7 @@
 module deck_raw_m
   use kinds_m, only : wp
   use curves_m, only : curve_t
-  use eos_m, only : eos_t
-  use erosion_m, only : erosion_t
-  use parts_m, only : section_t, material_t, hourglass_t
+  use parts_m, only : hourglass_t
   use contacts_m, only : contact_t, friction_rule_t
   use controls_m, only : controls_t
   use history_tables_m, only : n_table
@@ -16,52 +14,11 @@ module deck_raw_m
   use deck_raw_sets_m, only : raw_set_t, lengthen
   implicit none
   private
-  public :: raw_t, start_raw, raw_hardening_t, raw_table_t, raw_part_t, raw_contact_t, &
-    raw_erosion_t, raw_foam_t, raw_end_t, history_t, reserve_nodes, reserve_elements, &
-    raw_system_t, raw_section_t, output_plot, reserve_lists, trim_lists
+  public :: raw_t, start_raw, raw_contact_t, raw_end_t, history_t, reserve_nodes, &
+    reserve_elements, raw_section_t, output_plot, reserve_lists, trim_lists
 
   !> Files of the output plan: states, and histories by their `table_` constants.
   integer, parameter :: output_plot = 0
-
-  !> Hardening of a *MAT_PIECEWISE_LINEAR_PLASTICITY, until its curves are known.
-  type :: raw_hardening_t
-    integer :: material = 0              !! index
-    type(curve_t) :: points              !! of the card, where LCSS is 0: EPS and ES, or SIGY alone
-    real(wp) :: modulus = 0.0_wp         !! plastic modulus behind a single point
-    integer :: curve = 0, rate_curve = 0 !! LCSS, LCSR, user ids
-    type(place_t) :: curve_place, rate_curve_place, rate_place, form_place
-    real(wp) :: rate_constant = 0.0_wp, rate_power = 0.0_wp !! C, P
-    logical :: is_viscoplastic = .false. !! VP = 1
-  end type raw_hardening_t
-
-  !> Curve of a *MAT_CRUSHABLE_FOAM, until it is known.
-  type :: raw_foam_t
-    integer :: material = 0   !! index
-    integer :: curve = 0      !! LCID, user id
-    type(place_t) :: place
-  end type raw_foam_t
-
-  !> One *MAT_ADD_EROSION.
-  type :: raw_erosion_t
-    integer :: material = 0 !! user id
-    type(place_t) :: place  !! MID
-    type(erosion_t) :: erosion
-  end type raw_erosion_t
-
-  !> One *DEFINE_TABLE: its values; its curves are those of the blocks that come next.
-  type :: raw_table_t
-    integer :: id = 0
-    integer :: line = 0
-    integer :: block = 0
-    real(wp), allocatable :: values(:)
-  end type raw_table_t
-
-  !> One *PART.
-  type :: raw_part_t
-    integer :: id = 0, section = 0, material = 0, eos = 0, hourglass = 0
-    integer :: line = 0
-    character(:), allocatable :: title
-  end type raw_part_t
 
   !> One interface.
   type :: raw_contact_t
@@ -91,13 +48,6 @@ module deck_raw_m
     integer :: nodes = 0, shells = 0    !! NSID, SSID
   end type raw_section_t
 
-  !> One *DEFINE_COORDINATE_SYSTEM.
-  type :: raw_system_t
-    integer :: id = 0
-    integer :: line = 0
-    real(wp) :: axes(2, 2) = 0.0_wp     !! its x axis, its y axis
-  end type raw_system_t
-
   !> Output of one file: its interval is completed when curves and ENDTIM are known.
   type :: history_t
     real(wp) :: dt = 0.0_wp
@@ -116,34 +66,16 @@ module deck_raw_m
     integer :: z_line = 0                      !! first node whose z differs from the first node's
     integer, allocatable :: element_id(:), element_part(:), element_nodes(:, :), element_line(:)
     ! Lists with a number of entries beside them: while the cards are read they may be longer.
-    integer :: n_part = 0, n_section = 0, n_material = 0, n_equation = 0, n_erosion = 0
-    integer :: n_hardening = 0, n_foam = 0, n_table = 0, n_hourglass = 0, n_curve = 0
-    integer :: n_contact = 0, n_transducer = 0, n_end = 0, n_system = 0, n_cut = 0
-    type(raw_part_t), allocatable :: parts(:)
-    type(section_t), allocatable :: sections(:)
-    integer, allocatable :: section_line(:)
-    type(material_t), allocatable :: materials(:)
-    integer, allocatable :: material_line(:)
-    type(eos_t), allocatable :: equations(:)   !! of state
-    integer, allocatable :: equation_line(:)
-    type(raw_erosion_t), allocatable :: erosions(:)
+    integer :: n_contact = 0, n_transducer = 0, n_end = 0, n_cut = 0
     logical :: erodes_by_step = .false.        !! ERODE of *CONTROL_TIMESTEP
-    type(raw_hardening_t), allocatable :: hardenings(:)
-    type(raw_foam_t), allocatable :: foams(:)
-    type(raw_table_t), allocatable :: tables(:)
-    type(hourglass_t), allocatable :: hourglasses(:)
-    integer, allocatable :: hourglass_line(:)
-    logical, allocatable :: bulk_given(:, :)   !! (2, n) Q1 and Q2 of *HOURGLASS are not blank
     type(hourglass_t) :: hourglass_default
-    type(curve_t), allocatable :: curves(:)
-    integer, allocatable :: curve_line(:)
+    type(curve_t), allocatable :: step_curve   !! given by a word
     type(raw_set_t), allocatable :: node_sets(:), part_sets(:), segment_sets(:), shell_sets(:)
     integer :: n_node_set = 0, n_part_set = 0, n_segment_set = 0, n_shell_set = 0
     type(place_t), allocatable :: pressure_places(:)
     type(raw_contact_t), allocatable :: contacts(:)
     type(raw_contact_t), allocatable :: transducers(:) !! with one side
     type(raw_end_t), allocatable :: ends(:)
-    type(raw_system_t), allocatable :: systems(:)
     type(raw_section_t), allocatable :: cuts(:)
     type(controls_t) :: controls
     type(friction_rule_t) :: friction          !! of *CONTROL_CONTACT
@@ -229,19 +161,6 @@ contains
     type(raw_t), intent(inout) :: raw
     integer :: n
 
-    allocate (raw%parts(n_line('PART')))
-    n = n_line('SECTION_')
-    allocate (raw%sections(n), raw%section_line(n))
-    n = n_block('MAT_')
-    allocate (raw%materials(n), raw%material_line(n), raw%hardenings(n), raw%foams(n), &
-      raw%erosions(n))
-    n = n_block('EOS_')
-    allocate (raw%equations(n), raw%equation_line(n))
-    n = n_line('HOURGLASS')
-    allocate (raw%hourglasses(n), raw%hourglass_line(n), raw%bulk_given(2, n))
-    n = n_block('DEFINE_CURVE')
-    allocate (raw%curves(n), raw%curve_line(n))
-    allocate (raw%tables(n_block('DEFINE_TABLE')), raw%systems(n_block('DEFINE_COORDINATE')))
     n = n_block('CONTACT_')
     allocate (raw%contacts(n), raw%transducers(n))
     allocate (raw%ends(n_line('TERMINATION_')), raw%cuts(n_line('DATABASE_CROSS_SECTION')))
@@ -279,26 +198,9 @@ contains
   subroutine trim_lists(raw)
     type(raw_t), intent(inout) :: raw
 
-    raw%parts = raw%parts(:raw%n_part)
-    raw%sections = raw%sections(:raw%n_section)
-    raw%section_line = raw%section_line(:raw%n_section)
-    raw%materials = raw%materials(:raw%n_material)
-    raw%material_line = raw%material_line(:raw%n_material)
-    raw%equations = raw%equations(:raw%n_equation)
-    raw%equation_line = raw%equation_line(:raw%n_equation)
-    raw%erosions = raw%erosions(:raw%n_erosion)
-    raw%hardenings = raw%hardenings(:raw%n_hardening)
-    raw%foams = raw%foams(:raw%n_foam)
-    raw%tables = raw%tables(:raw%n_table)
-    raw%hourglasses = raw%hourglasses(:raw%n_hourglass)
-    raw%hourglass_line = raw%hourglass_line(:raw%n_hourglass)
-    raw%bulk_given = raw%bulk_given(:, :raw%n_hourglass)
-    raw%curves = raw%curves(:raw%n_curve)
-    raw%curve_line = raw%curve_line(:raw%n_curve)
     raw%contacts = raw%contacts(:raw%n_contact)
     raw%transducers = raw%transducers(:raw%n_transducer)
     raw%ends = raw%ends(:raw%n_end)
-    raw%systems = raw%systems(:raw%n_system)
     raw%cuts = raw%cuts(:raw%n_cut)
   end subroutine trim_lists
 

@@ -22,7 +22,8 @@ contains
     integer :: i, k
 
     associate (mesh => model%mesh)
-      parts = pack([(i, i=1, size(model%parts))], [(is_rigid_part(model, i), i=1, size(model%parts))])
+      parts = pack([(i, i=1, size(model%parts))], &
+        [(is_rigid_part(model, i), i=1, size(model%parts))])
       allocate (model%rigids(size(parts)), owner(mesh%n_node))
       owner = 0
       do i = 1, size(parts)

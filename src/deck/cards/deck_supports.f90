@@ -215,107 +215,122 @@ contains
     type(prescribed_motion_t) :: motion
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer, allocatable :: nodes(:), lines(:), rigid_lines(:), before(:), last(:, :)
+    integer, allocatable :: nodes(:), lines(:), rigid_lines(:)
     integer :: k, n
-    logical :: found, is_massive(model%mesh%n_node), is_skew(model%mesh%n_node)
+    logical :: found, is_sound, is_static
 
-    allocate (motions(64), lines(64), before(64), rigid_lines(0), model%conditions%rigid_motions(0))
-    allocate (last(2, model%mesh%n_node), source=0)
-    is_massive = mark_massive(deck, model)
-    is_skew = .false.
-    if (allocated(model%conditions%skew_supports)) &
-      is_skew(model%conditions%skew_supports%node) = .true.
+    allocate (motions(64), lines(64), rigid_lines(0), model%conditions%rigid_motions(0))
+    is_static = model%controls%implicit%is_on .and. .not. model%controls%implicit%is_dynamic
     n = 0
     call rows_of('BOUNDARY_PRESCRIBED_MOTION_', cursor)
     do
       call next_of(deck, cursor, card, found)
       if (.not. found) exit
-      call take_life(deck, card, ['BIRTH', 'DEATH'], motion%birth, motion%death)
-      if (any(card%bad)) cycle
-      motion%direction = integer_of(card, 'DOF')
-      motion%kind = integer_of(card, 'VAD')
-      motion%scale = real_of(card, 'SF')
+      call take_motion(deck, cursor, card, motion, is_sound)
+      if (.not. is_sound) cycle
       if (has_field(card, 'PID')) then
         call take_rigid_motion(deck, card, motion, rigid_lines, model)
         cycle
       end if
-      if (motion%kind == motion_acceleration .and. model%controls%implicit%is_on .and. .not. &
-        model%controls%implicit%is_dynamic) call report_field(deck, card, 'VAD', &
-        'is an acceleration, which has no meaning in statics ' &
-        //'(0 velocity or 2 displacement, or IMASS 1 of *CONTROL_IMPLICIT_DYNAMICS)')
       call card_nodes(deck, card, model, nodes)
       call refuse_rigid(deck, card, nodes, owner, model, &
         '*BOUNDARY_PRESCRIBED_MOTION_RIGID moves the body')
-      call find_id(deck, a_curve, card, 'LCID', motion%curve)
+      if (motion%kind == motion_acceleration .and. is_static) call report_field(deck, card, 'VAD', &
+        'is an acceleration, which has no meaning in statics ' &
+        //'(0 velocity or 2 displacement, or IMASS 1 of *CONTROL_IMPLICIT_DYNAMICS)')
       if (motion%curve == 0) cycle
       do k = 1, size(nodes)
         if (n == size(motions)) then
           motions = [motions, motions]
           lines = [lines, lines]
-          before = [before, before]
         end if
         n = n + 1
-        motion%node = nodes(k)
         motions(n) = motion
+        motions(n)%node = nodes(k)
         lines(n) = card%line
-        before(n) = last(motion%direction, motion%node)
-        last(motion%direction, motion%node) = n
-        call check_motion
       end do
     end do
     model%conditions%motions = motions(:n)
-
-  contains
-
-    !> A moved degree of freedom may not be fixed, nor moved twice at one time, nor without mass.
-    subroutine check_motion
-      integer :: j
-
-      if (.not. is_massive(motion%node)) then
-        call complain('belongs to no element, so it has no mass to be moved')
-      else if (model%is_round .and. motion%direction == 1 &
-        .and. .not. model%mesh%coordinates(1, motion%node) > 0.0_wp) then
-        call complain('lies on the axis (x = 0) of an axisymmetric deck and can not move in r')
-      else if (fixed(motion%direction, motion%node)) then
-        call complain('is fixed in this direction and cannot be moved by this card too')
-      else if (is_skew(motion%node)) then
-        call complain('has a support along an axis of a coordinate system (CID) and cannot be ' &
-          //'moved by this card too')
-      end if
-      ! Motions of one degree of freedom are chained backwards.
-      j = before(n)
-      do while (j > 0)
-        if (min(motions(j)%death, motion%death) > max(motions(j)%birth, motion%birth)) call &
-          complain('is moved in this direction by another card at the same time (line ' &
-          //to_text(deck%number(lines(j)))//')')
-        j = before(j)
-      end do
-    end subroutine check_motion
-
-    !> One error for each card.
-    subroutine complain(message)
-      character(*), intent(in) :: message
-
-      call report_field(deck, card, 1, ': node '//to_text(model%mesh%node_id(motion%node))//' ' &
-        //message)
-    end subroutine complain
-
+    call check_motions(deck, model, lines(:n), fixed)
   end subroutine read_motions
+
+  !> A moved degree of freedom may not be fixed, nor moved twice at one time, nor without mass. One
+  !> error for each card.
+  subroutine check_motions(deck, model, lines, fixed)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: lines(:)      !! of the card of each motion
+    logical, intent(in) :: fixed(:, :)   !! (2, n_node)
+    integer :: last(2, model%mesh%n_node), before(size(lines)), i, j
+    logical :: is_massive(model%mesh%n_node), is_skew(model%mesh%n_node)
+    character(:), allocatable :: message
+
+    is_massive = mark_massive(deck, model)
+    is_skew = .false.
+    if (allocated(model%conditions%skew_supports)) &
+      is_skew(model%conditions%skew_supports%node) = .true.
+    last = 0
+    message = ''
+    do i = 1, size(lines)
+      associate (motion => model%conditions%motions(i))
+        ! Motions of one degree of freedom are chained backwards.
+        before(i) = last(motion%direction, motion%node)
+        last(motion%direction, motion%node) = i
+        if (i > 1) then
+          if (len(message) > 0 .and. lines(i) == lines(i - 1)) cycle
+        end if
+        message = ''
+        j = before(i)
+        do while (j > 0 .and. len(message) == 0)
+          if (min(model%conditions%motions(j)%death, motion%death) &
+            > max(model%conditions%motions(j)%birth, motion%birth)) message = &
+            'is moved in this direction by another card at the same time (line ' &
+            //to_text(deck%number(lines(j)))//')'
+          j = before(j)
+        end do
+        if (is_skew(motion%node)) message = 'has a support along an axis of a coordinate system ' &
+          //'(CID) and cannot be moved by this card too'
+        if (fixed(motion%direction, motion%node)) message = &
+          'is fixed in this direction and cannot be moved by this card too'
+        if (model%is_round .and. motion%direction == 1 .and. .not. &
+          model%mesh%coordinates(1, motion%node) > 0.0_wp) message = &
+          'lies on the axis (x = 0) of an axisymmetric deck and can not move in r'
+        if (.not. is_massive(motion%node)) message = &
+          'belongs to no element, so it has no mass to be moved'
+        if (len(message) > 0) call reject_field(deck, place_t(lines(i), 1, field=1), ': node ' &
+          //to_text(model%mesh%node_id(motion%node))//' '//message)
+      end associate
+    end do
+  end subroutine check_motions
+
+  !> What the cards of nodes and of rigid bodies share.
+  subroutine take_motion(deck, cursor, card, motion, is_sound)
+    type(deck_t), intent(inout) :: deck
+    type(cursor_t), intent(in) :: cursor
+    type(card_t), intent(inout) :: card
+    type(prescribed_motion_t), intent(inout) :: motion
+    logical, intent(out) :: is_sound     !! no field is out of its range
+
+    call take_life(deck, card, ['BIRTH', 'DEATH'], motion%birth, motion%death)
+    is_sound = .not. any(card%bad)
+    if (.not. is_sound) return
+    motion%direction = integer_of(card, 'DOF')
+    motion%kind = integer_of(card, 'VAD')
+    motion%scale = real_of(card, 'SF')
+    call find_id(deck, a_curve, card, 'LCID', motion%curve)
+  end subroutine take_motion
 
   !> *BOUNDARY_PRESCRIBED_MOTION_RIGID. A moved degree of freedom may not be fixed, nor moved twice
   !> at one time.
-  subroutine take_rigid_motion(deck, card, given, lines, model)
+  subroutine take_rigid_motion(deck, card, motion, lines, model)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
-    type(prescribed_motion_t), intent(in) :: given
+    type(prescribed_motion_t), intent(inout) :: motion
     integer, allocatable, intent(inout) :: lines(:) !! of the motions so far
     type(model_t), intent(inout) :: model
-    type(prescribed_motion_t) :: motion
     integer :: i, part
 
-    motion = given
     call find_id(deck, a_part, card, 'PID', part)
-    call find_id(deck, a_curve, card, 'LCID', motion%curve)
     if (part == 0 .or. motion%curve == 0) return
     if (model%parts(part)%material == 0) return
     motion%node = findloc(model%rigids%part, part, dim=1)

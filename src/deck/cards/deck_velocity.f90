@@ -123,6 +123,8 @@ contains
     type(model_t), intent(in) :: model
     integer, intent(inout) :: first_line
     real(wp), intent(inout) :: velocity(:, :)
+    character(*), parameter :: turned = &
+      'turns the axis out of z; in the plane bodies spin about z'
     type(cursor_t) :: cursor
     type(card_t) :: card, axis
     logical :: is_chosen(model%mesh%n_node)
@@ -135,10 +137,8 @@ contains
     call check_rest(deck, cursor)
     spin = real_of(card, 'OMEGA')
     if (abs(spin) > 0.0_wp) then
-      do i = 1, 2
-        if (abs(real_of(axis, 'N'//achar(iachar('W') + i))) > 0.0_wp) call report_field(deck, axis, &
-          'N'//achar(iachar('W') + i), 'turns the axis out of z; in the plane bodies spin about z')
-      end do
+      if (abs(real_of(axis, 'NX')) > 0.0_wp) call report_field(deck, axis, 'NX', turned)
+      if (abs(real_of(axis, 'NY')) > 0.0_wp) call report_field(deck, axis, 'NY', turned)
     end if
     if (any(card%bad) .or. any(axis%bad)) return
     if (first_line == 0) first_line = card%line

@@ -9,22 +9,25 @@ module deck_resolve_m
   use history_tables_m, only : history_tables, n_table, table_nodout, table_elout, table_nodfor, &
     table_secforc
   use model_m, only : model_t
-  use contacts_m, only : penalty_share, penalty_implicit
+  use contacts_m, only : is_tied, penalty_share, penalty_implicit
   use deck_cards_m, only : reject_field, warn_of_field
+  use eos_m, only : eos_t
+  use hardenings_m, only : depends_on_rate
+  use deck_curves_m, only : table_t, read_curves, read_systems
+  use deck_eos_m, only : read_equations, settle_pressures
+  use deck_erosion_m, only : read_erosions
+  use deck_material_m, only : read_materials
+  use deck_part_m, only : read_parts, read_sections
   use deck_damping_m, only : read_damping
-  use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, an_hourglass, &
-    a_curve, a_table, a_node_set, a_part_set, a_segment_set, a_shell_set, a_system
+  use deck_ids_m, only : a_node, an_element, a_part, a_material, a_curve, a_node_set, a_part_set, &
+    a_segment_set, a_shell_set
   use deck_implicit_penalty_m, only : check_implicit_penalties
   use deck_lines_m, only : deck_t, line_error, line_warning
   use deck_loads_m, only : read_nodal_loads, read_rigid_loads, read_body_loads, read_pressures, &
     read_masses, warn_of_bores
   use deck_maps_m, only : map_kind, resolve_id, refuse_again
   use deck_raw_m, only : raw_t, raw_contact_t, history_t, output_plot
-  use deck_resolve_mesh_m, only : resolve_parts, resolve_mesh, settle_points, check_unsound_mesh, &
-    settle_form, settle_axis
-  use deck_resolve_eos_m, only : resolve_equations, check_implicit_laws
-  use deck_resolve_erosion_m, only : resolve_erosion, check_erosion_points, check_eroding_contacts
-  use deck_resolve_hardenings_m, only : resolve_hardenings, check_no_rates, resolve_foams
+  use deck_resolve_mesh_m, only : resolve_mesh, check_unsound_mesh, settle_axis
   use deck_resolve_sets_m, only : resolve_sets, resolve_history
   use deck_resolve_sections_m, only : resolve_cross_sections, resolve_transducers
   use deck_resolve_ends_m, only : resolve_ends
@@ -49,13 +52,12 @@ contains
     do i = 1, size(model%parts)
       associate (part => model%parts(i))
         if (part%hourglass%quadratic > 0.0_wp .or. part%hourglass%linear > 0.0_wp) &
-          call line_error(deck, raw%parts(i)%line, 'part '//to_text(part%id)//' has bulk ' &
-          //'viscosity (*CONTROL_BULK_VISCOSITY or *HOURGLASS), which the implicit method ' &
+          call line_error(deck, deck%maps(a_part)%lines(i), 'part '//to_text(part%id)//' has ' &
+          //'bulk viscosity (*CONTROL_BULK_VISCOSITY or *HOURGLASS), which the implicit method ' &
           //'does not have')
       end associate
     end do
-    call check_no_rates(deck, raw, model)
-    call check_implicit_laws(deck, raw, model)
+    call check_implicit_laws(deck, model)
     do i = 1, deck%n_block
       if (deck%blocks(i)%name == 'CONTROL_TERMINATION' .and. raw%controls%dt_floor > 0.0_wp) &
         call line_warning(deck, deck%blocks(i)%keyword, 'implicit step floor', &
@@ -70,6 +72,46 @@ contains
     end do
     call warn_of_explicit(deck, raw)
   end subroutine check_implicit
+
+  !> Laws with rates, heat, energy or failure have no tangent.
+  subroutine check_implicit_laws(deck, model)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(in) :: model
+    character(:), allocatable :: reason
+    integer :: i
+
+    do i = 1, size(model%materials)
+      associate (material => model%materials(i))
+        reason = ''
+        if (allocated(material%flow)) then
+          reason = 'a flow stress of Johnson and Cook'
+        else if (material%failure_strain < huge(1.0_wp)) then
+          reason = 'a plastic strain at failure'
+        else if (allocated(material%crush)) then
+          reason = 'the law of a crushable foam'
+        else if ((allocated(material%eos) .or. material%needs_eos) .and. .not. &
+          allocated(material%rubber)) then
+          reason = 'an equation of state'
+        end if
+        if (len(reason) > 0) call refuse(reason)
+        if (.not. allocated(material%curve)) cycle
+        if (depends_on_rate(material%curve)) call refuse( &
+          'a yield stress that depends on the strain rate (C, LCSR or a table)')
+      end associate
+    end do
+
+  contains
+
+    !> One error.
+    subroutine refuse(what)
+      character(*), intent(in) :: what
+
+      call line_error(deck, deck%maps(a_material)%lines(i), 'material ' &
+        //to_text(model%materials(i)%id)//' has '//what &
+        //', which the implicit method does not have')
+    end subroutine refuse
+
+  end subroutine check_implicit_laws
 
   !> What the deck and its words give for an explicit run alone: one warning for each.
   subroutine warn_of_explicit(deck, raw)
@@ -110,6 +152,8 @@ contains
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(inout) :: raw
     type(model_t), intent(inout) :: model
+    type(table_t), allocatable :: tables(:)
+    type(eos_t), allocatable :: equations(:)
     logical, allocatable :: is_sound(:), fixed(:, :) !! (n_element), (2, n_node)
     integer, allocatable :: owner(:)
     logical :: sound
@@ -120,14 +164,14 @@ contains
     if (model%controls%implicit%is_on) call settle_scheme(raw%newmark, raw%hht, &
       raw%spectral_radius, model%controls%implicit)
     call check_scheme(deck, raw%newmark_line, model%controls%implicit)
-    call resolve_parts(deck, raw, model)
-    call settle_form(deck, raw, model)
-    call settle_points(deck, raw, model)
-    call resolve_hardenings(deck, raw, model)
-    call resolve_foams(deck, raw, model)
-    call resolve_erosion(deck, raw, model)
-    call check_erosion_points(deck, raw, model)
-    call resolve_equations(deck, raw, model)
+    call read_curves(deck, raw%step_curve, model, tables)
+    call read_systems(deck)
+    call read_materials(deck, tables, model)
+    call read_equations(deck, equations)
+    call read_sections(deck, model)
+    call read_parts(deck, raw%hourglass_default, equations, model)
+    call read_erosions(deck, raw%erodes_by_step, raw%step_line, model)
+    call settle_pressures(deck, equations, model)
     call resolve_mesh(deck, raw, model, is_sound, sound)
     call settle_axis(deck, model)
     call resolve_sets(deck, raw, model)
@@ -193,18 +237,10 @@ contains
     type(raw_t), intent(in) :: raw
     character(*), parameter :: position = ' (without a number it is the position in the deck)'
     integer, allocatable :: ids(:), lines(:), order(:)
-    integer :: i
 
     call map_kind(deck, a_node, raw%node_id(:raw%n_node), raw%node_line(:raw%n_node), 'NID')
     call map_kind(deck, an_element, raw%element_id(:raw%n_element), &
       raw%element_line(:raw%n_element), 'EID')
-    call map_kind(deck, a_part, [raw%parts%id], [raw%parts%line], 'PID')
-    call map_kind(deck, a_section, [raw%sections%id], raw%section_line, 'SECID')
-    call map_kind(deck, a_material, [raw%materials%id], raw%material_line, 'MID')
-    call map_kind(deck, an_eos, [raw%equations%id], raw%equation_line, 'EOSID')
-    call map_kind(deck, an_hourglass, [raw%hourglasses%id], raw%hourglass_line, 'HGID')
-    call map_kind(deck, a_curve, [raw%curves%id], raw%curve_line, 'LCID')
-    call map_kind(deck, a_table, [raw%tables%id], [raw%tables%line], 'TBID')
     call map_kind(deck, a_node_set, [raw%node_sets(:raw%n_node_set)%id], &
       [raw%node_sets(:raw%n_node_set)%line], 'SID', &
       [raw%node_sets(:raw%n_node_set)%of_beams])
@@ -215,8 +251,6 @@ contains
       [raw%segment_sets(:raw%n_segment_set)%of_beams])
     call map_kind(deck, a_shell_set, [raw%shell_sets(:raw%n_shell_set)%id], &
       [raw%shell_sets(:raw%n_shell_set)%line], 'SID')
-    call map_kind(deck, a_system, [raw%systems%id], [raw%systems%line], 'CID')
-    deck%axes = reshape([(raw%systems(i)%axes, i=1, size(raw%systems))], [2, 2, size(raw%systems)])
     ids = [raw%contacts%contact%id, raw%transducers%contact%id]
     lines = deck%blocks([raw%contacts%block, raw%transducers%block])%keyword
     order = sorted_order(int(lines, long))
@@ -277,6 +311,41 @@ contains
       end associate
     end do
   end subroutine mark_round_contacts
+
+  !> Ties and initial overlaps do not follow surfaces that change.
+  subroutine check_eroding_contacts(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(in) :: model
+    logical :: may_go(size(model%materials))
+    integer :: i, m
+
+    if (.not. model%erodes) return
+    do m = 1, size(model%materials)
+      may_go(m) = allocated(model%materials(m)%erosion)
+    end do
+    do i = 1, size(raw%contacts)
+      associate (contact => model%contacts(i))
+        if (.not. (is_tied(contact) .or. allocated(contact%interference))) cycle
+        if (.not. (touches(contact%slave%segment_element) &
+          .or. touches(contact%master%segment_element))) cycle
+        call line_error(deck, deck%blocks(raw%contacts(i)%block)%keyword, trim(merge( &
+          'ties                  ', 'has an overlap (LCINT)', is_tied(contact)))//' on elements ' &
+          //'that may leave the mesh, which this version does not have')
+      end associate
+    end do
+
+  contains
+
+    !> Whether some of the elements may leave.
+    pure function touches(elements)
+      integer, intent(in) :: elements(:)
+      logical :: touches
+
+      touches = any(may_go(model%parts(model%mesh%element_part(elements))%material))
+    end function touches
+
+  end subroutine check_eroding_contacts
 
   !> Histories that are asked for and have no file, for want of a keyword that says of what.
   subroutine warn_of_empty(deck, raw, model)

@@ -5,10 +5,9 @@
 module deck_resolve_mesh_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use parts_m, only : hourglass_t, form_full, form_round_full, hourglass_assumed, section_t
   use mesh_m, only : mesh_t
   use model_m, only : model_t
-  use deck_ids_m, only : a_material, a_node, an_element, a_part, a_section, an_hourglass
+  use deck_ids_m, only : a_node, an_element, a_part
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning
   use deck_cards_m, only : reject_field
   use deck_maps_m, only : resolve_id
@@ -21,7 +20,7 @@ module deck_resolve_mesh_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: resolve_parts, resolve_mesh, settle_points, check_unsound_mesh, settle_form, settle_axis
+  public :: resolve_mesh, check_unsound_mesh, settle_axis
 
   !> Fields of the coordinates and of the first three nodes.
   !> Radii below this share of the largest are the axis.
@@ -30,74 +29,6 @@ module deck_resolve_mesh_m
   character(2), parameter :: node_fields(3) = ['N1', 'N2', 'N3']
 
 contains
-
-  !> Parts with their section, material and hourglass control.
-  subroutine resolve_parts(deck, raw, model)
-    type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(in) :: raw
-    type(model_t), intent(inout) :: model
-    type(hourglass_t) :: hourglass
-    integer :: i, k, line
-
-    model%sections = raw%sections
-    model%materials = raw%materials
-    model%curves = raw%curves
-    allocate (model%parts(size(raw%parts)))
-    do i = 1, size(raw%parts)
-      line = raw%parts(i)%line
-      model%parts(i)%id = raw%parts(i)%id
-      model%parts(i)%title = raw%parts(i)%title
-      ! A bad field has been reported; its number is then not looked for.
-      if (raw%parts(i)%section > 0) call resolve_id(deck, a_section, &
-        raw%parts(i)%section, place_t(line, 2, 'SECID'), model%parts(i)%section)
-      if (raw%parts(i)%material > 0) call resolve_id(deck, a_material, &
-        raw%parts(i)%material, place_t(line, 2, 'MID'), model%parts(i)%material)
-      hourglass = raw%hourglass_default
-      if (raw%parts(i)%hourglass > 0) then
-        call resolve_id(deck, an_hourglass, raw%parts(i)%hourglass, &
-          place_t(line, 2, 'HGID'), k)
-        if (k > 0) then
-          hourglass = raw%hourglasses(k)
-          if (.not. raw%bulk_given(1, k)) hourglass%quadratic = raw%hourglass_default%quadratic
-          if (.not. raw%bulk_given(2, k)) hourglass%linear = raw%hourglass_default%linear
-        end if
-      end if
-      model%parts(i)%hourglass = hourglass
-    end do
-  end subroutine resolve_parts
-
-  !> Whether the deck is axisymmetric: all of its parts, or none.
-  subroutine settle_form(deck, raw, model)
-    type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(in) :: raw
-    type(model_t), intent(inout) :: model
-    logical :: is_round(size(model%parts)), is_known(size(model%parts))
-    integer :: i, first
-
-    is_known = model%parts%section > 0
-    is_round = .false.
-    do i = 1, size(model%parts)
-      if (is_known(i)) is_round(i) = model%sections(model%parts(i)%section)%is_round
-    end do
-    model%is_round = any(is_round)
-    if (.not. any(is_known)) return
-    first = findloc(is_known, .true., dim=1)
-    do i = 1, size(model%parts)
-      if (.not. is_known(i) .or. (is_round(i) .eqv. is_round(first))) cycle
-      call reject_field(deck, place_t(raw%parts(i)%line, 2, 'SECID'), 'is a section of ' &
-        //form_name(is_round(i))//', but part '//to_text(model%parts(first)%id)//' is of ' &
-        //form_name(is_round(first))//': a deck is of one kind')
-    end do
-  end subroutine settle_form
-
-  !> An element form in words.
-  pure function form_name(is_round) result(name)
-    logical, intent(in) :: is_round
-    character(:), allocatable :: name
-
-    name = 'plane strain (ELFORM 13)'
-    if (is_round) name = 'axisymmetry (ELFORM 15)'
-  end function form_name
 
   !> Radii must not be below zero; those that are none are made exactly zero.
   subroutine settle_axis(deck, model)
@@ -284,69 +215,6 @@ contains
     twice = nodes(1) == nodes(2) .or. nodes(1) == nodes(3) .or. nodes(2) == nodes(3) &
       .or. nodes(4) == nodes(1) .or. nodes(4) == nodes(2)
   end function repeated
-
-  !> Parts of one-point quads: those with assumed strain must resist shear; in implicit runs those
-  !> without it, or of rubber, whose tangent is that of full integration, are fully integrated,
-  !> whatever the deck says.
-  subroutine settle_points(deck, raw, model)
-    type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(in) :: raw
-    type(model_t), intent(inout) :: model
-    character(:), allocatable :: changed
-    integer :: twins(size(model%sections)) !! fully integrated ones, 0 where there is none
-    integer :: i, line
-
-    changed = ''
-    twins = 0
-    do i = 1, size(model%parts)
-      associate (part => model%parts(i))
-        if (part%section == 0 .or. part%material == 0) cycle
-        if (model%sections(part%section)%is_full .or. model%materials(part%material)%is_rigid) cycle
-        if (part%hourglass%form == hourglass_assumed .and. .not. (model%controls%implicit%is_on &
-          .and. allocated(model%materials(part%material)%rubber))) then
-          call check_shear(deck, raw%parts(i)%line, i, model)
-        else if (model%controls%implicit%is_on) then
-          if (len(changed) == 0) line = raw%section_line(part%section)
-          changed = changed//', '//to_text(part%id)
-          if (twins(part%section) == 0) call add_full_section(part%section, model, twins)
-          part%section = twins(part%section)
-        end if
-      end associate
-    end do
-    if (len(changed) > 0) call line_warning(deck, line, 'implicit points', 'the implicit method ' &
-      //'takes parts whose NIP is not 4 as NIP 4 where hourglass control is not by ' &
-      //'assumed strain (IHQ 6), which would keep them as they are (but for rubber): '//changed(3:))
-  end subroutine settle_points
-
-  !> The stiffness of assumed strain is that of shear.
-  subroutine check_shear(deck, line, i, model)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: line     !! card of the part
-    integer, intent(in) :: i        !! part
-    type(model_t), intent(in) :: model
-
-    associate (part => model%parts(i))
-      if (model%materials(part%material)%shear > 0.0_wp) return
-      if (.not. model%materials(part%material)%needs_eos) return ! told as a field
-      call line_error(deck, line, 'part '//to_text(part%id)//' has hourglass control by assumed ' &
-        //'strain (IHQ 6), whose stiffness comes from the shear modulus, and its material ' &
-        //to_text(model%materials(part%material)%id)//' has none (take IHQ 1 to 3)')
-    end associate
-  end subroutine check_shear
-
-  !> The fully integrated twin of a section, which other parts may go on sharing as it is.
-  pure subroutine add_full_section(section, model, twins)
-    integer, value :: section             !! index
-    type(model_t), intent(inout) :: model
-    integer, intent(inout) :: twins(:)    !! index, by that of the section
-    type(section_t) :: twin
-
-    twin = model%sections(section)
-    twin%is_full = .true.
-    twin%element_form = merge(form_round_full, form_full, twin%is_round)
-    model%sections = [model%sections, twin]
-    twins(section) = size(model%sections)
-  end subroutine add_full_section
 
   !> Wrong numbers always; edges where no refused element has their nodes.
   subroutine check_unsound_mesh(deck, raw, is_sound, model)

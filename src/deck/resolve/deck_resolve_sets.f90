@@ -179,7 +179,8 @@ contains
         call ids_between(deck%maps(kind), set%members(i), set%members(i + 1), block)
         if (size(block) == 0 .and. .not. deck%maps(kind)%incomplete) call reject_field(deck, &
           place_t(set%lines(i), card, field=set%fields(i)), 'to "' &
-          //to_text(set%members(i + 1))//'": there is no '//trim(kind_names(kind))//' in this block')
+          //to_text(set%members(i + 1))//'": there is no ' &
+          //trim(kind_names(kind))//' in this block')
         members = [members, block]
       end do
     else

@@ -20,7 +20,7 @@ module deck_schema_m
     max_card, known_honoured, known_ignored, known_refused, known_not
 
   !> All keywords that are honoured, and their cards.
-  character(119), parameter :: table(*) = [character(119) :: table_control, table_mesh, &
+  character(131), parameter :: table(*) = [character(131) :: table_control, table_mesh, &
     table_conditions, table_contact, table_database]
   !> What fields are expected to be, for errors of their range, which follows in parentheses unless
   !> there are some: field, or beginning of keyword and field; the first that fits.
@@ -70,12 +70,40 @@ module deck_schema_m
     'VDC a damping in per cent of critical', &
     'IPF 0 or 1 (the strict rule of type 5)', &
     'FREQ a number of cycles between two searches', &
+    'RO a density', &
+    'E a Young''s modulus', &
+    'MAT_MOONEY-RIVLIN.PR a Poisson''s ratio of this law (more than 0 and less than 0.5; 0.49 ' &
+    //'and more is usual)', &
+    'PR a Poisson''s ratio', &
+    'G a shear modulus', &
+    'MAT_PLASTIC.SIGY a yield stress', &
+    'MAT_PLASTIC.BETA between 0 (kinematic) and 1 (isotropic hardening)', &
+    'MAT_PLASTIC.FS a plastic strain at failure (0 or more; 0 means never)', &
+    'MAT_ELASTIC.FS a plastic strain at failure (0 or more; 0 means never)', &
+    'FAIL a plastic strain at failure (0 or more; 0 means never)', &
+    'PC a cut-off, the least pressure, of tension (0 or less; 0 means none)', &
+    'LCSS a curve or table number', &
+    'LCSR a curve number', &
+    'MAT_PIECEWISE.VP a rate form that this version has (0 scales the yield stress with the ' &
+    //'total strain rate)', &
+    'VP a rate form (0 counts the total strain rate, 1 that of the plastic strain)', &
+    'MAT_JOHNSON.A a yield stress', &
+    'MAT_SIMPLIFIED.A a yield stress', &
+    'EPSO a strain rate', &
+    'SPALL 1 (least pressure), 2 (largest stress) or 3 (largest tension)', &
+    'MAT_CRUSHABLE.LCID the number of a curve: yield stress against volumetric strain 1 - V', &
+    'NUMFIP a number of points of an element (1 to 4)', &
+    'EOS_GRUNEISEN.C a speed (more than 0, at most 1e12): shocks of no strength run with it', &
+    'V0 the volume of the density RO (0 or 1), with which bodies start in this version', &
+    'CMO 0 (no constraints) or 1 (constraints in global axes)', &
+    'NIP a number of points (0, 1, 2 or blank: one point; 4: two by two, full integration)', &
+    'SIDR a phase (0 run, 1 dynamic relaxation, 2 both)', &
     'DOFX 0 (free) or 1 (fixed)', &
     'DOFY 0 (free) or 1 (fixed)', &
     'BOUNDARY_PRESCRIBED_MOTION_RIGID.DOF a motion that a rigid body has here (1 x, 2 y, 7 turn ' &
     //'about z)', &
-    'LOAD_RIGID_BODY.DOF a load on a rigid body that this version has (1 x, 2 y, 7 moment about ' &
-    //'z)', &
+    'LOAD_RIGID_BODY.DOF a load on a rigid body that this version has (1 x, 2 y, 7 moment ' &
+    //'about z)', &
     'CONSTRAINED.DOF a code of directions (1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)', &
     'DOF a direction that this version has (1 x, 2 y)', &
     'VAD a kind of motion that this version has (0 velocity, 1 acceleration, 2 displacement)', &

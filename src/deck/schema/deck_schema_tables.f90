@@ -84,7 +84,7 @@ module deck_schema_tables_m
     ' HCMIN:fw HCMAX:fw HMMIN:fw HMMAX:fw HNTMAX:fw HNRMAX:fw HRTMAX:fw HRRMAX:fw']
 
   !> Mesh, parts, materials, curves, sets.
-  character(84), parameter :: table_mesh(*) = [character(84) :: &
+  character(131), parameter :: table_mesh(*) = [character(131) :: &
     'NODE', &
     ' NID:i8 X:f16 Y:f16 Z:f16 TC:i8 RC:is8', &
     'ELEMENT_SHELL', &
@@ -97,69 +97,74 @@ module deck_schema_tables_m
     ' EID:is8 NSID:i8>=1 MASS:f16>=0 PID:is8', &
     'PART t', &
     ' HEADING:a80', &
-    ' PID:i SECID:i MID:i EOSID:i HGID:i GRAV:iw ADPOPT:iw TMID:iw', &
+    ' PID:i>=1 SECID:i>=1 MID:i>=1 EOSID:i>=0 HGID:i>=0 GRAV:iw ADPOPT:iw TMID:iw', &
     'SECTION_SHELL t', &
-    ' SECID:i ELFORM:i=2 SHRF:fs NIP:i PROPT:fs QR_IRID:is ICOMP:ir SETYP:ir=1', &
+    ' SECID:i>=1 ELFORM:i=2 SHRF:fs NIP:i|0|1|2|4 PROPT:fs QR_IRID:is ICOMP:ir SETYP:ir=1', &
     ' T1:fs T2:fs T3:fs T4:fs NLOC:fs MAREA:fs IDOF:fs EDGSET:is', &
     'HOURGLASS t', &
-    ' HGID:i IHQ:i QM:f IBQ:is Q1:f Q2:f QB_VDC:fs QW:fs', &
+    ' HGID:i>=1 IHQ:i QM:f>=0 IBQ:is Q1:f>=0<=100 Q2:f>=0<=100 QB_VDC:fs QW:fs', &
     'MAT_ELASTIC t', &
-    ' MID:i RO:f E:f PR:f DA:fw DB:fw', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 DA:fw DB:fw', &
     'MAT_PLASTIC_KINEMATIC t', &
-    ' MID:i RO:f E:f PR:f SIGY:f ETAN:f BETA:f', &
-    ' SRC:fr SRP:fr FS:f VP:fw', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 SIGY:f>0 ETAN:f>=0 BETA:f>=0<=1', &
+    ' SRC:fr SRP:fr FS:f>=0 VP:fw', &
     'MAT_PIECEWISE_LINEAR_PLASTICITY t', &
-    ' MID:i RO:f E:f PR:f SIGY:f ETAN:f FAIL:f TDEL:fr', &
-    ' C:f P:f LCSS:i LCSR:i VP:f', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 SIGY:f>=0 ETAN:f>=0' &
+    //' FAIL:f>=0 TDEL:fr', &
+    ' C:f>=0 P:f>=0 LCSS:i>=0 LCSR:i>=0 VP:f|0|1', &
     ' EPS1:f EPS2:f EPS3:f EPS4:f EPS5:f EPS6:f EPS7:f EPS8:f', &
     ' ES1:f ES2:f ES3:f ES4:f ES5:f ES6:f ES7:f ES8:f', &
     'MAT_NULL t', &
-    ' MID:i RO:f PC:f MU:f TEROD:fr CEROD:fr YM:fs PR:fs', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 PC:f<=0 MU:f>=0<=1e30 TEROD:fr CEROD:fr YM:fs PR:fs', &
     'MAT_ELASTIC_PLASTIC_HYDRO t', &
-    ' MID:i RO:f G:f SIGY:f EH:f PC:f FS:f CHARL:fr', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 G:f>=1e-30<=1e30 SIGY:f>=0 EH:f>=0 PC:f<=0 FS:f>=0 CHARL:fr', &
     ' EPS1:f EPS2:f EPS3:f EPS4:f EPS5:f EPS6:f EPS7:f EPS8:f', &
     ' EPS9:f EPS10:f EPS11:f EPS12:f EPS13:f EPS14:f EPS15:f EPS16:f', &
     ' ES1:f ES2:f ES3:f ES4:f ES5:f ES6:f ES7:f ES8:f', &
     ' ES9:f ES10:f ES11:f ES12:f ES13:f ES14:f ES15:f ES16:f', &
     'MAT_JOHNSON_COOK t', &
-    ' MID:i RO:f G:f E:f PR:f DTF:fr VP:f RATEOP:fr', &
-    ' A:f B:f N:f C:f M:f TM:f TR:f EPSO:f', &
-    ' CP:f PC:f SPALL:f=2 IT:fs D1:f D2:f D3:f D4:f', &
-    ' D5:f C2_P_XNP_D:fr EROD:f EFMIN:f=1e-6 NUMINT:fr K:fr EPS1:fr', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 G:f>=1e-30<=1e30 E:f>=0<=1e30 PR:f>-1<0.5 DTF:fr' &
+    //' VP:f|0|1 RATEOP:fr', &
+    ' A:f>0 B:f>=0 N:f>=0 C:f>=0 M:f TM:f TR:f EPSO:f>0', &
+    ' CP:f>=0 PC:f<=0 SPALL:f=2|1|2|3 IT:fs D1:f D2:f D3:f D4:f', &
+    ' D5:f C2_P_XNP_D:fr EROD:f EFMIN:f=1e-6>=0 NUMINT:fr K:fr EPS1:fr', &
     'MAT_SIMPLIFIED_JOHNSON_COOK t', &
-    ' MID:i RO:f E:f PR:f VP:f', &
-    ' A:f B:f N:f C:f PSFAIL:f=1e17 SIGMAX:f=1e28 SIGSAT:f=1e28 EPSO:f=1', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 VP:f|0|1', &
+    ' A:f>0 B:f>=0 N:f>=0 C:f>=0 PSFAIL:f=1e17>=0 SIGMAX:f=1e28 SIGSAT:f=1e28 EPSO:f=1>0', &
     'MAT_MOONEY-RIVLIN_RUBBER t', &
-    ' MID:i RO:f PR:f A:f B:f REF:fr', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 PR:f>0<0.5 A:f>=0<=1e30 B:f>=0<=1e30 REF:fr', &
     ' SGL:fr SW:fr ST:fr LCID:ir', &
     'MAT_BLATZ-KO_RUBBER t', &
-    ' MID:i RO:f G:f REF:fr', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 G:f>=1e-30<=1e30 REF:fr', &
     'MAT_CRUSHABLE_FOAM t', &
-    ' MID:i RO:f E:f PR:f LCID:i TSC:f DAMP:fw MODEL:ir', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 LCID:i>=1 TSC:f>=0 DAMP:fw' &
+    //' MODEL:ir', &
     'MAT_ADD_EROSION t', &
-    ' MID:i EXCL:f MXPRES:f MNEPS:f EFFEPS:f VOLEPS:f NUMFIP:f=1 NCS:f=1', &
+    ' MID:i>=1 EXCL:f MXPRES:f MNEPS:f EFFEPS:f VOLEPS:f NUMFIP:f=1>=0<=4 NCS:f=1>=0', &
     ' MNPRES:f SIGP1:f SIGVM:f MXEPS:f EPSSH:f SIGTH:f IMPULSE:f FAILTM:f', &
     ' IDAM:ir -:x -:x -:x -:x -:x -:x LCREGD:ir', &
     ' LCFLD:ir NSFF:is=10 EPSTHIN:fr ENGCRT:fr RADCRT:fr LCEPS12:ir LCEPS13:ir LCEPSMX:ir', &
-    ' DTEFLT:fw VOLFRAC:fw MXTMP:fr DTMIN:f', &
+    ' DTEFLT:fw VOLFRAC:fw MXTMP:fr DTMIN:f>=0', &
     'EOS_LINEAR_POLYNOMIAL t', &
-    ' EOSID:i C0:f C1:f C2:f C3:f C4:f C5:f C6:f', &
-    ' E0:f V0:f=1', &
+    ' EOSID:i>=1 C0:f>=-1e30<=1e30 C1:f>=-1e30<=1e30 C2:f>=-1e30<=1e30 C3:f>=-1e30<=1e30' &
+    //' C4:f>=-100<=100 C5:f>=-100<=100 C6:f>=-100<=100', &
+    ' E0:f>=-1e30<=1e30 V0:f=1>=1<=1', &
     'EOS_GRUNEISEN t', &
-    ' EOSID:i C:f S1:f S2:f S3:f GAMAO:f A:f E0:f', &
-    ' V0:f=1 -:x LCID:ir', &
+    ' EOSID:i>=1 C:f>0<=1e12 S1:f>=-100<=100 S2:f>=-100<=100 S3:f>=-100<=100' &
+    //' GAMAO:f>=0<=100 A:f>=-100<=100 E0:f>=-1e30<=1e30', &
+    ' V0:f=1>=1<=1 -:x LCID:ir', &
     'MAT_RIGID t', &
-    ' MID:i RO:f E:f PR:f N:fr COUPLE:fr M:fr ALIAS:ar', &
-    ' CMO:i CON1:i CON2:i', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 N:fr COUPLE:fr M:fr ALIAS:ar', &
+    ' CMO:i|0|1|-1 CON1:i CON2:i', &
     ' LCO_OR_A1:fw A2:fw A3:fw V1:fw V2:fw V3:fw', &
     'DEFINE_CURVE t', &
-    ' LCID:i SIDR:i SFA:f=1 SFO:f=1 OFFA:f OFFO:f DATTYP:is LCINT:is', &
+    ' LCID:i>=1 SIDR:i|0|1|2 SFA:f=1>=0 SFO:f=1 OFFA:f OFFO:f DATTYP:is LCINT:is', &
     ' A1:f20 O1:f20', &
     'DEFINE_COORDINATE_SYSTEM t', &
-    ' CID:i XO:f YO:f ZO:f XL:f YL:f ZL:f CIDL:ir', &
+    ' CID:i>=1 XO:f YO:f ZO:f XL:f YL:f ZL:f CIDL:ir', &
     ' XP:f YP:f ZP:f', &
     'DEFINE_TABLE t', &
-    ' TBID:i SFA:f=1 OFFA:f', &
+    ' TBID:i>=1 SFA:f=1>=0 OFFA:f', &
     ' VALUE:f20', &
     'SET_NODE_LIST t', &
     ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &

@@ -109,6 +109,7 @@ contains
 
     yes = value >= spec%least(k) .and. value <= spec%most(k)
     if (spec%ranges(k)(1:1) == '|') yes = abs(value) < 1.0e6_wp &
+      .and. .not. abs(value - anint(value)) > 0.0_wp &
       .and. index(trim(spec%ranges(k))//'|', '|'//to_text(nint(value))//'|') > 0
   end function is_in_range
 
