@@ -26,9 +26,8 @@ module deck_curves_m
 contains
 
   !> All curves and tables.
-  subroutine read_curves(deck, step_curve, model, tables)
+  subroutine read_curves(deck, model, tables)
     type(deck_t), intent(inout) :: deck
-    type(curve_t), allocatable, intent(in) :: step_curve !! given by a word
     type(model_t), intent(inout) :: model
     type(table_t), allocatable, intent(out) :: tables(:)
     type(curve_t), allocatable :: curves(:)
@@ -36,7 +35,7 @@ contains
     integer :: of_block(deck%n_block), i, n
 
     blocks = blocks_of(deck, 'DEFINE_CURVE')
-    allocate (curves(size(blocks) + 1), lines(size(blocks) + 1))
+    allocate (curves(size(blocks)), lines(size(blocks)))
     of_block = 0
     n = 0
     do i = 1, size(blocks)
@@ -45,11 +44,6 @@ contains
       n = n + 1
       of_block(blocks(i)) = n
     end do
-    if (allocated(step_curve)) then
-      n = n + 1
-      curves(n) = step_curve
-      lines(n) = 0
-    end if
     model%curves = curves(:n)
     call map_kind(deck, a_curve, model%curves%id, lines(:n), 'LCID')
     call read_tables(deck, of_block, tables)

@@ -4,7 +4,6 @@
 !> are as long as the cards may make them before these are read, and of their true length behind.
 module deck_raw_m
   use kinds_m, only : wp
-  use curves_m, only : curve_t
   use parts_m, only : hourglass_t
   use contacts_m, only : contact_t, friction_rule_t
   use controls_m, only : controls_t
@@ -69,7 +68,6 @@ module deck_raw_m
     integer :: n_contact = 0, n_transducer = 0, n_end = 0, n_cut = 0
     logical :: erodes_by_step = .false.        !! ERODE of *CONTROL_TIMESTEP
     type(hourglass_t) :: hourglass_default
-    type(curve_t), allocatable :: step_curve   !! given by a word
     type(raw_set_t), allocatable :: node_sets(:), part_sets(:), segment_sets(:), shell_sets(:)
     integer :: n_node_set = 0, n_part_set = 0, n_segment_set = 0, n_shell_set = 0
     type(place_t), allocatable :: pressure_places(:)

@@ -226,7 +226,7 @@ contains
     do
       call next_of(deck, cursor, card, found)
       if (.not. found) exit
-      call take_motion(deck, cursor, card, motion, is_sound)
+      call take_motion(deck, card, motion, is_sound)
       if (.not. is_sound) cycle
       if (has_field(card, 'PID')) then
         call take_rigid_motion(deck, card, motion, rigid_lines, model)
@@ -304,9 +304,8 @@ contains
   end subroutine check_motions
 
   !> What the cards of nodes and of rigid bodies share.
-  subroutine take_motion(deck, cursor, card, motion, is_sound)
+  subroutine take_motion(deck, card, motion, is_sound)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     type(prescribed_motion_t), intent(inout) :: motion
     logical, intent(out) :: is_sound     !! no field is out of its range

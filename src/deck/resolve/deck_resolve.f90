@@ -164,7 +164,7 @@ contains
     if (model%controls%implicit%is_on) call settle_scheme(raw%newmark, raw%hht, &
       raw%spectral_radius, model%controls%implicit)
     call check_scheme(deck, raw%newmark_line, model%controls%implicit)
-    call read_curves(deck, raw%step_curve, model, tables)
+    call read_curves(deck, model, tables)
     call read_systems(deck)
     call read_materials(deck, tables, model)
     call read_equations(deck, equations)
