@@ -48,17 +48,11 @@ def table_lines(name, source=None):
 
 
 def range_text(notation):
-    """The range of a field in words, as messages have it (deck_card_specs.f90)."""
+    """The range of a field as an interval, `[0,1)` without 1, as `>0`, or as the numbers allowed, `0/1/2`."""
     if notation.startswith("|"):
-        *first, last = notation[1:].split("|")
-        return ", ".join(first) + (" or " if first else "") + last
-    bounds = re.findall(r"([<>])(=?)([^<>]+)", notation)
-    if len(bounds) == 2 and bounds[0][1] and bounds[1][1]:
-        return f"{bounds[0][2]} to {bounds[1][2]}"
-    names = {(">", ""): "above", ("<", ""): "below", (">", "="): "at least", ("<", "="): "at most"}
-    if len(bounds) == 1 and bounds[0][1]:
-        return bounds[0][2] + (" or more" if bounds[0][0] == ">" else " or less")
-    return ", ".join(f"{names[side, equals]} {number}" for side, equals, number in bounds)
+        return notation[1:].replace("|", "/")
+    low, high = (re.findall(r"([<>]=?)([^<>]+)", notation) + [None])[:2]
+    return notation if not high else f"{'[' if low[0] == '>=' else '('}{low[1]},{high[1]}{']' if high[0] == '<=' else ')'}"
 
 
 def read_schema():
@@ -85,7 +79,7 @@ def row_line(row, meaning):
     card, name, columns, kind, default, limits, treatment = row
     if treatment != "honoured":
         meaning = f"*{treatment}*" + (f"; {meaning}" if meaning else "")
-    kind += (f" = {default}" if default else "") + (f", {limits}" if limits else "")
+    kind += (f" = {default}" if default else "") + (f" {limits}" if limits else "")
     return f"| {card} {name} | {columns} {kind} | {meaning} |"
 
 
