@@ -24,14 +24,14 @@ module body_view_m
 
 contains
 
-  !> Know the bodies behind a surface. It must have a segment.
-  pure subroutine view_body(model, surface, view)
+  !> Know the bodies behind a surface, for looks at it and at another one. It must have a segment.
+  pure subroutine view_body(model, surface, other, view)
     type(model_t), intent(in) :: model
-    type(surface_t), intent(in) :: surface
+    type(surface_t), intent(in) :: surface, other
     type(body_view_t), intent(out) :: view
     integer :: i
 
-    call start_finder(model, surface%segment_element, view%finder)
+    call start_finder(model, surface%segment_element, [surface%nodes, other%nodes], view%finder)
     allocate (view%local(model%mesh%n_node), source=0)
     view%local(surface%nodes) = [(i, i=1, surface%n_node)]
   end subroutine view_body

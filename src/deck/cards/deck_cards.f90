@@ -31,7 +31,7 @@ module deck_cards_m
 
   !> An error of a field of a card just read, by the field's name or its position.
   interface report_field
-    module procedure report_name, report_number, report_named_field, report_numbered_field
+    module procedure report_name, report_number
   end interface report_field
 
 contains
@@ -327,28 +327,6 @@ contains
 
     if (.not. card%bad(k)) call field_error(deck, card, k, message)
   end subroutine report_number
-
-  !> An error of the field of a name, of a card just read.
-  subroutine report_named_field(deck, cursor, card, name, message)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    character(*), intent(in) :: name
-    character(*), intent(in) :: message
-
-    call report_field(deck, cursor, card, field_number(card%names, name), message)
-  end subroutine report_named_field
-
-  !> An error of field `k` of a card just read.
-  subroutine report_numbered_field(deck, cursor, card, k, message)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    integer, intent(in) :: k
-    character(*), intent(in) :: message
-
-    if (.not. card%bad(k)) call field_error(deck, card, k, message)
-  end subroutine report_numbered_field
 
   !> An error of a field that was given, on a card that was read some time ago.
   subroutine reject_field(deck, place, message)

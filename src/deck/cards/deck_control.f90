@@ -57,9 +57,7 @@ contains
       raw%hourglass_default%quadratic = real_of(cards(1), 'Q1')
       raw%hourglass_default%linear = real_of(cards(1), 'Q2')
     case ('CONTROL_CONTACT')
-      raw%controls%penalty_scale = 0.1_wp
-      if (real_of(cards(1), 'SLSFAC') > 0.0_wp) &
-        raw%controls%penalty_scale = real_of(cards(1), 'SLSFAC')
+      raw%controls%penalty_scale = real_of(cards(1), 'SLSFAC')
       raw%controls%contact_step = integer_of(cards(2), 'ECDT')
       call note_explicit(cards(2), 'ECDT', raw)
       call take_default_friction(cards(3), raw)
@@ -123,8 +121,7 @@ contains
     end do
     raw%erodes_by_step = integer_of(card, 'ERODE') == 1
     raw%controls%dt_initial = real_of(card, 'DTINIT')
-    raw%controls%dt_scale = 0.9_wp
-    if (real_of(card, 'TSSFAC') > 0.0_wp) raw%controls%dt_scale = real_of(card, 'TSSFAC')
+    raw%controls%dt_scale = real_of(card, 'TSSFAC')
     raw%controls%length_rule = merge(length_by_diagonal, length_by_side, &
       integer_of(card, 'ISDO') == 1)
     raw%controls%mass_step = real_of(card, 'DT2MS')
@@ -160,7 +157,7 @@ contains
     integer :: k
 
     k = field_number(card%names, name)
-    if (card%i(k) /= 0 .or. abs(card%r(k)) > 0.0_wp) &
+    if (.not. card%blank(k) .and. (card%i(k) /= 0 .or. abs(card%r(k)) > 0.0_wp)) &
       raw%explicit_only = [raw%explicit_only, place_of(card, name)]
   end subroutine note_explicit
 

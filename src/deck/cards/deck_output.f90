@@ -37,10 +37,10 @@ contains
     case ('DATABASE_BINARY_D3PLOT')
       file = output_plot
     case ('DATABASE_BINARY_D3DUMP')
-      call take_cycles(deck, cursor, card, raw%controls%output%dump_cycles)
+      call take_cycles(deck, card, raw%controls%output%dump_cycles)
       return
     case ('DATABASE_BINARY_RUNRSF')
-      call take_cycles(deck, cursor, card, raw%controls%output%running_cycles)
+      call take_cycles(deck, card, raw%controls%output%running_cycles)
       return
     case default
       file = table_of_keyword(deck%blocks(i_block)%name)
@@ -59,9 +59,8 @@ contains
   end subroutine read_database
 
   !> Cycles between two restart files.
-  subroutine take_cycles(deck, cursor, card, cycles)
+  subroutine take_cycles(deck, card, cycles)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
     type(card_t), intent(inout) :: card
     integer, intent(out) :: cycles
 
@@ -71,7 +70,7 @@ contains
     given = real_of(card, 'CYCL')
     if (is_bad(card, 'CYCL')) return
     if (abs(given - anint(given)) > 0.0_wp) then
-      call report_field(deck, cursor, card, 'CYCL', 'is not a whole number of cycles')
+      call report_field(deck, card, 'CYCL', 'is not a whole number of cycles')
     else
       cycles = nint(given)
     end if
@@ -97,7 +96,7 @@ contains
       call next_card(deck, cursor, k, cards(k))
     end do
     call check_rest(deck, cursor)
-    if (integer_of(cards(1), 'SURFA') == 0) call report_field(deck, cursor, cards(1), 'SURFA', &
+    if (integer_of(cards(1), 'SURFA') == 0) call report_field(deck, cards(1), 'SURFA', &
       'is not a surface (more than 0: part set, less than 0: node set)')
     entry%places(1) = place_of(cards(1), 'SURFA')
     if (.not. is_bad(cards(1), 'SURFA')) entry%sides(1) = integer_of(cards(1), 'SURFA')

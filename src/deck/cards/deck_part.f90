@@ -21,9 +21,6 @@ module deck_part_m
   private
   public :: read_parts, read_sections, hourglass_form, hourglass_coefficient
 
-  !> Largest hourglass coefficient: it has no unit, and the stable step falls with it to none.
-  real(wp), parameter :: most_hourglass = 10.0_wp
-
 contains
 
   !> *PART: a heading and a card for each part. Sections and materials are known.
@@ -228,10 +225,7 @@ contains
 
     coefficient = 0.1_wp
     given = real_of(card, name)
-    if (given > most_hourglass) then
-      call report_field(deck, card, name, &
-        'is not an hourglass coefficient (at most 10; 0.05 to 0.15 are usual)')
-    else if (given > 0.0_wp) then
+    if (given > 0.0_wp) then
       coefficient = given
     else if (.not. is_blank(card, name) .and. .not. is_bad(card, name)) then
       call line_warning(deck, card%line, 'qh'//to_text(card%line), &

@@ -4,7 +4,6 @@ module deck_interference_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use contacts_m, only : contact_t
-  use curves_m, only : curve_t
   use model_m, only : model_t
   use units_m, only : in_units
   use deck_ids_m, only : a_curve

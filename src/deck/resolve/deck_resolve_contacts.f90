@@ -147,7 +147,7 @@ contains
     crosses = .false.
     n_side = merge(1, 2, entry%contact%is_self)
     do k = 1, n_side
-      call view_body(model, sides(k), views(k))
+      call view_body(model, sides(k), sides(3 - k), views(k))
       call find_crossing(model, sides(k), views(k), pair)
       if (pair(1) == 0) cycle
       crosses = .true.

@@ -31,7 +31,7 @@ module deck_schema_m
     'TERMINATION_NODE.STOP 1 (x), 2 (y) or 4 (contact)', &
     'TERMINATION_BODY.STOP 1 (x), 2 (y) or 4 (displacement)', &
     'TERMINATION_CONTACT.DOF 0 (both), 1 (x) or 2 (y)', &
-    'TSSFAC a scale of the step (above 0; blank and 0 mean 0.9)', &
+    'TSSFAC a scale of the step', &
     'LCTM a curve number', &
     'ISDO an element length rule (0 area over longest side, 1 area over longest diagonal)', &
     'ERODE 0 or 1 (1: elements whose step falls below DTMIN times the first step, or whose ' &
@@ -42,6 +42,8 @@ module deck_schema_m
     'DRFCTR a factor', &
     'IDRFLG 0 (relaxation where a curve asks for it), 1 (in any case) or -999 (in no case)', &
     'CONTROL_BULK_VISCOSITY.TYPE a kind of bulk viscosity that this version has (1 standard)', &
+    'QH an hourglass coefficient (0 to 10; 0.05 to 0.15 are usual)', &
+    'QM an hourglass coefficient (0 to 10; 0.05 to 0.15 are usual)', &
     'Q1 a coefficient of bulk viscosity (0 to 100; Q1 1.5 and Q2 0.06 are usual)', &
     'Q2 a coefficient of bulk viscosity (0 to 100; Q1 1.5 and Q2 0.06 are usual)', &
     'ECDT 0 (a warning where contact needs a smaller step), 1 (none) or 2 (a step stable with ' &

@@ -35,18 +35,18 @@ module deck_schema_tables_m
     'TERMINATION_CONTACT', &
     ' CID:i>=1 ACTIM:f>=0 DUR:f>=0 THRES:f>=0 DOF:i|0|1|2', &
     'CONTROL_TIMESTEP', &
-    ' DTINIT:f>=0 TSSFAC:f>=0 ISDO:i|0|1 TSLIMT:fw DT2MS:f LCTM:i>=0 ERODE:i|0|1 MS1ST:i|0|1', &
+    ' DTINIT:f>=0 TSSFAC:f=0.9>=0 ISDO:i|0|1 TSLIMT:fw DT2MS:f LCTM:i>=0 ERODE:i|0|1 MS1ST:i|0|1', &
     ' DT2MSF:fw DT2MSLC:iw IMSCL:iw -:x -:x RMSCL:fw EMSCL:fw IHDO:iw', &
     ' -:x IGADO:iw', &
     'CONTROL_DYNAMIC_RELAXATION', &
     ' NRCYCK:i=250>=1 DRTOL:f=0.001>0<1 DRFCTR:f=0.995>0<1 DRTERM:f>=0 TSSFDR:f>=0 IRELAL:ir' &
     //' EDTTL:fs=0.04 IDRFLG:i|0|1|-999', &
     'CONTROL_HOURGLASS', &
-    ' IHQ:i QH:f', &
+    ' IHQ:i QH:f>=0<=10', &
     'CONTROL_BULK_VISCOSITY', &
     ' Q1:f~1.5>=0<=100 Q2:f~0.06>=0<=100 TYPE:i=1|-1|0|1 BTYPE:iw TSTYPE:iw', &
     'CONTROL_CONTACT', &
-    ' SLSFAC:f>=0 RWPNAL:fs ISLCHK:is SHLTHK:is PENOPT:iw=1 THKCHG:is ORIEN:is ENMASS:iw', &
+    ' SLSFAC:f=0.1>=0 RWPNAL:fs ISLCHK:is SHLTHK:is PENOPT:iw=1 THKCHG:is ORIEN:is ENMASS:iw', &
     ' USRSTR:iw USRFRC:iw NSBCS:is INTERM:is XPENE:fs SSTHK:is ECDT:i|0|1|2 TIEDPRJ:is', &
     ' SFRIC:f>=0 DFRIC:f>=0 EDC:f>=0 VFC:f>=0 TH:fs TH_SF:fs PEN_SF:fs', &
     ' IGNORE:iw FRCENG:is SKIPRWG:is OUTSEG:is SPOTSTP:is SPOTDEL:is SPOTHIN:fs', &
@@ -73,7 +73,7 @@ module deck_schema_tables_m
     'CONTROL_IMPLICIT_SPECTRAL_RADIUS', &
     ' RHO:f>=0<=1', &
     'CONTROL_IMPLICIT_SOLUTION', &
-    ' NSOLVR:i=12|0|1|12 ILIMIT:is MAXREF:i=15>=0 DCTOL:f>=0 ECTOL:f>=0 RCTOL:f=1e10>=0' &
+    ' NSOLVR:i=12|0|1|12 ILIMIT:is MAXREF:i=15>=0 DCTOL:f>=0 ECTOL:f=1e-20>=0 RCTOL:f=1e10>=0' &
     //' LSTOL:f=0.9>=0 ABSTOL:fw', &
     ' DNORM:is DIVERG:is ISTIF:is NLPRINT:is NLNORM:fs D3ITCTL:iw CPCHK:is', &
     ' DMTOL:fw EMTOL:fw RMTOL:fw -:x NTTOL:fw NRTOL:fw RTTOL:fw RRTOL:fw', &
@@ -102,15 +102,15 @@ module deck_schema_tables_m
     ' SECID:i>=1 ELFORM:i=2 SHRF:fs NIP:i|0|1|2|4 PROPT:fs QR_IRID:is ICOMP:ir SETYP:ir=1', &
     ' T1:fs T2:fs T3:fs T4:fs NLOC:fs MAREA:fs IDOF:fs EDGSET:is', &
     'HOURGLASS t', &
-    ' HGID:i>=1 IHQ:i QM:f>=0 IBQ:is Q1:f>=0<=100 Q2:f>=0<=100 QB_VDC:fs QW:fs', &
+    ' HGID:i>=1 IHQ:i QM:f>=0<=10 IBQ:is Q1:f>=0<=100 Q2:f>=0<=100 QB_VDC:fs QW:fs', &
     'MAT_ELASTIC t', &
     ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 DA:fw DB:fw', &
     'MAT_PLASTIC_KINEMATIC t', &
     ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 SIGY:f>0 ETAN:f>=0 BETA:f>=0<=1', &
     ' SRC:fr SRP:fr FS:f>=0 VP:fw', &
     'MAT_PIECEWISE_LINEAR_PLASTICITY t', &
-    ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 SIGY:f>=0 ETAN:f>=0' &
-    //' FAIL:f>=0 TDEL:fr', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 SIGY:f>=0 ETAN:f>=0 FAIL:f>=0' &
+    //' TDEL:fr', &
     ' C:f>=0 P:f>=0 LCSS:i>=0 LCSR:i>=0 VP:f|0|1', &
     ' EPS1:f EPS2:f EPS3:f EPS4:f EPS5:f EPS6:f EPS7:f EPS8:f', &
     ' ES1:f ES2:f ES3:f ES4:f ES5:f ES6:f ES7:f ES8:f', &
@@ -123,8 +123,8 @@ module deck_schema_tables_m
     ' ES1:f ES2:f ES3:f ES4:f ES5:f ES6:f ES7:f ES8:f', &
     ' ES9:f ES10:f ES11:f ES12:f ES13:f ES14:f ES15:f ES16:f', &
     'MAT_JOHNSON_COOK t', &
-    ' MID:i>=1 RO:f>=1e-30<=1e30 G:f>=1e-30<=1e30 E:f>=0<=1e30 PR:f>-1<0.5 DTF:fr' &
-    //' VP:f|0|1 RATEOP:fr', &
+    ' MID:i>=1 RO:f>=1e-30<=1e30 G:f>=1e-30<=1e30 E:f>=0<=1e30 PR:f>-1<0.5 DTF:fr VP:f|0|1' &
+    //' RATEOP:fr', &
     ' A:f>0 B:f>=0 N:f>=0 C:f>=0 M:f TM:f TR:f EPSO:f>0', &
     ' CP:f>=0 PC:f<=0 SPALL:f=2|1|2|3 IT:fs D1:f D2:f D3:f D4:f', &
     ' D5:f C2_P_XNP_D:fr EROD:f EFMIN:f=1e-6>=0 NUMINT:fr K:fr EPS1:fr', &
@@ -150,8 +150,8 @@ module deck_schema_tables_m
     //' C4:f>=-100<=100 C5:f>=-100<=100 C6:f>=-100<=100', &
     ' E0:f>=-1e30<=1e30 V0:f=1>=1<=1', &
     'EOS_GRUNEISEN t', &
-    ' EOSID:i>=1 C:f>0<=1e12 S1:f>=-100<=100 S2:f>=-100<=100 S3:f>=-100<=100' &
-    //' GAMAO:f>=0<=100 A:f>=-100<=100 E0:f>=-1e30<=1e30', &
+    ' EOSID:i>=1 C:f>0<=1e12 S1:f>=-100<=100 S2:f>=-100<=100 S3:f>=-100<=100 GAMAO:f>=0<=100' &
+    //' A:f>=-100<=100 E0:f>=-1e30<=1e30', &
     ' V0:f=1>=1<=1 -:x LCID:ir', &
     'MAT_RIGID t', &
     ' MID:i>=1 RO:f>=1e-30<=1e30 E:f>=1e-30<=1e30 PR:f>-1<0.5 N:fr COUPLE:fr M:fr ALIAS:ar', &
