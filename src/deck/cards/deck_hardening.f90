@@ -13,8 +13,7 @@ module deck_hardening_m
   use deck_curves_m, only : table_t
   use deck_ids_m, only : a_curve, a_table, index_of
   use deck_johnson_cook_m, only : take_failure, take_cutoff
-  use deck_maps_m, only : find_id
-  use deck_values_m, only : integer_of, real_of, is_bad
+  use deck_values_m, only : integer_of, real_of, is_bad, find_id
   implicit none
   private
   public :: take_piecewise, take_hydro, check_tangent_modulus, plastic_modulus

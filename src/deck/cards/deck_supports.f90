@@ -13,8 +13,7 @@ module deck_supports_m
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, an_element, a_part, a_curve, a_node_set, a_system
   use deck_lines_m, only : deck_t, place_t, line_warning, line_error
-  use deck_maps_m, only : find_id
-  use deck_values_m, only : integer_of, real_of, has_field, take_life
+  use deck_values_m, only : integer_of, real_of, has_field, take_life, find_id
   implicit none
   private
   public :: read_supports, read_motions, read_common_motions, card_nodes, mark_axis, mark_massive

@@ -9,8 +9,8 @@ module deck_interference_m
   use deck_ids_m, only : a_curve
   use deck_lines_m, only : deck_t, line_warning
   use deck_cards_m, only : reject_field
-  use deck_maps_m, only : resolve_id
   use deck_raw_m, only : raw_contact_t
+  use deck_values_m, only : resolve_id
   implicit none
   private
   public :: resolve_interference
