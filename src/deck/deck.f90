@@ -21,11 +21,10 @@ module deck_m
   use deck_parameters_m, only : read_parameters
   use deck_overrides_m, only : read_words, edit_controls, check_words
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
-  use deck_raw_m, only : raw_t, start_raw, reserve_lists, trim_lists
-  use deck_mesh_m, only : read_nodes, read_elements, read_beams, read_set, read_history_ids
-  use deck_control_m, only : read_control, check_step, read_ends
+  use deck_raw_m, only : raw_t, start_raw, trim_lists
+  use deck_control_m, only : read_control, check_step
   use deck_empty_m, only : check_empty
-  use deck_output_m, only : read_database, read_force_groups, read_cross_sections, read_transducer
+  use deck_output_m, only : read_database, read_transducer
   use deck_contact_m, only : read_contact
   use deck_friction_m, only : warn_of_unused
   use deck_resolve_m, only : resolve_model
@@ -97,7 +96,6 @@ contains
     logical :: is_empty
 
     allocate (raw, deck%words(0))
-    call start_raw(raw)
     call know_blocks(deck, raw, known)
     if (deck%n_block == 0) then
       call emit_errors(deck%report, request%path, error)
@@ -107,8 +105,8 @@ contains
     call read_parameters(deck)
     call edit_controls(deck)
     known = [known, (known_honoured, i=size(known) + 1, deck%n_block)]
+    call start_raw(deck, raw)
     raw%controls%title = ''
-    call reserve_lists(deck, raw)
     do i = 1, deck%n_block
       if (known(i) /= known_honoured) cycle
       call check_empty(deck, i, is_empty)
@@ -241,16 +239,6 @@ contains
     select case (deck%blocks(i)%name)
     case ('TITLE')
       call read_title(deck, i, raw)
-    case ('NODE')
-      call read_nodes(deck, i, raw)
-    case ('ELEMENT_SHELL')
-      call read_elements(deck, i, raw)
-    case ('ELEMENT_BEAM')
-      call read_beams(deck, i, raw)
-    case ('SET_NODE_LIST', 'SET_NODE_LIST_GENERATE', 'SET_NODE_GENERAL', 'SET_PART_LIST', &
-        'SET_PART_LIST_GENERATE', 'SET_SHELL_LIST', 'SET_SHELL_LIST_GENERATE', 'SET_SEGMENT', &
-        'SET_2D_SEGMENT', 'SET_2D_SEGMENT_SET')
-      call read_set(deck, i, raw)
     case default
       call read_family(deck, i, kinds, raw)
     end select
@@ -269,41 +257,18 @@ contains
     case ('CONTROL_')
       call read_control(deck, i, raw)
     case ('DATABASE_')
-      call read_output(deck, i, raw)
+      associate (name => deck%blocks(i)%name)
+        if (all([index(name, '_HISTORY'), index(name, '_NODAL'), index(name, '_CROSS')] == 0)) &
+          call read_database(deck, i, raw)
+      end associate
     case ('CONTACT_')
       if (deck%blocks(i)%name == 'CONTACT_2D_FORCE_TRANSDUCER') then
         call read_transducer(deck, i, raw)
       else
         call read_contact(deck, i, kinds, raw)
       end if
-    case ('TERMINATION_')
-      call read_ends(deck, i, raw)
     end select
   end subroutine read_family
-
-  !> What is written, of which nodes and elements, and how often.
-  subroutine read_output(deck, i, raw)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i
-    type(raw_t), intent(inout) :: raw
-
-    select case (deck%blocks(i)%name)
-    case ('DATABASE_HISTORY_NODE', 'DATABASE_HISTORY_NODE_ID')
-      call read_history_ids(deck, i, raw%history_nodes)
-    case ('DATABASE_HISTORY_NODE_SET')
-      call read_history_ids(deck, i, raw%history_node_sets)
-    case ('DATABASE_HISTORY_SHELL')
-      call read_history_ids(deck, i, raw%history_shells)
-    case ('DATABASE_HISTORY_SHELL_SET')
-      call read_history_ids(deck, i, raw%history_shell_sets)
-    case ('DATABASE_NODAL_FORCE_GROUP')
-      call read_force_groups(deck, i, raw)
-    case ('DATABASE_CROSS_SECTION_SET')
-      call read_cross_sections(deck, i, raw)
-    case default
-      call read_database(deck, i, raw)
-    end select
-  end subroutine read_output
 
   !> *TITLE: the first line that is not blank.
   subroutine read_title(deck, i, raw)

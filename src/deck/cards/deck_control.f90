@@ -13,14 +13,12 @@ module deck_control_m
     warn_of_field, next_row
   use deck_values_m, only : integer_of, real_of, place_of, is_blank
   use deck_implicit_m, only : take_implicit, take_dynamics, take_solution, take_automatic
-  use deck_raw_m, only : raw_t, raw_end_t
+  use deck_raw_m, only : raw_t
   use deck_friction_m, only : take_default_friction
   use deck_part_m, only : hourglass_form, hourglass_coefficient
-  use end_conditions_m, only : end_condition_t, end_node_place, end_node_touch, end_body_place, &
-    end_body_way, end_contact
   implicit none
   private
-  public :: read_control, check_step, read_ends
+  public :: read_control, check_step
 
 contains
 
@@ -205,70 +203,5 @@ contains
     end do
     if (all(values > 0.0_wp)) call set_force(values, raw%controls%units)
   end subroutine take_units
-
-  !> The rows of one keyword.
-  subroutine read_ends(deck, i_block, raw)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
-    type(cursor_t) :: cursor
-    type(card_t) :: card
-    type(raw_end_t) :: entry
-    logical :: found
-
-    call open_cursor(deck, i_block, cursor)
-    do
-      call next_row(deck, cursor, 1, card, found)
-      if (.not. found) exit
-      entry = raw_end_t()
-      select case (deck%blocks(i_block)%name)
-      case ('TERMINATION_CONTACT')
-        entry%id_place = place_of(card, 'CID')
-        entry%condition = end_condition_t(kind=end_contact, id=integer_of(card, 'CID'), &
-          direction=integer_of(card, 'DOF'), start=real_of(card, 'ACTIM'), &
-          duration=real_of(card, 'DUR'), threshold=real_of(card, 'THRES'))
-      case ('TERMINATION_NODE')
-        call take_bounds(deck, card, 'NID', end_node_place, end_node_touch, entry)
-      case default
-        call take_bounds(deck, card, 'PID', end_body_place, end_body_way, entry)
-      end select
-      if (any(card%bad)) cycle
-      raw%n_end = raw%n_end + 1
-      raw%ends(raw%n_end) = entry
-    end do
-  end subroutine read_ends
-
-  !> Bounds of a node or a rigid body. A bound that is blank, of bodies also 0, does not count.
-  subroutine take_bounds(deck, card, name, along, other, entry)
-    type(deck_t), intent(inout) :: deck
-    type(card_t), intent(inout) :: card
-    character(*), intent(in) :: name         !! of the field of what is bounded
-    integer, intent(in) :: along, other      !! kind of STOP 1 and 2, of STOP 4
-    type(raw_end_t), intent(inout) :: entry
-    logical :: is_open(2)
-
-    entry%id_place = place_of(card, name)
-    entry%condition%id = integer_of(card, name)
-    select case (integer_of(card, 'STOP'))
-    case (1, 2)
-      entry%condition%kind = along
-      entry%condition%direction = integer_of(card, 'STOP')
-    case (4)
-      entry%condition%kind = other
-    case default
-      return
-    end select
-    if (other == end_node_touch .and. entry%condition%kind == other) return
-    is_open = [is_blank(card, 'MAXC'), is_blank(card, 'MINC')]
-    if (along == end_body_place) is_open = is_open .or. [abs(real_of(card, 'MAXC')), &
-      abs(real_of(card, 'MINC'))] <= 0.0_wp
-    if (entry%condition%kind == end_body_way) is_open(2) = .true.
-    if (all(is_open)) call report_field(deck, card, 'MAXC', 'is no bound, nor is MINC: ' &
-      //'nothing would end the run')
-    if (.not. is_open(1)) entry%condition%most = real_of(card, 'MAXC')
-    if (.not. is_open(2)) entry%condition%least = real_of(card, 'MINC')
-    if (entry%condition%least >= entry%condition%most) call report_field(deck, card, &
-      'MINC', 'is not below MAXC')
-  end subroutine take_bounds
 
 end module deck_control_m

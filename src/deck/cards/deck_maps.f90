@@ -11,6 +11,11 @@ module deck_maps_m
   private
   public :: map_kind, find_id, resolve_id, refuse_again, lose
 
+  !> Index of what a field refers to.
+  interface find_id
+    module procedure find_by_name, find_by_position
+  end interface find_id
+
 contains
 
   !> The map of one kind, with an error for each id that comes again.
@@ -48,21 +53,30 @@ contains
     deck%maps(kinds)%incomplete = .true.
   end subroutine lose
 
-  !> Index of what a field of a card just read refers to, 0 with an error of the field where there
-  !> is none.
-  subroutine find_id(deck, kind, card, name, found)
+  !> Index of what a field of a card just read refers to, by the field's name; 0 with an error of
+  !> the field where there is none.
+  subroutine find_by_name(deck, kind, card, name, found)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: kind
     type(card_t), intent(inout) :: card
     character(*), intent(in) :: name
     integer, intent(out) :: found
-    integer :: k
 
-    k = field_number(card%names, name)
+    call find_by_position(deck, kind, card, field_number(card%names, name), found)
+  end subroutine find_by_name
+
+  !> The same by the position of the field.
+  subroutine find_by_position(deck, kind, card, k, found)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: kind
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+    integer, intent(out) :: found
+
     found = index_of(deck%maps(kind), card%i(k))
     if (found == 0 .and. .not. deck%maps(kind)%incomplete) call report_field(deck, card, k, &
       'is no '//trim(kind_names(kind))//' of this deck')
-  end subroutine find_id
+  end subroutine find_by_position
 
   !> As `find_id`, of a card that was read some time ago.
   subroutine resolve_id(deck, kind, id, place, found, hint)

@@ -5,15 +5,14 @@ module deck_output_m
   use kinds_m, only : wp
   use deck_lines_m, only : deck_t
   use deck_fields_m, only : card_t
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, next_row, row_comes, &
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, &
     check_rest, report_field
   use deck_values_m, only : integer_of, real_of, place_of, is_bad
-  use deck_raw_m, only : raw_t, raw_section_t, history_t, output_plot, raw_contact_t
-  use deck_raw_sets_m, only : append_member
+  use deck_raw_m, only : raw_t, history_t, output_plot, raw_contact_t
   use history_tables_m, only : table_of_keyword
   implicit none
   private
-  public :: read_database, read_force_groups, read_cross_sections, read_transducer, settle_number
+  public :: read_database, read_transducer, settle_number
 
 contains
 
@@ -58,52 +57,6 @@ contains
     end if
     raw%outputs(file) = history
   end subroutine read_database
-
-  !> *DATABASE_NODAL_FORCE_GROUP: a node set in each row.
-  subroutine read_force_groups(deck, i_block, raw)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
-    type(cursor_t) :: cursor
-    type(card_t) :: card
-    integer :: id
-    logical :: found
-
-    call open_cursor(deck, i_block, cursor)
-    do
-      call next_row(deck, cursor, 1, card, found)
-      if (.not. found) exit
-      id = integer_of(card, 'NSID')
-      if (id > 0) call append_member(raw%force_groups, id, card%line, 1)
-    end do
-  end subroutine read_force_groups
-
-  !> *DATABASE_CROSS_SECTION_SET: nodes and shells in each row, behind a heading each where the
-  !> keyword has one.
-  subroutine read_cross_sections(deck, i_block, raw)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
-    type(cursor_t) :: cursor
-    type(card_t) :: card
-    type(raw_section_t) :: entry
-    logical :: found
-
-    call open_cursor(deck, i_block, cursor)
-    call row_comes(deck, cursor, found)
-    do while (found)
-      entry = raw_section_t(line=cursor%line)
-      if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%id, entry%title)
-      if (entry%id == 0) entry%id = raw%n_cut + 1
-      call next_card(deck, cursor, 1, card)
-      entry%line = card%line
-      entry%nodes = max(integer_of(card, 'NSID'), 0)
-      entry%shells = max(integer_of(card, 'SSID'), 0)
-      raw%n_cut = raw%n_cut + 1
-      raw%cuts(raw%n_cut) = entry
-      call row_comes(deck, cursor, found)
-    end do
-  end subroutine read_cross_sections
 
   !> Cycles between two restart files.
   subroutine take_cycles(deck, cursor, card, cycles)

@@ -72,6 +72,14 @@ module deck_schema_m
     'VDC a damping in per cent of critical', &
     'IPF 0 or 1 (the strict rule of type 5)', &
     'FREQ a number of cycles between two searches', &
+    'NODE.NID a node number', &
+    'NODE.X a coordinate', &
+    'NODE.Y a coordinate', &
+    'TC a boundary code (0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)', &
+    'ELEMENT_SHELL.EID an element number', &
+    'ELEMENT_SHELL.PID a part number', &
+    'ELEMENT_BEAM.PID a part number', &
+    'SID a set number', &
     'RO a density', &
     'E a Young''s modulus', &
     'MAT_MOONEY-RIVLIN.PR a Poisson''s ratio of this law (more than 0 and less than 0.5; 0.49 ' &

@@ -86,11 +86,11 @@ module deck_schema_tables_m
   !> Mesh, parts, materials, curves, sets.
   character(131), parameter :: table_mesh(*) = [character(131) :: &
     'NODE', &
-    ' NID:i8 X:f16 Y:f16 Z:f16 TC:i8 RC:is8', &
+    ' NID:i8>=1 X:f16>=-1e30<=1e30 Y:f16>=-1e30<=1e30 Z:f16 TC:i8>=0<=7 RC:is8', &
     'ELEMENT_SHELL', &
-    ' EID:i8 PID:i8 N1:i8 N2:i8 N3:i8 N4:i8 N5:ir8 N6:ir8 N7:ir8 N8:ir8', &
+    ' EID:i8>=1 PID:i8>=1 N1:i8>=1 N2:i8>=1 N3:i8>=1 N4:i8>=0 N5:ir8 N6:ir8 N7:ir8 N8:ir8', &
     'ELEMENT_BEAM', &
-    ' EID:is8 PID:i8 N1:i8 N2:i8 N3:is8 RT1:is8 RR1:is8 RT2:is8 RR2:is8 LOCAL:is8', &
+    ' EID:is8 PID:i8>=1 N1:i8>=1 N2:i8>=1 N3:is8 RT1:is8 RR1:is8 RT2:is8 RR2:is8 LOCAL:is8', &
     'ELEMENT_MASS', &
     ' EID:is8 NID:i8>=1 MASS:f16>=0 PID:is8', &
     'ELEMENT_MASS_NODE_SET', &
@@ -167,34 +167,34 @@ module deck_schema_tables_m
     ' TBID:i>=1 SFA:f=1>=0 OFFA:f', &
     ' VALUE:f20', &
     'SET_NODE_LIST t', &
-    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
+    ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
     ' NID1:i NID2:i NID3:i NID4:i NID5:i NID6:i NID7:i NID8:i', &
     'SET_NODE_LIST_GENERATE t', &
-    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
+    ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
     ' B1BEG:i B1END:i B2BEG:i B2END:i B3BEG:i B3END:i B4BEG:i B4END:i', &
     'SET_NODE_GENERAL t', &
-    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
+    ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
     ' OPTION:a E1:i E2:i E3:i E4:i E5:i E6:i E7:i', &
     'SET_PART_LIST t', &
-    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as', &
+    ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as', &
     ' PID1:i PID2:i PID3:i PID4:i PID5:i PID6:i PID7:i PID8:i', &
     'SET_PART_LIST_GENERATE t', &
-    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as', &
+    ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as', &
     ' B1BEG:i B1END:i B2BEG:i B2END:i B3BEG:i B3END:i B4BEG:i B4END:i', &
     'SET_SHELL_LIST t', &
-    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs', &
+    ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs', &
     ' EID1:i EID2:i EID3:i EID4:i EID5:i EID6:i EID7:i EID8:i', &
     'SET_SHELL_LIST_GENERATE t', &
-    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs', &
+    ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs', &
     ' B1BEG:i B1END:i B2BEG:i B2END:i B3BEG:i B3END:i B4BEG:i B4END:i', &
     'SET_SEGMENT t', &
-    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
-    ' N1:i N2:i N3:i N4:i A1:fs A2:fs A3:fs A4:fs', &
+    ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs SOLVER:as ITS:as', &
+    ' N1:i>=1 N2:i>=1 N3:i N4:i A1:fs A2:fs A3:fs A4:fs', &
     'SET_2D_SEGMENT t', &
-    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs', &
+    ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs', &
     ' PID:i', &
     'SET_2D_SEGMENT_SET t', &
-    ' SID:i DA1:fs DA2:fs DA3:fs DA4:fs', &
+    ' SID:i>=1 DA1:fs DA2:fs DA3:fs DA4:fs', &
     ' PSID:i']
 
   !> Constraints, loads, initial values.
