@@ -32,7 +32,7 @@ module arguments_m
     character(:), allocatable :: deck       !! path of the deck; with a restart, of what changes, or
                                             !! unset
     character(:), allocatable :: restart    !! path of the restart file to go on from, or unset
-    character(:), allocatable :: directory  !! where results go
+    character(:), allocatable :: directory  !! where results go; of a check perhaps unset
     character(:), allocatable :: job        !! stem of the result files
     character(:), allocatable :: line       !! all arguments in one line, for the record
     integer :: n_thread = 1                 !! at most
@@ -90,7 +90,7 @@ contains
       if (.not. allocated(arguments%directory)) arguments%directory = folder_of(arguments%restart)
       return
     end if
-    if (.not. allocated(arguments%directory)) arguments%directory = '.'
+    if (.not. (allocated(arguments%directory) .or. arguments%check)) arguments%directory = '.'
     if (.not. allocated(arguments%job)) arguments%job = file_stem(arguments%deck)
   end subroutine read_arguments
 
@@ -351,8 +351,9 @@ contains
       '       slideline r=FILE [i=CHANGES] [d=DIR] [ncpu=N] [endtim=T]   go on from a '// &
         'restart file'//n// &
       '       slideline DECK ...     the same'//n// &
-      '       slideline check DECK [--json] [OVERRIDES]   all errors and warnings, without '// &
-        'a run'//n//n// &
+      '       slideline check DECK [--json] [d=DIR] [OVERRIDES]   all errors and warnings, '// &
+        'without a run;'//n// &
+      '                     d= writes the state at time zero'//n//n// &
       '  i=DECK        LS-DYNA style keyword deck'//n// &
       '  r=FILE        restart file (JOB.dump01.h5, JOB.runrsf.h5): the run goes on from '// &
         'there, in its'//n// &

@@ -1,21 +1,26 @@
 ! SPDX-License-Identifier: MIT
 !> `slideline check`: all that is wrong or strange in a deck, and what a run would say at its start,
-!> without a run and without a file.
+!> without a run. With d= the state at time zero and the model are written, for programs that draw
+!> them; else no file is.
 module check_m
-  use contacts_m, only : n_told
   use arguments_m, only : arguments_t
+  use build_info_m, only : version
   use contact_dispatch_m, only : contact_kinds
-  use deck_m, only : deck_request_t, read_deck
+  use contacts_m, only : n_told
+  use controls_m, only : is_asked
   use deck_findings_m, only : add_finding, json_text
+  use deck_m, only : deck_request_t, read_deck
   use deck_report_m, only : spot_t
   use errors_m, only : error_t, raise, status_files
   use explicit_m, only : advance_explicit
+  use files_m, only : join_path, make_directory
   use implicit_m, only : advance_implicit
   use log_m, only : log_t, forget_waiting, to_text
-  use model_json_m, only : model_json
   use model_m, only : model_t
+  use model_tables_m, only : write_model
   use monitor_m, only : monitor_t
   use renumber_m, only : renumber_model
+  use results_file_m, only : open_results, append_state, finish_results, publish, run_info_t
   use screen_m, only : show
   use snapshot_filling_m, only : start_snapshot
   use start_m, only : start_state
@@ -35,24 +40,24 @@ contains
     type(deck_request_t) :: request
     type(model_t) :: model
     type(monitor_t) :: monitor
-    character(:), allocatable :: effective, findings, told
+    type(run_info_t) :: info
+    character(:), allocatable :: findings
 
     request%path = arguments%deck
     request%overrides = arguments%overrides
-    call read_deck(request, contact_kinds, monitor%log, model, effective, error, findings)
+    call read_deck(request, contact_kinds, monitor%log, model, info%effective_deck, error, findings)
     if (allocated(error)) then
       if (index(findings, '"severity": "error"') == 0) &
         call add_message('error', error%message, findings)
     else
       ! The deck's warnings are findings already.
       call forget_waiting(monitor%log)
-      if (arguments%json) told = model_json(model)
-      call start_run(model, monitor, error)
+      call start_run(arguments, info, model, monitor, error)
       call add_warnings(monitor%log, findings)
       if (allocated(error)) call add_message('error', error%message, findings)
     end if
     if (arguments%json) then
-      call show(findings_text(arguments%deck, findings, allocated(error), told), failure)
+      call show(findings_text(arguments%deck, findings, allocated(error)), failure)
       ! Who asked for these lines has not got them: that counts more than what they would have said.
       if (allocated(failure)) call raise(error, failure%message, status_files)
     else if (.not. allocated(error)) then
@@ -62,26 +67,63 @@ contains
     end if
   end subroutine check_deck
 
-  !> The state at time zero: forces, step or acceleration, and what the run says of them.
-  subroutine start_run(model, monitor, error)
+  !> The state at time zero: forces, step or acceleration, and what the run says of them. A model
+  !> that can not start is written all the same, undeformed.
+  subroutine start_run(arguments, info, model, monitor, error)
+    type(arguments_t), intent(in) :: arguments
+    type(run_info_t), intent(inout) :: info
     type(model_t), intent(inout) :: model
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: failure
     type(state_t) :: state
     character(:), allocatable :: reason
+    logical :: has_history
 
-    call renumber_model(model)
-    call start_state(model, monitor%log, state, error)
-    if (allocated(error)) return
     monitor%only_checks = .true.
     monitor%clock%is_on = .false.
-    call start_snapshot(model, size(state%elements%history) > 0, monitor%snapshot)
-    if (model%controls%implicit%is_on) then
-      call advance_implicit(model, state, monitor, reason, error)
-    else
-      call advance_explicit(model, 1, state, monitor, reason, error)
+    monitor%progress%is_quiet = .true.
+    monitor%has_plot = allocated(arguments%directory)
+    if (monitor%has_plot .and. .not. is_asked(model%controls%output%plot)) &
+      model%controls%output%plot%dt = model%controls%end_time
+    call renumber_model(model)
+    if (monitor%has_plot) call open_start(arguments, info, model, monitor, failure)
+    call start_state(model, monitor%log, state, error)
+    has_history = .false.
+    if (allocated(state%elements%history)) has_history = size(state%elements%history) > 0
+    call start_snapshot(model, has_history, monitor%snapshot)
+    if (.not. allocated(error)) then
+      if (model%controls%implicit%is_on) then
+        call advance_implicit(model, state, monitor, reason, error)
+      else
+        call advance_explicit(model, 1, state, monitor, reason, error)
+      end if
     end if
+    if (monitor%results%n_state == 0 .and. .not. allocated(failure)) &
+      call append_state(monitor%results, model, monitor%snapshot, failure)
+    if (.not. allocated(failure)) &
+      call finish_results(monitor%results, monitor%histories, failure)
+    if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
   end subroutine start_run
+
+  !> The file of the state at time zero, `<job>.start.vtkhdf`, with the model in it.
+  subroutine open_start(arguments, info, model, monitor, error)
+    type(arguments_t), intent(in) :: arguments
+    type(run_info_t), intent(inout) :: info
+    type(model_t), intent(in) :: model
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(out) :: error
+
+    info%deck = arguments%deck(index(arguments%deck, '/', back=.true.) + 1:)
+    if (allocated(model%controls%title)) info%title = model%controls%title
+    info%version = version
+    info%options = arguments%line
+    call make_directory(arguments%directory, error)
+    if (.not. allocated(error)) call open_results(monitor%results, &
+      join_path(arguments%directory, arguments%job//'.start.vtkhdf'), model, info, .false., error)
+    call write_model(monitor%results%id, model, error)
+    call publish(monitor%results, error)
+  end subroutine open_start
 
   !> The warnings that wait in a log.
   subroutine add_warnings(log, findings)
@@ -119,20 +161,17 @@ contains
     call add_finding(severity, spot, findings)
   end subroutine add_message
 
-  !> One JSON object: the findings and, where the deck could be read, its model.
-  pure function findings_text(path, findings, refused, told) result(text)
+  !> One JSON object with the findings.
+  pure function findings_text(path, findings, refused) result(text)
     character(*), intent(in) :: path, findings
     logical, intent(in) :: refused
-    character(:), allocatable, intent(in) :: told
     character(:), allocatable :: text
     character(1), parameter :: n = new_line('a')
 
     text = '{'//n//'  "deck": '//json_text(path)//','//n//'  "accepted": ' &
       //trim(merge('false', 'true ', refused))//','//n//'  "findings": ['//n
     if (len(findings) > 0) text = text//findings//n
-    text = text//'  ]'
-    if (allocated(told)) text = text//','//n//'  "model": '//told
-    text = text//n//'}'
+    text = text//'  ]'//n//'}'
   end function findings_text
 
 end module check_m

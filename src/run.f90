@@ -6,7 +6,7 @@ module run_m
   use controls_m, only : is_asked
   use arguments_m, only : arguments_t, file_stem, timing_by_interface, timing_off
   use build_info_m, only : version, build_type, compiler, flags
-  use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
+  use checksum_m, only : add_bytes, checksum_text
   use clock_m, only : lap, start_clock, look_at_clock, split_contact, phase_input, phase_output
   use contact_dispatch_m, only : contact_kinds
   use deck_m, only : deck_request_t, read_deck
@@ -15,18 +15,18 @@ module run_m
   use implicit_m, only : advance_implicit
   use files_m, only : make_directory, remove_file, join_path, unfinished
   use history_file_m, only : close_histories
-  use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
+  use text_files_m, only : write_whole
   use go_on_m, only : take_up_deck
   use heap_m, only : give_back_memory
-  use inside_answers_m, only : answers_t
+  use others_memory_m, only : answers_t, others_t
+  use kinds_m, only : long
   use log_m, only : open_log, close_log, write_log, warn, to_text
+  use memory_m, only : processor_name
   use model_m, only : model_t
-  use others_memory_m, only : others_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
-  use processor_m, only : processor_name
   use progress_m, only : show_end
-  use rank_memory_m, only : forget_others
   use rank_model_m, only : hand_model, hand_others
+  use rank_shares_m, only : forget_others
   use ranks_m, only : ranks_t, share_error
   use relaxation_m, only : relax, leave_relaxation
   use renumber_m, only : renumber_model, forget_start
@@ -37,7 +37,7 @@ module run_m
     take_up_outputs
   use result_names_m, only : check_names
   use results_file_m, only : run_info_t
-  use sense_switch_m, only : forget_switch
+  use requests_m, only : switch_path
   use signals_m, only : catch_stops, limit_processor
   use source_version_m, only : source_version
   use start_m, only : start_state
@@ -120,27 +120,27 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(deck_request_t) :: request
 
-    call make_request(arguments, monitor, request, error)
-    if (allocated(error)) return
+    request%overrides = arguments%overrides
+    if (allocated(arguments%restart)) then
+      call take_up_deck(arguments, program_text(), monitor, request, error)
+      if (allocated(error)) return
+    else
+      request%path = arguments%deck
+      monitor%restarts%deck = arguments%deck(index(arguments%deck, '/', back=.true.) + 1:)
+    end if
     call read_deck(request, contact_kinds, monitor%log, model, effective, error)
-    if (.not. allocated(error)) call refuse_several(model, monitor%ranks, error)
     if (allocated(error)) return
+    if (monitor%ranks%n > 1 .and. model%controls%implicit%is_on) then
+      call raise(error, 'the deck asks for the implicit method (*CONTROL_IMPLICIT_GENERAL) and ' &
+        //'the command for '//to_text(monitor%ranks%n)//' processes: implicit runs have one, ' &
+        //'with threads (ncpu=)', status_input)
+      return
+    end if
     call move_alloc(request%files, monitor%restarts%inputs)
     if (allocated(request%text)) deallocate (request%text)
     if (arguments%no_dump) model%controls%output%dump_cycles = -1
     call renumber_model(model)
   end subroutine read_model
-
-  !> Several processes share explicit runs alone.
-  subroutine refuse_several(model, ranks, error)
-    type(model_t), intent(in) :: model
-    type(ranks_t), intent(in) :: ranks
-    type(error_t), allocatable, intent(inout) :: error
-
-    if (ranks%n > 1 .and. model%controls%implicit%is_on) call raise(error, 'the deck asks for ' &
-      //'the implicit method (*CONTROL_IMPLICIT_GENERAL) and the command for '//to_text(ranks%n) &
-      //' processes: implicit runs have one, with threads (ncpu=)', status_input)
-  end subroutine refuse_several
 
   !> The folder of the results and the log in it, which no other run may have.
   subroutine claim_folder(arguments, prefix, keeps_files, monitor, error)
@@ -207,22 +207,6 @@ contains
     end associate
   end subroutine make_own_state
 
-  !> What the deck layer has to know of the command line and of a restart file.
-  subroutine make_request(arguments, monitor, request, error)
-    type(arguments_t), intent(inout) :: arguments
-    type(monitor_t), intent(inout) :: monitor
-    type(deck_request_t), intent(out) :: request
-    type(error_t), allocatable, intent(out) :: error
-
-    request%overrides = arguments%overrides
-    if (allocated(arguments%restart)) then
-      call take_up_deck(arguments, program_text(), monitor, request, error)
-    else
-      request%path = arguments%deck
-      monitor%restarts%deck = arguments%deck(index(arguments%deck, '/', back=.true.) + 1:)
-    end if
-  end subroutine make_request
-
   !> Version and build of the program.
   pure function program_text() result(text)
     character(:), allocatable :: text
@@ -260,7 +244,7 @@ contains
     logical :: relaxes
 
     if (monitor%ranks%mine == 0) &
-      call write_deck(arguments, prefix, info%effective_deck, monitor, error)
+      call write_deck(arguments, prefix, info%effective_deck, monitor%restarts, error)
     if (.not. allocated(error)) then
       if (monitor%ranks%mine == 0) call describe_run(arguments, model, monitor%restarts, info)
       call open_files(model, prefix, info, monitor, error)
@@ -289,36 +273,24 @@ contains
       call begin_status(model, state, monitor)
   end subroutine begin_run
 
-  !> Make the effective deck, which restart files will hold.
-  subroutine write_deck(arguments, prefix, effective, monitor, error)
+  !> Make the effective deck, which restart files will hold; what an earlier run of this name has
+  !> left of these is removed.
+  subroutine write_deck(arguments, prefix, effective, restarts, error)
     type(arguments_t), intent(in) :: arguments
     character(*), intent(in) :: prefix, effective
-    type(monitor_t), intent(inout) :: monitor
-    type(error_t), allocatable, intent(out) :: error
-    type(text_file_t) :: file
-
-    call prepare_restarts(arguments, effective, monitor%restarts, error)
-    if (allocated(error)) return
-    call create_text_file(file, prefix//'.effective.k', error)
-    if (.not. allocated(error)) call append_text(file, effective, error)
-    if (.not. allocated(error)) call close_text_file(file, error)
-  end subroutine write_deck
-
-  !> What restart files need to know; what an earlier run of this name has left of them is removed.
-  subroutine prepare_restarts(arguments, effective, restarts, error)
-    type(arguments_t), intent(in) :: arguments
-    character(*), intent(in) :: effective
     type(restarts_t), intent(inout) :: restarts
     type(error_t), allocatable, intent(out) :: error
-    type(checksum_t) :: checksum
+    type(error_t), allocatable :: ignored
+    integer(long) :: checksum
 
     restarts%program = program_text()
-    call start_checksum(checksum)
+    checksum = 0
     call add_bytes(checksum, effective)
     restarts%effective_deck_checksum = checksum_text(checksum)
-    call forget_switch(arguments%directory)
+    call remove_file(switch_path(arguments%directory), ignored)
     call forget_files(restarts, error)
-  end subroutine prepare_restarts
+    if (.not. allocated(error)) call write_whole(prefix//'.effective.k', effective, error)
+  end subroutine write_deck
 
   !> The file status.out from where the run begins.
   subroutine begin_status(model, state, monitor)
@@ -336,15 +308,6 @@ contains
     end associate
   end subroutine begin_status
 
-  !> Threads that have enough to do.
-  pure function useful_threads(arguments, n_element) result(n_thread)
-    type(arguments_t), intent(in) :: arguments
-    integer, intent(in) :: n_element
-    integer :: n_thread
-
-    n_thread = max(1, min(arguments%n_thread, n_element/arguments%thread_share))
-  end function useful_threads
-
   !> Advance to the end, close the files and say how it ended.
   subroutine drive(arguments, model, prefix, state, monitor, error)
     type(arguments_t), intent(in) :: arguments
@@ -355,6 +318,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: closing_error
     character(:), allocatable :: reason
+    integer :: n_thread
     logical :: stopped
 
     if (model%controls%check_only) then
@@ -362,8 +326,10 @@ contains
     else if (model%controls%implicit%is_on) then
       call advance_implicit(model, state, monitor, reason, error)
     else
-      call advance_explicit(model, useful_threads(arguments, &
-        model%mesh%n_element/monitor%ranks%n), state, monitor, reason, error)
+      ! Threads that have enough to do.
+      n_thread = max(1, min(arguments%n_thread, &
+        model%mesh%n_element/monitor%ranks%n/arguments%thread_share))
+      call advance_explicit(model, n_thread, state, monitor, reason, error)
     end if
     stopped = reason == 'stopped on request'
     if (stopped) reason = reason//' (exit status '//to_text(status_stopped)//') before the ' &

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Files and directories as the C library has them. Text goes through its `creat` and `write`
+!> Files and directories as the C library has them. Text goes through its `write`
 !> and not through a Fortran unit, for two reasons that were measured: gfortran's `flush` and
 !> `close` report success on a full disk, and one `write` of whole lines leaves no half line
 !> behind when the process is killed.
@@ -7,8 +7,8 @@ module c_files_m
   use, intrinsic :: iso_c_binding, only : c_char, c_int, c_loc, c_ptr, c_size_t, c_sizeof
   implicit none
   private
-  public :: c_mkdir, c_rename, c_unlink, c_creat, c_write, c_close, c_fopen, c_fileno, c_fclose, &
-    c_fsync, c_flock, c_ftruncate, c_memcpy, system_reason, system_failure
+  public :: c_mkdir, c_rename, c_unlink, c_write, c_fopen, c_fileno, c_fclose, c_fsync, &
+    c_flock, c_ftruncate, c_memcpy, system_reason, system_failure
 
   interface
     !> POSIX mkdir; 0 on success.
@@ -33,14 +33,6 @@ module c_files_m
       integer(c_int) :: status
     end function c_unlink
 
-    !> POSIX creat; a descriptor, or -1.
-    function c_creat(path, mode) bind(c, name='creat') result(descriptor)
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: path(*) !! ends with a null
-      integer(c_int), value :: mode                 !! permissions
-      integer(c_int) :: descriptor
-    end function c_creat
-
     !> POSIX write; bytes taken (ssize_t has the width of size_t), or -1.
     function c_write(descriptor, bytes, n_byte) bind(c, name='write') result(n_taken)
       import :: c_int, c_ptr, c_size_t
@@ -49,13 +41,6 @@ module c_files_m
       integer(c_size_t), value :: n_byte    !! how many
       integer(c_size_t) :: n_taken
     end function c_write
-
-    !> POSIX close; 0 on success.
-    function c_close(descriptor) bind(c, name='close') result(status)
-      import :: c_int
-      integer(c_int), value :: descriptor   !! of the open file
-      integer(c_int) :: status
-    end function c_close
 
     !> C fopen; null on failure. (POSIX `open` has a varying number of arguments, which Fortran
     !> cannot call.)

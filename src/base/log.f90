@@ -5,11 +5,13 @@
 !> A file that takes no more does not end the run: the first failure is kept in `trouble`.
 module log_m
   use errors_m, only : error_t
+  use kinds_m, only : wp
   use screen_m, only : complain
   use text_files_m, only : text_file_t, continue_text_file, append_text, close_text_file
   implicit none
   private
-  public :: log_t, open_log, write_log, warn, close_log, forget_waiting, to_text
+  public :: log_t, open_log, write_log, warn, close_log, forget_waiting, to_text, percent, &
+    two_decimals
 
   !> Number as text without surrounding blanks, for messages.
   interface to_text
@@ -121,7 +123,6 @@ contains
 
   !> Real as text with six digits, for messages (files carry full precision).
   pure function real_to_text(number) result(text)
-    use kinds_m, only : wp
     real(wp), intent(in) :: number
     character(:), allocatable :: text
     character(24) :: buffer
@@ -132,5 +133,25 @@ contains
       write (buffer, '(ss,es14.6e3)') number
     text = trim(adjustl(buffer))
   end function real_to_text
+
+  !> `part` of `whole` in per cent, with two decimals.
+  pure function percent(part, whole) result(text)
+    real(wp), intent(in) :: part, whole
+    character(:), allocatable :: text
+
+    text = 'all'
+    if (whole > 0.0_wp) text = two_decimals(100.0_wp*part/whole)//' %'
+  end function percent
+
+  !> A number below 10000 with two decimals; others as a power of ten.
+  pure function two_decimals(number) result(text)
+    real(wp), intent(in) :: number
+    character(:), allocatable :: text
+    character(24) :: buffer
+
+    write (buffer, '(ss,es10.2)') number
+    if (number < 1.0e4_wp) write (buffer, '(ss,f8.2)') number
+    text = trim(adjustl(buffer))
+  end function two_decimals
 
 end module log_m

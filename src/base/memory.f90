@@ -1,11 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> How much memory there is. Linux hands out more than it has and ends the program that uses it, so
-!> that asking for memory is no test of whether it is there.
+!> What Linux tells of the machine in files: the processor, and how much memory there is. Linux
+!> hands out more than it has and ends the program that uses it, so that asking for memory is no
+!> test of whether it is there.
 module memory_m
   use kinds_m, only : long
   implicit none
   private
-  public :: available_bytes
+  public :: available_bytes, processor_name
 
   !> Longest line that is read, whatever the environment says (GFORTRAN_DEFAULT_RECL).
   integer, parameter :: line_length = 100000
@@ -38,10 +39,31 @@ contains
     character(*), intent(in) :: file
     character(*), intent(in) :: label
     integer(long) :: number
-    character(100) :: line
+    character(:), allocatable :: text
+    integer :: status
+
+    text = text_behind(file, label)
+    read (text, *, iostat=status) number
+    if (status /= 0) number = -1
+  end function number_in
+
+  !> The processor that the program runs on, by the name that Linux knows; `unknown` elsewhere.
+  function processor_name() result(name)
+    character(:), allocatable :: name
+
+    name = text_behind('/proc/cpuinfo', 'model name')
+    name = trim(adjustl(name(index(name, ':') + 1:)))
+    if (len(name) == 0) name = 'unknown'
+  end function processor_name
+
+  !> What stands behind a label at the start of a line; empty without file or label.
+  function text_behind(file, label) result(text)
+    character(*), intent(in) :: file, label
+    character(:), allocatable :: text
+    character(200) :: line
     integer :: unit, status
 
-    number = -1
+    text = ''
     open (newunit=unit, file=file, status='old', action='read', &
       recl=line_length, iostat=status)
     if (status /= 0) return
@@ -49,11 +71,10 @@ contains
       read (unit, '(a)', iostat=status) line
       if (status /= 0) exit
       if (index(line, label) /= 1) cycle
-      read (line(len(label) + 1:), *, iostat=status) number
-      if (status /= 0) number = -1
+      text = trim(line(len(label) + 1:))
       exit
     end do
     close (unit)
-  end function number_in
+  end function text_behind
 
 end module memory_m

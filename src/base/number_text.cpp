@@ -3,6 +3,10 @@
 // writes. `n` is the number of bytes written.
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <string>
 
 static void end_at(char *text, char *end, int *n) {
   std::replace(text, end, 'e', 'E');
@@ -23,4 +27,36 @@ extern "C" void scientific_text(double value, int n_digit, char *text, int *n) {
 // At most 11 bytes.
 extern "C" void integer_text(int value, char *text, int *n) {
   end_at(text, std::to_chars(text, text + 11, value).ptr, n);
+}
+
+static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+static bool is_sign(char c) { return c == '-' || c == '+'; }
+
+// The number in n bytes, blanks around it allowed; its exponent may lack the letter, which may be a D. Status 0; 1 where
+// it is none; 2 where it is 1e300 or larger.
+extern "C" void real_of_text(const char *text, int n, double *value, int *status) {
+  const char *end = text + n;
+  *value = 0.0;
+  *status = 1;
+  while (end > text && end[-1] == ' ') --end;
+  while (text < end && *text == ' ') ++text;
+  const bool negative = text < end && *text == '-';
+  if (text < end && is_sign(*text)) ++text;
+  std::string plain;
+  while (text < end && (is_digit(*text) || *text == '.')) plain += *text++;
+  if (!std::any_of(plain.begin(), plain.end(), is_digit)) return;
+  if (text < end) {
+    const bool has_letter = std::memchr("eEdD", *text, 4) != nullptr;
+    if (has_letter ? ++text == end : !is_sign(*text)) return;
+    plain += 'e';
+    if (is_sign(*text)) plain += *text++;
+    if (text == end || !std::all_of(text, end, is_digit)) return;
+    plain.append(text, end);
+  }
+  double found = 0.0;
+  const auto result = std::from_chars(plain.data(), plain.data() + plain.size(), found);
+  if (result.ptr != plain.data() + plain.size()) return;
+  if (result.ec != std::errc()) found = std::strtod(plain.c_str(), nullptr); // which tells large from small
+  *status = std::fabs(found) >= 1e300 ? 2 : 0;
+  if (*status == 0) *value = negative ? 0.0 - found : found;
 }

@@ -3,8 +3,8 @@
 module text_files_m
   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_null_char, c_null_ptr, &
     c_ptr, c_size_t
-  use c_files_m, only : c_creat, c_write, c_close, c_fopen, c_fileno, c_fclose, c_flock, &
-    system_reason, system_failure
+  use c_files_m, only : c_write, c_fopen, c_fileno, c_fclose, c_flock, system_reason, &
+    system_failure
   use errors_m, only : error_t, raise, status_files
   use file_facts_m, only : file_facts_t, facts_of_name, facts_of_descriptor, what_hinders, &
     is_same_file
@@ -13,10 +13,11 @@ module text_files_m
   implicit none
   private
   public :: text_file_t, create_text_file, continue_text_file, append_text, close_text_file, &
-    overwrite_start
+    write_whole, overwrite_start, line_file_t, open_lines, put_lines, keep_up, flush_lines, &
+    close_lines
 
-  !> Permissions of a new file, before the user's mask: rw for all.
-  integer(c_int), parameter :: file_mode = 438_c_int
+  !> Bytes of lines that wait, at most.
+  integer, parameter :: buffer_size = 65536
 
   !> Of flock: for one alone, without waiting; the number of a refusal (EWOULDBLOCK of Linux).
   integer(c_int), parameter :: lock_alone = 6, is_locked = 11
@@ -25,9 +26,20 @@ module text_files_m
   type :: text_file_t
     character(:), allocatable :: path   !! for messages
     integer(c_int) :: descriptor = -1   !! -1 while no file is open
-    type(c_ptr) :: stream = c_null_ptr  !! C stream that owns the descriptor, where there is one
+    type(c_ptr) :: stream = c_null_ptr  !! C stream that owns the descriptor, unless a standard one
     integer(long) :: n_byte = -1        !! length that this program knows of; -1: no matter
   end type text_file_t
+
+  !> A text file whose whole lines wait for each other: they reach it with one system call, at the
+  !> latest a second after they came.
+  type :: line_file_t
+    logical :: is_open = .false.           !! lines are taken only while open
+    type(text_file_t) :: file
+    character(:), allocatable :: buffer    !! lines that wait
+    integer :: n_waiting = 0               !! bytes of them
+    integer(long) :: flushed = 0           !! clock tick of the last write
+    type(error_t), allocatable :: trouble  !! first failure, which ends the writing
+  end type line_file_t
 
 contains
 
@@ -43,10 +55,13 @@ contains
     if (len(what_hinders(path)) == 0) then
       call remove_file(path, error)
       if (allocated(error)) return
-      file%descriptor = c_creat(path//c_null_char, file_mode)
+      file%stream = c_fopen(path//c_null_char, 'w'//c_null_char)
     end if
-    if (file%descriptor < 0) call raise(error, 'cannot write '//path//': '// &
-      open_failure(path), status_files)
+    if (c_associated(file%stream)) then
+      file%descriptor = c_fileno(file%stream)
+    else
+      call raise(error, 'cannot write '//path//': '//open_failure(path), status_files)
+    end if
     file%n_byte = 0
   end subroutine create_text_file
 
@@ -153,6 +168,20 @@ contains
     if (file%n_byte >= 0) file%n_byte = file%n_byte + n_written
   end subroutine append_text
 
+  !> Make a text file that holds this text and no more.
+  subroutine write_whole(path, text, error)
+    character(*), intent(in) :: path, text
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: closing
+    type(text_file_t) :: file
+
+    call create_text_file(file, path, error)
+    if (allocated(error)) return
+    call append_text(file, text, error)
+    call close_text_file(file, closing)
+    if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
+  end subroutine write_whole
+
   !> Put text in the place of the first bytes of a file that is there.
   subroutine overwrite_start(path, text, error)
     character(*), intent(in) :: path
@@ -199,15 +228,79 @@ contains
 
     if (file%descriptor < 0) return
     call check_untouched(file, error)
-    if (c_associated(file%stream)) then
-      status = c_fclose(file%stream)
-    else
-      status = c_close(file%descriptor)
-    end if
+    status = c_fclose(file%stream)
     file%stream = c_null_ptr
     file%descriptor = -1
     if (status /= 0 .and. .not. allocated(error)) call raise(error, 'cannot close '//file%path// &
       ': the file system refused the last bytes', status_files)
   end subroutine close_text_file
+
+  !> Make a file of lines, empty.
+  subroutine open_lines(lines, path, error)
+    type(line_file_t), intent(out) :: lines
+    character(*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+
+    call create_text_file(lines%file, path, error)
+    if (allocated(error)) return
+    allocate (character(buffer_size) :: lines%buffer)
+    lines%is_open = .true.
+    call system_clock(lines%flushed)
+  end subroutine open_lines
+
+  !> Take text, line ends included; a line is shorter than the buffer.
+  subroutine put_lines(lines, text)
+    type(line_file_t), intent(inout) :: lines
+    character(*), intent(in) :: text
+
+    if (lines%n_waiting + len(text) > buffer_size) call write_waiting(lines)
+    lines%buffer(lines%n_waiting + 1:lines%n_waiting + len(text)) = text
+    lines%n_waiting = lines%n_waiting + len(text)
+  end subroutine put_lines
+
+  !> Write what has waited for a second.
+  subroutine keep_up(lines)
+    type(line_file_t), intent(inout) :: lines
+    integer(long) :: now, rate
+
+    call system_clock(now, rate)
+    if (now - lines%flushed > rate) call write_waiting(lines)
+  end subroutine keep_up
+
+  !> Write what waits. The first failure is remembered and ends the writing.
+  subroutine write_waiting(lines)
+    type(line_file_t), intent(inout) :: lines
+    type(error_t), allocatable :: error
+
+    if (lines%n_waiting > 0 .and. .not. allocated(lines%trouble)) then
+      call append_text(lines%file, lines%buffer(:lines%n_waiting), error)
+      if (allocated(error)) call move_alloc(error, lines%trouble)
+    end if
+    lines%n_waiting = 0
+    call system_clock(lines%flushed)
+  end subroutine write_waiting
+
+  !> Bring all lines into the file; nothing happens to one that is not open.
+  subroutine flush_lines(lines, error)
+    type(line_file_t), intent(inout) :: lines
+    type(error_t), allocatable, intent(out) :: error
+
+    if (.not. lines%is_open) return
+    call write_waiting(lines)
+    if (allocated(lines%trouble)) error = lines%trouble
+  end subroutine flush_lines
+
+  !> Bring all lines into the file and close it.
+  subroutine close_lines(lines, error)
+    type(line_file_t), intent(inout) :: lines
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: closing
+
+    if (.not. lines%is_open) return
+    call flush_lines(lines, error)
+    call close_text_file(lines%file, closing)
+    lines%is_open = .false.
+    if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
+  end subroutine close_lines
 
 end module text_files_m

@@ -3,7 +3,7 @@
 !> that is much, they make the pressure (doc/theory/contact.md, section 8.2).
 module contact_facets_m
   use arcs_m, only : find_curvatures, arc_height
-  use contact_estimate_m, only : contact_estimate_t
+  use law_state_m, only : contact_estimate_t
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
   use contacts_m, only : contact_t
   use kinds_m, only : wp

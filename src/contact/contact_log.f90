@@ -6,7 +6,7 @@ module contact_log_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, is_tied, breaks, kind_text, &
     penalty_share, penalty_implicit
-  use friction_state_m, only : is_open, is_broken
+  use law_state_m, only : is_open, is_broken
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t

@@ -7,11 +7,9 @@ module contact_preparation_m
   use contact_state_m, only : contact_state_t, allocate_points, allocate_loads, &
     allocate_tractions, allocate_scratch, places_of_segment
   use contacts_m, only : contact_t, has_friction, is_tied, penalty_implicit
-  use energy_limit_state_m, only : allocate_limit
+  use law_state_m, only : allocate_limit, allocate_friction, allocate_interference
   use facing_look_m, only : has_outline, prepare_facing
-  use friction_state_m, only : allocate_friction
   use first_search_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments
-  use interference_state_m, only : allocate_interference
   use kinds_m, only : wp
   use model_m, only : model_t
   use spots_m, only : start_spots

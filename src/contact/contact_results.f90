@@ -6,7 +6,7 @@ module contact_results_m
   use foot_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
   use geometry_m, only : segment_length
   use kinds_m, only : wp
-  use friction_state_m, only : is_open, is_held, is_broken
+  use law_state_m, only : is_open, is_held, is_broken
   use lengths_m, only : competence_area
   use nodal_average_m, only : average_gaps
   use snapshot_m, only : interface_result_t, slave_result_t, rubbed_t

@@ -6,7 +6,7 @@ module contact_work_m
   use contact_state_m, only : contact_state_t
   use energy_limit_m, only : follow_largest
   use friction_m, only : set_tractions_aside
-  use friction_state_m, only : friction_memory_t
+  use law_state_m, only : friction_memory_t
   use gather_m, only : take_force, power_of, add_force
   use kinds_m, only : wp
   implicit none

@@ -6,7 +6,7 @@ module implicit_friction_m
   use complementarity_m, only : outcome_t, solve_complementarity, is_low, is_between, is_high
   use contact_state_m, only : contact_state_t, contact_points_t
   use contacts_m, only : friction_rule_t
-  use friction_state_m, only : sticks, slips
+  use law_state_m, only : sticks, slips
   use gap_rates_m, only : find_rates, add_turns, press_nodes, turns_alike, fill_band, along_tangent
   use kinds_m, only : wp
   use law_friction_m, only : coefficient_of, has_decay, find_limits

@@ -23,7 +23,7 @@ module interface_m
   use friction_m, only : start_trial_slip, take_trial_motion, rub_places
   use first_search_m, only : start_slave_tracking, start_master_tracking, start_segments
   use gather_m, only : gather_places, take_force, keep_former
-  use inside_answers_m, only : answers_t
+  use others_memory_m, only : answers_t
   use interference_m, only : begin_growth
   use kinds_m, only : wp
   use law_friction_m, only : has_decay

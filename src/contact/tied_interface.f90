@@ -9,7 +9,7 @@ module tied_interface_m
   use contact_state_m, only : contact_state_t, allocate_tractions
   use contact_work_m, only : apart_t, hand_over
   use contacts_m, only : contact_t, breaks
-  use friction_state_m, only : is_held
+  use law_state_m, only : is_held
   use gather_m, only : gather_places, keep_former
   use kinds_m, only : wp
   use model_m, only : model_t

@@ -12,7 +12,6 @@ module cut_forces_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size, tile_t
   use model_m, only : model_t
-  use round_chunk_m, only : round_chunk_t
   use tile_values_m, only : take_values, put_values
   implicit none
   private
@@ -77,16 +76,15 @@ contains
     type(block_state_t), intent(inout) :: elements
     real(wp), intent(inout) :: of_slots(8, chunk_size)
     type(element_chunk_t) :: chunk
-    type(round_chunk_t) :: round
     integer :: i, first, nodes(4, chunk_size)
 
     first = (i_chunk - 1)*chunk_size + 1
     nodes = model%layout%slot_nodes(:, first:first + chunk_size - 1)
     if (model%erodes) call take_nodes(model%layout%slot_nodes(:, first:first + chunk_size - 1), &
       elements%erosion%status(first:first + chunk_size - 1), nodes)
-    call advance_chunk(model, i_chunk, nodes, motion, dt, elements, chunk, round)
+    call advance_chunk(model, i_chunk, nodes, motion, dt, elements, chunk)
     do i = 1, model%layout%chunk_elements(i_chunk)
-      of_slots(:, i) = corner_forces(model%is_round, i, chunk, round)
+      of_slots(:, i) = corner_forces(i, chunk)
     end do
   end subroutine step_chunk
 
@@ -174,25 +172,17 @@ contains
 
   !> What one element puts on its four corners, x and y of each: minus its internal force. The third
   !> of a triangle is its fourth as well.
-  pure function corner_forces(is_round, i, chunk, round) result(force)
-    logical, intent(in) :: is_round
+  pure function corner_forces(i, chunk) result(force)
     integer, intent(in) :: i                   !! its place in the chunk
     type(element_chunk_t), intent(in) :: chunk
-    type(round_chunk_t), intent(in) :: round
     real(wp) :: force(8)
-    real(wp) :: f(4), swing(2), hoop(2)
+    real(wp) :: hoop(2)
 
-    if (is_round) then
-      f = round%force(:, i)
-      swing = round%swing(:, i)
-      hoop = [round%hoop(i), 0.0_wp]
-    else
-      f = [chunk%force3(:, i), chunk%force4(:, i)]
-      swing = chunk%swing(:, i)
-      hoop = 0.0_wp
-    end if
-    force = [f(1:2) - swing - hoop, f(3:4) + swing - hoop, -f(1:2) - swing - hoop, &
-      -f(3:4) + swing - hoop]
+    hoop = 0.0_wp
+    if (chunk%is_round) hoop(1) = chunk%hoop(i)
+    associate (f3 => chunk%force3(:, i), f4 => chunk%force4(:, i), swing => chunk%swing(:, i))
+      force = [f3 - swing - hoop, f4 + swing - hoop, -f3 - swing - hoop, -f4 + swing - hoop]
+    end associate
   end function corner_forces
 
 end module cut_forces_m

@@ -5,7 +5,6 @@ module deformation_gradient_m
   use element_chunk_m, only : element_chunk_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
-  use round_chunk_m, only : round_chunk_t
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
@@ -18,9 +17,8 @@ contains
   !> F - 1 at a point, or of a one-point quad: both are parallelograms. In round bodies F_33 is what
   !> makes det F the volume ratio of the point. Where the dilatation is that of the element, F is
   !> scaled to it.
-  pure subroutine form_gradient(chunk, own, stress)
+  pure subroutine form_gradient(chunk, stress)
     type(element_chunk_t), intent(in) :: chunk
-    real(wp), intent(in) :: own(chunk_size)       !! V/V0 - 1 of the point
     type(stress_chunk_t), intent(inout) :: stress !! V/V0 - 1 of the element in `stretch`
     real(wp) :: x31, y31, x42, y42, factor
     integer :: i
@@ -37,20 +35,19 @@ contains
       stress%hyx(i) = factor*(chunk%u31(2, i)*y42 - chunk%u42(2, i)*y31)
       stress%hyy(i) = factor*(x31*chunk%u42(2, i) - x42*chunk%u31(2, i))
     end do
-    call finish_gradient(own, stress)
+    call finish_gradient(chunk%stretch, stress)
   end subroutine form_gradient
 
   !> F - 1 of a one-point round quad: the mean over the reference volume.
-  pure subroutine form_round_gradient(chunk, round, stress)
+  pure subroutine form_round_gradient(chunk, stress)
     type(element_chunk_t), intent(in) :: chunk
-    type(round_chunk_t), intent(in) :: round
     type(stress_chunk_t), intent(inout) :: stress
     real(wp) :: g(6), inverse
     integer :: i
 
     do i = 1, chunk_size
-      g = start_gradients(chunk, round, i)
-      inverse = round%inverse_volume(i)*(1.0_wp + chunk%stretch(i))
+      g = start_gradients(chunk, i)
+      inverse = chunk%inverse_volume(i)*(1.0_wp + chunk%stretch(i))
       stress%hxx(i) = inverse*(g(1)*chunk%u31(1, i) + g(2)*chunk%u42(1, i) + g(3)*chunk%hu(1, i))
       stress%hyx(i) = inverse*(g(1)*chunk%u31(2, i) + g(2)*chunk%u42(2, i) + g(3)*chunk%hu(2, i))
       stress%hxy(i) = inverse*(g(4)*chunk%u31(1, i) + g(5)*chunk%u42(1, i) + g(6)*chunk%hu(1, i))
@@ -60,9 +57,8 @@ contains
   end subroutine form_round_gradient
 
   !> `rad` and `axi` of the patterns a, b, h at time zero (see `form_round_shape`).
-  pure function start_gradients(chunk, round, i) result(g)
+  pure function start_gradients(chunk, i) result(g)
     type(element_chunk_t), intent(in) :: chunk
-    type(round_chunk_t), intent(in) :: round
     integer, intent(in) :: i
     real(wp) :: g(6)
     real(wp) :: ar, az, br, bz, hr, hz, s
@@ -73,7 +69,7 @@ contains
     bz = chunk%y42(i) - chunk%u42(2, i)
     hr = part*(chunk%hx(i) - chunk%hu(1, i))
     hz = part*(chunk%hy(i) - chunk%hu(2, i))
-    s = round%radii(i) - eighth*round%us(i)
+    s = chunk%radii(i) - eighth*chunk%us(i)
     g = [s*bz - br*hz, -(s*az + ar*hz), part*(ar*bz + br*az), -br*(s - hr), ar*(s + hr), &
       -2.0_wp*part*ar*br]
   end function start_gradients
@@ -108,15 +104,14 @@ contains
   !>   dW V0 = (sigma - s_33 1) : (dF J F^-1) V0 + s_33 dV,
   !> so that gradients of time zero, J F^-T of them, stand where `form_round_forces` has present
   !> ones.
-  pure subroutine form_rubber_forces(stress, chunk, round)
+  pure subroutine form_rubber_forces(stress, chunk)
     type(stress_chunk_t), intent(in) :: stress
-    type(element_chunk_t), intent(in) :: chunk
-    type(round_chunk_t), intent(inout) :: round !! forces out
+    type(element_chunk_t), intent(inout) :: chunk !! forces out
     real(wp) :: g(6), rr, zz, rz, tt, qr, qz, turned(2, 2), factor
     integer :: i, k
 
     do i = 1, chunk_size
-      g = start_gradients(chunk, round, i)
+      g = start_gradients(chunk, i)
       tt = chunk%pressure(i) - (stress%sxx(i) + stress%syy(i))
       ! sigma - s_33 1, times J F^-T = F_33 (F22, -F21; -F12, F11).
       rr = 2.0_wp*stress%sxx(i) + stress%syy(i)
@@ -128,21 +123,21 @@ contains
       turned(2, 1) = factor*(rz*(1.0_wp + stress%hyy(i)) - zz*stress%hxy(i))
       turned(2, 2) = factor*(zz*(1.0_wp + stress%hxx(i)) - rz*stress%hyx(i))
       do k = 1, 2
-        round%force(k, i) = turned(k, 1)*g(1) + turned(k, 2)*g(4)
-        round%force(k + 2, i) = turned(k, 1)*g(2) + turned(k, 2)*g(5)
-        round%swing(k, i) = turned(k, 1)*g(3) + turned(k, 2)*g(6)
+        chunk%force3(k, i) = turned(k, 1)*g(1) + turned(k, 2)*g(4)
+        chunk%force4(k, i) = turned(k, 1)*g(2) + turned(k, 2)*g(5)
+        chunk%swing(k, i) = turned(k, 1)*g(3) + turned(k, 2)*g(6)
       end do
       qr = 12.0_wp*chunk%inverse_area(i)*chunk%qx(i)
       qz = 12.0_wp*chunk%inverse_area(i)*chunk%qy(i)
-      round%force(1, i) = round%force(1, i) + tt*(round%rad_a(i) + round%mean_a(i)) &
-        - round%mean_a(i)*qr
-      round%force(2, i) = round%force(2, i) + tt*round%axi_a(i) - round%mean_a(i)*qz
-      round%force(3, i) = round%force(3, i) + tt*(round%rad_b(i) + round%mean_b(i)) &
-        + round%mean_b(i)*qr
-      round%force(4, i) = round%force(4, i) + tt*round%axi_b(i) + round%mean_b(i)*qz
-      round%swing(1, i) = round%swing(1, i) + tt*round%rad_h(i) + chunk%qx(i)
-      round%swing(2, i) = round%swing(2, i) + tt*round%axi_h(i) + chunk%qy(i)
-      round%hoop(i) = tt*round%mean_s(i)
+      chunk%force3(1, i) = chunk%force3(1, i) + tt*(chunk%rad_a(i) + chunk%mean_a(i)) &
+        - chunk%mean_a(i)*qr
+      chunk%force3(2, i) = chunk%force3(2, i) + tt*chunk%axi_a(i) - chunk%mean_a(i)*qz
+      chunk%force4(1, i) = chunk%force4(1, i) + tt*(chunk%rad_b(i) + chunk%mean_b(i)) &
+        + chunk%mean_b(i)*qr
+      chunk%force4(2, i) = chunk%force4(2, i) + tt*chunk%axi_b(i) + chunk%mean_b(i)*qz
+      chunk%swing(1, i) = chunk%swing(1, i) + tt*chunk%rad_h(i) + chunk%qx(i)
+      chunk%swing(2, i) = chunk%swing(2, i) + tt*chunk%axi_h(i) + chunk%qy(i)
+      chunk%hoop(i) = tt*chunk%mean_s(i)
     end do
   end subroutine form_rubber_forces
 

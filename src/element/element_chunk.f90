@@ -1,15 +1,23 @@
 ! SPDX-License-Identifier: MIT
-!> Work arrays of one chunk of quads. All quantities of a one-point quad follow from the two
-!> diagonals d31 = x3 - x1, d42 = x4 - x2 and from h.x = x1 - x2 + x3 - x4.
+!> Work arrays of one chunk of quads, plane or round. All quantities of a one-point quad follow from
+!> the two diagonals d31 = x3 - x1, d42 = x4 - x2, from h.x = x1 - x2 + x3 - x4 and in round bodies
+!> from the sum s of the radii.
 module element_chunk_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size, local_kind
   implicit none
   private
-  public :: element_chunk_t, gather_chunk, scatter_chunk
+  public :: element_chunk_t, n_round_reference, reference_sum, reference_inverse, reference_mass, &
+    gather_motion, gather_chunk, gather_round, scatter_forces, scatter_chunk, scatter_round
+
+  !> Streams of the reference shape of round quads: those of plane ones, the sum of the radii, the
+  !> inverse of the volume, and per node density over mass.
+  integer, parameter :: reference_sum = 7, reference_inverse = 8, reference_mass = 9, &
+    n_round_reference = 12
 
   !> One chunk.
   type :: element_chunk_t
+    logical :: is_round
     real(wp) :: u31(2, chunk_size), v31(2, chunk_size) !! u and v of node 3 minus node 1
     real(wp) :: u42(2, chunk_size), v42(2, chunk_size) !! of node 4 minus node 2
     real(wp) :: hu(2, chunk_size), hv(2, chunk_size)   !! of node 1 - node 2 + node 3 - node 4
@@ -30,9 +38,49 @@ module element_chunk_m
     real(wp), dimension(chunk_size) :: hourglass_work     !! its work in the step
     real(wp), dimension(2, chunk_size) :: force3, force4 !! x, y of nodes 3, 4 without hourglass
     real(wp) :: swing(2, chunk_size) !! hourglass amplitude q_x, q_y
+    real(wp), dimension(chunk_size) :: resistance !! hourglass force over gamma.v, or its integral
+    ! What follows round quads have besides: x is the radius r, y the axis z. Of the gradients of the
+    ! volume `rad` is what belongs to dv_r/dr, `axi` to d/dz, `mean` to v_r/r (integrals of N_a over
+    ! A), each for the patterns d31, d42, h (s: all four nodes); mid_area is a volume.
+    real(wp), dimension(chunk_size) :: us, vs !! sums of u_r and of v_r, 0 in padding. No pairs: a
+                                              !! loop that reads one of two has a remainder
+    real(wp), dimension(chunk_size) :: hoop   !! force in r on each of the four nodes
+    real(wp), dimension(chunk_size) :: volume, inverse_volume !! now
+    real(wp), dimension(chunk_size) :: radii  !! an eighth of the sum of the four, now
+    real(wp), dimension(chunk_size) :: rad_a, rad_b, rad_h, axi_a, axi_b, axi_h, mean_a, mean_b, &
+      mean_s
   end type element_chunk_t
 
 contains
+
+  !> Differences of the nodal motion, of round quads its sums too.
+  pure subroutine gather_motion(is_round, nodes, motion, chunk)
+    logical, intent(in) :: is_round
+    integer, intent(in) :: nodes(4, chunk_size)
+    real(wp), intent(in) :: motion(4, *)             !! all nodes: u_x, u_y, v_x, v_y
+    type(element_chunk_t), intent(inout) :: chunk
+
+    chunk%is_round = is_round
+    if (is_round) then
+      call gather_round(nodes, motion, chunk)
+    else
+      call gather_chunk(nodes, motion, chunk)
+    end if
+  end subroutine gather_motion
+
+  !> Add the nodal forces of a chunk to the tile's own nodes.
+  pure subroutine scatter_forces(n_element, local, chunk, force)
+    integer, intent(in) :: n_element             !! elements, in the first slots
+    integer(local_kind), intent(in) :: local(4, chunk_size) !! local numbers in the tile
+    type(element_chunk_t), intent(in) :: chunk
+    real(wp), intent(inout) :: force(2, *)       !! internal force of the local nodes
+
+    if (chunk%is_round) then
+      call scatter_round(n_element, local, chunk, force)
+    else
+      call scatter_chunk(n_element, local, chunk, force)
+    end if
+  end subroutine scatter_forces
 
   !> Differences of the nodal motion, displacement and velocity apart: pairs are what the vectorised
   !> loops read without a remainder. The loop over elements stays scalar: each node is one 32-byte
@@ -61,6 +109,41 @@ contains
       chunk%hv(:, i) = h(3:4)
     end do
   end subroutine gather_chunk
+
+  !> The same with the sums of the radial motion. All nodes of padding are one: it carries no strain.
+  pure subroutine gather_round(nodes, motion, chunk)
+    integer, intent(in) :: nodes(4, chunk_size)
+    real(wp), intent(in) :: motion(4, *)   !! all nodes: u_r, u_z, v_r, v_z
+    type(element_chunk_t), intent(inout) :: chunk
+    real(wp) :: d31(4), d42(4), h(4), s(4)
+    integer :: i, k
+
+    !GCC$ NOVECTOR
+    do i = 1, chunk_size
+      ! All four at a time, told in so many words: two of the sums are not asked for.
+      !$omp simd simdlen(4)
+      do k = 1, 4
+        d31(k) = motion(k, nodes(3, i)) - motion(k, nodes(1, i))
+        d42(k) = motion(k, nodes(4, i)) - motion(k, nodes(2, i))
+        h(k) = (motion(k, nodes(1, i)) - motion(k, nodes(2, i))) &
+          + (motion(k, nodes(3, i)) - motion(k, nodes(4, i)))
+        s(k) = h(k) + 2.0_wp*(motion(k, nodes(2, i)) + motion(k, nodes(4, i)))
+      end do
+      chunk%u31(:, i) = d31(1:2)
+      chunk%v31(:, i) = d31(3:4)
+      chunk%u42(:, i) = d42(1:2)
+      chunk%v42(:, i) = d42(3:4)
+      chunk%hu(:, i) = h(1:2)
+      chunk%hv(:, i) = h(3:4)
+      chunk%us(i) = s(1)
+      chunk%vs(i) = s(3)
+    end do
+    do i = chunk_size, 1, -1
+      if (nodes(1, i) /= nodes(3, i)) exit
+      chunk%us(i) = 0.0_wp
+      chunk%vs(i) = 0.0_wp
+    end do
+  end subroutine gather_round
 
   !> Add the nodal forces of a chunk to the tile's own nodes, x and y of a node at a time (told to
   !> the compiler in so many words: left alone it takes them one by one, half as fast again).
@@ -92,5 +175,41 @@ contains
       end do
     end do
   end subroutine scatter_chunk
+
+  !> The same with the force of the hoop stress on all four.
+  pure subroutine scatter_round(n_element, local, chunk, force)
+    integer, intent(in) :: n_element
+    integer(local_kind), intent(in) :: local(4, chunk_size)
+    type(element_chunk_t), intent(in) :: chunk
+    real(wp), intent(inout) :: force(2, *)
+    real(wp), parameter :: to_r(2) = [1.0_wp, 0.0_wp]
+    real(wp) :: hoop
+    integer :: i, k, n(4)
+
+    do i = 1, n_element
+      n = local(:, i)
+      hoop = chunk%hoop(i)
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        force(k, n(1)) = force(k, n(1)) + ((to_r(k)*hoop + chunk%swing(k, i)) &
+          - chunk%force3(k, i))
+      end do
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        force(k, n(2)) = force(k, n(2)) + ((to_r(k)*hoop - chunk%swing(k, i)) &
+          - chunk%force4(k, i))
+      end do
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        force(k, n(3)) = force(k, n(3)) + ((to_r(k)*hoop + chunk%swing(k, i)) &
+          + chunk%force3(k, i))
+      end do
+      !$omp simd simdlen(2)
+      do k = 1, 2
+        force(k, n(4)) = force(k, n(4)) + ((to_r(k)*hoop - chunk%swing(k, i)) &
+          + chunk%force4(k, i))
+      end do
+    end do
+  end subroutine scatter_round
 
 end module element_chunk_m

@@ -3,15 +3,13 @@
 module element_dispatch_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
-  use element_chunk_m, only : element_chunk_t, scatter_chunk
+  use element_chunk_m, only : element_chunk_t, scatter_forces
   use layout_m, only : chunk_size, local_kind, tile_t
   use model_m, only : model_t
-  use parts_m, only : section_t, form_one_point, form_full, form_round_one_point, form_round_full
+  use parts_m, only : section_t, form_full, form_round_full
   use quad_full_m, only : advance_full
   use quad_one_point_m, only : advance_one_point
-  use round_chunk_m, only : round_chunk_t, scatter_round
-  use round_full_m, only : advance_round_full
-  use round_one_point_m, only : advance_round_one_point
+  use quad_points_m, only : n_point
   implicit none
   private
   public :: add_tile_forces, advance_chunk, point_count
@@ -23,12 +21,7 @@ contains
     type(section_t), intent(in) :: section
     integer :: n
 
-    select case (section%element_form)
-    case (form_full, form_round_full)
-      n = 4
-    case default
-      n = 1
-    end select
+    n = merge(n_point, 1, any(section%element_form == [form_full, form_round_full]))
   end function point_count
 
   !> Advance all elements of one tile by the step `dt` that led here and sum their internal forces
@@ -41,7 +34,6 @@ contains
     type(block_state_t), intent(inout) :: elements     !! only this tile's slots are touched
     real(wp), intent(inout) :: force(2, model%layout%n_local) !! set here
     type(element_chunk_t) :: chunk
-    type(round_chunk_t) :: round
     real(wp) :: near(4, model%layout%n_local)
     integer :: i_chunk, first, numbers(4, chunk_size)
 
@@ -50,14 +42,9 @@ contains
     do i_chunk = tile%first_chunk, tile%last_chunk
       first = (i_chunk - 1)*chunk_size + 1
       call widen(model%layout%slot_local(1, first), numbers)
-      call advance_chunk(model, i_chunk, numbers, near, dt, elements, chunk, round)
-      if (model%is_round) then
-        call scatter_round(model%layout%chunk_elements(i_chunk), &
-          model%layout%slot_local(1, first), round, force)
-      else
-        call scatter_chunk(model%layout%chunk_elements(i_chunk), &
-          model%layout%slot_local(1, first), chunk, force)
-      end if
+      call advance_chunk(model, i_chunk, numbers, near, dt, elements, chunk)
+      call scatter_forces(model%layout%chunk_elements(i_chunk), model%layout%slot_local(1, first), &
+        chunk, force)
     end do
   end subroutine add_tile_forces
 
@@ -102,8 +89,8 @@ contains
     end do
   end subroutine widen
 
-  !> Advance one chunk by its form; its forces stand in `round` in round bodies, else in `chunk`.
-  subroutine advance_chunk(model, i_chunk, nodes, motion, dt, elements, chunk, round)
+  !> Advance one chunk by its form; its forces stand in `chunk`.
+  subroutine advance_chunk(model, i_chunk, nodes, motion, dt, elements, chunk)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_chunk
     integer, intent(in) :: nodes(4, chunk_size)        !! by their numbers in `motion`
@@ -111,24 +98,12 @@ contains
     real(wp), intent(in) :: dt
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk
-    type(round_chunk_t), intent(inout) :: round
 
-    associate (part => model%parts(model%layout%chunk_part(i_chunk)))
-      select case (model%sections(part%section)%element_form)
-      case (form_one_point)
-        call advance_one_point(i_chunk, nodes, motion, model%materials(part%material), &
-          part%hourglass, model%controls%length_rule, dt, elements, chunk)
-      case (form_full)
-        call advance_full(i_chunk, nodes, motion, model%materials(part%material), part%hourglass, &
-          dt, elements, chunk)
-      case (form_round_one_point)
-        call advance_round_one_point(i_chunk, nodes, motion, model%materials(part%material), &
-          part%hourglass, dt, elements, round)
-      case (form_round_full)
-        call advance_round_full(i_chunk, nodes, motion, model%materials(part%material), &
-          part%hourglass, dt, elements, round)
-      end select
-    end associate
+    if (point_count(model%sections(model%parts(model%layout%chunk_part(i_chunk))%section)) > 1) then
+      call advance_full(model, i_chunk, nodes, motion, dt, elements, chunk)
+    else
+      call advance_one_point(model, i_chunk, nodes, motion, dt, elements, chunk)
+    end if
   end subroutine advance_chunk
 
 end module element_dispatch_m

@@ -3,11 +3,10 @@
 module element_log_m
   use element_dispatch_m, only : point_count
   use kinds_m, only : wp
-  use material_dispatch_m, only : history_size
+  use material_dispatch_m, only : history_size, has_mean_dilatation
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
   use parts_m, only : part_t, hourglass_viscous, hourglass_stiffness, hourglass_assumed
-  use quad_full_m, only : has_mean_dilatation
   implicit none
   private
   public :: log_elements

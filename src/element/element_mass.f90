@@ -1,16 +1,19 @@
 ! SPDX-License-Identifier: MIT
-!> Consistent mass: rho times the integral of N_a N_b over the initial shape, which 2x2 Gauss points
+!> Masses. Lumped: a quarter of each quad, a third of each triangle to its nodes; in round bodies the
+!> row sums of the consistent mass. Consistent: rho times the integral of N_a N_b over the initial shape, which 2x2 Gauss points
 !> integrate exactly for quads and triangles; of N_a N_b r in round bodies, of one degree more than
 !> 2x2 points hold: 3x3.
 module element_mass_m
   use kinds_m, only : wp
+  use layout_m, only : slot_part
+  use mesh_m, only : mesh_t
   use model_m, only : model_t
   use quad_points_m, only : n_point, point_areas, shape_at_points
-  use round_state_m, only : round_mass
   use sparse_m, only : sparse_t, add_block
   implicit none
   private
-  public :: add_mass, mass_times, sum_part_motion
+  public :: add_mass, mass_times, sum_part_motion, lump_mass, element_shares, node_volumes, &
+    element_volume
 
 contains
 
@@ -121,5 +124,131 @@ contains
     end if
     mass = model%materials(model%parts(model%mesh%element_part(i))%material)%density*mass
   end function element_mass
+
+  !> Lumped mass of all nodes.
+  subroutine lump_mass(model, mass)
+    type(model_t), intent(in) :: model
+    real(wp), allocatable, intent(out) :: mass(:) !! (n_node) kg per metre of depth or per radian
+    real(wp) :: shares(4)
+    integer :: i, k
+
+    allocate (mass(model%mesh%n_node), source=0.0_wp)
+    if (allocated(model%conditions%lumped_masses)) then
+      do i = 1, size(model%conditions%lumped_masses)
+        associate (lump => model%conditions%lumped_masses(i))
+          mass(lump%node) = mass(lump%node) + lump%mass
+        end associate
+      end do
+    end if
+    do i = 1, model%mesh%n_element
+      associate (nodes => model%mesh%element_nodes(:, i))
+        shares = lumped_shares(model, model%mesh%element_part(i), nodes)
+        do k = 1, 4
+          mass(nodes(k)) = mass(nodes(k)) + shares(k)
+        end do
+      end associate
+    end do
+  end subroutine lump_mass
+
+  !> Masses at the four nodes of the element in a slot, by its density; 0 at the fourth of a
+  !> triangle.
+  pure function element_shares(model, slot) result(shares)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: slot
+    real(wp) :: shares(4) !! kg per metre of depth or per radian
+
+    shares = lumped_shares(model, slot_part(model%layout, slot), model%layout%slot_nodes(:, slot))
+  end function element_shares
+
+  !> The same of an element of a part between some nodes.
+  pure function lumped_shares(model, part, nodes) result(shares)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: part, nodes(4)
+    real(wp) :: shares(4)
+    real(wp) :: x(2, 4)
+    integer :: corners
+
+    x = model%mesh%coordinates(:, nodes)
+    corners = merge(3, 4, nodes(4) == nodes(3))
+    associate (density => model%materials(model%parts(part)%material)%density)
+      if (model%is_round) then
+        shares = density*node_volumes(x, corners == 3)
+      else
+        shares = density*(0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
+          - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1))))/corners
+        shares(corners + 1:) = 0.0_wp
+      end if
+    end associate
+  end function lumped_shares
+
+  !> Integrals of N_a r over one quad or triangle, per radian: its volume by nodes. 2x2 Gauss points
+  !> are exact. A triangle's third node gets the shares of both its places, its fourth none.
+  pure function node_volumes(x, is_triangle) result(volumes)
+    real(wp), intent(in) :: x(2, 4) !! corners, x(1, :) the radii
+    logical, intent(in) :: is_triangle
+    real(wp) :: volumes(4)
+    real(wp), parameter :: g = sqrt(1.0_wp/3.0_wp)
+    real(wp) :: shape(4), along(4), across(4), to_x(2), to_y(2), xi, eta
+    integer :: i, j
+
+    volumes = 0.0_wp
+    do i = -1, 1, 2
+      do j = -1, 1, 2
+        xi = i*g
+        eta = j*g
+        shape = 0.25_wp*[(1 - xi)*(1 - eta), (1 + xi)*(1 - eta), (1 + xi)*(1 + eta), &
+          (1 - xi)*(1 + eta)]
+        along = 0.25_wp*[-(1 - eta), 1 - eta, 1 + eta, -(1 + eta)]
+        across = 0.25_wp*[-(1 - xi), -(1 + xi), 1 + xi, 1 - xi]
+        to_x = matmul(x, along)
+        to_y = matmul(x, across)
+        volumes = volumes + shape*dot_product(shape, x(1, :)) &
+          *(to_x(1)*to_y(2) - to_x(2)*to_y(1))
+      end do
+    end do
+    if (.not. is_triangle) return
+    volumes(3) = volumes(3) + volumes(4)
+    volumes(4) = 0.0_wp
+  end function node_volumes
+
+  !> Integrals of N_a N_b r over one quad or triangle, per radian: 3x3 Gauss points are exact.
+  pure function round_mass(x) result(mass)
+    real(wp), intent(in) :: x(2, 4) !! corners, x(1, :) the radii
+    real(wp) :: mass(4, 4)
+    real(wp), parameter :: outer = sqrt(0.15_wp)
+    real(wp), parameter :: at(3) = [0.5_wp - outer, 0.5_wp, 0.5_wp + outer], &
+      weight(3) = [5.0_wp, 8.0_wp, 5.0_wp]/18.0_wp
+    real(wp) :: shape(4), along(2), across(2), factor
+    integer :: b, i, j
+
+    mass = 0.0_wp
+    do i = 1, 3
+      do j = 1, 3
+        shape = [(1.0_wp - at(i))*(1.0_wp - at(j)), at(i)*(1.0_wp - at(j)), at(i)*at(j), &
+          (1.0_wp - at(i))*at(j)]
+        along = (1.0_wp - at(j))*(x(:, 2) - x(:, 1)) + at(j)*(x(:, 3) - x(:, 4))
+        across = (1.0_wp - at(i))*(x(:, 4) - x(:, 1)) + at(i)*(x(:, 3) - x(:, 2))
+        factor = weight(i)*weight(j)*dot_product(shape, x(1, :))*(along(1)*across(2) &
+          - along(2)*across(1))
+        do b = 1, 4
+          mass(:, b) = mass(:, b) + factor*shape(b)*shape
+        end do
+      end do
+    end do
+  end function round_mass
+
+  !> Volume of element i at the start, per radian, and its first moments.
+  pure function element_volume(mesh, i) result(moments)
+    type(mesh_t), intent(in) :: mesh
+    integer, intent(in) :: i
+    real(wp) :: moments(3)
+    real(wp) :: x(2, 4), volumes(4)
+
+    associate (nodes => mesh%element_nodes(:, i))
+      x = mesh%coordinates(:, nodes)
+      volumes = node_volumes(x, nodes(4) == nodes(3))
+    end associate
+    moments = [sum(volumes), sum(volumes*x(1, :)), sum(volumes*x(2, :))]
+  end function element_volume
 
 end module element_mass_m

@@ -1,8 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> Element state at time zero and lumped mass.
+!> Element state at time zero.
 module element_start_m
   use block_state_m, only : block_state_t
+  use element_chunk_m, only : n_round_reference, reference_inverse, reference_mass, reference_sum
   use element_dispatch_m, only : point_count
+  use element_mass_m, only : node_volumes
   use element_state_m, only : start_erosion
   use eos_pressure_m, only : n_eos_value
   use kinds_m, only : wp
@@ -11,11 +13,9 @@ module element_start_m
   use material_dispatch_m, only : history_size
   use model_m, only : model_t
   use parts_m, only : may_fail, gives_pressure
-  use round_chunk_m, only : n_round_reference
-  use round_state_m, only : fill_round_reference, add_round_masses
   implicit none
   private
-  public :: start_elements, lump_mass
+  public :: start_elements
 
 contains
 
@@ -176,36 +176,32 @@ contains
 
   end subroutine clear_memories
 
-  !> Lumped mass: a quarter of each quad, a third of each triangle to its nodes; in round bodies the
-  !> row sums of the consistent mass.
-  subroutine lump_mass(model, mass)
+  !> Sum of the radii, 1/V and density over nodal mass of slots; padding is its chunk's first
+  !> element, larger by the factor that its diagonals are.
+  subroutine fill_round_reference(model, from, to, reference)
     type(model_t), intent(in) :: model
-    real(wp), allocatable, intent(out) :: mass(:) !! (n_node) kg per metre of depth or per radian
-    real(wp) :: x(2, 4), area
-    integer :: i, corners
+    integer, intent(in) :: from, to            !! slots
+    real(wp), intent(inout) :: reference(:, :) !! (n_slot, n_round_reference)
+    real(wp) :: x(2, 4), volumes(4), factor
+    integer :: i, first
 
-    allocate (mass(model%mesh%n_node), source=0.0_wp)
-    if (allocated(model%conditions%lumped_masses)) then
-      do i = 1, size(model%conditions%lumped_masses)
-        associate (lump => model%conditions%lumped_masses(i))
-          mass(lump%node) = mass(lump%node) + lump%mass
-        end associate
-      end do
-    end if
-    if (model%is_round) then
-      call add_round_masses(model, mass)
-      return
-    end if
-    do i = 1, model%mesh%n_element
-      associate (nodes => model%mesh%element_nodes(:, i), &
-        material => model%materials(model%parts(model%mesh%element_part(i))%material))
+    do i = from, to
+      first = i - mod(i - 1, chunk_size)
+      if (model%layout%slot_element(i) == 0) then
+        factor = maxval(abs(reference(i, 1:4)))/maxval(abs(reference(first, 1:4)))
+        reference(i, reference_sum) = factor*reference(first, reference_sum)
+        reference(i, reference_inverse:) = reference(first, reference_inverse:)/factor**3
+        cycle
+      end if
+      associate (nodes => model%layout%slot_nodes(:, i))
         x = model%mesh%coordinates(:, nodes)
-        area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
-          - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
-        corners = merge(3, 4, nodes(4) == nodes(3))
-        mass(nodes(:corners)) = mass(nodes(:corners)) + material%density*area/corners
+        volumes = node_volumes(x, nodes(4) == nodes(3))
+        reference(i, reference_sum) = sum(x(1, :))
+        reference(i, reference_inverse) = 1.0_wp/sum(volumes)
+        reference(i, reference_mass:) = 0.0_wp
+        where (volumes > 0.0_wp) reference(i, reference_mass:) = 1.0_wp/volumes
       end associate
     end do
-  end subroutine lump_mass
+  end subroutine fill_round_reference
 
 end module element_start_m

@@ -6,19 +6,16 @@ module element_state_m
   use erosion_state_m, only : erosion_state_t, stays, has_left, has_gone
   use layout_m, only : chunk_size, slot_part
   use material_dispatch_m, only : history_size, column_temperature, column_damage, &
-    has_plastic_strain
+    has_plastic_strain, has_mean_dilatation
   use model_m, only : model_t
   use parts_m, only : has_memory_of_heat
-  use quad_full_m, only : has_mean_dilatation
-  use quad_points_m, only : n_point, point_ratios
-  use round_points_m, only : round_point_ratios
-  use round_state_m, only : round_ratios
+  use quad_points_m, only : n_point, point_ratios, round_point_ratios
   use volumetric_m, only : log_ratio, volumetric_energy
   implicit none
   private
   public :: start_erosion, element_stresses, element_plastic_strains, &
     element_heats, add_part_energies, smallest_ratio, settle_erosion, element_erosion, is_gone, &
-    stress_of_slot, plastic_strain_of_slot
+    stress_of_slot, plastic_strain_of_slot, initial_volume, hoop_strains
 
 contains
 
@@ -251,6 +248,99 @@ contains
       end if
     end associate
   end subroutine volume_ratios
+
+  !> V/V0 - 1 and V0 of the element in a slot, to the digits of the displacement.
+  pure subroutine round_ratios(model, slot, u, stretch, start)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: slot
+    real(wp), intent(in) :: u(2, 4)            !! displacement of the nodes
+    real(wp), intent(out) :: stretch, start    !! start per radian
+    real(wp), dimension(2) :: a, b, h, da, db, dh
+    real(wp) :: x(2, 4), s, ds
+
+    x = model%mesh%coordinates(:, model%layout%slot_nodes(:, slot))
+    call patterns(x, a, b, h, s)
+    call patterns(u, da, db, dh, ds)
+    start = 0.25_wp*s*area(a, b) + (h(1)*cross(a, b) - 2.0_wp*a(1)*b(1)*h(2))/24.0_wp
+    stretch = 0.25_wp*(s*(area(a, db) + area(da, b + db)) + ds*area(a + da, b + db)) &
+      + (h(1)*(cross(a, db) + cross(da, b + db)) + dh(1)*cross(a + da, b + db) &
+      - 2.0_wp*(a(1)*b(1)*dh(2) + (a(1)*db(1) + da(1)*(b(1) + db(1)))*(h(2) + dh(2))))/24.0_wp
+    stretch = stretch/start
+  end subroutine round_ratios
+
+  !> Initial area, or volume per radian, of the element in a slot.
+  pure function initial_volume(model, elements, slot) result(volume)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: slot
+    real(wp) :: volume
+    real(wp) :: stretch
+    real(wp), parameter :: none(2, 4) = 0.0_wp
+
+    if (model%is_round) then
+      call round_ratios(model, slot, none, stretch, volume)
+    else
+      associate (r => elements%reference(slot, :4))
+        volume = 0.5_wp*(r(1)*r(4) - r(3)*r(2))
+      end associate
+    end if
+  end function initial_volume
+
+  !> Logarithmic hoop strain of all elements in deck order: ln of the mean radius, over the initial
+  !> area, that the motion gives, over that of the start.
+  subroutine hoop_strains(model, motion, strain)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: motion(:, :)     !! (4, n_node)
+    real(wp), intent(inout) :: strain(:)     !! (n_element)
+    real(wp) :: x(2, 4), u(2, 4)
+    integer :: i, slot
+
+    do slot = 1, model%layout%n_slot
+      i = model%layout%slot_element(slot)
+      if (i == 0) cycle
+      x = model%mesh%coordinates(:, model%layout%slot_nodes(:, slot))
+      u = motion(1:2, model%layout%slot_nodes(:, slot))
+      strain(i) = log_ratio(area_integral(x, u)/area_integral(x, x))
+    end do
+  end subroutine hoop_strains
+
+  !> Integral over a quad of the bilinear field through the first components of `values`: the sum
+  !> of M_a times them.
+  pure real(wp) function area_integral(x, values)
+    real(wp), intent(in) :: x(2, 4)      !! corners
+    real(wp), intent(in) :: values(2, 4)
+    real(wp) :: a(2), b(2), h(2), da(2), db(2), dh(2), s, ds
+
+    call patterns(x, a, b, h, s)
+    call patterns(values, da, db, dh, ds)
+    area_integral = 0.25_wp*ds*area(a, b) + (da(1)*(h(1)*b(2) - h(2)*b(1)) &
+      + db(1)*(h(1)*a(2) - h(2)*a(1)))/24.0_wp
+  end function area_integral
+
+  !> Diagonals, h and the sum of the first components.
+  pure subroutine patterns(x, a, b, h, s)
+    real(wp), intent(in) :: x(2, 4)
+    real(wp), intent(out) :: a(2), b(2), h(2), s
+
+    a = x(:, 3) - x(:, 1)
+    b = x(:, 4) - x(:, 2)
+    h = (x(:, 1) - x(:, 2)) + (x(:, 3) - x(:, 4))
+    s = sum(x(1, :))
+  end subroutine patterns
+
+  !> Half of a_r b_z - b_r a_z.
+  pure real(wp) function area(a, b)
+    real(wp), intent(in) :: a(2), b(2)
+
+    area = 0.5_wp*(a(1)*b(2) - b(1)*a(2))
+  end function area
+
+  !> a_r b_z + b_r a_z.
+  pure real(wp) function cross(a, b)
+    real(wp), intent(in) :: a(2), b(2)
+
+    cross = a(1)*b(2) + b(1)*a(2)
+  end function cross
 
   !> J - 1 at the points of the element in a slot, and the initial area or volume of each.
   pure subroutine ratios_of_points(model, elements, slot, u, stretch, start)

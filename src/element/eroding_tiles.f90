@@ -3,9 +3,9 @@
 !> in its slot as padding does: much larger, all of its nodes one, without stress and without force.
 module eroding_tiles_m
   use block_state_m, only : block_state_t
-  use element_chunk_m, only : element_chunk_t, scatter_chunk
+  use element_chunk_m, only : element_chunk_t, reference_inverse, scatter_forces
   use element_dispatch_m, only : advance_chunk
-  use element_state_m, only : smallest_ratio
+  use element_state_m, only : smallest_ratio, initial_volume
   use erosion_criteria_m, only : find_leaving
   use erosion_state_m, only : stays, has_left
   use kinds_m, only : wp
@@ -14,9 +14,7 @@ module eroding_tiles_m
   use model_m, only : model_t
   use parts_m, only : material_t, has_memory_of_heat
   use quad_points_m, only : n_point
-  use round_chunk_m, only : round_chunk_t, scatter_round, reference_inverse
-  use round_state_m, only : round_ratios
-  use smallest_steps_m, only : step_of_element
+  use element_steps_m, only : step_of_element
   implicit none
   private
   public :: add_eroding_tile_forces, take_nodes
@@ -43,7 +41,6 @@ contains
     type(block_state_t), intent(inout) :: elements     !! only this tile's slots are touched
     real(wp), intent(inout) :: force(2, model%layout%n_local) !! set here
     type(element_chunk_t) :: chunk
-    type(round_chunk_t) :: round
     type(leaving_t) :: leaving
     integer :: nodes(4, chunk_size), i_chunk, first
 
@@ -53,21 +50,16 @@ contains
       call take_nodes(model%layout%slot_nodes(:, first:first + chunk_size - 1), &
         elements%erosion%status(first:first + chunk_size - 1), nodes)
       call keep_energies(i_chunk, elements, leaving)
-      call advance_chunk(model, i_chunk, nodes, motion, times(2), elements, chunk, round)
+      call advance_chunk(model, i_chunk, nodes, motion, times(2), elements, chunk)
       if (times(2) > 0.0_wp) then
         call find_leaving(model, i_chunk, nodes, motion, times, elements, leaving%flags)
         if (any(leaving%flags)) call take_out(model, i_chunk, motion, times(2), leaving, elements, &
-          chunk, round)
+          chunk)
       end if
       if (elements%erosion%n_gone(i_chunk) > 0) call clear_forces(elements%erosion%status(first: &
-        first + chunk_size - 1) /= stays, model%is_round, chunk, round)
-      if (model%is_round) then
-        call scatter_round(model%layout%chunk_elements(i_chunk), &
-          model%layout%slot_local(1, first), round, force)
-      else
-        call scatter_chunk(model%layout%chunk_elements(i_chunk), &
-          model%layout%slot_local(1, first), chunk, force)
-      end if
+        first + chunk_size - 1) /= stays, chunk)
+      call scatter_forces(model%layout%chunk_elements(i_chunk), model%layout%slot_local(1, first), &
+        chunk, force)
     end do
   end subroutine add_eroding_tile_forces
 
@@ -99,7 +91,7 @@ contains
   end subroutine keep_energies
 
   !> Elements that leave take their energies along; the limits of the chunk are those of the rest.
-  subroutine take_out(model, i_chunk, motion, dt, leaving, elements, chunk, round)
+  subroutine take_out(model, i_chunk, motion, dt, leaving, elements, chunk)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_chunk
     real(wp), intent(in), contiguous :: motion(:, :)
@@ -107,7 +99,6 @@ contains
     type(leaving_t), intent(in) :: leaving
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(in) :: chunk
-    type(round_chunk_t), intent(in) :: round
     real(wp) :: limit, volume, share
     integer :: i, slot, i_eos
 
@@ -126,7 +117,7 @@ contains
         cycle
       end if
       ! Its force at the end of the step does no work any more: half of that of the step is undone.
-      share = 0.5_wp*dt*power_of(model, slot, i, motion, chunk, round)
+      share = 0.5_wp*dt*power_of(model, slot, i, motion, chunk)
       if (elements%eos_state(i_eos + 2*chunk_size + i - 1) > -1.0_wp .and. abs(share) &
         <= huge(1.0_wp)) then
         elements%erosion%internal(slot) = elements%eos_state(i_eos + i - 1) &
@@ -144,46 +135,19 @@ contains
     elements%volume_limit(i_chunk) = volume
   end subroutine take_out
 
-  !> Initial area, or volume per radian, of the element in a slot.
-  pure function initial_volume(model, elements, slot) result(volume)
-    type(model_t), intent(in) :: model
-    type(block_state_t), intent(in) :: elements
-    integer, intent(in) :: slot
-    real(wp) :: volume
-    real(wp) :: stretch
-    real(wp), parameter :: none(2, 4) = 0.0_wp
-
-    if (model%is_round) then
-      call round_ratios(model, slot, none, stretch, volume)
-    else
-      associate (r => elements%reference(slot, :4))
-        volume = 0.5_wp*(r(1)*r(4) - r(3)*r(2))
-      end associate
-    end if
-  end function initial_volume
-
   !> Power of the forces of an element on the motion of its nodes in the step behind.
-  pure function power_of(model, slot, i, motion, chunk, round) result(power)
+  pure function power_of(model, slot, i, motion, chunk) result(power)
     type(model_t), intent(in) :: model
     integer, intent(in) :: slot, i
     real(wp), intent(in), contiguous :: motion(:, :)
     type(element_chunk_t), intent(in) :: chunk
-    type(round_chunk_t), intent(in) :: round
     real(wp) :: power
-    real(wp) :: f(4), swing(2), hoop, v(2, 4)
+    real(wp) :: v(2, 4)
 
     v = motion(3:4, model%layout%slot_nodes(:, slot))
-    if (model%is_round) then
-      f = round%force(:, i)
-      swing = round%swing(:, i)
-      hoop = round%hoop(i)
-    else
-      f = [chunk%force3(:, i), chunk%force4(:, i)]
-      swing = chunk%swing(:, i)
-      hoop = 0.0_wp
-    end if
-    power = dot_product(f(1:2), v(:, 3) - v(:, 1)) + dot_product(f(3:4), v(:, 4) - v(:, 2)) &
-      + dot_product(swing, v(:, 1) - v(:, 2) + v(:, 3) - v(:, 4)) + hoop*sum(v(1, :))
+    power = dot_product(chunk%force3(:, i), v(:, 3) - v(:, 1)) + dot_product(chunk%force4(:, i), &
+      v(:, 4) - v(:, 2)) + dot_product(chunk%swing(:, i), v(:, 1) - v(:, 2) + v(:, 3) - v(:, 4))
+    if (chunk%is_round) power = power + chunk%hoop(i)*sum(v(1, :))
   end function power_of
 
   !> From now on the slot is padding.
@@ -233,23 +197,17 @@ contains
   end subroutine keep_told
 
   !> Elements that have left do not push.
-  pure subroutine clear_forces(is_gone, is_round, chunk, round)
-    logical, intent(in) :: is_gone(chunk_size), is_round
+  pure subroutine clear_forces(is_gone, chunk)
+    logical, intent(in) :: is_gone(chunk_size)
     type(element_chunk_t), intent(inout) :: chunk
-    type(round_chunk_t), intent(inout) :: round
     integer :: i
 
     do i = 1, chunk_size
       if (.not. is_gone(i)) cycle
-      if (is_round) then
-        round%force(:, i) = 0.0_wp
-        round%swing(:, i) = 0.0_wp
-        round%hoop(i) = 0.0_wp
-      else
-        chunk%force3(:, i) = 0.0_wp
-        chunk%force4(:, i) = 0.0_wp
-        chunk%swing(:, i) = 0.0_wp
-      end if
+      chunk%force3(:, i) = 0.0_wp
+      chunk%force4(:, i) = 0.0_wp
+      chunk%swing(:, i) = 0.0_wp
+      if (chunk%is_round) chunk%hoop(i) = 0.0_wp
     end do
   end subroutine clear_forces
 

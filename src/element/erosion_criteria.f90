@@ -2,6 +2,7 @@
 !> Which elements of a chunk leave the mesh now, by what their material asks for.
 module erosion_criteria_m
   use block_state_m, only : block_state_t
+  use element_chunk_m, only : reference_sum
   use eos_pressure_m, only : look_for_failed
   use erosion_m, only : erosion_t, asks_for_strain, asks_for_stress
   use erosion_state_m, only : stays
@@ -10,8 +11,7 @@ module erosion_criteria_m
   use model_m, only : model_t
   use parts_m, only : material_t
   use quad_points_m, only : n_point
-  use round_chunk_m, only : reference_sum
-  use smallest_steps_m, only : step_of_element
+  use element_steps_m, only : step_of_element
   implicit none
   private
   public :: find_leaving

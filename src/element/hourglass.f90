@@ -1,9 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Flanagan-Belytschko hourglass control of the one-point quad (Flanagan &
-!> Belytschko 1981), from the hourglass velocity gamma.v.
+!> Hourglass control of the one-point quad, plane and round, from the hourglass velocity gamma.v:
+!> viscous or by stiffness (Flanagan & Belytschko 1981), or by assumed strain.
 module hourglass_m
   use kinds_m, only : wp
-  use assumed_strain_m, only : largest_spread
   use layout_m, only : chunk_size
   use block_state_m, only : block_state_t
   use element_chunk_m, only : element_chunk_t
@@ -12,34 +11,116 @@ module hourglass_m
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: resist_viscously, resist_elastically, hourglass_steps, harmless_coefficient, &
-    stop_failed, drop_failed, note_works
-
-  !> Coefficient up to which hourglass control never asks for less than L/c in a convex quad of its
-  !> initial area (doc/theory/elements.md).
-  real(wp), parameter :: harmless_coefficient = 0.25_wp
+  public :: resist, form_resistance, resist_viscously, resist_elastically, &
+    resist_by_assumed_strain, form_moduli, largest_spread
 
 contains
 
-  !> Viscous form: q = (Q_h rho c sqrt(A)/4) gamma.v. Its work is that of the mean of it and of the
-  !> force of the step before: a force acts over half of the step that it was formed from and half
-  !> of the next.
-  pure subroutine resist_viscously(factor, dt, last_x, last_y, chunk, work)
-    real(wp), intent(in) :: factor                !! Q_h rho c/4
+  !> Hourglass control of one chunk, with its work.
+  pure subroutine resist(i_chunk, material, hourglass, stress, elements, chunk)
+    integer, intent(in) :: i_chunk
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: hourglass
+    type(stress_chunk_t), intent(in) :: stress
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk !! q_x, q_y out
+    real(wp) :: work
+    integer :: x, y
+
+    if (allocated(elements%n_failed)) call stop_failed(i_chunk, material, elements, chunk)
+    x = elements%hourglass_start(i_chunk)
+    y = x + chunk_size
+    associate (memory => elements%hourglass_strain)
+      if (hourglass%form == hourglass_assumed) then
+        if (chunk%is_round) call form_resistance(material, hourglass, chunk)
+        call resist_by_assumed_strain(material, hourglass, stress, memory(x), memory(y), chunk, &
+          work)
+      else
+        call form_resistance(material, hourglass, chunk)
+        if (hourglass%form == hourglass_viscous) then
+          call resist_viscously(stress%dt, memory(x), memory(y), chunk, work)
+        else
+          call resist_elastically(stress%dt, stress, memory(x), memory(y), chunk, work)
+        end if
+      end if
+    end associate
+    if (allocated(elements%n_failed)) call drop_failed(i_chunk, material, stress%dt, elements, &
+      chunk, work)
+    elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work
+    if (allocated(elements%erosion)) then
+      ! Element by element, where these may leave.
+      associate (first => (i_chunk - 1)*chunk_size + 1)
+        associate (works => elements%erosion%hourglass(first:first + chunk_size - 1))
+          works = works + chunk%hourglass_work
+        end associate
+      end associate
+    end if
+  end subroutine resist
+
+  !> Force over gamma.v, (Q_h rho c sqrt(A)/4); or over its integral,
+  !> (Q_h/4)(K + 4G/3)((B_x.B_x + B_y.B_y)/A); or a bound of that for assumed strain,
+  !> QM E/(16 (1 - nu^2)) (2/(3A)) S with S the spread of the diagonals, which round bodies alone
+  !> need. In round bodies all of them times V/A.
+  pure subroutine form_resistance(material, hourglass, chunk)
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: hourglass
+    type(element_chunk_t), intent(inout) :: chunk !! `resistance` out
+    real(wp) :: factor, lateral
+    integer :: i
+
+    if (hourglass%form == hourglass_viscous) then
+      factor = 0.25_wp*hourglass%coefficient*material%density*material%sound_speed
+      if (chunk%is_round) then
+        !$omp simd
+        do i = 1, chunk_size
+          chunk%resistance(i) = factor*chunk%volume(i)*(chunk%inverse_area(i)*sqrt(chunk%area(i)))
+        end do
+      else
+        !$omp simd
+        do i = 1, chunk_size
+          chunk%resistance(i) = factor*sqrt(abs(chunk%area(i)))
+        end do
+      end if
+      return
+    end if
+    if (hourglass%form == hourglass_assumed) then
+      call form_moduli(material, hourglass, factor, lateral)
+      factor = factor*2.0_wp/3.0_wp
+      !$omp simd
+      do i = 1, chunk_size
+        chunk%resistance(i) = factor*largest_spread(chunk%x31(i), chunk%y31(i), chunk%x42(i), &
+          chunk%y42(i))
+      end do
+    else
+      factor = 0.125_wp*hourglass%coefficient*(material%bulk + 4.0_wp*material%shear/3.0_wp)
+      !$omp simd
+      do i = 1, chunk_size
+        chunk%resistance(i) = factor*(chunk%x31(i)**2 + chunk%y31(i)**2 + chunk%x42(i)**2 &
+          + chunk%y42(i)**2)
+      end do
+    end if
+    if (chunk%is_round) then
+      chunk%resistance = chunk%resistance*chunk%volume*chunk%inverse_area**2
+    else
+      chunk%resistance = chunk%resistance*chunk%inverse_area
+    end if
+  end subroutine form_resistance
+
+  !> Viscous form. Its work is that of the mean of the present force and of that of the step before: a
+  !> force acts over half of the step that it was formed from and half of the next.
+  pure subroutine resist_viscously(dt, last_x, last_y, chunk, work)
     real(wp), intent(in) :: dt
     real(wp), intent(inout), dimension(chunk_size) :: last_x, last_y !! q of the step before; then
                                                   !! the present one
     type(element_chunk_t), intent(inout) :: chunk !! q_x, q_y and their work out
     real(wp), intent(out) :: work                 !! of all of them in the step
-    real(wp) :: viscosity
     integer :: i
 
     work = 0.0_wp
-    !$omp simd private(viscosity) reduction(+ : work)
+    !$omp simd reduction(+ : work)
     do i = 1, chunk_size
-      viscosity = factor*sqrt(abs(chunk%area(i)))
-      chunk%qx(i) = viscosity*chunk%gx(i)
-      chunk%qy(i) = viscosity*chunk%gy(i)
+      chunk%qx(i) = chunk%resistance(i)*chunk%gx(i)
+      chunk%qy(i) = chunk%resistance(i)*chunk%gy(i)
       chunk%hourglass_work(i) = 0.5_wp*dt*((last_x(i) + chunk%qx(i))*chunk%gx(i) &
         + (last_y(i) + chunk%qy(i))*chunk%gy(i))
       last_x(i) = chunk%qx(i)
@@ -48,27 +129,23 @@ contains
     end do
   end subroutine resist_viscously
 
-  !> Stiffness form: force (Q_h/4)(K + 4G/3)((B_x.B_x + B_y.B_y)/A) times the hourglass strain e,
-  !> which turns with the element. With the rotation R of the step, e' = R e + (1 + R) dt g/2:
+  !> Stiffness form: the hourglass strain e turns with the element. With the rotation R of the step,
+  !> e' = R e + (1 + R) dt g/2:
   !> gamma.v is of the mid-step frame, half a rotation back, and (1 + R)/2 is that half rotation
   !> times its cosine, by which gamma.v of a turning element is too large. So a pattern that grows
   !> while its element turns is kept without error, whatever the step, and no step divides by zero.
-  pure subroutine resist_elastically(factor, dt, stress, strain_x, strain_y, chunk, work)
-    real(wp), intent(in) :: factor                  !! Q_h (K + 4G/3)/4
+  pure subroutine resist_elastically(dt, stress, strain_x, strain_y, chunk, work)
     real(wp), intent(in) :: dt
     type(stress_chunk_t), intent(in) :: stress      !! rotation of the step
     real(wp), intent(inout), dimension(chunk_size) :: strain_x, strain_y
     type(element_chunk_t), intent(inout) :: chunk   !! q_x, q_y and their work out
     real(wp), intent(out) :: work                   !! of all of them in the step
-    real(wp) :: stiffness, half_x, half_y, old_x, old_y, growth_x, growth_y
+    real(wp) :: half_x, half_y, old_x, old_y, growth_x, growth_y
     integer :: i
 
     work = 0.0_wp
-    !$omp simd private(stiffness, half_x, half_y, old_x, old_y, growth_x, growth_y) &
-    !$omp& reduction(+ : work)
+    !$omp simd private(half_x, half_y, old_x, old_y, growth_x, growth_y) reduction(+ : work)
     do i = 1, chunk_size
-      stiffness = 0.5_wp*factor*(chunk%x31(i)**2 + chunk%y31(i)**2 + chunk%x42(i)**2 &
-        + chunk%y42(i)**2)*chunk%inverse_area(i)
       half_x = 0.5_wp*dt*chunk%gx(i)
       half_y = 0.5_wp*dt*chunk%gy(i)
       old_x = stress%cosine(i)*strain_x(i) - stress%sine(i)*strain_y(i)
@@ -77,13 +154,114 @@ contains
       growth_y = half_y + (stress%sine(i)*half_x + stress%cosine(i)*half_y)
       strain_x(i) = old_x + growth_x
       strain_y(i) = old_y + growth_y
-      chunk%qx(i) = stiffness*strain_x(i)
-      chunk%qy(i) = stiffness*strain_y(i)
-      chunk%hourglass_work(i) = 0.5_wp*stiffness*((strain_x(i) + old_x)*growth_x &
+      chunk%qx(i) = chunk%resistance(i)*strain_x(i)
+      chunk%qy(i) = chunk%resistance(i)*strain_y(i)
+      chunk%hourglass_work(i) = 0.5_wp*chunk%resistance(i)*((strain_x(i) + old_x)*growth_x &
         + (strain_y(i) + old_y)*growth_y)
       work = work + chunk%hourglass_work(i)
     end do
   end subroutine resist_elastically
+
+  !> Assumed strain (Belytschko & Bindeman 1991, the field of optimal bending): the elastic stress of
+  !> the hourglass strain, in a frame that turns with the element, integrated in closed form
+  !> (doc/theory/elements.md, "Assumed strain"). Steps the generalised stress Q of the element's frame,
+  !>   Q' = factor [H_xx, -lateral H_xy; -lateral H_xy, H_yy] (gamma.v in that frame),
+  !> with H of the mid-step shape, so that a motion and its reverse leave nothing behind.
+  pure subroutine resist_by_assumed_strain(material, hourglass, stress, stress_x, stress_y, chunk, &
+    work)
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: hourglass
+    type(stress_chunk_t), intent(in) :: stress      !! step, and rotation in it
+    real(wp), intent(inout), dimension(chunk_size) :: stress_x, stress_y !! Q
+    type(element_chunk_t), intent(inout) :: chunk   !! q_x, q_y out, per unit of depth; their work
+    real(wp), intent(out) :: work                   !! of all of them in the step
+    real(wp) :: factor, lateral, back, x31, y31, x42, y42, cosine, sine, scale, area, weight, mxx, &
+      mxy, myy, half, grown_x, grown_y, added_x, added_y
+    integer :: i
+
+    call form_moduli(material, hourglass, factor, lateral)
+    back = 0.5_wp*stress%dt
+    work = 0.0_wp
+    !$omp simd private(x31, y31, x42, y42, cosine, sine, scale, area, weight, mxx, mxy, myy, half, &
+    !$omp& grown_x, grown_y, added_x, added_y) reduction(+ : work)
+    do i = 1, chunk_size
+      x31 = chunk%x31(i) - back*chunk%v31(1, i)
+      y31 = chunk%y31(i) - back*chunk%v31(2, i)
+      x42 = chunk%x42(i) - back*chunk%v42(1, i)
+      y42 = chunk%y42(i) - back*chunk%v42(2, i)
+      area = 0.5_wp*(x31*y42 - x42*y31)
+      ! The frame: rotation of the polar decomposition of the mean Jacobian.
+      cosine = (x31 - x42) + (y31 + y42)
+      sine = (y31 - y42) - (x31 + x42)
+      scale = 1.0_wp/sqrt(cosine*cosine + sine*sine)
+      cosine = scale*cosine
+      sine = scale*sine
+      added_x = cosine*x31 + sine*y31
+      added_y = cosine*y31 - sine*x31
+      grown_x = cosine*x42 + sine*y42
+      grown_y = cosine*y42 - sine*x42
+      weight = 2.0_wp*factor/(3.0_wp*area)
+      mxx = weight*(added_y*added_y + grown_y*grown_y)
+      myy = weight*(added_x*added_x + grown_x*grown_x)
+      mxy = weight*lateral*(added_x*added_y + grown_x*grown_y)
+      grown_x = cosine*chunk%gx(i) + sine*chunk%gy(i)
+      grown_y = cosine*chunk%gy(i) - sine*chunk%gx(i)
+      ! gamma.v of an element that turns is too large by one over the cosine of half the angle.
+      half = stress%dt*sqrt(0.5_wp + 0.5_wp*stress%cosine(i))
+      grown_x = half*grown_x
+      grown_y = half*grown_y
+      cosine = (chunk%x31(i) - chunk%x42(i)) + (chunk%y31(i) + chunk%y42(i))
+      sine = (chunk%y31(i) - chunk%y42(i)) - (chunk%x31(i) + chunk%x42(i))
+      scale = 1.0_wp/sqrt(cosine*cosine + sine*sine)
+      cosine = scale*cosine
+      sine = scale*sine
+      added_x = mxx*grown_x + mxy*grown_y
+      added_y = mxy*grown_x + myy*grown_y
+      ! In round bodies `mid_area` is the volume per radian.
+      chunk%hourglass_work(i) = chunk%mid_area(i)/area*((stress_x(i) + 0.5_wp*added_x)*grown_x &
+        + (stress_y(i) + 0.5_wp*added_y)*grown_y)
+      work = work + chunk%hourglass_work(i)
+      stress_x(i) = stress_x(i) + added_x
+      stress_y(i) = stress_y(i) + added_y
+      chunk%qx(i) = cosine*stress_x(i) - sine*stress_y(i)
+      chunk%qy(i) = sine*stress_x(i) + cosine*stress_y(i)
+    end do
+    if (.not. chunk%is_round) return
+    ! The force of the plane times the mean radius V/A.
+    !$omp simd private(weight)
+    do i = 1, chunk_size
+      weight = chunk%volume(i)*chunk%inverse_area(i)
+      chunk%qx(i) = weight*chunk%qx(i)
+      chunk%qy(i) = weight*chunk%qy(i)
+    end do
+  end subroutine resist_by_assumed_strain
+
+  !> QM E/(16 (1 - nu^2)) and nu/(1 - nu).
+  pure subroutine form_moduli(material, hourglass, factor, lateral)
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: hourglass
+    real(wp), intent(out) :: factor, lateral
+    real(wp) :: wave
+
+    wave = 3.0_wp*material%bulk + 4.0_wp*material%shear
+    factor = 0.25_wp*hourglass%coefficient*material%shear*(3.0_wp*material%bulk + material%shear) &
+      /wave
+    lateral = (3.0_wp*material%bulk - 2.0_wp*material%shear)/wave
+  end subroutine form_moduli
+
+  !> Larger eigenvalue of d31 d31 + d42 d42 (dyads): H, and with it the stiffness over `factor`,
+  !> has none above 2/(3A) of it.
+  pure elemental function largest_spread(x31, y31, x42, y42) result(spread)
+    !$omp declare simd(largest_spread)
+    real(wp), intent(in) :: x31, y31, x42, y42
+    real(wp) :: spread
+    real(wp) :: xx, yy, xy
+
+    xx = x31*x31 + x42*x42
+    yy = y31*y31 + y42*y42
+    xy = x31*y31 + x42*y42
+    spread = 0.5_wp*((xx + yy) + sqrt((xx - yy)**2 + 4.0_wp*xy*xy))
+  end function largest_spread
 
   !> No hourglass velocity of elements that have failed and whose force is gone: before hourglass
   !> control is formed. In the step in which an element fails the force before it still does work.
@@ -92,10 +270,10 @@ contains
     type(material_t), intent(in) :: material
     type(block_state_t), intent(in) :: elements
     type(element_chunk_t), intent(inout) :: chunk !! gamma.v
-    logical :: failed(chunk_size)
+    logical :: failed(chunk_size), ignored
 
-    if (.not. has_failed(i_chunk, elements)) return
-    call find_elements(i_chunk, material, elements, failed)
+    if (elements%n_failed(i_chunk) == 0) return
+    call find_failed(material, elements%history(elements%history_start(i_chunk)), failed, ignored)
     associate (x => elements%hourglass_start(i_chunk), y => elements%hourglass_start(i_chunk) &
       + chunk_size, memory => elements%hourglass_strain)
       where (failed .and. .not. abs(memory(x:x + chunk_size - 1)) &
@@ -115,11 +293,11 @@ contains
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk
     real(wp), intent(inout) :: work               !! of all hourglass forces in the step
-    logical :: failed(chunk_size)
+    logical :: failed(chunk_size), ignored
     integer :: i, first
 
-    if (.not. has_failed(i_chunk, elements)) return
-    call find_elements(i_chunk, material, elements, failed)
+    if (elements%n_failed(i_chunk) == 0) return
+    call find_failed(material, elements%history(elements%history_start(i_chunk)), failed, ignored)
     do i = 1, chunk_size
       if (.not. failed(i)) cycle
       chunk%hourglass_work(i) = chunk%hourglass_work(i) - 0.5_wp*dt*(chunk%qx(i)*chunk%gx(i) &
@@ -131,73 +309,5 @@ contains
     end do
     work = sum(chunk%hourglass_work)
   end subroutine drop_failed
-
-  !> Works element by element, where these may leave.
-  pure subroutine note_works(i_chunk, elements, chunk)
-    integer, intent(in) :: i_chunk
-    type(block_state_t), intent(inout) :: elements
-    type(element_chunk_t), intent(in) :: chunk
-    integer :: first
-
-    first = (i_chunk - 1)*chunk_size + 1
-    associate (works => elements%erosion%hourglass(first:first + chunk_size - 1))
-      works = works + chunk%hourglass_work
-    end associate
-  end subroutine note_works
-
-  !> Whether some element of a chunk has failed in this step or before.
-  pure logical function has_failed(i_chunk, elements)
-    integer, intent(in) :: i_chunk
-    type(block_state_t), intent(in) :: elements
-
-    has_failed = .false.
-    if (allocated(elements%n_failed)) has_failed = elements%n_failed(i_chunk) > 0
-  end function has_failed
-
-  !> Which elements of a chunk have failed.
-  pure subroutine find_elements(i_chunk, material, elements, failed)
-    integer, intent(in) :: i_chunk
-    type(material_t), intent(in) :: material
-    type(block_state_t), intent(in) :: elements
-    logical, intent(out) :: failed(chunk_size)
-    logical :: ignored
-
-    call find_failed(material, elements%history(elements%history_start(i_chunk)), failed, ignored)
-  end subroutine find_elements
-
-  !> Steps that hourglass control of the elements allows. With masses rho A0/4 and
-  !> gamma.gamma = 4 + (|d31 x h.x|^2 + |d42 x h.x|^2)/(2 A^2): 2/omega of the stiffness form,
-  !> omega^2 = Q_h c^2 (B.B) gamma.gamma/(A A0); 2/rate of the viscous one, whose force is that of
-  !> v(n-1/2), rate = Q_h c sqrt(A) gamma.gamma/A0; of assumed strain, with E/(1 - nu^2) <= rho c^2
-  !> and the spread S, omega^2 = QM c^2 S gamma.gamma/(6 A A0). A triangle has no hourglass.
-  pure function hourglass_steps(hourglass, sound_speed, nodes, chunk) result(steps)
-    type(hourglass_t), intent(in) :: hourglass
-    real(wp), intent(in) :: sound_speed
-    integer, intent(in) :: nodes(4, chunk_size)  !! a triangle repeats its third
-    type(element_chunk_t), intent(in) :: chunk
-    real(wp) :: steps(chunk_size)                !! s
-    real(wp) :: pattern(chunk_size), inverse(chunk_size)
-    integer :: i
-
-    do i = 1, chunk_size
-      inverse(i) = abs(chunk%inverse_area(i))
-      pattern(i) = 4.0_wp + 0.5_wp*inverse(i)**2 &
-        *((chunk%x31(i)*chunk%hy(i) - chunk%y31(i)*chunk%hx(i))**2 &
-        + (chunk%x42(i)*chunk%hy(i) - chunk%y42(i)*chunk%hx(i))**2)
-      pattern(i) = pattern(i)*abs(1.0_wp + chunk%stretch(i))
-      if (nodes(4, i) == nodes(3, i)) pattern(i) = 0.0_wp
-    end do
-    if (hourglass%form == hourglass_viscous) then
-      steps = 2.0_wp/max(hourglass%coefficient*sound_speed*(pattern*sqrt(inverse)), tiny(1.0_wp))
-      return
-    end if
-    if (hourglass%form == hourglass_assumed) then
-      pattern = pattern*inverse**2*largest_spread(chunk%x31, chunk%y31, chunk%x42, chunk%y42)/6.0_wp
-    else
-      pattern = 0.5_wp*pattern*inverse**2 &
-        *(chunk%x31**2 + chunk%y31**2 + chunk%x42**2 + chunk%y42**2)
-    end if
-    steps = 2.0_wp/(sound_speed*sqrt(max(hourglass%coefficient*pattern, tiny(1.0_wp))))
-  end function hourglass_steps
 
 end module hourglass_m

@@ -11,12 +11,11 @@ module law_pressure_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use parts_m, only : hourglass_t, material_t, gives_pressure
-  use round_chunk_m, only : round_chunk_t
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: n_law_value, load_point_state, load_round_state, start_point_values, &
-    add_point_values, form_element_pressure, form_shared_pressure, take_now
+  public :: n_law_value, load_point_state, start_point_values, add_point_values, &
+    form_element_pressure, form_shared_pressure, take_now
 
   !> Values of each element: energy, pressure, V/V0 - 1, bulk viscosity, bulk and shear modulus.
   integer, parameter :: n_law_value = 6
@@ -25,54 +24,29 @@ contains
 
   !> What a law must know of a point of a material whose pressure has a memory or comes from the
   !> law: with an equation of state what `load_eos_state` says, else F and both volumes.
-  pure subroutine load_point_state(i_chunk, material, ratio, own, chunk, point, elements, stress)
+  pure subroutine load_point_state(i_chunk, material, ratio, chunk, point, elements, stress)
     integer, intent(in) :: i_chunk
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: ratio(chunk_size)   !! V/V0 of the point in the middle of the step
-    real(wp), intent(in) :: own(chunk_size)     !! V/V0 - 1 of the point at its end
     type(element_chunk_t), intent(in) :: chunk  !! of the element
     type(element_chunk_t), intent(in) :: point  !! of the point
     type(block_state_t), intent(in) :: elements
     type(stress_chunk_t), intent(inout) :: stress
-
-    if (gives_pressure(material)) then
-      call load_volumes(i_chunk, chunk, elements, stress)
-      call form_gradient(point, own, stress)
-    else
-      call load_eos_state(i_chunk, ratio, elements, stress)
-    end if
-  end subroutine load_point_state
-
-  !> The same of a one-point round quad.
-  pure subroutine load_round_state(i_chunk, material, ratio, chunk, round, elements, stress)
-    integer, intent(in) :: i_chunk
-    type(material_t), intent(in) :: material
-    real(wp), intent(in) :: ratio(chunk_size)
-    type(element_chunk_t), intent(in) :: chunk
-    type(round_chunk_t), intent(in) :: round
-    type(block_state_t), intent(in) :: elements
-    type(stress_chunk_t), intent(inout) :: stress
-
-    if (gives_pressure(material)) then
-      call load_volumes(i_chunk, chunk, elements, stress)
-      call form_round_gradient(chunk, round, stress)
-    else
-      call load_eos_state(i_chunk, ratio, elements, stress)
-    end if
-  end subroutine load_round_state
-
-  !> Volume of the element at both ends of the step.
-  pure subroutine load_volumes(i_chunk, chunk, elements, stress)
-    integer, intent(in) :: i_chunk
-    type(element_chunk_t), intent(in) :: chunk
-    type(block_state_t), intent(in) :: elements
-    type(stress_chunk_t), intent(inout) :: stress
     integer :: first
 
+    if (.not. gives_pressure(material)) then
+      call load_eos_state(i_chunk, ratio, elements, stress)
+      return
+    end if
     first = elements%eos_start(i_chunk) + 2*chunk_size
     stress%former = elements%eos_state(first:first + chunk_size - 1)
     stress%stretch = chunk%stretch
-  end subroutine load_volumes
+    if (point%is_round) then
+      call form_round_gradient(point, stress)
+    else
+      call form_gradient(point, stress)
+    end if
+  end subroutine load_point_state
 
   !> No point has been summed yet.
   pure subroutine start_point_values(material, chunk)
@@ -96,16 +70,15 @@ contains
   !> What the law has left for one of several points. F of rubber is scaled to the dilatation of the
   !> element: what that adds to the second derivative of the energy is at most |s| L:L beside a
   !> lambda not below two thirds of the mean stress (doc/theory/elements.md).
-  pure subroutine add_point_values(material, share, volume, own, middle, stress, chunk)
+  pure subroutine add_point_values(material, point, stress, chunk)
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: share              !! of `volume` and `middle` that the point stands for
-    real(wp), intent(in), dimension(chunk_size) :: volume, own, middle !! now, V/V0 - 1, mid-step
+    type(element_chunk_t), intent(in) :: point !! its volumes are those that it stands for
     type(stress_chunk_t), intent(inout) :: stress
     type(element_chunk_t), intent(inout) :: chunk
     real(wp) :: lame
     integer :: i
 
-    chunk%heat = chunk%heat + share*stress%work*middle
+    chunk%heat = chunk%heat + stress%work*point%mid_area
     if (.not. gives_pressure(material)) return
     if (allocated(material%rubber)) then
       !$omp simd private(lame)
@@ -116,7 +89,7 @@ contains
         stress%bulk(i) = lame + 2.0_wp*stress%shear(i)/3.0_wp
       end do
     end if
-    call add_law_values(material, share*volume/(1.0_wp + own), stress, chunk)
+    call add_law_values(material, point%volume/(1.0_wp + point%stretch), stress, chunk)
   end subroutine add_point_values
 
   !> What the law has left, for its share of the initial volume.

@@ -5,17 +5,16 @@
 !> large. With less mass damping grows: where there is any the step is taken as in proportion.
 module mass_scaling_m
   use block_state_m, only : block_state_t
-  use element_shares_m, only : element_shares
-  use element_steps_m, only : chunk_steps
+  use element_mass_m, only : element_shares
+  use element_steps_m, only : chunk_steps, scaled_step, is_damped
   use exposed_step_m, only : has_exposed, exposed_step
   use kinds_m, only : wp
   use layout_m, only : chunk_size, slot_part, tile_t
   use model_m, only : model_t
-  use parts_m, only : hourglass_viscous, part_t
   implicit none
   private
   public :: scales_masses, start_mass_scaling, refine_limits, needs_refinement, grow_masses, &
-    scaled_step, added_masses
+    added_masses
 
   !> By how much the step of an element that has become too small is made larger than asked: it then
   !> lasts for some cycles.
@@ -168,24 +167,6 @@ contains
     end do
   end subroutine grow_masses
 
-  !> Stable step of the element in a slot with its mass.
-  pure function scaled_step(model, slot, step, elements) result(scaled)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: slot
-    real(wp), intent(in) :: step                 !! with the mass of its density
-    type(block_state_t), intent(in) :: elements
-    real(wp) :: scaled
-
-    scaled = step
-    if (.not. allocated(elements%mass_ratio)) return
-    associate (ratio => elements%mass_ratio(slot))
-      scaled = step*sqrt(ratio)
-      if (ratio < 1.0_wp) then
-        if (is_damped(model, model%parts(slot_part(model%layout, slot)))) scaled = step*ratio
-      end if
-    end associate
-  end function scaled_step
-
   !> Mass over that of the density which takes an element from one step to another.
   pure function needed_ratio(model, slot, step, target) result(ratio)
     type(model_t), intent(in) :: model
@@ -199,20 +180,6 @@ contains
     end if
     ratio = ratio**2
   end function needed_ratio
-
-  !> Whether something resists the rates of a part.
-  pure function is_damped(model, part) result(damped)
-    type(model_t), intent(in) :: model
-    type(part_t), intent(in) :: part
-    logical :: damped
-
-    associate (hourglass => part%hourglass)
-      damped = model%materials(part%material)%viscosity > 0.0_wp &
-        .or. hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp &
-        .or. (hourglass%form == hourglass_viscous .and. hourglass%coefficient > 0.0_wp &
-        .and. .not. model%sections(part%section)%is_full) .or. abs(part%stiffness_damping) > 0.0_wp
-    end associate
-  end function is_damped
 
   !> Added mass of each part, below zero where some was taken away; and the mass without it.
   pure subroutine added_masses(model, elements, added, own)

@@ -1,19 +1,64 @@
 ! SPDX-License-Identifier: MIT
-!> Kinematics of the one-point quad.
+!> Kinematics and forces of the one-point quad, plane or round (gradients averaged over its volume:
+!> doc/theory/elements.md, "Round bodies").
 !> With B_x3 = y42/2, B_y3 = -x42/2, B_x4 = -y31/2, B_y4 = x31/2 (and opposite signs at nodes 1 and
 !> 2): A = (x31 y42 - x42 y31)/2, L_ix = (v31 y42 - v42 y31)/(2A), L_iy = (x31 v42 - x42 v31)/(2A).
+!> In round bodies, a = d31 and b = d42, the volume per radian is (METHODS 6 in these patterns)
+!>   V = s A/4 + (h_r (a_r b_z + b_r a_z) - 2 a_r b_r h_z)/24.
 module quad_kinematics_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
-  use element_chunk_m, only : element_chunk_t
+  use element_chunk_m, only : element_chunk_t, reference_inverse, reference_sum
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: form_present_shape, form_increments, form_forces
+  public :: form_shape, form_present_shape, form_round_shape, form_increments, &
+    form_plane_increments, form_round_increments, form_forces, form_round_forces, &
+    add_pressure_forces, inverse_start
+
+  real(wp), parameter :: part = 1.0_wp/24.0_wp, eighth = 0.125_wp
 
 contains
 
-  !> Present diagonals, area and volume ratio. A - A0 is formed from the displacement, so that a
+  !> Present shape of a chunk.
+  pure subroutine form_shape(reference, stride, chunk)
+    integer, intent(in) :: stride                 !! length of one stream
+    real(wp), intent(in) :: reference(stride, *)  !! first slot of this chunk
+    type(element_chunk_t), intent(inout) :: chunk
+
+    if (chunk%is_round) then
+      call form_round_shape(reference, stride, chunk)
+    else
+      call form_present_shape(reference, stride, chunk)
+    end if
+  end subroutine form_shape
+
+  !> Strain increments, spin and hourglass velocity of the step, in the mid-step geometry.
+  pure subroutine form_increments(dt, chunk, stress)
+    real(wp), intent(in) :: dt                      !! step that led here
+    type(element_chunk_t), intent(inout) :: chunk
+    type(stress_chunk_t), intent(inout) :: stress   !! increments and rotation out
+
+    if (chunk%is_round) then
+      call form_round_increments(dt, chunk, stress)
+    else
+      call form_plane_increments(dt, chunk, stress)
+    end if
+  end subroutine form_increments
+
+  !> 1/V0 of the elements: of the area or of the volume.
+  pure function inverse_start(chunk) result(inverse)
+    type(element_chunk_t), intent(in) :: chunk
+    real(wp) :: inverse(chunk_size)
+
+    if (chunk%is_round) then
+      inverse = (1.0_wp + chunk%stretch)*chunk%inverse_volume
+    else
+      inverse = (1.0_wp + chunk%stretch)*chunk%inverse_area
+    end if
+  end function inverse_start
+
+  !> Of plane quads: present diagonals, area and volume ratio. A - A0 is formed from the displacement, so that a
   !> nearly undeformed element keeps all digits of its strain.
   pure subroutine form_present_shape(reference, stride, chunk)
     integer, intent(in) :: stride                 !! length of one stream
@@ -42,8 +87,8 @@ contains
     end do
   end subroutine form_present_shape
 
-  !> Strain increments, spin and hourglass velocity of the step, in the mid-step geometry.
-  pure subroutine form_increments(dt, chunk, stress)
+  !> Those of plane quads.
+  pure subroutine form_plane_increments(dt, chunk, stress)
     real(wp), intent(in) :: dt                      !! step that led here
     type(element_chunk_t), intent(inout) :: chunk
     type(stress_chunk_t), intent(inout) :: stress   !! increments and rotation out
@@ -92,7 +137,7 @@ contains
       chunk%gx(i) = chunk%hv(1, i) - (lxx*x31 + lxy*y31)
       chunk%gy(i) = chunk%hv(2, i) - (lyx*x31 + lyy*y31)
     end do
-  end subroutine form_increments
+  end subroutine form_plane_increments
 
   !> Nodal forces f_a = sigma B_a + q gamma_a, gamma_a = h_a - (B_xa h.x + B_ya h.y)/A: the second
   !> part of gamma joins the stress.
@@ -118,5 +163,203 @@ contains
       chunk%swing(2, i) = chunk%qy(i)
     end do
   end subroutine form_forces
+
+  !> Of round quads: present volume and its gradients, V/V0 - 1. V - V0 is formed from the displacement, so that a
+  !> nearly undeformed element keeps all digits of its strain. The hourglass pattern, (b x h)/(2 A)
+  !> and (h x a)/(2 A) of the diagonals, is -12/A and 12/A times the gradients M: who needs it takes
+  !> them.
+  pure subroutine form_round_shape(reference, stride, chunk)
+    integer, intent(in) :: stride                 !! length of one stream
+    real(wp), intent(in) :: reference(stride, *)  !! first slot of this chunk, see `element_chunk`
+    type(element_chunk_t), intent(inout) :: chunk !! patterns, area and `stretch` out
+    real(wp) :: ar, az, br, bz, hr, hz, s, area, volume, growth, first, second, cross, pair, &
+      first_growth, second_growth, pair_growth, both
+    integer :: i
+
+    !$omp simd private(ar, az, br, bz, hr, hz, s, area, volume, growth, first, second, cross, &
+    !$omp& pair, first_growth, second_growth, pair_growth, both)
+    do i = 1, chunk_size
+      ar = reference(i, 1) + chunk%u31(1, i)
+      az = reference(i, 2) + chunk%u31(2, i)
+      br = reference(i, 3) + chunk%u42(1, i)
+      bz = reference(i, 4) + chunk%u42(2, i)
+      hr = reference(i, 5) + chunk%hu(1, i)
+      hz = reference(i, 6) + chunk%hu(2, i)
+      s = eighth*(reference(i, reference_sum) + chunk%us(i))
+      chunk%x31(i) = ar
+      chunk%y31(i) = az
+      chunk%x42(i) = br
+      chunk%y42(i) = bz
+      chunk%hx(i) = hr
+      chunk%hy(i) = hz
+      chunk%radii(i) = s
+      ! The products a_r b_z, b_r a_z and a_r b_r, and what they have grown by.
+      first = ar*bz
+      second = br*az
+      pair = ar*br
+      first_growth = reference(i, 1)*chunk%u42(2, i) + chunk%u31(1, i)*bz
+      second_growth = reference(i, 3)*chunk%u31(2, i) + chunk%u42(1, i)*az
+      pair_growth = reference(i, 1)*chunk%u42(1, i) + chunk%u31(1, i)*br
+      cross = first + second
+      area = first - second
+      growth = part*(3.0_wp*(reference(i, reference_sum)*(first_growth - second_growth) &
+        + chunk%us(i)*area) + (reference(i, 5)*(first_growth + second_growth) &
+        + chunk%hu(1, i)*cross) - 2.0_wp*(reference(i, 6)*pair_growth + chunk%hu(2, i)*pair))
+      chunk%stretch(i) = growth*reference(i, reference_inverse)
+      hr = part*hr
+      hz = part*hz
+      chunk%rad_a(i) = s*bz - br*hz
+      chunk%rad_b(i) = -(s*az + ar*hz)
+      chunk%rad_h(i) = part*cross
+      chunk%axi_a(i) = br*(hr - s)
+      chunk%axi_b(i) = ar*(hr + s)
+      chunk%axi_h(i) = -2.0_wp*part*pair
+      chunk%mean_a(i) = hr*bz - hz*br
+      chunk%mean_b(i) = hr*az - hz*ar
+      chunk%mean_s(i) = eighth*area
+      volume = s*area + (ar*chunk%mean_a(i) + br*chunk%mean_b(i))
+      chunk%volume(i) = volume
+      area = 0.5_wp*area
+      chunk%area(i) = area
+      ! One division for two.
+      both = 1.0_wp/(area*volume)
+      chunk%inverse_volume(i) = both*area
+      chunk%inverse_area(i) = both*volume
+    end do
+  end subroutine form_round_shape
+
+  !> Strain increments, spin and hourglass velocity of the step, from the shape half a step ago.
+  !> The hoop rate is taken from both rates in the plane: laws see the same deviator, their D_zz
+  !> is 0.
+  pure subroutine form_round_increments(dt, chunk, stress)
+    real(wp), intent(in) :: dt                    !! step that led here
+    type(element_chunk_t), intent(inout) :: chunk !! trace, gamma.v and mid-step volume out
+    type(stress_chunk_t), intent(inout) :: stress !! increments and rotation out
+    real(wp) :: ar, az, br, bz, hr, hz, s, area, volume, rad_a, rad_b, rad_h, axi_a, axi_b, axi_h, &
+      mean_a, mean_b, inverse, lrr, lrz, lzr, lzz, ltt, turn, square, all, cosine, sine, mean, &
+      half, shear, back, first, second
+    integer :: i
+
+    stress%dt = dt
+    stress%has_hoop = .true.
+    back = 0.5_wp*dt
+    !$omp simd private(ar, az, br, bz, hr, hz, s, area, volume, rad_a, rad_b, rad_h, axi_a, axi_b, &
+    !$omp& axi_h, mean_a, mean_b, inverse, lrr, lrz, lzr, lzz, ltt, turn, square, all, cosine, &
+    !$omp& sine, mean, half, shear, first, second)
+    do i = 1, chunk_size
+      ar = chunk%x31(i) - back*chunk%v31(1, i)
+      az = chunk%y31(i) - back*chunk%v31(2, i)
+      br = chunk%x42(i) - back*chunk%v42(1, i)
+      bz = chunk%y42(i) - back*chunk%v42(2, i)
+      hr = part*(chunk%hx(i) - back*chunk%hv(1, i))
+      hz = part*(chunk%hy(i) - back*chunk%hv(2, i))
+      s = chunk%radii(i) - eighth*back*chunk%vs(i)
+      ! The gradients of `form_round_shape`; `area` is twice the area.
+      first = ar*bz
+      second = br*az
+      area = first - second
+      rad_a = s*bz - br*hz
+      rad_b = -(s*az + ar*hz)
+      rad_h = part*(first + second)
+      axi_a = br*(hr - s)
+      axi_b = ar*(hr + s)
+      axi_h = -2.0_wp*part*(ar*br)
+      mean_a = hr*bz - hz*br
+      mean_b = hr*az - hz*ar
+      volume = s*area + (ar*mean_a + br*mean_b)
+      chunk%mid_area(i) = volume
+      lrr = rad_a*chunk%v31(1, i) + rad_b*chunk%v42(1, i) + rad_h*chunk%hv(1, i)
+      lrz = axi_a*chunk%v31(1, i) + axi_b*chunk%v42(1, i) + axi_h*chunk%hv(1, i)
+      lzr = rad_a*chunk%v31(2, i) + rad_b*chunk%v42(2, i) + rad_h*chunk%hv(2, i)
+      lzz = axi_a*chunk%v31(2, i) + axi_b*chunk%v42(2, i) + axi_h*chunk%hv(2, i)
+      ! tan(half the rotation) = turn/V; one division gives 1/V, 1/(V^2 + turn^2) and 1/A.
+      turn = 0.5_wp*back*(lzr - lrz)
+      square = volume*volume + turn*turn
+      all = 1.0_wp/((volume*area)*square)
+      inverse = all*(square*area)
+      cosine = (volume*volume - turn*turn)*(all*(volume*area))
+      sine = 2.0_wp*volume*turn*(all*(volume*area))
+      stress%cosine(i) = cosine
+      stress%sine(i) = sine
+      stress%cos2(i) = cosine*cosine - sine*sine
+      stress%sin2(i) = 2.0_wp*cosine*sine
+      ! gamma.v, with the pattern from the gradients M.
+      all = 24.0_wp*all*(square*volume)
+      first = mean_a*chunk%v31(1, i)
+      second = mean_b*chunk%v42(1, i)
+      ltt = (first + second) + eighth*area*chunk%vs(i)
+      chunk%gx(i) = chunk%hv(1, i) + all*(second - first)
+      chunk%gy(i) = chunk%hv(2, i) + all*(mean_b*chunk%v42(2, i) - mean_a*chunk%v31(2, i))
+      ! Mid-step increments turn by half the rotation to stand beside the rotated stress.
+      chunk%trace(i) = inverse*((lrr + lzz) + ltt)
+      inverse = back*inverse
+      ltt = 2.0_wp*inverse*ltt
+      stress%hoop(i) = ltt
+      mean = inverse*(lrr + lzz) - ltt
+      half = inverse*(lrr - lzz)
+      shear = inverse*(lrz + lzr)
+      lrr = cosine*half - sine*shear
+      stress%dxx(i) = mean + lrr
+      stress%dyy(i) = mean - lrr
+      stress%dxy(i) = cosine*shear + sine*half
+    end do
+  end subroutine form_round_increments
+
+  !> Nodal forces f_ra = b_ra s_rr + b_za s_rz + M_a s_tt, f_za = b_ra s_rz + b_za s_zz, and
+  !> q gamma_a: the parts of the diagonals, of h, and that of all four nodes.
+  pure subroutine form_round_forces(stress, chunk)
+    type(stress_chunk_t), intent(in) :: stress
+    type(element_chunk_t), intent(inout) :: chunk !! forces out
+    real(wp) :: rr, zz, rz, tt, qr, qz
+    integer :: i
+
+    !$omp simd private(rr, zz, rz, tt, qr, qz)
+    do i = 1, chunk_size
+      rr = stress%sxx(i) + chunk%pressure(i)
+      zz = stress%syy(i) + chunk%pressure(i)
+      rz = stress%sxy(i)
+      tt = chunk%pressure(i) - (stress%sxx(i) + stress%syy(i))
+      qr = 12.0_wp*chunk%inverse_area(i)*chunk%qx(i)
+      qz = 12.0_wp*chunk%inverse_area(i)*chunk%qy(i)
+      chunk%force3(1, i) = chunk%rad_a(i)*rr + chunk%axi_a(i)*rz + chunk%mean_a(i)*(tt - qr)
+      chunk%force3(2, i) = chunk%rad_a(i)*rz + chunk%axi_a(i)*zz - chunk%mean_a(i)*qz
+      chunk%force4(1, i) = chunk%rad_b(i)*rr + chunk%axi_b(i)*rz + chunk%mean_b(i)*(tt + qr)
+      chunk%force4(2, i) = chunk%rad_b(i)*rz + chunk%axi_b(i)*zz + chunk%mean_b(i)*qz
+      chunk%swing(1, i) = chunk%rad_h(i)*rr + chunk%axi_h(i)*rz + chunk%qx(i)
+      chunk%swing(2, i) = chunk%rad_h(i)*rz + chunk%axi_h(i)*zz + chunk%qy(i)
+      chunk%hoop(i) = chunk%mean_s(i)*tt
+    end do
+  end subroutine form_round_forces
+
+  !> Add the forces of the pressure that all points of an element share, of whose volume they sum the
+  !> gradient without error.
+  pure subroutine add_pressure_forces(chunk)
+    type(element_chunk_t), intent(inout) :: chunk
+    real(wp) :: half
+    integer :: i
+
+    if (.not. chunk%is_round) then
+      !$omp simd private(half)
+      do i = 1, chunk_size
+        half = 0.5_wp*chunk%pressure(i)
+        chunk%force3(1, i) = chunk%force3(1, i) + half*chunk%y42(i)
+        chunk%force3(2, i) = chunk%force3(2, i) - half*chunk%x42(i)
+        chunk%force4(1, i) = chunk%force4(1, i) - half*chunk%y31(i)
+        chunk%force4(2, i) = chunk%force4(2, i) + half*chunk%x31(i)
+      end do
+      return
+    end if
+    associate (p => chunk%pressure)
+      do i = 1, chunk_size
+        chunk%force3(1, i) = chunk%force3(1, i) + p(i)*(chunk%rad_a(i) + chunk%mean_a(i))
+        chunk%force3(2, i) = chunk%force3(2, i) + p(i)*chunk%axi_a(i)
+        chunk%force4(1, i) = chunk%force4(1, i) + p(i)*(chunk%rad_b(i) + chunk%mean_b(i))
+        chunk%force4(2, i) = chunk%force4(2, i) + p(i)*chunk%axi_b(i)
+        chunk%swing(1, i) = chunk%swing(1, i) + p(i)*chunk%rad_h(i)
+        chunk%swing(2, i) = chunk%swing(2, i) + p(i)*chunk%axi_h(i)
+        chunk%hoop(i) = chunk%hoop(i) + p(i)*chunk%mean_s(i)
+      end do
+    end associate
+  end subroutine add_pressure_forces
 
 end module quad_kinematics_m

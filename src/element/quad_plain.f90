@@ -10,11 +10,12 @@ module quad_plain_m
   use block_state_m, only : block_state_t
   use controls_m, only : length_by_diagonal
   use element_chunk_m, only : element_chunk_t, gather_chunk
-  use hourglass_m, only : harmless_coefficient
   use layout_m, only : chunk_size
   use material_dispatch_m, only : is_elastic, returns_radially
-  use parts_m, only : hourglass_t, material_t, hourglass_viscous
+  use model_m, only : model_t
+  use parts_m, only : material_t, part_t, hourglass_viscous
   use quad_kinematics_m, only : form_present_shape
+  use stable_step_m, only : harmless_coefficient
   use volumetric_m, only : atanh_series, log_ratio, largest_size
   implicit none
   private
@@ -47,19 +48,21 @@ module quad_plain_m
 contains
 
   !> Whether a part asks for nothing that `advance_plain` has not.
-  pure function is_plain(material, hourglass, length_rule, elements) result(yes)
+  pure function is_plain(model, part, material, elements) result(yes)
+    type(model_t), intent(in) :: model
+    type(part_t), intent(in) :: part
     type(material_t), intent(in) :: material
-    type(hourglass_t), intent(in) :: hourglass
-    integer, intent(in) :: length_rule
     type(block_state_t), intent(in) :: elements
     logical :: yes
 
-    yes = (is_elastic(material) .or. returns_radially(material)) &
-      .and. hourglass%form == hourglass_viscous &
-      .and. .not. hourglass%coefficient > harmless_coefficient &
-      .and. .not. (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) &
-      .and. .not. (allocated(elements%retardation) .or. allocated(elements%erosion)) &
-      .and. length_rule /= length_by_diagonal
+    associate (hourglass => part%hourglass)
+      yes = (is_elastic(material) .or. returns_radially(material)) .and. .not. model%is_round &
+        .and. hourglass%form == hourglass_viscous &
+        .and. .not. hourglass%coefficient > harmless_coefficient &
+        .and. .not. (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) &
+        .and. .not. (allocated(elements%retardation) .or. allocated(elements%erosion)) &
+        .and. model%controls%length_rule /= length_by_diagonal
+    end associate
   end function is_plain
 
   !> As `advance_one_point`.

@@ -4,9 +4,11 @@
 !> negative eigenvalues: a band, and what a few columns couple, B + V V^T. Which forces are at a
 !> bound is guessed, the others are solved for, and the guess is mended until nothing is left to
 !> mend; where that goes round in circles, sweeps of Gauss-Seidel settle it. The room is kept from
-!> one problem to the next.
+!> one problem to the next. Cholesky factors are those of a symmetric band (0:width, n), B(j + i, j)
+!> in row i of column j: of rows that depend on others the later ones are left out. LAPACK's dpbtrf
+!> gives up at the first such pivot, and in OpenBLAS its bits depend on the number of threads where
+!> the band is wide.
 module complementarity_m
-  use band_cholesky_m, only : take_rows, factorise, substitute
   use kinds_m, only : wp
   implicit none
   private
@@ -55,6 +57,11 @@ module complementarity_m
   real(wp), parameter :: round_off = 1.0e-13_wp
   !> Change of forces, as part of the largest, at which sweeps have settled.
   real(wp), parameter :: settled = 1.0e-13_wp
+
+  !> Entries of a band up to which a loop over them is not worth vectors.
+  integer, parameter :: few = 8
+  !> Pivots below this part of their own diagonal are zero.
+  real(wp), parameter :: least_pivot = 1.0e-10_wp
 
 contains
 
@@ -307,18 +314,26 @@ contains
   pure subroutine sweep(problem, n_sweep)
     type(problem_t), intent(inout) :: problem
     integer, intent(out) :: n_sweep
-    real(wp) :: change, wanted, diagonal
-    integer :: j
+    real(wp) :: change, wanted, diagonal, pushed
+    integer :: j, k
 
     do n_sweep = 1, most_sweeps
       change = 0.0_wp
       do j = 1, problem%n
         associate (x => problem%x(j), slack => problem%slack(j))
-          diagonal = diagonal_at(problem, j)
+          diagonal = problem%band((problem%width + 1)*(j - 1) + 1)
+          do k = 0, problem%n_column - 1
+            diagonal = diagonal + problem%column(k*problem%n + j)**2
+          end do
           if (.not. diagonal > 0.0_wp) cycle
           call add_rows(1, [j], problem%n, problem%width, problem%band, problem%x, problem%r, &
             problem%slack)
-          slack = slack + pushed_at(problem, j)
+          pushed = 0.0_wp
+          do k = 0, problem%n_column - 1
+            pushed = pushed + problem%column(k*problem%n + j)*dot_product( &
+              problem%column(k*problem%n + 1:(k + 1)*problem%n), problem%x(:problem%n))
+          end do
+          slack = slack + pushed
           wanted = min(max(x - slack/diagonal, problem%low(j)), problem%high(j))
           change = max(change, abs(wanted - x))
           x = wanted
@@ -329,33 +344,115 @@ contains
     n_sweep = min(n_sweep, most_sweeps)
   end subroutine sweep
 
-  !> W(j, j).
-  pure function diagonal_at(problem, j) result(diagonal)
-    type(problem_t), intent(in) :: problem
-    integer, intent(in) :: j
-    real(wp) :: diagonal
-    integer :: k
+  !> The band of some rows.
+  pure subroutine take_rows(m, width, place, band, factor)
+    integer, intent(in) :: m, width, place(m)
+    real(wp), intent(in) :: band(0:width, *)
+    real(wp), intent(inout) :: factor(0:width, m)
+    integer :: i, j
 
-    diagonal = problem%band((problem%width + 1)*(j - 1) + 1)
-    do k = 0, problem%n_column - 1
-      diagonal = diagonal + problem%column(k*problem%n + j)**2
-    end do
-  end function diagonal_at
-
-  !> What the columns make of the forces in the slack of one.
-  pure function pushed_at(problem, j) result(pushed)
-    type(problem_t), intent(in) :: problem
-    integer, intent(in) :: j
-    real(wp) :: pushed
-    integer :: k
-
-    pushed = 0.0_wp
-    associate (n => problem%n)
-      do k = 0, problem%n_column - 1
-        pushed = pushed + problem%column(k*n + j) &
-          *dot_product(problem%column(k*n + 1:(k + 1)*n), problem%x(:n))
+    if (place(m) - place(1) == m - 1) then
+      ! They follow each other.
+      call copy((width + 1)*m, band(0, place(1)), factor)
+      return
+    end if
+    do j = 1, m
+      do i = j, min(j + width, m)
+        if (place(i) - place(j) > width) then
+          factor(i - j, j) = 0.0_wp
+        else
+          factor(i - j, j) = band(place(i) - place(j), place(j))
+        end if
       end do
-    end associate
-  end function pushed_at
+    end do
+  end subroutine take_rows
+
+  !> All columns in one loop.
+  pure subroutine copy(n, from, to)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: from(n)
+    real(wp), intent(inout) :: to(n)
+
+    to = from
+  end subroutine copy
+
+  !> Cholesky factors of a band. A row whose pivot is zero takes no part.
+  pure subroutine factorise(n, width, factor, diagonal, is_zero)
+    integer, intent(in) :: n, width
+    real(wp), intent(inout) :: factor(0:width, n)
+    real(wp), intent(inout) :: diagonal(n)
+    logical, intent(inout) :: is_zero(n)
+    real(wp) :: inverse
+    integer :: j, k, last
+
+    do j = 1, n
+      diagonal(j) = factor(0, j)
+    end do
+    do j = 1, n
+      is_zero(j) = .not. factor(0, j) > least_pivot*diagonal(j)
+      if (is_zero(j)) then
+        factor(:, j) = 0.0_wp
+        factor(0, j) = 1.0_wp
+        cycle
+      end if
+      factor(0, j) = sqrt(factor(0, j))
+      inverse = 1.0_wp/factor(0, j)
+      last = min(width, n - j)
+      do k = 1, last
+        factor(k, j) = factor(k, j)*inverse
+      end do
+      do k = 1, last
+        call take_off(last - k + 1, factor(k, j), factor(k, j), factor(0, j + k))
+      end do
+    end do
+  end subroutine factorise
+
+  !> Take a multiple of numbers off others. Few are cheaper one by one.
+  pure subroutine take_off(n, multiple, these, others)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: multiple, these(n)
+    real(wp), intent(inout) :: others(n)
+    integer :: m
+
+    if (n > few) then
+      others = others - multiple*these
+    else
+      !GCC$ NOVECTOR
+      !GCC$ UNROLL 1
+      do m = 1, n
+        others(m) = others(m) - multiple*these(m)
+      end do
+    end if
+  end subroutine take_off
+
+  !> Solve with the factors, in place.
+  pure subroutine substitute(n, width, factor, is_zero, y)
+    integer, intent(in) :: n, width
+    real(wp), intent(in) :: factor(0:width, n)
+    logical, intent(in) :: is_zero(n)
+    real(wp), intent(inout) :: y(n)
+    real(wp) :: value
+    integer :: j, k
+
+    do j = 1, n
+      if (is_zero(j)) y(j) = 0.0_wp
+      value = y(j)/factor(0, j)
+      y(j) = value
+      !GCC$ NOVECTOR
+      !GCC$ UNROLL 1
+      do k = 1, min(width, n - j)
+        y(j + k) = y(j + k) - factor(k, j)*value
+      end do
+    end do
+    do j = n, 1, -1
+      value = y(j)
+      !GCC$ UNROLL 1
+      do k = 1, min(width, n - j)
+        value = value - factor(k, j)*y(j + k)
+      end do
+      y(j) = value/factor(0, j)
+      if (is_zero(j)) y(j) = 0.0_wp
+    end do
+  end subroutine substitute
 
 end module complementarity_m

@@ -1,18 +1,19 @@
 ! SPDX-License-Identifier: MIT
 !> Solves A x = b for a sparse matrix whose pattern is symmetric but for a few entries, symmetric in
-!> value or not, and says how good the answer is. Theory: doc/theory/implicit.md, "Linear systems".
+!> value or not, and says how good the answer is. The matrix is scaled so that the largest entry of
+!> every row and column is about one (Ruiz 2001): a penalty a million times stiffer than the
+!> elements then no longer hides what is soft. LU factors are those of a band where the bandwidth is
+!> small, else sparse. Theory: doc/theory/implicit.md, "Linear systems".
 module linear_solver_m
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-  use equilibration_m, only : equilibrate
-  use factor_m, only : factor_matrix, factor_t, free_factor, method_banded, method_best, &
-    method_sparse, solve_factored
+  use banded_lu_m, only : banded_lu_t, factor_banded, order_equations, solve_banded
   use kinds_m, only : long, wp
   use memory_m, only : available_bytes
   use sparse_m, only : multiply, sparse_t
-  use umfpack_m, only : has_umfpack
+  use umfpack_m, only : has_umfpack, factor_umfpack, free_umfpack, solve_umfpack, umfpack_t
   implicit none
   private
-  public :: report_t, solve_linear, method_best, method_banded, method_sparse
+  public :: report_t, solve_linear, method_best, method_banded, method_sparse, equilibrate
 
   !> Where the norm of A z is below this part of that of |A||z| (A equilibrated), A takes z to zero.
   !> Seen: 0.4e-16 to 7e-16 for rigid motions of up to 100,000 equations; 4e-15 for two
@@ -46,6 +47,32 @@ module linear_solver_m
     character(:), allocatable :: message  !! what is wrong, in words
   end type report_t
 
+  !> Methods: choose, or take the one named.
+  integer, parameter :: method_best = 0, method_banded = 1, method_sparse = 2
+
+  !> Widest band that goes to LAPACK where UMFPACK is there. Seconds to factorise on one core
+  !> (gfortran 12, reference BLAS), quads with two equations a node, banded against sparse:
+  !>   square meshes          20 x 20 (bandwidth 79)  0.003/0.002,  40 x 40 (159)  0.041/0.012,
+  !>                          100 x 100 (399)  1.35/0.13
+  !>   slender meshes         4000 x 10 (45)  0.06/0.47,  500 x 20 (85)  0.09/0.11
+  integer, parameter :: widest_band = 80
+
+  !> Smallest pivot that is solved with, for entries of about one: far below what rounding leaves of
+  !> a pivot that is zero, but large enough for nothing to overflow.
+  real(wp), parameter :: least_pivot = 1.0e-3_wp*epsilon(1.0_wp)
+
+  !> The factors; of the two only one is filled. The sparse one is to be freed in the end.
+  type :: factor_t
+    integer :: method = method_banded  !! method used
+    type(banded_lu_t) :: banded        !! ordered even where the method is another
+    type(umfpack_t) :: sparse
+    logical :: is_negative = .false.   !! the determinant
+    logical :: has_tiny_pivot = .false. !! sparse: nothing can be solved, not even a nearby system
+  end type factor_t
+
+  !> Each sweep halves the exponent of what is left to scale.
+  integer, parameter :: n_sweep = 5
+
 contains
 
   !> Solve. For a singular matrix x is what the factors give, its free motion large; zero
@@ -77,7 +104,14 @@ contains
     allocate (row_scale(matrix%n), column_scale(matrix%n))
     call equilibrate(matrix, row_scale, column_scale, scaled)
     call factor_matrix(scaled, wanted, factor, factored)
-    call describe_factor(factor, report)
+    report%bandwidth = factor%banded%width
+    report%is_negative = factor%is_negative
+    report%method = 'banded LU (LAPACK)'
+    report%bytes = factor%banded%bytes
+    if (factor%method == method_sparse) then
+      report%method = 'sparse LU (UMFPACK)'
+      report%bytes = factor%sparse%bytes
+    end if
     if (.not. factored) then
       call report_memory(matrix%n, factor, report)
     else
@@ -87,7 +121,7 @@ contains
         x = column_scale*x
       end if
     end if
-    call free_factor(factor)
+    call free_umfpack(factor%sparse)
   end subroutine solve_linear
 
   !> Every entry has to be finite, and no row or column zero.
@@ -95,10 +129,9 @@ contains
     type(sparse_t), intent(in) :: matrix
     real(wp), intent(in) :: b(:)
     type(report_t), intent(inout) :: report
-    real(wp), allocatable :: row_largest(:), column_largest(:)
-    integer :: i, j, k
+    real(wp), allocatable :: ones(:), row_largest(:), column_largest(:)
+    integer :: i
 
-    allocate (row_largest(matrix%n), column_largest(matrix%n), source=0.0_wp)
     do i = 1, matrix%n
       associate (entries => matrix%value(matrix%first(i):matrix%first(i + 1) - 1))
         if (.not. (all(ieee_is_finite(entries)) .and. ieee_is_finite(b(i)))) then
@@ -107,32 +140,14 @@ contains
           return
         end if
       end associate
-      do k = matrix%first(i), matrix%first(i + 1) - 1
-        j = matrix%column(k)
-        row_largest(i) = max(row_largest(i), abs(matrix%value(k)))
-        column_largest(j) = max(column_largest(j), abs(matrix%value(k)))
-      end do
     end do
+    allocate (ones(matrix%n), source=1.0_wp)
+    allocate (row_largest(matrix%n), column_largest(matrix%n))
+    call find_largest(matrix, ones, ones, row_largest, column_largest)
     report%equation = findloc(min(row_largest, column_largest) <= 0.0_wp, .true., dim=1)
     report%is_singular = report%equation > 0
     if (report%is_singular) report%message = 'the matrix is singular: a row or column of it is zero'
   end subroutine check_entries
-
-  !> Method, bandwidth and memory.
-  pure subroutine describe_factor(factor, report)
-    type(factor_t), intent(in) :: factor
-    type(report_t), intent(inout) :: report
-
-    report%bandwidth = factor%banded%width
-    report%is_negative = factor%is_negative
-    if (factor%method == method_sparse) then
-      report%method = 'sparse LU (UMFPACK)'
-      report%bytes = factor%sparse%bytes
-    else
-      report%method = 'banded LU (LAPACK)'
-      report%bytes = factor%banded%bytes
-    end if
-  end subroutine describe_factor
 
   !> The factors do not fit: how much is needed, and what helps.
   subroutine report_memory(n, factor, report)
@@ -273,5 +288,118 @@ contains
       end do
     end do
   end function multiply_magnitudes
+
+  !> Factorise a compressed matrix that is equilibrated. `factored` is false where memory does not
+  !> suffice.
+  subroutine factor_matrix(matrix, method, factor, factored)
+    type(sparse_t), intent(in) :: matrix
+    integer, intent(in) :: method          !! one of `method_`
+    type(factor_t), intent(inout) :: factor
+    logical, intent(out) :: factored
+
+    call order_equations(matrix, factor%banded)
+    factor%method = method
+    if (method == method_best) factor%method = merge(method_sparse, method_banded, &
+      has_umfpack .and. factor%banded%width > widest_band)
+    select case (factor%method)
+    case (method_sparse)
+      call factor_sparse(matrix, factor, factored)
+      factor%is_negative = factor%sparse%is_negative
+    case default
+      call factor_banded(matrix, least_pivot, factor%banded, factored)
+      factor%is_negative = factor%banded%is_negative
+    end select
+  end subroutine factor_matrix
+
+  !> Sparse factors. A matrix with a zero pivot is factorised again with its diagonal changed in the
+  !> last digit of one, which no entry exceeds by much: singular still, but to be solved with.
+  subroutine factor_sparse(matrix, factor, factored)
+    type(sparse_t), intent(in) :: matrix
+    type(factor_t), intent(inout) :: factor
+    logical, intent(out) :: factored
+    type(sparse_t) :: shifted
+    integer :: i, k
+
+    call factor_umfpack(matrix, factor%sparse, factored)
+    factor%has_tiny_pivot = .false.
+    if (.not. factored .or. factor%sparse%smallest_pivot >= least_pivot) return
+    shifted = matrix
+    do i = 1, matrix%n
+      do k = matrix%first(i), matrix%first(i + 1) - 1
+        if (matrix%column(k) == i) shifted%value(k) = matrix%value(k) + 2.0_wp*epsilon(1.0_wp)
+      end do
+    end do
+    call factor_umfpack(shifted, factor%sparse, factored)
+    factor%has_tiny_pivot = factor%sparse%smallest_pivot < least_pivot
+  end subroutine factor_sparse
+
+  !> x := A^-1 b, or A^-T b.
+  subroutine solve_factored(factor, transposed, b, x)
+    type(factor_t), intent(in) :: factor
+    logical, intent(in) :: transposed !! solve with the transpose
+    real(wp), intent(in) :: b(:)      !! (n)
+    real(wp), intent(out) :: x(:)     !! (n)
+
+    select case (factor%method)
+    case (method_sparse)
+      call solve_umfpack(factor%sparse, transposed, b, x)
+    case default
+      call solve_banded(factor%banded, transposed, b, x)
+    end select
+  end subroutine solve_factored
+
+  !> scaled(i, j) = row_scale(i)*matrix(i, j)*column_scale(j), with the largest entries from
+  !> 1/4 to about 1. The scales are powers of two, so that nothing is rounded. No row and no
+  !> column may be empty or zero.
+  pure subroutine equilibrate(matrix, row_scale, column_scale, scaled)
+    type(sparse_t), intent(in) :: matrix
+    real(wp), intent(out) :: row_scale(:)    !! (n)
+    real(wp), intent(out) :: column_scale(:) !! (n)
+    type(sparse_t), intent(out) :: scaled    !! compressed
+    real(wp), allocatable :: row_largest(:), column_largest(:)
+    integer :: sweep, i, k
+
+    allocate (row_largest(matrix%n), column_largest(matrix%n))
+    row_scale = 1.0_wp
+    column_scale = 1.0_wp
+    do sweep = 1, n_sweep
+      call find_largest(matrix, row_scale, column_scale, row_largest, column_largest)
+      row_scale = row_scale/sqrt(row_largest)
+      column_scale = column_scale/sqrt(column_largest)
+    end do
+    row_scale = scale(1.0_wp, exponent(row_scale) - 1)
+    column_scale = scale(1.0_wp, exponent(column_scale) - 1)
+    scaled%n = matrix%n
+    scaled%first = matrix%first
+    scaled%column = matrix%column
+    allocate (scaled%value(size(matrix%value)))
+    do i = 1, matrix%n
+      do k = matrix%first(i), matrix%first(i + 1) - 1
+        scaled%value(k) = row_scale(i)*matrix%value(k)*column_scale(matrix%column(k))
+      end do
+    end do
+  end subroutine equilibrate
+
+  !> Largest scaled entry of each row and column.
+  pure subroutine find_largest(matrix, row_scale, column_scale, row_largest, column_largest)
+    type(sparse_t), intent(in) :: matrix
+    real(wp), intent(in) :: row_scale(:)       !! (n)
+    real(wp), intent(in) :: column_scale(:)    !! (n)
+    real(wp), intent(out) :: row_largest(:)    !! (n)
+    real(wp), intent(out) :: column_largest(:) !! (n)
+    real(wp) :: entry
+    integer :: i, j, k
+
+    row_largest = 0.0_wp
+    column_largest = 0.0_wp
+    do i = 1, matrix%n
+      do k = matrix%first(i), matrix%first(i + 1) - 1
+        j = matrix%column(k)
+        entry = abs(matrix%value(k))*row_scale(i)*column_scale(j)
+        row_largest(i) = max(row_largest(i), entry)
+        column_largest(j) = max(column_largest(j), entry)
+      end do
+    end do
+  end subroutine find_largest
 
 end module linear_solver_m

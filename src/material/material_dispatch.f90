@@ -20,7 +20,7 @@ module material_dispatch_m
   private
   public :: update_stress, form_tangent, history_size, find_failed, break_points, &
     column_temperature, column_damage, has_plastic_strain, &
-    is_elastic, returns_radially, law_name
+    is_elastic, returns_radially, law_name, has_mean_dilatation
 
   !> Columns of the history of the heated law of Johnson and Cook: rise of temperature, damage.
   integer, parameter :: column_temperature = 2, column_damage = 3
@@ -59,6 +59,15 @@ contains
     name = 'rigid'
     if (.not. material%is_rigid) name = trim(names(findloc(laws, material%law, dim=1)))
   end function law_name
+
+  !> Whether fully integrated elements have mean dilatation, against volumetric locking: where the
+  !> material is or becomes nearly incompressible.
+  pure function has_mean_dilatation(material) result(yes)
+    type(material_t), intent(in) :: material
+    logical :: yes
+
+    yes = material%poisson > 0.4_wp .or. history_size(material) > 0 .or. allocated(material%eos)
+  end function has_mean_dilatation
 
   !> Whether the history of a law starts with a plastic strain.
   pure function has_plastic_strain(material) result(yes)

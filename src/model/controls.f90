@@ -1,19 +1,76 @@
 ! SPDX-License-Identifier: MIT
-!> Controls of the run: end, time step and output plan.
+!> Controls of the run: end, time step and output plan, with what the histories have rows of.
 module controls_m
   use, intrinsic :: iso_c_binding, only : c_loc
-  use boundary_rows_m, only : boundary_rows_t
-  use cross_sections_m, only : cross_section_t
-  use end_conditions_m, only : end_condition_t
-  use force_groups_m, only : force_group_t
+  use conditions_m, only : conditions_t
   use history_tables_m, only : n_table
-  use kinds_m, only : wp
+  use kinds_m, only : long, wp
+  use layout_m, only : layout_t
+  use sorting_m, only : sorted_order
   use units_m, only : units_t
   use visitor_m, only : visited_t, visitor_t, length
   implicit none
   private
-  public :: controls_t, relaxation_t, implicit_t, output_plan_t, interval_t, is_asked, &
-    length_by_side, length_by_diagonal, contact_step_warns, contact_step_free, contact_step_rules
+  public :: boundary_rows_t, list_boundaries, boundary_load, boundary_body_load, &
+    boundary_pressure, boundary_motion, boundary_body_motion, force_group_t, group_nodes, &
+    cross_section_t, find_edges, mark_corners, n_cut, end_condition_t, end_node_place, &
+    end_node_touch, end_body_place, end_body_way, end_contact, controls_t, relaxation_t, &
+    implicit_t, output_plan_t, interval_t, is_asked, length_by_side, length_by_diagonal, &
+    contact_step_warns, contact_step_free, contact_step_rules
+
+  !> What acts: a force on a node, on a body, pressure on edges of a node, prescribed motion of a
+  !> node, of a body. Rows come in this order.
+  integer, parameter :: boundary_load = 1, boundary_body_load = 2, boundary_pressure = 3, &
+    boundary_motion = 4, boundary_body_motion = 5
+
+  !> The rows, and which belong to the prescribed motions.
+  type, extends(visited_t) :: boundary_rows_t
+    integer, allocatable :: condition(:)       !! one of `boundary_`
+    integer, allocatable :: where(:)           !! index of the node, or of the body
+    integer, allocatable :: motion_rows(:)     !! of each prescribed motion of a node
+    integer, allocatable :: body_motion_rows(:) !! of each of a body
+  contains
+    procedure :: visit => visit_rows
+  end type boundary_rows_t
+
+  !> One *DATABASE_NODAL_FORCE_GROUP.
+  type, extends(visited_t) :: force_group_t
+    integer :: id = 0                !! user number of its node set
+    integer, allocatable :: nodes(:) !! node indices, each once, in the order of the set
+  contains
+    procedure :: visit => visit_group
+  end type force_group_t
+
+  !> One *DATABASE_CROSS_SECTION_SET.
+  type, extends(visited_t) :: cross_section_t
+    integer :: id = 0                   !! user number, or its position in the deck
+    character(:), allocatable :: title
+    integer, allocatable :: nodes(:)    !! node indices, each once
+    integer, allocatable :: elements(:) !! element indices, each once; by rising slot once there is
+                                        !! a layout
+    logical, allocatable :: is_corner(:, :) !! (4, elements) corners that are nodes of it
+    integer, allocatable :: edges(:, :) !! (2, n) edges of the elements with both nodes in it
+  contains
+    procedure :: visit => visit_section
+  end type cross_section_t
+
+  !> The kinds: a coordinate of a node, a node in contact, a displacement of a body along an axis,
+  !> the length of that displacement, an interface without force.
+  integer, parameter :: end_node_place = 1, end_node_touch = 2, end_body_place = 3, &
+    end_body_way = 4, end_contact = 5
+
+  !> One of them.
+  type :: end_condition_t
+    integer :: kind = 0
+    integer :: id = 0                  !! user number of the node, part or interface
+    integer :: where = 0               !! index of the node, body or interface
+    integer :: direction = 0           !! 1 x, 2 y; of an interface 0 both
+    real(wp) :: least = -huge(1.0_wp)  !! MINC
+    real(wp) :: most = huge(1.0_wp)    !! MAXC
+    real(wp) :: start = 0.0_wp         !! ACTIM
+    real(wp) :: duration = 0.0_wp      !! DUR
+    real(wp) :: threshold = 0.0_wp     !! THRES
+  end type end_condition_t
 
   !> Element length of the stable step (ISDO): area over longest side, or over longest diagonal.
   integer, parameter :: length_by_side = 0, length_by_diagonal = 1
@@ -115,6 +172,153 @@ module controls_m
   end type controls_t
 
 contains
+
+  !> All rows, by what acts and then by rising user number.
+  subroutine list_boundaries(conditions, node_ids, body_ids, rows)
+    type(conditions_t), intent(in) :: conditions
+    integer, intent(in) :: node_ids(:), body_ids(:) !! user numbers
+    type(boundary_rows_t), intent(out) :: rows
+    integer :: row_at(max(size(node_ids), size(body_ids))), i
+
+    allocate (rows%condition(0), rows%where(0))
+    call add_rows(boundary_load, [conditions%nodal_loads%node], node_ids, rows, row_at)
+    if (allocated(conditions%rigid_loads)) call add_rows(boundary_body_load, &
+      [conditions%rigid_loads%node], body_ids, rows, row_at)
+    call add_rows(boundary_pressure, [(conditions%pressures(i)%nodes, i=1, &
+      size(conditions%pressures))], node_ids, rows, row_at)
+    call add_rows(boundary_motion, [conditions%motions%node], node_ids, rows, row_at)
+    rows%motion_rows = row_at(conditions%motions%node)
+    call add_rows(boundary_body_motion, [conditions%rigid_motions%node], body_ids, rows, row_at)
+    rows%body_motion_rows = row_at(conditions%rigid_motions%node)
+  end subroutine list_boundaries
+
+  !> Rows of what acts on some nodes or bodies, each once.
+  subroutine add_rows(condition, places, ids, rows, row_at)
+    integer, intent(in) :: condition
+    integer, intent(in) :: places(:)   !! indices, any of them several times
+    integer, intent(in) :: ids(:)      !! their user numbers
+    type(boundary_rows_t), intent(inout) :: rows
+    integer, intent(out) :: row_at(:)  !! row of each index, 0 = none
+    logical :: is_there(size(ids))
+    integer, allocatable :: found(:)
+    integer :: i
+
+    is_there = .false.
+    is_there(places) = .true.
+    found = pack([(i, i=1, size(ids))], is_there)
+    found = found(sorted_order(int(ids(found), long)))
+    row_at = 0
+    row_at(found) = size(rows%where) + [(i, i=1, size(found))]
+    rows%condition = [rows%condition, spread(condition, 1, size(found))]
+    rows%where = [rows%where, found]
+  end subroutine add_rows
+
+  !> Its components.
+  subroutine visit_rows(self, visitor)
+    class(boundary_rows_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('condition', self%condition)
+    call visitor%visit('where', self%where)
+    call visitor%visit('motion_rows', self%motion_rows)
+    call visitor%visit('body_motion_rows', self%body_motion_rows)
+  end subroutine visit_rows
+
+  !> Its components.
+  subroutine visit_group(self, visitor)
+    class(force_group_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('id', self%id)
+    call visitor%visit('nodes', self%nodes)
+  end subroutine visit_group
+
+  !> Nodes of all groups, one group behind the other.
+  pure function group_nodes(groups) result(nodes)
+    type(force_group_t), intent(in) :: groups(:)
+    integer, allocatable :: nodes(:)
+    integer :: i
+
+    nodes = [(groups(i)%nodes, i=1, size(groups))]
+  end function group_nodes
+
+  !> Elements of all sections.
+  pure function n_cut(sections) result(n)
+    type(cross_section_t), intent(in) :: sections(:)
+    integer :: n, i
+
+    n = sum([(size(sections(i)%elements), i=1, size(sections))])
+  end function n_cut
+
+  !> The edges of the elements that lie in the section, each once.
+  subroutine find_edges(element_nodes, section)
+    integer, intent(in) :: element_nodes(:, :) !! (4, n_element)
+    type(cross_section_t), intent(inout) :: section
+    integer, allocatable :: edges(:, :), order(:)
+    logical, allocatable :: is_in(:)
+    integer :: i, k, n, a, b
+
+    allocate (is_in(maxval(element_nodes)), source=.false.)
+    is_in(section%nodes) = .true.
+    allocate (edges(2, 4*size(section%elements)))
+    n = 0
+    do i = 1, size(section%elements)
+      do k = 1, 4
+        a = element_nodes(k, section%elements(i))
+        b = element_nodes(mod(k, 4) + 1, section%elements(i))
+        if (a == b .or. .not. (is_in(a) .and. is_in(b))) cycle
+        n = n + 1
+        edges(:, n) = [min(a, b), max(a, b)]
+      end do
+    end do
+    edges = edges(:, :n)
+    order = sorted_order(edges(1, :)*int(size(is_in), long) + edges(2, :))
+    edges = edges(:, order)
+    k = 0
+    do i = 1, n
+      if (k > 0) then
+        if (all(edges(:, k) == edges(:, i))) cycle
+      end if
+      k = k + 1
+      edges(:, k) = edges(:, i)
+    end do
+    section%edges = edges(:, :k)
+  end subroutine find_edges
+
+  !> Find the corners of the elements that are nodes of the section, once there is a layout.
+  subroutine mark_corners(layout, n_node, section)
+    type(layout_t), intent(in) :: layout
+    integer, intent(in) :: n_node
+    type(cross_section_t), intent(inout) :: section
+    logical, allocatable :: is_in(:)
+    integer :: i, k
+
+    allocate (is_in(n_node), source=.false.)
+    is_in(section%nodes) = .true.
+    allocate (section%is_corner(4, size(section%elements)))
+    do i = 1, size(section%elements)
+      do k = 1, 4
+        section%is_corner(k, i) = &
+          is_in(layout%slot_nodes(k, layout%element_slot(section%elements(i))))
+      end do
+    end do
+  end subroutine mark_corners
+
+  !> Its components.
+  subroutine visit_section(self, visitor)
+    class(cross_section_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+    integer, allocatable :: corner(:, :)
+
+    call visitor%visit('id', self%id)
+    call visitor%visit('title', self%title)
+    call visitor%visit('nodes', self%nodes)
+    call visitor%visit('elements', self%elements)
+    if (allocated(self%is_corner)) corner = merge(1, 0, self%is_corner)
+    call visitor%visit('is_corner', corner)
+    if (allocated(corner)) self%is_corner = corner == 1
+    call visitor%visit('edges', self%edges)
+  end subroutine visit_section
 
   !> Whether the deck asks for this output.
   pure function is_asked(interval) result(asked)

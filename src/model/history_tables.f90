@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> The history files, one row each: what reading decks, schedules, files, restarts and names of
-!> results walk by loops. Columns stand in `history_rows_m`; how to add either is told in
-!> doc/add_a_history.md.
+!> The history files, one row each: what reading decks, schedules, files, restarts, results and
+!> names of results walk by loops. What fills the columns stands in `history_rows_m`, layouts of
+!> text in `dyna_layouts_m`; how to add either is told in doc/add_a_history.md.
 module history_tables_m
   use text_m, only : upper_case
   implicit none
@@ -33,28 +33,46 @@ module history_tables_m
   !> the rows of an instant together.
   integer, parameter :: text_none = 0, text_rows = 1, text_instants = 2
 
-  !> One file.
+  !> One file. Columns before the semicolon are in the CSV file, all are in the results file. Before
+  !> a name: # a whole number, @ a side of an interface (1 slave, 2 master), + only where masses are
+  !> scaled, - only where elements may leave the mesh.
   type :: history_table_t
-    character(8) :: name   !! end of the file's name, and of its keyword *DATABASE_<NAME>
-    integer :: asked       !! one of `asked_`
-    integer :: each        !! one of `each_`
-    integer :: text        !! one of `text_`
+    character(8) :: name     !! end of the file's name, and of its keyword *DATABASE_<NAME>
+    integer :: asked         !! one of `asked_`
+    integer :: each          !! one of `each_`
+    integer :: text          !! one of `text_`
+    character(300) :: columns
   end type history_table_t
 
   type(history_table_t), parameter :: history_tables(n_table) = [ &
-    history_table_t('glstat  ', asked_or_states, each_run, text_rows), &
-    history_table_t('rcforc  ', asked_alone, each_contact, text_rows), &
-    history_table_t('nodout  ', asked_alone, each_history_node, text_instants), &
-    history_table_t('contact ', asked_by_states, each_contact, text_none), &
-    history_table_t('matsum  ', asked_alone, each_part, text_instants), &
-    history_table_t('rwforc  ', asked_alone, each_wall, text_instants), &
-    history_table_t('sleout  ', asked_alone, each_contact, text_instants), &
-    history_table_t('spcforc ', asked_alone, each_support, text_instants), &
-    history_table_t('elout   ', asked_alone, each_history_element, text_instants), &
-    history_table_t('rbdout  ', asked_alone, each_body, text_instants), &
-    history_table_t('bndout  ', asked_alone, each_boundary, text_instants), &
-    history_table_t('nodfor  ', asked_alone, each_group_node, text_instants), &
-    history_table_t('secforc ', asked_alone, each_section, text_instants)]
+    history_table_t('glstat', asked_or_states, each_run, text_rows, &
+      'time,#cycle,dt,kinetic,internal,hourglass,viscous,damping,contact,external_work,'// &
+      'total,energy_ratio,leapfrog,friction,+added_mass,-eroded,+mass_increase,+#by_dt2ms,'// &
+      '-eroded_kinetic,-eroded_internal,-eroded_hourglass,-eroded_contact;'// &
+      'velocity_x,velocity_y,#element,#element_part'), &
+    history_table_t('rcforc', asked_alone, each_contact, text_rows, &
+      'time,#interface,@side,fx,fy,#n_active'), &
+    history_table_t('nodout', asked_alone, each_history_node, text_instants, &
+      'time,#node,x,y,ux,uy,vx,vy,ax,ay;#cycle'), &
+    history_table_t('contact', asked_by_states, each_contact, text_none, &
+      'time,#interface,#node,s,x,y,gap,pressure,fx,fy,length,traction,slip,#state,row_stress'), &
+    history_table_t('matsum', asked_alone, each_part, text_instants, &
+      'time,#part,kinetic,internal,hourglass,momentum_x,momentum_y,mass,+added_mass'), &
+    history_table_t('rwforc', asked_alone, each_wall, text_instants, &
+      'time,#wall,fx,fy,normal_force,impulse,work,#n_active,tangential_force,friction'), &
+    history_table_t('sleout', asked_alone, each_contact, text_instants, &
+      'time,#cycle,#interface,energy,damping,stored,friction,estimate,row_energy,step_limit'), &
+    history_table_t('spcforc', asked_alone, each_support, text_instants, 'time,#node,fx,fy'), &
+    history_table_t('elout', asked_alone, each_history_element, text_instants, &
+      'time,#element,sxx,syy,szz,sxy,plastic_strain;#cycle,#part,#is_gone'), &
+    history_table_t('rbdout', asked_alone, each_body, text_instants, &
+      'time,#part,x,y,ux,uy,rotation,vx,vy,spin,ax,ay,spin_rate;#cycle'), &
+    history_table_t('bndout', asked_alone, each_boundary, text_instants, &
+      'time,#condition,#id,fx,fy,moment,work'), &
+    history_table_t('nodfor', asked_alone, each_group_node, text_instants, &
+      'time,#group,#node,fx,fy,work'), &
+    history_table_t('secforc', asked_alone, each_section, text_instants, &
+      'time,#section,fx,fy,moment,x,y,area')]
 
 contains
 

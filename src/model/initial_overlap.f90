@@ -3,8 +3,8 @@
 !> that lie in each other deeper than whole outlines are caught (doc/theory/contact.md, sections 3.4
 !> and 3.7). Linear in elements and segments. Used once, when the deck is read.
 module initial_overlap_m
-  use body_view_m, only : body_view_t, most_crossed, half_row, list_crossed, ends_of
-  use element_finder_m, only : is_inside_body, element_at
+  use element_finder_m, only : body_view_t, most_crossed, half_row, list_crossed, ends_of, &
+    is_inside_body, element_at
   use geometry_m, only : sight_t, sight_of_segment, closest_distance
   use kinds_m, only : wp
   use model_m, only : model_t

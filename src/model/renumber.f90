@@ -1,16 +1,12 @@
 ! SPDX-License-Identifier: MIT
 !> Puts a finished model into the order of the step: nodes renumbered everywhere, layout built.
 module renumber_m
-  use boundary_rows_m, only : list_boundaries
-  use controls_m, only : is_asked
-  use cross_sections_m, only : mark_corners
+  use controls_m, only : list_boundaries, is_asked, mark_corners, end_node_place, end_node_touch
   use exposed_quads_m, only : list_exposed
-  use end_conditions_m, only : end_condition_t, end_node_place, end_node_touch
   use history_tables_m, only : table_bndout
   use kinds_m, only : long
-  use layout_building_m, only : build_slots, build_local_numbers
+  use layout_building_m, only : build_slots, build_local_numbers, order_nodes
   use model_m, only : model_t
-  use node_order_m, only : order_nodes
   use rigids_m, only : mark_rigid_nodes
   use sorting_m, only : sorted_order
   use supports_m, only : mark_supports
@@ -40,21 +36,20 @@ contains
     do i = 1, model%mesh%n_node
       new_index(order(i)) = i
     end do
-    call renumber_mesh(model, order, new_index)
-    call renumber_conditions(model, order, new_index)
-    call renumber_surfaces(model, new_index)
-    if (allocated(model%transducers)) then
-      do i = 1, size(model%transducers)
-        model%transducers(i)%nodes = new_index(model%transducers(i)%nodes)
+    associate (mesh => model%mesh)
+      mesh%node_id = mesh%node_id(order)
+      mesh%coordinates = mesh%coordinates(:, order)
+      do i = 1, mesh%n_element
+        mesh%element_nodes(:, i) = new_index(mesh%element_nodes(:, i))
       end do
-    end if
-    call renumber_rigids(model, new_index)
-    if (allocated(model%walls)) call renumber_walls(model, new_index)
+      mesh%deck_node = new_index
+    end associate
+    call renumber_conditions(model, order, new_index)
+    call renumber_bodies(model, new_index)
     call build_local_numbers(model%mesh, model%layout)
     if (.not. model%controls%implicit%is_on) call list_exposed(model, model%layout%exposed, &
       model%layout%exposed_shares)
     if (allocated(model%controls%output%cross_sections)) call renumber_sections(model, new_index)
-    if (allocated(model%controls%ends)) call renumber_ends(new_index, model%controls%ends)
     model%conditions%n_support = count(mark_supports(model))
     associate (output => model%controls%output)
       if (is_asked(output%histories(table_bndout))) call list_boundaries(model%conditions, &
@@ -157,24 +152,7 @@ contains
     end do
   end subroutine mark_hidden_nodes
 
-  !> Mesh arrays.
-  subroutine renumber_mesh(model, order, new_index)
-    type(model_t), intent(inout) :: model
-    integer, intent(in) :: order(:)     !! old index of each new node
-    integer, intent(in) :: new_index(:) !! new index of each old node
-    integer :: i
-
-    associate (mesh => model%mesh)
-      mesh%node_id = mesh%node_id(order)
-      mesh%coordinates = mesh%coordinates(:, order)
-      do i = 1, mesh%n_element
-        mesh%element_nodes(:, i) = new_index(mesh%element_nodes(:, i))
-      end do
-      mesh%deck_node = new_index
-    end associate
-  end subroutine renumber_mesh
-
-  !> Conditions, output plan and sets.
+  !> Conditions, output plan, ends of the run and sets.
   subroutine renumber_conditions(model, order, new_index)
     type(model_t), intent(inout) :: model
     integer, intent(in) :: order(:), new_index(:)
@@ -205,6 +183,14 @@ contains
         end do
       end if
     end associate
+    if (allocated(model%controls%ends)) then
+      associate (ends => model%controls%ends)
+        do i = 1, size(ends)
+          if (any(ends(i)%kind == [end_node_place, end_node_touch])) &
+            ends(i)%where = new_index(ends(i)%where)
+        end do
+      end associate
+    end if
     do i = 1, size(model%node_sets)
       model%node_sets(i)%nodes = new_index(model%node_sets(i)%nodes)
     end do
@@ -232,62 +218,46 @@ contains
     end do
   end subroutine renumber_sections
 
-  !> Nodes that end the run.
-  pure subroutine renumber_ends(new_index, ends)
-    integer, intent(in) :: new_index(:)
-    type(end_condition_t), intent(inout) :: ends(:)
-    integer :: i
-
-    do i = 1, size(ends)
-      if (any(ends(i)%kind == [end_node_place, end_node_touch])) &
-        ends(i)%where = new_index(ends(i)%where)
-    end do
-  end subroutine renumber_ends
-
-  !> Contact surfaces.
-  subroutine renumber_surfaces(model, new_index)
-    type(model_t), intent(inout) :: model
-    integer, intent(in) :: new_index(:)
-    integer :: i
-
-    do i = 1, size(model%contacts)
-      associate (slave => model%contacts(i)%slave, master => model%contacts(i)%master)
-        slave%nodes = new_index(slave%nodes)
-        master%nodes = new_index(master%nodes)
-      end associate
-    end do
-  end subroutine renumber_surfaces
-
-  !> Rigid bodies: their nodes in rising order, so that special ones come first.
-  subroutine renumber_rigids(model, new_index)
-    type(model_t), intent(inout) :: model
-    integer, intent(in) :: new_index(:)
-    integer :: i
-
-    do i = 1, size(model%rigids)
-      associate (rigid => model%rigids(i))
-        rigid%nodes = new_index(rigid%nodes)
-        rigid%nodes = rigid%nodes(sorted_order(int(rigid%nodes, long)))
-      end associate
-    end do
-  end subroutine renumber_rigids
-
-  !> Rigid walls: their nodes in rising order, and where each special node stands among them.
-  subroutine renumber_walls(model, new_index)
+  !> Contact surfaces, transducers, rigid bodies and walls. Nodes of bodies and walls come in rising
+  !> order, so that special ones come first; walls know where each special node stands among theirs.
+  subroutine renumber_bodies(model, new_index)
     type(model_t), intent(inout) :: model
     integer, intent(in) :: new_index(:)
     integer :: i, k
 
+    do i = 1, size(model%contacts)
+      model%contacts(i)%slave%nodes = new_index(model%contacts(i)%slave%nodes)
+      model%contacts(i)%master%nodes = new_index(model%contacts(i)%master%nodes)
+    end do
+    if (allocated(model%transducers)) then
+      do i = 1, size(model%transducers)
+        model%transducers(i)%nodes = new_index(model%transducers(i)%nodes)
+      end do
+    end if
+    do i = 1, size(model%rigids)
+      model%rigids(i)%nodes = rising(new_index(model%rigids(i)%nodes))
+    end do
+    if (.not. allocated(model%walls)) return
     do i = 1, size(model%walls)
       associate (wall => model%walls(i))
-        wall%nodes = new_index(wall%nodes)
-        wall%nodes = wall%nodes(sorted_order(int(wall%nodes, long)))
+        wall%nodes = rising(new_index(wall%nodes))
         allocate (wall%place(model%layout%n_special), source=0)
         do k = 1, size(wall%nodes)
           wall%place(wall%nodes(k)) = k
         end do
       end associate
     end do
-  end subroutine renumber_walls
+
+  contains
+
+    !> Numbers in rising order.
+    function rising(numbers) result(sorted)
+      integer, intent(in) :: numbers(:)
+      integer :: sorted(size(numbers))
+
+      sorted = numbers(sorted_order(int(numbers, long)))
+    end function rising
+
+  end subroutine renumber_bodies
 
 end module renumber_m

@@ -1,19 +1,21 @@
 ! SPDX-License-Identifier: MIT
-!> The layouts of DYNA's text files, byte for byte as scripts read them: one block of lines
-!> for all rows of one instant. Rows are those of the history tables (`history_rows_m`), with the
-!> columns that a layout names, in its order; forces and energies per unit depth.
+!> The layouts of DYNA's text files, byte for byte as scripts read them: one block of lines for all
+!> rows of one instant. Columns are those of `history_tables`, by their number; forces and energies
+!> per unit depth.
 module dyna_layouts_m
-  use dyna_body_layouts_m, only : form_elout, form_rbdout
-  use dyna_force_layouts_m, only : form_bndout, form_nodfor, form_secforc
-  use dyna_lines_m, only : line_size, add_line, number
+  use controls_m, only : boundary_load, boundary_body_load, boundary_pressure, &
+    boundary_motion, boundary_body_motion
   use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_matsum, &
     table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout, table_bndout, &
     table_nodfor, table_secforc
   use kinds_m, only : wp
-  use number_text_m, only : es
+  use number_text_m, only : es, integer_size, put_integer
+  use text_files_m, only : line_file_t, put_lines
   implicit none
   private
-  public :: columns_of, n_line_of, form_block
+  public :: put_line, put_head, put_instant
+
+  real(wp), parameter :: zero = 0.0_wp
 
   !> Labels of glstat, each with its dots.
   integer, parameter :: n_label = 19
@@ -40,277 +42,381 @@ module dyna_layouts_m
 
 contains
 
-  !> The columns that a layout takes, with commas between.
-  pure function columns_of(i_table) result(names)
-    integer, intent(in) :: i_table   !! one of `table_`
-    character(:), allocatable :: names
+  !> One line.
+  subroutine put_line(file, text)
+    type(line_file_t), intent(inout) :: file
+    character(*), intent(in) :: text
 
-    names = ''
-    select case (i_table)
-    case (table_glstat)
-      names = 'time,cycle,dt,kinetic,internal,hourglass,viscous,damping,contact,external_work,'// &
-        'total,energy_ratio,leapfrog,velocity_x,velocity_y,element,element_part,'// &
-        'friction,eroded_kinetic,eroded_internal,eroded_hourglass,eroded_contact,'// &
-        'added_mass,mass_increase,by_dt2ms'
-    case (table_rcforc)
-      names = 'time,interface,side,fx,fy'
-    case (table_nodout)
-      names = 'time,node,x,y,ux,uy,vx,vy,ax,ay,cycle'
-    case (table_matsum)
-      names = 'time,part,kinetic,internal,hourglass,momentum_x,momentum_y,mass,added_mass'
-    case (table_sleout)
-      names = 'time,cycle,interface,energy,damping,friction'
-    case (table_spcforc)
-      names = 'time,node,fx,fy'
-    case (table_rwforc)
-      names = 'time,wall,normal_force,fx,fy'
-    case (table_elout)
-      names = 'time,element,sxx,syy,szz,sxy,plastic_strain,cycle,part,is_gone'
-    case (table_rbdout)
-      names = 'time,part,x,y,ux,uy,rotation,vx,vy,spin,ax,ay,spin_rate,cycle'
-    case (table_bndout)
-      names = 'time,condition,id,fx,fy,moment,work'
-    case (table_nodfor)
-      names = 'time,group,node,fx,fy,work'
-    case (table_secforc)
-      names = 'time,section,fx,fy,moment,x,y,area'
-    end select
-  end function columns_of
+    call put_lines(file, text//new_line('a'))
+  end subroutine put_line
 
-  !> Lines of a block of `n_row` rows, at most.
-  pure function n_line_of(i_table, n_row) result(n)
-    integer, intent(in) :: i_table   !! one of `table_`
-    integer, intent(in) :: n_row
+  !> Some empty lines.
+  subroutine put_blanks(file, n)
+    type(line_file_t), intent(inout) :: file
+    integer, intent(in) :: n
+
+    call put_lines(file, repeat(new_line('a'), n))
+  end subroutine put_blanks
+
+  !> A whole number at the right of `width` columns, or of as many as it needs.
+  pure function number(value, width) result(text)
+    real(wp), intent(in) :: value
+    integer, intent(in) :: width
+    character(:), allocatable :: text
+    character(integer_size) :: digits
     integer :: n
 
+    call put_integer(nint(value), digits, n)
+    text = repeat(' ', max(width - n, 0))//digits(:n)
+  end function number
+
+  !> What stands once at the top of a file, behind its legend.
+  subroutine put_head(i_table, file)
+    integer, intent(in) :: i_table   !! one of `table_`
+    type(line_file_t), intent(inout) :: file
+
     select case (i_table)
-    case (table_glstat)
-      n = n_label + 8
-    case (table_matsum)
-      n = 4*n_row + 3
-    case (table_elout)
-      n = 2*n_row + 9
-    case (table_rbdout)
-      n = 20*n_row + 3
-    case (table_bndout)
-      n = 2*n_row + 45
-    case (table_nodfor)
-      n = 9*n_row + 6
+    case (table_spcforc)
+      call put_line(file, ' single point constraint forces')
+      call put_blanks(file, 1)
+    case (table_rwforc)
+      call put_blanks(file, 2)
+      call put_line(file, '    time       wall#   normal-force    x-force        y-force        ' &
+        //'z-force')
     case (table_secforc)
-      n = 5*n_row
-    case default
-      n = n_row + 13
+      call put_line(file, ' line#1   section#     time      x-force      y-force      z-force    ' &
+        //'magnitude')
+      call put_line(file, ' line#2   resultant moments     x-moment     y-moment     z-moment    ' &
+        //'magnitude')
+      call put_line(file, ' line#3   centroids                    x            y            z    ' &
+        //'     area')
+      call put_blanks(file, 1)
     end select
-  end function n_line_of
+  end subroutine put_head
 
   !> The lines of one instant.
-  pure subroutine form_block(i_table, control, scales, rows, lines, n_line)
-    integer, intent(in) :: i_table                      !! one of `table_`
-    character(*), intent(in) :: control                 !! what rules the step where no element does
-    logical, intent(in) :: scales                       !! masses are scaled
-    real(wp), intent(in) :: rows(:, :)                  !! (n_column, n_row) of `columns_of`
-    character(line_size), intent(inout) :: lines(:)     !! `n_line_of` or more
-    integer, intent(out) :: n_line
+  subroutine put_instant(i_table, control, scales, rows, file)
+    integer, intent(in) :: i_table       !! one of `table_`
+    character(*), intent(in) :: control  !! what rules the step where no element does
+    logical, intent(in) :: scales        !! masses are scaled
+    real(wp), intent(in) :: rows(:, :)   !! (n_column, n_row)
+    type(line_file_t), intent(inout) :: file
+    integer :: i
 
-    n_line = 0
     select case (i_table)
     case (table_glstat)
-      call form_glstat(rows(:, 1), control, scales, lines, n_line)
+      call put_glstat(rows(:, 1), control, scales, file)
     case (table_rcforc)
-      call form_rcforc(rows, lines, n_line)
+      do i = 1, size(rows, 2)
+        call put_line(file, '  '//merge('slave ', 'master', nint(rows(3, i)) == 1) &
+          //number(rows(2, i), 11)//' time'//es(rows(1, i), 12, 5)//'  x '//es(rows(4, i), 12, 5) &
+          //'  y '//es(rows(5, i), 12, 5)//'  z '//es(zero, 12, 5)//' mass '//es(zero, 12, 5))
+      end do
     case (table_nodout)
-      call form_nodout(rows, lines, n_line)
+      call put_nodout(rows, file)
     case (table_matsum)
-      call form_matsum(rows, lines, n_line)
+      call put_matsum(rows, file)
     case (table_sleout)
-      call form_sleout(rows, lines, n_line)
+      call put_sleout(rows, file)
     case (table_spcforc)
-      call form_spcforc(rows, lines, n_line)
+      call put_line(file, ' output at time ='//es(rows(1, 1), 14, 5))
+      do i = 1, size(rows, 2)
+        call put_line(file, ' node='//number(rows(2, i), 8)//' local x,y,z forces =' &
+          //es([rows(3:4, i), zero], 14, 4))
+      end do
+      call put_line(file, '             force resultants   =' &
+        //es([sum(rows(3, :)), sum(rows(4, :)), zero], 14, 4))
     case (table_rwforc)
-      call form_rwforc(rows, lines, n_line)
+      do i = 1, size(rows, 2)
+        call put_line(file, es(rows(1, i), 12, 5)//number(rows(2, i), 8) &
+          //es([rows(5, i), rows(3:4, i), zero], 15, 6))
+      end do
     case (table_elout)
-      call form_elout(rows, lines, n_line)
+      call put_elout(rows, file)
     case (table_rbdout)
-      call form_rbdout(rows, lines, n_line)
+      call put_rbdout(rows, file)
     case (table_bndout)
-      call form_bndout(rows, lines, n_line)
+      call put_section('discrete nodal point forces', [boundary_load, boundary_body_load], rows, &
+        file)
+      call put_section('pressure boundary condition forces', [boundary_pressure], rows, file)
+      call put_section('velocity boundary condition forces/rigid body moments', &
+        [boundary_motion, boundary_body_motion], rows, file)
     case (table_nodfor)
-      call form_nodfor(rows, lines, n_line)
+      call put_nodfor(rows, file)
     case (table_secforc)
-      call form_secforc(rows, lines, n_line)
+      do i = 1, size(rows, 2)
+        call put_line(file, number(rows(2, i), 11)//es([rows(1, i), rows(3:4, i), zero, &
+          norm2(rows(3:4, i))], 13, 4))
+        call put_line(file, repeat(' ', 24)//es([zero, zero, rows(5, i), abs(rows(5, i))], 13, 4))
+        call put_line(file, repeat(' ', 24)//es([rows(6:7, i), zero, rows(8, i)], 13, 4))
+        call put_blanks(file, 1)
+      end do
     end select
-  end subroutine form_block
+  end subroutine put_instant
 
   !> Energies. DYNA counts the work of the bulk viscosity as internal energy, and what has eroded in
   !> kinetic, internal and hourglass energy, of which the eroded lines say how much; so the lines of
   !> these energies add up to the total but for what leap-frog adds (doc/results.md). Springs of
   !> contact that went with elements stay with those that are there: DYNA has no line for them.
-  pure subroutine form_glstat(row, control, scales, lines, n_line)
+  subroutine put_glstat(row, control, scales, file)
     real(wp), intent(in) :: row(:)
     character(*), intent(in) :: control
     logical, intent(in) :: scales
-    character(line_size), intent(inout) :: lines(:)
-    integer, intent(inout) :: n_line
-    real(wp) :: values(n_label)
-    real(wp) :: share
+    type(line_file_t), intent(inout) :: file
+    character(:), allocatable :: by
+    real(wp) :: values(n_label), share
     integer :: i
 
-    call add_line('', lines, n_line)
-    call add_line('', lines, n_line)
-    if (scales .and. nint(row(25)) > 0) then
-      call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by dt2ms', lines, n_line)
-    else if (nint(row(16)) > 0) then
-      call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by shell ' &
-        //number(row(16), 8)//' of part '//number(row(17), 8), lines, n_line)
-    else
-      call add_line(' dt of cycle'//number(row(2), 8)//' is controlled by '//control, lines, n_line)
-    end if
-    call add_line('', lines, n_line)
-    share = 1.0_wp
-    if (abs(row(11)) > 0.0_wp) share = 1.0_wp - sum(row(19:22))/row(11)
-    values = [row(1), row(3), row(4) + row(19), row(5) + row(7) + row(20), 0.0_wp, 0.0_wp, &
-      row(6) + row(21), row(8), row(9) + row(18) + row(22), row(10), row(19:21), row(11), row(12), &
-      share*row(12), row(14), row(15), 0.0_wp]
+    by = control
+    if (nint(row(25)) > 0) by = 'shell '//number(row(25), 8)//' of part '//number(row(26), 8)
+    if (scales .and. nint(row(18)) > 0) by = 'dt2ms'
+    call put_blanks(file, 2)
+    call put_line(file, ' dt of cycle'//number(row(2), 8)//' is controlled by '//by)
+    call put_blanks(file, 1)
+    associate (eroded => row(19:22), total => row(11))
+      share = 1.0_wp
+      if (abs(total) > zero) share = 1.0_wp - sum(eroded)/total
+      values = [row(1), row(3), row(4) + eroded(1), row(5) + row(7) + eroded(2), zero, zero, &
+        row(6) + eroded(3), row(8), row(9) + row(14) + eroded(4), row(10), eroded(:3), total, &
+        row(12), share*row(12), row(23), row(24), zero]
+    end associate
     do i = 1, n_label
-      call add_line(labels(i)//es(values(i), 14, 5), lines, n_line)
+      call put_line(file, labels(i)//es(values(i), 14, 5))
     end do
-    call add_line(' time per zone cycle.(nanosec)..             0', lines, n_line)
+    call put_line(file, ' time per zone cycle.(nanosec)..             0')
     if (.not. scales) return
-    call add_line('', lines, n_line)
-    call add_line(' added mass.....................'//es(row(23), 14, 5), lines, n_line)
-    call add_line(' percentage increase............'//es(row(24), 14, 5), lines, n_line)
-  end subroutine form_glstat
-
-  !> Contact forces, a line for each side.
-  pure subroutine form_rcforc(rows, lines, n_line)
-    real(wp), intent(in) :: rows(:, :)
-    character(line_size), intent(inout) :: lines(:)
-    integer, intent(inout) :: n_line
-    integer :: i
-
-    do i = 1, size(rows, 2)
-      call add_line('  '//merge('slave ', 'master', nint(rows(3, i)) == 1)//number(rows(2, i), 11) &
-        //' time'//es(rows(1, i), 12, 5)//'  x '//es(rows(4, i), 12, 5)//'  y ' &
-        //es(rows(5, i), 12, 5)//'  z '//es(0.0_wp, 12, 5)//' mass '//es(0.0_wp, 12, 5), lines, &
-        n_line)
-    end do
-  end subroutine form_rcforc
+    call put_blanks(file, 1)
+    call put_line(file, ' added mass.....................'//es(row(15), 14, 5))
+    call put_line(file, ' percentage increase............'//es(row(17), 14, 5))
+  end subroutine put_glstat
 
   !> Motion of nodes.
-  pure subroutine form_nodout(rows, lines, n_line)
+  subroutine put_nodout(rows, file)
     real(wp), intent(in) :: rows(:, :)
-    character(line_size), intent(inout) :: lines(:)
-    integer, intent(inout) :: n_line
+    type(line_file_t), intent(inout) :: file
     character(:), allocatable :: id
     integer :: i
 
-    do i = 1, 3
-      call add_line('', lines, n_line)
-    end do
-    call add_line(' n o d a l   p r i n t   o u t   f o r   t i m e  s t e p' &
-      //number(rows(11, 1), 8)//repeat(' ', 30)//'( at time'//es(rows(1, 1), 14, 7)//' )', lines, &
-      n_line)
-    call add_line('', lines, n_line)
-    call add_line(' nodal point  x-disp     y-disp      z-disp      x-vel       y-vel       ' &
-      //'z-vel      x-accl      y-accl      z-accl      x-coor      y-coor      z-coor', lines, &
-      n_line)
+    call put_blanks(file, 3)
+    call put_line(file, ' n o d a l   p r i n t   o u t   f o r   t i m e  s t e p' &
+      //number(rows(11, 1), 8)//repeat(' ', 30)//'( at time'//es(rows(1, 1), 14, 7)//' )')
+    call put_blanks(file, 1)
+    call put_line(file, ' nodal point  x-disp     y-disp      z-disp      x-vel       y-vel      ' &
+      //' z-vel      x-accl      y-accl      z-accl      x-coor      y-coor      z-coor')
     do i = 1, size(rows, 2)
       id = number(rows(2, i), 9)
       if (len(id) == 9) id = id//' '
-      call add_line(id//es([rows(5:6, i), 0.0_wp, rows(7:8, i), 0.0_wp, rows(9:10, i), 0.0_wp, &
-        rows(3:4, i), 0.0_wp], 12, 4), lines, n_line)
+      call put_line(file, id//es([rows(5:6, i), zero, rows(7:8, i), zero, rows(9:10, i), zero, &
+        rows(3:4, i), zero], 12, 4))
     end do
-  end subroutine form_nodout
+  end subroutine put_nodout
 
   !> Sums of parts; the velocity of the body is that of its centre of mass, `+mass` is the mass that
-  !> mass scaling has added.
-  pure subroutine form_matsum(rows, lines, n_line)
+  !> mass scaling has added. Part ids stand in eight columns or more, short ones in the first five.
+  subroutine put_matsum(rows, file)
     real(wp), intent(in) :: rows(:, :)
-    character(line_size), intent(inout) :: lines(:)
-    integer, intent(inout) :: n_line
+    type(line_file_t), intent(inout) :: file
+    character(:), allocatable :: id
     real(wp) :: velocity(2)
     integer :: i
 
-    call add_line('', lines, n_line)
-    call add_line('', lines, n_line)
-    call add_line(' time ='//es(rows(1, 1), 13, 4), lines, n_line)
+    call put_blanks(file, 2)
+    call put_line(file, ' time ='//es(rows(1, 1), 13, 4))
     do i = 1, size(rows, 2)
-      velocity = 0.0_wp
-      if (rows(8, i) > 0.0_wp) velocity = rows(6:7, i)/rows(8, i)
-      call add_line(' mat.#='//part_field(rows(2, i))//'          inten='//es(rows(4, i), 13, 4) &
-        //'     kinen='//es(rows(3, i), 13, 4)//'     eroded_ie='//es(0.0_wp, 13, 4) &
-        //'     eroded_ke='//es(0.0_wp, 13, 4), lines, n_line)
-      call add_line(' x-mom='//es(rows(6, i), 13, 4)//'     y-mom='//es(rows(7, i), 13, 4) &
-        //'     z-mom='//es(0.0_wp, 13, 4), lines, n_line)
-      call add_line(' x-rbv='//es(velocity(1), 13, 4)//'     y-rbv='//es(velocity(2), 13, 4) &
-        //'     z-rbv='//es(0.0_wp, 13, 4), lines, n_line)
-      call add_line(repeat(' ', 25)//'hgeng='//es(rows(5, i), 13, 4)//'     +mass=' &
-        //es(rows(9, i), 13, 4), lines, n_line)
+      id = number(rows(2, i), 5)
+      if (len(id) < 8) id = id//repeat(' ', 8 - len(id))
+      velocity = zero
+      if (rows(8, i) > zero) velocity = rows(6:7, i)/rows(8, i)
+      call put_line(file, ' mat.#='//id//'          inten='//es(rows(4, i), 13, 4) &
+        //'     kinen='//es(rows(3, i), 13, 4)//'     eroded_ie='//es(zero, 13, 4) &
+        //'     eroded_ke='//es(zero, 13, 4))
+      call put_line(file, ' x-mom='//es(rows(6, i), 13, 4)//'     y-mom='//es(rows(7, i), 13, 4) &
+        //'     z-mom='//es(zero, 13, 4))
+      call put_line(file, ' x-rbv='//es(velocity(1), 13, 4)//'     y-rbv='//es(velocity(2), 13, 4) &
+        //'     z-rbv='//es(zero, 13, 4))
+      call put_line(file, repeat(' ', 25)//'hgeng='//es(rows(5, i), 13, 4)//'     +mass=' &
+        //es(rows(9, i), 13, 4))
     end do
-  end subroutine form_matsum
-
-  !> Part id in eight columns or more: short ones stand in the first five.
-  pure function part_field(id) result(field)
-    real(wp), intent(in) :: id
-    character(:), allocatable :: field
-
-    field = number(id, 5)
-    if (len(field) < 8) field = field//repeat(' ', 8 - len(field))
-  end function part_field
+  end subroutine put_matsum
 
   !> Energies of interfaces. Penalty springs act between the sides: each interface has one number,
   !> as DYNA's single-sided contacts do, and what of it friction has dissipated.
-  pure subroutine form_sleout(rows, lines, n_line)
+  subroutine put_sleout(rows, file)
     real(wp), intent(in) :: rows(:, :)
-    character(line_size), intent(inout) :: lines(:)
-    integer, intent(inout) :: n_line
+    type(line_file_t), intent(inout) :: file
+    integer, parameter :: energies(3) = [4, 5, 7] !! springs, damping, friction
+    real(wp) :: total
     integer :: i
 
-    do i = 1, 3
-      call add_line('', lines, n_line)
-    end do
-    call add_line(' contact interface energy file, time='//es(rows(1, 1), 14, 7), lines, n_line)
-    call add_line('    #            slave       master   frictional   cycle=' &
-      //number(rows(2, 1), 14), lines, n_line)
-    call add_line('', lines, n_line)
+    total = sum(rows(energies, :))
+    call put_blanks(file, 3)
+    call put_line(file, ' contact interface energy file, time='//es(rows(1, 1), 14, 7))
+    call put_line(file, '    #            slave       master   frictional   cycle=' &
+      //number(rows(2, 1), 14))
+    call put_blanks(file, 1)
     do i = 1, size(rows, 2)
-      call add_line(number(rows(3, i), 10)//es([sum(rows(4:6, i)), 0.0_wp, rows(6, i)], 13, 4), &
-        lines, n_line)
+      call put_line(file, number(rows(3, i), 10)//es([sum(rows(energies, i)), zero, rows(7, i)], &
+        13, 4))
     end do
-    call add_line('', lines, n_line)
-    call add_line(' summary   total slave side='//es(sum(rows(4:6, :)), 14, 7), lines, n_line)
-    call add_line('           total mastr side='//es(0.0_wp, 14, 7), lines, n_line)
-    call add_line('           total energy    ='//es(sum(rows(4:6, :)), 14, 7), lines, n_line)
-    call add_line('           friction energy ='//es(sum(rows(6, :)), 14, 7), lines, n_line)
-  end subroutine form_sleout
+    call put_blanks(file, 1)
+    call put_line(file, ' summary   total slave side='//es(total, 14, 7))
+    call put_line(file, '           total mastr side='//es(zero, 14, 7))
+    call put_line(file, '           total energy    ='//es(total, 14, 7))
+    call put_line(file, '           friction energy ='//es(sum(rows(7, :)), 14, 7))
+  end subroutine put_sleout
 
-  !> Forces of constraints on their nodes, and their sum.
-  pure subroutine form_spcforc(rows, lines, n_line)
+  !> Stress of elements. DYNA's 2D solids stand among the shells: one line for a point through the
+  !> thickness, here one in all.
+  subroutine put_elout(rows, file)
     real(wp), intent(in) :: rows(:, :)
-    character(line_size), intent(inout) :: lines(:)
-    integer, intent(inout) :: n_line
+    type(line_file_t), intent(inout) :: file
+    character(8) :: state
     integer :: i
 
-    call add_line(' output at time ='//es(rows(1, 1), 14, 5), lines, n_line)
+    call put_blanks(file, 3)
+    call put_line(file, ' e l e m e n t   s t r e s s   c a l c u l a t i o n s   f o r   ' &
+      //'t i m e  s t e p'//number(rows(8, 1), 9)//'   ( at time'//es(rows(1, 1), 12, 5)//' )')
+    call put_blanks(file, 1)
+    call put_line(file, ' element  materl(global)')
+    call put_line(file, ' ipt-shl  stress       sig-xx      sig-yy      sig-zz      sig-xy      ' &
+      //'sig-yz      sig-zx       plastic')
+    call put_line(file, '           state'//repeat(' ', 82)//'strain')
     do i = 1, size(rows, 2)
-      call add_line(' node='//number(rows(2, i), 8)//' local x,y,z forces =' &
-        //es([rows(3:4, i), 0.0_wp], 14, 4), lines, n_line)
+      state = 'elastic'
+      if (rows(7, i) > zero) state = 'plastic'
+      if (rows(10, i) > zero) state = 'failed'
+      call put_line(file, number(rows(2, i), 8)//'-'//number(rows(9, i), 7))
+      call put_line(file, '   1-  1 '//state//es([rows(3:6, i), zero, zero], 12, 4) &
+        //es(rows(7, i), 14, 4))
     end do
-    call add_line('             force resultants   =' &
-      //es([sum(rows(3, :)), sum(rows(4, :)), 0.0_wp], 14, 4), lines, n_line)
-  end subroutine form_spcforc
+  end subroutine put_elout
 
-  !> Forces of rigid walls.
-  pure subroutine form_rwforc(rows, lines, n_line)
+  !> Motion of rigid bodies, along global axes and along those that turn with the body, which are
+  !> the global ones at time zero.
+  subroutine put_rbdout(rows, file)
     real(wp), intent(in) :: rows(:, :)
-    character(line_size), intent(inout) :: lines(:)
-    integer, intent(inout) :: n_line
+    type(line_file_t), intent(inout) :: file
+    character(*), parameter :: heads(3) = [character(17) :: ' displacements:', '    velocities:', &
+      ' accelerations:']
+    real(wp) :: axes(3, 3), values(3, 3)
+    integer :: i, k
+
+    call put_line(file, '1')
+    call put_blanks(file, 1)
+    call put_line(file, '  r i g i d   b o d y   m o t i o n   a t  cycle=' &
+      //number(rows(14, 1), 8)//'    time='//es(rows(1, 1), 15, 6))
+    do i = 1, size(rows, 2)
+      associate (angle => rows(7, i))
+        axes = reshape([cos(angle), sin(angle), zero, -sin(angle), cos(angle), zero, zero, zero, &
+          1.0_wp], [3, 3])
+      end associate
+      values = reshape(rows(5:13, i), [3, 3])
+      call put_blanks(file, 1)
+      call put_line(file, ' rigid body'//number(rows(2, i), 8))
+      call put_line(file, '   global             x           y           z          x-rot       ' &
+        //'y-rot       z-rot')
+      call put_line(file, '   coordinates:  '//es([rows(3:4, i), zero], 12, 4))
+      call put_motion()
+      call put_blanks(file, 1)
+      call put_line(file, 'principal or user defined local coordinate direction vectors')
+      call put_line(file, '                     a           b           c')
+      do k = 1, 3
+        call put_line(file, '     row '//number(real(k, wp), 1)//es(axes(k, :), 15, 4))
+        values(:2, k) = matmul(values(:2, k), axes(:2, :2))
+      end do
+      call put_blanks(file, 1)
+      call put_line(file, ' output in principal or user defined local coordinate directions')
+      call put_line(file, '                      a           b           c          a-rot       ' &
+        //'b-rot       c-rot')
+      call put_motion()
+    end do
+
+  contains
+
+    !> Three translations and three rotations a line; those of the plane.
+    subroutine put_motion()
+      integer :: m
+
+      do m = 1, 3
+        call put_line(file, heads(m)//es([values(:2, m), zero, zero, zero, values(3, m)], 12, 4))
+      end do
+    end subroutine put_motion
+
+  end subroutine put_rbdout
+
+  !> Loads, pressures or prescribed motions with their sums; nothing where there are none.
+  subroutine put_section(title, conditions, rows, file)
+    character(*), intent(in) :: title
+    integer, intent(in) :: conditions(:)
+    real(wp), intent(in) :: rows(:, :)
+    type(line_file_t), intent(inout) :: file
+    character(4), parameter :: heads(5) = [' nd#', ' mt#', ' nd#', ' nd#', 'mat#'] !! by `boundary_`
+    real(wp) :: total(3)
     integer :: i
 
+    if (.not. any([(any(nint(rows(2, i)) == conditions), i=1, size(rows, 2))])) return
+    call put_blanks(file, 5)
+    call put_line(file, ' n o d a l   f o r c e/e n e r g y    o u t p u t  t=' &
+      //es(rows(1, 1), 12, 5))
+    call put_blanks(file, 4)
+    call put_line(file, ' '//title)
+    call put_blanks(file, 1)
+    total = zero
     do i = 1, size(rows, 2)
-      call add_line(es(rows(1, i), 12, 5)//number(rows(2, i), 8) &
-        //es([rows(3:5, i), 0.0_wp], 15, 6), lines, n_line)
+      if (.not. any(nint(rows(2, i)) == conditions)) cycle
+      total = total + [rows(4:5, i), rows(7, i)]
+      call put_force(heads(nint(rows(2, i))), rows(3, i), [rows(4:5, i), rows(7, i)], file)
+      if (nint(rows(2, i)) /= boundary_body_motion) cycle
+      call put_line(file, '             xmoment='//es(zero, 13, 4)//'  ymoment='//es(zero, 13, 4) &
+        //' zmoment='//es(rows(6, i), 13, 4))
     end do
-  end subroutine form_rwforc
+    call put_total(total, file)
+  end subroutine put_section
+
+  !> Forces of groups of nodes, and their sums. The rows of a group come together.
+  subroutine put_nodfor(rows, file)
+    real(wp), intent(in) :: rows(:, :)
+    type(line_file_t), intent(inout) :: file
+    integer :: group(0:size(rows, 2) + 1), i, n_group
+    real(wp) :: total(3)
+
+    call put_blanks(file, 5)
+    call put_line(file, ' n o d a l   f o r c e   g r o u p    o u t p u t  t=' &
+      //es(rows(1, 1), 12, 5))
+    group = [-1, nint(rows(2, :)), -1]
+    n_group = 0
+    do i = 1, size(rows, 2)
+      if (group(i) /= group(i - 1)) then
+        n_group = n_group + 1
+        total = zero
+        call put_blanks(file, 5)
+        call put_line(file, ' nodal group output number '//number(real(n_group, wp), 2))
+        call put_blanks(file, 1)
+      end if
+      total = total + rows(4:6, i)
+      call put_force(' nd#', rows(3, i), rows(4:6, i), file)
+      if (group(i) /= group(i + 1)) call put_total(total, file)
+    end do
+  end subroutine put_nodfor
+
+  !> One line of a node or a body.
+  subroutine put_force(head, id, values, file)
+    character(4), intent(in) :: head
+    real(wp), intent(in) :: id
+    real(wp), intent(in) :: values(3)  !! force along x and y, energy
+    type(line_file_t), intent(inout) :: file
+
+    call put_line(file, head//number(id, 8)//'  xforce='//es(values(1), 13, 4)//'   yforce=' &
+      //es(values(2), 13, 4)//'  zforce='//es(zero, 13, 4)//'   energy='//es(values(3), 13, 4))
+  end subroutine put_force
+
+  !> Sums of some lines.
+  subroutine put_total(values, file)
+    real(wp), intent(in) :: values(3)  !! as in `put_force`
+    type(line_file_t), intent(inout) :: file
+
+    call put_line(file, '              xtotal='//es(values(1), 13, 4)//'   ytotal=' &
+      //es(values(2), 13, 4)//'  ztotal='//es(zero, 13, 4)//'   etotal='//es(values(3), 13, 4))
+  end subroutine put_total
 
 end module dyna_layouts_m

@@ -20,7 +20,7 @@ module hdf5_writing_m
   use visitor_m, only : as_real, as_integer, as_index
   implicit none
   private
-  public :: growing_t, as_real, as_integer, as_index, &
+  public :: growing_t, hid_t, as_real, as_integer, as_index, &
     create_growing, link_growing, append_rows, close_growing, &
     make_group, write_rows, write_string_attribute, write_index_attribute, write_text, &
     check_status, memory_type, file_type

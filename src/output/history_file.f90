@@ -7,17 +7,13 @@ module history_file_m
   use model_m, only : model_t
   use controls_m, only : is_asked
   use csv_table_m, only : csv_table_t, plan_table, open_table, check_table, flush_table, &
-    close_table, column_names, visit_rows
+    close_table, visit_rows
   use dyna_text_m, only : open_dyna_text
-  use history_rows_m, only : name_columns
   use kinds_m, only : wp
   use log_m, only : to_text
-  use history_tables_m, only : history_tables, n_table, asked_alone, asked_or_states, &
-    asked_by_states, each_run, each_contact, each_history_node, each_part, each_wall, &
-    each_support, each_history_element, each_body, each_boundary, each_group_node, &
-    each_section, text_none, &
-    text_rows
-  use table_row_m, only : row_t
+  use history_tables_m, only : history_tables, n_table, asked_alone, asked_by_states, each_run, &
+    each_contact, each_history_node, each_part, each_wall, each_support, each_history_element, &
+    each_body, each_boundary, each_group_node, each_section, text_none, text_rows
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
@@ -37,74 +33,48 @@ contains
   subroutine plan_histories(histories, model)
     type(histories_t), intent(out) :: histories
     type(model_t), intent(in) :: model
-    type(row_t) :: row
     integer :: k
+    logical :: is_wanted, tells_mass
 
+    tells_mass = abs(model%controls%mass_step) > 0.0_wp .and. .not. model%controls%implicit%is_on
     do k = 1, n_table
-      if (.not. is_wanted(model, k)) cycle
-      call name_columns(k, abs(model%controls%mass_step) > 0.0_wp .and. &
-        .not. model%controls%implicit%is_on, model%erodes, row)
-      call plan_table(histories%tables(k), trim(history_tables(k)%name), row%header, &
-        row%kinds(:row%n), row%further)
+      is_wanted = has_rows(model, k)
+      if (history_tables(k)%asked == asked_alone) is_wanted = is_wanted .and. &
+        is_asked(model%controls%output%histories(k))
+      if (history_tables(k)%asked == asked_by_states) is_wanted = is_wanted .and. &
+        is_asked(model%controls%output%plot)
+      if (is_wanted) call plan_table(histories%tables(k), k, tells_mass, model%erodes)
     end do
   end subroutine plan_histories
 
-  !> Plan the tables and make their files.
+  !> Plan the tables and make their files, those in DYNA's layout too.
   subroutine open_histories(histories, prefix, model, error)
     type(histories_t), intent(out) :: histories
     character(*), intent(in) :: prefix   !! directory and job name
     type(model_t), intent(in) :: model
     type(error_t), allocatable, intent(out) :: error
-    integer :: k
+    character(:), allocatable :: path
+    integer :: k, n_row
 
     call plan_histories(histories, model)
     do k = 1, n_table
       if (.not. allocated(histories%tables(k)%values)) cycle
-      call open_table(histories%tables(k), prefix, error)
+      call open_table(histories%tables(k), prefix//'.'//trim(history_tables(k)%name)//'.csv', error)
       if (allocated(error)) return
     end do
-    call open_texts(histories, prefix, model, error)
-  end subroutine open_histories
-
-  !> Whether the run has a table.
-  pure function is_wanted(model, i_table) result(wanted)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i_table
-    logical :: wanted
-
-    associate (plan => model%controls%output)
-      select case (history_tables(i_table)%asked)
-      case (asked_alone)
-        wanted = is_asked(plan%histories(i_table))
-      case (asked_by_states)
-        wanted = is_asked(plan%plot)
-      case (asked_or_states)
-        wanted = .true.
-      end select
-    end associate
-    if (wanted) wanted = has_rows(model, i_table)
-  end function is_wanted
-
-  !> The files in DYNA's layout.
-  subroutine open_texts(histories, prefix, model, error)
-    type(histories_t), intent(inout) :: histories
-    character(*), intent(in) :: prefix
-    type(model_t), intent(in) :: model
-    type(error_t), allocatable, intent(out) :: error
-    integer :: k, n_row
-
     do k = 1, n_table
       associate (table => histories%tables(k), interval => model%controls%output%histories(k))
-        if (history_tables(k)%text == text_none .or. .not. table%is_open) cycle
+        if (history_tables(k)%text == text_none .or. .not. table%file%is_open) cycle
         if (.not. (interval%is_text .and. is_asked(interval))) cycle
+        path = prefix//'.'//trim(history_tables(k)%name)
         n_row = n_each(model, k)
         if (history_tables(k)%text == text_rows) n_row = 1
-        call open_dyna_text(table%text, prefix//'.'//table%name, k, model, column_names(table), &
-          n_row, error)
+        call open_dyna_text(table%text, path, k, model, table%tells_mass, &
+          size(table%is_kept), n_row, error)
       end associate
       if (allocated(error)) return
     end do
-  end subroutine open_texts
+  end subroutine open_histories
 
   !> Whether a table would have rows.
   pure function has_rows(model, i_table)

@@ -31,8 +31,8 @@ module results_file_m
     write_index_attribute, check_status
   implicit none
   private
-  public :: results_file_t, run_info_t, open_results, append_state, append_instant, take_name, &
-    note_failure, finish_results
+  public :: results_file_t, run_info_t, open_results, append_state, append_instant, publish, &
+    take_name, note_failure, finish_results
 
 contains
 

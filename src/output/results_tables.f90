@@ -6,8 +6,8 @@ module results_tables_m
   use kinds_m, only : wp
   use errors_m, only : error_t
   use history_file_m, only : histories_t
-  use history_tables_m, only : n_table
-  use csv_table_m, only : csv_table_t, column_name, n_columns, kind_real
+  use history_tables_m, only : history_tables, n_table
+  use csv_table_m, only : kind_real
   use hdf5_writing_m, only : as_real, as_integer, make_group, write_rows, &
     write_string_attribute, write_text
   use text_m, only : text_of
@@ -106,43 +106,39 @@ contains
     valid = valid .and. n_to_come == 0
   end function is_utf8
 
-  !> Write all tables below /history, which is there. Columns that no CSV file has go below /dyna.
+  !> Write all tables below /history, which is there, one dataset a column; nothing of one that was
+  !> never planned. Columns that no CSV file has go below /dyna.
   subroutine write_histories(id, histories, error)
     integer(hid_t), intent(in) :: id                   !! open file
     type(histories_t), intent(in) :: histories
     type(error_t), allocatable, intent(inout) :: error
-    integer :: i
-
-    call make_group(id, 'dyna', error)
-    do i = 1, n_table
-      call write_table(id, histories%tables(i), error)
-    end do
-  end subroutine write_histories
-
-  !> Write one table, one dataset per column; nothing for one that was never open.
-  subroutine write_table(id, table, error)
-    integer(hid_t), intent(in) :: id                   !! open file
-    type(csv_table_t), intent(in) :: table
-    type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable, target :: reals(:)
     integer, allocatable, target :: integers(:)
-    character(:), allocatable :: name
-    integer :: i
+    character(:), allocatable :: folder
+    integer :: k, i
 
-    if (.not. allocated(table%name)) return
-    call make_group(id, 'history/'//table%name, error)
-    if (n_columns(table) > table%n_csv) call make_group(id, 'dyna/'//table%name, error)
-    do i = 1, n_columns(table)
-      name = trim(merge('history/', 'dyna/   ', i <= table%n_csv))//table%name//'/' &
-        //column_name(table, i)
-      reals = table%values(i, :table%n_row)
-      if (table%kinds(i) == kind_real) then
-        call write_rows(id, name, as_real, size(reals), c_loc(reals), error)
-      else
-        integers = nint(reals)
-        call write_rows(id, name, as_integer, size(integers), c_loc(integers), error)
-      end if
+    call make_group(id, 'dyna', error)
+    do k = 1, n_table
+      associate (table => histories%tables(k))
+        if (.not. allocated(table%names)) cycle
+        folder = 'history/'//trim(history_tables(k)%name)
+        call make_group(id, folder, error)
+        if (size(table%names) > table%n_csv) &
+          call make_group(id, 'dyna/'//trim(history_tables(k)%name), error)
+        do i = 1, size(table%names)
+          if (i > table%n_csv) folder = 'dyna/'//trim(history_tables(k)%name)
+          reals = table%values(i, :table%n_row)
+          if (table%kinds(i) == kind_real) then
+            call write_rows(id, folder//'/'//trim(table%names(i)), as_real, size(reals), &
+              c_loc(reals), error)
+          else
+            integers = nint(reals)
+            call write_rows(id, folder//'/'//trim(table%names(i)), as_integer, size(integers), &
+              c_loc(integers), error)
+          end if
+        end do
+      end associate
     end do
-  end subroutine write_table
+  end subroutine write_histories
 
 end module results_tables_m

@@ -5,7 +5,7 @@ module timing_file_m
   use kinds_m, only : wp, long
   use clock_m, only : clock_t, phase_names, n_phase, n_contact_phase, phase_contact_search
   use errors_m, only : error_t
-  use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
+  use text_files_m, only : write_whole
   use log_m, only : to_text
   implicit none
   private
@@ -21,13 +21,8 @@ contains
     type(clock_t), intent(in) :: clock
     integer, intent(in) :: interfaces(:) !! their ids
     type(error_t), allocatable, intent(out) :: error
-    type(text_file_t) :: file
 
-    call create_text_file(file, path, error)
-    if (allocated(error)) return
-    call append_text(file, timing_text(clock, interfaces), error)
-    if (allocated(error)) return
-    call close_text_file(file, error)
+    call write_whole(path, timing_text(clock, interfaces), error)
   end subroutine write_timing
 
   !> The file as text. Seconds are whole nanoseconds with nine decimals, so that the phases add up

@@ -2,7 +2,7 @@
 !> Forces and works of boundaries (bndout) and of groups of nodes (nodfor): what of it both drivers
 !> do.
 module boundary_filling_m
-  use boundary_rows_m, only : boundary_load, boundary_pressure
+  use controls_m, only : boundary_load, boundary_pressure
   use external_force_m, only : add_nodal_loads, add_pressures
   use kinds_m, only : wp
   use model_m, only : model_t

@@ -3,17 +3,16 @@
 !> puts on a face, and the stress of the elements behind it (doc/theory/contact.md, section 8.1).
 !> At instants that are written, and in words at the end.
 module contact_judging_m
-  use contact_estimate_m, only : contact_estimate_t
+  use law_state_m, only : contact_estimate_t
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step
   use contacts_m, only : contact_t, n_told, penalty_implicit
   use controls_m, only : is_asked
   use history_tables_m, only : table_sleout
   use kinds_m, only : wp
-  use log_m, only : log_t, write_log, to_text
+  use log_m, only : log_t, write_log, to_text, percent, two_decimals
   use model_m, only : model_t
   use rows_behind_m, only : face_rows_t, find_rows, face_pressure, face_inertia, &
     elastic_energy, has_stress
-  use share_text_m, only : percent
   use shared_faces_m, only : others_t, find_others, face_share
   use snapshot_filling_m, only : fill_slaves, join_slaves
   use snapshot_m, only : snapshot_t, interface_result_t
@@ -237,7 +236,7 @@ contains
     if (tells_waves(estimate)) text = text//', without waves by ' &
       //percent(sqrt(estimate%still), sqrt(estimate%load))
     if (estimate%rows > 0.0_wp) then
-      text = text//'; springs store '//times(estimate%springs/estimate%rows) &
+      text = text//'; springs store '//two_decimals(estimate%springs/estimate%rows) &
         //' times what the elements beside them do'
       if (estimate%springs > soft*estimate%rows) text = text//', the penalty is soft'
     end if
@@ -279,7 +278,7 @@ contains
       text = text//'by the published studies type '//to_text(better)//' would keep it'
     else
       text = text//'by the published studies no type would, but elements smaller by a factor of ' &
-        //times(refinement(expected, contact%target))
+        //two_decimals(refinement(expected, contact%target))
       if (better /= contact%contact_type) text = text//' with type '//to_text(better)
     end if
   end function target_words
@@ -291,16 +290,5 @@ contains
 
     tells = estimate%still < told_below*estimate%misfit
   end function tells_waves
-
-  !> A ratio with two decimals.
-  pure function times(ratio) result(text)
-    real(wp), intent(in) :: ratio
-    character(:), allocatable :: text
-    character(24) :: buffer
-
-    write (buffer, '(ss,es10.2)') ratio
-    if (ratio < 1.0e4_wp) write (buffer, '(ss,f8.2)') ratio
-    text = trim(adjustl(buffer))
-  end function times
 
 end module contact_judging_m

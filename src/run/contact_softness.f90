@@ -2,16 +2,15 @@
 !> Whether the springs of an interface have a part in the answer: what they store beside the bodies
 !> that they hold apart (doc/theory/contact.md, section 8.2). Followed at instants that are written.
 module contact_softness_m
-  use contact_estimate_m, only : contact_estimate_t
+  use law_state_m, only : contact_estimate_t
   use contact_facets_m, only : follow_arcs, report_facets
   use contacts_m, only : contact_t, is_tied, told_as, penalty_factor, penalty_share, &
     penalty_implicit
   use controls_m, only : controls_t, contact_step_rules
   use kinds_m, only : wp
   use layout_m, only : slot_part
-  use log_m, only : log_t, warn, write_log, to_text
+  use log_m, only : log_t, warn, write_log, to_text, percent
   use model_m, only : model_t
-  use share_text_m, only : percent
   use snapshot_m, only : part_result_t
   use state_m, only : state_t
   implicit none

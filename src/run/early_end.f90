@@ -2,7 +2,7 @@
 !> Whether a run ends before its end time (*TERMINATION_NODE, _BODY, _CONTACT), and why.
 module early_end_m
   use contacts_m, only : told_as
-  use end_conditions_m, only : end_condition_t, end_node_place, end_node_touch, end_body_place, &
+  use controls_m, only : end_condition_t, end_node_place, end_node_touch, end_body_place, &
     end_body_way, end_contact
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -14,15 +14,17 @@ module early_end_m
 
 contains
 
-  !> Why the run ends now; not there where nothing ends it. Places are those of the state, contact
-  !> forces the last ones known. The first condition of the deck that holds is told.
-  subroutine find_early_end(model, state, reason)
+  !> Whether the run ends now, and why. Places are those of the state, contact forces the last ones
+  !> known. The first condition of the deck that holds is told.
+  subroutine find_early_end(model, state, last, reason)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    character(:), allocatable, intent(out) :: reason
+    logical, intent(inout) :: last   !! the run ends anyway; or for a condition of the deck
+    character(:), allocatable, intent(inout) :: reason !! of the end
     character(:), allocatable :: found
     integer :: i
 
+    if (.not. allocated(model%controls%ends)) return
     do i = 1, size(model%controls%ends)
       associate (ending => model%controls%ends(i))
         found = ''
@@ -38,7 +40,9 @@ contains
           call judge_contact(model, ending, state, state%quiet_since(i), found)
         end select
       end associate
-      if (len(found) > 0 .and. .not. allocated(reason)) reason = found
+      if (len(found) == 0 .or. last) cycle
+      last = .true.
+      reason = found
     end do
   end subroutine find_early_end
 

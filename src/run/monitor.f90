@@ -49,7 +49,7 @@ module monitor_m
     logical :: has_plot = .false. !! the deck asks for plot states
     logical :: told_radii = .false. !! the log tells of nodes beyond the axis
     logical :: told_ratio = .false. !! and of energies that do not add up
-    logical :: only_checks = .false. !! the state at time zero is made, and no file
+    logical :: only_checks = .false. !! the state at time zero is made, and at most its file
   end type monitor_t
 
 contains
@@ -173,7 +173,10 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer :: k
 
-    if (monitor%only_checks) return
+    if (monitor%only_checks) then
+      if (due%plot) call append_state(monitor%results, model, monitor%snapshot, error)
+      return
+    end if
     associate (shot => monitor%snapshot, histories => monitor%histories)
       do k = 1, n_table
         if (due%tables(k)) call append_rows(histories%tables(k), k, model, shot)

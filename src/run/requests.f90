@@ -4,19 +4,23 @@
 !> the driver does the rest.
 module requests_m
   use errors_m, only : error_t
+  use files_m, only : file_exists, is_endless, join_path, remove_file
   use history_file_m, only : flush_histories
   use kinds_m, only : wp, long
   use log_m, only : warn
   use monitor_m, only : monitor_t
   use progress_m, only : show_progress
   use restart_plan_m, only : wants_look
-  use sense_switch_m, only : take_switch, switch_none, switch_dump_and_stop, switch_status, &
-    switch_dump, switch_plot, switch_stop, switch_flush, switch_unknown
   use signals_m, only : stop_requested, take_signals
   use state_m, only : state_t
+  use text_m, only : upper_case
   implicit none
   private
-  public :: requests_t, take_requests, echoes_t, hear_signals, drop_echoes
+  public :: requests_t, take_requests, echoes_t, hear_signals, drop_echoes, switch_path, &
+    take_switch
+
+  !> Longest line that is read, whatever the environment says (GFORTRAN_DEFAULT_RECL).
+  integer, parameter :: line_length = 100000
 
   !> What is asked for.
   type :: requests_t
@@ -67,27 +71,67 @@ contains
     type(requests_t), intent(out) :: asked
     type(error_t), allocatable, intent(inout) :: error
     logical :: looks
-    integer :: switch
+    character(:), allocatable :: switch
 
-    switch = switch_none
+    switch = ''
     looks = steps_are_long
     if (.not. looks) call wants_look(monitor%restarts, monitor%clock%is_on, monitor%clock%last, &
       state%cycle, looks)
     if (looks) call take_switch(monitor%restarts%directory, switch)
-    call take_signals(asked%dump, asked%plot)
-    asked%signalled = stop_requested()
-    asked%dump = asked%dump .or. switch == switch_dump_and_stop .or. switch == switch_dump
-    asked%plot = asked%plot .or. switch == switch_plot
-    asked%stop = asked%signalled .or. switch == switch_dump_and_stop .or. switch == switch_stop
+    call hear_signals(asked)
     select case (switch)
-    case (switch_status)
+    case ('')
+      continue
+    case ('SW1')
+      asked%dump = .true.
+      asked%stop = .true.
+    case ('SW2')
       call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, &
         ratio, 'status (sw2)', .true.)
-    case (switch_flush)
+    case ('SW3')
+      asked%dump = .true.
+    case ('SW4')
+      asked%plot = .true.
+    case ('STOP')
+      asked%stop = .true.
+    case ('SWA')
       if (.not. allocated(error)) call flush_histories(monitor%histories, error)
-    case (switch_unknown)
+    case default
       call warn(monitor%log, 'd3kil holds none of sw1, sw2, sw3, sw4, swa, stop')
     end select
   end subroutine take_requests
+
+  !> Where a request is looked for.
+  pure function switch_path(directory) result(path)
+    character(*), intent(in) :: directory !! of the results
+    character(:), allocatable :: path
+
+    path = join_path(directory, 'd3kil')
+  end function switch_path
+
+  !> The word in the file d3kil of this folder, in capital letters and without the point of `SWA.`,
+  !> as old manuals write it; the file is removed. One without a word is left: it may be about to be
+  !> written.
+  subroutine take_switch(directory, switch)
+    character(*), intent(in) :: directory
+    character(:), allocatable, intent(out) :: switch  !! empty: none
+    type(error_t), allocatable :: ignored
+    character(80) :: line
+    integer :: unit, status
+
+    switch = ''
+    if (.not. file_exists(switch_path(directory))) return
+    if (is_endless(switch_path(directory))) return
+    open (newunit=unit, file=switch_path(directory), status='old', action='read', &
+      recl=line_length, iostat=status)
+    if (status /= 0) return
+    read (unit, '(a)', iostat=status) line
+    close (unit)
+    if (status /= 0 .or. len_trim(line) == 0) return
+    line = upper_case(adjustl(line))
+    if (line(4:) == '.') line(4:) = ''
+    switch = trim(line)
+    call remove_file(switch_path(directory), ignored)
+  end subroutine take_switch
 
 end module requests_m

@@ -8,7 +8,7 @@ module restart_bounds_m
   use contact_state_m, only : contact_state_t, tracking_t, bucket_grid_t, is_free, is_touching
   use contacts_m, only : contact_t
   use facing_state_m, only : facing_t, facing_side_t
-  use friction_state_m, only : is_open, is_held, is_broken
+  use law_state_m, only : is_open, is_held, is_broken
   use kinds_m, only : wp
   use log_m, only : to_text
   use model_m, only : model_t

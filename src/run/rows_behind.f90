@@ -2,7 +2,7 @@
 !> The elements behind contact surfaces and those behind them: the stress that a body has at its
 !> face.
 module rows_behind_m
-  use element_shares_m, only : element_shares
+  use element_mass_m, only : element_shares
   use element_state_m, only : is_gone, stress_of_slot
   use kinds_m, only : wp
   use layout_m, only : slot_part

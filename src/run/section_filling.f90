@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Cross sections of the histories (secforc): resultants of what their elements put on their nodes.
 module section_filling_m
-  use cross_sections_m, only : cross_section_t
+  use controls_m, only : cross_section_t
   use kinds_m, only : wp
   use model_m, only : model_t
   use snapshot_m, only : snapshot_t, section_result_t

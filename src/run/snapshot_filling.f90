@@ -7,9 +7,9 @@ module snapshot_filling_m
   use common_motion_m, only : fill_common
   use constraints_m, only : is_active
   use contact_results_m, only : interface_resultants, slave_rows, join_rows
-  use element_shares_m, only : element_shares
+  use element_mass_m, only : element_shares
   use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains, &
-    element_heats, element_erosion
+    element_heats, element_erosion, hoop_strains
   use contacts_m, only : transducer_t, has_shear, n_told, told_as
   use controls_m, only : is_asked
   use history_elements_m, only : find_history_elements
@@ -18,7 +18,6 @@ module snapshot_filling_m
   use mass_scaling_m, only : scales_masses, added_masses
   use model_m, only : model_t
   use parts_m, only : has_memory_of_heat
-  use round_state_m, only : hoop_strains
   use snapshot_m, only : snapshot_t, interface_result_t, rubbed_t, slave_result_t
   use state_m, only : state_t
   use support_forces_m, only : find_supports

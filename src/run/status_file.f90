@@ -5,7 +5,7 @@ module status_file_m
   use clock_m, only : clock_t, elapsed_seconds
   use errors_m, only : error_t
   use files_m, only : join_path, rename_file, unfinished
-  use text_files_m, only : text_file_t, create_text_file, append_text, close_text_file
+  use text_files_m, only : write_whole
   use kinds_m, only : wp, long
   use log_m, only : to_text
   implicit none
@@ -42,6 +42,7 @@ contains
     character(*), intent(in) :: job
     logical, intent(in) :: has_name
     type(clock_t), intent(in) :: clock
+    integer(long) :: now, rate
 
     status%job = job
     status%path = join_path(directory, 'status.out')
@@ -50,7 +51,8 @@ contains
     status%start_cycle = status%cycle
     status%start_seconds = elapsed_seconds(clock)
     call write_status(status, clock, 'running')
-    call wait_for_next(status)
+    call system_clock(now, rate)
+    status%next_tick = now + int(file_interval*real(rate, wp), long)
   end subroutine start_status
 
   !> Take new numbers, and write them when the last file is old enough.
@@ -59,42 +61,28 @@ contains
     type(clock_t), intent(in) :: clock
     integer, intent(in) :: cycle
     real(wp), intent(in) :: time, dt, ratio
-    integer(long) :: now
+    integer(long) :: now, rate
 
     status%cycle = cycle
     status%time = time
     status%dt = dt
     status%ratio = ratio
-    call system_clock(now)
+    call system_clock(now, rate)
     if (now < status%next_tick) return
-    call wait_for_next(status)
+    status%next_tick = now + int(file_interval*real(rate, wp), long)
     call write_status(status, clock, 'running')
   end subroutine keep_status
-
-  !> The next file is due after the interval.
-  subroutine wait_for_next(status)
-    type(status_t), intent(inout) :: status
-    integer(long) :: now, rate
-
-    call system_clock(now, rate)
-    status%next_tick = now + int(file_interval*real(rate, wp), long)
-  end subroutine wait_for_next
 
   !> Write the file.
   subroutine write_status(status, clock, state)
     type(status_t), intent(in) :: status
     type(clock_t), intent(in) :: clock
     character(*), intent(in) :: state !! running, or how the run has ended
-    type(text_file_t) :: file
-    type(error_t), allocatable :: error, closing
+    type(error_t), allocatable :: error
 
     if (.not. allocated(status%path)) return
-    call create_text_file(file, status%path//unfinished, error)
-    if (allocated(error)) return
-    call append_text(file, status_text(status, clock, state), error)
-    call close_text_file(file, closing)
-    if (allocated(error) .or. allocated(closing)) return
-    call rename_file(status%path//unfinished, status%path, error)
+    call write_whole(status%path//unfinished, status_text(status, clock, state), error)
+    if (.not. allocated(error)) call rename_file(status%path//unfinished, status%path, error)
   end subroutine write_status
 
   !> The lines of the file.

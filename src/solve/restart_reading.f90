@@ -5,13 +5,12 @@ module restart_reading_m
   use archive_m, only : archive_t
   use errors_m, only : error_t, raise, status_input
   use explicit_cycle_m, only : explicit_cycle_t, read_cycle
-  use implicit_memory_m, only : implicit_memory_t, read_memory
-  use inside_answers_m, only : answers_t
+  use implicit_start_m, only : implicit_memory_t, read_memory
+  use others_memory_m, only : answers_t, others_t, forgetters_of
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, plan_outputs
-  use others_memory_m, only : others_t, forgetters_of
   use outlines_m, only : resume_outlines
   use output_schedule_m, only : output_reach
   use progress_m, only : show_note

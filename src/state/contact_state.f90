@@ -17,14 +17,11 @@
 !> of the interface have moved relative to each other. A spot at distance d from everything cannot
 !> touch before the travel has grown by d: until then it sleeps.
 module contact_state_m
-  use contact_watch_m, only : contact_watch_t
-  use energy_limit_state_m, only : energy_limit_t
+  use law_state_m, only : contact_watch_t, energy_limit_t, friction_memory_t, &
+    interference_memory_t, tie_memory_t
   use facing_state_m, only : facing_t
-  use friction_state_m, only : friction_memory_t
-  use interference_state_m, only : interference_memory_t
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
-  use tie_state_m, only : tie_memory_t
   use visitor_m, only : visited_t, visitor_t, any_length, length, whole
   implicit none
   private

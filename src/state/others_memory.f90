@@ -1,15 +1,15 @@
 ! SPDX-License-Identifier: MIT
 !> Nodes and elements of other processes, whose state this one does not keep, and those whose state
-!> it has.
+!> it has; and what only the first process can tell the others.
 module others_memory_m
-  use packed_buffer_m, only : forgetter_t, choose_slots
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use model_m, only : model_t
+  use packed_buffer_m, only : forgetter_t, choose_slots
   use visitor_m, only : of_nodes
   implicit none
   private
-  public :: others_t, known_nodes, known_slots, forgetters_of
+  public :: others_t, known_nodes, known_slots, forgetters_of, answers_t
 
   !> Two ranges of each: before and behind those of this process.
   type :: others_t
@@ -19,6 +19,13 @@ module others_memory_m
     real(wp), allocatable :: penalties(:, :) !! (3, interfaces) of slave, master and nodes, that the
                                      !! first process has found
   end type others_t
+
+  !> Those of all interfaces.
+  type :: answers_t
+    logical :: are_given = .false.
+    integer :: n = 0                     !! asked for so far
+    logical, allocatable :: is_inside(:) !! with room for more where they are kept
+  end type answers_t
 
 contains
 

@@ -7,18 +7,44 @@
 !> when the forces of cycle n are formed. Node arrays are in the order of the model (special
 !> nodes first, see layout_t).
 module state_m
-  use kinds_m, only : wp
   use block_state_m, only : block_state_t
-  use contact_estimate_m, only : contact_estimate_t
+  use law_state_m, only : contact_estimate_t
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
-  use relaxation_state_m, only : relaxation_state_t
+  use kinds_m, only : wp
   use rigid_state_m, only : rigid_state_t
   use visitor_m, only : visited_t, visitor_t, length, any_length, of_forces, of_nodes
-  use wall_state_m, only : wall_state_t
   implicit none
   private
-  public :: state_t
+  public :: state_t, relaxation_state_t
+
+  !> A phase of relaxation that goes on.
+  type, extends(visited_t) :: relaxation_state_t
+    integer :: n = 0                      !! cycles so far, 0 where it has not begun or is over
+    real(wp) :: time = 0.0_wp             !! of its own clock: that of the run stands at zero
+    real(wp) :: most = 0.0_wp             !! largest kinetic energy
+    real(wp), allocatable :: velocity(:, :) !! (2, n_node) with which the run will begin
+  contains
+    procedure :: visit => visit_relaxation
+  end type relaxation_state_t
+
+  !> One wall.
+  type, extends(visited_t) :: wall_state_t
+    real(wp), allocatable :: force(:) !! (nodes of the wall) what it pushes with along its normal
+                                      !! now, N/m
+    real(wp), allocatable :: speed(:) !! (nodes of the wall) velocity along its normal before that,
+                                      !! m/s
+    real(wp), allocatable :: friction(:)   !! (nodes of the wall, none without friction) what it
+                                           !! holds back with along its tangent now, N/m
+    real(wp), allocatable :: slip_speed(:) !! (as `friction`) velocity along the tangent before
+                                           !! that, m/s
+    real(wp) :: impulse = 0.0_wp      !! of all its nodes so far, N s/m
+    real(wp) :: work = 0.0_wp         !! on all its nodes so far, J/m; negative: lost in impacts
+                                      !! and in friction
+    real(wp) :: dissipated = 0.0_wp   !! by friction so far, J/m
+  contains
+    procedure :: visit => visit_wall
+  end type wall_state_t
 
   !> State of a run.
   type, extends(visited_t) :: state_t
@@ -159,5 +185,30 @@ contains
     if (.not. allocated(values) .or. .not. allocated(kept)) return
     if (all(shape(kept) == shape(values))) values = kept
   end subroutine visit_asked_table
+
+  !> Its components.
+  subroutine visit_relaxation(self, visitor)
+    class(relaxation_state_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('n', self%n)
+    call visitor%visit('time', self%time, 0.0_wp, 'a time below zero')
+    call visitor%visit('most', self%most)
+    call visitor%visit('velocity', self%velocity, any_length)
+  end subroutine visit_relaxation
+
+  !> Its components.
+  subroutine visit_wall(self, visitor)
+    class(wall_state_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('force', self%force)
+    call visitor%visit('speed', self%speed)
+    call visitor%visit('impulse', self%impulse)
+    call visitor%visit('work', self%work)
+    call visitor%visit('friction', self%friction)
+    call visitor%visit('slip_speed', self%slip_speed)
+    call visitor%visit('dissipated', self%dissipated)
+  end subroutine visit_wall
 
 end module state_m

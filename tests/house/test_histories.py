@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The table of history files (src/model/history_tables.f90), their columns (src/output/history_rows.f90,
-history_force_rows.f90), the keywords that the reader knows, and doc/results.md name the same."""
+"""The table of history files (src/model/history_tables.f90) with their columns, the keywords that the reader knows,
+and doc/results.md name the same."""
 import re
 import sys
 
@@ -10,16 +10,15 @@ sys.path.insert(0, str(ROOT / "tools"))
 from slideline_tools import histories  # noqa: E402
 
 TABLES = (ROOT / "src/model/history_tables.f90").read_text(encoding="utf-8")
-ROWS = "".join((ROOT / "src/output" / name).read_text(encoding="utf-8")
-               for name in ("history_rows.f90", "history_force_rows.f90"))
 RESULTS = (ROOT / "doc/results.md").read_text(encoding="utf-8").replace(",` |\n| | `", ",")  # long rows go on below
-NAMES = re.findall(r"history_table_t\('(\w+) *', (\w+)", TABLES)
+ROWS = re.findall(r"history_table_t\('(\w+)', (\w+)(.*?)\)(?=, &|\])", TABLES, re.DOTALL)
+NAMES = [(name, asked) for name, asked, _ in ROWS]
 
 
 def csv_columns(name):
-    """Of the procedure that puts a row together."""
-    body = re.search(rf"subroutine put_{name}\(.*?end subroutine put_{name}", ROWS, re.DOTALL)[0]
-    return ",".join(re.findall(r"call put(?:_side)?\(row, '([\w,]+)'", body.partition("call end_csv")[0]))
+    """Those before the semicolon, without the marks of their kinds."""
+    texts = next(re.findall(r"'([^']+)'", rest) for one, _, rest in ROWS if one == name)
+    return re.sub(r"[-+#@]", "", "".join(texts).partition(";")[0])
 
 
 def test_results_page_names_the_columns_of_every_history():

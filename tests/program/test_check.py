@@ -3,6 +3,8 @@
 import json
 from pathlib import Path
 
+import h5py
+import numpy as np
 from conftest import drop
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -36,33 +38,37 @@ def test_a_sound_deck_is_accepted_and_nothing_is_written(slideline, tmp_path):
     assert findings(slideline("check", "i=deck.k", "--json")) == (True, [])
 
 
-def told_model(done):
+def started_model(slideline, folder, deck, *words):
+    """The tables of the model in the file of the state at time zero, and its points."""
+    done = slideline("check", deck, f"d={folder}", "jobid=job", *words)
     assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)["model"]
+    with h5py.File(folder / "job.start.vtkhdf") as file:
+        assert file["VTKHDF/Steps"].attrs["NSteps"] == 1 and file["VTKHDF/Steps/Values"][0] == 0.0
+        return ({name: {column: array[()] for column, array in table.items()} for name, table in file["model"].items()},
+                {name: file[f"VTKHDF/{name}"][()] for name in ("Points", "PointData/node_id", "CellData/element_id", "CellData/part_id")})
 
 
-def test_the_model_is_that_of_every_example(slideline):
+def test_the_model_is_that_of_every_example(slideline, tmp_path):
     """As many nodes, elements and numbers of them as the cards say, columns of one length, curves and parts that exist."""
     for deck in sorted((ROOT / "doc" / "examples").glob("*.k")):
-        model = told_model(slideline("check", deck, "--json"))
-        nodes, parts = set(model["node_ids"]), {one["id"] for one in model["parts"]}
-        curves = {one["id"] for one in model["curves"]}
-        assert len(model["x"]) == len(model["y"]) == len(nodes) == len(model["node_ids"]), deck
-        assert len(model["element_nodes"]) == 4 * len(model["element_ids"]) and set(model["element_nodes"]) <= nodes
-        assert set(model["element_parts"]) <= parts and len(model["element_parts"]) == len(model["element_ids"])
-        for name in ("fixed", "motions", "body_motions", "nodal_loads", "rigid_loads", "pressures", "body_loads"):
+        model, mesh = started_model(slideline, tmp_path, deck)
+        nodes, parts = set(mesh["PointData/node_id"].tolist()), set(model["parts"]["id"].tolist())
+        curves = set(model.get("curves", {}).get("curve", np.zeros(0, int)).tolist())
+        assert len(mesh["Points"]) == len(nodes) and set(mesh["CellData/part_id"].tolist()) <= parts, deck
+        for name in ("fixed", "motions", "body_motions", "nodal_loads", "rigid_loads", "pressures", "body_loads", "walls"):
             columns = model.get(name, {})
             assert len({len(column) for column in columns.values()}) <= 1, (deck, name)
-            assert set(columns.get("curve", ())) <= curves and set(columns.get("node", ())) <= nodes
-        for one in model["interfaces"]:
-            assert len(one["slave"]) % 2 == 0 and set(one["slave"]) | set(one["master"]) <= nodes
-            assert one["slave"] and one["master"] and 1 <= one["type"] <= 7
+            assert set(columns.get("curve", np.zeros(0, int)).tolist()) <= curves, (deck, name)
+            assert set(columns.get("node", np.zeros(0, int)).tolist()) <= nodes, (deck, name)
+        if one := model.get("interfaces"):
+            assert min(one["n_slave"]) > 0 and min(one["n_master"]) > 0 and set(one["type"].tolist()) <= set(range(1, 8))
+            assert len(one["node"]) == 2 * sum(one["n_slave"] + one["n_master"]) and set(one["node"].tolist()) <= nodes
 
 
 def test_the_model_has_what_the_deck_says(slideline, tmp_path):
-    """Numbers to the last bit, overrides and factors of curves applied, titles with marks of JSON in them."""
+    """Numbers to the last bit, overrides and factors of curves applied; titles in Latin-1 are taken for that."""
     deck = drop().text().replace("*END", """*SET_NODE_LIST_TITLE
- the "last" \\ ones
+ the "last" \xe9
         77
          1         2
 *DEFINE_CURVE
@@ -72,19 +78,36 @@ def test_the_model_has_what_the_deck_says(slideline, tmp_path):
 *DATABASE_HISTORY_NODE
          2
 *END""")
-    (tmp_path / "deck.k").write_text(deck)
-    model = told_model(slideline("check", "deck.k", "--json", "ctype=5"))
-    title, nodes = next((one["title"].strip(), one["nodes"]) for one in model["node_sets"] if one["id"] == 77)
-    assert title == 'the "last" \\ ones' and nodes == [1, 2]
-    curve = next(one for one in model["curves"] if one["id"] == 78)
-    assert curve["x"] == [2.0 * 1.5, 2.0 * 2.5] and curve["y"] == [3.0 * 0.125, 3.0 * 0.1000000001]
-    assert model["history_nodes"] == [1, 13, 20, 2] and [one["type"] for one in model["interfaces"]] == [5]
-    assert len(model["element_ids"]) == 16
+    (tmp_path / "deck.k").write_bytes(deck.encode("latin-1"))
+    model, mesh = started_model(slideline, tmp_path, "deck.k", "ctype=5")
+    sets, curves = model["node_sets"], model["curves"]
+    at = sets["id"].tolist().index(77)
+    assert sets["title"].decode().split("\n")[at].strip() == 'the "last" \xe9'
+    assert np.split(sets["node"], np.cumsum(sets["n_node"])[:-1])[at].tolist() == [1, 2]
+    assert curves["x"][curves["curve"] == 78].tolist() == [2.0 * 1.5, 2.0 * 2.5]
+    assert curves["y"][curves["curve"] == 78].tolist() == [3.0 * 0.125, 3.0 * 0.1000000001]
+    assert model["history_nodes"]["node"].tolist() == [1, 13, 20, 2] and model["interfaces"]["type"].tolist() == [5]
+    assert len(mesh["CellData/element_id"]) == 16
 
 
-def test_a_refused_deck_has_no_model(slideline, tmp_path):
+def test_files_of_a_check(slideline, tmp_path):
+    """A deck that can be read but can not start has its model, undeformed; a refused one has none; a file that can not be
+    made is told."""
     (tmp_path / "wrong.k").write_text(WRONG)
-    assert "model" not in json.loads(slideline("check", "wrong.k", "--json").stdout)
+    assert slideline("check", "wrong.k", "d=new").returncode == 1 and not (tmp_path / "new").exists()
+    deck = drop().text()
+    apart = (ROOT / "doc/examples/contact_2d_tied.k").read_text()
+    for node in ("      13             0.0", "      14             1.0"):
+        apart = apart.replace(f"{node}             3.0", f"{node}             3.5")
+    (tmp_path / "tied.k").write_text(apart)
+    done = slideline("check", "tied.k", "d=new")
+    assert done.returncode == 1 and "ties nothing" in done.stderr, done.stderr
+    with h5py.File(tmp_path / "new/tied.start.vtkhdf") as file:
+        assert not file["VTKHDF/PointData/displacement"][()].any() and len(file["model/interfaces/id"]) == 3
+    (tmp_path / "deck.k").write_text(drop().text())
+    (tmp_path / "job.start.vtkhdf").mkdir()
+    done = slideline("check", "deck.k", "d=.", "jobid=job")
+    assert done.returncode == 3 and "job.start.vtkhdf" in done.stderr
 
 
 def test_messages_say_where(slideline, tmp_path):

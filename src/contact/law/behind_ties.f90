@@ -5,7 +5,7 @@ module behind_ties_m
   use contact_law_m, only : density_of
   use contact_state_m, only : contact_state_t, n_side
   use friction_m, only : place_at
-  use friction_state_m, only : is_held, is_broken
+  use law_state_m, only : is_held, is_broken
   use kinds_m, only : wp
   use nodal_average_m, only : average_gaps, share_out
   implicit none

@@ -4,7 +4,7 @@ module contact_springs_m
   use behind_ties_m, only : is_left_to_tie
   use contact_law_m, only : density_of
   use contact_state_m, only : contact_state_t
-  use contact_watch_m, only : contact_watch_t
+  use law_state_m, only : contact_watch_t
   use friction_m, only : place_at
   use interference_m, only : eased_gap, ease_nodes
   use kinds_m, only : wp

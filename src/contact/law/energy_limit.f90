@@ -5,7 +5,7 @@
 !> interface are scaled down by one factor, so that momentum and moments stay in balance.
 module energy_limit_m
   use contact_state_m, only : contact_state_t
-  use energy_limit_state_m, only : energy_limit_t
+  use law_state_m, only : energy_limit_t
   use interference_m, only : limit_moment
   use kinds_m, only : wp
   implicit none

@@ -8,7 +8,7 @@ module friction_m
   use friction_sides_m, only : sides_t, find_portions, take_portions, take_feet, &
     n_block
   use friction_slips_m, only : find_slips
-  use friction_state_m, only : friction_memory_t, is_open, sticks, slips
+  use law_state_m, only : friction_memory_t, is_open, sticks, slips
   use kinds_m, only : wp
   use law_friction_m, only : has_decay
   use lengths_m, only : competence_length

@@ -5,7 +5,7 @@ module friction_block_m
   use contact_state_m, only : n_side
   use contacts_m, only : friction_rule_t
   use friction_sides_m, only : n_block
-  use friction_state_m, only : is_open, sticks, slips
+  use law_state_m, only : is_open, sticks, slips
   use kinds_m, only : wp
   use law_friction_m, only : coefficient_of, has_decay, find_limits, sliding_speed, &
     return_tractions

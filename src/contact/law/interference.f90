@@ -7,7 +7,7 @@ module interference_m
   use contacts_m, only : contact_t
   use curves_m, only : curve_value
   use friction_m, only : place_of_point, spot_at
-  use interference_state_m, only : interference_memory_t
+  use law_state_m, only : interference_memory_t
   use kinds_m, only : wp
   use nodal_average_m, only : average_gaps
   implicit none

@@ -4,7 +4,7 @@
 module law_friction_m
   use contacts_m, only : friction_rule_t
   use dual_m, only : dual_t, constant, operator(+), operator(*)
-  use friction_state_m, only : sticks, slips
+  use law_state_m, only : sticks, slips
   use kinds_m, only : wp
   implicit none
   private

@@ -1,12 +1,12 @@
 ! SPDX-License-Identifier: MIT
 !> Ties that break (METHODS 7; doc/theory/contact.md, section 6.4): where (s_n/NFLS)^2 +
 !> (s_t/SFLS)^2 >= 1, s_n the tension and s_t the shear of a place, it is free for good. Places are
-!> those at which pressure is formed (friction_state_m).
+!> those at which pressure is formed (law_state_m).
 module tiebreak_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use friction_m, only : place_at
-  use friction_state_m, only : is_open, is_held, is_broken
+  use law_state_m, only : is_open, is_held, is_broken
   use kinds_m, only : wp
   use lengths_m, only : competence_area
   implicit none

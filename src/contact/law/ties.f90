@@ -11,7 +11,7 @@ module ties_m
   use geometry_m, only : separation
   use kinds_m, only : wp
   use nodal_average_m, only : average_values, share_out
-  use tie_state_m, only : allocate_ties
+  use law_state_m, only : allocate_ties
   use tiebreak_m, only : mark_breaks, let_go, holds
   implicit none
   private

@@ -2,7 +2,7 @@
 !> The runs of an interface with a whole outline: when they are looked at anew, which segments they
 !> have, and the present interface made of them (doc/theory/contact.md, section 3.7).
 module facing_look_m
-  use body_view_m, only : half_row
+  use element_finder_m, only : half_row
   use contact_state_m, only : contact_state_t, bucket_grid_t, allocate_grid, n_side
   use contacts_m, only : contact_t
   use facing_m, only : side_view_t, find_facing

@@ -12,7 +12,7 @@ module first_search_m
   use contacts_m, only : contact_t, is_tied
   use element_finder_m, only : element_finder_t, start_finder, is_inside_body
   use geometry_m, only : closest_distance
-  use inside_answers_m, only : answers_t
+  use others_memory_m, only : answers_t
   use kinds_m, only : wp
   use model_m, only : model_t
   use self_search_m, only : find_nearest_other

@@ -5,7 +5,7 @@ module friction_tangent_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : friction_rule_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/)
-  use friction_state_m, only : is_open, slips
+  use law_state_m, only : is_open, slips
   use kinds_m, only : wp
   use law_friction_m, only : vary_traction, goes_on
   use variation_m, only : varied_point_t, apart

@@ -5,7 +5,8 @@ module deck_control_m
   use log_m, only : to_text
   use text_m, only : upper_case
   use units_m, only : units_t, find_unit, set_force
-  use controls_m, only : length_by_side, length_by_diagonal
+  use controls_m, only : length_by_side, length_by_diagonal, end_condition_t, end_node_place, &
+    end_node_touch, end_body_place, end_body_way, end_contact
   use deck_lines_m, only : deck_t, line_warning, given_by
   use deck_fields_m, only : card_t, field_text
   use deck_card_specs_m, only : field_number

@@ -3,7 +3,7 @@
 module deck_ends_m
   use kinds_m, only : wp
   use contacts_m, only : n_told
-  use end_conditions_m, only : end_condition_t, end_node_place, end_node_touch, end_body_place, &
+  use controls_m, only : end_condition_t, end_node_place, end_node_touch, end_body_place, &
     end_body_way, end_contact
   use model_m, only : model_t
   use deck_cards_m, only : cursor_t, next_of, rows_of, report_field

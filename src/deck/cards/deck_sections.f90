@@ -2,7 +2,7 @@
 !> *DATABASE_CROSS_SECTION_SET: nodes and shells in each row, behind a heading each where the
 !> keyword has one.
 module deck_sections_m
-  use cross_sections_m, only : cross_section_t, find_edges
+  use controls_m, only : cross_section_t, find_edges
   use log_m, only : to_text
   use model_m, only : model_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, row_comes, report_field

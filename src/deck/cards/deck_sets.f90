@@ -6,7 +6,7 @@ module deck_sets_m
   use kinds_m, only : long
   use log_m, only : to_text
   use text_m, only : upper_case
-  use force_groups_m, only : force_group_t
+  use controls_m, only : force_group_t
   use sorting_m, only : sorted_order
   use boundary_m, only : boundary_t, find_boundary
   use model_m, only : model_t

@@ -2,7 +2,8 @@
 !> What a deck may change when a run goes on: its end and its outputs. Decks here are plain text,
 !> cut at the lines that start with an asterisk.
 module deck_restart_m
-  use checksum_m, only : checksum_t, start_checksum, add_bytes, checksum_text
+  use checksum_m, only : add_bytes, checksum_text
+  use kinds_m, only : long
   use errors_m, only : error_t, raise, status_input
   use log_m, only : to_text
   use text_m, only : upper_case
@@ -128,11 +129,11 @@ contains
   function deck_identity(deck) result(identity)
     character(*), intent(in) :: deck         !! as run
     character(8) :: identity
-    type(checksum_t) :: checksum
+    integer(long) :: checksum
     character(:), allocatable :: name
     integer :: start, next, first, last
 
-    call start_checksum(checksum)
+    checksum = 0
     start = 1
     do while (start <= len(deck))
       call next_block(deck, start, name, next)

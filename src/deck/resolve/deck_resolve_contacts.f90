@@ -17,7 +17,7 @@ module deck_resolve_contacts_m
   use deck_interference_m, only : resolve_interference
   use deck_raw_m, only : raw_t, raw_contact_t
   use units_m, only : in_units
-  use body_view_m, only : body_view_t, view_body
+  use element_finder_m, only : body_view_t, view_body
   use initial_overlap_m, only : overlap_t, find_crossing, find_overlap
   implicit none
   private

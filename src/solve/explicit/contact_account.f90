@@ -4,12 +4,10 @@
 !> Explicit runs alone: there the trapezoidal rule is the work that the scheme itself does.
 module contact_account_m
   use contacts_m, only : penalty_implicit
-  use contact_watch_m, only : has_made, has_lost
-  use energy_limit_state_m, only : energy_limit_t
+  use law_state_m, only : has_made, has_lost, energy_limit_t
   use kinds_m, only : wp
-  use log_m, only : log_t, warn, write_log, to_text
+  use log_m, only : log_t, warn, write_log, to_text, percent
   use model_m, only : model_t
-  use share_text_m, only : percent
   use state_m, only : state_t
   use units_m, only : per_depth
   implicit none

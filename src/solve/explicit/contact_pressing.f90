@@ -1,6 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Interfaces whose springs push by the gaps of the end of the step (PUNIT 4), in the explicit
-!> driver: after all other forces, from the velocities that these would give.
+!> driver: after all other forces, from the velocities that these would give; how nodes of rigid
+!> bodies would move then, and how a force at one moves all others (doc/theory/contact.md, section
+!> 6.6).
 module contact_pressing_m
   use clock_m, only : clock_t, lap, share_contact, phase_contact_force, phase_nodes
   use constraints_m, only : is_active
@@ -11,10 +13,10 @@ module contact_pressing_m
   use log_m, only : log_t
   use model_m, only : model_t
   use node_motion_m, only : leap_t, find_factors
-  use pressing_m, only : pressing_t, start_pressing
   use part_damping_m, only : part_damping_rate
+  use pressing_m, only : pressing_t, start_pressing
   use rigid_motion_m, only : solve_rigids, damping_of
-  use rigid_pressing_m, only : list_riders, ride
+  use rigid_state_m, only : turn_of, shift_by_turn, velocity_of
   use state_m, only : state_t
   use weighted_gaps_m, only : node_of
   implicit none
@@ -38,7 +40,7 @@ contains
     type(state_t), intent(inout) :: state
     type(pressing_t), intent(inout) :: steps(:) !! (interfaces) of the call before
     logical :: are_solved !! rigid bodies: no two interfaces press one that moves
-    integer :: i
+    integer :: i, k
 
     are_solved = .false.
     call lap(clock, phase_nodes)
@@ -53,7 +55,12 @@ contains
       if (state%contacts(i)%points%n > 0) then
         call find_rows(steps(i), state%contacts(i))
         call foresee(leap, state%contacts(i)%nodes, state, steps(i))
-        call lead(model, velocity, state%time, steps(i))
+        do k = 1, size(steps(i)%led, 2)
+          associate (prescribed => model%conditions%motions(steps(i)%led(1, k)))
+            if (is_active(prescribed, state%time)) steps(i)%velocity(prescribed%direction, &
+              steps(i)%led(2, k)) = velocity(steps(i)%led(1, k))
+          end associate
+        end do
         if (size(steps(i)%riders, 2) > 0) then
           if (.not. are_solved) call solve_rigids(model, damping, state)
           are_solved = .true.
@@ -164,52 +171,92 @@ contains
     call ride(model, counted, state, step)
   end subroutine carry
 
-  !> What leads or carries which nodes of an interface.
+  !> Which motions lead which nodes of an interface, and which of its nodes belong to which body.
   subroutine list_company(model, nodes, step)
     type(model_t), intent(in) :: model
     integer, intent(in) :: nodes(:)
     type(pressing_t), intent(inout) :: step
-    integer :: local(model%mesh%n_node), i
+    integer :: local(model%mesh%n_node) !! number in the interface, 0: not of it
+    integer :: led(2, size(model%conditions%motions)), riders(3, size(nodes)), i, k, n
 
     local = 0
     do i = 1, size(nodes)
       local(nodes(i)) = i
     end do
-    call list_led(model, local, step)
-    call list_riders(model, local, size(nodes), step)
-  end subroutine list_company
-
-  !> Which motions lead which nodes.
-  subroutine list_led(model, local, step)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: local(:) !! (n_node) number in the interface, 0: not of it
-    type(pressing_t), intent(inout) :: step
-    integer :: led(2, size(model%conditions%motions)), i, n
-
     n = 0
-    do i = 1, size(model%conditions%motions)
+    do i = 1, size(led, 2)
       if (local(model%conditions%motions(i)%node) == 0) cycle
       n = n + 1
       led(:, n) = [i, local(model%conditions%motions(i)%node)]
     end do
-    allocate (step%led(2, n))
-    step%led(:, :) = led(:, :n)
-  end subroutine list_led
+    step%led = led(:, :n)
+    n = 0
+    do i = 1, size(model%rigids)
+      do k = 1, size(model%rigids(i)%nodes)
+        if (local(model%rigids(i)%nodes(k)) == 0) cycle
+        n = n + 1
+        riders(:, n) = [i, k, local(model%rigids(i)%nodes(k))]
+      end do
+    end do
+    step%riders = riders(:, :n)
+    k = count([(any(riders(1, :n) == i), i=1, size(model%rigids))])
+    allocate (step%modes(2, size(nodes), 3*k))
+  end subroutine list_company
 
-  !> The nodes that are led.
-  subroutine lead(model, velocity, time, step)
+  !> Velocities of the nodes of bodies whose v(n+1/2) without the interface is known, and the modes
+  !> by which these are free to move, times the root of what a unit force along them makes.
+  subroutine ride(model, half, state, step)
     type(model_t), intent(in) :: model
-    real(wp), intent(in) :: velocity(:)     !! (n_motion)
-    real(wp), intent(in) :: time            !! s
+    real(wp), intent(in) :: half(:, :)       !! (3, n_body) what an acceleration counts, s
+    type(state_t), intent(in) :: state
     type(pressing_t), intent(inout) :: step
-    integer :: i
+    real(wp) :: speed(3), arm(2), unit(3), root
+    logical :: is_free(3)
+    integer :: i, k, body
 
-    do i = 1, size(step%led, 2)
-      associate (prescribed => model%conditions%motions(step%led(1, i)))
-        if (is_active(prescribed, time)) &
-          step%velocity(prescribed%direction, step%led(2, i)) = velocity(step%led(1, i))
+    step%n_mode = 0
+    body = 0
+    do i = 1, size(step%riders, 2)
+      if (step%riders(1, i) /= body) then
+        if (body > 0) step%n_mode = step%n_mode + count(is_free)
+        body = step%riders(1, i)
+        is_free = are_free(model, body, state%time)
+        do k = 1, count(is_free)
+          step%modes(:, :, step%n_mode + k) = 0.0_wp
+        end do
+      end if
+      associate (rigid => state%rigids(body), node => step%riders(3, i))
+        speed = rigid%next_velocity
+        arm = rigid%arms(:, step%riders(2, i))
+        arm = arm + shift_by_turn(turn_of(rigid%place(3) + 0.5_wp*step%dt*speed(3)), arm)
+        speed(3) = 2.0_wp*sin(0.5_wp*step%dt*speed(3))/step%dt
+        step%velocity(:, node) = velocity_of(speed, arm)
+        do k = 1, 3
+          if (.not. is_free(k)) cycle
+          unit = 0.0_wp
+          unit(k) = 1.0_wp
+          root = sqrt(half(k, body)/rigid%inertia(k))
+          step%modes(:, node, step%n_mode + count(is_free(:k))) = root*velocity_of(unit, arm)
+        end do
       end associate
     end do
-  end subroutine lead
+    if (body > 0) step%n_mode = step%n_mode + count(is_free)
+  end subroutine ride
+
+  !> Which of x, y and the turn of a body are neither held nor led.
+  pure function are_free(model, body, time) result(is_free)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: body
+    real(wp), intent(in) :: time !! s
+    logical :: is_free(3)
+    integer :: i
+
+    is_free = .not. model%rigids(body)%is_fixed
+    do i = 1, size(model%conditions%rigid_motions)
+      associate (motion => model%conditions%rigid_motions(i))
+        if (motion%node == body .and. is_active(motion, time)) is_free(motion%direction) = .false.
+      end associate
+    end do
+  end function are_free
 
 end module contact_pressing_m

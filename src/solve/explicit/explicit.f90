@@ -9,30 +9,27 @@ module explicit_m
   use clock_m, only : lap, phase_elements, phase_nodes, phase_output
   use contact_account_m, only : report_contact_energies
   use contact_check_m, only : report_contact_end
+  use contact_pressing_m, only : press_contacts
   use element_dispatch_m, only : add_tile_forces
   use eroding_tiles_m, only : add_eroding_tile_forces
-  use erosion_account_m, only : report_erosion
+  use element_losses_m, only : report_erosion, report_failures
   use errors_m, only : error_t
   use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, exchange_tiles, &
-    press_cycle, end_cycle
+    end_cycle
   use explicit_report_m, only : report_cycle
-  use failure_watch_m, only : report_failures
   use health_m, only : check_tile, judge_energies, judge_ratio, unaccounted
   use kinds_m, only : wp
   use mass_scaling_m, only : refine_limits
   use model_m, only : model_t
-  use motion_sums_m, only : sum_motion, sum_blocks
+  use load_work_m, only : sum_motion, sum_blocks
   use monitor_m, only : monitor_t
   use node_motion_m, only : leap_t, move_tile_nodes, move_special_nodes, move_damped_nodes
-  use rank_balance_m, only : balance_ranks
-  use rank_report_m, only : report_exchange
+  use rank_exchange_m, only : report_exchange
   use ranks_m, only : share_error
-  use resting_tiles_m, only : is_tried, rests, is_flying, remember_tile, judge_tile, look_at_tile, &
-    report_rest
-  use skew_motion_m, only : hold_skew_nodes
+  use resting_tiles_m, only : awake, flying, remember_tile, judge_tile, look_at_tile, report_rest
+  use held_nodes_m, only : hold_skew_nodes, hold_nodes
   use state_m, only : state_t
   use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
-  use wall_motion_m, only : hold_nodes
   implicit none
   private
   public :: advance_explicit
@@ -41,7 +38,7 @@ contains
 
   !> From the state at time zero to the end of the run.
   subroutine advance_explicit(model, n_thread, state, monitor, reason, error)
-    type(model_t), intent(inout) :: model
+    type(model_t), intent(in) :: model
     integer, intent(in) :: n_thread
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
@@ -81,7 +78,7 @@ contains
   !> are one piece of serial work; `cycle` may then already speak of the next one, so that what
   !> others still ask it is kept.
   subroutine run_cycles(model, state, monitor, cycle)
-    type(model_t), intent(inout) :: model
+    type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
@@ -116,10 +113,7 @@ contains
       end if
       !$omp master
       call end_cycle(model, state, monitor, cycle)
-      if (.not. cycle%finished) then
-        if (monitor%ranks%n > 1) call balance_ranks(model, monitor%ranks, state, cycle)
-        call begin_cycle(model, state, monitor, cycle)
-      end if
+      if (.not. cycle%finished) call begin_cycle(model, state, monitor, cycle)
       !$omp end master
       !$omp barrier
       if (cycle%finished) exit
@@ -141,8 +135,14 @@ contains
       do i = 1, size(cycle%rest%watched)
         i_tile = cycle%rest%watched(i)
         call look_at_tile(model%layout, i_tile, state%motion, cycle%rest)
-        if (rests(cycle%rest, i_tile)) then
-          call carry_tile(model, i_tile, state, cycle)
+        if (cycle%rest%status(i_tile) < awake) then
+          associate (tile => model%layout%tiles(i_tile))
+            if (allocated(cycle%sums%parts)) call sum_motion(tile%first_node, tile%last_node, &
+              state, cycle%sums%parts(:, i_tile))
+            if (cycle%rest%status(i_tile) == flying .and. .not. cycle%writes) &
+              call move_tile_nodes(cycle%leap, tile%first_node, tile%last_node, &
+              cycle%rest%no_force, state%inverse_mass, state%motion)
+          end associate
         else
           call step_tile(model, i_tile, state, cycle, force)
         end if
@@ -166,7 +166,8 @@ contains
     real(wp), allocatable :: before(:) !! values of its elements, where the tile may come to rest
 
     associate (tile => model%layout%tiles(i_tile))
-      if (is_tried(cycle%rest, i_tile)) call remember_tile(model, i_tile, state, cycle%rest, before)
+      if (cycle%rest%status(i_tile) > awake) &
+        call remember_tile(model, i_tile, state, cycle%rest, before)
       if (model%erodes) then
         call add_eroding_tile_forces(model, tile, state%motion, [state%time, state%dt_before], &
           state%elements, force)
@@ -191,21 +192,6 @@ contains
     end associate
   end subroutine step_tile
 
-  !> What is left to do for a tile that rests.
-  subroutine carry_tile(model, i_tile, state, cycle)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i_tile
-    type(state_t), intent(inout) :: state
-    type(explicit_cycle_t), intent(inout) :: cycle
-
-    associate (tile => model%layout%tiles(i_tile))
-      if (allocated(cycle%sums%parts)) call sum_motion(tile%first_node, tile%last_node, state, &
-        cycle%sums%parts(:, i_tile))
-      if (is_flying(cycle%rest, i_tile) .and. .not. cycle%writes) call move_tile_nodes(cycle%leap, &
-        tile%first_node, tile%last_node, cycle%rest%no_force, state%inverse_mass, state%motion)
-    end associate
-  end subroutine carry_tile
-
   !> Contact forces that follow all others, which are summed before.
   subroutine press_nodes(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
@@ -223,7 +209,9 @@ contains
     end do
     !$omp end do
     !$omp master
-    call press_cycle(model, state, monitor, cycle)
+    ! The step of cycle zero is found later on.
+    if (state%cycle > 0 .or. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
+      cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
     !$omp end master
     !$omp barrier
   end subroutine press_nodes
@@ -247,27 +235,27 @@ contains
           if (allocated(state%walls)) call hold_nodes(model, cycle%leap, first, last, state)
           if (allocated(model%conditions%skew_supports)) call hold_skew_nodes(model, cycle%leap, &
             first, last, state)
-          if (allocated(state%node_damping)) then
-            call move_damped(model, cycle%leap, first, last, state)
-          else
-            call move_special_nodes(cycle%leap, first, last, state)
-          end if
+          call move_run(model, cycle%leap, first, last, state)
         end if
       end associate
     end do
     !$omp end do
   end subroutine advance_special_nodes
 
-  !> Nodes of damped parts whose internal forces stand in the nodal array.
-  subroutine move_damped(model, leap, first, last, state)
+  !> Move the special nodes first .. last, whose internal forces stand in the nodal array.
+  subroutine move_run(model, leap, first, last, state)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
     integer, intent(in) :: first, last
     type(state_t), intent(inout) :: state
 
-    if (last >= first) call move_damped_nodes(leap, model%layout%n_special, first, last, &
-      state%internal_force(:, first:last), state)
-  end subroutine move_damped
+    if (allocated(state%node_damping)) then
+      if (last >= first) call move_damped_nodes(leap, model%layout%n_special, first, last, &
+        state%internal_force(:, first:last), state)
+    else
+      call move_special_nodes(leap, first, last, state)
+    end if
+  end subroutine move_run
 
   !> Move all nodes after a cycle that wrote.
   subroutine move_all_nodes(model, state, cycle)
@@ -280,7 +268,7 @@ contains
     do i = cycle%shares%first_tile, cycle%shares%last_tile
       associate (tile => model%layout%tiles(i))
         if (allocated(state%node_damping)) then
-          call move_damped(model, cycle%leap, tile%first_node, tile%last_node, state)
+          call move_run(model, cycle%leap, tile%first_node, tile%last_node, state)
         else if (tile%last_node >= tile%first_node) then
           call move_tile_nodes(cycle%leap, tile%first_node, tile%last_node, &
             state%internal_force(1, tile%first_node), state%inverse_mass, state%motion)
@@ -290,13 +278,8 @@ contains
     !$omp end do
     !$omp do schedule(static)
     do i = 1, size(cycle%rest%summed)
-      associate (first => cycle%borders%runs(1, cycle%rest%summed(i)), &
-        last => cycle%borders%runs(2, cycle%rest%summed(i)))
-        if (allocated(state%node_damping)) then
-          call move_damped(model, cycle%leap, first, last, state)
-        else
-          call move_special_nodes(cycle%leap, first, last, state)
-        end if
+      associate (run => cycle%borders%runs(:, cycle%rest%summed(i)))
+        call move_run(model, cycle%leap, run(1), run(2), state)
       end associate
     end do
     !$omp end do

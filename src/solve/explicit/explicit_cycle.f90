@@ -4,58 +4,53 @@
 module explicit_cycle_m
   use archive_m, only : archive_t
   use behind_ties_m, only : hear_tie, settle_with_tie
-  use boundary_account_m, only : count_boundary_loads, count_boundary_motions, &
-    count_boundary_bodies, count_groups
+  use prescribed_motion_m, only : find_prescribed_velocities, impose_prescribed, count_motions, &
+    count_body_motions, count_boundary_loads, count_groups
   use clock_m, only : lap, share_contact, phase_nodes
+  use common_motion_m, only : common_velocity
   use constraints_m, only : fix_nodes, update_activity, is_active
   use contact_account_m, only : plan_looks, follow_contact
-  use contact_inertia_m, only : weigh_contacts
-  use contact_pressing_m, only : pressing_t, press_contacts
+  use rigid_start_m, only : weigh_contacts
+  use contact_pressing_m, only : pressing_t
   use contacts_m, only : told_as, penalty_implicit
-  use cycle_loads_m, only : apply_loads
+  use load_work_m, only : apply_loads, motion_sums_t, plan_sums, count_sums
   use early_end_m, only : find_early_end
-  use erosion_account_m, only : settle_elements, release_nodes
+  use element_losses_m, only : settle_elements, release_nodes, failure_watch_t, follow_failures
   use errors_m, only : error_t
-  use explicit_prescribed_m, only : find_prescribed_velocities, impose_prescribed, prescribed_work
-  use failure_watch_m, only : failure_watch_t, start_watch, follow_failures
   use health_m, only : tile_check_t, are_sound, check_step, name_collapsed, check_cycle
   use history_tables_m, only : table_secforc
   use interface_m, only : apply_contact
   use kinds_m, only : wp
-  use mass_growth_m, only : grow_state_masses
-  use mass_scaling_m, only : needs_refinement
-  use mass_log_m, only : check_added_mass
+  use mass_scaling_m, only : needs_refinement, grow_masses
+  use model_log_m, only : check_added_mass
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due
-  use motion_sums_m, only : motion_sums_t, plan_sums, count_sums
-  use node_damping_m, only : follow_damping
-  use node_motion_m, only : leap_t, make_leap
+  use node_motion_m, only : follow_damping, leap_t, make_leap
   use outlines_m, only : follow_outlines
+  use packed_buffer_m, only : stream_starts
   use progress_m, only : follow_progress
-  use rank_borders_m, only : borders_t, plan_borders, plan_whole
+  use rank_borders_m, only : borders_t, plan_borders
   use rank_exchange_m, only : parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, &
-    exchange_failures, exchange_erosion, exchange_limits, exchange_history, gather_motion, &
-    gather_state, judge_elements
+    exchange_erosion, gather_motion, gather_state, judge_elements, &
+    hear_requests, cut_sections
   use rank_shares_m, only : shares_t, share_out
-  use ranks_m, only : ranks_t, share_error
-  use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
+  use ranks_m, only : ranks_t, bring_integers, bring_reals, share_error
+  use requests_m, only : requests_t, take_requests, echoes_t
   use restart_file_m, only : close_restart
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use resting_tiles_m, only : rest_t, plan_rest, follow_rest
-  use rigid_motion_m, only : solve_rigids, rigid_work, move_rigids
-  use section_cuts_m, only : cut_sections
-  use skew_motion_m, only : remember_common, move_common
+  use rigid_motion_m, only : solve_rigids, move_rigids
+  use held_nodes_m, only : move_common, count_walls
   use state_m, only : state_t
   use tile_forces_m, only : sum_special_forces
-  use time_step_m, only : step_plan_t, start_steps, volume_step, next_step, obey_approach, &
+  use time_step_m, only : step_plan_t, volume_step, next_step, obey_approach, &
     is_last, follow_springs, cycles_in, has_springs
   use visitor_m, only : visited_t, visitor_t
-  use wall_motion_m, only : count_walls
   implicit none
   private
   public :: explicit_cycle_t, start_cycles, begin_cycle, prepare_leap, exchange_tiles, &
-    press_cycle, end_cycle, read_cycle
+    end_cycle, read_cycle
 
   !> Shared by the team, written by one thread between barriers.
   type, extends(visited_t) :: explicit_cycle_t
@@ -120,29 +115,25 @@ contains
       cycle%shares = share_out(model%layout, ranks%mine, ranks%n)
       if (ranks%n > 1) cycle%first_check = size(model%layout%tiles) + 1
       allocate (cycle%checks(max(size(model%layout%tiles), cycle%first_check)))
-      if (ranks%n == 1) then
-        call plan_whole(model, cycle%borders)
-      else
-        call plan_borders(model, cycle%shares, ranks%mine, cycle%sums, cycle%borders)
-        call plan_parcel(cycle%borders, cycle%shares, ranks%mine, state%elements, cycle%sums, &
-          cycle%parcel)
-      end if
+      call plan_borders(model, cycle%shares, ranks%mine, cycle%sums, cycle%borders)
+      if (ranks%n > 1) call plan_parcel(cycle%borders, cycle%shares, ranks%mine, state%elements, &
+        cycle%sums, cycle%parcel)
       call plan_rest(model, cycle%shares, cycle%borders%run_tiles, allocated(cycle%sums%parts), &
         cycle%rest)
     end associate
     cycle%reason = 'termination time reached'
     if (model%erodes) allocate (cycle%told, source=state%elements%erosion%n_eroded)
-    cycle%steps = start_steps(model, state%time)
-    call start_watch(monitor%restarts%goes_on, cycle%failures)
-    if (.not. monitor%restarts%goes_on) return
-    call read_cycle(model, state, monitor%restarts%source, cycle)
+    cycle%steps%start_time = state%time
+    cycle%failures%takes_up = monitor%restarts%goes_on
+    if (monitor%restarts%goes_on) call read_cycle(model, state, monitor%restarts%source, cycle)
     ! The deck of this run says when it ends.
     cycle%steps%end_time = model%controls%end_time
     cycle%steps%end_cycle = model%controls%end_cycle
+    if (.not. monitor%restarts%goes_on) return
     if (cycle%steps%constant > 0.0_wp) cycle%steps%n_cycle = &
       cycles_in(cycle%steps%end_time - cycle%steps%start_time, cycle%steps%constant)
     call close_restart(monitor%restarts%source, cycle%error)
-    if (allocated(model%controls%ends)) call heed_ends(model, state, cycle)
+    call find_early_end(model, state, cycle%last, cycle%reason)
   end subroutine start_cycles
 
   !> What a restart file says of it; the first thing that is wrong is an error of the archive.
@@ -215,19 +206,12 @@ contains
       end associate
     end do
     call find_prescribed_velocities(model, state, cycle%velocity)
-    if (allocated(model%conditions%common_motions)) call remember_common(model, state, cycle%common)
+    if (allocated(model%conditions%common_motions)) then
+      associate (n => size(model%conditions%common_motions))
+        cycle%common = reshape([(common_velocity(model, i, state), i=1, n)], [2, n])
+      end associate
+    end if
   end subroutine prepare_leap
-
-  !> Contact forces that follow all others. The step of cycle zero is found later on.
-  subroutine press_cycle(model, state, monitor, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(explicit_cycle_t), intent(inout) :: cycle
-
-    if (state%cycle > 0 .or. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
-      cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
-  end subroutine press_cycle
 
   !> Inverse masses where some prescribed motion has just started or ended.
   subroutine follow_activity(model, state, cycle)
@@ -247,22 +231,6 @@ contains
     call weigh_contacts(model, state)
   end subroutine follow_activity
 
-  !> What someone asks of this process, for all of them.
-  subroutine hear_requests(state, monitor, cycle)
-    type(state_t), intent(in) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(explicit_cycle_t), intent(inout) :: cycle
-    type(requests_t) :: before
-
-    before = cycle%asked
-    if (monitor%ranks%mine == 0) then
-      call take_requests(state, cycle%ratio, .false., monitor, cycle%asked, cycle%error)
-    else
-      call hear_signals(cycle%asked)
-    end if
-    call drop_echoes(before, cycle%echoes, cycle%asked)
-  end subroutine hear_requests
-
   !> What processes have to know of each other's tiles before special nodes move.
   subroutine exchange_tiles(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
@@ -272,7 +240,7 @@ contains
     type(record_t) :: record
 
     associate (ranks => monitor%ranks, shares => cycle%shares, elements => state%elements)
-      call hear_requests(state, monitor, cycle)
+      call hear_requests(state, cycle%ratio, monitor, cycle%echoes, cycle%asked, cycle%error)
       record%asked = cycle%asked
       record%has_error = allocated(cycle%error)
       call exchange_parcel(shares, cycle%borders, ranks, cycle%parcel, state, cycle%sums)
@@ -282,12 +250,14 @@ contains
         has_volume=record%is_sound, volume_change=record%volume_change)
       if (record%has_error) call share_error(ranks, cycle%error)
       if (record%loses) call exchange_erosion(ranks, shares, elements)
-      if (state%cycle == 0) call exchange_limits(ranks, shares, elements)
+      if (state%cycle == 0) call bring_reals(ranks, shares%chunks, 1, .true., &
+        elements%time_limit)
       if (record%fails) then
-        call exchange_failures(ranks, shares, elements)
+        call bring_integers(ranks, shares%chunks, 1, .true., elements%n_failed)
         ! The log names the first one.
         if (cycle%failures%told == 0 .and. any(elements%n_failed > 0)) &
-          call exchange_history(ranks, shares, elements)
+          call bring_reals(ranks, stream_starts(shares%chunks, elements%history_start, &
+          size(elements%history)), 1, .false., elements%history)
       end if
       if (cycle%writes) call gather_state(shares, cycle%borders, .false., ranks, state)
       if (cycle%writes .and. ranks%mine == 0) call sum_special_forces(model%layout, &
@@ -296,44 +266,13 @@ contains
     call lap(monitor%clock, phase_nodes)
   end subroutine exchange_tiles
 
-  !> Rigid bodies to their next places.
-  subroutine advance_rigids(model, state, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(explicit_cycle_t), intent(in) :: cycle
-    real(wp) :: before
-
-    if (.not. cycle%writes) call solve_rigids(model, cycle%damping, state)
-    before = merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes)
-    state%external_work = state%external_work + rigid_work(model, state, cycle%damping, before, &
-      0.5_wp*state%dt)
-    if (allocated(state%boundary_work)) call count_boundary_bodies(model, cycle%damping, &
-      .not. cycle%writes, .true., state)
-    call move_rigids(model, state)
-  end subroutine advance_rigids
-
-  !> Elements have left in this cycle: nodes that none holds any more, and surfaces of interfaces.
-  subroutine lose_elements(model, state, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(explicit_cycle_t), intent(inout) :: cycle
-
-    call release_nodes(model, cycle%leap, cycle%freed, state)
-    associate (n_eroded => state%elements%erosion%n_eroded)
-      call follow_outlines(model, n_eroded > cycle%told, state)
-      cycle%told = n_eroded
-    end associate
-    cycle%refines = needs_refinement(state%elements)
-    deallocate (cycle%freed)
-  end subroutine lose_elements
-
   !> Prescribed nodes to their places, health, and on to the next instant.
   subroutine end_cycle(model, state, monitor, cycle)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    real(wp) :: before, limit
+    real(wp) :: limit
 
     if (allocated(state%elements%n_failed)) call follow_failures(model, state, cycle%failures, &
       monitor%log)
@@ -349,22 +288,29 @@ contains
       end if
     end if
     if (size(cycle%velocity) > 0) then
-      before = merge(0.0_wp, 0.5_wp*state%dt_before, cycle%writes)
-      state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
-        cycle%damping, before, 0.5_wp*state%dt)
-      if (allocated(state%boundary_work)) call count_boundary_motions(model, cycle%velocity, &
-        cycle%damping, .not. cycle%writes, .true., state)
+      call count_motions(model, cycle%velocity, cycle%damping, [.not. cycle%writes, .true.], state)
       call impose_prescribed(model, cycle%velocity, cycle%displacement, state)
     end if
     if (allocated(cycle%common)) call move_common(model, cycle%leap, cycle%damping, cycle%common, &
       state)
-    if (allocated(state%walls)) call count_walls(model, .not. cycle%writes, .true., state)
-    if (size(state%rigids) > 0) call advance_rigids(model, state, cycle)
-    if (allocated(state%group_work)) call count_groups(model, .not. cycle%writes, .true., state)
+    if (allocated(state%walls)) call count_walls(model, [.not. cycle%writes, .true.], state)
+    if (size(state%rigids) > 0) then
+      if (.not. cycle%writes) call solve_rigids(model, cycle%damping, state)
+      call count_body_motions(model, cycle%damping, [.not. cycle%writes, .true.], state)
+      call move_rigids(model, state)
+    end if
+    if (allocated(state%group_work)) call count_groups(model, [.not. cycle%writes, .true.], state)
     if (allocated(cycle%freed)) then
       if (monitor%ranks%n > 1) call gather_motion(cycle%shares, cycle%borders, .true., &
         monitor%ranks, state)
-      call lose_elements(model, state, cycle)
+      ! Nodes that no element holds any more, and surfaces of interfaces.
+      call release_nodes(model, cycle%leap, cycle%freed, state)
+      associate (n_eroded => state%elements%erosion%n_eroded)
+        call follow_outlines(model, n_eroded > cycle%told, state)
+        cycle%told = n_eroded
+      end associate
+      cycle%refines = needs_refinement(state%elements)
+      deallocate (cycle%freed)
     end if
     state%cycle = state%cycle + 1
     state%former_dt = state%dt_before
@@ -384,7 +330,7 @@ contains
     end if
     if (.not. allocated(cycle%error)) call check_cycle(state%cycle, state%time, cycle%error)
     cycle%finished = allocated(cycle%error)
-    if (allocated(model%controls%ends)) call heed_ends(model, state, cycle)
+    call find_early_end(model, state, cycle%last, cycle%reason)
     if (.not. cycle%finished) call heed_requests(state, monitor, cycle)
     if (monitor%ranks%mine == 0) call follow_progress(monitor%progress, monitor%clock, &
       state%cycle, .false., state%time, state%dt, cycle%ratio)
@@ -410,23 +356,36 @@ contains
     end associate
   end function element_limit
 
-  !> Mass for elements that have become too small for DT2MS, where the deck lets it grow.
+  !> Mass for elements that have become too small for DT2MS, where the deck lets it grow, with all
+  !> that is made of masses. What it brings in kinetic energy comes from outside.
   subroutine follow_masses(model, ranks, state, cycle)
     type(model_t), intent(in) :: model
     type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state
     type(explicit_cycle_t), intent(inout) :: cycle
-    logical :: has_grown
+    real(wp), allocatable :: before(:)
+    real(wp) :: work
+    integer :: i, n
 
     if (model%controls%masses_stay) return
     if (minval(cycle%checks(cycle%first_check:)%time_limit) >= abs(model%controls%mass_step)) return
     if (ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .true., ranks, state)
-    call grow_state_masses(model, state, has_grown)
-    if (has_grown .and. allocated(cycle%rates)) deallocate (cycle%rates)
+    before = state%mass
+    call grow_masses(model, state%motion, state%dt, state%elements, state%mass, work)
     ! The places of the next cycle have been looked at.
     cycle%checks%time_limit = max(cycle%checks%time_limit, abs(model%controls%mass_step))
-    if (has_grown .and. .not. allocated(cycle%error)) &
-      call check_added_mass(model, state%elements, cycle%error)
+    if (.not. any(state%mass > before)) return
+    state%external_work = state%external_work + work
+    do i = 1, size(before)
+      if (state%mass(i) > before(i)) where (state%inverse_mass(:, i) > 0.0_wp) &
+        state%inverse_mass(:, i) = 1.0_wp/state%mass(i)
+    end do
+    n = size(state%contact_mass)
+    where (state%mass(:n) > before(:n)) &
+      state%contact_mass = state%contact_mass + (state%mass(:n) - before(:n))
+    call weigh_contacts(model, state)
+    if (allocated(cycle%rates)) deallocate (cycle%rates)
+    if (.not. allocated(cycle%error)) call check_added_mass(model, state%elements, cycle%error)
   end subroutine follow_masses
 
   !> Stop, restart files, states and lines that are due or that someone asks for; for restart files
@@ -436,47 +395,25 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    logical :: ends
+    logical :: ends, wanted(2) !! numbered_file, running_file
 
     if (monitor%ranks%n == 1) &
       call take_requests(state, cycle%ratio, .false., monitor, cycle%asked, cycle%error)
     cycle%plots = cycle%asked%plot
     ends = is_last(cycle%steps, state%cycle, state%time) .or. cycle%last
-    if (.not. allocated(cycle%error)) call write_files(wanted_files(monitor%restarts, &
-      state%cycle, cycle%asked%dump, ends, cycle%asked%signalled .and. .not. ends), state, &
-      monitor, cycle)
+    wanted = wanted_files(monitor%restarts, state%cycle, cycle%asked%dump, ends, &
+      cycle%asked%signalled .and. .not. ends)
+    if (any(wanted) .and. .not. allocated(cycle%error)) then
+      if (monitor%ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .false., &
+        monitor%ranks, state)
+      if (monitor%ranks%mine == 0) call write_restarts(wanted, state, monitor, cycle%error, cycle)
+      call share_error(monitor%ranks, cycle%error)
+    end if
     cycle%finished = allocated(cycle%error)
     if (ends .or. .not. cycle%asked%stop) return
     cycle%last = .true.
     cycle%reason = 'stopped on request'
   end subroutine heed_requests
-
-  !> What ends the run before its time: the cycle to come is then the last one.
-  subroutine heed_ends(model, state, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(explicit_cycle_t), intent(inout) :: cycle
-    character(:), allocatable :: reason
-
-    call find_early_end(model, state, reason)
-    if (.not. allocated(reason) .or. cycle%last) return
-    cycle%last = .true.
-    cycle%reason = reason
-  end subroutine heed_ends
-
-  !> Restart files, by the first process.
-  subroutine write_files(wanted, state, monitor, cycle)
-    logical, intent(in) :: wanted(:)   !! numbered_file, running_file
-    type(state_t), intent(inout) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(explicit_cycle_t), intent(inout) :: cycle
-
-    if (.not. any(wanted)) return
-    if (monitor%ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .false., &
-      monitor%ranks, state)
-    if (monitor%ranks%mine == 0) call write_restarts(wanted, state, monitor, cycle%error, cycle)
-    if (monitor%ranks%n > 1) call share_error(monitor%ranks, cycle%error)
-  end subroutine write_files
 
   !> What a cycle hands to the next besides the state.
   subroutine visit_cycle(self, visitor)

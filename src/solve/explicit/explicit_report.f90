@@ -1,47 +1,41 @@
 ! SPDX-License-Identifier: MIT
 !> A cycle of an explicit run that writes: what the elements have come to, and what is due from it.
 module explicit_report_m
-  use boundary_account_m, only : count_boundary_motions, count_boundary_bodies, count_groups
-  use boundary_filling_m, only : fill_boundaries
+  use prescribed_motion_m, only : count_motions, count_body_motions, count_groups, start_prescribed
   use contact_check_m, only : report_contact_start
-  use contact_judging_m, only : judge_contacts
-  use contact_softness_m, only : follow_softness
-  use energies_m, only : energy_ratio, total_energy
-  use erosion_account_m, only : settle_elements, note_least_step
-  use explicit_prescribed_m, only : start_prescribed, prescribed_work
-  use history_tables_m, only : table_glstat, table_rcforc, table_matsum, table_rwforc, &
-    table_sleout, table_spcforc, table_contact, table_elout, table_rbdout, table_bndout, &
-    table_nodfor, table_secforc
-  use history_elements_m, only : fill_history_elements
-  use first_change_m, only : first_change
+  use contact_pressing_m, only : press_contacts
+  use curves_m, only : curve_value
+  use energies_m, only : energy_ratio
+  use element_losses_m, only : settle_elements
+  use explicit_cycle_m, only : explicit_cycle_t, prepare_leap
+  use time_step_m, only : first_change, first_step, largest_change, obey_approach, &
+    obey_defaults, follow_springs
   use health_m, only : check_energy, check_ratio, check_radii, made_by_springs, unaccounted
+  use history_tables_m, only : table_glstat, table_matsum, table_rwforc, table_spcforc, table_rbdout
   use kinds_m, only : wp
+  use layout_m, only : slot_part
   use leapfrog_balance_m, only : complete_balance
   use log_m, only : write_log, to_text
   use model_log_m, only : log_smallest_steps, judge_damping
   use model_m, only : model_t
   use monitor_m, only : monitor_t, write_due
-  use motion_sums_m, only : count_sums
-  use rigid_motion_m, only : solve_rigids, start_rigid_motions, rigid_work, fill_rigids, &
-    fill_bodies
-  use progress_m, only : show_progress
-  use section_filling_m, only : fill_sections
+  use load_work_m, only : count_sums
   use rank_exchange_m, only : judge_elements
   use ranks_m, only : share_error, spread_values
-  use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, fill_interfaces, &
-    fill_plot
-  use skew_motion_m, only : hold_skew_nodes
-  use slowest_element_m, only : find_slowest
+  use reporting_m, only : note_energies, write_instant
+  use rigid_motion_m, only : solve_rigids, start_rigid_motions, fill_rigids, fill_bodies
+  use held_nodes_m, only : hold_skew_nodes, hold_nodes, count_walls, fill_walls
+  use element_steps_m, only : find_smallest_steps
+  use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts
+  use snapshot_m, only : snapshot_t
   use state_m, only : state_t
-  use wall_motion_m, only : hold_nodes, count_walls, fill_walls
   use support_forces_m, only : fill_explicit_reactions
-  use time_step_m, only : first_step, shorten_first_step, obey_approach, obey_defaults, &
-    follow_springs
-  use explicit_cycle_m, only : explicit_cycle_t, prepare_leap, press_cycle
-  use node_motion_m, only : leap_t
   implicit none
   private
   public :: report_cycle
+
+  !> Part of DT2MS by which a step that mass scaling has set may differ from it.
+  real(wp), parameter :: round_off = 1.0e-9_wp
 
 contains
 
@@ -51,7 +45,9 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    real(wp), allocatable :: held(:, :)
+    real(wp), allocatable :: held(:, :)              !! (2, n_skew) forces of skew supports
+    integer, allocatable :: held_nodes(:)
+    logical, parameter :: due(2) = [.true., .false.] !! works of the half step before the instant
 
     call count_sums(cycle%sums, state%external_work, state%damping_work)
     if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
@@ -68,22 +64,34 @@ contains
     end if
     if (state%cycle == 0) then
       call bound_first_change(model, state, monitor, cycle)
-      if (model%erodes) call note_least_step(model%controls, cycle%steps%first_dt, state)
+      ! The step below which ERODE takes elements: DTMIN times the first step, before TSSFAC.
+      if (model%erodes) state%elements%erosion%least_step = model%controls%dt_floor &
+        *cycle%steps%first_dt/model%controls%dt_scale
       call prepare_leap(model, state, cycle)
       call start_prescribed(model, cycle%velocity, state)
-      if (cycle%presses) call press_cycle(model, state, monitor, cycle)
+      if (cycle%presses .and. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
+        cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
       call report_contact_start(model, state, monitor%log)
       if (monitor%ranks%mine == 0) call log_smallest_steps(model, state, monitor%log)
       call judge_damping(model, state%dt, monitor%log)
     end if
-    call report_rigids(model, state, cycle)
-    call report_walls(model, state, cycle)
-    if (allocated(model%conditions%skew_supports)) call report_skew(model, cycle%leap, state, held)
-    state%external_work = state%external_work + prescribed_work(model, state, cycle%velocity, &
-      cycle%damping, 0.5_wp*state%dt_before, 0.0_wp)
-    if (allocated(state%boundary_work)) call count_boundary_motions(model, cycle%velocity, &
-      cycle%damping, .true., .false., state)
-    if (allocated(state%group_work)) call count_groups(model, .true., .false., state)
+    if (size(state%rigids) > 0) then
+      call solve_rigids(model, cycle%damping, state)
+      if (state%cycle == 0) call start_rigid_motions(model, state)
+      call count_body_motions(model, cycle%damping, due, state)
+    end if
+    if (allocated(state%walls)) then
+      call hold_nodes(model, cycle%leap, 1, model%layout%n_special, state)
+      call count_walls(model, due, state)
+    end if
+    if (allocated(model%conditions%skew_supports)) then
+      held_nodes = model%conditions%skew_supports%node
+      held = -state%force_special(:, held_nodes)
+      call hold_skew_nodes(model, cycle%leap, 1, model%layout%n_special, state)
+      held = held + state%force_special(:, held_nodes)
+    end if
+    call count_motions(model, cycle%velocity, cycle%damping, due, state)
+    if (allocated(state%group_work)) call count_groups(model, due, state)
     if (monitor%ranks%mine == 0) call write_report(model, held, state, monitor, cycle)
     if (monitor%ranks%n > 1) call hear_report(model, state, monitor, cycle)
     cycle%finished = cycle%last .or. allocated(cycle%error)
@@ -117,7 +125,14 @@ contains
     end if
     call prepare_leap(model, state, cycle)
     call first_change(model, cycle%shares, cycle%leap, cycle%velocity, state, monitor%ranks, change)
-    call shorten_first_step(monitor%log, cycle%steps, state%dt, change)
+    if (change > largest_change) then
+      state%dt = state%dt*(largest_change/change)
+      cycle%steps%constant = 0.0_wp
+      call write_log(monitor%log, 'first time step shortened to '//to_text(state%dt) &
+        //': in the stable one the volume of an element would change by ' &
+        //to_text(100.0_wp*change)//' %')
+      change = largest_change
+    end if
     state%contacts%advance = state%contacts%advance*(state%dt/dt)
     ! What the elements of the first cycle could not yet tell the step of the second one.
     cycle%checks(cycle%first_check)%volume_change = change
@@ -141,30 +156,17 @@ contains
     if (follows) call fill_energies(model, state, cycle%damping, monitor%snapshot)
     if (cycle%due%tables(table_glstat)) call complete_balance(model, state, cycle%damping, &
       cycle%velocity, monitor%snapshot)
-    if (state%cycle == 0) then
-      state%initial_energy = total_energy(monitor%snapshot%energies)
-      monitor%snapshot%energies%initial = state%initial_energy
-    end if
-    if (follows) call follow_softness(model, monitor%snapshot%parts, monitor%bodies, state)
+    call note_energies(model, follows, state, monitor)
     if (cycle%due%tables(table_matsum)) call fill_parts(model, state%elements, &
       monitor%snapshot)
-    if (cycle%due%tables(table_glstat)) call find_slowest(model, state, monitor%snapshot)
-    if (any(cycle%due%tables([table_rcforc, table_sleout, table_contact]))) &
-      call fill_interfaces(model, state, monitor%snapshot)
+    if (cycle%due%tables(table_glstat)) then
+      call find_slowest(model, state, monitor%snapshot)
+      cycle%ratio = energy_ratio(monitor%snapshot%energies)
+    end if
     if (cycle%due%tables(table_spcforc)) &
       call fill_explicit_reactions(model, state, monitor%snapshot, held)
-    if (cycle%due%tables(table_elout)) call fill_history_elements(model, state, monitor%snapshot)
-    if (any(cycle%due%tables([table_bndout, table_nodfor]))) &
-      call fill_boundaries(state, monitor%snapshot)
-    if (cycle%due%tables(table_secforc)) call fill_sections(model, state, monitor%snapshot)
     if (cycle%due%tables(table_rbdout)) call fill_bodies(state, monitor%snapshot)
-    if (cycle%due%plot) call fill_plot(model, state, monitor%snapshot)
-    if (any(cycle%due%tables([table_sleout, table_contact]))) &
-      call judge_contacts(model, state, cycle%due%plot, monitor%rows, monitor%snapshot)
-    call write_due(model, cycle%due, state%dt, monitor, cycle%error)
-    if (cycle%due%tables(table_glstat)) cycle%ratio = energy_ratio(monitor%snapshot%energies)
-    if (cycle%due%plot .and. .not. allocated(cycle%error)) call show_progress(monitor%progress, &
-      monitor%clock, state%cycle, state%time, state%dt, cycle%ratio, 'write vtkhdf state')
+    call write_instant(model, cycle%due, state%dt, cycle%ratio, state, monitor, cycle%error)
     if (.not. allocated(cycle%error) .and. cycle%due%tables(table_glstat)) then
       call check_energy(model%controls, monitor%snapshot%energies, made_by_springs, cycle%error)
       if (.not. allocated(cycle%error)) call check_ratio(monitor%snapshot%energies, 0.0_wp, &
@@ -191,51 +193,29 @@ contains
     call share_error(monitor%ranks, cycle%error)
   end subroutine hear_report
 
-  !> Skew supports in a cycle that writes: their nodes are held, and by what force.
-  subroutine report_skew(model, leap, state, held)
+  !> Ids of the element with the smallest stable step, and of its part; 0 where the curve rules. And
+  !> whether that step is the one of DT2MS.
+  subroutine find_slowest(model, state, snapshot)
     type(model_t), intent(in) :: model
-    type(leap_t), intent(in) :: leap
-    type(state_t), intent(inout) :: state
-    real(wp), allocatable, intent(out) :: held(:, :) !! (2, n_skew)
+    type(state_t), intent(in) :: state
+    type(snapshot_t), intent(inout) :: snapshot
+    integer, allocatable :: found(:)
+    real(wp), allocatable :: steps(:)
 
-    integer :: i, n
-
-    n = size(model%conditions%skew_supports)
-    allocate (held(2, n))
-    do i = 1, n
-      held(:, i) = -state%force_special(:, model%conditions%skew_supports(i)%node)
-    end do
-    call hold_skew_nodes(model, leap, 1, model%layout%n_special, state)
-    do i = 1, n
-      held(:, i) = held(:, i) + state%force_special(:, model%conditions%skew_supports(i)%node)
-    end do
-  end subroutine report_skew
-
-  !> Rigid bodies in a cycle that writes: what their forces ask for, and the work of
-  !> prescribed motion so far.
-  subroutine report_rigids(model, state, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(explicit_cycle_t), intent(in) :: cycle
-
-    if (size(state%rigids) == 0) return
-    call solve_rigids(model, cycle%damping, state)
-    if (state%cycle == 0) call start_rigid_motions(model, state)
-    state%external_work = state%external_work + rigid_work(model, state, cycle%damping, &
-      0.5_wp*state%dt_before, 0.0_wp)
-    if (allocated(state%boundary_work)) call count_boundary_bodies(model, cycle%damping, &
-      .true., .false., state)
-  end subroutine report_rigids
-
-  !> Rigid walls in a cycle that writes: their forces, and their work so far.
-  subroutine report_walls(model, state, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(explicit_cycle_t), intent(in) :: cycle
-
-    if (.not. allocated(state%walls)) return
-    call hold_nodes(model, cycle%leap, 1, model%layout%n_special, state)
-    call count_walls(model, .true., .false., state)
-  end subroutine report_walls
+    snapshot%slowest = 0
+    snapshot%by_dt2ms = 0
+    if (model%controls%dt_curve > 0) then
+      if (.not. abs(curve_value(model%curves(model%controls%dt_curve), state%time) - state%dt) &
+        > 0.0_wp) return
+    end if
+    call find_smallest_steps(model, state%elements, state%motion, 1, found, steps)
+    if (size(found) == 0) return
+    ! An element that is as large without added mass rules by itself.
+    if (snapshot%energies%tells_mass) snapshot%by_dt2ms = merge(1, 0, &
+      abs(steps(1)/abs(model%controls%mass_step) - 1.0_wp) <= round_off .or. &
+      (model%controls%mass_step > 0.0_wp .and. steps(1) > model%controls%mass_step))
+    snapshot%slowest = [model%mesh%element_id(found(1)), &
+      model%parts(slot_part(model%layout, model%layout%element_slot(found(1))))%id]
+  end subroutine find_slowest
 
 end module explicit_report_m

@@ -18,19 +18,35 @@ module leapfrog_balance_m
 contains
 
   !> Complete the energies of the snapshot, which must be filled: the leap-frog part of the kinetic
-  !> energy, and what the damping of this instant takes over the half step behind.
+  !> energy, from m a^2 of all degrees of freedom, and what the damping of this instant takes over
+  !> the half step behind.
   subroutine complete_balance(model, state, damping, velocity_next, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: damping(2)       !! D per direction
     real(wp), intent(in) :: velocity_next(:) !! (n_motion) v(n+1/2) of prescribed motions
     type(snapshot_t), intent(inout) :: snapshot
-    real(wp) :: dt, inertia
+    real(wp) :: dt, mean, inertia, led
+    integer :: i
 
     ! Time zero has no step behind: that of equal steps stands for it.
     dt = merge(state%dt_before, state%dt, state%dt_before > 0.0_wp)
-    inertia = free_inertia(model, state, damping) + prescribed_inertia(model, state, velocity_next)
-    inertia = inertia + rigid_inertia(state)
+    mean = 0.5_wp*(state%dt + state%dt_before)
+    led = 0.0_wp
+    do i = 1, size(velocity_next)
+      associate (prescribed => model%conditions%motions(i))
+        if (is_active(prescribed, state%time) .and. state%dt > 0.0_wp) led = led &
+          + state%mass(prescribed%node)*((velocity_next(i) - state%prescribed_velocity(i))/mean)**2
+      end associate
+    end do
+    inertia = free_inertia(model, state, damping) + led
+    led = 0.0_wp
+    do i = 1, size(state%rigids)
+      associate (rigid => state%rigids(i))
+        led = led + sum(rigid%inertia*((rigid%next_velocity - rigid%velocity)/mean)**2)
+      end associate
+    end do
+    inertia = inertia + led
     if (allocated(model%conditions%common_motions)) &
       inertia = inertia + common_inertia(model, state, damping)
     if (allocated(state%walls) .and. .not. state%dt_before > 0.0_wp) &
@@ -63,25 +79,6 @@ contains
     end do
   end function free_inertia
 
-  !> The same over prescribed degrees of freedom of nodes.
-  pure function prescribed_inertia(model, state, velocity_next) result(total)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    real(wp), intent(in) :: velocity_next(:)
-    real(wp) :: total
-    integer :: i
-
-    total = 0.0_wp
-    if (.not. state%dt > 0.0_wp) return
-    do i = 1, size(model%conditions%motions)
-      associate (prescribed => model%conditions%motions(i))
-        if (is_active(prescribed, state%time)) total = total + state%mass(prescribed%node) &
-          *((velocity_next(i) - state%prescribed_velocity(i)) &
-          /(0.5_wp*(state%dt + state%dt_before)))**2
-      end associate
-    end do
-  end function prescribed_inertia
-
   !> The same over nodes that move alike.
   pure function common_inertia(model, state, damping) result(total)
     type(model_t), intent(in) :: model
@@ -105,21 +102,6 @@ contains
       end associate
     end do
   end function common_inertia
-
-  !> The same over centres and turns of rigid bodies, whose forces must be solved for.
-  pure function rigid_inertia(state) result(total)
-    type(state_t), intent(in) :: state
-    real(wp) :: total
-    integer :: i
-
-    total = 0.0_wp
-    do i = 1, size(state%rigids)
-      associate (rigid => state%rigids(i))
-        total = total + sum(rigid%inertia*((rigid%next_velocity - rigid%velocity) &
-          /(0.5_wp*(state%dt + state%dt_before)))**2)
-      end associate
-    end do
-  end function rigid_inertia
 
   !> Sum of F.a of the forces of rigid walls: their work at time zero is that of the mean of v(0)
   !> and v(1/2), not that of v(1/2) as for all other forces.
@@ -153,10 +135,9 @@ contains
     real(wp), intent(in) :: damping(2)
     type(snapshot_t), intent(in) :: snapshot !! may keep velocities
     real(wp) :: work
-    real(wp) :: velocity(2), acceleration(2), d(2)
+    real(wp) :: velocity(2), acceleration(2)
     integer :: i
 
-    d = damping
     work = 0.0_wp
     do i = 1, model%mesh%n_node
       if (allocated(snapshot%velocity)) then
@@ -164,8 +145,7 @@ contains
       else
         call find_motion(model%layout%n_special, state, damping, i, velocity, acceleration)
       end if
-      if (allocated(state%node_damping)) d = state%node_damping(:, i)
-      work = work + state%mass(i)*sum(d*velocity*state%motion(3:4, i))
+      work = work + state%mass(i)*sum(damping_at(state, damping, i)*velocity*state%motion(3:4, i))
     end do
     work = 0.5_wp*state%dt_before*work
   end function half_step_damping

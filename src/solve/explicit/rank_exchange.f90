@@ -6,26 +6,31 @@
 !> ask for it.
 module rank_exchange_m
   use block_state_m, only : block_state_t
+  use cut_forces_m, only : find_cut_forces
   use errors_m, only : error_t
-  use packed_buffer_m, only : stream_starts
   use health_m, only : tile_check_t, check_elements, most_work
   use kinds_m, only : wp, long
   use layout_m, only : chunk_size
+  use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
-  use motion_sums_m, only : motion_sums_t
+  use monitor_m, only : monitor_t
+  use load_work_m, only : motion_sums_t
+  use packed_buffer_m, only : packed_buffer_t, start_loading, start_unloading, choose_slots
   use rank_borders_m, only : borders_t
   use rank_shares_m, only : shares_t
   use ranks_m, only : ranks_t, bring_reals, bring_integers, swap_reals, find_least, share_error
-  use requests_m, only : requests_t
+  use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
   use state_m, only : state_t
   implicit none
   private
-  public :: parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, exchange_failures, &
-    exchange_erosion, exchange_limits, exchange_history, gather_motion, gather_special, &
-    gather_state, judge_elements
+  public :: parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, exchange_erosion, &
+    gather_motion, gather_state, judge_elements, hear_requests, report_exchange, &
+    cut_sections
 
   !> Values of the sums over the nodes of a tile.
   integer, parameter :: n_sum = 4
+  !> Chunks of a piece at most.
+  integer, parameter :: most_chunks = 128
 
   !> What is exchanged in each cycle.
   type :: parcel_t
@@ -34,7 +39,6 @@ module rank_exchange_m
     real(wp), allocatable :: outgoing(:, :), incoming(:, :) !! (2, slots) forces on borders
     integer(long) :: sent(2) = 0, joined(2) = 0 !! what `ranks_t` counts, of these exchanges alone
     integer(long) :: n_cycle = 0
-    integer :: n_shared = 0              !! times that the tiles were shared out anew
     integer :: n_gone = 0                !! elements of this process that are known to have left
     integer, allocatable :: n_failed(:)  !! failed points of its chunks that are known
   end type parcel_t
@@ -224,34 +228,6 @@ contains
     end associate
   end subroutine exchange_erosion
 
-  !> Points that have failed, chunk by chunk.
-  subroutine exchange_failures(ranks, shares, elements)
-    type(ranks_t), intent(inout) :: ranks
-    type(shares_t), intent(in) :: shares
-    type(block_state_t), intent(inout) :: elements
-
-    call bring_integers(ranks, shares%chunks, 1, .true., elements%n_failed)
-  end subroutine exchange_failures
-
-  !> Step limits of all chunks.
-  subroutine exchange_limits(ranks, shares, elements)
-    type(ranks_t), intent(inout) :: ranks
-    type(shares_t), intent(in) :: shares
-    type(block_state_t), intent(inout) :: elements
-
-    call bring_reals(ranks, shares%chunks, 1, .true., elements%time_limit)
-  end subroutine exchange_limits
-
-  !> The history of all elements for the first process, which looks for one of them.
-  subroutine exchange_history(ranks, shares, elements)
-    type(ranks_t), intent(inout) :: ranks
-    type(shares_t), intent(in) :: shares
-    type(block_state_t), intent(inout) :: elements
-
-    call bring_reals(ranks, stream_starts(shares%chunks, elements%history_start, &
-      size(elements%history)), 1, .false., elements%history)
-  end subroutine exchange_history
-
   !> Motion of all nodes that only some processes move, with the velocities that damped runs keep.
   subroutine gather_motion(shares, borders, to_all, ranks, state)
     type(shares_t), intent(in) :: shares
@@ -261,23 +237,11 @@ contains
     type(state_t), intent(inout) :: state
 
     call bring_reals(ranks, shares%nodes, 4, to_all, state%motion)
-    if (allocated(state%former_velocity)) &
-      call bring_reals(ranks, shares%nodes, 2, to_all, state%former_velocity)
-    call gather_special(shares, borders, to_all, ranks, state)
-  end subroutine gather_motion
-
-  !> That of special nodes.
-  subroutine gather_special(shares, borders, to_all, ranks, state)
-    type(shares_t), intent(in) :: shares
-    type(borders_t), intent(in) :: borders
-    logical, intent(in) :: to_all
-    type(ranks_t), intent(inout) :: ranks
-    type(state_t), intent(inout) :: state
-
     call bring_reals(ranks, shares%special, 4, to_all, state%motion)
-    if (allocated(state%former_velocity)) &
-      call bring_reals(ranks, borders%block_nodes, 2, to_all, state%former_velocity)
-  end subroutine gather_special
+    if (.not. allocated(state%former_velocity)) return
+    call bring_reals(ranks, shares%nodes, 2, to_all, state%former_velocity)
+    call bring_reals(ranks, borders%block_nodes, 2, to_all, state%former_velocity)
+  end subroutine gather_motion
 
   !> The whole state for the first process, or for all.
   subroutine gather_state(shares, borders, to_all, ranks, state)
@@ -295,75 +259,38 @@ contains
       call bring_reals(ranks, shares%nodes, 2, to_all, state%former_damping)
       call bring_reals(ranks, borders%block_nodes, 2, to_all, state%former_damping)
     end if
-    call gather_chunks(ranks, shares, to_all, state%elements)
-    call gather_slots(ranks, shares, to_all, state%elements)
-    call gather_streams(ranks, shares, to_all, state%elements)
+    call gather_elements(shares, to_all, ranks, state%elements)
   end subroutine gather_state
 
-  !> What elements keep chunk by chunk.
-  subroutine gather_chunks(ranks, shares, to_all, elements)
-    type(ranks_t), intent(inout) :: ranks
+  !> What steps change of the elements of each process in turn, piece by piece.
+  subroutine gather_elements(shares, to_all, ranks, elements)
     type(shares_t), intent(in) :: shares
     logical, intent(in) :: to_all
-    type(block_state_t), intent(inout) :: elements
-
-    call bring_reals(ranks, shares%chunks, 1, to_all, elements%deviatoric_work)
-    call bring_reals(ranks, shares%chunks, 1, to_all, elements%hourglass_work)
-    call bring_reals(ranks, shares%chunks, 1, to_all, elements%viscous_work)
-    call bring_reals(ranks, shares%chunks, 1, to_all, elements%time_limit)
-    call bring_reals(ranks, shares%chunks, 1, to_all, elements%volume_limit)
-    if (allocated(elements%damping_work)) &
-      call bring_reals(ranks, shares%chunks, 1, to_all, elements%damping_work)
-  end subroutine gather_chunks
-
-  !> What they keep slot by slot. Their shape changes where they may leave the mesh.
-  subroutine gather_slots(ranks, shares, to_all, elements)
     type(ranks_t), intent(inout) :: ranks
-    type(shares_t), intent(in) :: shares
-    logical, intent(in) :: to_all
     type(block_state_t), intent(inout) :: elements
-    integer :: k
+    type(packed_buffer_t) :: buffer
+    integer :: starts(0:ranks%n), rank, first
+    logical :: takes
 
-    associate (slots => slots_of(shares%chunks))
-      do k = 1, size(elements%deviator, 2)
-        call bring_reals(ranks, slots, 1, to_all, elements%deviator(:, k))
+    do rank = merge(0, 1, to_all), ranks%n - 1
+      takes = ranks%mine /= rank .and. (to_all .or. ranks%mine == 0)
+      do first = shares%chunks(rank), shares%chunks(rank + 1) - 1, most_chunks
+        buffer = packed_buffer_t()
+        call choose_slots(buffer, [first, min(first + most_chunks, shares%chunks(rank + 1)) - 1], &
+          chunk_size, .false., .true.)
+        call elements%visit(buffer)
+        starts(:rank) = 1
+        starts(rank + 1:) = buffer%n + 1
+        if (.not. (takes .or. ranks%mine == rank)) buffer%n = 0
+        call start_loading(buffer)
+        if (ranks%mine == rank) call elements%visit(buffer)
+        call bring_reals(ranks, starts, 1, to_all, buffer%values)
+        if (.not. takes) cycle
+        call start_unloading(buffer)
+        call elements%visit(buffer)
       end do
-      if (allocated(elements%viscous_pressure)) &
-        call bring_reals(ranks, slots, 1, to_all, elements%viscous_pressure)
-      if (allocated(elements%damping_stress)) &
-        call bring_reals(ranks, slots, 16, to_all, elements%damping_stress)
-      if (.not. allocated(elements%erosion)) return
-      do k = 1, size(elements%reference, 2)
-        call bring_reals(ranks, slots, 1, to_all, elements%reference(:, k))
-      end do
-      call bring_reals(ranks, slots, 1, to_all, elements%erosion%hourglass)
-      call bring_reals(ranks, slots, 1, to_all, elements%erosion%impulse)
-    end associate
-  end subroutine gather_slots
-
-  !> What only some chunks keep.
-  subroutine gather_streams(ranks, shares, to_all, elements)
-    type(ranks_t), intent(inout) :: ranks
-    type(shares_t), intent(in) :: shares
-    logical, intent(in) :: to_all
-    type(block_state_t), intent(inout) :: elements
-
-    call gather_stream(elements%point_start, elements%point_deviator)
-    call gather_stream(elements%history_start, elements%history)
-    call gather_stream(elements%eos_start, elements%eos_state)
-    call gather_stream(elements%hourglass_start, elements%hourglass_strain)
-
-  contains
-
-    subroutine gather_stream(chunk_start, values)
-      integer, intent(in) :: chunk_start(:)
-      real(wp), intent(inout), contiguous :: values(:)
-
-      if (size(values) > 0) call bring_reals(ranks, stream_starts(shares%chunks, chunk_start, &
-        size(values)), 1, to_all, values)
-    end subroutine gather_stream
-
-  end subroutine gather_streams
+    end do
+  end subroutine gather_elements
 
   !> Ranges of slots from those of chunks.
   pure function slots_of(chunks) result(slots)
@@ -383,5 +310,91 @@ contains
     if (ranks%mine == 0) call check_elements(model, state, error)
     if (ranks%n > 1) call share_error(ranks, error)
   end subroutine judge_elements
+
+  !> What someone asks of this process, for all of them.
+  subroutine hear_requests(state, ratio, monitor, echoes, asked, error)
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: ratio            !! last energy ratio known
+    type(monitor_t), intent(inout) :: monitor
+    type(echoes_t), intent(inout) :: echoes
+    type(requests_t), intent(inout) :: asked !! last time, and now
+    type(error_t), allocatable, intent(inout) :: error
+    type(requests_t) :: before
+
+    before = asked
+    if (monitor%ranks%mine == 0) then
+      call take_requests(state, ratio, .false., monitor, asked, error)
+    else
+      call hear_signals(asked)
+    end if
+    call drop_echoes(before, echoes, asked)
+  end subroutine hear_requests
+
+  !> A line of the log: what a cycle exchanges, and what files and rare events have besides.
+  subroutine report_exchange(parcel, ranks, log)
+    type(parcel_t), intent(in) :: parcel
+    type(ranks_t), intent(inout) :: ranks
+    type(log_t), intent(inout) :: log
+    integer :: starts(ranks%n + 1), i
+    real(wp) :: counts(4, ranks%n), rest(2)
+
+    rest = real(ranks%joined - parcel%joined, wp)
+    starts = [(i, i=1, ranks%n + 1)]
+    counts(:, ranks%mine + 1) = real([parcel%sent, parcel%joined], wp) &
+      /real(max(parcel%n_cycle, 1_long), wp)
+    call bring_reals(ranks, starts, 4, .false., counts)
+    if (ranks%mine > 0) return
+    call write_log(log, 'exchange: '//to_text(ranks%n)//' processes; a cycle, mean (most): ' &
+      //'messages '//spread_text(counts(1, :))//', bytes '//spread_text(counts(2, :)) &
+      //', calls of all '//spread_text(counts(3, :))//', bytes by them ' &
+      //spread_text(counts(4, :))//'; besides, first process, in all: calls of all ' &
+      //plain_text(rest(1))//', bytes by them '//plain_text(rest(2)))
+
+  contains
+
+    !> Mean and largest of what the processes have.
+    function spread_text(values) result(text)
+      real(wp), intent(in) :: values(:)
+      character(:), allocatable :: text
+
+      text = plain_text(sum(values)/size(values))//' ('//plain_text(maxval(values))//')'
+    end function spread_text
+
+    !> A number with two decimals.
+    function plain_text(value) result(text)
+      real(wp), intent(in) :: value
+      character(:), allocatable :: text
+      character(32) :: buffer
+
+      write (buffer, '(f31.2)') value
+      text = trim(adjustl(buffer))
+    end function plain_text
+
+  end subroutine report_exchange
+
+  !> Forces of the elements of cross sections, before the elements are stepped: each process steps
+  !> its own on a copy, the first one gets all.
+  subroutine cut_sections(model, shares, ranks, state)
+    type(model_t), intent(in) :: model
+    type(shares_t), intent(in) :: shares
+    type(ranks_t), intent(inout) :: ranks
+    type(state_t), intent(inout) :: state
+    integer :: i, rank, first, last, starts(0:ranks%n)
+
+    call find_cut_forces(model, [shares%chunks(ranks%mine), shares%chunks(ranks%mine + 1) - 1], &
+      state%motion, [state%time, state%dt_before], state%elements, state%cut_force)
+    if (ranks%n == 1) return
+    first = 1
+    do i = 1, size(model%controls%output%cross_sections)
+      associate (elements => model%controls%output%cross_sections(i)%elements)
+        last = first + size(elements) - 1
+        ! Their slots rise.
+        starts = [(1 + count(model%layout%element_slot(elements) <= (shares%chunks(rank) - 1) &
+          *chunk_size), rank=0, ranks%n)]
+        call bring_reals(ranks, starts, 8, .false., state%cut_force(:, first:last))
+        first = last + 1
+      end associate
+    end do
+  end subroutine cut_sections
 
 end module rank_exchange_m

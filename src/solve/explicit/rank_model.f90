@@ -6,13 +6,11 @@
 module rank_model_m
   use packed_buffer_m, only : packed_buffer_t, part_of
   use buffer_sharing_m, only : hand, everyone
-  use inside_answers_m, only : answers_t
+  use others_memory_m, only : answers_t, others_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use model_m, only : model_t
-  use others_memory_m, only : others_t
-  use rank_memory_m, only : starts_from_all, others_of
-  use rank_shares_m, only : shares_t, share_out
+  use rank_shares_m, only : shares_t, share_out, starts_from_all, others_of
   use ranks_m, only : ranks_t
   use state_m, only : state_t
   use visitor_m, only : visited_t, visitor_t, of_elements, of_nodes, of_slots
@@ -125,7 +123,7 @@ contains
     end associate
   end subroutine hand_faces
 
-  !> Fixed degrees of freedom of the nodes that each process has.
+  !> Fixed degrees of freedom, of which each process keeps those of the nodes that it has.
   subroutine hand_fixed(ranks, has_all, model)
     type(ranks_t), intent(inout) :: ranks
     logical, intent(in) :: has_all
@@ -134,24 +132,20 @@ contains
     type(handed_t) :: handed
     type(shares_t) :: shares
     logical, allocatable :: is_known(:)
-    integer :: rank
 
-    shares = share_out(model%layout, ranks%mine, ranks%n)
-    do rank = 1, ranks%n - 1
-      buffer = packed_buffer_t()
-      if (ranks%mine == 0) then
-        associate (nodes => model%conditions%fixed_nodes, starts => shares%nodes)
-          is_known = has_all .or. nodes <= model%layout%n_special .or. nodes >= starts(ranks%n) &
-            .or. (nodes >= starts(rank) .and. nodes < starts(rank + 1))
-          handed%nodes = pack(nodes, is_known)
-        end associate
-        handed%directions = pack(model%conditions%fixed_directions, is_known)
-      end if
-      call hand(ranks, rank, buffer, handed)
-    end do
+    if (ranks%mine == 0) then
+      handed%nodes = model%conditions%fixed_nodes
+      handed%directions = model%conditions%fixed_directions
+    end if
+    call hand(ranks, everyone, buffer, handed)
     if (ranks%mine == 0) return
-    call move_alloc(handed%nodes, model%conditions%fixed_nodes)
-    call move_alloc(handed%directions, model%conditions%fixed_directions)
+    shares = share_out(model%layout, ranks%mine, ranks%n)
+    associate (nodes => handed%nodes, starts => shares%nodes)
+      is_known = has_all .or. nodes <= model%layout%n_special .or. nodes >= starts(ranks%n) &
+        .or. (nodes >= starts(ranks%mine) .and. nodes < starts(ranks%mine + 1))
+      model%conditions%fixed_nodes = pack(nodes, is_known)
+    end associate
+    model%conditions%fixed_directions = pack(handed%directions, is_known)
   end subroutine hand_fixed
 
   !> What a process that starts its own share alone has to know of the state of the first one.

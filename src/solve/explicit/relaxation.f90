@@ -3,9 +3,8 @@
 !> the body, and every step leaves a share of the velocities, until the body rests. What it has come
 !> to is the state at time zero. One thread, before any output.
 module relaxation_m
-  use block_state_m, only : block_state_t
   use clock_m, only : lap, phase_input
-  use cycle_loads_m, only : apply_loads
+  use load_work_m, only : apply_loads, motion_sums_t
   use element_dispatch_m, only : add_tile_forces
   use errors_m, only : error_t, raise, status_run, status_stopped
   use health_m, only : check_elements
@@ -15,17 +14,16 @@ module relaxation_m
   use mass_scaling_m, only : refine_limits, needs_refinement
   use model_m, only : model_t
   use monitor_m, only : monitor_t
-  use motion_sums_m, only : motion_sums_t
   use node_motion_m, only : leap_t, make_leap, move_tile_nodes, move_special_nodes
   use parts_m, only : hourglass_viscous
-  use ranks_m, only : ranks_t, find_least, share_error
-  use relaxation_state_m, only : relaxation_state_t
-  use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
+  use rank_exchange_m, only : hear_requests
+  use ranks_m, only : find_least, share_error
+  use state_m, only : relaxation_state_t, state_t
+  use requests_m, only : requests_t, echoes_t
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use scaled_step_m, only : scaled_step
-  use skew_motion_m, only : hold_skew_nodes
-  use state_m, only : state_t
+  use held_nodes_m, only : hold_skew_nodes
   use tile_forces_m, only : share_tile_forces, sum_special_forces
   use time_step_m, only : volume_step
   implicit none
@@ -57,7 +55,12 @@ contains
 
     allocate (relaxing, source=model)
     call switch_loads(relaxing, 0)
-    call begin_phase(state)
+    if (state%relaxation%n > 0) then
+      state%time = state%relaxation%time
+    else
+      state%relaxation%velocity = state%motion(3:4, :)
+      state%motion(3:4, :) = 0.0_wp
+    end if
     allocate (force(2, model%layout%n_local))
     share = 1.0_wp
     associate (rules => model%controls%relaxation)
@@ -66,7 +69,9 @@ contains
         if (mod(n, 100) == 0 .or. mod(n, rules%check_cycles) == 0) &
           call check_elements(relaxing, state, error)
         if (allocated(error)) return
-        call follow_energy(state, share)
+        share = own_energy(state)
+        state%relaxation%most = max(state%relaxation%most, share)
+        if (state%relaxation%most > 0.0_wp) share = share/state%relaxation%most
         if (mod(n, rules%check_cycles) == 0 .and. share < rules%tolerance) exit
         if (state%time >= rules%most_time) exit
         state%relaxation%n = n
@@ -87,28 +92,6 @@ contains
     state%relaxation = relaxation_state_t()
   end subroutine relax
 
-  !> The phase begins at rest, or where a restart file has left it.
-  subroutine begin_phase(state)
-    type(state_t), intent(inout) :: state
-
-    if (state%relaxation%n > 0) then
-      state%time = state%relaxation%time
-    else
-      state%relaxation%velocity = state%motion(3:4, :)
-      state%motion(3:4, :) = 0.0_wp
-    end if
-  end subroutine begin_phase
-
-  !> The largest kinetic energy, and its share now.
-  pure subroutine follow_energy(state, share)
-    type(state_t), intent(inout) :: state
-    real(wp), intent(out) :: share
-
-    share = own_energy(state)
-    state%relaxation%most = max(state%relaxation%most, share)
-    if (state%relaxation%most > 0.0_wp) share = share/state%relaxation%most
-  end subroutine follow_energy
-
   !> Do what someone asks for: a restart file, from which the phase goes on, and an end, which is
   !> told as an error. The plot state that may be asked for is that of time zero.
   subroutine heed_requests(asked, echoes, state, monitor, error)
@@ -117,21 +100,27 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
-    type(requests_t) :: before
-    logical :: wanted(2)
+    logical :: wanted(2) !! numbered_file, running_file
+    real(wp) :: none(3)
 
-    before = asked
     call lap(monitor%clock, phase_input)
-    if (monitor%ranks%mine == 0) then
-      call take_requests(state, 1.0_wp, .false., monitor, asked, error)
-    else
-      call hear_signals(asked)
+    call hear_requests(state, 1.0_wp, monitor, echoes, asked, error)
+    if (monitor%ranks%n > 1) then
+      ! What one process is asked for is done by all.
+      none = merge(0.0_wp, 1.0_wp, [asked%dump, asked%stop, asked%signalled])
+      call find_least(monitor%ranks, none)
+      asked%dump = none(1) < 1.0_wp
+      asked%stop = none(2) < 1.0_wp
+      asked%signalled = none(3) < 1.0_wp
     end if
-    call drop_echoes(before, echoes, asked)
-    if (monitor%ranks%n > 1) call agree(monitor%ranks, asked)
     wanted = wanted_files(monitor%restarts, 0, asked%dump, .false., asked%signalled)
     if (any(wanted)) then
-      if (monitor%ranks%mine == 0) call write_files(wanted, state, monitor, error)
+      ! In restart files the run stands at time zero.
+      state%relaxation%time = state%time
+      state%time = 0.0_wp
+      if (monitor%ranks%mine == 0 .and. .not. allocated(error)) &
+        call write_restarts(wanted, state, monitor, error)
+      state%time = state%relaxation%time
       call share_error(monitor%ranks, error)
     end if
     if (.not. asked%stop .or. allocated(error)) return
@@ -139,32 +128,6 @@ contains
       //to_text(state%relaxation%n)//' cycles', status_stopped)
     state%time = 0.0_wp
   end subroutine heed_requests
-
-  !> What one process is asked for is done by all.
-  subroutine agree(ranks, asked)
-    type(ranks_t), intent(inout) :: ranks
-    type(requests_t), intent(inout) :: asked
-    real(wp) :: none(3)
-
-    none = merge(0.0_wp, 1.0_wp, [asked%dump, asked%stop, asked%signalled])
-    call find_least(ranks, none)
-    asked%dump = none(1) < 1.0_wp
-    asked%stop = none(2) < 1.0_wp
-    asked%signalled = none(3) < 1.0_wp
-  end subroutine agree
-
-  !> Write restart files, for which the run stands at time zero.
-  subroutine write_files(wanted, state, monitor, error)
-    logical, intent(in) :: wanted(:)        !! numbered_file, running_file
-    type(state_t), intent(inout) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(error_t), allocatable, intent(inout) :: error
-
-    state%relaxation%time = state%time
-    state%time = 0.0_wp
-    if (.not. allocated(error)) call write_restarts(wanted, state, monitor, error)
-    state%time = state%relaxation%time
-  end subroutine write_files
 
   !> One cycle of relaxation: v(n+1/2) = DRFCTR v(n-1/2) + h a.
   subroutine relax_once(model, force, state)
@@ -257,6 +220,7 @@ contains
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: velocity(:, :) !! (2, n_node)
     type(state_t), intent(inout) :: state
+    integer :: i
 
     state%time = 0.0_wp
     state%dt = 0.0_wp
@@ -267,25 +231,17 @@ contains
     state%damping_work = 0.0_wp
     state%body_acceleration = 0.0_wp
     state%elements%viscous_work = 0.0_wp
-    call clear_viscous_hourglass(model, state%elements)
+    ! What viscous hourglass control has taken is gone; that of the other forms is stored.
+    do i = 1, size(state%elements%hourglass_work)
+      if (model%parts(model%layout%chunk_part(i))%hourglass%form /= hourglass_viscous) cycle
+      state%elements%hourglass_work(i) = 0.0_wp
+      if (allocated(state%elements%erosion)) &
+        state%elements%erosion%hourglass((i - 1)*chunk_size + 1:i*chunk_size) = 0.0_wp
+    end do
     if (allocated(state%external)) state%external = 0.0_wp
     if (allocated(state%elements%damping_work)) state%elements%damping_work = 0.0_wp
     if (allocated(state%elements%damping_stress)) state%elements%damping_stress = 0.0_wp
   end subroutine begin_at_zero
-
-  !> What viscous hourglass control has taken is gone; that of the other forms is stored.
-  subroutine clear_viscous_hourglass(model, elements)
-    type(model_t), intent(in) :: model
-    type(block_state_t), intent(inout) :: elements
-    integer :: i
-
-    do i = 1, size(elements%hourglass_work)
-      if (model%parts(model%layout%chunk_part(i))%hourglass%form /= hourglass_viscous) cycle
-      elements%hourglass_work(i) = 0.0_wp
-      if (allocated(elements%erosion)) &
-        elements%erosion%hourglass((i - 1)*chunk_size + 1:i*chunk_size) = 0.0_wp
-    end do
-  end subroutine clear_viscous_hourglass
 
   !> The loads of the run: those of relaxation alone (SIDR 1) no longer act.
   subroutine leave_relaxation(model)

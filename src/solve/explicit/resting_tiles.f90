@@ -13,16 +13,16 @@ module resting_tiles_m
   use model_m, only : model_t
   use rank_shares_m, only : shares_t
   use ranks_m, only : ranks_t, bring_reals
+  use renumber_m, only : mark_moved_nodes
   use state_m, only : state_t
-  use tile_neighbours_m, only : neighbours_t, find_neighbours
   use tile_values_m, only : take_values, same_bits
   implicit none
   private
-  public :: rest_t, plan_rest, take_tiles, effort_of, is_awake, is_tried, rests, &
-    is_flying, remember_tile, judge_tile, look_at_tile, follow_rest, report_rest
+  public :: rest_t, awake, flying, plan_rest, remember_tile, judge_tile, look_at_tile, &
+    follow_rest, report_rest
 
-  !> Status of a tile: stepped in each cycle, or not; above zero so many cycles are left in which it
-  !> may come to rest.
+  !> Status of a tile: stepped in each cycle, or not as it rests or all of its nodes move by the
+  !> same; above zero so many cycles are left in which it may come to rest.
   integer, parameter :: awake = 0, resting = -1, flying = -2
 
   !> Cycles in which a tile may come to rest: signs of zeros may change in the first ones.
@@ -36,11 +36,14 @@ module resting_tiles_m
     integer, allocatable :: watched(:)   !! resting ones that may wake, or whose nodes move
     integer, allocatable :: run_tiles(:) !! the tile that owns each run of special nodes
     integer, allocatable :: summed(:)    !! runs that are summed and moved
-    type(neighbours_t) :: neighbours     !! asked for once tiles rest
-    real(wp), allocatable :: no_force(:, :) !! (2, n_local), likewise
     logical :: watches_all = .false.     !! tiles that rest are all looked at
-    logical :: is_settled = .false.      !! no tile rests or may come to rest any more, in any
-                                         !! process
+    real(wp), allocatable :: no_force(:, :) !! (2, n_local) this and the next three only once tiles
+                                         !! rest
+    logical, allocatable :: is_touched(:) !! (tiles) contact, loads, prescribed motion, walls or
+                                         !! bodies that are rigid may move its nodes
+    integer, allocatable :: first(:)     !! (tiles + 1) where those start that have nodes in common
+                                         !! with each tile ...
+    integer, allocatable :: near(:)      !! ... in this list
     integer :: n_resting = 0             !! at the start of the cycle
     integer :: n_woken = 0, n_fallen = 0 !! since
     integer(long) :: n_skipped = 0       !! steps of tiles that were not taken
@@ -61,7 +64,6 @@ contains
     associate (n => size(model%layout%tiles), first => shares%first_tile, last => shares%last_tile)
       allocate (rest%status(n), source=awake)
       ! Where all bodies are rigid the one tile is empty.
-      rest%is_settled = .not. may_rest(model)
       if (may_rest(model)) rest%status(first:last) = merge(n_try, awake, &
         model%layout%tiles(first:last)%last_chunk >= model%layout%tiles(first:last)%first_chunk)
       allocate (rest%stepped(last - first + 1), source=[(i, i = first, last)])
@@ -73,48 +75,6 @@ contains
     rest%last_tile = shares%last_tile
     rest%watches_all = watches_all
   end subroutine plan_rest
-
-  !> The tiles that a process has from now on, some of which rest.
-  subroutine take_tiles(model, shares, status, run_tiles, rest)
-    type(model_t), intent(in) :: model
-    type(shares_t), intent(in) :: shares
-    integer, intent(in) :: status(:)     !! of all tiles
-    integer, intent(in) :: run_tiles(:)  !! as above
-    type(rest_t), intent(inout) :: rest
-    integer :: i
-
-    rest%first_tile = shares%first_tile
-    rest%last_tile = shares%last_tile
-    associate (first => rest%first_tile, last => rest%last_tile)
-      rest%status = awake
-      rest%status(first:last) = status(first:last)
-      rest%n_resting = count(rest%status < awake)
-    end associate
-    rest%run_tiles = run_tiles
-    rest%summed = [(i, i = 1, size(run_tiles))]
-    call list_tiles(model, rest)
-  end subroutine take_tiles
-
-  !> What a cycle costs an element of a tile, over what it costs where the tile is stepped: tiles
-  !> that fly are looked at and their nodes move, of the others some are looked at.
-  elemental function effort_of(status) result(effort)
-    integer, intent(in) :: status
-    real(wp) :: effort
-
-    select case (status)
-    case (flying); effort = 0.15_wp
-    case (resting); effort = 0.02_wp
-    case default; effort = 1.0_wp
-    end select
-  end function effort_of
-
-  !> Whether a tile is stepped in all cycles to come.
-  elemental function is_awake(status)
-    integer, intent(in) :: status
-    logical :: is_awake
-
-    is_awake = status == awake
-  end function is_awake
 
   !> Whether nothing but motion of its nodes can change the next step of a tile: no body load, no
   !> mass that grows, no element that leaves the mesh at a given time.
@@ -131,33 +91,6 @@ contains
     end do
   end function may_rest
 
-  !> Whether a tile that is stepped may come to rest.
-  pure function is_tried(rest, i_tile) result(tried)
-    type(rest_t), intent(in) :: rest
-    integer, intent(in) :: i_tile
-    logical :: tried
-
-    tried = rest%status(i_tile) > 0
-  end function is_tried
-
-  !> Whether a tile rests.
-  pure function rests(rest, i_tile)
-    type(rest_t), intent(in) :: rest
-    integer, intent(in) :: i_tile
-    logical :: rests
-
-    rests = rest%status(i_tile) < 0
-  end function rests
-
-  !> Whether a tile rests and its nodes move on, all by the same.
-  pure function is_flying(rest, i_tile) result(flies)
-    type(rest_t), intent(in) :: rest
-    integer, intent(in) :: i_tile
-    logical :: flies
-
-    flies = rest%status(i_tile) == flying
-  end function is_flying
-
   !> Before the step of a tile that is tried: what its elements are, if its nodes are in one motion;
   !> if not it is awake for good.
   subroutine remember_tile(model, i_tile, state, rest, before)
@@ -167,12 +100,18 @@ contains
     type(rest_t), intent(inout) :: rest
     real(wp), allocatable, intent(out) :: before(:) !! not there where it can not come to rest
     real(wp) :: one(4)
+    logical :: goes_on
     integer :: i
     type(packed_buffer_t) :: buffer
 
     one = motion_of(model%layout, model%layout%tiles(i_tile), state%motion)
-    rest%status(i_tile) = merge(rest%status(i_tile), awake, may_go_on(model, one, state) &
-      .and. moves_as_one(model%layout, model%layout%tiles(i_tile), one, state%motion))
+    ! Each element of a round body is strained by a radial motion, and damping of parts is not that
+    ! of one tile.
+    goes_on = moves_as_one(model%layout, model%layout%tiles(i_tile), one, state%motion)
+    if (model%is_round) goes_on = goes_on .and. same_bits(one(1:3:2), [0.0_wp, 0.0_wp])
+    if (allocated(state%node_damping)) &
+      goes_on = goes_on .and. same_bits(one(3:4), [0.0_wp, 0.0_wp])
+    if (.not. goes_on) rest%status(i_tile) = awake
     do i = model%layout%tiles(i_tile)%first_node, model%layout%tiles(i_tile)%last_node
       if (rest%status(i_tile) == awake) exit
       if (.not. same_bits(state%motion(:, i), one)) rest%status(i_tile) = awake
@@ -181,19 +120,6 @@ contains
     call take_values(model%layout%tiles(i_tile), state%elements, buffer)
     call move_alloc(buffer%values, before)
   end subroutine remember_tile
-
-  !> Whether the motion of a tile in one motion goes on as one: each element of a round body is
-  !> strained by a radial one, and damping of parts is not that of one tile.
-  pure function may_go_on(model, one, state) result(may)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: one(4)
-    type(state_t), intent(in) :: state
-    logical :: may
-
-    may = .true.
-    if (model%is_round) may = same_bits(one(1:3:2), [0.0_wp, 0.0_wp])
-    if (allocated(state%node_damping)) may = may .and. same_bits(one(3:4), [0.0_wp, 0.0_wp])
-  end function may_go_on
 
   !> Behind it: the tile rests if nothing has come of the step.
   subroutine judge_tile(model, i_tile, before, force, state, rest)
@@ -219,7 +145,8 @@ contains
       one = motion_of(model%layout, tile, state%motion)
       rest%status(i_tile) = merge(resting, flying, same_bits(one(3:4), [0.0_wp, 0.0_wp]))
       state%internal_force(:, tile%first_node:tile%last_node) = 0.0_wp
-      call count_one(rest%n_fallen)
+      !$omp atomic
+      rest%n_fallen = rest%n_fallen + 1
     end associate
   end subroutine judge_tile
 
@@ -234,16 +161,9 @@ contains
       if (moves_as_one(layout, tile, motion_of(layout, tile, motion), motion)) return
     end associate
     rest%status(i_tile) = awake
-    call count_one(rest%n_woken)
-  end subroutine look_at_tile
-
-  !> The threads of the team count one after the other.
-  subroutine count_one(n)
-    integer, intent(inout) :: n
-
     !$omp atomic
-    n = n + 1
-  end subroutine count_one
+    rest%n_woken = rest%n_woken + 1
+  end subroutine look_at_tile
 
   !> Motion of one node of a tile, an interior one if it has any.
   pure function motion_of(layout, tile, motion) result(one)
@@ -259,39 +179,27 @@ contains
     end if
   end function motion_of
 
-  !> Whether all special nodes of a tile have this motion.
+  !> Whether all special nodes of a tile have this motion, in its bits.
   pure function moves_as_one(layout, tile, one, motion) result(same)
     type(layout_t), intent(in) :: layout
     type(tile_t), intent(in) :: tile
     real(wp), intent(in) :: one(4)
     real(wp), intent(in), contiguous :: motion(:, :)
     logical :: same
-
-    same = .true.
-    if (tile%last_special < tile%first_special) return
-    same = .not. differs(tile%last_special - tile%first_special + 1, &
-      layout%special_node(tile%first_special), one, motion)
-  end function moves_as_one
-
-  !> Whether any of these nodes has another motion, in its bits.
-  pure function differs(n, nodes, one, motion)
-    integer, intent(in) :: n
-    integer, intent(in) :: nodes(n)
-    real(wp), intent(in) :: one(4)
-    real(wp), intent(in) :: motion(4, *)
-    logical :: differs
     integer(long) :: wanted(4), found(4)
     integer :: i, k
 
     wanted = transfer(one, wanted)
     found = 0_long
-    do i = 1, n
-      do k = 1, 4
-        found(k) = ior(found(k), ieor(transfer(motion(k, nodes(i)), 0_long), wanted(k)))
-      end do
+    do i = tile%first_special, tile%last_special
+      associate (node => layout%special_node(i))
+        do k = 1, 4
+          found(k) = ior(found(k), ieor(transfer(motion(k, node), 0_long), wanted(k)))
+        end do
+      end associate
     end do
-    differs = any(found /= 0_long)
-  end function differs
+    same = all(found == 0_long)
+  end function moves_as_one
 
   !> At the end of a cycle: steps that were not taken, and the tiles of the next one.
   subroutine follow_rest(model, rest)
@@ -318,46 +226,69 @@ contains
 
     if (.not. allocated(rest%no_force)) then
       allocate (rest%no_force(2, model%layout%n_local), source=0.0_wp)
-      call find_neighbours(model, rest%neighbours)
+      call find_neighbours(model, rest)
     end if
-    associate (first => rest%neighbours%first, near => rest%neighbours%near)
-      do i = 1, size(rest%status)
-        may_wake(i) = rest%status(i) < awake .and. (rest%watches_all &
-          .or. rest%neighbours%is_touched(i) &
-          .or. any(rest%status(near(first(i):first(i + 1) - 1)) >= awake))
-      end do
-      do i = 1, size(rest%status)
-        is_watched(i) = rest%status(i) < awake .and. (may_wake(i) .or. rest%status(i) == flying &
-          .or. any(may_wake(near(first(i):first(i + 1) - 1))))
-      end do
-    end associate
+    do i = 1, size(rest%status)
+      may_wake(i) = rest%status(i) < awake .and. (rest%watches_all .or. rest%is_touched(i) &
+        .or. any(rest%status(rest%near(rest%first(i):rest%first(i + 1) - 1)) >= awake))
+    end do
+    do i = 1, size(rest%status)
+      is_watched(i) = rest%status(i) < awake .and. (may_wake(i) .or. rest%status(i) == flying &
+        .or. any(may_wake(rest%near(rest%first(i):rest%first(i + 1) - 1))))
+    end do
     is_stepped = .false.
     is_stepped(rest%first_tile:rest%last_tile) = &
       rest%status(rest%first_tile:rest%last_tile) >= awake
-    call list_true(is_stepped, rest%stepped)
-    call list_true(is_watched, rest%watched)
-    ! Else all are listed.
-    if (.not. rest%watches_all) then
-      is_watched = is_watched .or. rest%status >= awake
-      call list_true([(is_watched(rest%run_tiles(i)), i = 1, size(rest%run_tiles))], rest%summed)
-    end if
+    rest%stepped = pack([(i, i=1, size(rest%status))], is_stepped)
+    rest%watched = pack([(i, i=1, size(rest%status))], is_watched)
+    if (rest%watches_all) return ! all runs are listed
+    is_watched = is_watched .or. rest%status >= awake
+    rest%summed = pack([(i, i=1, size(rest%run_tiles))], is_watched(rest%run_tiles))
   end subroutine list_tiles
 
-  !> The tiles for which something is true.
-  subroutine list_true(is_true, tiles)
-    logical, intent(in) :: is_true(:)
-    integer, allocatable, intent(inout) :: tiles(:)
-    integer :: i, n
+  !> Which tiles have nodes that feel more than their elements, and which have special nodes in
+  !> common: counted, then listed.
+  subroutine find_neighbours(model, rest)
+    type(model_t), intent(in) :: model
+    type(rest_t), intent(inout) :: rest
+    logical, allocatable :: is_moved(:)
+    integer, allocatable :: tile_of(:), last_met(:)
+    integer :: pass, i, k, m, n
 
-    deallocate (tiles)
-    allocate (tiles(count(is_true)))
-    n = 0
-    do i = 1, size(is_true)
-      if (.not. is_true(i)) cycle
-      n = n + 1
-      tiles(n) = i
-    end do
-  end subroutine list_true
+    call mark_moved_nodes(model, is_moved)
+    associate (layout => model%layout, tiles => model%layout%tiles)
+      allocate (tile_of(size(layout%special_node)), last_met(size(tiles)), &
+        rest%first(size(tiles) + 1), rest%is_touched(size(tiles)))
+      do i = 1, size(tiles)
+        tile_of(tiles(i)%first_special:tiles(i)%last_special) = i
+        rest%is_touched(i) = any(is_moved(layout%special_node(tiles(i)%first_special: &
+          tiles(i)%last_special)))
+      end do
+      ! The last one has the nodes without element, too.
+      rest%is_touched(size(tiles)) = .true.
+      do pass = 1, 2
+        last_met = 0
+        n = 0
+        do i = 1, size(tiles)
+          rest%first(i) = n + 1
+          last_met(i) = i
+          do k = tiles(i)%first_special, tiles(i)%last_special
+            do m = layout%node_slots(layout%special_node(k)), &
+              layout%node_slots(layout%special_node(k) + 1) - 1
+              associate (other => tile_of(layout%slot_list(m)))
+                if (last_met(other) == i) cycle
+                last_met(other) = i
+                n = n + 1
+                if (pass == 2) rest%near(n) = other
+              end associate
+            end do
+          end do
+        end do
+        rest%first(size(tiles) + 1) = n + 1
+        if (pass == 1) allocate (rest%near(n))
+      end do
+    end associate
+  end subroutine find_neighbours
 
   !> The log tells how many steps of tiles were taken, if not all.
   subroutine report_rest(ranks, rest, log)

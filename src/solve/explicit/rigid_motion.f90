@@ -3,7 +3,7 @@
 !> after them (doc/theory/rigid_bodies.md). Done by one thread, in the order of the nodes.
 module rigid_motion_m
   use kinds_m, only : wp
-  use conditions_m, only : motion_displacement, prescribed_motion_t
+  use conditions_m, only : motion_displacement
   use constraints_m, only : is_active, next_velocity
   use model_m, only : model_t
   use part_damping_m, only : part_damping_rate
@@ -12,8 +12,7 @@ module rigid_motion_m
   use state_m, only : state_t
   implicit none
   private
-  public :: solve_rigids, damping_of, start_rigid_motions, rigid_work, move_rigids, fill_rigids, &
-    fill_bodies, rigid_reaction
+  public :: solve_rigids, damping_of, start_rigid_motions, move_rigids, fill_rigids, fill_bodies
 
 contains
 
@@ -108,47 +107,6 @@ contains
       end associate
     end do
   end subroutine start_rigid_motions
-
-  !> Work of the reactions of prescribed motion over half a step, as `prescribed_work` for nodes.
-  pure function rigid_work(model, state, damping, factor_old, factor_new) result(work)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    real(wp), intent(in) :: damping(2)             !! D per direction
-    real(wp), intent(in) :: factor_old, factor_new !! times v(n-1/2) and v(n+1/2)
-    real(wp) :: work
-    integer :: i
-
-    work = 0.0_wp
-    do i = 1, size(model%conditions%rigid_motions)
-      associate (motion => model%conditions%rigid_motions(i))
-        if (.not. is_active(motion, state%time)) cycle
-        associate (rigid => state%rigids(motion%node), k => motion%direction)
-          work = work + rigid_reaction(model, motion, state, damping) &
-            *(factor_old*rigid%velocity(k) + factor_new*rigid%next_velocity(k))
-        end associate
-      end associate
-    end do
-  end function rigid_work
-
-  !> Reaction of one prescribed motion of a body.
-  pure function rigid_reaction(model, motion, state, damping) result(reaction)
-    type(model_t), intent(in) :: model
-    type(prescribed_motion_t), intent(in) :: motion
-    type(state_t), intent(in) :: state
-    real(wp), intent(in) :: damping(2)             !! D per direction
-    real(wp) :: reaction
-    real(wp) :: rate(3), body(3)
-
-    body = [state%body_acceleration, 0.0_wp]
-    associate (rigid => state%rigids(motion%node), k => motion%direction)
-      rate = damping_of(rigid, damping + part_damping_rate(model, model%rigids(motion%node)%part, &
-        state%time))
-      associate (old => rigid%velocity(k), next => rigid%next_velocity(k))
-        reaction = rigid%inertia(k)*((next - old)/(0.5_wp*(state%dt + state%dt_before)) &
-          - body(k) + 0.5_wp*rate(k)*(next + old)) - rigid%force(k)
-      end associate
-    end associate
-  end function rigid_reaction
 
   !> All bodies to u(n+1), and those of their nodes that anything asks for in the next cycle.
   !> The velocity of a node is its displacement over the step, as for all nodes: work is

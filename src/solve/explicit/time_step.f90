@@ -6,25 +6,30 @@
 !> the step of the next, so that a cycle need not wait for its own elements.
 module time_step_m
   use block_state_m, only : block_state_t
+  use constraints_m, only : is_active
   use contact_penalty_m, only : has_default_penalty
   use contact_state_m, only : contact_state_t
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, approach_step, &
     sharpness
   use contacts_m, only : is_tied, penalty_implicit
-  use friction_state_m, only : is_broken
   use controls_m, only : contact_step_rules, contact_step_free, contact_step_warns
   use curves_m, only : curve_value, curve_is_constant
   use errors_m, only : error_t, raise, status_input
   use kinds_m, only : wp
+  use law_state_m, only : is_broken
+  use layout_m, only : chunk_size
   use log_m, only : log_t, warn, write_log, to_text
   use model_m, only : model_t
+  use node_motion_m, only : leap_t
+  use rank_shares_m, only : shares_t
+  use ranks_m, only : ranks_t, find_least
   use scaled_step_m, only : scaled_step
   use state_m, only : state_t
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: step_plan_t, start_steps, first_step, shorten_first_step, volume_step, next_step, &
-    is_last, cycles_in, obey_approach, obey_defaults, follow_springs, has_springs
+  public :: step_plan_t, first_step, largest_change, volume_step, next_step, &
+    is_last, cycles_in, obey_approach, obey_defaults, follow_springs, has_springs, first_change
 
   !> What a step must be allowed to rise by before it does.
   real(wp), parameter :: least_rise = 0.05_wp
@@ -54,17 +59,6 @@ module time_step_m
   end type step_plan_t
 
 contains
-
-  !> The plan at the start.
-  pure function start_steps(model, time) result(steps)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: time
-    type(step_plan_t) :: steps
-
-    steps%end_time = model%controls%end_time
-    steps%end_cycle = model%controls%end_cycle
-    steps%start_time = time
-  end function start_steps
 
   !> The first step, from the elements at time zero.
   subroutine first_step(model, elements, log, steps, dt, error)
@@ -97,21 +91,6 @@ contains
     if (allocated(steps%springs)) call write_log(log, 'stable step of elements and contact ' &
       //'springs '//to_text(limit))
   end subroutine first_step
-
-  !> A first step in which the volume of an element would change by more than it should.
-  subroutine shorten_first_step(log, steps, dt, change)
-    type(log_t), intent(inout) :: log
-    type(step_plan_t), intent(inout) :: steps
-    real(wp), intent(inout) :: dt            !! s
-    real(wp), intent(inout) :: change        !! largest change of ln V in it
-
-    if (change <= largest_change) return
-    dt = dt*(largest_change/change)
-    steps%constant = 0.0_wp
-    call write_log(log, 'first time step shortened to '//to_text(dt)//': in the stable one the ' &
-      //'volume of an element would change by '//to_text(100.0_wp*change)//' %')
-    change = largest_change
-  end subroutine shorten_first_step
 
   !> Step in which ln V of an element changes by no more than it should, from the change in an
   !> earlier step `dt`, since which a time `since` has passed. At a constant rate that is
@@ -213,6 +192,7 @@ contains
     real(wp), intent(inout) :: time           !! in: old, out: new
     real(wp), intent(inout) :: dt             !! in: step that led here, out: next one
     real(wp) :: wanted, before
+    logical :: changes
 
     before = time
     if (steps%constant > 0.0_wp) then
@@ -221,24 +201,16 @@ contains
       time = time + dt
     end if
     wanted = choose_step(model, stable_limit(element_limit, steps), time, log, steps)
-    if (must_change(model, before, wanted, dt)) dt = wanted
+    ! Leap-frog keeps energy without a trend only while its step is constant; the limits of elements
+    ! and springs beat with the vibrations of a body, and a step that follows them feeds those
+    ! (doc/theory/time_integration.md). So a step that a limit has set is held, whatever curve lies
+    ! above; one that a curve has set follows it.
+    changes = wanted < dt .or. wanted > (1.0_wp + least_rise)*dt
+    if (.not. changes .and. model%controls%dt_curve > 0) &
+      changes = dt >= curve_value(model%curves(model%controls%dt_curve), before)
+    if (changes) dt = wanted
     if (steps%warned) steps%constant = 0.0_wp
   end subroutine next_step
-
-  !> Whether a step gives way to the one that is wanted. Leap-frog keeps energy without a trend only
-  !> while its step is constant; the limits of elements and springs beat with the vibrations of a
-  !> body, and a step that follows them feeds those (doc/theory/time_integration.md). So a step that
-  !> a limit has set is held, whatever curve lies above; one that a curve has set follows it.
-  pure function must_change(model, before, wanted, dt) result(must)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: before     !! time at which `dt` was chosen
-    real(wp), intent(in) :: wanted, dt !! s
-    logical :: must
-
-    must = wanted < dt .or. wanted > (1.0_wp + least_rise)*dt
-    if (must .or. model%controls%dt_curve == 0) return
-    must = dt >= curve_value(model%curves(model%controls%dt_curve), before)
-  end function must_change
 
   !> Whether the cycle at `time` is the last: nint(ENDTIM/dt) cycles of a constant step, otherwise
   !> the first cycle at or after the end time.
@@ -338,5 +310,80 @@ contains
     call visitor%visit('warned_approach', self%warned_approach)
     call visitor%each('springs', self%springs)
   end subroutine visit_steps
+
+  !> Largest change of ln V of an element, without its sign, in a step from time zero, with the
+  !> forces that stand in the state. Rigid walls and forces of implicit penalties do not count.
+  subroutine first_change(model, shares, leap, velocity, state, ranks, change)
+    type(model_t), intent(in) :: model
+    type(shares_t), intent(in) :: shares
+    type(leap_t), intent(in) :: leap
+    real(wp), intent(in) :: velocity(:) !! (n_motion) v(1/2) of prescribed motions, m/s
+    type(state_t), intent(in) :: state
+    type(ranks_t), intent(inout) :: ranks
+    real(wp), intent(out) :: change
+    real(wp), allocatable :: next(:, :)
+    real(wp) :: least(1)
+    integer :: i_tile, i_chunk, slot
+
+    next = next_velocities(model, leap, velocity, state)
+    change = 0.0_wp
+    do i_tile = shares%first_tile, shares%last_tile
+      do i_chunk = model%layout%tiles(i_tile)%first_chunk, model%layout%tiles(i_tile)%last_chunk
+        do slot = (i_chunk - 1)*chunk_size + 1, (i_chunk - 1)*chunk_size &
+          + model%layout%chunk_elements(i_chunk)
+          change = max(change, leap%dt*abs(volume_rate(model, slot, next, state)))
+        end do
+      end do
+    end do
+    least = -change
+    if (ranks%n > 1) call find_least(ranks, least)
+    change = -least(1)
+  end subroutine first_change
+
+  !> v(1/2) of the nodes whose forces this process knows.
+  pure function next_velocities(model, leap, velocity, state) result(next)
+    type(model_t), intent(in) :: model
+    type(leap_t), intent(in) :: leap
+    real(wp), intent(in) :: velocity(:)
+    type(state_t), intent(in) :: state
+    real(wp), allocatable :: next(:, :)  !! (2, n_node)
+    real(wp) :: push(2)
+    integer :: i
+
+    allocate (next(2, size(state%motion, 2)))
+    do i = 1, size(next, 2)
+      push = -state%internal_force(:, i)
+      if (i <= model%layout%n_special) push = push + state%force_special(:, i)
+      next(:, i) = state%motion(3:4, i) + leap%half*(push*state%inverse_mass(:, i) &
+        + merge(leap%body, 0.0_wp, state%inverse_mass(:, i) > 0.0_wp))
+    end do
+    do i = 1, size(velocity)
+      associate (motion => model%conditions%motions(i))
+        if (is_active(motion, state%time)) next(motion%direction, motion%node) = velocity(i)
+      end associate
+    end do
+  end function next_velocities
+
+  !> Rate of ln V of the element in a slot, 1/s: of its area, and in bodies of revolution of the
+  !> radius of its middle.
+  pure function volume_rate(model, slot, velocity, state) result(rate)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: slot
+    real(wp), intent(in) :: velocity(:, :)  !! (2, n_node)
+    type(state_t), intent(in) :: state
+    real(wp) :: rate
+    real(wp) :: x31(2), x42(2), v31(2), v42(2)
+
+    associate (nodes => model%layout%slot_nodes(:, slot), r => state%elements%reference(slot, :4))
+      x31 = r(1:2) + (state%motion(1:2, nodes(3)) - state%motion(1:2, nodes(1)))
+      x42 = r(3:4) + (state%motion(1:2, nodes(4)) - state%motion(1:2, nodes(2)))
+      v31 = velocity(:, nodes(3)) - velocity(:, nodes(1))
+      v42 = velocity(:, nodes(4)) - velocity(:, nodes(2))
+      rate = (v31(1)*x42(2) - v42(1)*x31(2) + x31(1)*v42(2) - x42(1)*v31(2)) &
+        /(x31(1)*x42(2) - x42(1)*x31(2))
+      if (model%is_round) rate = rate + sum(velocity(1, nodes)) &
+        /sum(model%mesh%coordinates(1, nodes) + state%motion(1, nodes))
+    end associate
+  end function volume_rate
 
 end module time_step_m

@@ -9,27 +9,25 @@ module implicit_m
   use contacts_m, only : breaks
   use contact_work_m, only : count_step
   use early_end_m, only : find_early_end
-  use energies_m, only : energy_ratio
   use equations_m, only : number_equations, find_equation
   use errors_m, only : error_t, raise, status_run
   use friction_m, only : has_slipped
   use health_m, only : check_static_step, what_would_do
-  use implicit_boundary_m, only : count_step_boundaries
+  use implicit_report_m, only : count_step_boundaries, reactions_work, report_step, held_energy, &
+    spent_energy
   use implicit_forces_m, only : trial_t, start_trial, damping_force, net_force, keep_sections
-  use implicit_memory_m, only : implicit_memory_t, write_files
+  use implicit_start_m, only : implicit_memory_t, write_files, begin_steps, plan_next, has_ended
   use implicit_prescribed_m, only : prescribe_step
-  use implicit_report_m, only : reactions_work, report_step, held_energy, spent_energy
-  use implicit_start_m, only : begin_steps, plan_next, has_ended
   use implicit_tangent_m, only : step_t, new_acceleration, new_velocity
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
-  use monitor_m, only : monitor_t, any_due
+  use monitor_m, only : monitor_t
   use newton_m, only : outcome_t, find_equilibrium
   use progress_m, only : follow_progress
   use requests_m, only : requests_t, take_requests
   use restart_plan_m, only : wanted_files
   use state_m, only : state_t
-  use tie_state_m, only : tie_memory_t
+  use law_state_m, only : tie_memory_t
   use tied_interface_m, only : break_at_end
   use step_control_m, only : step_control_t, plan_step, grow_step, cut_step
   implicit none
@@ -57,53 +55,26 @@ contains
     reason = 'termination time reached'
     call begin_steps(model, state, monitor, memory, last, error)
     if (allocated(error) .or. monitor%only_checks) return
-    if (monitor%restarts%goes_on) call heed_ends(model, state, last, reason)
-    call report_instant(model, state, last, .false., monitor, memory, error)
+    if (monitor%restarts%goes_on) call find_early_end(model, state, last, reason)
+    call report_step(model, state, last, .false., monitor, memory, error)
     do while (.not. last .and. .not. allocated(error))
       call take_step(model, state, monitor, memory%control, memory%step, memory%trial, error)
       if (allocated(error)) exit
       call heed_requests(model, state, monitor, memory, asked, last, reason, error)
       if (allocated(error)) exit
       if (asked%stop) reason = 'stopped on request'
-      call report_instant(model, state, last, asked%plot, monitor, memory, error)
+      call report_step(model, state, last, asked%plot, monitor, memory, error)
       call follow_progress(monitor%progress, monitor%clock, state%cycle, .true., state%time, &
         state%dt_before, memory%ratio)
     end do
     if (allocated(error) .and. .not. last) then
-      call report_instant(model, state, .true., .false., monitor, memory, second)
-      call hint_at_energy(memory%step, memory%ratio, error)
+      call report_step(model, state, .true., .false., monitor, memory, second)
+      if (error%status == status_run .and. memory%step%is_dynamic .and. memory%ratio > gained) &
+        error%message = error%message//'; its energy ratio is '//to_text(memory%ratio) &
+        //': the steps gain energy (shorter steps, or a spectral radius below 1)'
     end if
     call report_contact_end(model, state, monitor%log)
   end subroutine advance_implicit
-
-  !> What ends the run before its time.
-  subroutine heed_ends(model, state, last, reason)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    logical, intent(inout) :: last
-    character(:), allocatable, intent(inout) :: reason
-    character(:), allocatable :: found
-
-    if (.not. allocated(model%controls%ends)) return
-    call find_early_end(model, state, found)
-    if (.not. allocated(found) .or. last) return
-    last = .true.
-    reason = found
-  end subroutine heed_ends
-
-  !> Write what is due of the state.
-  subroutine report_instant(model, state, last, plots, monitor, memory, error)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    logical, intent(in) :: last
-    logical, intent(in) :: plots         !! someone asks for a plot state
-    type(monitor_t), intent(inout) :: monitor
-    type(implicit_memory_t), intent(inout) :: memory
-    type(error_t), allocatable, intent(out) :: error
-
-    call report_step(model, state, last, plots, monitor, memory, error)
-    if (any_due(memory%written)) memory%ratio = energy_ratio(monitor%snapshot%energies)
-  end subroutine report_instant
 
   !> After a step: what someone asks for, the plan of the next step, and the restart files that are
   !> due. A run that goes on from one reports the state as this one is about to.
@@ -123,7 +94,7 @@ contains
     call take_requests(state, memory%ratio, .true., monitor, asked, error)
     if (allocated(error)) return
     last = has_ended(model, state, memory%control)
-    call heed_ends(model, state, last, reason)
+    call find_early_end(model, state, last, reason)
     asked%stop = asked%stop .and. .not. last
     asked%signalled = asked%signalled .and. .not. last
     last = last .or. asked%stop
@@ -171,7 +142,13 @@ contains
     call commit(model, state, step, attempt, trial)
     if (.not. step%is_dynamic) call check_static_step([work, work_done(state)], [held, &
       held_energy(model, state)], spent_energy(state, step), state%cycle, state%time, monitor%log)
-    call note_pivots(outcome%began_negative, state, step, monitor%log)
+    ! The first negative pivot in the stiffness of an equilibrium, that which the step set out from.
+    if (outcome%began_negative .and. .not. (step%is_dynamic .or. step%began_negative)) &
+      call warn(monitor%log, 'the stiffness at the end of step '//to_text(state%cycle - 1) &
+      //', time '//to_text(state%time - step%dt)//', has a negative pivot, and had none before: ' &
+      //'the equilibrium is not stable, the path has passed a limit point or a branch; ' &
+      //what_would_do)
+    step%began_negative = outcome%began_negative
     call grow_step(control, step%dt, outcome%iterations)
     call lap(monitor%clock, phase_nodes)
   end subroutine take_step
@@ -183,21 +160,6 @@ contains
 
     work = state%external_work + sum(state%contacts%interference%work)
   end function work_done
-
-  !> Tell of the first negative pivot in the stiffness of an equilibrium, that which the step set
-  !> out from.
-  subroutine note_pivots(is_negative, state, step, log)
-    logical, intent(in) :: is_negative
-    type(state_t), intent(in) :: state
-    type(step_t), intent(inout) :: step
-    type(log_t), intent(inout) :: log
-
-    if (is_negative .and. .not. (step%is_dynamic .or. step%began_negative)) call warn(log, &
-      'the stiffness at the end of step '//to_text(state%cycle - 1)//', time '//to_text(state%time &
-      - step%dt)//', has a negative pivot, and had none before: the equilibrium is not stable, ' &
-      //'the path has passed a limit point or a branch; '//what_would_do)
-    step%began_negative = is_negative
-  end subroutine note_pivots
 
   !> A step to `time`. What slipped in the step before slips on in its first iteration; if that
   !> finds no equilibrium, or leaves a body free, all sticks first: full iterations or searched
@@ -326,16 +288,5 @@ contains
         //to_text(state%time), status_run)
     end if
   end subroutine raise_failure
-
-  !> Say so where a run that found no equilibrium had gained energy before.
-  subroutine hint_at_energy(step, ratio, error)
-    type(step_t), intent(in) :: step
-    real(wp), intent(in) :: ratio !! of the last converged state
-    type(error_t), intent(inout) :: error
-
-    if (error%status /= status_run .or. .not. step%is_dynamic .or. ratio <= gained) return
-    error%message = error%message//'; its energy ratio is '//to_text(ratio) &
-      //': the steps gain energy (shorter steps, or a spectral radius below 1)'
-  end subroutine hint_at_energy
 
 end module implicit_m

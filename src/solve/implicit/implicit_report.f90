@@ -1,43 +1,41 @@
 ! SPDX-License-Identifier: MIT
-!> What the implicit driver writes: motion, velocity and acceleration of one instant, energies
-!> with the consistent mass.
+!> What the implicit driver writes: motion, velocity and acceleration of one instant, energies with
+!> the consistent mass; forces on boundaries and of groups of nodes, and their work, where histories
+!> ask for them (bndout, nodfor).
 module implicit_report_m
-  use boundary_filling_m, only : fill_boundaries
-  use contact_judging_m, only : judge_contacts
-  use contact_softness_m, only : follow_softness
-  use implicit_boundary_m, only : find_forces
-  use history_elements_m, only : fill_history_elements
-  use history_tables_m, only : table_matsum, table_rcforc, table_sleout, table_spcforc, &
-    table_contact, table_elout, table_bndout, table_nodfor, table_secforc
-  use block_state_m, only : block_state_t
-  use kinds_m, only : wp
+  use boundary_filling_m, only : form_loads
   use clock_m, only : lap, phase_output
+  use constraints_m, only : is_active
+  use controls_m, only : boundary_motion, group_nodes
   use element_mass_m, only : mass_times, sum_part_motion
   use element_state_m, only : add_part_energies
-  use energies_m, only : energy_ratio, total_energy
+  use energies_m, only : energy_ratio
   use equations_m, only : equations_t
   use errors_m, only : error_t
   use health_m, only : check_energy, check_ratio, check_radii, judge_energies, judge_ratio, &
     judge_contact, made_by_forces, unaccounted, dissipated
+  use history_tables_m, only : table_matsum, table_spcforc, table_bndout, table_nodfor, &
+    table_secforc
   use implicit_forces_m, only : trial_t, net_force, cut_sections
-  use implicit_memory_m, only : implicit_memory_t
+  use implicit_start_m, only : implicit_memory_t
   use implicit_tangent_m, only : step_t
+  use kinds_m, only : wp
   use model_m, only : model_t
-  use monitor_m, only : monitor_t, due_t, find_due, any_due, write_due
+  use monitor_m, only : monitor_t, due_t, find_due, any_due
   use output_schedule_m, only : output_reach
-  use progress_m, only : show_progress
-  use section_filling_m, only : fill_sections
-  use snapshot_m, only : snapshot_t
-  use snapshot_filling_m, only : fill_energies, fill_parts, fill_interfaces, fill_plot
+  use reporting_m, only : note_energies, write_instant
+  use snapshot_filling_m, only : fill_energies, fill_parts
   use state_m, only : state_t
   use support_forces_m, only : fill_reactions
   implicit none
   private
-  public :: report_step, reactions_work, held_energy, spent_energy
+  public :: report_step, reactions_work, held_energy, spent_energy, count_step_boundaries, &
+    find_forces
 
 contains
 
-  !> Write what is due; of a state that was reported before, only what was not written then.
+  !> Write what is due; of a state that was reported before, only what was not written then. The
+  !> memory learns the energy ratio.
   subroutine report_step(model, state, last, plots, monitor, memory, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
@@ -48,12 +46,15 @@ contains
                                           !! reported before, and becomes that of this one
     type(error_t), allocatable, intent(out) :: error
     type(due_t) :: due
-    real(wp) :: dt
+    real(wp) :: dt, kinetic(size(model%parts)), momentum(2, size(model%parts))
 
     dt = output_reach(model%controls, state%dt)
     due = find_due(monitor, state%time, dt, state%cycle == 0 .or. last)
     due%plot = due%plot .or. (plots .and. monitor%has_plot)
-    if (state%cycle == monitor%snapshot%cycle) due = without(due, memory%written)
+    if (state%cycle == monitor%snapshot%cycle) then
+      due%plot = due%plot .and. .not. memory%written%plot
+      due%tables = due%tables .and. .not. memory%written%tables
+    end if
     memory%written = due
     if (.not. any_due(due)) return
     associate (shot => monitor%snapshot, force => memory%step%old_force)
@@ -66,33 +67,21 @@ contains
       call fill_energies(model, state, [0.0_wp, 0.0_wp], shot)
       shot%energies%kinetic = 0.5_wp*sum(shot%velocity*mass_times(model, shot%velocity))
       shot%energies%made = max(0.0_wp, -shot%energies%contact)
-      if (state%cycle == 0) then
-        state%initial_energy = total_energy(shot%energies)
-        shot%energies%initial = state%initial_energy
+      call note_energies(model, .true., state, monitor)
+      if (due%tables(table_matsum)) then
+        call fill_parts(model, state%elements, shot)
+        call sum_part_motion(model, shot%velocity, kinetic, momentum)
+        shot%parts%kinetic = kinetic
+        shot%parts%momentum(1) = momentum(1, :)
+        shot%parts%momentum(2) = momentum(2, :)
       end if
-      call follow_softness(model, shot%parts, monitor%bodies, state)
-      if (due%tables(table_matsum)) call fill_consistent_parts(model, state%elements, shot)
-      if (any(due%tables([table_rcforc, table_sleout, table_contact]))) &
-        call fill_interfaces(model, state, shot)
       if (due%tables(table_spcforc)) call fill_reactions(model, &
         force + mass_times(model, shot%acceleration), shot)
-      if (any(due%tables([table_bndout, table_nodfor]))) then
-        call find_forces(model, force + mass_times(model, shot%acceleration), &
-          memory%trial%internal, state)
-        call fill_boundaries(state, shot)
-      end if
-      if (due%tables(table_secforc)) then
-        call cut_sections(model, memory%trial, state)
-        call fill_sections(model, state, shot)
-      end if
-      if (due%tables(table_elout)) call fill_history_elements(model, state, shot)
-      if (due%plot) call fill_plot(model, state, shot)
-      if (any(due%tables([table_sleout, table_contact]))) call judge_contacts(model, state, &
-        due%plot, monitor%rows, shot)
-      call write_due(model, due, dt, monitor, error)
-      if (due%plot .and. .not. allocated(error)) &
-        call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, &
-        energy_ratio(shot%energies), 'write vtkhdf state')
+      if (any(due%tables([table_bndout, table_nodfor]))) call find_forces(model, &
+        force + mass_times(model, shot%acceleration), memory%trial%internal, state)
+      if (due%tables(table_secforc)) call cut_sections(model, memory%trial, state)
+      memory%ratio = energy_ratio(shot%energies)
+      call write_instant(model, due, dt, memory%ratio, state, monitor, error)
       if (.not. allocated(error)) call check_energy(model%controls, shot%energies, made_by_forces, &
         error)
       if (.not. allocated(error)) call check_ratio(shot%energies, &
@@ -108,31 +97,6 @@ contains
     end associate
     call lap(monitor%clock, phase_output)
   end subroutine report_step
-
-  !> What is due and was not written.
-  pure function without(due, written) result(left)
-    type(due_t), intent(in) :: due, written
-    type(due_t) :: left
-
-    left%plot = due%plot .and. .not. written%plot
-    left%tables = due%tables .and. .not. written%tables
-  end function without
-
-  !> Parts with the consistent mass.
-  subroutine fill_consistent_parts(model, elements, shot)
-    type(model_t), intent(in) :: model
-    type(block_state_t), intent(in) :: elements
-    type(snapshot_t), intent(inout) :: shot
-    real(wp) :: kinetic(size(model%parts)), momentum(2, size(model%parts))
-    integer :: i
-
-    call fill_parts(model, elements, shot)
-    call sum_part_motion(model, shot%velocity, kinetic, momentum)
-    do i = 1, size(model%parts)
-      shot%parts(i)%kinetic = kinetic(i)
-      shot%parts(i)%momentum = momentum(:, i)
-    end do
-  end subroutine fill_consistent_parts
 
   !> All that a body at rest has taken of the work done on it, stored or dissipated, J/m.
   function held_energy(model, state) result(held)
@@ -188,5 +152,89 @@ contains
     work = work + 0.5_wp*sum(mass_times(model, velocities(:, :, 2) - velocities(:, :, 1)) &
       *(velocities(:, :, 1) + velocities(:, :, 2)), equations%number > equations%n_free)
   end function reactions_work
+
+  !> Work of a step, of which the state has not heard yet: loads and reactions by the trapezoidal
+  !> rule, and of inertia the change of momentum times mean velocity.
+  subroutine count_step_boundaries(model, before, after, time, velocity, state)
+    type(model_t), intent(in) :: model
+    type(trial_t), intent(in) :: before, after
+    real(wp), intent(in) :: time                        !! at the end of the step
+    real(wp), allocatable, intent(in) :: velocity(:, :) !! (2, n_node) there; not there in statics
+    type(state_t), intent(inout) :: state               !! as the step has found it
+
+    if (allocated(state%boundary_work)) &
+      call count_boundaries(model, before, after, time, velocity, state)
+    if (.not. allocated(state%group_work)) return
+    associate (nodes => group_nodes(model%controls%output%force_groups))
+      state%group_work = state%group_work + 0.5_wp*sum((before%internal(:, nodes) &
+        + after%internal(:, nodes))*after%motion(3:4, nodes), 1)
+    end associate
+  end subroutine count_step_boundaries
+
+  !> Boundaries alone.
+  subroutine count_boundaries(model, before, after, time, velocity, state)
+    type(model_t), intent(in) :: model
+    type(trial_t), intent(in) :: before, after
+    real(wp), intent(in) :: time
+    real(wp), allocatable, intent(in) :: velocity(:, :)
+    type(state_t), intent(inout) :: state
+    real(wp), allocatable :: power(:, :)
+    real(wp) :: former(3, size(state%boundary_work))
+    integer :: i
+
+    former = state%boundary_force
+    call form_loads(model, state%motion, state%time, former)
+    call form_loads(model, after%motion, time, state%boundary_force)
+    power = 0.5_wp*(net_force(before) + net_force(after))*after%motion(3:4, :)
+    if (allocated(velocity)) power = power + 0.5_wp*mass_times(model, velocity &
+      - state%motion(3:4, :))*(velocity + state%motion(3:4, :))
+    associate (rows => model%controls%output%boundaries, motions => model%conditions%motions, &
+      work => state%boundary_work)
+      do i = 1, size(rows%where)
+        if (rows%condition(i) == boundary_motion) cycle
+        work(i) = work(i) + 0.5_wp*sum((former(1:2, i) + state%boundary_force(1:2, i)) &
+          *after%motion(3:4, rows%where(i)))
+      end do
+      do i = 1, size(motions)
+        if (.not. is_active(motions(i), 0.5_wp*(state%time + time))) cycle
+        work(rows%motion_rows(i)) = work(rows%motion_rows(i)) &
+          + power(motions(i)%direction, motions(i)%node)
+      end do
+    end associate
+  end subroutine count_boundaries
+
+  !> Forces of the present instant, also where a run that goes on is the first to ask for them.
+  subroutine find_forces(model, reaction, internal, state)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: reaction(:, :)   !! (2, n_node) of all degrees of freedom
+    real(wp), intent(in) :: internal(:, :)   !! (2, n_node) divergence of stress
+    type(state_t), intent(inout) :: state
+
+    if (allocated(state%boundary_work)) then
+      call form_loads(model, state%motion, state%time, state%boundary_force)
+      call find_reactions(model, reaction, state)
+    end if
+    if (allocated(state%group_work)) state%group_force = internal(:, &
+      group_nodes(model%controls%output%force_groups))
+  end subroutine find_forces
+
+  !> Reactions of prescribed motion, into their rows.
+  subroutine find_reactions(model, reaction, state)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: reaction(:, :)   !! (2, n_node) of all degrees of freedom
+    type(state_t), intent(inout) :: state
+    integer :: i
+
+    associate (rows => model%controls%output%boundaries%motion_rows, &
+      motions => model%conditions%motions)
+      do i = 1, size(motions)
+        state%boundary_force(motions(i)%direction, rows(i)) = 0.0_wp
+      end do
+      do i = 1, size(motions)
+        if (is_active(motions(i), state%time)) state%boundary_force(motions(i)%direction, &
+          rows(i)) = reaction(motions(i)%direction, motions(i)%node)
+      end do
+    end associate
+  end subroutine find_reactions
 
 end module implicit_report_m

@@ -1,36 +1,87 @@
 ! SPDX-License-Identifier: MIT
-!> Where an implicit run begins: at time zero, or where a restart file says.
+!> What the implicit driver remembers from step to step besides the state, and where a run begins:
+!> at time zero, or where a restart file says.
 module implicit_start_m
-  use kinds_m, only : wp
+  use archive_m, only : archive_t
   use clock_m, only : lap, phase_solver
   use contact_check_m, only : report_contact_start
   use contact_spring_ratios_m, only : spring_ratios
-  use contact_state_m, only : contact_state_t
   use contact_springs_m, only : measure_springs
+  use contact_state_m, only : contact_state_t
   use contacts_m, only : is_tied
   use damping_m, only : of_stuck
   use element_mass_m, only : add_mass, mass_times
   use equations_m, only : equations_t, number_equations, take_free
   use errors_m, only : error_t, raise, status_run
-  use implicit_forces_m, only : start_trial, assemble_forces, damping_force, net_force, &
-    keep_sections
-  use implicit_memory_m, only : implicit_memory_t, take_up_memory, write_files
+  use implicit_forces_m, only : trial_t, start_trial, net_force, cut_sections, assemble_forces, &
+    damping_force, keep_sections
   use implicit_prescribed_m, only : prescribe_start, list_changes
   use implicit_tangent_m, only : step_t
+  use kinds_m, only : wp
   use law_friction_m, only : has_decay
   use linear_solver_m, only : report_t, solve_linear
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
-  use monitor_m, only : monitor_t
+  use monitor_m, only : monitor_t, due_t
+  use restart_file_m, only : close_restart
+  use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use sparse_m, only : sparse_t, start_matrix, compress_matrix
   use state_m, only : state_t
   use step_control_m, only : step_control_t, start_step_control, plan_step, is_over
+  use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: begin_steps, plan_next, has_ended
+  public :: implicit_memory_t, read_memory, write_files, begin_steps, plan_next, has_ended
+
+  !> What one step remembers of those before.
+  type, extends(visited_t) :: implicit_memory_t
+    type(step_control_t) :: control
+    type(step_t) :: step
+    type(trial_t) :: trial     !! forces of the state
+    type(due_t) :: written     !! of the state that was reported last
+    real(wp) :: ratio = 1.0_wp !! last energy ratio known
+  contains
+    procedure :: visit => visit_memory
+  end type implicit_memory_t
 
 contains
+
+  !> What the next step has to know of those before.
+  subroutine visit_memory(self, visitor)
+    class(implicit_memory_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%part('control', self%control)
+    call visitor%part('step', self%step)
+    call visitor%part('trial', self%trial)
+    call visitor%visit('ratio', self%ratio)
+  end subroutine visit_memory
+
+  !> Write restart files after a step. The memory is that of the state, its
+  !> next step not planned yet.
+  subroutine write_files(model, wanted, state, monitor, memory, error)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: wanted(:)   !! numbered_file, running_file
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(implicit_memory_t), intent(inout) :: memory
+    type(error_t), allocatable, intent(out) :: error
+
+    if (any(wanted)) call cut_sections(model, memory%trial, state)
+    call write_restarts(wanted, state, monitor, error, memory)
+  end subroutine write_files
+
+  !> Read it from a restart file; the first thing that is wrong is an error of the archive.
+  subroutine read_memory(model, state, source, memory)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(archive_t), intent(inout) :: source
+    type(implicit_memory_t), intent(inout) :: memory
+
+    call start_trial(model, state, memory%trial)
+    call source%part('driver', memory)
+  end subroutine read_memory
 
   !> What is remembered up to the first report, and the plan of the first step.
   subroutine begin_steps(model, state, monitor, memory, last, error)
@@ -46,12 +97,22 @@ contains
 
     call list_changes(model, changes)
     memory%control = start_step_control(model%controls, changes)
-    call set_scheme(model, memory%step)
+    associate (implicit => model%controls%implicit, step => memory%step)
+      step%is_dynamic = implicit%is_dynamic
+      step%alpha_m = implicit%alpha_m
+      step%alpha_f = implicit%alpha_f
+      step%gamma = implicit%gamma
+      step%beta = implicit%beta
+    end associate
     if (memory%step%is_dynamic) call set_lags(model, state)
     last = .false.
     if (monitor%restarts%goes_on) then
-      call take_up_memory(model, state, monitor%restarts%source, memory, error)
+      call read_memory(model, state, monitor%restarts%source, memory)
+      call close_restart(monitor%restarts%source, error)
       if (allocated(error)) return
+      memory%step%old_force = net_force(memory%trial)
+      ! The end may have come nearer while a whole step is under way.
+      memory%control%target = min(memory%control%target, memory%control%end_time)
       last = has_ended(model, state, memory%control)
     else
       call log_method(model, memory%control, monitor%log)
@@ -94,20 +155,6 @@ contains
     ended = is_over(control, state%time)
     if (model%controls%end_cycle > 0) ended = ended .or. state%cycle >= model%controls%end_cycle
   end function has_ended
-
-  !> The weights of the two instants of a step.
-  pure subroutine set_scheme(model, step)
-    type(model_t), intent(in) :: model
-    type(step_t), intent(inout) :: step
-
-    associate (implicit => model%controls%implicit)
-      step%is_dynamic = implicit%is_dynamic
-      step%alpha_m = implicit%alpha_m
-      step%alpha_f = implicit%alpha_f
-      step%gamma = implicit%gamma
-      step%beta = implicit%beta
-    end associate
-  end subroutine set_scheme
 
   !> Damping of what sticks, by the frequencies of the springs of contact at time zero.
   subroutine set_lags(model, state)

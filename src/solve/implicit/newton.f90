@@ -1,26 +1,28 @@
 ! SPDX-License-Identifier: MIT
-!> One step of the implicit method: equilibrium at its end by Newton's method with line search
-!> (doc/theory/implicit.md, section 3).
+!> One step of the implicit method: equilibrium at its end by Newton's method with line search, and
+!> whether that goes to and fro between the same states of stick and slip: an attempt that does
+!> finds no equilibrium, however many iterations it may take (doc/theory/implicit.md, section 3;
+!> doc/theory/contact.md, section 9.8).
 module newton_m
-  use kinds_m, only : wp
   use clock_m, only : clock_t, lap, phase_nodes, phase_solver
   use contact_scatter_m, only : add_gap_round_off
+  use contact_state_m, only : contact_state_t
   use contacts_m, only : told_as
   use controls_m, only : implicit_t
-  use equations_m, only : take_free, move_prescribed, find_equation
+  use equations_m, only : take_free, move_prescribed, find_equation, equations_t
   use friction_m, only : let_stick
   use implicit_forces_m, only : trial_t, assemble_forces, trouble_of
   use implicit_tangent_m, only : step_t, assemble_tangent, assemble_residual
-  use line_search_m, only : way_t, move_nodes
+  use kinds_m, only : wp
+  use law_state_m, only : slips
   use linear_solver_m, only : report_t, solve_linear
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
-  use slip_cycle_m, only : slip_cycle_t, watch_slips
   use sparse_m, only : sparse_t, compress_matrix
   use state_m, only : state_t
   implicit none
   private
-  public :: outcome_t, find_equilibrium
+  public :: outcome_t, find_equilibrium, slip_cycle_t, watch_slips
 
   !> How far above the estimate of the round-off in the residual it counts as reached.
   real(wp), parameter :: floor_margin = 4.0_wp
@@ -50,6 +52,33 @@ module newton_m
     real(wp) :: factor = 1.0_wp   !! of the line search
   end type measure_t
 
+  !> Halvings of an iteration that leaves the range of sound elements, and steps of a line search.
+  integer, parameter :: most_halvings = 8, most_searches = 6
+  !> Least part of what is left that a step of the search may take.
+  real(wp), parameter :: least_part = 0.1_wp
+
+  !> The way of one iteration.
+  type :: way_t
+    real(wp), allocatable :: x(:)     !! dU of the free degrees of freedom
+    real(wp), allocatable :: b(:)     !! right-hand side, minus the residual at its start
+    real(wp), allocatable :: moved(:) !! displacement of the prescribed degrees of freedom
+    real(wp) :: factor = 1.0_wp       !! part of x that was gone
+    character(:), allocatable :: trouble !! why it can not be gone; empty
+  end type way_t
+
+  !> Part of the residual two iterations ago above which it has not fallen.
+  real(wp), parameter :: fallen = 0.999_wp
+  !> Iterations in a row that have to repeat what was two before.
+  integer, parameter :: most_repeats = 3
+
+  !> States of all places of friction and residuals, of the last two iterations.
+  type :: slip_cycle_t
+    integer, allocatable :: last(:), before(:)
+    real(wp) :: residual_last = huge(1.0_wp), residual_before = huge(1.0_wp)
+    integer :: n_repeat = 0      !! iterations in a row that repeated
+    logical :: is_found = .false.
+  end type slip_cycle_t
+
 contains
 
   !> Iterate from the committed state to equilibrium at `step%time`; `trial` is
@@ -68,7 +97,6 @@ contains
     type(report_t) :: report
     type(slip_cycle_t) :: slip_cycle
     integer :: iteration, node, direction
-    logical :: solved
 
     trial%motion(1:2, :) = state%motion(1:2, :)
     call assemble_forces(model, state, step%time, .true., clock, trial)
@@ -82,8 +110,9 @@ contains
       if (iteration > 1) way%moved = 0.0_wp
       call find_way(model, state, step, clock, trial, matrix, way, report)
       if (iteration == 1) outcome%began_negative = report%is_negative
-      call judge_solution(report, outcome, solved)
-      if (.not. solved) return
+      if (report%is_singular) outcome%singular_equation = report%equation
+      outcome%reason = report%message
+      if (.not. report%is_solved) return
       now%energy = abs(dot_product(way%x, way%b))
       now%step = norm2(way%x)
       now%start = norm2(way%b)
@@ -150,21 +179,6 @@ contains
     call lap(clock, phase_solver)
   end subroutine find_way
 
-  !> Whether the linear system had a solution.
-  subroutine judge_solution(report, outcome, solved)
-    type(report_t), intent(in) :: report
-    type(outcome_t), intent(inout) :: outcome
-    logical, intent(out) :: solved
-
-    solved = .false.
-    if (report%is_singular) outcome%singular_equation = report%equation
-    if (report%is_solved) then
-      solved = .true.
-    else
-      outcome%reason = report%message
-    end if
-  end subroutine judge_solution
-
   !> Norm of the residual and of the round-off that it must hold: that of forces, of displacements
   !> times stiffness, and of places in gaps times the springs of contact.
   subroutine measure_residual(model, state, step, trial, matrix, now)
@@ -230,5 +244,120 @@ contains
       //to_text(now%factor)//', '//report%method//', residual of the solution ' &
       //to_text(report%residual)
   end function iteration_line
+
+  !> Move the trial by `way%x`, shortened where elements would turn inside out or where the residual
+  !> along x would not fall. The first iteration of a step, which moves prescribed degrees of
+  !> freedom, is gone to its end.
+  subroutine move_nodes(model, state, step, clock, trial, way)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(clock_t), intent(inout) :: clock
+    type(trial_t), intent(inout) :: trial
+    type(way_t), intent(inout) :: way
+    real(wp), allocatable :: start(:, :)
+    logical :: is_straight
+    integer :: i
+
+    start = trial%motion(1:2, :)
+    way%factor = 1.0_wp
+    is_straight = .not. any(abs(way%moved) > 0.0_wp)
+    do i = 0, most_halvings
+      call go_part(model, state, step, clock, start, trial, way)
+      if (len(way%trouble) == 0 .or. .not. is_straight) exit
+      if (i < most_halvings) way%factor = 0.5_wp*way%factor
+    end do
+    if (is_straight .and. step%searches .and. len(way%trouble) == 0) &
+      call search_line(model, state, step, clock, start, trial, way)
+  end subroutine move_nodes
+
+  !> Shorten the way by secants until the slope dU.R at its end is no longer uphill. A way that does
+  !> not lead downhill at its start says nothing and is gone to the end.
+  subroutine search_line(model, state, step, clock, start, trial, way)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(clock_t), intent(inout) :: clock
+    real(wp), intent(in) :: start(:, :)
+    type(trial_t), intent(inout) :: trial
+    type(way_t), intent(inout) :: way
+    real(wp) :: slope_start, slope, sound_factor
+    integer :: i
+
+    slope_start = -dot_product(way%x, way%b)
+    if (.not. slope_start < 0.0_wp) return
+    do i = 1, most_searches
+      slope = dot_product(way%x, take_free(step%equations, &
+        assemble_residual(model, state, step, trial)))
+      if (slope <= model%controls%implicit%search_tolerance*abs(slope_start)) return
+      sound_factor = way%factor
+      way%factor = way%factor*max(least_part, slope_start/(slope_start - slope))
+      call go_part(model, state, step, clock, start, trial, way)
+      if (len(way%trouble) == 0) cycle
+      way%factor = sound_factor
+      call go_part(model, state, step, clock, start, trial, way)
+      return
+    end do
+  end subroutine search_line
+
+  !> The trial at `way%factor`, and whether it is sound.
+  subroutine go_part(model, state, step, clock, start, trial, way)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(clock_t), intent(inout) :: clock
+    real(wp), intent(in) :: start(:, :) !! (2, n_node) displacement where the way begins
+    type(trial_t), intent(inout) :: trial
+    type(way_t), intent(inout) :: way
+    integer :: j, k, n
+
+    do j = 1, size(start, 2)
+      do k = 1, 2
+        n = step%equations%number(k, j)
+        if (n == 0) cycle
+        if (n <= step%equations%n_free) then
+          trial%motion(k, j) = start(k, j) + way%factor*way%x(n)
+        else
+          trial%motion(k, j) = start(k, j) + way%moved(n - step%equations%n_free)
+        end if
+      end do
+    end do
+    call assemble_forces(model, state, step%time, .false., clock, trial)
+    way%trouble = trouble_of(trial)
+  end subroutine go_part
+
+  !> After an iteration. States that stay as they are make no cycle.
+  pure subroutine watch_slips(contacts, residual, cycle)
+    type(contact_state_t), intent(in) :: contacts(:)
+    real(wp), intent(in) :: residual !! norm of the forces out of balance
+    type(slip_cycle_t), intent(inout) :: cycle
+    integer, allocatable :: states(:) !! of the places of all interfaces with friction
+    logical :: repeats
+    integer :: i
+
+    allocate (states(0))
+    do i = 1, size(contacts)
+      if (.not. allocated(contacts(i)%friction%state)) cycle
+      ! Those that slip backwards are another state.
+      associate (friction => contacts(i)%friction)
+        states = [states, merge(-friction%state, friction%state, &
+          friction%state == slips .and. friction%traction < 0.0_wp)]
+      end associate
+    end do
+    if (size(states) == 0) return
+    repeats = .false.
+    if (allocated(cycle%before)) then
+      ! Runs of outlines that change have other places.
+      if (size(states) == size(cycle%before) .and. size(states) == size(cycle%last)) &
+        repeats = all(states == cycle%before) .and. any(states /= cycle%last) &
+        .and. residual > fallen*cycle%residual_before
+    end if
+    cycle%n_repeat = merge(cycle%n_repeat + 1, 0, repeats)
+    cycle%is_found = cycle%n_repeat >= most_repeats
+    call move_alloc(cycle%last, cycle%before)
+    call move_alloc(states, cycle%last)
+    cycle%residual_before = cycle%residual_last
+    cycle%residual_last = residual
+  end subroutine watch_slips
 
 end module newton_m

@@ -42,13 +42,22 @@ contains
     type(log_t), intent(inout) :: log
     type(error_t), allocatable, intent(out) :: error
     real(wp), dimension(size(model%contacts)) :: share, factor
+    real(wp), allocatable :: force(:, :)
     real(wp) :: limit, dt
     type(spring_bound_t) :: bounds(size(model%contacts))
     integer :: i
 
-    if (.not. seeks_penalties(model)) return
     share = sought_shares(model)
-    call find_element_limits(model, state)
+    if (.not. any(share > 0.0_wp)) return
+    ! One pass over the elements at rest leaves their stable steps behind.
+    allocate (force(2, model%layout%n_local))
+    do i = 1, size(model%layout%tiles)
+      associate (tile => model%layout%tiles(i))
+        call add_tile_forces(model, tile, state%motion, 0.0_wp, state%elements, force)
+        if (needs_refinement(state%elements)) &
+          call refine_limits(model, tile, state%motion, 0.0_wp, state%elements)
+      end associate
+    end do
     limit = minval(state%elements%time_limit)
     dt = scaled_step(model, limit_with_ties(model, state, limit), state%time)
     if (.not. dt < limit) then
@@ -72,7 +81,11 @@ contains
     do i = 1, size(factor)
       if (.not. (share(i) > 0.0_wp .and. factor(i) > 0.0_wp)) cycle
       if (model%contacts(i)%penalty_unit == penalty_factor .and. factor(i) >= 1.0_wp) cycle
-      call scale_penalties(factor(i), state%contacts(i))
+      associate (memory => state%contacts(i))
+        memory%slave_penalty = factor(i)*memory%slave_penalty
+        memory%master_penalty = factor(i)*memory%master_penalty
+        memory%node_penalty = factor(i)*memory%node_penalty
+      end associate
       if (model%contacts(i)%penalty_unit == penalty_share) then
         call write_log(log, 'interface '//to_text(model%contacts(i)%id)//': penalty ' &
           //penalty_text(model%contacts(i), model, state%contacts(i))//', ' &
@@ -83,24 +96,6 @@ contains
       end if
     end do
   end subroutine set_automatic_penalties
-
-  !> Whether the stable step of all elements is asked for.
-  pure function seeks_penalties(model) result(seeks)
-    type(model_t), intent(in) :: model
-    logical :: seeks
-
-    seeks = any(sought_shares(model) > 0.0_wp)
-  end function seeks_penalties
-
-  !> Multiply all equivalents of a penalty.
-  pure subroutine scale_penalties(factor, memory)
-    real(wp), intent(in) :: factor
-    type(contact_state_t), intent(inout) :: memory
-
-    memory%slave_penalty = factor*memory%slave_penalty
-    memory%master_penalty = factor*memory%master_penalty
-    memory%node_penalty = factor*memory%node_penalty
-  end subroutine scale_penalties
 
   !> Interface `i` has less than the built-in penalty, and what does without: a warning where
   !> somebody has chosen the penalty.
@@ -173,22 +168,6 @@ contains
       merge(1.0_wp, 0.0_wp, is_tied(model%contacts)), bounds)
     limit = minval(closed_step(element_limit, bounds))
   end function limit_with_ties
-
-  !> One pass over the elements at rest, which leaves their stable steps behind.
-  subroutine find_element_limits(model, state)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    real(wp), allocatable :: force(:, :)
-    integer :: i
-
-    allocate (force(2, model%layout%n_local))
-    do i = 1, size(model%layout%tiles)
-      call add_tile_forces(model, model%layout%tiles(i), state%motion, 0.0_wp, state%elements, &
-        force)
-      if (needs_refinement(state%elements)) &
-        call refine_limits(model, model%layout%tiles(i), state%motion, 0.0_wp, state%elements)
-    end do
-  end subroutine find_element_limits
 
   !> Factors on the penalties in the memories: 0 where there is no room, 1 for given penalties.
   pure subroutine find_factors(model, state, steps, share, factor)

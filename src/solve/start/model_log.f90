@@ -1,17 +1,21 @@
 ! SPDX-License-Identifier: MIT
-!> What the log says of the model once its masses and first forces are there, as d3hsp does.
+!> What the log says of the model once its masses and first forces are there, as d3hsp does, and of
+!> mass scaling: added mass in all and part by part, and the end of a run by ENDMAS.
 module model_log_m
+  use block_state_m, only : block_state_t
   use curves_m, only : curve_value
+  use errors_m, only : error_t, raise, status_run
   use kinds_m, only : wp
   use layout_m, only : slot_part
-  use round_state_m, only : element_volume
   use log_m, only : log_t, write_log, warn, to_text
+  use mass_scaling_m, only : added_masses
   use model_m, only : model_t
-  use smallest_steps_m, only : find_smallest_steps
+  use element_mass_m, only : element_volume
+  use element_steps_m, only : find_smallest_steps
   use state_m, only : state_t
   implicit none
   private
-  public :: log_masses, log_smallest_steps, judge_damping
+  public :: log_masses, log_smallest_steps, judge_damping, log_added_mass, check_added_mass
 
   !> Elements of the list of smallest steps.
   integer, parameter :: n_listed = 10
@@ -121,5 +125,47 @@ contains
     call warn(log, text//'; nothing grows, but a smaller D or a smaller step is needed ' &
       //'to follow it')
   end subroutine judge_damping
+
+  !> Tell the added mass; an error where it is more than ENDMAS allows.
+  subroutine log_added_mass(model, elements, log, error)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    type(log_t), intent(inout) :: log
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: added(size(model%parts)), own(size(model%parts))
+    integer :: i
+
+    call added_masses(model, elements, added, own)
+    call write_log(log, 'mass scaling (DT2MS '//to_text(model%controls%mass_step) &
+      //'): added mass '//share_text(sum(added), sum(own)))
+    do i = 1, size(added)
+      if (abs(added(i)) > 0.0_wp) call write_log(log, 'part '//to_text(model%parts(i)%id) &
+        //': added mass '//share_text(added(i), own(i)))
+    end do
+    call check_added_mass(model, elements, error)
+  end subroutine log_added_mass
+
+  !> An amount and its share in words.
+  pure function share_text(added, own) result(text)
+    real(wp), intent(in) :: added, own
+    character(:), allocatable :: text
+
+    text = to_text(added)
+    if (own > 0.0_wp) text = text//' ('//to_text(100.0_wp*added/own)//' per cent)'
+  end function share_text
+
+  !> An error where the added mass is more than ENDMAS allows.
+  subroutine check_added_mass(model, elements, error)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: added(size(model%parts)), own(size(model%parts))
+
+    if (.not. model%controls%most_added > 0.0_wp) return
+    call added_masses(model, elements, added, own)
+    if (100.0_wp*sum(added) <= model%controls%most_added*sum(own)) return
+    call raise(error, 'mass scaling has added '//share_text(sum(added), sum(own)) &
+      //', more than the '//to_text(model%controls%most_added)//' per cent of ENDMAS', status_run)
+  end subroutine check_added_mass
 
 end module model_log_m

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Surfaces of interfaces follow the elements that leave the mesh.
 module outlines_m
-  use contact_inertia_m, only : weigh_contacts
+  use rigid_start_m, only : weigh_contacts
   use contacts_m, only : contact_t
   use erosion_state_m, only : stays
   use exposed_quads_m, only : find_exposed
@@ -13,17 +13,9 @@ module outlines_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: start_outlines, follow_outlines, resume_outlines
+  public :: follow_outlines, resume_outlines
 
 contains
-
-  !> At time zero: the surfaces of the deck.
-  subroutine start_outlines(model, state)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-
-    if (model%erodes) state%outlines = model%contacts
-  end subroutine start_outlines
 
   !> After elements have left: interfaces whose surfaces have lost some, or came to light, go on
   !> with what is left, in the order of the deck. Their springs that are not there any more are
@@ -37,7 +29,7 @@ contains
     real(wp) :: lost
     integer :: i
 
-    is_left = elements_left(model, state)
+    is_left = state%elements%erosion%status(model%layout%element_slot) == stays
     call expose_elements(model, is_left, state)
     do i = 1, size(state%outlines)
       if (.not. (loses(state%outlines(i)%slave) .or. loses(state%outlines(i)%master))) cycle
@@ -45,7 +37,7 @@ contains
       ! What is no node of the interface any more feels no force of it.
       state%force_special(:, state%contacts(i)%nodes) = 0.0_wp
       call take_left(model, i, is_left, state%outlines(i))
-      if (is_closed(state%outlines(i))) then
+      if (state%outlines(i)%birth >= huge(1.0_wp)) then
         call close_contact(state%outlines(i), model, state%motion, state%dt, state%contacts(i), &
           lost)
       else
@@ -87,15 +79,6 @@ contains
     state%elements%mass_shares(:, model%layout%element_slot) = shares
   end subroutine expose_elements
 
-  !> Which elements are there.
-  function elements_left(model, state) result(is_left)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    logical, allocatable :: is_left(:)
-
-    is_left = state%elements%erosion%status(model%layout%element_slot) == stays
-  end function elements_left
-
   !> The interface that is left of one of the deck; that of the deck, never born, where a side has
   !> nothing left.
   subroutine take_left(model, i, is_left, contact)
@@ -117,14 +100,6 @@ contains
     end if
   end subroutine take_left
 
-  !> Whether a side has nothing left.
-  pure function is_closed(contact)
-    type(contact_t), intent(in) :: contact
-    logical :: is_closed
-
-    is_closed = contact%birth >= huge(1.0_wp)
-  end function is_closed
-
   !> Before a state is read in which elements have left: interfaces get the shapes that they had.
   subroutine resume_outlines(model, state)
     type(model_t), intent(in) :: model
@@ -132,7 +107,7 @@ contains
     logical, allocatable :: is_left(:)
     integer :: i
 
-    is_left = elements_left(model, state)
+    is_left = state%elements%erosion%status(model%layout%element_slot) == stays
     if (all(is_left)) return
     call expose_elements(model, is_left, state)
     do i = 1, size(state%outlines)

@@ -5,27 +5,22 @@ module start_m
   use kinds_m, only : wp
   use behind_ties_m, only : hear_tie
   use automatic_penalty_m, only : set_automatic_penalties
-  use common_start_m, only : start_common
+  use rigid_start_m, only : start_common, weigh_contacts, start_rigids
   use constraints_m, only : fix_nodes, update_activity
-  use contact_inertia_m, only : weigh_contacts
   use element_log_m, only : log_elements
-  use element_start_m, only : start_elements, lump_mass
+  use element_mass_m, only : lump_mass
+  use element_start_m, only : start_elements
   use contact_log_m, only : log_softness
   use contacts_m, only : is_tied, n_told, told_as
-  use controls_m, only : is_asked
-  use cross_sections_m, only : n_cut
+  use controls_m, only : is_asked, group_nodes, n_cut
   use errors_m, only : error_t, raise, status_input
   use history_tables_m, only : table_nodfor
-  use inside_answers_m, only : answers_t
+  use others_memory_m, only : answers_t, others_t, known_nodes, known_slots
   use initial_values_m, only : start_motion
   use log_m, only : log_t, to_text
-  use mass_log_m, only : log_added_mass
+  use model_log_m, only : log_added_mass, log_masses
   use mass_scaling_m, only : scales_masses, start_mass_scaling
-  use model_log_m, only : log_masses
   use model_m, only : model_t
-  use others_memory_m, only : others_t, known_nodes, known_slots
-  use outlines_m, only : start_outlines
-  use rigid_start_m, only : start_rigids
   use state_m, only : state_t
   use stiffness_damping_m, only : start_retardation
   implicit none
@@ -96,7 +91,7 @@ contains
       allocate (state%quiet_since(size(model%controls%ends)), source=-1.0_wp)
     call start_contacts(model, log, state, error, answers)
     if (allocated(error)) return
-    call start_outlines(model, state)
+    if (model%erodes) state%outlines = model%contacts
     call weigh_contacts(model, state)
     if (present(others)) then
       do i = 1, size(state%contacts)
@@ -151,7 +146,7 @@ contains
   subroutine start_works(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    integer :: i, n
+    integer :: n
 
     associate (output => model%controls%output)
       if (allocated(output%boundaries%where)) then
@@ -162,10 +157,7 @@ contains
         allocate (state%cut_force(8, n_cut(output%cross_sections)), source=0.0_wp)
       if (.not. allocated(output%force_groups)) return
       if (.not. is_asked(output%histories(table_nodfor))) return
-      n = 0
-      do i = 1, size(output%force_groups)
-        n = n + size(output%force_groups(i)%nodes)
-      end do
+      n = size(group_nodes(output%force_groups))
       allocate (state%group_force(2, n), state%group_work(n), state%group_velocity(2, n), &
         source=0.0_wp)
     end associate

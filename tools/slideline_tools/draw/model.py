@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The model of a deck as the program understood it (`slideline check --json`): mesh, parts, sets,
-interfaces, conditions and loads.
+"""The model of a deck as the program understood it, from the state at time zero (`slideline check d=DIR`): mesh, parts,
+sets, interfaces, conditions and loads.
 
     model = check_deck("collision.k", "build/release/slideline")
     model.points, model.cells, model.interfaces[0].slave
@@ -12,19 +12,23 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
+import pathlib
 import subprocess
+import tempfile
 import typing
 
+import h5py
 import numpy as np
 
 from slideline_tools import UserError
 from slideline_tools.draw.surface import Surface
 from slideline_tools.names import counted
 from slideline_tools.program import find_program, not_run
+from slideline_tools.results import Results, read
 
 DIRECTIONS = {1: "x", 2: "y", 3: "turn about z"}
 QUANTITIES = {0: "velocity", 1: "acceleration", 2: "displacement"}
-#: what a picture does not show, by its name in the JSON
+#: what a picture does not show, by its table
 NOT_DRAWN = {"lumped_masses": "lumped masses", "skew_supports": "skewed supports",
              "common_motions": "nodes that move alike"}
 LONGEST = 120.0   # seconds that the program may take
@@ -125,34 +129,41 @@ class Arrows:
 
 
 class Model:
-    """The model that `slideline check --json` tells; all indices count from 0 in the order of the deck."""
+    """The model that `slideline check d=DIR` writes; all indices count from 0 in the order of the deck."""
 
-    def __init__(self, told: dict[str, typing.Any], warnings: typing.Iterable[str] = ()) -> None:
-        """`told`: the member `model` of the JSON; `warnings`: what the program said of the deck."""
-        self.title = told["title"]
-        self.is_round = told["axisymmetric"]
+    def __init__(self, start: Results, warnings: typing.Iterable[str] = ()) -> None:
+        """`start`: the file of the state at time zero; `warnings`: what the program said of the deck."""
+        with start.reading("the model") as stream:
+            told = {name: {column: values(array) for column, array in sorted(table.items(), key=order_of)}
+                    for name, table in stream["model"].items()}
+        self.title = told["deck"]["title"][0]
+        self.is_round = bool(told["deck"]["axisymmetric"][0])
         self.warnings = list(warnings)
-        self.node_ids = np.array(told["node_ids"], dtype=int)
-        self.points = np.stack([np.array(told[axis], dtype=float) for axis in ("x", "y")], axis=1)
+        self.node_ids = start.point_field("node_id")[0].astype(int)
+        self.points = start.points[0][:, :2]
+        self.velocity = start.point_field("velocity")[0][:, :2]
         self._order = np.argsort(self.node_ids, kind="stable")
-        self.cells = self.indices(told["element_nodes"]).reshape(-1, 4)
-        self.cell_parts = np.array(told["element_parts"], dtype=int)
-        self.curves = {one["id"]: np.array([one["x"], one["y"]], dtype=float).T for one in told["curves"]}
-        self.parts = self._parts(told)
-        self.node_sets = {one["id"]: NodeSet(one["id"], one["title"], self.indices(one["nodes"]))
-                          for one in told["node_sets"]}
-        self.interfaces = [Interface(one["id"], one["title"], one["type"], one["formulation"],
-                                     one["friction"], one["sliding_friction"],
-                                     *(Surface(self.indices(one[side]).reshape(-1, 2)) for side in ("slave", "master")))
-                           for one in told["interfaces"]]
-        self.walls = [Wall(one["id"], np.array(one["point"]), np.array(one["normal"]), one["friction"])
-                      for one in told.get("walls", ())]
-        self.history_nodes = self.indices(told["history_nodes"]).tolist()
+        self.cells = start.cells
+        self.cell_parts = start.cell_field("part_id")[0].astype(int)
+        curves = told.get("curves", {"curve": np.zeros(0), "x": np.zeros(0), "y": np.zeros(0)})
+        self.curves = {number: np.stack([curves["x"], curves["y"]], axis=1)[curves["curve"] == number]
+                       for number in np.unique(curves["curve"]).tolist()}
+        held = {row["part"]: row for row in rows(told, "rigid_bodies")}
+        self.parts = {row["id"]: self._part(row, held.get(row["id"])) for row in rows(told, "parts")}
+        self.node_sets = {row["id"]: NodeSet(row["id"], row["title"], self.indices(nodes)) for row, nodes in zip(
+            rows(told, "node_sets", "node"), pieces(told, "node_sets", "n_node"))}
+        self.interfaces = [Interface(row["id"], row["title"], row["type"], row["formulation"], row["friction"], row["sliding_friction"],
+                                     *(Surface(segments) for segments in np.split(
+                                         self.indices(nodes).reshape(-1, 2), [row["n_slave"]])))
+                           for row, nodes in zip(rows(told, "interfaces", "node"), pieces(told, "interfaces", "n_slave", "n_master"))]
+        self.walls = [Wall(row["id"], np.array([row["x"], row["y"]]), np.array([row["normal_x"], row["normal_y"]]), row["friction"])
+                      for row in rows(told, "walls")]
+        self.history_nodes = self.indices(told.get("history_nodes", {}).get("node", ())).tolist()
         self.fixed = np.zeros((len(self.points), 2), dtype=bool)
-        self.fixed[self.indices(told["fixed"]["node"]), np.array(told["fixed"]["direction"], dtype=int) - 1] = True
-        self.velocity = self._velocity(told)
+        for row in rows(told, "fixed"):
+            self.fixed[self.index(row["node"]), row["direction"] - 1] = True
         self.arrows = self._arrows(told)
-        self.not_drawn = [words for name, words in NOT_DRAWN.items() if told.get(name)]
+        self.not_drawn = [words for name, words in NOT_DRAWN.items() if name in told]
 
     def indices(self, nodes: typing.Sequence[int]) -> np.ndarray:
         """Indices of nodes by their numbers."""
@@ -179,29 +190,11 @@ class Model:
         ordinates = self.curves[curve][:, 1]
         return scale * float(ordinates[np.argmax(np.abs(ordinates))])
 
-    def _parts(self, told: dict) -> dict[int, Part]:
-        """Parts, and how those that are rigid are held."""
-        bodies = {one["part"]: one for one in told["rigid_bodies"]}
-        return {one["id"]: Part(one["id"], one["title"], one["section"], one["material"], one["law"],
-                                one["density"], one["young"], one["poisson"], int(np.sum(self.cell_parts == one["id"])), bool(body),
-                                (body.get("held_x", False), body.get("held_y", False)),
-                                body.get("held_turn", False))
-                for one in told["parts"] for body in [bodies.get(one["id"], {})]}
-
-    def _velocity(self, told: dict) -> np.ndarray:
-        """(n_node, 2) at the start: that of its nodes, and of bodies that have one of their own, as far as they are
-        free."""
-        velocity = np.zeros_like(self.points)
-        if "velocity_x" in told:
-            velocity = np.stack([told["velocity_x"], told["velocity_y"]], axis=1).astype(float)
-        for one in told["rigid_bodies"]:
-            if "velocity" in one:
-                nodes, part = self.part_nodes([one["part"]]), self.parts[one["part"]]
-                spin = 0.0 if part.turn_held else one["velocity"][2]
-                arm = self.points[nodes] - self.centre(part.id)
-                velocity[nodes] = (np.where(part.held, 0.0, one["velocity"][:2])
-                                   + spin * np.stack([-arm[:, 1], arm[:, 0]], axis=1))
-        return velocity
+    def _part(self, row: dict, held: dict | None) -> Part:
+        """One part, and how it is held where it is rigid."""
+        body = held or {"held_x": 0, "held_y": 0, "held_turn": 0}
+        return Part(**row, n_element=int(np.sum(self.cell_parts == row["id"])), is_rigid=held is not None,
+                    held=(bool(body["held_x"]), bool(body["held_y"])), turn_held=bool(body["held_turn"]))
 
     def _arrows(self, told: dict) -> list[Arrows]:
         """Prescribed motions and loads; those with one curve, factor and direction together."""
@@ -218,16 +211,15 @@ class Model:
                 places = (self.points[self.indices(members)] if column == "node"
                           else np.array([self.centre(part) for part in members]))
                 found.append(Arrows(kind, label, places, along(direction, size, len(places))))
-        pressures = told["pressures"]
-        edges = {**{name: pressures[name] for name in ("curve", "scale")},
-                 "edge": list(zip(pressures["first"], pressures["second"]))}
+        edges = dict(told.get("pressures", {"first": (), "second": ()}))
+        edges["edge"] = list(zip(edges.pop("first"), edges.pop("second")))
         for (curve, scale), pairs in groups(edges, "edge"):
             size = self.peak(curve, scale)
             segments = self.indices(np.ravel(pairs)).reshape(-1, 2)
             label = f"pressure on {counted(len(pairs), 'segment')}, curve {curve}, peak {size:.4g}"
             found.append(Arrows("pressure", label, self.points[segments].mean(axis=1),
                                 -size * Surface(segments).normals(self.points)))
-        for (direction, curve, scale), _ in groups(told["body_loads"]):
+        for (direction, curve, scale), _ in groups(told.get("body_loads", {})):
             size = -self.peak(curve, scale)  # bodies feel minus the base acceleration
             label = f"body load in {DIRECTIONS[direction]}, curve {curve}, acceleration {size:.4g}"
             middle = 0.5 * (self.points.min(axis=0) + self.points.max(axis=0))
@@ -238,6 +230,38 @@ class Model:
                      f"({counted(int(moving.sum()), 'node')})")
             found.append(Arrows("velocity", label, self.points[moving], self.velocity[moving]))
         return found
+
+
+#: the columns that tell motions and loads apart, in the order in which `_arrows` takes them
+ORDER = ("direction", "kind", "curve", "scale")
+
+
+def order_of(item: tuple[str, typing.Any]) -> int:
+    """Where a column stands among others."""
+    return ORDER.index(item[0]) if item[0] in ORDER else -1
+
+
+def values(array: h5py.Dataset) -> typing.Any:
+    """A column: numbers, or texts, of which it has a line each."""
+    if array.dtype.kind == "S":
+        return array[()].decode("utf-8", "replace").split("\n")[:-1]
+    return array[()]
+
+
+def rows(told: dict, table: str, *others: str) -> list[dict]:
+    """The rows of a table, by its columns but for some that have other lengths; none where there is no table."""
+    columns = {name: column if isinstance(column, list) else column.tolist() for name, column in told.get(table, {}).items()
+               if name not in others}
+    return [dict(zip(columns, row)) for row in zip(*columns.values())]
+
+
+def pieces(told: dict, table: str, *counts: str) -> list[np.ndarray]:
+    """The column `node` of a table, cut into the pieces of its rows: as many nodes as the column n_node says, or two for
+    each segment."""
+    if table not in told:
+        return []
+    each = sum(told[table][name] for name in counts) * (1 if counts == ("n_node",) else 2)
+    return np.split(told[table].get("node", np.zeros(0, dtype=int)), np.cumsum(each)[:-1])
 
 
 def groups(columns: dict[str, list], member: str = "") -> list[tuple[tuple, list]]:
@@ -258,23 +282,23 @@ def along(direction: int, size: float, count: int) -> np.ndarray:
 
 def check_deck(deck: str | os.PathLike, program: str | os.PathLike, overrides: typing.Sequence[str] = ()) -> Model:
     """The model of a deck. ModelError with the program's own messages where the deck is refused."""
-    command = [os.fspath(program), "check", f"i={os.fspath(deck)}", "--json", *overrides]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=LONGEST)
-        answer = json.loads(done.stdout)
-    except subprocess.TimeoutExpired:
-        raise ModelError(f"{deck}: the program took more than {LONGEST:.0f} s") from None
-    except OSError as problem:
-        raise ModelError(not_run(program, problem)) from problem
-    except ValueError:
-        raise ModelError(f"{program} tells no model of {deck}: {done.stderr.strip() or 'is it an older one?'}") from None
-    if "cases" in answer:
-        raise ModelError(f"{deck}: a picture is of one case (case=ID)")
-    if "model" not in answer:
-        raise ModelError(f"{deck} was refused by {program}:\n{done.stderr.strip()}")
-    # What can be read may still not start: that is told with the warnings.
-    return Model(answer["model"], [("" if one["severity"] == "warning" else "it would not run: ") + one["message"]
-                                   for one in answer["findings"]])
+    with tempfile.TemporaryDirectory() as folder:
+        command = [os.fspath(program), "check", f"i={os.fspath(deck)}", "--json", f"d={folder}", "jobid=model", *overrides]
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=LONGEST)
+            answer = json.loads(done.stdout)
+        except subprocess.TimeoutExpired:
+            raise ModelError(f"{deck}: the program took more than {LONGEST:.0f} s") from None
+        except OSError as problem:
+            raise ModelError(not_run(program, problem)) from problem
+        except ValueError:
+            raise ModelError(f"{program} tells no model of {deck}: {done.stderr.strip() or 'is it an older one?'}") from None
+        path = pathlib.Path(folder, "model.start.vtkhdf")
+        if not path.exists():
+            raise ModelError(f"{deck} was refused by {program}:\n{done.stderr.strip()}")
+        # What can be read may still not start: that is told with the warnings.
+        return Model(read(path), [("" if one["severity"] == "warning" else "it would not run: ") + one["message"]
+                                  for one in answer["findings"]])
 
 
 def model_of(prefix: str | os.PathLike) -> Model | None:

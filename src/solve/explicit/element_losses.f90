@@ -1,28 +1,30 @@
 ! SPDX-License-Identifier: MIT
-!> What elements that leave the mesh take along, and their nodes that nothing holds any more.
-module erosion_account_m
-  use controls_m, only : controls_t
+!> Elements that leave the mesh: what they take along, and their nodes that nothing holds any more.
+!> Points that fail: the log tells the first, then each tenfold of what was told, and all at the
+!> end. One thread counts the chunks once a cycle, in models whose points may fail.
+module element_losses_m
   use element_state_m, only : settle_erosion
+  use failed_points_m, only : count_points, first_failed
   use kinds_m, only : wp
+  use layout_m, only : slot_part
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
   use node_motion_m, only : leap_t, find_factors
   use state_m, only : state_t
-  use wall_motion_m, only : wall_work_ahead
+  use held_nodes_m, only : wall_work_ahead
   implicit none
   private
-  public :: settle_elements, release_nodes, note_least_step, report_erosion
+  public :: settle_elements, release_nodes, report_erosion, failure_watch_t, &
+    follow_failures, report_failures
+
+  !> What has been told.
+  type :: failure_watch_t
+    logical :: takes_up = .false.       !! the run goes on: what had failed before was told then
+    integer :: told = 0                 !! points
+    character(:), allocatable :: first  !! where and when the first one failed
+  end type failure_watch_t
 
 contains
-
-  !> The step below which ERODE takes elements: DTMIN times the first step, before TSSFAC.
-  subroutine note_least_step(controls, first_dt, state)
-    type(controls_t), intent(in) :: controls
-    real(wp), intent(in) :: first_dt
-    type(state_t), intent(inout) :: state
-
-    state%elements%erosion%least_step = controls%dt_floor*first_dt/controls%dt_scale
-  end subroutine note_least_step
 
   !> Elements that have left in this cycle, once all of its forces are known.
   subroutine settle_elements(model, state, log, freed)
@@ -50,7 +52,7 @@ contains
     type(state_t), intent(inout) :: state
     real(wp) :: before(2), after(2), half(2), keep(2), push(2)
     logical :: is_led(2)
-    integer :: i
+    integer :: i, k
 
     associate (took => state%elements%erosion%took)
       do i = 1, size(freed)
@@ -80,28 +82,21 @@ contains
         end associate
       end do
     end associate
-    if (allocated(model%conditions%common_motions)) call stop_empty_sets(model, state)
-  end subroutine release_nodes
-
-  !> Nodes that move alike and have no mass left stand still from here on: the half step ahead for
-  !> which their loads would have paid is not theirs any more.
-  subroutine stop_empty_sets(model, state)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    integer :: i, k
-
+    if (.not. allocated(model%conditions%common_motions)) return
+    ! Nodes that move alike and have no mass left stand still from here on: the half step ahead for
+    ! which their loads would have paid is not theirs any more.
     do i = 1, size(model%conditions%common_motions)
-      associate (set => model%conditions%common_motions(i))
+      associate (set => model%conditions%common_motions(i), took => state%elements%erosion%took(1))
         if (any(state%mass(set%nodes) > 0.0_wp)) cycle
         do k = 1, 2
           if (.not. set%along(k)) cycle
-          state%elements%erosion%took(1) = state%elements%erosion%took(1) - 0.5_wp*state%dt &
-            *state%motion(2 + k, set%nodes(1))*sum(state%force_special(k, set%nodes))
+          took = took - 0.5_wp*state%dt*state%motion(2 + k, set%nodes(1)) &
+            *sum(state%force_special(k, set%nodes))
           state%motion(2 + k, set%nodes) = 0.0_wp
         end do
       end associate
     end do
-  end subroutine stop_empty_sets
+  end subroutine release_nodes
 
   !> At the end of a run: how many elements have left, when first, and what they took along.
   subroutine report_erosion(model, state, log)
@@ -126,4 +121,56 @@ contains
     end associate
   end subroutine report_erosion
 
-end module erosion_account_m
+  !> Look at the cycle just done.
+  subroutine follow_failures(model, state, watch, log)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(failure_watch_t), intent(inout) :: watch
+    type(log_t), intent(inout) :: log
+    integer :: n, slot
+
+    n = sum(state%elements%n_failed)
+    if (watch%takes_up) then
+      watch%takes_up = .false.
+      watch%told = n
+      if (n > 0) watch%first = 'before the restart'
+    else if (watch%told == 0 .and. n > 0) then
+      watch%told = n
+      if (log%is_mute) return ! the first process alone knows the elements of all
+      slot = first_failed(model, state%elements)
+      watch%first = 'in element '//to_text(model%mesh%element_id(model%layout%slot_element(slot))) &
+        //' of part '//to_text(model%parts(slot_part(model%layout, slot))%id)//' at ' &
+        //present_text(state)
+      call write_log(log, 'points fail: the first '//watch%first)
+    else if (watch%told > 0 .and. n/10 >= watch%told) then
+      call write_log(log, 'points fail: '//to_text(n)//' of ' &
+        //to_text(count_points(model, state%elements))//' by '//present_text(state))
+      watch%told = n
+    end if
+  end subroutine follow_failures
+
+  !> The summary.
+  subroutine report_failures(model, state, watch, log)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(failure_watch_t), intent(in) :: watch
+    type(log_t), intent(inout) :: log
+
+    if (.not. allocated(state%elements%n_failed)) return
+    if (allocated(watch%first)) then
+      call write_log(log, 'failed points: '//to_text(sum(state%elements%n_failed))//' of ' &
+        //to_text(count_points(model, state%elements))//', the first '//watch%first)
+    else
+      call write_log(log, 'failed points: none')
+    end if
+  end subroutine report_failures
+
+  !> Cycle and time.
+  pure function present_text(state) result(text)
+    type(state_t), intent(in) :: state
+    character(:), allocatable :: text
+
+    text = 'cycle '//to_text(state%cycle)//', time '//to_text(state%time)
+  end function present_text
+
+end module element_losses_m

@@ -1,9 +1,11 @@
 ! SPDX-License-Identifier: MIT
-!> Rigid walls in the explicit driver: perfectly plastic impact of nodes. A node that would pass a
-!> wall in the step ahead gets the normal velocity that takes it to the wall (one behind it: none),
-!> and the wall the force that this takes at t(n). Tangentially the wall holds it back with what
-!> stops it, at most the coefficient of friction times that force.
-module wall_motion_m
+!> Special nodes that something holds which no inverse mass of x or y can express: skew supports,
+!> sets of nodes that move alike, and rigid walls, whose impact is perfectly plastic. A node that
+!> would pass a wall in the step ahead gets the normal velocity that takes it to the wall (one
+!> behind it: none), and the wall the force that this takes at t(n). Tangentially the wall holds it
+!> back with what stops it, at most the coefficient of friction times that force.
+module held_nodes_m
+  use common_motion_m, only : common_drive
   use kinds_m, only : wp
   use model_m, only : model_t
   use node_motion_m, only : leap_t, find_factors
@@ -12,7 +14,8 @@ module wall_motion_m
   use walls_m, only : wall_t, wall_distance, wall_tangent, friction_sticks
   implicit none
   private
-  public :: hold_nodes, count_walls, fill_walls, wall_work_ahead
+  public :: hold_skew_nodes, move_common, hold_nodes, count_walls, fill_walls, &
+    wall_work_ahead
 
   !> Rounds over the walls that one node meets (two in a corner settle at once where
   !> they are at right angles).
@@ -20,7 +23,73 @@ module wall_motion_m
 
 contains
 
-  !> Add the forces of all walls to one special node, whose other forces are known, before it moves.
+  !> Add the forces of skew supports to the special nodes first .. last, whose other forces are
+  !> known, before they move: v(n+1/2) has no part along the normal.
+  subroutine hold_skew_nodes(model, leap, first, last, state)
+    type(model_t), intent(in) :: model
+    type(leap_t), intent(in) :: leap
+    integer, intent(in) :: first, last
+    type(state_t), intent(inout) :: state
+    real(wp) :: half(2), keep(2), mobility(2), velocity(2), gain
+    integer :: i
+
+    do i = 1, size(model%conditions%skew_supports)
+      associate (node => model%conditions%skew_supports(i)%node, &
+        normal => model%conditions%skew_supports(i)%normal)
+        if (node < first .or. node > last) cycle
+        call find_factors(leap, state, node, half, keep)
+        mobility = half*state%inverse_mass(:, node)
+        velocity = keep*state%motion(3:4, node) + half*merge(leap%body, 0.0_wp, &
+          state%inverse_mass(:, node) > 0.0_wp) + mobility*(state%force_special(:, node) &
+          - state%internal_force(:, node))
+        gain = dot_product(normal**2, mobility)
+        if (gain > 0.0_wp) state%force_special(:, node) = state%force_special(:, node) &
+          - dot_product(normal, velocity)/gain*normal
+      end associate
+    end do
+  end subroutine hold_skew_nodes
+
+  !> Put sets of nodes that move alike where the sum of their forces takes them; they have moved as
+  !> nodes without force.
+  subroutine move_common(model, leap, damping, before, state)
+    type(model_t), intent(in) :: model
+    type(leap_t), intent(in) :: leap
+    real(wp), intent(in) :: damping(2)     !! D per direction
+    real(wp), intent(in) :: before(:, :)   !! (2, n_set) v(n-1/2)
+    type(state_t), intent(inout) :: state
+    real(wp) :: push, rate, next
+    integer :: i, k
+
+    do i = 1, size(model%conditions%common_motions)
+      associate (nodes => model%conditions%common_motions(i)%nodes)
+        do k = 1, 2
+          if (.not. model%conditions%common_motions(i)%along(k)) cycle
+          call common_drive(model, i, k, state, damping, push, rate)
+          next = ((1.0_wp - 0.5_wp*rate*leap%mean)*before(k, i) + leap%mean*push) &
+            /(1.0_wp + 0.5_wp*rate*leap%mean)
+          state%motion(k, nodes) = state%motion(k, nodes) + leap%dt*(next &
+            - state%motion(2 + k, nodes))
+          state%motion(2 + k, nodes) = next
+        end do
+      end associate
+    end do
+  end subroutine move_common
+
+  !> Add the forces of all walls to the special nodes first .. last, whose other forces are known,
+  !> before they move.
+  subroutine hold_nodes(model, leap, first, last, state)
+    type(model_t), intent(in) :: model
+    type(leap_t), intent(in) :: leap
+    integer, intent(in) :: first, last
+    type(state_t), intent(inout) :: state
+    integer :: node
+
+    do node = first, last
+      call hold_node(model, leap, node, state)
+    end do
+  end subroutine hold_nodes
+
+  !> One node.
   subroutine hold_node(model, leap, node, state)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
@@ -113,50 +182,52 @@ contains
       min(more, wall%friction*force - friction))
   end function missing_friction
 
-  !> The special nodes first .. last.
-  subroutine hold_nodes(model, leap, first, last, state)
-    type(model_t), intent(in) :: model
-    type(leap_t), intent(in) :: leap
-    integer, intent(in) :: first, last
-    type(state_t), intent(inout) :: state
-    integer :: node
-
-    do node = first, last
-      call hold_node(model, leap, node, state)
-    end do
-  end subroutine hold_nodes
-
   !> Impulse and work of the walls over the half steps before and after the instant. Together they
   !> do the work F h (v(n-1/2) + v(n+1/2))/2, which is the change of kinetic energy that F makes,
-  !> whatever the two steps are; it counts as external, but for that of friction.
-  subroutine count_walls(model, is_before, is_after, state)
+  !> whatever the two steps are; it counts as external, but for that of friction, which is part of
+  !> the energy account by itself.
+  subroutine count_walls(model, due, state)
     type(model_t), intent(in) :: model
-    logical, intent(in) :: is_before, is_after !! which half steps are due
+    logical, intent(in) :: due(2) !! the half steps before and after the instant
     type(state_t), intent(inout) :: state
-    real(wp) :: work, next, length
-    integer :: i, k
+    real(wp) :: work, length
+    integer :: i
 
     length = 0.0_wp
-    if (is_before) length = 0.5_wp*state%dt_before
-    if (is_after) length = length + 0.5_wp*state%dt
+    if (due(1)) length = 0.5_wp*state%dt_before
+    if (due(2)) length = length + 0.5_wp*state%dt
     do i = 1, size(state%walls)
       associate (wall => model%walls(i), memory => state%walls(i))
-        work = 0.0_wp
-        do k = 1, size(wall%nodes)
-          if (.not. memory%force(k) > 0.0_wp) cycle
-          if (is_before) work = work + memory%force(k)*0.5_wp*state%dt_before*memory%speed(k)
-          if (.not. is_after) cycle
-          next = dot_product(wall%normal, state%motion(3:4, wall%nodes(k)))
-          work = work + memory%force(k)*(0.25_wp*(state%dt_before + state%dt) &
-            *(memory%speed(k) + next) - 0.5_wp*state%dt_before*memory%speed(k))
-        end do
+        work = work_along(wall%normal, wall%nodes, memory%force, memory%speed)
         memory%impulse = memory%impulse + length*sum(memory%force)
         memory%work = memory%work + work
         state%external_work = state%external_work + work
+        if (size(memory%friction) == 0) cycle
+        work = work_along(wall_tangent(wall), wall%nodes, memory%friction, memory%slip_speed)
+        memory%dissipated = memory%dissipated - work
+        memory%work = memory%work + work
       end associate
-      if (size(state%walls(i)%friction) > 0) call count_friction(model%walls(i), i, is_before, &
-        is_after, state)
     end do
+
+  contains
+
+    !> Of forces on the nodes of a wall, from their velocities before.
+    pure function work_along(direction, nodes, force, speed) result(work)
+      real(wp), intent(in) :: direction(2)
+      integer, intent(in) :: nodes(:)
+      real(wp), intent(in) :: force(:), speed(:)
+      real(wp) :: work
+      integer :: k
+
+      work = 0.0_wp
+      do k = 1, size(nodes)
+        if (.not. abs(force(k)) > 0.0_wp) cycle
+        if (due(1)) work = work + force(k)*0.5_wp*state%dt_before*speed(k)
+        if (due(2)) work = work + force(k)*way_ahead(state, speed(k), &
+          dot_product(direction, state%motion(3:4, nodes(k))))
+      end do
+    end function work_along
+
   end subroutine count_walls
 
   !> What of that work on one node belongs to the half step after the instant, friction included.
@@ -172,47 +243,22 @@ contains
       k = model%walls(i)%place(node)
       if (k == 0) cycle
       associate (wall => model%walls(i), memory => state%walls(i))
-        if (memory%force(k) > 0.0_wp) work = work + memory%force(k)*ahead(memory%speed(k), &
-          dot_product(wall%normal, state%motion(3:4, node)))
-        if (size(memory%friction) > 0) work = work + memory%friction(k) &
-          *ahead(memory%slip_speed(k), dot_product(wall_tangent(wall), state%motion(3:4, node)))
+        if (memory%force(k) > 0.0_wp) work = work + memory%force(k)*way_ahead(state, &
+          memory%speed(k), dot_product(wall%normal, state%motion(3:4, node)))
+        if (size(memory%friction) > 0) work = work + memory%friction(k)*way_ahead(state, &
+          memory%slip_speed(k), dot_product(wall_tangent(wall), state%motion(3:4, node)))
       end associate
     end do
-
-  contains
-
-    !> Way that counts for the half step ahead.
-    pure function ahead(speed, next) result(way)
-      real(wp), intent(in) :: speed, next !! v(n-1/2), v(n+1/2)
-      real(wp) :: way
-
-      way = 0.25_wp*(state%dt_before + state%dt)*(speed + next) - 0.5_wp*state%dt_before*speed
-    end function ahead
-
   end function wall_work_ahead
 
-  !> The same work of the friction of one wall, which is part of the energy account by itself.
-  subroutine count_friction(wall, i_wall, is_before, is_after, state)
-    type(wall_t), intent(in) :: wall
-    integer, intent(in) :: i_wall
-    logical, intent(in) :: is_before, is_after !! which half steps are due
-    type(state_t), intent(inout) :: state
-    real(wp) :: work, next
-    integer :: k
+  !> Way of a node that counts for the half step ahead.
+  pure function way_ahead(state, speed, next) result(way)
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: speed, next !! v(n-1/2), v(n+1/2)
+    real(wp) :: way
 
-    work = 0.0_wp
-    associate (memory => state%walls(i_wall))
-      do k = 1, size(wall%nodes)
-        if (is_before) work = work + memory%friction(k)*0.5_wp*state%dt_before*memory%slip_speed(k)
-        if (.not. is_after) cycle
-        next = dot_product(wall_tangent(wall), state%motion(3:4, wall%nodes(k)))
-        work = work + memory%friction(k)*(0.25_wp*(state%dt_before + state%dt) &
-          *(memory%slip_speed(k) + next) - 0.5_wp*state%dt_before*memory%slip_speed(k))
-      end do
-      memory%dissipated = memory%dissipated - work
-      memory%work = memory%work + work
-    end associate
-  end subroutine count_friction
+    way = 0.25_wp*(state%dt_before + state%dt)*(speed + next) - 0.5_wp*state%dt_before*speed
+  end function way_ahead
 
   !> What the output says of the walls.
   subroutine fill_walls(model, state, results)
@@ -234,4 +280,4 @@ contains
     end do
   end subroutine fill_walls
 
-end module wall_motion_m
+end module held_nodes_m

@@ -1,0 +1,311 @@
+! SPDX-License-Identifier: MIT
+!> What the laws of an interface remember: friction, overlaps that a curve lets grow, ties, the
+!> energy that springs may return, whether they return it, and how good the contact is. Tractions
+!> stand at the places where pressure is formed. A place is a local node; with n virtual nodes to a
+!> segment n (k - 1) + q is the q-th of the slave segment that starts at node k. Nodes keep their
+!> numbers when runs of segments change; they are local to the interface.
+module law_state_m
+  use kinds_m, only : wp
+  use visitor_m, only : visited_t, visitor_t, whole
+  implicit none
+  private
+  public :: friction_memory_t, allocate_friction, is_open, sticks, slips, is_held, is_broken, &
+    interference_memory_t, allocate_interference, tie_memory_t, allocate_ties, energy_limit_t, &
+    allocate_limit, contact_watch_t, contact_change_t, has_made, has_lost, contact_estimate_t
+
+  !> What a place is doing.
+  integer, parameter :: is_open = 0, sticks = 1, slips = 2
+  !> What a tie makes of it.
+  integer, parameter :: is_held = 3, is_broken = 4
+
+  !> Arrays are allocated for interfaces with friction alone.
+  type, extends(visited_t) :: friction_memory_t
+    real(wp), allocatable :: traction(:)  !! (n_place) of the last call, before the energy law,
+                                          !! N/m^2 (N/m for type 1); 0 where open
+    integer, allocatable :: state(:)      !! (n_place) one of the constants above
+    real(wp), allocatable :: slip(:)      !! (n_place) sum of all steps in contact, m
+    real(wp), allocatable :: force(:, :)  !! (2, n_slave + n_master) the part of the contact forces
+                                          !! that friction has, N/m
+    real(wp) :: work = 0.0_wp             !! minus the accumulated work of these forces, J/m
+    real(wp) :: stored = 0.0_wp           !! the part of it that tangential springs hold now, J/m
+  contains
+    procedure :: visit => visit_friction
+  end type friction_memory_t
+
+  !> The array is allocated for interfaces with such a curve alone.
+  type, extends(visited_t) :: interference_memory_t
+    real(wp), allocatable :: depth(:)  !! (n_place) overlap at time zero, m; below 0: that of a
+                                       !! master node which was no place then
+    real(wp) :: left = 1.0_wp          !! the part of it that does not act yet, 1 - s
+    real(wp) :: moment = 0.0_wp        !! sum of p w depth of the last call, J/m
+    real(wp) :: work = 0.0_wp          !! of the curve so far, J/m
+  contains
+    procedure :: visit => visit_interference
+  end type interference_memory_t
+
+  !> Arrays are allocated for tied interfaces alone.
+  type, extends(visited_t) :: tie_memory_t
+    integer, allocatable :: first(:)     !! (n_spring + 1) first point of each, then the end
+    integer, allocatable :: owner(:, :)  !! (2, n_spring) nodes of the segment that n and t turn
+                                         !! with
+    real(wp), allocatable :: side(:)     !! (n_spring) 1: its outward normal points from master to
+                                         !! slave, -1: the other way
+    real(wp), allocatable :: lag(:, :)   !! (2, n_spring) from the master place to the slave place
+                                         !! in the reference geometry, m
+    real(wp), allocatable :: offset(:, :) !! (2, n_spring) parts of it along n and t there, m
+    real(wp), allocatable :: traction(:) !! (n_slave) where pressure is formed at slave nodes, N/m^2
+    integer, allocatable :: state(:)     !! (n_place) of each place of friction: open, held
+                                         !! or broken; this and the next two only where ties break
+    integer, allocatable :: place(:)     !! (n_spring) of each spring; of types 6 and 7, whose
+                                         !! places are slave nodes, 0
+    real(wp), allocatable :: to_stress(:) !! (n_spring) stress of the bond over pressure: 1 but for
+                                         !! types 1 and 3
+    real(wp) :: spent = 0.0_wp           !! what springs held that have broken, less what contact
+                                         !! behind them took over, J/m
+    real(wp) :: first_break = 0.0_wp     !! its time, s
+    real(wp) :: last_break = 0.0_wp      !! likewise
+  contains
+    procedure :: visit => visit_ties
+  end type tie_memory_t
+
+  !> Arrays are allocated in explicit runs alone; without them nothing is limited.
+  type, extends(visited_t) :: energy_limit_t
+    real(wp) :: coming_step = 0.0_wp  !! step that leads away from this cycle, s; 0: no limit
+    real(wp), allocatable :: inverse_mass(:, :) !! (2, n_slave + n_master) 1/m that a force of
+                                      !! contact meets, 0 where the motion is held, m/kg
+    real(wp), allocatable :: velocity(:, :) !! (2, n_slave + n_master) of the last call with force
+    real(wp) :: recoil = 0.0_wp       !! sum of F.F/m of the last call, N^2/kg
+    real(wp) :: credit = 0.0_wp       !! what springs held that were born or caught loaded, J/m
+    real(wp) :: lent = 0.0_wp         !! the part of it of those that were caught, J/m
+    real(wp) :: loan = 0.0_wp         !! most that may be lent, J/m
+    real(wp) :: largest = 0.0_wp      !! largest energy of the springs so far, credit included, J/m
+    integer :: n_loaded = 0           !! cycles with force
+    integer :: n_limited = 0          !! cycles whose forces were scaled down
+    real(wp) :: least_factor = 1.0_wp !! of all cycles
+    real(wp) :: least_time = 0.0_wp   !! of that factor, s
+    integer :: recent = 0             !! rises with limited cycles, falls with others
+    logical :: warned = .false.       !! the log has told that it is limited again and again
+  contains
+    procedure :: visit => visit_limit
+  end type energy_limit_t
+
+  !> Signs of the balance, as places in arrays of two.
+  integer, parameter :: has_made = 1, has_lost = 2
+  character(*), parameter :: no_node = 'a number that no node has'
+
+  !> The largest change of the balance of one sign between two looks, and whether the log has told
+  !> of that sign.
+  type, extends(visited_t) :: contact_change_t
+    real(wp) :: amount = 0.0_wp   !! J/m
+    integer :: node = 0           !! most loaded then, by place in the mesh; 0: none yet
+    real(wp) :: place(2) = 0.0_wp !! where that node was, m
+    real(wp) :: time = 0.0_wp     !! of the second of the two looks, s
+    logical :: warned = .false.
+  contains
+    procedure :: visit => visit_change
+  end type contact_change_t
+
+  !> Filled when the springs are looked at, now and then.
+  type, extends(visited_t) :: contact_watch_t
+    logical :: is_due = .false.       !! the next call looks at the springs
+    logical :: has_looked = .false.   !! the last call did, or found that contact has opened
+    real(wp) :: stored = 0.0_wp       !! potential of the springs then, J/m
+    real(wp) :: load = 0.0_wp         !! largest force of a point then, N/m
+    integer :: node = 0               !! slave node next to it, by place in the mesh; 0: none yet
+    real(wp) :: balance = 0.0_wp      !! energy of the interface minus what its springs stored then:
+                                      !! below 0 made, above lost
+    type(contact_change_t) :: changes(2) !! by sign
+  contains
+    procedure :: visit => visit_watch
+  end type contact_watch_t
+
+  !> Sums and extremes; nothing of time zero, where elements have no stress yet.
+  type, extends(visited_t) :: contact_estimate_t
+    integer :: cycle = 0               !! of the last instant
+    integer :: stride = 0              !! cycles between that one and the one before
+    integer :: n = 0                   !! instants
+    real(wp) :: misfit = 0.0_wp        !! sum of (p - row stress)^2 a
+    real(wp) :: load = 0.0_wp          !! sum of p^2 a
+    real(wp) :: still = 0.0_wp         !! as `misfit`, less the inertia of the rows
+    real(wp) :: heaviest = 0.0_wp      !! largest p^2 a of an instant
+    real(wp) :: at_heaviest = 0.0_wp   !! estimate then
+    real(wp) :: springs = 0.0_wp       !! sum of what springs store, J/m
+    real(wp) :: rows = 0.0_wp          !! sum of the elastic energy of the rows behind, J/m
+    real(wp) :: force(2) = 0.0_wp      !! on the slave at the last instant, N/m
+    real(wp) :: former(2) = 0.0_wp     !! at the one before
+    real(wp) :: jumps = 0.0_wp         !! sum of squares of second differences of that
+                                       !! force, as of equal strides
+    real(wp) :: forces = 0.0_wp        !! sum of its squares over the same instants
+    real(wp) :: least_margin = huge(1.0_wp) !! smallest of stable step over step
+    real(wp) :: softness = 0.0_wp      !! of springs, over that of a row of elements on either side
+    real(wp) :: stored = 0.0_wp        !! largest energy of the springs, J/m
+    real(wp) :: bodies = 0.0_wp        !! largest internal energy of the bodies on both sides, J/m
+    real(wp) :: penetration = 0.0_wp   !! deepest one of curved places, their flattening
+                                       !! included, m
+    real(wp) :: facet_error = 0.0_wp   !! by which facets put gaps off there, m
+    real(wp) :: arc_height = 0.0_wp    !! of the highest arc over its segment there, m
+    real(wp) :: arc_curvature = 0.0_wp !! of that arc, 1/m
+    integer :: arc_side = 0            !! it is on: 1 slave, 2 master
+  contains
+    procedure :: visit => visit_estimate
+  end type contact_estimate_t
+
+contains
+
+  !> Allocate for so many places and nodes; all places are open.
+  pure subroutine allocate_friction(friction, n_place, n_node)
+    type(friction_memory_t), intent(inout) :: friction
+    integer, intent(in) :: n_place, n_node
+
+    allocate (friction%traction(n_place), friction%slip(n_place), friction%force(2, n_node), &
+      source=0.0_wp)
+    allocate (friction%state(n_place), source=is_open)
+  end subroutine allocate_friction
+
+  !> Its components.
+  subroutine visit_friction(self, visitor)
+    class(friction_memory_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('traction', self%traction)
+    call visitor%visit('state', self%state, whole, is_open, slips, 'numbers that mean nothing')
+    call visitor%visit('slip', self%slip)
+    call visitor%visit('force', self%force)
+    call visitor%visit('work', self%work)
+    call visitor%visit('stored', self%stored)
+  end subroutine visit_friction
+
+  !> Allocate for so many places of slave nodes or spots, and of master nodes behind them.
+  pure subroutine allocate_interference(interference, n_slave, n_master)
+    type(interference_memory_t), intent(inout) :: interference
+    integer, intent(in) :: n_slave, n_master
+
+    allocate (interference%depth(n_slave + n_master), source=0.0_wp)
+    interference%depth(n_slave + 1:) = -1.0_wp
+  end subroutine allocate_interference
+
+  !> Its components.
+  subroutine visit_interference(self, visitor)
+    class(interference_memory_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('depth', self%depth)
+    call visitor%visit('left', self%left)
+    call visitor%visit('moment', self%moment)
+    call visitor%visit('work', self%work)
+  end subroutine visit_interference
+
+  !> Allocate for so many springs.
+  pure subroutine allocate_ties(ties, n_spring)
+    type(tie_memory_t), intent(inout) :: ties
+    integer, intent(in) :: n_spring
+
+    allocate (ties%first(n_spring + 1), ties%owner(2, n_spring), source=1)
+    allocate (ties%side(n_spring), ties%lag(2, n_spring), ties%offset(2, n_spring), source=0.0_wp)
+  end subroutine allocate_ties
+
+  !> Its components.
+  subroutine visit_ties(self, visitor)
+    class(tie_memory_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('first', self%first)
+    call visitor%visit('owner', self%owner)
+    call visitor%visit('side', self%side)
+    call visitor%visit('lag', self%lag)
+    call visitor%visit('offset', self%offset)
+    call visitor%visit('traction', self%traction)
+    call visitor%visit('state', self%state)
+    call visitor%visit('place', self%place)
+    call visitor%visit('to_stress', self%to_stress)
+    call visitor%visit('spent', self%spent)
+    call visitor%visit('first_break', self%first_break)
+    call visitor%visit('last_break', self%last_break)
+  end subroutine visit_ties
+
+  !> Allocate for `n` nodes; held until their masses are known.
+  pure subroutine allocate_limit(limit, n)
+    type(energy_limit_t), intent(inout) :: limit
+    integer, intent(in) :: n
+
+    allocate (limit%inverse_mass(2, n), limit%velocity(2, n), source=0.0_wp)
+  end subroutine allocate_limit
+
+  !> Its components.
+  subroutine visit_limit(self, visitor)
+    class(energy_limit_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('coming_step', self%coming_step)
+    call visitor%visit('inverse_mass', self%inverse_mass)
+    call visitor%visit('velocity', self%velocity)
+    call visitor%visit('recoil', self%recoil)
+    call visitor%visit('credit', self%credit)
+    call visitor%visit('lent', self%lent)
+    call visitor%visit('loan', self%loan)
+    call visitor%visit('largest', self%largest)
+    call visitor%visit('n_loaded', self%n_loaded)
+    call visitor%visit('n_limited', self%n_limited)
+    call visitor%visit('least_factor', self%least_factor)
+    call visitor%visit('least_time', self%least_time)
+    call visitor%visit('recent', self%recent)
+    call visitor%visit('warned', self%warned)
+  end subroutine visit_limit
+
+  !> Its components.
+  subroutine visit_change(self, visitor)
+    class(contact_change_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('amount', self%amount)
+    call visitor%visit('node', self%node, 0, visitor%n_node, no_node)
+    call visitor%fixed('place', self%place)
+    call visitor%visit('time', self%time)
+    call visitor%visit('warned', self%warned)
+  end subroutine visit_change
+
+  !> Its components.
+  subroutine visit_watch(self, visitor)
+    class(contact_watch_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('is_due', self%is_due)
+    call visitor%visit('has_looked', self%has_looked)
+    call visitor%visit('stored', self%stored)
+    call visitor%visit('load', self%load)
+    call visitor%visit('node', self%node, 0, visitor%n_node, no_node)
+    call visitor%visit('balance', self%balance)
+    call visitor%each('changes', self%changes)
+  end subroutine visit_watch
+
+  !> Its components.
+  subroutine visit_estimate(self, visitor)
+    class(contact_estimate_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('cycle', self%cycle)
+    call visitor%visit('stride', self%stride)
+    call visitor%visit('n', self%n)
+    call visitor%visit('misfit', self%misfit)
+    call visitor%visit('load', self%load)
+    call visitor%visit('still', self%still)
+    call visitor%visit('heaviest', self%heaviest)
+    call visitor%visit('at_heaviest', self%at_heaviest)
+    call visitor%visit('springs', self%springs)
+    call visitor%visit('rows', self%rows)
+    call visitor%fixed('force', self%force)
+    call visitor%fixed('former', self%former)
+    call visitor%visit('jumps', self%jumps)
+    call visitor%visit('forces', self%forces)
+    call visitor%visit('least_margin', self%least_margin)
+    call visitor%visit('softness', self%softness)
+    call visitor%visit('stored', self%stored)
+    call visitor%visit('bodies', self%bodies)
+    call visitor%visit('penetration', self%penetration, 0.0_wp, 'a number below zero')
+    call visitor%visit('facet_error', self%facet_error)
+    call visitor%visit('arc_height', self%arc_height)
+    call visitor%visit('arc_curvature', self%arc_curvature)
+    call visitor%visit('arc_side', self%arc_side)
+  end subroutine visit_estimate
+
+end module law_state_m
