@@ -13,7 +13,8 @@ module deck_m
   use deck_report_m, only : emit_warnings, emit_errors
   use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, a_curve, &
     a_system, a_node_set, a_part_set, a_segment_set, a_shell_set
-  use deck_lines_m, only : deck_t, line_error, line_warning, shown_text, file_paths
+  use deck_lines_m, only : deck_t, line_error, line_warning, shown_text, file_paths, &
+    flag_blank
   use deck_reader_m, only : read_blocks, cut_deck
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
@@ -21,9 +22,7 @@ module deck_m
   use deck_overrides_m, only : read_words, edit_controls, check_words
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
   use deck_raw_m, only : raw_t, start_raw, trim_lists
-  use deck_control_m, only : read_control, check_step
-  use deck_empty_m, only : check_empty
-  use deck_output_m, only : read_database, read_transducer
+  use deck_control_m, only : read_control, read_database, check_step
   use deck_contact_m, only : read_contact
   use deck_friction_m, only : warn_of_unused
   use deck_resolve_m, only : resolve_model
@@ -91,12 +90,10 @@ contains
     character(:), allocatable, intent(out) :: effective
     type(error_t), allocatable, intent(out) :: error
     type(raw_t), allocatable :: raw
-    integer, allocatable :: known(:)
     integer :: i, pass
-    logical :: is_empty
 
     allocate (raw, deck%words(0))
-    call know_blocks(deck, raw, known)
+    call know_blocks(deck, raw)
     if (deck%n_block == 0) then
       call emit_errors(deck%report, request%path, error)
       return
@@ -104,14 +101,11 @@ contains
     if (allocated(request%overrides)) call read_words(request%overrides, deck)
     call read_parameters(deck)
     call edit_controls(deck)
-    known = [known, (known_honoured, i=size(known) + 1, deck%n_block)]
     call start_raw(deck, raw)
     raw%controls%title = ''
     do i = 1, deck%n_block
-      if (known(i) /= known_honoured) cycle
-      call check_empty(deck, i, is_empty)
-      if (is_empty) call note_lost(deck, i, raw)
-      deck%blocks(i)%is_honoured = .not. is_empty
+      if (deck%blocks(i)%is_honoured) call check_empty(deck, i)
+      if (deck%blocks(i)%is_empty) call note_lost(deck, i, raw)
     end do
     ! Interfaces come last: friction of *CONTROL_CONTACT is known then.
     do pass = 1, 2
@@ -143,32 +137,31 @@ contains
 
   !> Look every keyword up: canonical names, options taken off; unknown and refused ones are errors,
   !> those without effect one warning each.
-  subroutine know_blocks(deck, raw, known)
+  subroutine know_blocks(deck, raw)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(inout) :: raw
-    integer, allocatable, intent(out) :: known(:)
     character(:), allocatable :: reason
     character(100) :: name
     logical :: has_beams     !! beams are bodies, not the edges of a mesh
-    integer :: i
+    integer :: i, known
 
-    allocate (known(deck%n_block))
     has_beams = any([(index(deck%blocks(i)%name, 'SECTION_BEAM') == 1, i=1, deck%n_block)])
     if (deck%n_block == 0) call line_error(deck, 0, 'holds no keyword (a line that starts with *)')
     do i = 1, deck%n_block
       associate (block => deck%blocks(i))
         if (block%name == 'COMMENT') then
           name = block%name
-          known(i) = known_honoured
+          known = known_honoured
         else
-          call find_keyword(block%given, name, known(i), block%titled, reason)
+          call find_keyword(block%given, name, known, block%titled, reason)
         end if
         if (has_beams .and. name == 'ELEMENT_BEAM') then
-          known(i) = known_refused
+          known = known_refused
           reason = 'with beams as bodies (*SECTION_BEAM) this element is'
         end if
-        select case (known(i))
+        select case (known)
         case (known_honoured)
+          block%is_honoured = .true.
           block%name = name(:len(block%name))
           select case (block%name)
           case ('KEYWORD', 'END', 'COMMENT', 'INCLUDE', 'INCLUDE_PATH')
@@ -195,6 +188,31 @@ contains
       end associate
     end do
   end subroutine know_blocks
+
+  !> A block without its first card, which is an error and not read. A blank line is a card where a
+  !> keyword has one card, and none where it has rows.
+  subroutine check_empty(deck, i_block)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(cursor_t) :: cursor
+    character(:), allocatable :: fields
+    integer :: k
+
+    associate (block => deck%blocks(i_block))
+      if (block%dropped) return
+      call open_cursor(deck, i_block, cursor)
+      if (index(cursor%options, 'o') > 0) return
+      if (any(iand(deck%flags(block%first:block%last), flag_blank) == 0)) return
+      if (block%last >= block%first .and. index(cursor%options, 'r') == 0) return
+      fields = ''
+      do k = 1, cursor%specs(1)%n
+        if (cursor%specs(1)%names(k) /= '-') fields = fields//', '//trim(cursor%specs(1)%names(k))
+      end do
+      call line_error(deck, block%keyword, 'has no card; expected one with '//fields(3:))
+      block%is_honoured = .false.
+      block%is_empty = .true.
+    end associate
+  end subroutine check_empty
 
   !> What a name that is not known may have been meant for, for a message.
   function meant(given) result(text)
@@ -229,60 +247,31 @@ contains
     end do
   end subroutine note_lost
 
-  !> Read one block by its keyword.
+  !> Read one block by its family. What is not named here is read when the model is made.
   subroutine read_block(deck, i, kinds, raw)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i
     type(contact_kind_t), intent(in) :: kinds(:)
     type(raw_t), intent(inout) :: raw
-
-    select case (deck%blocks(i)%name)
-    case ('TITLE')
-      call read_title(deck, i, raw)
-    case default
-      call read_family(deck, i, kinds, raw)
-    end select
-  end subroutine read_block
-
-  !> Keywords whose family says how they are read.
-  subroutine read_family(deck, i, kinds, raw)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i
-    type(contact_kind_t), intent(in) :: kinds(:)
-    type(raw_t), intent(inout) :: raw
-    integer :: n
-
-    n = scan(deck%blocks(i)%name, '_')
-    select case (deck%blocks(i)%name(:max(n, 1)))
-    case ('CONTROL_')
-      call read_control(deck, i, raw)
-    case ('DATABASE_')
-      associate (name => deck%blocks(i)%name)
-        if (all([index(name, '_HISTORY'), index(name, '_NODAL'), index(name, '_CROSS')] == 0)) &
-          call read_database(deck, i, raw)
-      end associate
-    case ('CONTACT_')
-      if (deck%blocks(i)%name == 'CONTACT_2D_FORCE_TRANSDUCER') then
-        call read_transducer(deck, i, raw)
-      else
-        call read_contact(deck, i, kinds, raw)
-      end if
-    end select
-  end subroutine read_family
-
-  !> *TITLE: the first line that is not blank.
-  subroutine read_title(deck, i, raw)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i
-    type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
     character(:), allocatable :: text
     logical :: found
 
-    call open_cursor(deck, i, cursor)
-    call row_comes(deck, cursor, found)
-    call next_text(deck, cursor, text)
-    raw%controls%title = trim(adjustl(shown_text(text)))
-  end subroutine read_title
+    associate (name => deck%blocks(i)%name)
+      if (name == 'TITLE') then
+        call open_cursor(deck, i, cursor)
+        call row_comes(deck, cursor, found)
+        call next_text(deck, cursor, text)
+        raw%controls%title = trim(adjustl(shown_text(text)))
+      else if (index(name, 'CONTROL_') == 1) then
+        call read_control(deck, i, raw)
+      else if (index(name, 'DATABASE_') == 1) then
+        if (all([index(name, '_HISTORY'), index(name, '_NODAL'), index(name, '_CROSS')] == 0)) &
+          call read_database(deck, i, raw)
+      else if (index(name, 'CONTACT_') == 1) then
+        call read_contact(deck, i, kinds, raw)
+      end if
+    end associate
+  end subroutine read_block
 
 end module deck_m

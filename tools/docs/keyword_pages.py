@@ -62,6 +62,7 @@ def read_schema():
     for line in (line for name in re.findall(r":: (table_\w+)\(\*\)", source) for line in table_lines(name, source)):
         if not line.startswith(" "):
             rows, card = found.setdefault(line.split()[0], []), 0
+            rows += found[line.partition("=")[2]] if "=" in line else []
             continue
         card, column = card + 1, 1
         for word in line.split():

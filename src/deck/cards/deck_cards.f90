@@ -25,6 +25,7 @@ module deck_cards_m
     integer :: line = 1           !! next line
     integer :: last = 0           !! last line of the block
     integer :: n_card = 0         !! cards that the keyword has
+    character(60) :: options = '' !! of the keyword (`deck_schema_m`)
     character(27) :: head = ''    !! beginning of the keywords whose rows are read
     type(card_spec_t) :: specs(max_card)
   end type cursor_t
@@ -41,12 +42,17 @@ contains
     type(deck_t), intent(in) :: deck
     integer, intent(in) :: i_block
     type(cursor_t), intent(out) :: cursor
+    character(160) :: cards(max_card)
+    integer :: k
 
     cursor%block = i_block
     cursor%source = deck%blocks(i_block)%source
     cursor%line = deck%blocks(i_block)%first
     cursor%last = deck%blocks(i_block)%last
-    call get_specs(deck, i_block, cursor%specs, cursor%n_card)
+    call keyword_cards(deck%blocks(i_block)%name, cards, cursor%n_card, cursor%options)
+    do k = 1, cursor%n_card
+      call make_spec(cards(k), k, deck%blocks(i_block)%layout, cursor%specs(k))
+    end do
   end subroutine open_cursor
 
   !> Start at card 1 of a block, behind its title.
@@ -72,21 +78,6 @@ contains
       k = field_number(spec%names(:spec%n), name)
     end associate
   end function find_field
-
-  !> The cards of a block's keyword in its layout.
-  subroutine get_specs(deck, i_block, specs, n_card)
-    type(deck_t), intent(in) :: deck
-    integer, intent(in) :: i_block
-    type(card_spec_t), intent(out) :: specs(max_card)
-    integer, intent(out) :: n_card
-    character(160) :: cards(max_card)
-    integer :: k
-
-    call keyword_cards(deck%blocks(i_block)%name, cards, n_card)
-    do k = 1, n_card
-      call make_spec(cards(k), k, deck%blocks(i_block)%layout, specs(k))
-    end do
-  end subroutine get_specs
 
   !> Card number `number`: the next line, blank or not; all defaults when the block has ended.
   subroutine next_card(deck, cursor, number, card)
@@ -277,13 +268,13 @@ contains
     type(deck_t), intent(inout) :: deck
     type(place_t), intent(in) :: place
     character(*), intent(in) :: message
-    type(card_spec_t) :: specs(max_card)
+    type(cursor_t) :: cursor
     type(card_t) :: card
-    integer :: n_card, i_block, k
+    integer :: i_block, k
 
     i_block = block_of_line(deck, place%line)
-    call get_specs(deck, i_block, specs, n_card)
-    associate (spec => specs(place%card))
+    call open_cursor(deck, i_block, cursor)
+    associate (spec => cursor%specs(place%card))
       k = place_field(spec, place)
       if (len(given_by(deck, place%line, k)) > 0) then
         call line_warning(deck, 0, trim(spec%names(k))//message, given_by(deck, place%line, k) &
@@ -333,12 +324,12 @@ contains
     type(deck_t), intent(inout) :: deck
     type(place_t), intent(in) :: place
     character(*), intent(in) :: message
-    type(card_spec_t) :: specs(max_card)
-    integer :: n_card, i_block
+    type(cursor_t) :: cursor
+    integer :: i_block
 
     i_block = block_of_line(deck, place%line)
-    call get_specs(deck, i_block, specs, n_card)
-    call place_error(deck, specs(place%card), place, deck%blocks(i_block)%source, message)
+    call open_cursor(deck, i_block, cursor)
+    call place_error(deck, cursor%specs(place%card), place, deck%blocks(i_block)%source, message)
   end subroutine reject_field
 
 end module deck_cards_m

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> *CONTROL_ cards, and *TERMINATION_: what ends a run before its end time.
+!> *CONTROL_ cards, and the *DATABASE_ cards that say how often files are written.
 module deck_control_m
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -9,16 +9,16 @@ module deck_control_m
   use deck_lines_m, only : deck_t, line_warning, given_by
   use deck_fields_m, only : card_t, field_text
   use deck_card_specs_m, only : field_number
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field, &
-    warn_of_field, next_row
-  use deck_values_m, only : integer_of, real_of, place_of, is_blank
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field, warn_of_field
+  use deck_values_m, only : integer_of, real_of, place_of, is_blank, is_bad
   use deck_implicit_m, only : take_implicit, take_dynamics, take_solution, take_automatic
-  use deck_raw_m, only : raw_t
+  use deck_raw_m, only : raw_t, history_t, output_plot
+  use history_tables_m, only : table_of_keyword
   use deck_friction_m, only : take_default_friction
   use deck_part_m, only : hourglass_form, hourglass_coefficient
   implicit none
   private
-  public :: read_control, check_step
+  public :: read_control, read_database, check_step
 
 contains
 
@@ -203,5 +203,59 @@ contains
     end do
     if (all(values > 0.0_wp)) call set_force(values, raw%controls%units)
   end subroutine take_units
+
+  !> One *DATABASE_ keyword with an interval.
+  subroutine read_database(deck, i_block, raw)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(raw_t), intent(inout) :: raw
+    type(cursor_t) :: cursor
+    type(card_t) :: card, rest
+    type(history_t) :: history
+    character(4) :: curve
+    integer :: file, k
+
+    call open_cursor(deck, i_block, cursor)
+    call next_card(deck, cursor, 1, card)
+    do k = 2, cursor%n_card
+      call next_card(deck, cursor, k, rest)
+    end do
+    call check_rest(deck, cursor)
+    select case (deck%blocks(i_block)%name)
+    case ('DATABASE_BINARY_D3PLOT')
+      file = output_plot
+    case ('DATABASE_BINARY_D3DUMP')
+      call take_cycles(deck, card, raw%controls%output%dump_cycles)
+      return
+    case ('DATABASE_BINARY_RUNRSF')
+      call take_cycles(deck, card, raw%controls%output%running_cycles)
+      return
+    case default
+      file = table_of_keyword(deck%blocks(i_block)%name)
+    end select
+    curve = merge('LCDT', 'LCUR', file == output_plot)
+    history%dt = real_of(card, 'DT')
+    history%curve = integer_of(card, curve)
+    history%place = place_of(card, curve)
+    if (file == output_plot) then
+      history%n_state = max(integer_of(card, 'NPLTC'), 0)
+    else
+      history%is_text = integer_of(card, 'BINARY') /= 2
+      history%is_binout = integer_of(card, 'BINARY') >= 2
+    end if
+    raw%outputs(file) = history
+  end subroutine read_database
+
+  !> Cycles between two restart files.
+  subroutine take_cycles(deck, card, cycles)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    integer, intent(out) :: cycles
+
+    cycles = 0
+    if (.not. is_bad(card, 'CYCL')) cycles = nint(real_of(card, 'CYCL'))
+    if (abs(real_of(card, 'CYCL') - cycles) > 0.0_wp) call report_field(deck, card, 'CYCL', &
+      'is not a whole number of cycles')
+  end subroutine take_cycles
 
 end module deck_control_m

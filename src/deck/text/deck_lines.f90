@@ -50,6 +50,7 @@ module deck_lines_m
     logical :: titled = .false.          !! _TITLE or _ID: a text line comes first
     logical :: dropped = .false.         !! not part of the effective deck
     logical :: is_honoured = .false.     !! its cards are read
+    logical :: is_empty = .false.        !! it lacks the card that it needs
   end type block_t
 
   !> A field of a card, for messages after the card has been left.
