@@ -13,15 +13,11 @@ module deck_supports_m
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, an_element, a_part, a_curve, a_node_set, a_system
   use deck_lines_m, only : deck_t, place_t, line_warning, line_error
-  use deck_values_m, only : integer_of, real_of, has_field, take_life, find_id
+  use deck_values_m, only : integer_of, real_of, has_field, take_life, find_id, along_axes
   implicit none
   private
   public :: read_supports, read_motions, read_common_motions, card_nodes, mark_axis, mark_massive
 
-  !> Directions of the codes TC and DOF: 0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz.
-  logical, parameter :: along_axes(2, 0:7) = reshape([.false., .false., .true., .false., .false., &
-    .true., .false., .false., .true., .true., .false., .true., .true., .false., .true., .true.], &
-    [2, 8])
   !> Why a rigid body of an axisymmetric deck does not go where it is told to.
   character(*), parameter, public :: across_axis = 'asks a rigid body of an axisymmetric deck ' &
     //'(ELFORM 15) to move in r or to turn; it moves along the axis alone'
@@ -88,7 +84,7 @@ contains
     is_free = .not. mark_massive(deck, model)
     allocate (fixed(2, model%mesh%n_node), source=.false.)
     do i = 1, model%mesh%n_node
-      if (codes(i) >= 0 .and. codes(i) <= 7) fixed(:, i) = along_axes(:, codes(i))
+      if (codes(i) >= 0 .and. codes(i) <= 7) fixed(:, i) = along_axes(:2, codes(i))
       if (owner(i) > 0 .and. any(fixed(:, i))) call reject_field(deck, &
         place_t(deck%maps(a_node)%lines(i), 1, 'TC'), ': node '//follows(model, i, owner(i)) &
         //'CON1 and CON2 of *MAT_RIGID hold the body')
@@ -117,7 +113,10 @@ contains
       end if
     end do
     where (mark_axis(model)) fixed(1, :) = .true.
-    call list_fixed(fixed, model)
+    associate (conditions => model%conditions, n => model%mesh%n_node)
+      conditions%fixed_nodes = pack(spread([(i, i=1, n)], 1, 2), fixed)
+      conditions%fixed_directions = pack(spread([1, 2], 2, n), fixed)
+    end associate
   end subroutine read_supports
 
   !> Fix nodes along the axes of a coordinate system. Axes along x and y, and both of any two, are
@@ -191,18 +190,6 @@ contains
     text = to_text(model%mesh%node_id(node))//' belongs to rigid part ' &
       //to_text(model%parts(model%rigids(body)%part)%id)//' and follows it; '
   end function follows
-
-  !> Fixed pairs of node and direction as lists.
-  pure subroutine list_fixed(fixed, model)
-    logical, intent(in) :: fixed(:, :)
-    type(model_t), intent(inout) :: model
-    integer :: i, k
-
-    associate (conditions => model%conditions)
-      conditions%fixed_nodes = pack(spread([(i, i=1, size(fixed, 2))], 1, 2), fixed)
-      conditions%fixed_directions = pack(spread([(k, k=1, 2)], 2, size(fixed, 2)), fixed)
-    end associate
-  end subroutine list_fixed
 
   !> *BOUNDARY_PRESCRIBED_MOTION_: of nodes and of rigid bodies.
   subroutine read_motions(deck, owner, fixed, model)
@@ -377,7 +364,7 @@ contains
       if (model%controls%implicit%is_on) call line_error(deck, card%line, &
         '*CONSTRAINED_NODE_SET is a constraint that the implicit method does not have')
       call card_nodes(deck, card, model, common%nodes)
-      common%along = along_axes(:, integer_of(card, 'DOF'))
+      common%along = along_axes(:2, integer_of(card, 'DOF'))
       if (.not. any(common%along) .or. size(common%nodes) == 0) cycle
       call check_common(deck, card, model, common, meshed, is_rigid, taken)
       if (any(card%bad)) cycle
