@@ -13,7 +13,6 @@ module deck_m
   use deck_report_m, only : emit_warnings, emit_errors
   use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, a_curve, &
     a_system, a_node_set, a_part_set, a_segment_set, a_shell_set
-  use deck_maps_m, only : lose
   use deck_lines_m, only : deck_t, line_error, line_warning, shown_text, file_paths, &
     flag_blank
   use deck_reader_m, only : read_blocks, cut_deck
@@ -30,6 +29,7 @@ module deck_m
   use deck_effective_m, only : forget_places, write_effective
   use deck_echo_m, only : echo_model
   use text_m, only : upper_case
+  use deck_values_m, only : lose
   implicit none
   private
   public :: deck_request_t, read_deck, interpret_deck

@@ -10,8 +10,7 @@ module deck_ends_m
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, a_part
   use deck_lines_m, only : deck_t, blocks_of
-  use deck_maps_m, only : find_id
-  use deck_values_m, only : integer_of, real_of, is_blank, has_field
+  use deck_values_m, only : integer_of, real_of, is_blank, has_field, find_id
   implicit none
   private
   public :: read_ends

@@ -11,8 +11,7 @@ module deck_eos_m
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_material, an_eos
   use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
-  use deck_maps_m, only : map_kind, lose, find_id
-  use deck_values_m, only : integer_of, real_of, reals_of, is_bad
+  use deck_values_m, only : integer_of, real_of, reals_of, define, map_defined, find_id
   implicit none
   private
   public :: read_equations, take_equation, settle_pressures
@@ -25,20 +24,17 @@ contains
     type(eos_t), allocatable, intent(out) :: equations(:)
     type(cursor_t) :: cursor
     type(card_t) :: card, start
-    integer, allocatable :: blocks(:), lines(:)
+    integer, allocatable :: blocks(:)
     integer :: i, n
 
     blocks = blocks_of(deck, 'EOS_')
-    allocate (equations(size(blocks)), lines(size(blocks)))
-    n = 0
+    allocate (equations(size(blocks)))
     do i = 1, size(blocks)
       call first_card(deck, blocks(i), cursor, card)
       call next_card(deck, cursor, 2, start)
       call check_rest(deck, cursor)
-      if (is_bad(card, 'EOSID')) call lose(deck, [an_eos])
-      if (is_bad(card, 'EOSID')) cycle
-      n = n + 1
-      lines(n) = card%line
+      call define(deck, an_eos, card, 'EOSID', n)
+      if (n == 0) cycle
       associate (eos => equations(n))
         eos%id = integer_of(card, 'EOSID')
         if (deck%blocks(blocks(i))%name == 'EOS_GRUNEISEN') then
@@ -55,8 +51,8 @@ contains
         end if
       end associate
     end do
-    equations = equations(:n)
-    call map_kind(deck, an_eos, equations%id, lines(:n), 'EOSID')
+    equations = equations(:deck%maps(an_eos)%n)
+    call map_defined(deck, an_eos, 'EOSID')
   end subroutine read_equations
 
   !> EOSID of a part: its material gets the equation of state. A material whose parts name different

@@ -13,8 +13,7 @@ module deck_hardening_m
   use deck_curves_m, only : table_t
   use deck_ids_m, only : a_curve, a_table, index_of
   use deck_johnson_cook_m, only : take_failure, take_cutoff
-  use deck_maps_m, only : find_id
-  use deck_values_m, only : integer_of, real_of, is_bad
+  use deck_values_m, only : integer_of, real_of, is_bad, find_id
   implicit none
   private
   public :: take_piecewise, take_hydro, check_tangent_modulus, plastic_modulus
@@ -69,9 +68,11 @@ contains
     material%needs_eos = .true.
     call take_failure(card, 'FS', material)
     call take_cutoff(card, material)
-    do k = 1, 4
-      if (k < 3) call next_card(deck, cursor, 1 + k, strains(k))
-      if (k > 2) call next_card(deck, cursor, 1 + k, stresses(k - 2))
+    do k = 1, 2
+      call next_card(deck, cursor, 1 + k, strains(k))
+    end do
+    do k = 1, 2
+      call next_card(deck, cursor, 3 + k, stresses(k))
     end do
     if (any(abs([(strains(k)%r(:8), stresses(k)%r(:8), k=1, 2)]) > 0.0_wp)) then
       call take_points(deck, card, strains, stresses, material)

@@ -12,10 +12,9 @@ module deck_loads_m
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, a_part, a_curve, a_segment_set, a_system
   use deck_lines_m, only : deck_t, place_t, blocks_of, line_warning
-  use deck_maps_m, only : find_id
   use deck_sets_m, only : check_edge
   use deck_supports_m, only : card_nodes, mark_axis, mark_massive, across_axis
-  use deck_values_m, only : integer_of, real_of, has_field
+  use deck_values_m, only : integer_of, real_of, has_field, find_id
   implicit none
   private
   public :: read_nodal_loads, read_pressures, settle_pressures, read_body_loads, read_masses, &

@@ -14,8 +14,7 @@ module deck_material_m
   use deck_ids_m, only : a_material, a_curve
   use deck_johnson_cook_m, only : take_johnson_cook, take_simplified_johnson_cook, take_failure, &
     take_cutoff
-  use deck_maps_m, only : map_kind, lose, find_id
-  use deck_values_m, only : integer_of, real_of, is_bad, has_field
+  use deck_values_m, only : integer_of, real_of, is_bad, has_field, define, map_defined, find_id
   use eos_m, only : eos_t, eos_by_law
   use rubbers_m, only : mooney_rivlin, blatz_ko, blatz_ko_poisson
   implicit none
@@ -41,12 +40,11 @@ contains
     type(material_t) :: material, unset
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer, allocatable :: blocks(:), lines(:)
+    integer, allocatable :: blocks(:)
     integer :: i, n
 
     blocks = blocks_of(deck, 'MAT_')
-    allocate (materials(size(blocks)), lines(size(blocks)))
-    n = 0
+    allocate (materials(size(blocks)))
     do i = 1, size(blocks)
       if (deck%blocks(blocks(i))%name == 'MAT_ADD_EROSION') cycle
       call first_card(deck, blocks(i), cursor, card)
@@ -81,14 +79,11 @@ contains
         call take_rigid(deck, cursor, material)
       end select
       call check_rest(deck, cursor)
-      if (is_bad(card, 'MID')) call lose(deck, [a_material])
-      if (is_bad(card, 'MID')) cycle
-      n = n + 1
-      materials(n) = material
-      lines(n) = card%line
+      call define(deck, a_material, card, 'MID', n)
+      if (n > 0) materials(n) = material
     end do
-    model%materials = materials(:n)
-    call map_kind(deck, a_material, model%materials%id, lines(:n), 'MID')
+    model%materials = materials(:deck%maps(a_material)%n)
+    call map_defined(deck, a_material, 'MID')
   end subroutine read_materials
 
   !> Number, density, and moduli from G or from E and PR, where the card has them.

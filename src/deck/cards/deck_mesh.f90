@@ -11,7 +11,7 @@ module deck_mesh_m
   use deck_card_specs_m, only : field_number
   use deck_cards_m, only : cursor_t, next_of, rows_of, report_field, reject_field
   use deck_ids_m, only : a_node, an_element, a_part
-  use deck_maps_m, only : map_kind, lose, find_id
+  use deck_values_m, only : define, map_defined, lose, find_id
   implicit none
   private
   public :: read_mesh
@@ -57,32 +57,26 @@ contains
     integer, allocatable, intent(out) :: codes(:)
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer, allocatable :: ids(:), lines(:)
     real(wp), allocatable :: coordinates(:, :)
-    integer :: n, id, x, y, z, code
+    integer :: n, x, y, z, code
     real(wp) :: plane
     logical :: found, is_flat
 
     n = count_rows(deck, 'NODE')
-    allocate (ids(n), lines(n), codes(n), coordinates(2, n))
-    n = 0
+    allocate (codes(n), coordinates(2, n))
     is_flat = .true.
     call rows_of('NODE', cursor)
     do
       call next_of(deck, cursor, card, found)
       if (.not. found) exit
-      if (n == 0) then
-        id = field_number(card%names, 'NID')
+      if (deck%maps(a_node)%n == 0) then
         x = field_number(card%names, 'X')
         y = field_number(card%names, 'Y')
         z = field_number(card%names, 'Z')
         code = field_number(card%names, 'TC')
       end if
-      if (card%bad(id)) call lose(deck, [a_node])
-      if (card%bad(id)) cycle
-      n = n + 1
-      ids(n) = card%i(id)
-      lines(n) = card%line
+      call define(deck, a_node, card, 'NID', n)
+      if (n == 0) cycle
       codes(n) = card%i(code)
       coordinates(1, n) = card%r(x)
       coordinates(2, n) = card%r(y)
@@ -93,15 +87,17 @@ contains
           'is not the z of the first node: the mesh must lie in one plane z = constant')
       end if
     end do
+    call map_defined(deck, a_node, 'NID')
+    n = deck%maps(a_node)%n
     mesh%n_node = n
-    mesh%node_id = ids(:n)
+    call move_alloc(deck%maps(a_node)%ids, mesh%node_id)
     codes = codes(:n)
     mesh%coordinates = coordinates(:, :n)
-    call map_kind(deck, a_node, mesh%node_id, lines(:n), 'NID')
     if (n == 0) then
       if (.not. deck%maps(a_node)%lost) call line_error(deck, 0, 'the deck has no nodes (*NODE)')
     else if (is_flat .and. abs(plane) > 0.0_wp) then
-      call line_warning(deck, lines(1), 'z', 'z is the same for all nodes and is ignored')
+      call line_warning(deck, deck%maps(a_node)%lines(1), 'z', &
+        'z is the same for all nodes and is ignored')
     end if
   end subroutine read_nodes
 
@@ -122,27 +118,23 @@ contains
     type(mesh_t), intent(inout) :: mesh
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer, allocatable :: ids(:), lines(:), parts(:), nodes(:, :)
-    integer :: n, k, id, part, first
+    integer, allocatable :: parts(:), nodes(:, :)
+    integer :: n, k, part, first
     logical :: found
 
     n = count_rows(deck, 'ELEMENT_SHELL')
-    allocate (ids(n), lines(n), parts(n), nodes(4, n))
-    n = 0
+    allocate (parts(n), nodes(4, n))
     call rows_of('ELEMENT_SHELL', cursor)
     do
       call next_of(deck, cursor, card, found)
       if (.not. found) exit
-      if (n == 0) then
-        id = field_number(card%names, 'EID')
+      if (deck%maps(an_element)%n == 0) then
         part = field_number(card%names, 'PID')
         first = field_number(card%names, 'N1')
       end if
       if (any(card%bad)) call lose(deck, [an_element])
       if (any(card%bad)) cycle
-      n = n + 1
-      ids(n) = card%i(id)
-      lines(n) = card%line
+      call define(deck, an_element, card, 'EID', n)
       call find_id(deck, a_part, card, part, parts(n))
       do k = 1, 3
         call find_id(deck, a_node, card, first + k - 1, nodes(k, n))
@@ -151,12 +143,13 @@ contains
       if (all(card%i(first + 3) /= [0, card%i(first + 2)])) &
         call find_id(deck, a_node, card, first + 3, nodes(4, n))
     end do
+    call map_defined(deck, an_element, 'EID')
+    n = deck%maps(an_element)%n
     mesh%n_element = n
-    mesh%element_id = ids(:n)
+    call move_alloc(deck%maps(an_element)%ids, mesh%element_id)
     mesh%element_part = parts(:n)
-    if (n == size(ids)) call move_alloc(nodes, mesh%element_nodes)
-    if (n < size(ids)) mesh%element_nodes = nodes(:, :n)
-    call map_kind(deck, an_element, mesh%element_id, lines(:n), 'EID')
+    if (n == size(parts)) call move_alloc(nodes, mesh%element_nodes)
+    if (n < size(parts)) mesh%element_nodes = nodes(:, :n)
     if (n == 0 .and. .not. deck%maps(an_element)%lost) call line_error(deck, 0, &
       'the deck has no elements (*ELEMENT_SHELL)')
   end subroutine read_elements

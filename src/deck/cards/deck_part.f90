@@ -15,8 +15,7 @@ module deck_part_m
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
     next_of, rows_of, row_comes, report_field, reject_field, find_field
-  use deck_maps_m, only : map_kind, lose, find_id
-  use deck_values_m, only : integer_of, real_of, is_blank, is_bad
+  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, define, map_defined, find_id
   implicit none
   private
   public :: read_parts, read_sections, hourglass_form, hourglass_coefficient
@@ -34,7 +33,7 @@ contains
     type(part_t) :: part
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer, allocatable :: blocks(:), lines(:), taken(:)
+    integer, allocatable :: blocks(:), taken(:)
     integer :: i, k, n
     logical :: found
 
@@ -42,8 +41,7 @@ contains
     taken = spread(-1, 1, size(model%materials))
     blocks = blocks_of(deck, 'PART')
     n = sum(deck%blocks(blocks)%last - deck%blocks(blocks)%first + 1)
-    allocate (parts(n), lines(n))
-    n = 0
+    allocate (parts(n))
     do i = 1, size(blocks)
       call open_cursor(deck, blocks(i), cursor)
       do
@@ -56,10 +54,8 @@ contains
           call line_error(deck, cursor%line - 1, 'a heading without the card of its part after it')
           exit
         end if
-        if (is_bad(card, 'PID')) then
-          call lose(deck, [a_part])
-          cycle
-        end if
+        call define(deck, a_part, card, 'PID', n)
+        if (n == 0) cycle
         part%id = integer_of(card, 'PID')
         call find_id(deck, a_section, card, 'SECID', part%section)
         call find_id(deck, a_material, card, 'MID', part%material)
@@ -70,13 +66,11 @@ contains
           call find_id(deck, an_hourglass, card, 'HGID', k)
           if (k > 0) part%hourglass = hourglasses(k)
         end if
-        n = n + 1
         parts(n) = part
-        lines(n) = card%line
       end do
     end do
-    model%parts = parts(:n)
-    call map_kind(deck, a_part, model%parts%id, lines(:n), 'PID')
+    model%parts = parts(:deck%maps(a_part)%n)
+    call map_defined(deck, a_part, 'PID')
     call settle_form(deck, model)
     call settle_points(deck, model)
   end subroutine read_parts
@@ -108,12 +102,12 @@ contains
     type(section_t) :: section
     type(cursor_t) :: cursor
     type(card_t) :: card, thickness
-    integer, allocatable :: blocks(:), lines(:)
-    integer :: i
+    integer, allocatable :: blocks(:)
+    integer :: i, n
     logical :: found
 
     blocks = blocks_of(deck, 'SECTION_SHELL')
-    allocate (model%sections(0), lines(0))
+    allocate (model%sections(0))
     do i = 1, size(blocks)
       call open_cursor(deck, blocks(i), cursor)
       found = .true.
@@ -129,13 +123,11 @@ contains
         section%element_form = merge(form_full, form_one_point, section%is_full)
         if (section%is_round) section%element_form = merge(form_round_full, form_round_one_point, &
           section%is_full)
-        if (is_bad(card, 'SECID')) call lose(deck, [a_section])
-        if (is_bad(card, 'SECID')) cycle
-        model%sections = [model%sections, section]
-        lines = [lines, card%line]
+        call define(deck, a_section, card, 'SECID', n)
+        if (n > 0) model%sections = [model%sections, section]
       end do
     end do
-    call map_kind(deck, a_section, model%sections%id, lines, 'SECID')
+    call map_defined(deck, a_section, 'SECID')
   end subroutine read_sections
 
   !> ELFORM.
@@ -166,10 +158,10 @@ contains
     type(hourglass_t) :: hourglass
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer, allocatable :: lines(:)
+    integer :: n
     logical :: found
 
-    allocate (hourglasses(0), lines(0))
+    allocate (hourglasses(0))
     call rows_of('HOURGLASS', cursor)
     do
       call next_of(deck, cursor, card, found)
@@ -182,12 +174,10 @@ contains
       hourglass%linear = default%linear
       if (.not. is_blank(card, 'Q1')) hourglass%quadratic = real_of(card, 'Q1')
       if (.not. is_blank(card, 'Q2')) hourglass%linear = real_of(card, 'Q2')
-      if (is_bad(card, 'HGID')) call lose(deck, [an_hourglass])
-      if (is_bad(card, 'HGID')) cycle
-      hourglasses = [hourglasses, hourglass]
-      lines = [lines, card%line]
+      call define(deck, an_hourglass, card, 'HGID', n)
+      if (n > 0) hourglasses = [hourglasses, hourglass]
     end do
-    call map_kind(deck, an_hourglass, hourglasses%id, lines, 'HGID')
+    call map_defined(deck, an_hourglass, 'HGID')
   end subroutine read_hourglasses
 
   !> The form in the field of a name.

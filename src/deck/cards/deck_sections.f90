@@ -9,9 +9,8 @@ module deck_sections_m
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node_set, a_shell_set
   use deck_lines_m, only : deck_t, blocks_of
-  use deck_maps_m, only : find_id, refuse_again
   use deck_sets_m, only : keep_first
-  use deck_values_m, only : integer_of
+  use deck_values_m, only : integer_of, find_id, refuse_again
   implicit none
   private
   public :: read_cross_sections

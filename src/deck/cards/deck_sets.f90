@@ -16,8 +16,7 @@ module deck_sets_m
     rows_of, report_field
   use deck_ids_m, only : ids_between, kind_names, a_node, an_element, a_part, a_node_set, &
     a_part_set, a_segment_set, a_shell_set
-  use deck_maps_m, only : map_kind, lose, find_id
-  use deck_values_m, only : integer_of, is_bad
+  use deck_values_m, only : integer_of, is_bad, map_kind, lose, find_id
   implicit none
   private
   public :: read_sets, read_histories, keep_first, check_edge

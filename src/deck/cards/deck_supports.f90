@@ -13,8 +13,7 @@ module deck_supports_m
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, an_element, a_part, a_curve, a_node_set, a_system
   use deck_lines_m, only : deck_t, place_t, line_warning, line_error
-  use deck_maps_m, only : find_id
-  use deck_values_m, only : integer_of, real_of, has_field, take_life
+  use deck_values_m, only : integer_of, real_of, has_field, take_life, find_id
   implicit none
   private
   public :: read_supports, read_motions, read_common_motions, card_nodes, mark_axis, mark_massive
@@ -261,7 +260,7 @@ contains
     type(model_t), intent(in) :: model
     integer, intent(in) :: lines(:)      !! of the card of each motion
     logical, intent(in) :: fixed(:, :)   !! (2, n_node)
-    integer :: last(2, model%mesh%n_node), before(size(lines)), i, j
+    integer :: last(2, model%mesh%n_node), before(size(lines)), i, j, told
     logical :: is_massive(model%mesh%n_node), is_skew(model%mesh%n_node)
     character(:), allocatable :: message
 
@@ -270,15 +269,14 @@ contains
     if (allocated(model%conditions%skew_supports)) &
       is_skew(model%conditions%skew_supports%node) = .true.
     last = 0
+    told = 0
     message = ''
     do i = 1, size(lines)
       associate (motion => model%conditions%motions(i))
         ! Motions of one degree of freedom are chained backwards.
         before(i) = last(motion%direction, motion%node)
         last(motion%direction, motion%node) = i
-        if (i > 1) then
-          if (len(message) > 0 .and. lines(i) == lines(i - 1)) cycle
-        end if
+        if (len(message) > 0 .and. lines(i) == told) cycle
         message = ''
         j = before(i)
         do while (j > 0 .and. len(message) == 0)
@@ -297,7 +295,8 @@ contains
           'lies on the axis (x = 0) of an axisymmetric deck and can not move in r'
         if (.not. is_massive(motion%node)) message = &
           'belongs to no element, so it has no mass to be moved'
-        if (len(message) > 0) call reject_field(deck, place_t(lines(i), 1, field=1), ': node ' &
+        told = lines(i)
+        if (len(message) > 0) call reject_field(deck, place_t(told, 1, field=1), ': node ' &
           //to_text(model%mesh%node_id(motion%node))//' '//message)
       end associate
     end do

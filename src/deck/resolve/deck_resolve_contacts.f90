@@ -19,7 +19,7 @@ module deck_resolve_contacts_m
   use element_finder_m, only : body_view_t, view_body
   use initial_overlap_m, only : overlap_t, find_crossing, find_overlap
   use deck_ids_m, only : a_curve
-  use deck_maps_m, only : resolve_id
+  use deck_values_m, only : resolve_id
   implicit none
   private
   public :: resolve_contacts, check_common_nodes, resolve_interference, check_implicit_penalties

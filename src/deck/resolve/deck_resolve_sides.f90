@@ -12,8 +12,8 @@ module deck_resolve_sides_m
   use deck_ids_m, only : a_node_set, a_part, a_part_set, a_segment_set, a_shell_set
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_cards_m, only : reject_field
-  use deck_maps_m, only : resolve_id
   use deck_raw_m, only : raw_t, raw_contact_t
+  use deck_values_m, only : resolve_id
   implicit none
   private
   public :: find_side, require_side, resolve_side, side_none, side_parts, side_nodes, side_segments
