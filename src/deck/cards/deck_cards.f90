@@ -8,8 +8,7 @@ module deck_cards_m
   use deck_lines_m, only : deck_t, place_t, line_text, line_warning, replace_line, flag_blank, &
     flag_parameter, block_of_line, given_by, format_long, max_field
   use deck_card_specs_m, only : card_spec_t, make_spec, field_number
-  use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error, place_error, &
-    place_field
+  use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error
   use deck_schema_m, only : keyword_cards, refusal_reason, lost_effect, max_card
   use deck_parameters_m, only : substitute
   implicit none
@@ -262,32 +261,6 @@ contains
     end if
   end subroutine notice_field
 
-  !> A warning of a field that was given, on a card that was read some time ago; the same one of
-  !> fields of one name is told once.
-  subroutine warn_of_field(deck, place, message)
-    type(deck_t), intent(inout) :: deck
-    type(place_t), intent(in) :: place
-    character(*), intent(in) :: message
-    type(cursor_t) :: cursor
-    type(card_t) :: card
-    integer :: i_block, k
-
-    i_block = block_of_line(deck, place%line)
-    call open_cursor(deck, i_block, cursor)
-    associate (spec => cursor%specs(place%card))
-      k = place_field(spec, place)
-      if (len(given_by(deck, place%line, k)) > 0) then
-        call line_warning(deck, 0, trim(spec%names(k))//message, given_by(deck, place%line, k) &
-          //' '//message)
-        return
-      end if
-      call cut_card(deck, spec, deck%blocks(i_block)%source, place%line, card)
-      call line_warning(deck, place%line, 'field '//trim(spec%names(k))//message, &
-        'card '//to_text(spec%number)//' field '//to_text(k)//' ('//trim(spec%names(k))//'): "' &
-        //field_text(deck, card, k)//'" '//message)
-    end associate
-  end subroutine warn_of_field
-
   !> Lines that are left over once all cards have been read.
   subroutine check_rest(deck, cursor)
     type(deck_t), intent(inout) :: deck
@@ -324,12 +297,43 @@ contains
     type(deck_t), intent(inout) :: deck
     type(place_t), intent(in) :: place
     character(*), intent(in) :: message
-    type(cursor_t) :: cursor
-    integer :: i_block
+    type(card_t) :: card
+    integer :: k
 
-    i_block = block_of_line(deck, place%line)
-    call open_cursor(deck, i_block, cursor)
-    call place_error(deck, cursor%specs(place%card), place, deck%blocks(i_block)%source, message)
+    call cut_again(deck, place, card, k)
+    call field_error(deck, card, k, message)
   end subroutine reject_field
+
+  !> A warning of a field that was given, on a card that was read some time ago; the same one of
+  !> fields of one name is told once.
+  subroutine warn_of_field(deck, place, message)
+    type(deck_t), intent(inout) :: deck
+    type(place_t), intent(in) :: place
+    character(*), intent(in) :: message
+    character(:), allocatable :: text
+    type(card_t) :: card
+    integer :: k
+
+    call cut_again(deck, place, card, k)
+    text = given_by(deck, place%line, k)//' '
+    if (len(text) == 1) text = 'card '//to_text(card%number)//' field '//to_text(k)//' (' &
+      //trim(card%names(k))//'): "'//field_text(deck, card, k)//'" '
+    call line_warning(deck, merge(place%line, 0, text(1:1) == 'c'), 'field '//trim(card%names(k)) &
+      //message, text//message)
+  end subroutine warn_of_field
+
+  !> The card of a place, and the position of its field.
+  subroutine cut_again(deck, place, card, k)
+    type(deck_t), intent(inout) :: deck
+    type(place_t), intent(in) :: place
+    type(card_t), intent(out) :: card
+    integer, intent(out) :: k
+    type(cursor_t) :: cursor
+
+    call open_cursor(deck, block_of_line(deck, place%line), cursor)
+    call cut_card(deck, cursor%specs(place%card), cursor%source, place%line, card)
+    k = place%field
+    if (len_trim(place%name) > 0) k = field_number(card%names, place%name)
+  end subroutine cut_again
 
 end module deck_cards_m

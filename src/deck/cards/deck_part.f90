@@ -275,7 +275,13 @@ contains
         if (model%sections(part%section)%is_full .or. model%materials(part%material)%is_rigid) cycle
         if (part%hourglass%form == hourglass_assumed .and. .not. (model%controls%implicit%is_on &
           .and. allocated(model%materials(part%material)%rubber))) then
-          call check_shear(deck, deck%maps(a_part)%lines(i), i, model)
+          ! The stiffness of assumed strain is that of shear.
+          associate (material => model%materials(part%material))
+            if (material%needs_eos .and. .not. material%shear > 0.0_wp) call line_error(deck, &
+              deck%maps(a_part)%lines(i), 'part '//to_text(part%id)//' has hourglass control by ' &
+              //'assumed strain (IHQ 6), whose stiffness comes from the shear modulus, and its ' &
+              //'material '//to_text(material%id)//' has none (take IHQ 1 to 3)')
+          end associate
         else if (model%controls%implicit%is_on) then
           if (len(changed) == 0) line = deck%maps(a_section)%lines(part%section)
           changed = changed//', '//to_text(part%id)
@@ -288,22 +294,6 @@ contains
       //'takes parts whose NIP is not 4 as NIP 4 where hourglass control is not by ' &
       //'assumed strain (IHQ 6), which would keep them as they are (but for rubber): '//changed(3:))
   end subroutine settle_points
-
-  !> The stiffness of assumed strain is that of shear.
-  subroutine check_shear(deck, line, i, model)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: line     !! card of the part
-    integer, intent(in) :: i        !! part
-    type(model_t), intent(in) :: model
-
-    associate (part => model%parts(i))
-      if (model%materials(part%material)%shear > 0.0_wp) return
-      if (.not. model%materials(part%material)%needs_eos) return ! told as a field
-      call line_error(deck, line, 'part '//to_text(part%id)//' has hourglass control by assumed ' &
-        //'strain (IHQ 6), whose stiffness comes from the shear modulus, and its material ' &
-        //to_text(model%materials(part%material)%id)//' has none (take IHQ 1 to 3)')
-    end associate
-  end subroutine check_shear
 
   !> The fully integrated twin of a section, which other parts may go on sharing as it is.
   pure subroutine add_full_section(section, model, twins)

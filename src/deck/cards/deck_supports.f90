@@ -4,7 +4,7 @@
 module deck_supports_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use conditions_m, only : prescribed_motion_t, skew_support_t, common_motion_t, &
+  use conditions_m, only : conditions_t, prescribed_motion_t, skew_support_t, common_motion_t, &
     motion_acceleration
   use model_m, only : model_t
   use rigids_m, only : mark_rigid_nodes
@@ -12,7 +12,7 @@ module deck_supports_m
   use deck_cards_m, only : cursor_t, next_of, rows_of, report_field, reject_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, an_element, a_part, a_curve, a_node_set, a_system
-  use deck_lines_m, only : deck_t, place_t, line_warning, line_error
+  use deck_lines_m, only : deck_t, place_t, blocks_of, line_warning, line_error
   use deck_values_m, only : integer_of, real_of, has_field, take_life, find_id, along_axes
   implicit none
   private
@@ -342,7 +342,8 @@ contains
     lines = [lines, card%line]
   end subroutine take_rigid_motion
 
-  !> *CONSTRAINED_NODE_SET: the sets whose nodes nothing else holds or moves.
+  !> *CONSTRAINED_NODE_SET: the sets whose nodes nothing else holds or moves along the same
+  !> direction.
   subroutine read_common_motions(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
@@ -351,9 +352,11 @@ contains
     type(card_t) :: card
     logical :: taken(2, model%mesh%n_node), is_rigid(model%mesh%n_node), meshed(model%mesh%n_node)
     logical :: found
-    integer :: k
+    character(:), allocatable :: message
+    integer :: i, k
 
-    call mark_taken(model, taken)
+    if (size(blocks_of(deck, 'CONSTRAINED_NODE_SET')) == 0) return
+    call mark_taken(model%conditions, taken)
     meshed = mark_meshed_nodes(model)
     is_rigid = mark_rigid_nodes(model%rigids, model%mesh%n_node)
     call rows_of('CONSTRAINED_NODE_SET', cursor)
@@ -366,7 +369,17 @@ contains
       call card_nodes(deck, card, model, common%nodes)
       common%along = along_axes(:2, integer_of(card, 'DOF'))
       if (.not. any(common%along) .or. size(common%nodes) == 0) cycle
-      call check_common(deck, card, model, common, meshed, is_rigid, taken)
+      do i = 1, size(common%nodes)
+        associate (node => common%nodes(i))
+          message = ''
+          if (any(taken(:, node) .and. common%along)) message = &
+            'is held, moved or in another such set along the same direction'
+          if (is_rigid(node)) message = 'belongs to a rigid part and follows it'
+          if (.not. meshed(node)) message = 'belongs to no element'
+          if (len(message) > 0) call report_field(deck, card, 'NSID', ': node ' &
+            //to_text(model%mesh%node_id(node))//' '//message)
+        end associate
+      end do
       if (any(card%bad)) cycle
       do k = 1, 2
         if (common%along(k)) taken(k, common%nodes) = .true.
@@ -377,52 +390,20 @@ contains
     end do
   end subroutine read_common_motions
 
-  !> Nodes that move alike may not be held or moved otherwise along the same direction: an error of
-  !> the first that is.
-  subroutine check_common(deck, card, model, common, meshed, is_rigid, taken)
-    type(deck_t), intent(inout) :: deck
-    type(card_t), intent(inout) :: card
-    type(model_t), intent(in) :: model
-    type(common_motion_t), intent(in) :: common
-    logical, intent(in) :: meshed(:), is_rigid(:)   !! (n_node)
-    logical, intent(in) :: taken(:, :)              !! (2, n_node)
-    character(:), allocatable :: message
-    integer :: i
-
-    do i = 1, size(common%nodes)
-      associate (node => common%nodes(i))
-        if (.not. meshed(node)) then
-          message = 'belongs to no element'
-        else if (is_rigid(node)) then
-          message = 'belongs to a rigid part and follows it'
-        else if (any(taken(:, node) .and. common%along)) then
-          message = 'is held, moved or in another such set along the same direction'
-        else
-          cycle
-        end if
-        call report_field(deck, card, 'NSID', ': node '//to_text(model%mesh%node_id(node))//' ' &
-          //message)
-        return
-      end associate
-    end do
-  end subroutine check_common
-
   !> Degrees of freedom that something holds or moves.
-  pure subroutine mark_taken(model, taken)
-    type(model_t), intent(in) :: model
+  pure subroutine mark_taken(conditions, taken)
+    type(conditions_t), intent(in) :: conditions
     logical, intent(out) :: taken(:, :) !! (2, n_node)
     integer :: i
 
     taken = .false.
-    associate (conditions => model%conditions)
-      do i = 1, size(conditions%fixed_nodes)
-        taken(conditions%fixed_directions(i), conditions%fixed_nodes(i)) = .true.
-      end do
-      do i = 1, size(conditions%motions)
-        taken(conditions%motions(i)%direction, conditions%motions(i)%node) = .true.
-      end do
-      if (allocated(conditions%skew_supports)) taken(:, conditions%skew_supports%node) = .true.
-    end associate
+    do i = 1, size(conditions%fixed_nodes)
+      taken(conditions%fixed_directions(i), conditions%fixed_nodes(i)) = .true.
+    end do
+    do i = 1, size(conditions%motions)
+      taken(conditions%motions(i)%direction, conditions%motions(i)%node) = .true.
+    end do
+    if (allocated(conditions%skew_supports)) taken(:, conditions%skew_supports%node) = .true.
   end subroutine mark_taken
 
 end module deck_supports_m

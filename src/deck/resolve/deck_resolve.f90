@@ -25,12 +25,11 @@ module deck_resolve_m
   use deck_sets_m, only : read_sets, read_histories
   use deck_resolve_transducers_m, only : resolve_transducers
   use deck_unsound_m, only : check_unsound_mesh
-  use deck_implicit_penalty_m, only : check_implicit_penalties
   use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
   use deck_loads_m, only : read_nodal_loads, read_rigid_loads, read_body_loads, read_pressures, &
     read_masses, warn_of_bores
   use deck_raw_m, only : raw_t, raw_contact_t, history_t, output_plot
-  use deck_resolve_contacts_m, only : resolve_contacts
+  use deck_resolve_contacts_m, only : resolve_contacts, check_implicit_penalties
   use deck_supports_m, only : read_supports, read_motions, read_common_motions
   use deck_velocity_m, only : read_velocities
   use deck_wall_m, only : read_walls

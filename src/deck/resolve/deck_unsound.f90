@@ -6,8 +6,7 @@ module deck_unsound_m
   use deck_lines_m, only : deck_t
   use deck_raw_m, only : raw_t
   use boundary_m, only : boundary_t, find_boundary
-  use deck_interference_m, only : resolve_interference
-  use deck_resolve_contacts_m, only : check_common_nodes
+  use deck_resolve_contacts_m, only : check_common_nodes, resolve_interference
   use deck_loads_m, only : settle_pressures
   use deck_resolve_sides_m, only : find_side, require_side, resolve_side, side_nodes, side_segments
   use surfaces_m, only : surface_t

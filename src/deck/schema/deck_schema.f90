@@ -28,6 +28,7 @@ module deck_schema_m
   character(188), parameter :: expectations(*) = [character(188) :: &
     'CONTROL_TERM.DTMIN a share of the first step', &
     'ENDTIM an end time', &
+    'DFLAG a policy (1 to 5)', &
     'NOSOL 0 or 1 (stop after the initialisation)', &
     'TERMINATION_NODE.STOP 1 (x), 2 (y) or 4 (contact)', &
     'TERMINATION_BODY.STOP 1 (x), 2 (y) or 4 (displacement)', &

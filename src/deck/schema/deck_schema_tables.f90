@@ -24,7 +24,7 @@ module deck_schema_tables_m
     'PARAMETER_EXPRESSION_LOCAL o', &
     ' PRMR:a EXPRESSION:a70', &
     'PARAMETER_DUPLICATION o', &
-    ' DFLAG:i', &
+    ' DFLAG:i=1|1|2|3|4|5', &
     'CONTROL_TERMINATION o', &
     ' ENDTIM:f>0 ENDCYC:i>=0 DTMIN:f>=0<=1 ENDENG:f>=0 ENDMAS:f>=0 NOSOL:i|0|1', &
     'TERMINATION_NODE r', &

@@ -15,11 +15,13 @@ module deck_lines_m
   public :: deck_t, blocks_of, source_t, block_t, place_t, parameter_t, parameters_t, again_error, &
     file_paths, line_text, order_line, block_of_line, where_text, line_error, deck_error, &
     line_warning, replace_line, written_text, line_spot, keyword_of_line, shown_text, marked_line, &
-    layout_mark, word_t, made_line_t, given_by, words_of, format_standard, format_long, &
+    layout_marks, word_t, made_line_t, given_by, words_of, format_standard, format_long, &
     format_i10, flag_comma, flag_parameter, flag_blank, max_source, max_field
 
   !> Column layout of a block.
   integer, parameter :: format_standard = 0, format_long = 1, format_i10 = 2
+  !> What a keyword line has of them.
+  character(2), parameter :: layout_marks(0:2) = ['  ', ' +', ' %']
   !> Bits of `flags`.
   integer(int8), parameter :: flag_comma = 1_int8, flag_parameter = 2_int8, flag_blank = 4_int8
   !> Files in one deck, fields of one card.
@@ -395,20 +397,5 @@ contains
     marked = '  | '//trim(shown_text(text))//new_line('a')//'  | '//repeat(' ', from - 1) &
       //repeat('^', to - from + 1)
   end function marked_line
-
-  !> The mark of a keyword's column layout.
-  pure function layout_mark(layout) result(mark)
-    integer, intent(in) :: layout
-    character(:), allocatable :: mark
-
-    select case (layout)
-    case (format_long)
-      mark = ' +'
-    case (format_i10)
-      mark = ' %'
-    case default
-      mark = ''
-    end select
-  end function layout_mark
 
 end module deck_lines_m
