@@ -13,25 +13,23 @@ module deck_m
   use deck_report_m, only : emit_warnings, emit_errors
   use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, a_curve, &
     a_system, a_node_set, a_part_set, a_segment_set, a_shell_set
-  use deck_maps_m, only : lose
-  use deck_lines_m, only : deck_t, line_error, line_warning, shown_text, file_paths
+  use deck_lines_m, only : deck_t, line_error, line_warning, shown_text, file_paths, &
+    flag_blank
   use deck_reader_m, only : read_blocks, cut_deck
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
   use deck_parameters_m, only : read_parameters
   use deck_overrides_m, only : read_words, edit_controls, check_words
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
-  use deck_raw_m, only : raw_t, start_raw, reserve_lists, trim_lists
-  use deck_mesh_m, only : read_nodes, read_elements, read_beams, read_set, read_history_ids
-  use deck_control_m, only : read_control, check_step, read_ends
-  use deck_empty_m, only : check_empty
-  use deck_output_m, only : read_database, read_force_groups, read_cross_sections, read_transducer
+  use deck_raw_m, only : raw_t
+  use deck_control_m, only : read_control, read_database, check_step
   use deck_contact_m, only : read_contact
   use deck_friction_m, only : warn_of_unused
   use deck_resolve_m, only : resolve_model
   use deck_effective_m, only : forget_places, write_effective
   use deck_echo_m, only : echo_model
   use text_m, only : upper_case
+  use deck_values_m, only : lose
   implicit none
   private
   public :: deck_request_t, read_deck, interpret_deck
@@ -92,13 +90,10 @@ contains
     character(:), allocatable, intent(out) :: effective
     type(error_t), allocatable, intent(out) :: error
     type(raw_t), allocatable :: raw
-    integer, allocatable :: known(:)
-    integer :: i, pass
-    logical :: is_empty
+    integer :: i, n, pass
 
     allocate (raw, deck%words(0))
-    call start_raw(raw)
-    call know_blocks(deck, raw, known)
+    call know_blocks(deck, raw)
     if (deck%n_block == 0) then
       call emit_errors(deck%report, request%path, error)
       return
@@ -106,14 +101,12 @@ contains
     if (allocated(request%overrides)) call read_words(request%overrides, deck)
     call read_parameters(deck)
     call edit_controls(deck)
-    known = [known, (known_honoured, i=size(known) + 1, deck%n_block)]
+    n = count([(index(deck%blocks(i)%name, 'CONTACT_') == 1, i=1, deck%n_block)])
+    allocate (raw%contacts(n), raw%transducers(n), raw%explicit_only(0))
     raw%controls%title = ''
-    call reserve_lists(deck, raw)
     do i = 1, deck%n_block
-      if (known(i) /= known_honoured) cycle
-      call check_empty(deck, i, is_empty)
-      if (is_empty) call note_lost(deck, i, raw)
-      deck%blocks(i)%is_honoured = .not. is_empty
+      if (deck%blocks(i)%is_honoured) call check_empty(deck, i)
+      if (deck%blocks(i)%is_empty) call note_lost(deck, i, raw)
     end do
     ! Interfaces come last: friction of *CONTROL_CONTACT is known then.
     do pass = 1, 2
@@ -123,7 +116,8 @@ contains
           call read_block(deck, i, kinds, raw)
       end do
     end do
-    call trim_lists(raw)
+    raw%contacts = raw%contacts(:raw%n_contact)
+    raw%transducers = raw%transducers(:raw%n_transducer)
     call warn_of_unused(deck, raw)
     call check_words(deck, raw%contacts%contact%id)
     call check_step(deck, raw)
@@ -145,32 +139,31 @@ contains
 
   !> Look every keyword up: canonical names, options taken off; unknown and refused ones are errors,
   !> those without effect one warning each.
-  subroutine know_blocks(deck, raw, known)
+  subroutine know_blocks(deck, raw)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(inout) :: raw
-    integer, allocatable, intent(out) :: known(:)
     character(:), allocatable :: reason
     character(100) :: name
     logical :: has_beams     !! beams are bodies, not the edges of a mesh
-    integer :: i
+    integer :: i, known
 
-    allocate (known(deck%n_block))
     has_beams = any([(index(deck%blocks(i)%name, 'SECTION_BEAM') == 1, i=1, deck%n_block)])
     if (deck%n_block == 0) call line_error(deck, 0, 'holds no keyword (a line that starts with *)')
     do i = 1, deck%n_block
       associate (block => deck%blocks(i))
         if (block%name == 'COMMENT') then
           name = block%name
-          known(i) = known_honoured
+          known = known_honoured
         else
-          call find_keyword(block%given, name, known(i), block%titled, reason)
+          call find_keyword(block%given, name, known, block%titled, reason)
         end if
         if (has_beams .and. name == 'ELEMENT_BEAM') then
-          known(i) = known_refused
+          known = known_refused
           reason = 'with beams as bodies (*SECTION_BEAM) this element is'
         end if
-        select case (known(i))
+        select case (known)
         case (known_honoured)
+          block%is_honoured = .true.
           block%name = name(:len(block%name))
           select case (block%name)
           case ('KEYWORD', 'END', 'COMMENT', 'INCLUDE', 'INCLUDE_PATH')
@@ -197,6 +190,31 @@ contains
       end associate
     end do
   end subroutine know_blocks
+
+  !> A block without its first card, which is an error and not read. A blank line is a card where a
+  !> keyword has one card, and none where it has rows.
+  subroutine check_empty(deck, i_block)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(cursor_t) :: cursor
+    character(:), allocatable :: fields
+    integer :: k
+
+    associate (block => deck%blocks(i_block))
+      if (block%dropped) return
+      call open_cursor(deck, i_block, cursor)
+      if (index(cursor%options, 'o') > 0) return
+      if (any(iand(deck%flags(block%first:block%last), flag_blank) == 0)) return
+      if (block%last >= block%first .and. index(cursor%options, 'r') == 0) return
+      fields = ''
+      do k = 1, cursor%specs(1)%n
+        if (cursor%specs(1)%names(k) /= '-') fields = fields//', '//trim(cursor%specs(1)%names(k))
+      end do
+      call line_error(deck, block%keyword, 'has no card; expected one with '//fields(3:))
+      block%is_honoured = .false.
+      block%is_empty = .true.
+    end associate
+  end subroutine check_empty
 
   !> What a name that is not known may have been meant for, for a message.
   function meant(given) result(text)
@@ -231,93 +249,31 @@ contains
     end do
   end subroutine note_lost
 
-  !> Read one block by its keyword.
+  !> Read one block by its family. What is not named here is read when the model is made.
   subroutine read_block(deck, i, kinds, raw)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i
     type(contact_kind_t), intent(in) :: kinds(:)
     type(raw_t), intent(inout) :: raw
-
-    select case (deck%blocks(i)%name)
-    case ('TITLE')
-      call read_title(deck, i, raw)
-    case ('NODE')
-      call read_nodes(deck, i, raw)
-    case ('ELEMENT_SHELL')
-      call read_elements(deck, i, raw)
-    case ('ELEMENT_BEAM')
-      call read_beams(deck, i, raw)
-    case ('SET_NODE_LIST', 'SET_NODE_LIST_GENERATE', 'SET_NODE_GENERAL', 'SET_PART_LIST', &
-        'SET_PART_LIST_GENERATE', 'SET_SHELL_LIST', 'SET_SHELL_LIST_GENERATE', 'SET_SEGMENT', &
-        'SET_2D_SEGMENT', 'SET_2D_SEGMENT_SET')
-      call read_set(deck, i, raw)
-    case default
-      call read_family(deck, i, kinds, raw)
-    end select
-  end subroutine read_block
-
-  !> Keywords whose family says how they are read.
-  subroutine read_family(deck, i, kinds, raw)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i
-    type(contact_kind_t), intent(in) :: kinds(:)
-    type(raw_t), intent(inout) :: raw
-    integer :: n
-
-    n = scan(deck%blocks(i)%name, '_')
-    select case (deck%blocks(i)%name(:max(n, 1)))
-    case ('CONTROL_')
-      call read_control(deck, i, raw)
-    case ('DATABASE_')
-      call read_output(deck, i, raw)
-    case ('CONTACT_')
-      if (deck%blocks(i)%name == 'CONTACT_2D_FORCE_TRANSDUCER') then
-        call read_transducer(deck, i, raw)
-      else
-        call read_contact(deck, i, kinds, raw)
-      end if
-    case ('TERMINATION_')
-      call read_ends(deck, i, raw)
-    end select
-  end subroutine read_family
-
-  !> What is written, of which nodes and elements, and how often.
-  subroutine read_output(deck, i, raw)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i
-    type(raw_t), intent(inout) :: raw
-
-    select case (deck%blocks(i)%name)
-    case ('DATABASE_HISTORY_NODE', 'DATABASE_HISTORY_NODE_ID')
-      call read_history_ids(deck, i, raw%history_nodes)
-    case ('DATABASE_HISTORY_NODE_SET')
-      call read_history_ids(deck, i, raw%history_node_sets)
-    case ('DATABASE_HISTORY_SHELL')
-      call read_history_ids(deck, i, raw%history_shells)
-    case ('DATABASE_HISTORY_SHELL_SET')
-      call read_history_ids(deck, i, raw%history_shell_sets)
-    case ('DATABASE_NODAL_FORCE_GROUP')
-      call read_force_groups(deck, i, raw)
-    case ('DATABASE_CROSS_SECTION_SET')
-      call read_cross_sections(deck, i, raw)
-    case default
-      call read_database(deck, i, raw)
-    end select
-  end subroutine read_output
-
-  !> *TITLE: the first line that is not blank.
-  subroutine read_title(deck, i, raw)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i
-    type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
     character(:), allocatable :: text
     logical :: found
 
-    call open_cursor(deck, i, cursor)
-    call row_comes(deck, cursor, found)
-    call next_text(deck, cursor, text)
-    raw%controls%title = trim(adjustl(shown_text(text)))
-  end subroutine read_title
+    associate (name => deck%blocks(i)%name)
+      if (name == 'TITLE') then
+        call open_cursor(deck, i, cursor)
+        call row_comes(deck, cursor, found)
+        call next_text(deck, cursor, text)
+        raw%controls%title = trim(adjustl(shown_text(text)))
+      else if (index(name, 'CONTROL_') == 1) then
+        call read_control(deck, i, raw)
+      else if (index(name, 'DATABASE_') == 1) then
+        if (all([index(name, '_HISTORY'), index(name, '_NODAL'), index(name, '_CROSS')] == 0)) &
+          call read_database(deck, i, raw)
+      else if (index(name, 'CONTACT_') == 1) then
+        call read_contact(deck, i, kinds, raw)
+      end if
+    end associate
+  end subroutine read_block
 
 end module deck_m

@@ -17,6 +17,9 @@ module element_finder_m
   !> Part of an edge by which a place may lie outside of an element and still count as in it.
   real(wp), parameter :: round_off = 1.0e-9_wp
 
+  !> Part of the places' box by which elements outside of it are taken too.
+  real(wp), parameter :: beside = 1.0e-4_wp
+
   !> The grid; `cells = 0` when there is no element.
   type :: element_finder_t
     real(wp) :: low(2) = 0.0_wp       !! lower corner
@@ -40,32 +43,62 @@ module element_finder_m
 
 contains
 
-  !> Sort the elements of those parts that hold any of `members`.
-  pure subroutine start_finder(model, members, finder)
+  !> Sort the elements of those parts that hold any of `members`, as far as they come near the
+  !> places that will be asked about.
+  pure subroutine start_finder(model, members, nodes, finder)
     type(model_t), intent(in) :: model
     integer, intent(in) :: members(:) !! element indices
+    integer, intent(in) :: nodes(:)   !! places lie between these
     type(element_finder_t), intent(out) :: finder
     logical, allocatable :: is_wanted(:)
     integer, allocatable :: elements(:)
-    real(wp) :: size_of_box(2)
-    integer :: i
+    real(wp) :: size_of_box(2), low(2), high(2), box(2, 2)
+    integer :: i, n
 
     allocate (is_wanted(size(model%parts)), source=.false.)
     is_wanted(model%mesh%element_part(members)) = .true.
-    elements = pack([(i, i=1, model%mesh%n_element)], is_wanted(model%mesh%element_part))
+    low = minval(model%mesh%coordinates(:, nodes), 2)
+    high = maxval(model%mesh%coordinates(:, nodes), 2)
+    size_of_box = beside*maxval(high - low)
+    low = low - size_of_box
+    high = high + size_of_box
     finder%low = huge(1.0_wp)
     finder%high = -huge(1.0_wp)
-    do i = 1, size(elements)
-      associate (x => model%mesh%coordinates(:, model%mesh%element_nodes(:, elements(i))))
-        finder%low = min(finder%low, minval(x, 2))
-        finder%high = max(finder%high, maxval(x, 2))
-      end associate
+    allocate (elements(model%mesh%n_element))
+    n = 0
+    do i = 1, model%mesh%n_element
+      if (.not. is_wanted(model%mesh%element_part(i))) cycle
+      box = box_of(model, i)
+      if (any(box(:, 2) < low .or. box(:, 1) > high)) cycle
+      n = n + 1
+      elements(n) = i
+      finder%low = min(finder%low, box(:, 1))
+      finder%high = max(finder%high, box(:, 2))
     end do
+    if (n == 0) return
+    elements = elements(:n)
     size_of_box = max(finder%high - finder%low, tiny(1.0_wp))
     finder%cell = max(sqrt(product(size_of_box)/size(elements)), maxval(size_of_box)/30000)
     finder%cells = int(size_of_box/finder%cell) + 1
     call sort_elements(model, elements, finder)
   end subroutine start_finder
+
+  !> Lower and upper corner of the box of an element.
+  pure function box_of(model, element) result(box)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: element
+    real(wp) :: box(2, 2)
+    integer :: k
+
+    associate (x => model%mesh%coordinates, nodes => model%mesh%element_nodes(:, element))
+      box(:, 1) = x(:, nodes(1))
+      box(:, 2) = x(:, nodes(1))
+      do k = 2, 4
+        box(:, 1) = min(box(:, 1), x(:, nodes(k)))
+        box(:, 2) = max(box(:, 2), x(:, nodes(k)))
+      end do
+    end associate
+  end function box_of
 
   !> Counting sort of the elements into the cells that their boxes touch.
   pure subroutine sort_elements(model, elements, finder)
@@ -73,14 +106,14 @@ contains
     integer, intent(in) :: elements(:)
     type(element_finder_t), intent(inout) :: finder
     integer :: i, ix, iy, cell, pass, low(2), high(2)
+    real(wp) :: box(2, 2)
 
     allocate (finder%first(product(finder%cells) + 1), source=0)
     do pass = 1, 2
       do i = 1, size(elements)
-        associate (x => model%mesh%coordinates(:, model%mesh%element_nodes(:, elements(i))))
-          low = cell_of(finder, minval(x, 2))
-          high = cell_of(finder, maxval(x, 2))
-        end associate
+        box = box_of(model, elements(i))
+        low = cell_of(finder, box(:, 1))
+        high = cell_of(finder, box(:, 2))
         do iy = low(2), high(2)
           do ix = low(1), high(1)
             cell = 1 + ix + iy*finder%cells(1)
@@ -175,14 +208,14 @@ contains
     is_in = .true.
   end function is_in_element
 
-  !> Know the bodies behind a surface. It must have a segment.
-  pure subroutine view_body(model, surface, view)
+  !> Know the bodies behind a surface, for looks at it and at another one. It must have a segment.
+  pure subroutine view_body(model, surface, other, view)
     type(model_t), intent(in) :: model
-    type(surface_t), intent(in) :: surface
+    type(surface_t), intent(in) :: surface, other
     type(body_view_t), intent(out) :: view
     integer :: i
 
-    call start_finder(model, surface%segment_element, view%finder)
+    call start_finder(model, surface%segment_element, [surface%nodes, other%nodes], view%finder)
     allocate (view%local(model%mesh%n_node), source=0)
     view%local(surface%nodes) = [(i, i=1, surface%n_node)]
   end subroutine view_body

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""One page for each keyword of doc/keywords.md: cards, fields, remarks, examples."""
+"""One page for each keyword of doc/keywords.md: cards, fields, remarks, examples.
+
+    keyword_pages.py    puts the fields of src/deck/schema into doc/keywords.md, which has their meanings
+"""
 import dataclasses
 import re
 
@@ -21,33 +24,97 @@ class Keyword:
     group: str
     titled: bool      #: takes _TITLE or _ID with a text line
     remarks: str
-    fields: list      #: rows (card, field, columns, kind, default, treatment, meaning)
+    fields: list      #: rows (card, field, columns, kind, default, range, treatment, meaning)
 
     @property
     def file(self):
         return f"{self.name.lower()}.md"
 
 
-#: a row of fields: card and field; columns, kind and default; treatment and meaning
-ROW = re.compile(r"\| (\d+) (\S+) \| (\d+-\d+) (\w+)(?: = (\S+))? \| (?:\*(no effect|warning|refused)\*(?:; )?)?(.*?) ?\|$")
+SCHEMA = examples.ROOT / "src/deck/schema"
+KINDS = {"i": "integer", "f": "real", "a": "text"}
+TREATMENTS = {"": "honoured", "s": "no effect", "w": "warning", "r": "refused"}
+WORD = re.compile(r"([^:]+):([ifax])([swr]?)(\d*)(?:[=~]([^<>|]+))?([<>|]\S+)?")
+#: a row of fields: card and field; columns, kind, default and range; treatment and meaning
+ROW = re.compile(r"\| (\d+) (\S+) \| ([^|]*) \| (?:\*(no effect|warning|refused)\*(?:; )?)?(.*?) ?\|$")
 SAME = re.compile(r"^Cards and fields as those of \[`\*(\S+)`\]\(\S+\)(?:\.|, but for:)\n?", re.M)
 
 
-def read_fields(body, others=()):
-    """Rows (card, field, columns, kind, default, treatment, meaning) of a section of doc/keywords.md."""
-    rows = [[card, field, columns, kind, default or "", treatment or "honoured", meaning]
-            for card, field, columns, kind, default, treatment, meaning
-            in (ROW.match(line).groups() for line in body.splitlines() if re.match(r"\| \d", line))]
+def table_lines(name, source=None):
+    """The lines of one table of the reader."""
+    source = source or "".join(path.read_text(encoding="utf-8") for path in sorted(SCHEMA.glob("deck_schema*.f90")))
+    body = re.search(rf":: {name}\(\*\) = \[character\(\d+\) :: &\n(.*?)\]\n", source, re.S).group(1)
+    return re.findall(r"'([^']*)'", re.sub(r"' &\n\s*//'", "", body))
+
+
+def range_text(notation):
+    """The range of a field as an interval, `[0,1)` without 1, as `>0`, or as the numbers allowed, `0/1/2`."""
+    if notation.startswith("|"):
+        return notation[1:].replace("|", "/")
+    low, high = (re.findall(r"([<>]=?)([^<>]+)", notation) + [None])[:2]
+    return notation if not high else f"{'[' if low[0] == '>=' else '('}{low[1]},{high[1]}{']' if high[0] == '<=' else ')'}"
+
+
+def read_schema():
+    """keyword -> rows [card, field, columns, kind, default, range, treatment] of the reader's tables."""
+    found, rows = {}, None
+    source = (SCHEMA / "deck_schema_tables.f90").read_text(encoding="utf-8")
+    for line in (line for name in re.findall(r":: (table_\w+)\(\*\)", source) for line in table_lines(name, source)):
+        if not line.startswith(" "):
+            rows, card = found.setdefault(line.split()[0], []), 0
+            rows += found[line.partition("=")[2]] if "=" in line else []
+            continue
+        card, column = card + 1, 1
+        for word in line.split():
+            name, kind, treatment, width, default, limits = WORD.fullmatch(word).groups()
+            width = int(width or 10)
+            if name != "-":
+                rows.append([str(card), name, f"{column}-{column + width - 1}", KINDS[kind], default or "",
+                             range_text(limits) if limits else "", TREATMENTS[treatment]])
+            column += width
+    return found
+
+
+def row_line(row, meaning):
+    """A field as a row of doc/keywords.md: all but its meaning is the reader's."""
+    card, name, columns, kind, default, limits, treatment = row
+    if treatment != "honoured":
+        meaning = f"*{treatment}*" + (f"; {meaning}" if meaning else "")
+    kind += (f" = {default}" if default else "") + (f" {limits}" if limits else "")
+    return f"| {card} {name} | {columns} {kind} | {meaning} |"
+
+
+def made_page(text):
+    """doc/keywords.md with the fields of the reader: columns, kind, default, range and treatment; meanings stay."""
+    schema, parts = read_schema(), re.split(r"^(?=##)", text, flags=re.M)
+    for k, part in enumerate(parts):
+        if not part.startswith("### *"):
+            continue
+        lines = part.splitlines(keepends=True)
+        at = [i for i, line in enumerate(lines) if ROW.match(line.strip())]
+        if not at:
+            continue
+        meanings = {tuple(ROW.match(lines[i].strip()).group(1, 2)): ROW.match(lines[i].strip())[5] for i in at}
+        rows = [row for row in schema[part[5:].split()[0]] if not SAME.search(part) or tuple(row[:2]) in meanings]
+        made = [row_line(row, meanings.get(tuple(row[:2]), "")) + "\n" for row in rows]
+        parts[k] = "".join(lines[:at[0]] + made + lines[at[-1] + 1:])
+    return "".join(parts)
+
+
+def read_fields(name, body, schema, others=()):
+    """Rows [card, field, columns, kind, default, range, treatment, meaning] of a section of doc/keywords.md."""
     same = SAME.search(body)
-    if not same:
-        return rows
-    taken = {(row[0], row[1]): row for row in next(other.fields for other in others if other.name == same[1])}
-    return list((taken | {(row[0], row[1]): row for row in rows}).values())
+    meanings = {} if not same else {
+        (row[0], row[1]): row[7] for row in next(other.fields for other in others if other.name == same[1])}
+    for line in body.splitlines():
+        if row := ROW.match(line):
+            meanings[row[1], row[2]] = row[5]
+    return [[*row, meanings.get((row[0], row[1]), "")] for row in schema[name]]
 
 
 def read_keywords(text):
     """The keywords of doc/keywords.md in their order."""
-    found, group = [], ""
+    found, group, schema = [], "", read_schema()
     for part in re.split(r"^(?=##)", text, flags=re.M):
         head, _, body = part.partition("\n")
         if head.startswith("## "):
@@ -56,7 +123,7 @@ def read_keywords(text):
             continue
         remarks = "\n".join(line for line in SAME.sub("", body).splitlines() if not line.startswith("|")).strip()
         name, _, mark = head[5:].partition(" ")
-        found.append(Keyword(name, group, mark.strip() == "(title)", remarks, read_fields(body, found)))
+        found.append(Keyword(name, group, mark.strip() == "(title)", remarks, read_fields(name, body, schema, found)))
     return found
 
 
@@ -66,6 +133,8 @@ def card_table(rows):
              ["Type", *({"integer": "I", "real": "F", "text": "A"}[row[3]] for row in rows)]]
     if any(row[4] for row in rows):
         lines.append(["Default", *(row[4] for row in rows)])
+    if any(row[5] for row in rows):
+        lines.append(["Range", *(row[5] for row in rows)])
     head, *rest = ["| " + " | ".join(line) + " |" for line in lines]
     return [head, "|" + "---|" * (len(rows) + 1), *rest]
 
@@ -73,7 +142,7 @@ def card_table(rows):
 def field_table(rows):
     """What the fields mean, card by card."""
     lines = ["| card | field | treatment | meaning |", "|---|---|---|---|"]
-    for card, field, _, _, _, treatment, meaning in rows:
+    for card, field, *_, treatment, meaning in rows:
         lines.append(f"| {card} | **{field}** | {treatment} | {meaning or MEANING[treatment]} |")
     return lines
 
@@ -187,3 +256,8 @@ def write_pages(text, folder):
                                            encoding="utf-8")
     (folder / "index.md").write_text(index_page(keywords, shown), encoding="utf-8")
     return keywords
+
+
+if __name__ == "__main__":
+    PAGE = examples.ROOT / "doc/keywords.md"
+    PAGE.write_text(made_page(PAGE.read_text(encoding="utf-8")), encoding="utf-8")

@@ -112,7 +112,7 @@ contains
     integer :: i, segment
 
     if (contact%birth > 0.0_wp) return
-    call begin_asking(model, contact%slave%segment_element, finder, answers)
+    call begin_asking(model, contact%slave%segment_element, contact%master%nodes, finder, answers)
     call allocate_tracking(scratch, 0, contact%slave%n_segment)
     call fill_grid(scratch%grid, contact%slave, memory%places(:, :memory%n_slave), 0.0_wp)
     do i = 1, contact%master%n_node
@@ -249,7 +249,7 @@ contains
     logical :: inside
     integer :: i, nearest
 
-    call begin_asking(model, surface%segment_element, finder, answers)
+    call begin_asking(model, surface%segment_element, own%nodes, finder, answers)
     call fill_grid(tracking%grid, surface, chain, 0.0_wp)
     do i = 1, tracking%n
       if (tracking%status(i) == is_touching .or. maxval(owners(:, i)) == 0) cycle
@@ -331,16 +331,17 @@ contains
   end function nearest_segment
 
   !> Know the bodies behind a surface, unless the answers are.
-  pure subroutine begin_asking(model, members, finder, answers)
+  pure subroutine begin_asking(model, members, nodes, finder, answers)
     type(model_t), intent(in) :: model
     integer, intent(in) :: members(:) !! elements behind the surface
+    integer, intent(in) :: nodes(:)   !! of the surface whose places are asked about
     type(element_finder_t), intent(out) :: finder
     type(answers_t), intent(in), optional :: answers
 
     if (present(answers)) then
       if (answers%are_given) return
     end if
-    call start_finder(model, members, finder)
+    call start_finder(model, members, nodes, finder)
   end subroutine begin_asking
 
   !> The next answer (`is_inside_body`).

@@ -8,8 +8,7 @@ module deck_cards_m
   use deck_lines_m, only : deck_t, place_t, line_text, line_warning, replace_line, flag_blank, &
     flag_parameter, block_of_line, given_by, format_long, max_field
   use deck_card_specs_m, only : card_spec_t, make_spec, field_number
-  use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error, place_error, &
-    place_field
+  use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error
   use deck_schema_m, only : keyword_cards, refusal_reason, lost_effect, max_card
   use deck_parameters_m, only : substitute
   implicit none
@@ -25,13 +24,14 @@ module deck_cards_m
     integer :: line = 1           !! next line
     integer :: last = 0           !! last line of the block
     integer :: n_card = 0         !! cards that the keyword has
+    character(60) :: options = '' !! of the keyword (`deck_schema_m`)
     character(27) :: head = ''    !! beginning of the keywords whose rows are read
     type(card_spec_t) :: specs(max_card)
   end type cursor_t
 
   !> An error of a field of a card just read, by the field's name or its position.
   interface report_field
-    module procedure report_name, report_number, report_named_field, report_numbered_field
+    module procedure report_name, report_number
   end interface report_field
 
 contains
@@ -41,12 +41,17 @@ contains
     type(deck_t), intent(in) :: deck
     integer, intent(in) :: i_block
     type(cursor_t), intent(out) :: cursor
+    character(160) :: cards(max_card)
+    integer :: k
 
     cursor%block = i_block
     cursor%source = deck%blocks(i_block)%source
     cursor%line = deck%blocks(i_block)%first
     cursor%last = deck%blocks(i_block)%last
-    call get_specs(deck, i_block, cursor%specs, cursor%n_card)
+    call keyword_cards(deck%blocks(i_block)%name, cards, cursor%n_card, cursor%options)
+    do k = 1, cursor%n_card
+      call make_spec(cards(k), k, deck%blocks(i_block)%layout, cursor%specs(k))
+    end do
   end subroutine open_cursor
 
   !> Start at card 1 of a block, behind its title.
@@ -72,21 +77,6 @@ contains
       k = field_number(spec%names(:spec%n), name)
     end associate
   end function find_field
-
-  !> The cards of a block's keyword in its layout.
-  subroutine get_specs(deck, i_block, specs, n_card)
-    type(deck_t), intent(in) :: deck
-    integer, intent(in) :: i_block
-    type(card_spec_t), intent(out) :: specs(max_card)
-    integer, intent(out) :: n_card
-    character(160) :: cards(max_card)
-    integer :: k
-
-    call keyword_cards(deck%blocks(i_block)%name, cards, n_card)
-    do k = 1, n_card
-      call make_spec(cards(k), k, deck%blocks(i_block)%layout, specs(k))
-    end do
-  end subroutine get_specs
 
   !> Card number `number`: the next line, blank or not; all defaults when the block has ended.
   subroutine next_card(deck, cursor, number, card)
@@ -271,32 +261,6 @@ contains
     end if
   end subroutine notice_field
 
-  !> A warning of a field that was given, on a card that was read some time ago; the same one of
-  !> fields of one name is told once.
-  subroutine warn_of_field(deck, place, message)
-    type(deck_t), intent(inout) :: deck
-    type(place_t), intent(in) :: place
-    character(*), intent(in) :: message
-    type(card_spec_t) :: specs(max_card)
-    type(card_t) :: card
-    integer :: n_card, i_block, k
-
-    i_block = block_of_line(deck, place%line)
-    call get_specs(deck, i_block, specs, n_card)
-    associate (spec => specs(place%card))
-      k = place_field(spec, place)
-      if (len(given_by(deck, place%line, k)) > 0) then
-        call line_warning(deck, 0, trim(spec%names(k))//message, given_by(deck, place%line, k) &
-          //' '//message)
-        return
-      end if
-      call cut_card(deck, spec, deck%blocks(i_block)%source, place%line, card)
-      call line_warning(deck, place%line, 'field '//trim(spec%names(k))//message, &
-        'card '//to_text(spec%number)//' field '//to_text(k)//' ('//trim(spec%names(k))//'): "' &
-        //field_text(deck, card, k)//'" '//message)
-    end associate
-  end subroutine warn_of_field
-
   !> Lines that are left over once all cards have been read.
   subroutine check_rest(deck, cursor)
     type(deck_t), intent(inout) :: deck
@@ -328,39 +292,48 @@ contains
     if (.not. card%bad(k)) call field_error(deck, card, k, message)
   end subroutine report_number
 
-  !> An error of the field of a name, of a card just read.
-  subroutine report_named_field(deck, cursor, card, name, message)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    character(*), intent(in) :: name
-    character(*), intent(in) :: message
-
-    call report_field(deck, cursor, card, field_number(card%names, name), message)
-  end subroutine report_named_field
-
-  !> An error of field `k` of a card just read.
-  subroutine report_numbered_field(deck, cursor, card, k, message)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    integer, intent(in) :: k
-    character(*), intent(in) :: message
-
-    if (.not. card%bad(k)) call field_error(deck, card, k, message)
-  end subroutine report_numbered_field
-
   !> An error of a field that was given, on a card that was read some time ago.
   subroutine reject_field(deck, place, message)
     type(deck_t), intent(inout) :: deck
     type(place_t), intent(in) :: place
     character(*), intent(in) :: message
-    type(card_spec_t) :: specs(max_card)
-    integer :: n_card, i_block
+    type(card_t) :: card
+    integer :: k
 
-    i_block = block_of_line(deck, place%line)
-    call get_specs(deck, i_block, specs, n_card)
-    call place_error(deck, specs(place%card), place, deck%blocks(i_block)%source, message)
+    call cut_again(deck, place, card, k)
+    call field_error(deck, card, k, message)
   end subroutine reject_field
+
+  !> A warning of a field that was given, on a card that was read some time ago; the same one of
+  !> fields of one name is told once.
+  subroutine warn_of_field(deck, place, message)
+    type(deck_t), intent(inout) :: deck
+    type(place_t), intent(in) :: place
+    character(*), intent(in) :: message
+    character(:), allocatable :: text
+    type(card_t) :: card
+    integer :: k
+
+    call cut_again(deck, place, card, k)
+    text = given_by(deck, place%line, k)//' '
+    if (len(text) == 1) text = 'card '//to_text(card%number)//' field '//to_text(k)//' (' &
+      //trim(card%names(k))//'): "'//field_text(deck, card, k)//'" '
+    call line_warning(deck, merge(place%line, 0, text(1:1) == 'c'), 'field '//trim(card%names(k)) &
+      //message, text//message)
+  end subroutine warn_of_field
+
+  !> The card of a place, and the position of its field.
+  subroutine cut_again(deck, place, card, k)
+    type(deck_t), intent(inout) :: deck
+    type(place_t), intent(in) :: place
+    type(card_t), intent(out) :: card
+    integer, intent(out) :: k
+    type(cursor_t) :: cursor
+
+    call open_cursor(deck, block_of_line(deck, place%line), cursor)
+    call cut_card(deck, cursor%specs(place%card), cursor%source, place%line, card)
+    k = place%field
+    if (len_trim(place%name) > 0) k = field_number(card%names, place%name)
+  end subroutine cut_again
 
 end module deck_cards_m

@@ -20,7 +20,6 @@ module deck_contact_m
   use deck_friction_m, only : take_friction, take_stock_friction, take_penalty_friction, &
     warn_of_rule
   use deck_tie_m, only : take_tie, take_stock_tie, check_tie
-  use deck_output_m, only : settle_number
   use deck_raw_m, only : raw_t, raw_contact_t
   use deck_overrides_m, only : has_words, find_word, edit_contact
   implicit none
@@ -30,11 +29,12 @@ module deck_contact_m
   !> Fields of the two sides, of the times between which an interface acts.
   character(5), parameter :: side_fields(2) = ['SURFA', 'SURFB']
   character(6), parameter :: life(2) = ['TBIRTH', 'TDEATH']
-  character(*), parameter :: our_own = 'CONTACT_2D_SLIDELINE'
+  character(*), parameter :: our_own = 'CONTACT_2D_SLIDELINE', &
+    transducer = 'CONTACT_2D_FORCE_TRANSDUCER'
 
 contains
 
-  !> One interface.
+  !> One interface, or one *CONTACT_2D_FORCE_TRANSDUCER: a surface on which forces are added up.
   subroutine read_contact(deck, i_block, kinds, raw)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
@@ -47,6 +47,12 @@ contains
     is_stock = deck%blocks(i_block)%name /= our_own
     n_error = deck%report%n_error
     call read_number(deck, i_block, raw, entry)
+    if (deck%blocks(i_block)%name == transducer) then
+      call read_cards(deck, i_block, kinds, raw, entry)
+      raw%n_transducer = raw%n_transducer + 1
+      raw%transducers(raw%n_transducer) = entry
+      return
+    end if
     if (has_words(deck, entry%contact%id)) then
       if (is_stock) then
         call leave_negatives(deck, i_block, entry%contact%id)
@@ -66,7 +72,7 @@ contains
     raw%contacts(raw%n_contact) = entry
   end subroutine read_contact
 
-  !> The number and the title of an interface.
+  !> The title and the number of an interface or transducer: its own, or its position in the deck.
   subroutine read_number(deck, i_block, raw, entry)
     type(deck_t), intent(in) :: deck
     integer, intent(in) :: i_block
@@ -79,7 +85,7 @@ contains
     if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, entry%contact%id, &
       entry%contact%title)
     entry%block = i_block
-    call settle_number(raw, entry)
+    if (entry%contact%id == 0) entry%contact%id = raw%n_contact + raw%n_transducer + 1
   end subroutine read_number
 
   !> The cards of an interface with what they mean, and their rules.
@@ -104,6 +110,7 @@ contains
     name = trim(deck%blocks(i_block)%name)
     associate (contact => entry%contact)
       call take_sides(deck, cards(1), name, entry)
+      if (name == transducer) return
       contact%contact_type = stock_type(name)
       select case (name)
       case (our_own)
@@ -171,7 +178,7 @@ contains
     if (is_single .and. integer_of(card, 'SURFA') < 0) call report_field(deck, card, 'SURFA', &
       'is not a part set (more than 0): contact of a surface with itself is that of whole outlines')
     of_itself = ''
-    do k = 1, 2
+    do k = 1, merge(1, 2, name == transducer)
       if (k == 2 .and. entry%contact%is_self) then
         entry%places(k) = entry%places(1)
         return

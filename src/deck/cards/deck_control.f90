@@ -1,25 +1,24 @@
 ! SPDX-License-Identifier: MIT
-!> *CONTROL_ cards, and *TERMINATION_: what ends a run before its end time.
+!> *CONTROL_ cards, and the *DATABASE_ cards that say how often files are written.
 module deck_control_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use text_m, only : upper_case
   use units_m, only : units_t, find_unit, set_force
-  use controls_m, only : length_by_side, length_by_diagonal, end_condition_t, end_node_place, &
-    end_node_touch, end_body_place, end_body_way, end_contact
+  use controls_m, only : length_by_side, length_by_diagonal
   use deck_lines_m, only : deck_t, line_warning, given_by
   use deck_fields_m, only : card_t, field_text
   use deck_card_specs_m, only : field_number
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field, &
-    warn_of_field, next_row
-  use deck_values_m, only : integer_of, real_of, place_of, is_blank
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field, warn_of_field
+  use deck_values_m, only : integer_of, real_of, place_of, is_blank, is_bad
   use deck_implicit_m, only : take_implicit, take_dynamics, take_solution, take_automatic
-  use deck_raw_m, only : raw_t, raw_end_t
+  use deck_raw_m, only : raw_t, history_t, output_plot
+  use history_tables_m, only : table_of_keyword
   use deck_friction_m, only : take_default_friction
   use deck_part_m, only : hourglass_form, hourglass_coefficient
   implicit none
   private
-  public :: read_control, check_step, read_ends
+  public :: read_control, read_database, check_step
 
 contains
 
@@ -58,9 +57,7 @@ contains
       raw%hourglass_default%quadratic = real_of(cards(1), 'Q1')
       raw%hourglass_default%linear = real_of(cards(1), 'Q2')
     case ('CONTROL_CONTACT')
-      raw%controls%penalty_scale = 0.1_wp
-      if (real_of(cards(1), 'SLSFAC') > 0.0_wp) &
-        raw%controls%penalty_scale = real_of(cards(1), 'SLSFAC')
+      raw%controls%penalty_scale = real_of(cards(1), 'SLSFAC')
       raw%controls%contact_step = integer_of(cards(2), 'ECDT')
       call note_explicit(cards(2), 'ECDT', raw)
       call take_default_friction(cards(3), raw)
@@ -124,8 +121,7 @@ contains
     end do
     raw%erodes_by_step = integer_of(card, 'ERODE') == 1
     raw%controls%dt_initial = real_of(card, 'DTINIT')
-    raw%controls%dt_scale = 0.9_wp
-    if (real_of(card, 'TSSFAC') > 0.0_wp) raw%controls%dt_scale = real_of(card, 'TSSFAC')
+    raw%controls%dt_scale = real_of(card, 'TSSFAC')
     raw%controls%length_rule = merge(length_by_diagonal, length_by_side, &
       integer_of(card, 'ISDO') == 1)
     raw%controls%mass_step = real_of(card, 'DT2MS')
@@ -161,7 +157,7 @@ contains
     integer :: k
 
     k = field_number(card%names, name)
-    if (card%i(k) /= 0 .or. abs(card%r(k)) > 0.0_wp) &
+    if (.not. card%blank(k) .and. (card%i(k) /= 0 .or. abs(card%r(k)) > 0.0_wp)) &
       raw%explicit_only = [raw%explicit_only, place_of(card, name)]
   end subroutine note_explicit
 
@@ -208,69 +204,58 @@ contains
     if (all(values > 0.0_wp)) call set_force(values, raw%controls%units)
   end subroutine take_units
 
-  !> The rows of one keyword.
-  subroutine read_ends(deck, i_block, raw)
+  !> One *DATABASE_ keyword with an interval.
+  subroutine read_database(deck, i_block, raw)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
     type(raw_t), intent(inout) :: raw
     type(cursor_t) :: cursor
-    type(card_t) :: card
-    type(raw_end_t) :: entry
-    logical :: found
+    type(card_t) :: card, rest
+    type(history_t) :: history
+    character(4) :: curve
+    integer :: file, k
 
     call open_cursor(deck, i_block, cursor)
-    do
-      call next_row(deck, cursor, 1, card, found)
-      if (.not. found) exit
-      entry = raw_end_t()
-      select case (deck%blocks(i_block)%name)
-      case ('TERMINATION_CONTACT')
-        entry%id_place = place_of(card, 'CID')
-        entry%condition = end_condition_t(kind=end_contact, id=integer_of(card, 'CID'), &
-          direction=integer_of(card, 'DOF'), start=real_of(card, 'ACTIM'), &
-          duration=real_of(card, 'DUR'), threshold=real_of(card, 'THRES'))
-      case ('TERMINATION_NODE')
-        call take_bounds(deck, card, 'NID', end_node_place, end_node_touch, entry)
-      case default
-        call take_bounds(deck, card, 'PID', end_body_place, end_body_way, entry)
-      end select
-      if (any(card%bad)) cycle
-      raw%n_end = raw%n_end + 1
-      raw%ends(raw%n_end) = entry
+    call next_card(deck, cursor, 1, card)
+    do k = 2, cursor%n_card
+      call next_card(deck, cursor, k, rest)
     end do
-  end subroutine read_ends
+    call check_rest(deck, cursor)
+    select case (deck%blocks(i_block)%name)
+    case ('DATABASE_BINARY_D3PLOT')
+      file = output_plot
+    case ('DATABASE_BINARY_D3DUMP')
+      call take_cycles(deck, card, raw%controls%output%dump_cycles)
+      return
+    case ('DATABASE_BINARY_RUNRSF')
+      call take_cycles(deck, card, raw%controls%output%running_cycles)
+      return
+    case default
+      file = table_of_keyword(deck%blocks(i_block)%name)
+    end select
+    curve = merge('LCDT', 'LCUR', file == output_plot)
+    history%dt = real_of(card, 'DT')
+    history%curve = integer_of(card, curve)
+    history%place = place_of(card, curve)
+    if (file == output_plot) then
+      history%n_state = max(integer_of(card, 'NPLTC'), 0)
+    else
+      history%is_text = integer_of(card, 'BINARY') /= 2
+      history%is_binout = integer_of(card, 'BINARY') >= 2
+    end if
+    raw%outputs(file) = history
+  end subroutine read_database
 
-  !> Bounds of a node or a rigid body. A bound that is blank, of bodies also 0, does not count.
-  subroutine take_bounds(deck, card, name, along, other, entry)
+  !> Cycles between two restart files.
+  subroutine take_cycles(deck, card, cycles)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
-    character(*), intent(in) :: name         !! of the field of what is bounded
-    integer, intent(in) :: along, other      !! kind of STOP 1 and 2, of STOP 4
-    type(raw_end_t), intent(inout) :: entry
-    logical :: is_open(2)
+    integer, intent(out) :: cycles
 
-    entry%id_place = place_of(card, name)
-    entry%condition%id = integer_of(card, name)
-    select case (integer_of(card, 'STOP'))
-    case (1, 2)
-      entry%condition%kind = along
-      entry%condition%direction = integer_of(card, 'STOP')
-    case (4)
-      entry%condition%kind = other
-    case default
-      return
-    end select
-    if (other == end_node_touch .and. entry%condition%kind == other) return
-    is_open = [is_blank(card, 'MAXC'), is_blank(card, 'MINC')]
-    if (along == end_body_place) is_open = is_open .or. [abs(real_of(card, 'MAXC')), &
-      abs(real_of(card, 'MINC'))] <= 0.0_wp
-    if (entry%condition%kind == end_body_way) is_open(2) = .true.
-    if (all(is_open)) call report_field(deck, card, 'MAXC', 'is no bound, nor is MINC: ' &
-      //'nothing would end the run')
-    if (.not. is_open(1)) entry%condition%most = real_of(card, 'MAXC')
-    if (.not. is_open(2)) entry%condition%least = real_of(card, 'MINC')
-    if (entry%condition%least >= entry%condition%most) call report_field(deck, card, &
-      'MINC', 'is not below MAXC')
-  end subroutine take_bounds
+    cycles = 0
+    if (.not. is_bad(card, 'CYCL')) cycles = nint(real_of(card, 'CYCL'))
+    if (abs(real_of(card, 'CYCL') - cycles) > 0.0_wp) call report_field(deck, card, 'CYCL', &
+      'is not a whole number of cycles')
+  end subroutine take_cycles
 
 end module deck_control_m

@@ -10,8 +10,7 @@ module deck_curves_m
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, first_card, next_row, report_field, find_field, &
     next_card, check_rest
-  use deck_maps_m, only : map_kind, lose
-  use deck_values_m, only : integer_of, real_of, reals_of, is_bad
+  use deck_values_m, only : integer_of, real_of, reals_of, define, map_defined
   implicit none
   private
   public :: table_t, read_curves, read_systems
@@ -31,45 +30,42 @@ contains
     type(model_t), intent(inout) :: model
     type(table_t), allocatable, intent(out) :: tables(:)
     type(curve_t), allocatable :: curves(:)
-    integer, allocatable :: blocks(:), lines(:)
+    type(curve_t) :: curve
+    integer, allocatable :: blocks(:)
     integer :: of_block(deck%n_block), i, n
 
     blocks = blocks_of(deck, 'DEFINE_CURVE')
-    allocate (curves(size(blocks)), lines(size(blocks)))
+    allocate (curves(size(blocks)))
     of_block = 0
-    n = 0
     do i = 1, size(blocks)
-      call read_curve(deck, blocks(i), curves(n + 1), lines(n + 1))
-      if (curves(n + 1)%id < 1) cycle
-      n = n + 1
+      call read_curve(deck, blocks(i), curve, n)
       of_block(blocks(i)) = n
+      if (n > 0) curves(n) = curve
     end do
-    model%curves = curves(:n)
-    call map_kind(deck, a_curve, model%curves%id, lines(:n), 'LCID')
+    model%curves = curves(:deck%maps(a_curve)%n)
+    call map_defined(deck, a_curve, 'LCID')
     call read_tables(deck, of_block, tables)
   end subroutine read_curves
 
   !> *DEFINE_CURVE: points, then scale factors and offsets applied, x = SFA*(x + OFFA).
-  subroutine read_curve(deck, i_block, curve, line)
+  subroutine read_curve(deck, i_block, curve, n)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
-    type(curve_t), intent(out) :: curve   !! its id is 0 where it was refused
-    integer, intent(out) :: line
+    type(curve_t), intent(out) :: curve
+    integer, intent(out) :: n             !! its index, 0 where it was refused
     type(cursor_t) :: cursor
     type(card_t) :: head
     real(wp), allocatable :: points(:, :)
     real(wp) :: scale(2)
 
     call first_card(deck, i_block, cursor, head)
-    line = head%line
+    call define(deck, a_curve, head, 'LCID', n)
     scale = reals_of(head, 'SFA', 'SFO')
     scale(1) = abs(scale(1)) ! a negative one has been refused
     curve%phase = integer_of(head, 'SIDR')
     call read_rows(deck, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
       'is not beyond the point before it: abscissas must increase', cursor, points)
     if (size(points, 2) == 0) call line_error(deck, head%line, 'the curve has no points')
-    if (is_bad(head, 'LCID')) call lose(deck, [a_curve])
-    if (is_bad(head, 'LCID')) return
     if (size(points, 2) == 0) points = reshape([0.0_wp, 0.0_wp], [2, 1])
     curve%id = integer_of(head, 'LCID')
     curve%abscissa = points(1, :)
@@ -84,34 +80,31 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: head
     real(wp), allocatable :: values(:, :)
-    integer, allocatable :: blocks(:), ids(:), lines(:)
+    integer, allocatable :: blocks(:)
     integer :: i, n
 
     blocks = blocks_of(deck, 'DEFINE_TABLE')
-    allocate (tables(size(blocks)), ids(size(blocks)), lines(size(blocks)))
-    n = 0
+    allocate (tables(size(blocks)))
     do i = 1, size(blocks)
       call first_card(deck, blocks(i), cursor, head)
       call read_rows(deck, ['VALUE'], [abs(real_of(head, 'SFA'))], [real_of(head, 'OFFA')], &
         'is not beyond the value before it: the values of a table must increase', cursor, values)
       if (size(values, 2) == 0) call line_error(deck, head%line, 'the table has no values')
-      if (is_bad(head, 'TBID')) call lose(deck, [a_table])
-      if (is_bad(head, 'TBID')) cycle
-      n = n + 1
-      ids(n) = integer_of(head, 'TBID')
-      lines(n) = head%line
+      call define(deck, a_table, head, 'TBID', n)
+      if (n == 0) cycle
       tables(n)%values = values(1, :)
-      if (index_of(deck%maps(a_curve), ids(n)) > 0) call report_field(deck, head, 'TBID', &
-        'is the number of a curve too')
-      call find_table_curves(deck, of_block, blocks(i), ids(n), lines(n), tables(n))
+      if (index_of(deck%maps(a_curve), integer_of(head, 'TBID')) > 0) call &
+        report_field(deck, head, 'TBID', 'is the number of a curve too')
+      call find_table_curves(deck, of_block, blocks(i), head, tables(n))
     end do
-    call map_kind(deck, a_table, ids(:n), lines(:n), 'TBID')
+    call map_defined(deck, a_table, 'TBID')
   end subroutine read_tables
 
   !> The curves of a table: those of the blocks that come next, one for each value.
-  subroutine find_table_curves(deck, of_block, i_block, id, line, table)
+  subroutine find_table_curves(deck, of_block, i_block, head, table)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: of_block(:), i_block, id, line
+    integer, intent(in) :: of_block(:), i_block
+    type(card_t), intent(in) :: head
     type(table_t), intent(inout) :: table
     integer :: i, n
 
@@ -125,8 +118,9 @@ contains
       if (n == 1) table%curves(1) = of_block(i)
       if (n == size(table%values)) table%curves(2) = of_block(i)
     end do
-    if (n < size(table%values) .and. .not. deck%maps(a_curve)%lost) call line_error(deck, line, &
-      'table '//to_text(id)//' has '//to_text(size(table%values))//' values but '//to_text(n) &
+    if (n < size(table%values) .and. .not. deck%maps(a_curve)%lost) call line_error(deck, &
+      head%line, 'table '//to_text(integer_of(head, 'TBID'))//' has ' &
+      //to_text(size(table%values))//' values but '//to_text(n) &
       //' *DEFINE_CURVE right behind it: it takes one for each value, in that order')
   end subroutine find_table_curves
 
@@ -164,64 +158,44 @@ contains
     if (.not. is_sound) rows(1, :) = [(real(i, wp), i=0, n - 1)]
   end subroutine read_rows
 
-  !> *DEFINE_COORDINATE_SYSTEM.
+  !> *DEFINE_COORDINATE_SYSTEM: the x axis goes from the origin to the point L; the point P is on
+  !> the side of the y axis.
   subroutine read_systems(deck)
     type(deck_t), intent(inout) :: deck
-    real(wp) :: axes(2, 2)
-    integer, allocatable :: blocks(:), ids(:), lines(:)
+    character(*), parameter :: leaves = 'takes the axes out of the plane of the model'
+    type(cursor_t) :: cursor
+    type(card_t) :: card, more
+    integer, allocatable :: blocks(:)
+    real(wp) :: origin(2), to_l(2), to_p(2), across
     integer :: i, n
 
     blocks = blocks_of(deck, 'DEFINE_COORDINATE_SYSTEM')
-    allocate (deck%axes(2, 2, size(blocks)), ids(size(blocks)), lines(size(blocks)))
-    n = 0
+    allocate (deck%axes(2, 2, size(blocks)))
     do i = 1, size(blocks)
-      call read_system(deck, blocks(i), ids(n + 1), lines(n + 1), axes)
-      if (ids(n + 1) < 1) cycle
-      n = n + 1
-      deck%axes(:, :, n) = axes
+      call first_card(deck, blocks(i), cursor, card)
+      call next_card(deck, cursor, 2, more)
+      call check_rest(deck, cursor)
+      call define(deck, a_system, card, 'CID', n)
+      if (n == 0) cycle
+      if (abs(real_of(more, 'ZP') - real_of(card, 'ZO')) > 0.0_wp) &
+        call report_field(deck, more, 'ZP', leaves)
+      origin = reals_of(card, 'XO', 'YO')
+      to_l = reals_of(card, 'XL', 'YL') - origin
+      to_p = reals_of(more, 'XP', 'YP') - origin
+      across = to_l(1)*to_p(2) - to_l(2)*to_p(1)
+      if (abs(real_of(card, 'ZL') - real_of(card, 'ZO')) > 0.0_wp) then
+        call report_field(deck, card, 'ZL', leaves)
+      else if (.not. norm2(to_l) > 0.0_wp) then
+        call report_field(deck, card, 'XL', ': the point on the x axis is the origin')
+      else if (.not. abs(across) > 0.0_wp) then
+        call report_field(deck, more, 'XP', &
+          ': the point in the plane of the axes lies on the x axis')
+      end if
+      if (norm2(to_l) > 0.0_wp) to_l = to_l/norm2(to_l)
+      deck%axes(:, 1, n) = to_l
+      deck%axes(:, 2, n) = sign(1.0_wp, across)*[-to_l(2), to_l(1)]
     end do
-    call map_kind(deck, a_system, ids(:n), lines(:n), 'CID')
+    call map_defined(deck, a_system, 'CID')
   end subroutine read_systems
-
-  !> The x axis goes from the origin to the point L; the point P is on the side of the y axis.
-  subroutine read_system(deck, i_block, id, line, axes)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    integer, intent(out) :: id, line      !! id: 0 where it was refused
-    real(wp), intent(out) :: axes(2, 2)
-    character(*), parameter :: leaves = 'takes the axes out of the plane of the model'
-    type(cursor_t) :: cursor
-    type(card_t) :: cards(2)
-    real(wp) :: origin(2), to_p(2), across
-    logical :: in_plane
-
-    call first_card(deck, i_block, cursor, cards(1))
-    call next_card(deck, cursor, 2, cards(2))
-    call check_rest(deck, cursor)
-    id = 0
-    line = cards(1)%line
-    axes = 0.0_wp
-    if (is_bad(cards(1), 'CID')) call lose(deck, [a_curve, a_system])
-    if (is_bad(cards(1), 'CID')) return
-    id = integer_of(cards(1), 'CID')
-    in_plane = .not. abs(real_of(cards(1), 'ZL') - real_of(cards(1), 'ZO')) > 0.0_wp
-    if (.not. in_plane) call report_field(deck, cards(1), 'ZL', leaves)
-    if (abs(real_of(cards(2), 'ZP') - real_of(cards(1), 'ZO')) > 0.0_wp) &
-      call report_field(deck, cards(2), 'ZP', leaves)
-    origin = reals_of(cards(1), 'XO', 'YO')
-    axes(:, 1) = reals_of(cards(1), 'XL', 'YL') - origin
-    to_p = reals_of(cards(2), 'XP', 'YP') - origin
-    across = axes(1, 1)*to_p(2) - axes(2, 1)*to_p(1)
-    if (.not. norm2(axes(:, 1)) > 0.0_wp) then
-      if (in_plane) call report_field(deck, cards(1), 'XL', &
-        ': the point on the x axis is the origin')
-      axes(:, 1) = [1.0_wp, 0.0_wp]
-    else if (.not. abs(across) > 0.0_wp) then
-      call report_field(deck, cards(2), 'XP', &
-        ': the point in the plane of the axes lies on the x axis')
-    end if
-    axes(:, 1) = axes(:, 1)/norm2(axes(:, 1))
-    axes(:, 2) = sign(1.0_wp, across)*[-axes(2, 1), axes(1, 1)]
-  end subroutine read_system
 
 end module deck_curves_m

@@ -12,8 +12,7 @@ module deck_damping_m
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_part, a_part_set, a_curve
   use deck_lines_m, only : deck_t, blocks_of, line_text, line_error
-  use deck_maps_m, only : find_id
-  use deck_values_m, only : integer_of, real_of, reals_of, has_field
+  use deck_values_m, only : integer_of, real_of, reals_of, has_field, find_id
   implicit none
   private
   public :: read_damping

@@ -181,6 +181,7 @@ contains
     call append_line(deck, deck%n_block + 1, 0)
     call open_block(deck, 1, name)
     call rewrite_block(deck, deck%n_block, name, text)
+    deck%blocks(deck%n_block)%is_honoured = .true.
   end subroutine append_block
 
 end module deck_edits_m

@@ -11,8 +11,7 @@ module deck_erosion_m
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, first_card, next_card, check_rest, report_field
   use deck_ids_m, only : a_material, a_part
-  use deck_maps_m, only : find_id
-  use deck_values_m, only : real_of, is_blank, is_bad
+  use deck_values_m, only : real_of, is_blank, is_bad, find_id
   implicit none
   private
   public :: read_erosions

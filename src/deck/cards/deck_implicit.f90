@@ -62,12 +62,12 @@ contains
     type(implicit_t), intent(inout) :: implicit
 
     implicit%is_linear = integer_of(card, 'NSOLVR') == 1
-    if (integer_of(card, 'MAXREF') > 0) implicit%max_iteration = integer_of(card, 'MAXREF')
+    implicit%max_iteration = integer_of(card, 'MAXREF')
     implicit%step_tolerance = real_of(card, 'DCTOL')
-    if (real_of(card, 'ECTOL') > 0.0_wp) implicit%energy_tolerance = real_of(card, 'ECTOL')
+    implicit%energy_tolerance = real_of(card, 'ECTOL')
     implicit%residual_tolerance = real_of(card, 'RCTOL')
     if (implicit%residual_tolerance >= 1.0e10_wp) implicit%residual_tolerance = 0.0_wp
-    if (real_of(card, 'LSTOL') > 0.0_wp) implicit%search_tolerance = real_of(card, 'LSTOL')
+    implicit%search_tolerance = real_of(card, 'LSTOL')
   end subroutine take_solution
 
   !> *CONTROL_IMPLICIT_AUTO.

@@ -12,9 +12,9 @@ module deck_loads_m
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, a_part, a_curve, a_segment_set, a_system
   use deck_lines_m, only : deck_t, place_t, blocks_of, line_warning
-  use deck_maps_m, only : find_id
+  use deck_sets_m, only : check_edge
   use deck_supports_m, only : card_nodes, mark_axis, mark_massive, across_axis
-  use deck_values_m, only : integer_of, real_of, has_field
+  use deck_values_m, only : integer_of, real_of, has_field, find_id
   implicit none
   private
   public :: read_nodal_loads, read_pressures, settle_pressures, read_body_loads, read_masses, &
@@ -205,21 +205,6 @@ contains
     model%conditions%pressures = loads(:n)
     places = all_places(:n)
   end subroutine read_pressures
-
-  !> N1 to N4 of an edge: two nodes, and what may stand behind them.
-  subroutine check_edge(deck, card)
-    type(deck_t), intent(inout) :: deck
-    type(card_t), intent(inout) :: card
-    integer :: first, k
-
-    first = findloc(card%names, 'N1  ', dim=1)
-    if (card%i(first) == card%i(first + 1)) call report_field(deck, card, first + 1, &
-      'is the first node again; an edge has two nodes')
-    do k = first + 2, first + 3
-      if (all(card%i(k) /= [0, card%i(first:first + 1)])) call report_field(deck, card, k, &
-        'is a further node; an edge in the plane has two (repeat N2 or leave it 0)')
-    end do
-  end subroutine check_edge
 
   !> Edges that carry pressure walked counter-clockwise round the body; others are errors, one for
   !> each card.

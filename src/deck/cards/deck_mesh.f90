@@ -1,320 +1,241 @@
 ! SPDX-License-Identifier: MIT
-!> *NODE, *ELEMENT_SHELL and *SET_ cards.
+!> *NODE and *ELEMENT_SHELL, and the checks of the mesh, also of one some elements of which are
+!> refused: mistakes that do not follow from theirs are told in the same pass.
 module deck_mesh_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use deck_ids_m, only : a_node, a_node_set, a_part_set, a_segment_set, a_shell_set, an_element
-  use deck_maps_m, only : lose
-  use deck_lines_m, only : deck_t, line_warning
-  use deck_fields_m, only : card_t, field_text
-  use deck_cards_m, only : cursor_t, open_cursor, next_text, next_card, next_row, report_field, &
-    find_field
-  use deck_values_m, only : integer_of, is_bad
-  use deck_raw_m, only : raw_t, reserve_nodes, reserve_elements
-  use deck_raw_sets_m, only : raw_set_t, append_set, append_member, add_all, add_nodes, add_parts, &
-    of_part, of_part_set
-  use text_m, only : upper_case
+  use mesh_m, only : mesh_t
+  use model_m, only : model_t
+  use deck_lines_m, only : deck_t, place_t, count_rows, line_error, line_warning
+  use deck_fields_m, only : card_t
+  use deck_card_specs_m, only : field_number
+  use deck_cards_m, only : cursor_t, next_of, rows_of, report_field, reject_field
+  use deck_ids_m, only : a_node, an_element, a_part
+  use deck_values_m, only : define, map_defined, lose, find_id
   implicit none
   private
-  public :: read_nodes, read_elements, read_beams, read_set, read_history_ids
+  public :: read_mesh
+
+  !> Radii below this share of the largest are the axis.
+  real(wp), parameter :: axis_share = 1.0e-10_wp
 
 contains
 
-  !> *NODE: id, coordinates and boundary code.
-  subroutine read_nodes(deck, i_block, raw)
+  !> Nodes and elements. Parts are known. `sound` tells whether the elements may be looked at
+  !> further.
+  subroutine read_mesh(deck, model, codes, is_sound, sound)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
+    type(model_t), intent(inout) :: model
+    integer, allocatable, intent(out) :: codes(:)    !! (n_node) TC
+    logical, allocatable, intent(out) :: is_sound(:) !! (n_element) of each whether its edges are
+                                                     !! those that were meant
+    logical, intent(out) :: sound
+    integer :: n_before, i
+    logical :: has_place
+
+    n_before = deck%report%n_error
+    call read_nodes(deck, model%mesh, codes)
+    has_place = deck%report%n_error == n_before
+    call read_elements(deck, model%mesh)
+    allocate (is_sound(model%mesh%n_element))
+    do i = 1, model%mesh%n_element
+      is_sound(i) = all(model%mesh%element_nodes(:, i) > 0)
+    end do
+    if (has_place) call check_shapes(deck, model%mesh, is_sound)
+    ! A part or node that was lost with its own mistake is not told again where it is named.
+    if (.not. has_place .or. deck%maps(a_node)%lost .or. deck%maps(an_element)%lost) &
+      is_sound = .false.
+    sound = deck%report%n_error == n_before .and. model%mesh%n_node > 0 &
+      .and. model%mesh%n_element > 0 .and. all(is_sound) .and. all(model%mesh%element_part > 0)
+    if (model%is_round .and. model%mesh%n_node > 0) call settle_axis(deck, model%mesh)
+  end subroutine read_mesh
+
+  !> *NODE: id, coordinates in one plane, and boundary code.
+  subroutine read_nodes(deck, mesh, codes)
+    type(deck_t), intent(inout) :: deck
+    type(mesh_t), intent(inout) :: mesh
+    integer, allocatable, intent(out) :: codes(:)
     type(cursor_t) :: cursor
     type(card_t) :: card
-    logical :: found
-    integer :: n, id, x, y, z, code
+    real(wp), allocatable :: coordinates(:, :)
+    integer :: n, x, y, z, code
+    real(wp) :: plane
+    logical :: found, is_flat
 
-    call open_cursor(deck, i_block, cursor)
-    id = find_field(cursor, 1, 'NID')
-    x = find_field(cursor, 1, 'X')
-    y = find_field(cursor, 1, 'Y')
-    z = find_field(cursor, 1, 'Z')
-    code = find_field(cursor, 1, 'TC')
-    call reserve_nodes(raw, max(cursor%last - cursor%line + 1, 0))
+    n = count_rows(deck, 'NODE')
+    allocate (codes(n), coordinates(2, n))
+    is_flat = .true.
+    call rows_of('NODE', cursor)
     do
-      call next_row(deck, cursor, 1, card, found)
+      call next_of(deck, cursor, card, found)
       if (.not. found) exit
-      if (card%i(id) < 1) call report_field(deck, cursor, card, id, &
-        'is not a node number (1 or more)')
-      if (card%i(code) < 0 .or. card%i(code) > 7) call report_field(deck, cursor, card, code, &
-        'is not a boundary code (0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)')
-      if (card%bad(id)) call lose(deck, [a_node])
-      if (card%bad(id)) cycle
-      n = raw%n_node + 1
-      raw%n_node = n
-      raw%node_id(n) = card%i(id)
-      raw%node_line(n) = card%line
-      raw%node_code(n) = card%i(code)
-      raw%coordinates(1, n) = card%r(x)
-      raw%coordinates(2, n) = card%r(y)
-      if (n == 1) raw%z_first = card%r(z)
-      if (raw%z_line == 0 .and. abs(card%r(z) - raw%z_first) > 0.0_wp) raw%z_line = card%line
+      if (deck%maps(a_node)%n == 0) then
+        x = field_number(card%names, 'X')
+        y = field_number(card%names, 'Y')
+        z = field_number(card%names, 'Z')
+        code = field_number(card%names, 'TC')
+      end if
+      call define(deck, a_node, card, 'NID', n)
+      if (n == 0) cycle
+      codes(n) = card%i(code)
+      coordinates(1, n) = card%r(x)
+      coordinates(2, n) = card%r(y)
+      if (n == 1) plane = card%r(z)
+      if (is_flat .and. abs(card%r(z) - plane) > 0.0_wp) then
+        is_flat = .false.
+        call report_field(deck, card, z, &
+          'is not the z of the first node: the mesh must lie in one plane z = constant')
+      end if
     end do
+    call map_defined(deck, a_node, 'NID')
+    n = deck%maps(a_node)%n
+    mesh%n_node = n
+    call move_alloc(deck%maps(a_node)%ids, mesh%node_id)
+    codes = codes(:n)
+    mesh%coordinates = coordinates(:, :n)
+    if (n == 0) then
+      if (.not. deck%maps(a_node)%lost) call line_error(deck, 0, 'the deck has no nodes (*NODE)')
+    else if (is_flat .and. abs(plane) > 0.0_wp) then
+      call line_warning(deck, deck%maps(a_node)%lines(1), 'z', &
+        'z is the same for all nodes and is ignored')
+    end if
   end subroutine read_nodes
 
   !> *ELEMENT_SHELL: id, part and corner nodes; N4 = 0 or N3 makes a triangle.
-  subroutine read_elements(deck, i_block, raw)
+  subroutine read_elements(deck, mesh)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
+    type(mesh_t), intent(inout) :: mesh
     type(cursor_t) :: cursor
     type(card_t) :: card
+    integer, allocatable :: parts(:), nodes(:, :)
+    integer :: n, k, part, first
     logical :: found
-    integer :: n, k, id, part, first, last
 
-    call open_cursor(deck, i_block, cursor)
-    id = find_field(cursor, 1, 'EID')
-    part = find_field(cursor, 1, 'PID')
-    first = find_field(cursor, 1, 'N1')
-    last = find_field(cursor, 1, 'N4')
-    call reserve_elements(raw, max(cursor%last - cursor%line + 1, 0))
+    n = count_rows(deck, 'ELEMENT_SHELL')
+    allocate (parts(n), nodes(4, n))
+    call rows_of('ELEMENT_SHELL', cursor)
     do
-      call next_row(deck, cursor, 1, card, found)
+      call next_of(deck, cursor, card, found)
       if (.not. found) exit
-      if (card%i(id) < 1) call report_field(deck, cursor, card, id, &
-        'is not an element number (1 or more)')
-      if (card%i(part) < 1) call report_field(deck, cursor, card, part, &
-        'is not a part number (1 or more)')
-      do k = first, last - 1
-        if (card%i(k) < 1) call report_field(deck, cursor, card, k, &
-          'is not a node number (1 or more)')
-      end do
-      if (card%i(last) < 0) call report_field(deck, cursor, card, last, &
-        'is not a node number (1 or more)')
+      if (deck%maps(an_element)%n == 0) then
+        part = field_number(card%names, 'PID')
+        first = field_number(card%names, 'N1')
+      end if
       if (any(card%bad)) call lose(deck, [an_element])
       if (any(card%bad)) cycle
-      if (card%i(last) == 0) card%i(last) = card%i(last - 1)
-      n = raw%n_element + 1
-      raw%n_element = n
-      raw%element_id(n) = card%i(id)
-      raw%element_part(n) = card%i(part)
-      raw%element_nodes(:, n) = card%i(first:first + 3)
-      raw%element_line(n) = card%line
+      call define(deck, an_element, card, 'EID', n)
+      call find_id(deck, a_part, card, part, parts(n))
+      do k = 1, 3
+        call find_id(deck, a_node, card, first + k - 1, nodes(k, n))
+      end do
+      nodes(4, n) = nodes(3, n)
+      if (all(card%i(first + 3) /= [0, card%i(first + 2)])) &
+        call find_id(deck, a_node, card, first + 3, nodes(4, n))
     end do
+    call map_defined(deck, an_element, 'EID')
+    n = deck%maps(an_element)%n
+    mesh%n_element = n
+    call move_alloc(deck%maps(an_element)%ids, mesh%element_id)
+    mesh%element_part = parts(:n)
+    if (n == size(parts)) call move_alloc(nodes, mesh%element_nodes)
+    if (n < size(parts)) mesh%element_nodes = nodes(:, :n)
+    if (n == 0 .and. .not. deck%maps(an_element)%lost) call line_error(deck, 0, &
+      'the deck has no elements (*ELEMENT_SHELL)')
   end subroutine read_elements
 
-  !> *ELEMENT_BEAM, as mesh generators write the edges of a plane mesh: no elements here, but the
-  !> segment set and the node set of the number of their part.
-  subroutine read_beams(deck, i_block, raw)
+  !> Radii must not be below zero; those that are none are made exactly zero.
+  subroutine settle_axis(deck, mesh)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
-    type(cursor_t) :: cursor
-    type(card_t) :: card
-    logical :: found
-    integer :: part, first, k
-
-    call open_cursor(deck, i_block, cursor)
-    part = find_field(cursor, 1, 'PID')
-    first = find_field(cursor, 1, 'N1')
-    do
-      call next_row(deck, cursor, 1, card, found)
-      if (.not. found) exit
-      if (card%i(part) < 1) call report_field(deck, cursor, card, part, &
-        'is not a part number (1 or more)')
-      do k = first, first + 1
-        if (card%i(k) < 1) call report_field(deck, cursor, card, k, &
-          'is not a node number (1 or more)')
-      end do
-      if (card%bad(part) .or. any(card%bad(first:first + 1))) then
-        call lose(deck, [a_node_set, a_part_set, a_segment_set, a_shell_set])
-        cycle
-      end if
-      call line_warning(deck, card%line, 'beams', 'beams are no elements of a plane mesh: the ' &
-        //'edges of each of their parts are the segment set, and the node set, of its number')
-      do k = first, first + 1
-        call append_to_beam_set(raw%segment_sets, raw%n_segment_set, .false., card%i(part), &
-          card%i(k), card%line, k)
-        call append_to_beam_set(raw%node_sets, raw%n_node_set, .true., card%i(part), card%i(k), &
-          card%line, k)
-      end do
-    end do
-  end subroutine read_beams
-
-  !> One more node of the set that the beams of a part make; the last made is mostly the one.
-  subroutine append_to_beam_set(sets, n, once, id, node, line, field)
-    type(raw_set_t), allocatable, intent(inout) :: sets(:)
-    integer, intent(inout) :: n
-    logical, intent(in) :: once      !! a node that is there already is not taken again
-    integer, intent(in) :: id, node, line, field
-    type(raw_set_t) :: set
+    type(mesh_t), intent(inout) :: mesh
+    real(wp) :: reach
     integer :: i
 
-    do i = n, 1, -1
-      if (sets(i)%of_beams .and. sets(i)%id == id) exit
-    end do
-    if (i == 0) then
-      set%id = id
-      set%line = line
-      set%of_beams = .true.
-      call append_set(sets, n, set)
-      i = n
-    end if
-    if (once .and. sets(i)%n > 0) then
-      if (any(sets(i)%members(:sets(i)%n) == node)) return
-    end if
-    call append_member(sets(i), node, line, field)
-  end subroutine append_to_beam_set
-
-  !> A set of nodes, parts, elements or segments: its number, then its members.
-  subroutine read_set(deck, i_block, raw)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
-    type(cursor_t) :: cursor
-    type(card_t) :: head, card
-    type(raw_set_t) :: set
-    integer :: first
-    logical :: found
-
-    call open_cursor(deck, i_block, cursor)
-    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, set%title)
-    call next_card(deck, cursor, 1, head)
-    set%id = integer_of(head, 'SID')
-    if (set%id < 1) call report_field(deck, cursor, head, 'SID', 'is not a set number (1 or more)')
-    set%line = head%line
-    set%generate = index(deck%blocks(i_block)%name, '_GENERATE') > 0
-    do
-      call next_row(deck, cursor, 2, card, found)
-      if (.not. found) exit
-      select case (deck%blocks(i_block)%name)
-      case ('SET_SEGMENT')
-        ! N3 and N4 may repeat N2 or be zero.
-        first = find_field(cursor, 2, 'N1')
-        call check_edge(deck, cursor, card, first)
-        if (.not. any(card%bad(first:first + 3))) then
-          call append_member(set, card%i(first), card%line, first)
-          call append_member(set, card%i(first + 1), card%line, first + 1)
+    reach = axis_share*maxval(mesh%coordinates(1, :))
+    associate (x => mesh%coordinates)
+      do i = 1, mesh%n_node
+        if (x(1, i) < -reach) then
+          call reject_field(deck, place_t(deck%maps(a_node)%lines(i), 1, 'X'), ': node ' &
+            //to_text(mesh%node_id(i))//' lies at a radius below 0 (an axisymmetric deck ' &
+            //'turns about x = 0, and x is the radius)')
+        else if (x(1, i) <= reach) then
+          x(1, i) = 0.0_wp
         end if
-      case ('SET_NODE_GENERAL')
-        call take_action(deck, cursor, card, set)
-      case default
-        call take_members(deck, cursor, card, set)
-      end select
-      set%damaged = set%damaged .or. any(card%bad)
-    end do
-    if (is_bad(head, 'SID')) call lose(deck, [a_node_set, a_part_set, a_segment_set, a_shell_set])
-    if (is_bad(head, 'SID')) return
-    select case (deck%blocks(i_block)%name)
-    case ('SET_SEGMENT', 'SET_2D_SEGMENT', 'SET_2D_SEGMENT_SET')
-      if (deck%blocks(i_block)%name == 'SET_2D_SEGMENT') set%boundary = of_part
-      if (deck%blocks(i_block)%name == 'SET_2D_SEGMENT_SET') set%boundary = of_part_set
-      call append_set(raw%segment_sets, raw%n_segment_set, set)
-    case ('SET_PART_LIST', 'SET_PART_LIST_GENERATE')
-      call append_set(raw%part_sets, raw%n_part_set, set)
-    case ('SET_SHELL_LIST', 'SET_SHELL_LIST_GENERATE')
-      call append_set(raw%shell_sets, raw%n_shell_set, set)
-    case default
-      call append_set(raw%node_sets, raw%n_node_set, set)
-    end select
-  end subroutine read_set
-
-  !> The ids of a line, one in each of its fields; zeros are padding. Generated sets take them in
-  !> pairs.
-  subroutine take_members(deck, cursor, card, set)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    type(raw_set_t), intent(inout) :: set
-    integer :: k, n
-
-    n = cursor%specs(card%number)%n
-    do k = 1, n
-      if (card%i(k) < 0) call report_field(deck, cursor, card, k, 'is not a number of 1 or more')
-    end do
-    if (set%generate) then
-      do k = 1, n - 1, 2
-        if (card%i(k) == 0 .and. card%i(k + 1) == 0) cycle
-        if (card%i(k) == 0 .or. card%i(k + 1) < card%i(k)) call report_field(deck, cursor, card, &
-          k + 1, 'is not the end of a block that begins with "'//to_text(card%i(k))//'"')
-        if (card%bad(k) .or. card%bad(k + 1)) cycle
-        call append_member(set, card%i(k), card%line, k)
-        call append_member(set, card%i(k + 1), card%line, k + 1)
       end do
-      return
-    end if
-    do k = 1, n
-      if (card%i(k) > 0) call append_member(set, card%i(k), card%line, k)
-    end do
-  end subroutine take_members
+    end associate
+  end subroutine settle_axis
 
-  !> A row of a general set: what it does, and with which nodes or parts.
-  subroutine take_action(deck, cursor, card, set)
+  !> Elements must have area, be convex and run counter-clockwise; clockwise ones are turned. Those
+  !> with a node that does not exist have been refused.
+  subroutine check_shapes(deck, mesh, is_sound)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    type(raw_set_t), intent(inout) :: set
-    integer :: action, k, n
+    type(mesh_t), intent(inout) :: mesh
+    logical, intent(inout) :: is_sound(:) !! (n_element) what is refused here is not
+    integer :: i, n_turned, first_turned
+    real(wp) :: corners(4), area, tolerance
 
-    n = cursor%specs(card%number)%n
-    select case (upper_case(field_text(deck, card, 1)))
-    case ('ALL')
-      call append_member(set, 0, card%line, 1, add_all)
-      return
-    case ('NODE')
-      action = add_nodes
-    case ('DNODE')
-      action = -add_nodes
-    case ('PART')
-      action = add_parts
-    case ('DPART')
-      action = -add_parts
-    case default
-      call report_field(deck, cursor, card, 'OPTION', 'is not ALL, NODE, DNODE, PART or DPART ' &
-        //'(boxes are not available in slideline)')
-      return
-    end select
-    if (all(card%i(2:n) == 0)) call report_field(deck, cursor, card, 'E1', &
-      'is not a number of 1 or more')
-    do k = 2, n
-      if (card%i(k) < 0) call report_field(deck, cursor, card, k, 'is not a number of 1 or more')
-      if (card%i(k) > 0) call append_member(set, card%i(k), card%line, k, action)
+    n_turned = 0
+    first_turned = 0
+    do i = 1, mesh%n_element
+      if (.not. is_sound(i)) cycle
+      corners = corner_areas(mesh, i)
+      if (mesh%element_nodes(4, i) == mesh%element_nodes(3, i)) then
+        area = 2.0_wp*corners(1)
+      else
+        area = corners(1) + corners(3)
+      end if
+      tolerance = 1.0e-10_wp*maxval(abs(corners))
+      is_sound(i) = .false.
+      if (repeated(mesh%element_nodes(:, i))) then
+        call reject_field(deck, place_t(deck%maps(an_element)%lines(i), 1, 'EID'), 'uses a node ' &
+          //'twice (a triangle repeats its third node, and no other)')
+      else if (minval(corners) < -tolerance .and. maxval(corners) > tolerance) then
+        call reject_field(deck, place_t(deck%maps(an_element)%lines(i), 1, 'EID'), &
+          'is not convex: its edges cross or a corner points inwards')
+      else if (.not. abs(area) > 2.0_wp*tolerance) then
+        call reject_field(deck, place_t(deck%maps(an_element)%lines(i), 1, 'EID'), 'has no area')
+      else
+        is_sound(i) = .true.
+        if (area > 0.0_wp) cycle
+        mesh%element_nodes(:, i) = mesh%element_nodes([1, 4, 3, 2], i)
+        if (mesh%element_nodes(2, i) == mesh%element_nodes(3, i)) &
+          mesh%element_nodes(3:4, i) = mesh%element_nodes(4, i)
+        n_turned = n_turned + 1
+        if (n_turned == 1) first_turned = i
+      end if
     end do
-  end subroutine take_action
+    if (n_turned > 0) call line_warning(deck, deck%maps(an_element)%lines(first_turned), &
+      'clockwise', to_text(n_turned)//' element(s) were numbered clockwise and have been turned; ' &
+      //'the first is '//to_text(mesh%element_id(first_turned)))
+  end subroutine check_shapes
 
-  !> Four node fields from `k` on must describe an edge.
-  subroutine check_edge(deck, cursor, card, k)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    integer, intent(in) :: k
-    integer :: j
+  !> Twice the signed area of the triangle at each corner of an element.
+  pure function corner_areas(mesh, i) result(areas)
+    type(mesh_t), intent(in) :: mesh
+    integer, intent(in) :: i
+    real(wp) :: areas(4)
+    real(wp) :: x(2, 4), before(2), after(2)
+    integer :: k
 
-    do j = k, k + 1
-      if (card%i(j) < 1) call report_field(deck, cursor, card, j, &
-        'is not a node number (1 or more)')
+    x = mesh%coordinates(:, mesh%element_nodes(:, i))
+    if (mesh%element_nodes(4, i) == mesh%element_nodes(3, i)) x(:, 4) = x(:, 1)
+    do k = 1, 4
+      before = x(:, k) - x(:, mod(k + 2, 4) + 1)
+      after = x(:, mod(k, 4) + 1) - x(:, k)
+      if (mesh%element_nodes(4, i) == mesh%element_nodes(3, i)) then
+        before = x(:, 2) - x(:, 1)
+        after = x(:, 3) - x(:, 2)
+      end if
+      areas(k) = before(1)*after(2) - before(2)*after(1)
     end do
-    if (card%i(k) == card%i(k + 1)) call report_field(deck, cursor, card, k + 1, &
-      'is the first node again; an edge has two nodes')
-    do j = k + 2, k + 3
-      if (any(card%bad)) exit
-      if (card%i(j) /= 0 .and. card%i(j) /= card%i(k + 1) .and. card%i(j) /= card%i(k)) &
-        call report_field(deck, cursor, card, j, &
-        'is a further node; an edge in the plane has two (repeat N2 or leave it 0)')
-    end do
-  end subroutine check_edge
+  end function corner_areas
 
-  !> *DATABASE_HISTORY_NODE, _NODE_ID, _NODE_SET, _SHELL and _SHELL_SET.
-  subroutine read_history_ids(deck, i_block, set)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    type(raw_set_t), intent(inout) :: set
-    type(cursor_t) :: cursor
-    type(card_t) :: card
-    logical :: found
+  !> Whether a node comes twice, other than as the fourth node of a triangle.
+  pure function repeated(nodes) result(twice)
+    integer, intent(in) :: nodes(4)
+    logical :: twice
 
-    call open_cursor(deck, i_block, cursor)
-    do
-      call next_row(deck, cursor, 1, card, found)
-      if (.not. found) exit
-      call take_members(deck, cursor, card, set)
-    end do
-  end subroutine read_history_ids
+    twice = nodes(1) == nodes(2) .or. nodes(1) == nodes(3) .or. nodes(2) == nodes(3) &
+      .or. nodes(4) == nodes(1) .or. nodes(4) == nodes(2)
+  end function repeated
 
 end module deck_mesh_m

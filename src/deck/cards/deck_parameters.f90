@@ -6,14 +6,14 @@
 module deck_parameters_m
   use kinds_m, only : wp
   use number_text_m, only : shortest
-  use text_m, only : upper_case, read_real, read_integer, number_good
+  use text_m, only : upper_case, read_real, number_good
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, parameters_t, again_error, line_text, line_error, parameter_t, &
-    line_warning
+    line_warning, block_of_line
   use deck_spelling_m, only : first_too_far, keep_nearer
   use deck_expression_m, only : evaluate, named_value_t, name_characters
   use deck_card_specs_m, only : card_spec_t, make_spec
-  use deck_fields_m, only : card_t, cut_card, field_text, field_error
+  use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error
   use deck_schema_m, only : keyword_cards, max_card
   implicit none
   private
@@ -96,7 +96,7 @@ contains
         if (len(text) == 0) then
           call field_error(deck, card, k + 1, 'is not defined by *PARAMETER up to here')
         else
-          call define(deck, spec, card, k, text, local_source(deck, i_block))
+          call define(deck, spec, card, k, text)
         end if
       end do
     end do
@@ -138,26 +138,18 @@ contains
       end if
       formula = formula//line_here(width + 1:)
       if (line < deck%blocks(i_block)%last) then
-        if (continues(line_text(deck, line + 1), spec%widths(1))) cycle
+        text = line_text(deck, line + 1)
+        if (len_trim(text) > 0 .and. len_trim(text(:min(spec%widths(1), len(text)))) == 0) cycle
       end if
       call evaluate(formula, named_values(deck%parameters, deck%blocks(i_block)%source, &
         formula), value, trouble)
       if (allocated(trouble)) then
         call field_error(deck, card, 1, 'cannot be computed: '//trouble)
       else
-        call define(deck, spec, card, 1, shortest(value), local_source(deck, i_block))
+        call define(deck, spec, card, 1, shortest(value))
       end if
     end do
   end subroutine read_expressions
-
-  !> Whether a line goes on with the expression before it.
-  pure function continues(text, width) result(yes)
-    character(*), intent(in) :: text
-    integer, intent(in) :: width
-    logical :: yes
-
-    yes = len_trim(text) > 0 .and. len_trim(text(:min(width, len(text)))) == 0
-  end function continues
 
   !> *PARAMETER_DUPLICATION.
   subroutine read_policy(deck, i_block)
@@ -165,18 +157,12 @@ contains
     integer, intent(in) :: i_block
     type(card_spec_t) :: spec
     type(card_t) :: card
-    integer :: status
 
     call block_spec(deck, i_block, spec)
     if (deck%blocks(i_block)%last < deck%blocks(i_block)%first) return
     call cut_card(deck, spec, deck%blocks(i_block)%source, deck%blocks(i_block)%first, card)
-    deck%parameters%again = again_warn_keep
-    if (card%blank(1)) return
-    call read_integer(field_text(deck, card, 1), deck%parameters%again, status)
-    if (status == number_good .and. deck%parameters%again >= 1 .and. &
-      deck%parameters%again <= 5) return
-    call field_error(deck, card, 1, 'is not a policy from 1 to 5')
-    deck%parameters%again = again_error
+    call read_numbers(deck, spec, deck%blocks(i_block)%source, card)
+    if (.not. card%bad(1)) deck%parameters%again = card%i(1)
   end subroutine read_policy
 
   !> The one card of a parameter keyword.
@@ -191,24 +177,14 @@ contains
     call make_spec(cards(1), 1, deck%blocks(i_block)%layout, spec)
   end subroutine block_spec
 
-  !> The file that a block's definitions are private to, or 0.
-  pure function local_source(deck, i_block) result(source)
-    type(deck_t), intent(in) :: deck
-    integer, intent(in) :: i_block
-    integer :: source
-
-    source = 0
-    if (index(deck%blocks(i_block)%name, '_LOCAL') > 0) source = deck%blocks(i_block)%source
-  end function local_source
-
-  !> Define the parameter named in field `k` of a card (type letter first).
-  subroutine define(deck, spec, card, k, given, source)
+  !> Define the parameter named in field `k` of a card (type letter first), for its file alone where
+  !> the keyword says so.
+  subroutine define(deck, spec, card, k, given)
     type(deck_t), intent(inout) :: deck
     type(card_spec_t), intent(in) :: spec
     type(card_t), intent(inout) :: card
     integer, intent(in) :: k
     character(*), intent(in) :: given
-    integer, intent(in) :: source
     character(:), allocatable :: name, text
     character :: kind
     integer :: status, number
@@ -240,7 +216,10 @@ contains
         text = to_text(number)
       end if
     end if
-    call settle_parameter(deck, card%line, name, kind, text, source)
+    associate (block => deck%blocks(block_of_line(deck, card%line)))
+      call settle_parameter(deck, card%line, name, kind, text, merge(block%source, 0, &
+        index(block%name, '_LOCAL') > 0))
+    end associate
   end subroutine define
 
   !> The line of a card with its references replaced, in free format.

@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> *PART, *SECTION_SHELL and *HOURGLASS, and what parts of a deck have to have in common.
+!> *PART, *SECTION_SHELL and *HOURGLASS, what parts of a deck have to have in common, and rigid
+!> bodies from the parts of *MAT_RIGID.
 module deck_part_m
   use kinds_m, only : wp
   use text_m, only : read_integer, number_good
@@ -8,21 +9,17 @@ module deck_part_m
   use model_m, only : model_t
   use parts_m, only : section_t, hourglass_t, part_t, hourglass_viscous, hourglass_stiffness, &
     hourglass_assumed, form_one_point, form_full, form_round_one_point, form_round_full
-  use deck_eos_m, only : take_equation
-  use deck_ids_m, only : a_part, a_section, a_material, an_hourglass
-  use deck_lines_m, only : deck_t, place_t, blocks_of, line_text, line_error, line_warning, &
-    flag_blank
+  use deck_ids_m, only : a_part, a_section, a_material, an_hourglass, an_element
+  use deck_lines_m, only : deck_t, place_t, blocks_of, count_rows, line_text, line_error, &
+    line_warning, flag_blank
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
     next_of, rows_of, row_comes, report_field, reject_field, find_field
-  use deck_maps_m, only : map_kind, lose, find_id
-  use deck_values_m, only : integer_of, real_of, is_blank, is_bad
+  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, define, map_defined, find_id
+  use deck_material_m, only : take_equation
   implicit none
   private
-  public :: read_parts, read_sections, hourglass_form, hourglass_coefficient
-
-  !> Largest hourglass coefficient: it has no unit, and the stable step falls with it to none.
-  real(wp), parameter :: most_hourglass = 10.0_wp
+  public :: read_parts, read_sections, hourglass_form, hourglass_coefficient, make_rigids
 
 contains
 
@@ -37,16 +34,14 @@ contains
     type(part_t) :: part
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer, allocatable :: blocks(:), lines(:), taken(:)
+    integer, allocatable :: blocks(:), taken(:)
     integer :: i, k, n
     logical :: found
 
     call read_hourglasses(deck, default, hourglasses)
     taken = spread(-1, 1, size(model%materials))
     blocks = blocks_of(deck, 'PART')
-    n = sum(deck%blocks(blocks)%last - deck%blocks(blocks)%first + 1)
-    allocate (parts(n), lines(n))
-    n = 0
+    allocate (parts(count_rows(deck, 'PART')))
     do i = 1, size(blocks)
       call open_cursor(deck, blocks(i), cursor)
       do
@@ -59,10 +54,8 @@ contains
           call line_error(deck, cursor%line - 1, 'a heading without the card of its part after it')
           exit
         end if
-        if (is_bad(card, 'PID')) then
-          call lose(deck, [a_part])
-          cycle
-        end if
+        call define(deck, a_part, card, 'PID', n)
+        if (n == 0) cycle
         part%id = integer_of(card, 'PID')
         call find_id(deck, a_section, card, 'SECID', part%section)
         call find_id(deck, a_material, card, 'MID', part%material)
@@ -73,13 +66,11 @@ contains
           call find_id(deck, an_hourglass, card, 'HGID', k)
           if (k > 0) part%hourglass = hourglasses(k)
         end if
-        n = n + 1
         parts(n) = part
-        lines(n) = card%line
       end do
     end do
-    model%parts = parts(:n)
-    call map_kind(deck, a_part, model%parts%id, lines(:n), 'PID')
+    model%parts = parts(:deck%maps(a_part)%n)
+    call map_defined(deck, a_part, 'PID')
     call settle_form(deck, model)
     call settle_points(deck, model)
   end subroutine read_parts
@@ -108,15 +99,16 @@ contains
   subroutine read_sections(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
+    type(section_t), allocatable :: sections(:)
     type(section_t) :: section
     type(cursor_t) :: cursor
     type(card_t) :: card, thickness
-    integer, allocatable :: blocks(:), lines(:)
-    integer :: i
+    integer, allocatable :: blocks(:)
+    integer :: i, n
     logical :: found
 
     blocks = blocks_of(deck, 'SECTION_SHELL')
-    allocate (model%sections(0), lines(0))
+    allocate (sections(count_rows(deck, 'SECTION_SHELL') + size(blocks)))
     do i = 1, size(blocks)
       call open_cursor(deck, blocks(i), cursor)
       found = .true.
@@ -132,13 +124,12 @@ contains
         section%element_form = merge(form_full, form_one_point, section%is_full)
         if (section%is_round) section%element_form = merge(form_round_full, form_round_one_point, &
           section%is_full)
-        if (is_bad(card, 'SECID')) call lose(deck, [a_section])
-        if (is_bad(card, 'SECID')) cycle
-        model%sections = [model%sections, section]
-        lines = [lines, card%line]
+        call define(deck, a_section, card, 'SECID', n)
+        if (n > 0) sections(n) = section
       end do
     end do
-    call map_kind(deck, a_section, model%sections%id, lines, 'SECID')
+    model%sections = sections(:deck%maps(a_section)%n)
+    call map_defined(deck, a_section, 'SECID')
   end subroutine read_sections
 
   !> ELFORM.
@@ -169,10 +160,10 @@ contains
     type(hourglass_t) :: hourglass
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer, allocatable :: lines(:)
+    integer :: n
     logical :: found
 
-    allocate (hourglasses(0), lines(0))
+    allocate (hourglasses(count_rows(deck, 'HOURGLASS')))
     call rows_of('HOURGLASS', cursor)
     do
       call next_of(deck, cursor, card, found)
@@ -185,12 +176,10 @@ contains
       hourglass%linear = default%linear
       if (.not. is_blank(card, 'Q1')) hourglass%quadratic = real_of(card, 'Q1')
       if (.not. is_blank(card, 'Q2')) hourglass%linear = real_of(card, 'Q2')
-      if (is_bad(card, 'HGID')) call lose(deck, [an_hourglass])
-      if (is_bad(card, 'HGID')) cycle
-      hourglasses = [hourglasses, hourglass]
-      lines = [lines, card%line]
+      call define(deck, an_hourglass, card, 'HGID', n)
+      if (n > 0) hourglasses(n) = hourglass
     end do
-    call map_kind(deck, an_hourglass, hourglasses%id, lines, 'HGID')
+    call map_defined(deck, an_hourglass, 'HGID')
   end subroutine read_hourglasses
 
   !> The form in the field of a name.
@@ -228,10 +217,7 @@ contains
 
     coefficient = 0.1_wp
     given = real_of(card, name)
-    if (given > most_hourglass) then
-      call report_field(deck, card, name, &
-        'is not an hourglass coefficient (at most 10; 0.05 to 0.15 are usual)')
-    else if (given > 0.0_wp) then
+    if (given > 0.0_wp) then
       coefficient = given
     else if (.not. is_blank(card, name) .and. .not. is_bad(card, name)) then
       call line_warning(deck, card%line, 'qh'//to_text(card%line), &
@@ -290,7 +276,13 @@ contains
         if (model%sections(part%section)%is_full .or. model%materials(part%material)%is_rigid) cycle
         if (part%hourglass%form == hourglass_assumed .and. .not. (model%controls%implicit%is_on &
           .and. allocated(model%materials(part%material)%rubber))) then
-          call check_shear(deck, deck%maps(a_part)%lines(i), i, model)
+          ! The stiffness of assumed strain is that of shear.
+          associate (material => model%materials(part%material))
+            if (material%needs_eos .and. .not. material%shear > 0.0_wp) call line_error(deck, &
+              deck%maps(a_part)%lines(i), 'part '//to_text(part%id)//' has hourglass control by ' &
+              //'assumed strain (IHQ 6), whose stiffness comes from the shear modulus, and its ' &
+              //'material '//to_text(material%id)//' has none (take IHQ 1 to 3)')
+          end associate
         else if (model%controls%implicit%is_on) then
           if (len(changed) == 0) line = deck%maps(a_section)%lines(part%section)
           changed = changed//', '//to_text(part%id)
@@ -303,22 +295,6 @@ contains
       //'takes parts whose NIP is not 4 as NIP 4 where hourglass control is not by ' &
       //'assumed strain (IHQ 6), which would keep them as they are (but for rubber): '//changed(3:))
   end subroutine settle_points
-
-  !> The stiffness of assumed strain is that of shear.
-  subroutine check_shear(deck, line, i, model)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: line     !! card of the part
-    integer, intent(in) :: i        !! part
-    type(model_t), intent(in) :: model
-
-    associate (part => model%parts(i))
-      if (model%materials(part%material)%shear > 0.0_wp) return
-      if (.not. model%materials(part%material)%needs_eos) return ! told as a field
-      call line_error(deck, line, 'part '//to_text(part%id)//' has hourglass control by assumed ' &
-        //'strain (IHQ 6), whose stiffness comes from the shear modulus, and its material ' &
-        //to_text(model%materials(part%material)%id)//' has none (take IHQ 1 to 3)')
-    end associate
-  end subroutine check_shear
 
   !> The fully integrated twin of a section, which other parts may go on sharing as it is.
   pure subroutine add_full_section(section, model, twins)
@@ -333,5 +309,74 @@ contains
     model%sections = [model%sections, twin]
     twins(section) = size(model%sections)
   end subroutine add_full_section
+
+  !> One body for each part of *MAT_RIGID.
+  subroutine make_rigids(deck, model, owner)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(inout) :: model
+    integer, allocatable, intent(out) :: owner(:) !! (n_node) the body of each node, 0 for none
+    integer, allocatable :: parts(:)
+    logical :: is_there(0:model%mesh%n_node)
+    integer :: i, k
+
+    associate (mesh => model%mesh)
+      parts = pack([(i, i=1, size(model%parts))], &
+        [(is_rigid_part(model, i), i=1, size(model%parts))])
+      allocate (model%rigids(size(parts)), owner(mesh%n_node))
+      owner = 0
+      do i = 1, size(parts)
+        associate (body => model%rigids(i))
+          body%part = parts(i)
+          body%is_fixed = model%materials(model%parts(parts(i))%material)%is_fixed
+          if (model%is_round) body%is_fixed([1, 3]) = .true.
+          is_there = .false.
+          do k = 1, mesh%n_element
+            if (mesh%element_part(k) == parts(i)) is_there(mesh%element_nodes(:, k)) = .true.
+          end do
+          body%nodes = pack([(k, k=1, mesh%n_node)], is_there(1:))
+        end associate
+        call own_nodes(deck, i, model, owner)
+      end do
+    end associate
+    if (size(parts) == 0) return
+    if (model%controls%implicit%is_on) call line_error(deck, &
+      deck%maps(a_material)%lines(model%parts(parts(1))%material), '*MAT_RIGID: the implicit ' &
+      //'method does not have rigid bodies')
+    if (size(parts) == size(model%parts) .and. model%controls%dt_curve == 0) call line_error(deck, &
+      deck%maps(a_part)%lines(1), 'all parts are rigid, so no element gives a time step; give ' &
+      //'one by a curve (LCTM of *CONTROL_TIMESTEP)')
+  end subroutine make_rigids
+
+  !> Whether a part has *MAT_RIGID.
+  pure function is_rigid_part(model, i_part) result(yes)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_part
+    logical :: yes
+
+    yes = model%parts(i_part)%material > 0
+    if (yes) yes = model%materials(model%parts(i_part)%material)%is_rigid
+  end function is_rigid_part
+
+  !> No node may have two bodies, and a body needs some.
+  subroutine own_nodes(deck, i, model, owner)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i                !! body
+    type(model_t), intent(in) :: model
+    integer, intent(inout) :: owner(:)      !! (n_node) of the bodies so far
+    type(place_t) :: place
+    integer :: k
+
+    associate (body => model%rigids(i))
+      place = place_t(deck%maps(a_part)%lines(body%part), 2, 'PID')
+      if (size(body%nodes) == 0 .and. .not. deck%maps(an_element)%lost) call reject_field(deck, &
+        place, ': this rigid part has no elements, so no mass')
+      k = findloc(owner(body%nodes) > 0, .true., dim=1)
+      if (k > 0) call reject_field(deck, place, ': node ' &
+        //to_text(model%mesh%node_id(body%nodes(k)))//' belongs to this rigid part and to rigid ' &
+        //'part '//to_text(model%parts(model%rigids(owner(body%nodes(k)))%part)%id) &
+        //'; bodies that share nodes must be one part')
+      owner(body%nodes) = i
+    end associate
+  end subroutine own_nodes
 
 end module deck_part_m

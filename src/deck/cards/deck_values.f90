@@ -1,18 +1,28 @@
 ! SPDX-License-Identifier: MIT
-!> Values of a card by the names that the table of keywords gives its fields. A name that is not
-!> there, or a kind that is another, is a fault of the program and ends it. Checks that many cards
-!> have.
+!> Values of a card by the names that the table of keywords gives its fields, and what they refer
+!> to. A name that is not there, or a kind that is another, is a fault of the program and ends it.
 module deck_values_m
   use kinds_m, only : wp
-  use deck_lines_m, only : place_t, deck_t
+  use deck_ids_m, only : id_map_t, map_ids, index_of, kind_names, a_node, an_element, a_part
+  use deck_lines_m, only : place_t, deck_t, line_error, where_text
   use deck_card_specs_m, only : field_number
   use deck_fields_m, only : card_t
   use log_m, only : to_text
-  use deck_cards_m, only : cursor_t, report_field
+  use deck_cards_m, only : reject_field, report_field
   implicit none
   private
-  public :: integer_of, real_of, reals_of, has_field, is_blank, is_bad, place_of, refuse_negative, &
-    refuse_large, refuse_outside, require_id, take_life
+  public :: integer_of, real_of, reals_of, has_field, is_blank, is_bad, place_of, take_life, &
+    define, map_defined, map_kind, find_id, resolve_id, refuse_again, lose
+
+  !> Directions x, y and z of the codes TC, DOF and CON: 0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7
+  !> xyz.
+  logical, parameter, public :: along_axes(3, 0:7) = reshape([.false., .false., .false., .true., &
+    .false., .false., .false., .true., .false., .false., .false., .true., .true., .true., .false., &
+    .false., .true., .true., .true., .false., .true., .true., .true., .true.], [3, 8])
+  !> Index of what a field refers to.
+  interface find_id
+    module procedure find_by_name, find_by_position
+  end interface find_id
 
 contains
 
@@ -86,17 +96,6 @@ contains
       field=field_number(card%names, name))
   end function place_of
 
-  !> A number that user ids are: 1 or more.
-  subroutine require_id(deck, cursor, card, name)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
-    character(*), intent(in) :: name
-
-    if (integer_of(card, name) < 1) call report_field(deck, cursor, card, name, &
-      'is not a number of 1 or more')
-  end subroutine require_id
-
   !> Times from which and until when something acts; the default of the end, also that of 0, is
   !> never.
   subroutine take_life(deck, card, names, birth, death)
@@ -115,43 +114,142 @@ contains
     end if
   end subroutine take_life
 
-  !> A number below 0 where there may be none.
-  subroutine refuse_negative(deck, cursor, card, name)
+  !> One more thing of a kind, which has its number in a field of a card: its index, 0 where the
+  !> number was refused.
+  subroutine define(deck, kind, card, name, n)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
-    type(card_t), intent(inout) :: card
+    integer, intent(in) :: kind
+    type(card_t), intent(in) :: card
     character(*), intent(in) :: name
+    integer, intent(out) :: n
     integer :: k
 
+    n = 0
     k = field_number(card%names, name)
-    if (card%r(k) < 0.0_wp .or. card%i(k) < 0) call report_field(deck, cursor, card, k, &
-      'is negative')
-  end subroutine refuse_negative
+    if (card%bad(k)) then
+      call lose(deck, [kind])
+      return
+    end if
+    associate (map => deck%maps(kind))
+      if (.not. allocated(map%ids)) allocate (map%ids(64), map%lines(64))
+      if (map%n == size(map%ids)) then
+        map%ids = [map%ids, map%ids]
+        map%lines = [map%lines, map%lines]
+      end if
+      map%n = map%n + 1
+      n = map%n
+      map%ids(n) = card%i(k)
+      map%lines(n) = card%line
+    end associate
+  end subroutine define
 
-  !> A number whose size is beyond what its place can mean.
-  subroutine refuse_large(deck, cursor, card, name, most)
+  !> The map of a kind of which all are defined.
+  subroutine map_defined(deck, kind, field)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
+    integer, intent(in) :: kind
+    character(*), intent(in) :: field  !! of the numbers
+    integer, allocatable :: ids(:), lines(:)
+
+    allocate (ids(0), lines(0))
+    if (deck%maps(kind)%n > 0) then
+      ids = deck%maps(kind)%ids(:deck%maps(kind)%n)
+      lines = deck%maps(kind)%lines(:deck%maps(kind)%n)
+    end if
+    call map_kind(deck, kind, ids, lines, field)
+    call move_alloc(ids, deck%maps(kind)%ids)
+  end subroutine map_defined
+
+  !> The map of one kind, with an error for each id that comes again.
+  subroutine map_kind(deck, kind, ids, lines, field, of_beams)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: kind
+    integer, intent(in) :: ids(:), lines(:)      !! of all, and where each stands
+    character(*), intent(in) :: field            !! of the ids
+    logical, intent(in), optional :: of_beams(:) !! the number of a set is that of a part
+    integer, allocatable :: twice(:)
+    type(id_map_t) :: map
+    character(5) :: name
+    integer :: i
+
+    call map_ids(ids, map, twice)
+    map%n = size(ids)
+    map%lines = lines
+    map%lost = deck%maps(kind)%lost .or. deck%incomplete
+    map%incomplete = map%lost .or. (any(kind == [a_node, an_element]) .and. size(ids) == 0)
+    deck%maps(kind) = map
+    do i = 1, size(twice)
+      name = field
+      if (present(of_beams)) name = merge('PID  ', name, of_beams(twice(i)))
+      call reject_field(deck, place_t(lines(twice(i)), merge(2, 1, kind == a_part), trim(name)), &
+        'is the number of another '//trim(kind_names(kind))//' (' &
+        //where_text(deck, lines(index_of(map, ids(twice(i)))))//')')
+    end do
+  end subroutine map_kind
+
+  !> Definitions of a kind that were refused: a reference to them is no further mistake.
+  pure subroutine lose(deck, kinds)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: kinds(:)
+
+    deck%maps(kinds)%lost = .true.
+    deck%maps(kinds)%incomplete = .true.
+  end subroutine lose
+
+  !> Index of what a field of a card just read refers to, by the field's name; 0 with an error of
+  !> the field where there is none.
+  subroutine find_by_name(deck, kind, card, name, found)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: kind
     type(card_t), intent(inout) :: card
     character(*), intent(in) :: name
-    real(wp), intent(in) :: most
+    integer, intent(out) :: found
 
-    if (abs(real_of(card, name)) > most) call report_field(deck, cursor, card, name, &
-      'is out of reach (at most '//to_text(most)//' by size)')
-  end subroutine refuse_large
+    call find_by_position(deck, kind, card, field_number(card%names, name), found)
+  end subroutine find_by_name
 
-  !> A whole number that is below the least or above the most.
-  subroutine refuse_outside(deck, cursor, card, name, least, most, message)
+  !> The same by the position of the field.
+  subroutine find_by_position(deck, kind, card, k, found)
     type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(in) :: cursor
+    integer, intent(in) :: kind
     type(card_t), intent(inout) :: card
-    character(*), intent(in) :: name
-    integer, intent(in) :: least, most
-    character(*), intent(in) :: message
-    integer :: k
+    integer, intent(in) :: k
+    integer, intent(out) :: found
 
-    k = field_number(card%names, name)
-    if (card%i(k) < least .or. card%i(k) > most) call report_field(deck, cursor, card, k, message)
-  end subroutine refuse_outside
+    found = index_of(deck%maps(kind), card%i(k))
+    if (found == 0 .and. .not. deck%maps(kind)%incomplete) call report_field(deck, card, k, &
+      'is no '//trim(kind_names(kind))//' of this deck')
+  end subroutine find_by_position
+
+  !> As `find_id`, of a card that was read some time ago.
+  subroutine resolve_id(deck, kind, id, place, found, hint)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: kind, id
+    type(place_t), intent(in) :: place
+    integer, intent(out) :: found
+    character(*), intent(in), optional :: hint !! how the message goes on
+    character(:), allocatable :: message
+
+    found = index_of(deck%maps(kind), id)
+    if (found > 0 .or. deck%maps(kind)%incomplete) return
+    message = 'is no '//trim(kind_names(kind))//' of this deck'
+    if (present(hint)) message = message//hint
+    call reject_field(deck, place, message)
+  end subroutine resolve_id
+
+  !> An error of the line of each number that has come before.
+  subroutine refuse_again(deck, ids, lines, what, owner)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: ids(:), lines(:)   !! in the order of the deck
+    character(*), intent(in) :: what, owner   !! kind of number, what it is the number of
+    type(id_map_t) :: map
+    integer, allocatable :: twice(:)
+    integer :: i
+
+    call map_ids(ids, map, twice)
+    do i = 1, size(twice)
+      call line_error(deck, lines(twice(i)), 'the '//what//to_text(ids(twice(i))) &
+        //' belongs to an earlier '//owner)
+    end do
+  end subroutine refuse_again
 
 end module deck_values_m

@@ -10,9 +10,8 @@ module deck_velocity_m
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, a_part, a_node_set, a_part_set
   use deck_lines_m, only : deck_t, blocks_of, line_warning
-  use deck_maps_m, only : find_id
   use deck_supports_m, only : mark_axis, across_axis
-  use deck_values_m, only : integer_of, real_of, reals_of
+  use deck_values_m, only : integer_of, real_of, reals_of, find_id
   implicit none
   private
   public :: read_velocities

@@ -10,9 +10,8 @@ module deck_wall_m
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node_set
   use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
-  use deck_maps_m, only : find_id, refuse_again
   use deck_supports_m, only : mark_massive
-  use deck_values_m, only : integer_of, real_of, reals_of, take_life
+  use deck_values_m, only : integer_of, real_of, reals_of, take_life, find_id, refuse_again
   implicit none
   private
   public :: read_walls

@@ -2,7 +2,7 @@
 !> The deck as run: one file, parameters and command line resolved, which read again gives the same
 !> model to the last bit. Lines that nothing changed are copied as they were written.
 module deck_effective_m
-  use deck_lines_m, only : deck_t, layout_mark
+  use deck_lines_m, only : deck_t, layout_marks
   use heap_m, only : give_back_memory
   implicit none
   private
@@ -62,7 +62,7 @@ contains
         end associate
       end if
       if (deck%blocks(i)%dropped) cycle
-      call put(buffer, '*'//deck%blocks(i)%given//layout_mark(deck%blocks(i)%layout))
+      call put(buffer, '*'//deck%blocks(i)%given//trim(layout_marks(deck%blocks(i)%layout)))
       source = deck%blocks(i)%source
       do line = deck%blocks(i)%first, deck%blocks(i)%last
         if (deck%first(line) < 0) then

@@ -14,28 +14,26 @@ module deck_resolve_m
   use eos_m, only : eos_t
   use hardenings_m, only : depends_on_rate
   use deck_curves_m, only : table_t, read_curves, read_systems
-  use deck_eos_m, only : read_equations, settle_pressures
   use deck_erosion_m, only : read_erosions
-  use deck_material_m, only : read_materials
-  use deck_part_m, only : read_parts, read_sections
+  use deck_material_m, only : read_materials, read_equations, settle_pressures
+  use deck_part_m, only : read_parts, read_sections, make_rigids
   use deck_damping_m, only : read_damping
-  use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, an_hourglass, &
-    a_curve, a_table, a_node_set, a_part_set, a_segment_set, a_shell_set, a_system
-  use deck_implicit_penalty_m, only : check_implicit_penalties
-  use deck_lines_m, only : deck_t, line_error, line_warning
+  use deck_ids_m, only : a_part, a_material, a_curve
+  use deck_ends_m, only : read_ends
+  use deck_mesh_m, only : read_mesh
+  use deck_sections_m, only : read_cross_sections
+  use deck_sets_m, only : read_sets, read_histories
+  use deck_resolve_transducers_m, only : resolve_transducers
+  use deck_unsound_m, only : check_unsound_mesh
+  use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
   use deck_loads_m, only : read_nodal_loads, read_rigid_loads, read_body_loads, read_pressures, &
     read_masses, warn_of_bores
-  use deck_maps_m, only : map_kind, resolve_id, refuse_again
   use deck_raw_m, only : raw_t, raw_contact_t, history_t, output_plot
-  use deck_resolve_mesh_m, only : resolve_mesh, check_unsound_mesh, settle_axis
-  use deck_resolve_sets_m, only : resolve_sets, resolve_history
-  use deck_resolve_sections_m, only : resolve_cross_sections, resolve_transducers
-  use deck_resolve_ends_m, only : resolve_ends
-  use deck_resolve_contacts_m, only : resolve_contacts
-  use deck_rigids_m, only : make_rigids
+  use deck_resolve_contacts_m, only : resolve_contacts, check_implicit_penalties
   use deck_supports_m, only : read_supports, read_motions, read_common_motions
   use deck_velocity_m, only : read_velocities
   use deck_wall_m, only : read_walls
+  use deck_values_m, only : resolve_id, refuse_again
   implicit none
   private
   public :: resolve_model
@@ -155,11 +153,11 @@ contains
     type(table_t), allocatable :: tables(:)
     type(eos_t), allocatable :: equations(:)
     logical, allocatable :: is_sound(:), fixed(:, :) !! (n_element), (2, n_node)
-    integer, allocatable :: owner(:)
+    integer, allocatable :: codes(:), owner(:)
     logical :: sound
     integer :: i
 
-    call make_maps(deck, raw)
+    call check_numbers(deck, raw)
     model%controls = raw%controls
     if (model%controls%implicit%is_on) call settle_scheme(raw%newmark, raw%hht, &
       raw%spectral_radius, model%controls%implicit)
@@ -172,11 +170,10 @@ contains
     call read_parts(deck, raw%hourglass_default, equations, model)
     call read_erosions(deck, raw%erodes_by_step, raw%step_line, model)
     call settle_pressures(deck, equations, model)
-    call resolve_mesh(deck, raw, model, is_sound, sound)
-    call settle_axis(deck, model)
-    call resolve_sets(deck, raw, model)
-    call resolve_history(deck, raw, model)
-    if (size(raw%cuts) > 0) call resolve_cross_sections(deck, raw, model)
+    call read_mesh(deck, model, codes, is_sound, sound)
+    call read_sets(deck, model, raw%is_whole)
+    call read_histories(deck, model)
+    call read_cross_sections(deck, model)
     call settle_step_curve(deck, raw, model)
     associate (output => model%controls%output)
       call take_interval(deck, raw%outputs(output_plot), model, output%plot)
@@ -187,7 +184,7 @@ contains
     call warn_of_empty(deck, raw, model)
     if (model%controls%implicit%is_on) call check_implicit(deck, raw, model)
     call make_rigids(deck, model, owner)
-    call read_supports(deck, raw%node_code, owner, model, fixed)
+    call read_supports(deck, codes, owner, model, fixed)
     call read_motions(deck, owner, fixed, model)
     call read_nodal_loads(deck, model)
     call read_rigid_loads(deck, model)
@@ -211,7 +208,7 @@ contains
       call check_unsound_mesh(deck, raw, is_sound, model)
     end if
     call check_implicit_penalties(deck, raw, model, sound)
-    call resolve_ends(deck, raw, model, sound)
+    call read_ends(deck, model, sound)
   end subroutine resolve_model
 
   !> The curve that caps the time step.
@@ -230,36 +227,19 @@ contains
     end associate
   end subroutine settle_step_curve
 
-  !> All maps, and numbers of interfaces, transducers and cross sections, which nothing refers to by
-  !> id.
-  subroutine make_maps(deck, raw)
+  !> Numbers of interfaces and transducers are those of one thing each.
+  subroutine check_numbers(deck, raw)
     type(deck_t), intent(inout) :: deck
     type(raw_t), intent(in) :: raw
     character(*), parameter :: position = ' (without a number it is the position in the deck)'
     integer, allocatable :: ids(:), lines(:), order(:)
 
-    call map_kind(deck, a_node, raw%node_id(:raw%n_node), raw%node_line(:raw%n_node), 'NID')
-    call map_kind(deck, an_element, raw%element_id(:raw%n_element), &
-      raw%element_line(:raw%n_element), 'EID')
-    call map_kind(deck, a_node_set, [raw%node_sets(:raw%n_node_set)%id], &
-      [raw%node_sets(:raw%n_node_set)%line], 'SID', &
-      [raw%node_sets(:raw%n_node_set)%of_beams])
-    call map_kind(deck, a_part_set, [raw%part_sets(:raw%n_part_set)%id], &
-      [raw%part_sets(:raw%n_part_set)%line], 'SID')
-    call map_kind(deck, a_segment_set, [raw%segment_sets(:raw%n_segment_set)%id], &
-      [raw%segment_sets(:raw%n_segment_set)%line], 'SID', &
-      [raw%segment_sets(:raw%n_segment_set)%of_beams])
-    call map_kind(deck, a_shell_set, [raw%shell_sets(:raw%n_shell_set)%id], &
-      [raw%shell_sets(:raw%n_shell_set)%line], 'SID')
     ids = [raw%contacts%contact%id, raw%transducers%contact%id]
     lines = deck%blocks([raw%contacts%block, raw%transducers%block])%keyword
     order = sorted_order(int(lines, long))
     call refuse_again(deck, [ids(order)], [lines(order)], 'interface number ', &
       'interface'//position)
-    ids = raw%cuts%id
-    lines = raw%cuts%line
-    call refuse_again(deck, ids, lines, 'number ', 'cross section'//position)
-  end subroutine make_maps
+  end subroutine check_numbers
 
   !> Whether the run begins with dynamic relaxation, and what may not be in it.
   subroutine settle_relaxation(deck, raw, model)
@@ -353,21 +333,20 @@ contains
     type(raw_t), intent(in) :: raw
     type(model_t), intent(in) :: model
 
-    call look_at(table_nodout, raw%history_nodes%n + raw%history_node_sets%n, 'HISTORY_NODE')
-    call look_at(table_elout, raw%history_shells%n + raw%history_shell_sets%n, 'HISTORY_SHELL')
-    call look_at(table_nodfor, raw%force_groups%n, 'NODAL_FORCE_GROUP')
-    call look_at(table_secforc, size(raw%cuts), 'CROSS_SECTION_SET')
+    call look_at(table_nodout, 'HISTORY_NODE')
+    call look_at(table_elout, 'HISTORY_SHELL')
+    call look_at(table_nodfor, 'NODAL_FORCE_GROUP')
+    call look_at(table_secforc, 'CROSS_SECTION_SET')
 
   contains
 
     !> One file.
-    subroutine look_at(table, n, needed)
+    subroutine look_at(table, needed)
       integer, intent(in) :: table
-      integer, intent(in) :: n           !! what it would tell of
       character(*), intent(in) :: needed !! end of the keyword
 
-      if (n > 0 .or. deck%incomplete .or. .not. is_asked(model%controls%output%histories(table))) &
-        return
+      if (size(blocks_of(deck, 'DATABASE_'//needed)) > 0 .or. deck%incomplete) return
+      if (.not. is_asked(model%controls%output%histories(table))) return
       call line_warning(deck, raw%outputs(table)%place%line, 'empty '//history_tables(table)%name, &
         'asks for a history and the deck has no *DATABASE_'//needed//': no file is written')
     end subroutine look_at

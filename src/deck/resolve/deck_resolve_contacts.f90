@@ -5,23 +5,27 @@
 module deck_resolve_contacts_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use contacts_m, only : contact_t, friction_rule_t, breaks, tie_none
+  use contacts_m, only : contact_t, friction_rule_t, breaks, tie_none, is_tied, penalty_implicit
   use surfaces_m, only : surface_t, has_closed_chain
   use model_m, only : model_t
   use boundary_m, only : boundary_t, find_boundary
-  use deck_lines_m, only : deck_t
+  use deck_lines_m, only : deck_t, line_warning
   use deck_cards_m, only : reject_field
   use deck_choose_type_m, only : choose_type
   use deck_loads_m, only : settle_pressures
   use deck_resolve_sides_m, only : find_side, resolve_side, side_nodes, side_segments
-  use deck_interference_m, only : resolve_interference
   use deck_raw_m, only : raw_t, raw_contact_t
   use units_m, only : in_units
   use element_finder_m, only : body_view_t, view_body
   use initial_overlap_m, only : overlap_t, find_crossing, find_overlap
+  use deck_ids_m, only : a_curve
+  use deck_values_m, only : resolve_id
   implicit none
   private
-  public :: resolve_contacts, check_common_nodes
+  public :: resolve_contacts, check_common_nodes, resolve_interference, check_implicit_penalties
+
+  !> How near to 0 and 1 the ends of a curve of interference must be: that is round-off of factors.
+  real(wp), parameter :: round_off = 1.0e-12_wp
 
 contains
 
@@ -147,7 +151,7 @@ contains
     crosses = .false.
     n_side = merge(1, 2, entry%contact%is_self)
     do k = 1, n_side
-      call view_body(model, sides(k), views(k))
+      call view_body(model, sides(k), sides(3 - k), views(k))
       call find_crossing(model, sides(k), views(k), pair)
       if (pair(1) == 0) cycle
       crosses = .true.
@@ -216,5 +220,191 @@ contains
         //to_text(model%mesh%node_id(ends(2)))
     end associate
   end function ends_text
+
+  !> Give the interface its curve, which must lead from 0 to 1.
+  subroutine resolve_interference(deck, entry, model, contact)
+    type(deck_t), intent(inout) :: deck
+    type(raw_contact_t), intent(in) :: entry
+    type(model_t), intent(in) :: model
+    type(contact_t), intent(inout) :: contact
+    integer :: found, n
+
+    found = 0
+    if (entry%interference > 0) call resolve_id(deck, a_curve, entry%interference, &
+      entry%interference_place, found)
+    if (found == 0) return
+    associate (curve => model%curves(found))
+      n = size(curve%ordinate)
+      if (n == 0) return
+      if (abs(curve%ordinate(1)) > round_off) call refuse_curve('begins at ' &
+        //to_text(curve%ordinate(1))//', not at 0')
+      if (abs(curve%ordinate(n) - 1.0_wp) > round_off) call refuse_curve('ends at ' &
+        //to_text(curve%ordinate(n))//', not at 1')
+      if (minval(curve%ordinate) < -round_off .or. maxval(curve%ordinate) > 1.0_wp + round_off) &
+        call refuse_curve('leaves the range from 0 to 1')
+      if (curve%abscissa(1) < 0.0_wp) call refuse_curve('begins at the time ' &
+        //to_text(curve%abscissa(1))//', before the run')
+      if (curve%abscissa(n) > model%controls%end_time) call line_warning(deck, &
+        entry%interference_place%line, 'interference'//to_text(contact%id), 'interface ' &
+        //to_text(contact%id)//': the curve of its interference ends at '//to_text( &
+        curve%abscissa(n))//in_units(model%controls%units, 'T') &
+        //', after the run; the overlap does not act in full')
+      contact%interference = curve
+    end associate
+
+  contains
+
+    !> What is wrong with the curve.
+    subroutine refuse_curve(what)
+      character(*), intent(in) :: what
+
+      call reject_field(deck, entry%interference_place, 'is a curve of interference that '//what)
+    end subroutine refuse_curve
+
+  end subroutine resolve_interference
+
+  !> What implicit penalties (PUNIT 4) do not have: refused by name.
+  subroutine check_implicit_penalties(deck, raw, model, sound)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: sound !! the interfaces have their surfaces
+    integer :: i
+
+    if (.not. any(raw%contacts%contact%penalty_unit == penalty_implicit)) return
+    do i = 1, size(raw%contacts)
+      associate (entry => raw%contacts(i), contact => raw%contacts(i)%contact)
+        if (contact%penalty_unit /= penalty_implicit) cycle
+        if (contact%is_self) call refuse(deck, entry, 'do not act between a surface and itself')
+        if (is_tied(contact)) call refuse(deck, entry, 'only push: a tie (TIE) has other springs')
+        if (contact%damping > 0.0_wp) call refuse(deck, entry, 'have no damping of their own (VDC)')
+        if (entry%interference > 0) call refuse(deck, entry, &
+          'have no initial overlap that grows (LCINT)')
+        if (model%erodes) call refuse(deck, entry, 'do not act where elements may leave the mesh')
+      end associate
+    end do
+    if (sound) call check_shared_nodes(deck, raw, model)
+    if (sound) call check_shared_bodies(deck, raw, model)
+  end subroutine check_implicit_penalties
+
+  !> One error for each interface, rigid wall, set of nodes that move alike and skew support that
+  !> has nodes of such an interface too.
+  subroutine check_shared_nodes(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(in) :: model
+    integer, parameter :: most = 4 !! owners of a node that are known
+    integer, allocatable :: owners(:, :), told(:), nodes(:)
+    integer :: i, k, n, n_wall, n_alike
+
+    allocate (owners(most, model%mesh%n_node), source=0)
+    n = size(raw%contacts)
+    n_wall = 0
+    n_alike = 0
+    do i = 1, n
+      call own(i, [model%contacts(i)%slave%nodes, model%contacts(i)%master%nodes])
+    end do
+    if (allocated(model%walls)) n_wall = size(model%walls)
+    do i = 1, n_wall
+      call own(n + i, model%walls(i)%nodes)
+    end do
+    if (allocated(model%conditions%common_motions)) n_alike = size(model%conditions%common_motions)
+    do i = 1, n_alike
+      call own(n + n_wall + i, model%conditions%common_motions(i)%nodes)
+    end do
+    if (allocated(model%conditions%skew_supports)) call own(n + n_wall + n_alike + 1, &
+      [model%conditions%skew_supports%node])
+    do i = 1, n
+      if (raw%contacts(i)%contact%penalty_unit /= penalty_implicit) cycle
+      told = [0, i]
+      nodes = [model%contacts(i)%slave%nodes, model%contacts(i)%master%nodes]
+      do k = 0, most*size(nodes) - 1
+        associate (node => nodes(1 + k/most), owner => owners(1 + modulo(k, most), &
+          nodes(1 + k/most)))
+          if (any(told == owner)) cycle
+          told = [told, owner]
+          call refuse(deck, raw%contacts(i), 'share no nodes with others: node ' &
+            //to_text(model%mesh%node_id(node))//' belongs to '//name_of(owner)//' too')
+        end associate
+      end do
+    end do
+
+  contains
+
+    !> Nodes of an owner.
+    subroutine own(owner, nodes)
+      integer, intent(in) :: owner, nodes(:)
+      integer :: j, free
+
+      do j = 1, size(nodes)
+        free = findloc(owners(:, nodes(j)), 0, 1)
+        if (free > 0) owners(free, nodes(j)) = owner
+      end do
+    end subroutine own
+
+    !> An owner in words.
+    function name_of(owner) result(name)
+      integer, intent(in) :: owner
+      character(:), allocatable :: name
+
+      if (owner <= n) then
+        name = 'interface '//to_text(model%contacts(owner)%id)
+      else if (owner <= n + n_wall) then
+        name = 'rigid wall '//to_text(model%walls(owner - n)%id)
+      else if (owner <= n + n_wall + n_alike) then
+        name = 'a set of nodes that move alike'
+      else
+        name = 'a support along neither x nor y'
+      end if
+    end function name_of
+
+  end subroutine check_shared_nodes
+
+  !> One error for each rigid body, free to move, that another such interface presses too: the
+  !> pressures of both would depend on each other.
+  subroutine check_shared_bodies(deck, raw, model)
+    type(deck_t), intent(inout) :: deck
+    type(raw_t), intent(in) :: raw
+    type(model_t), intent(in) :: model
+    integer, allocatable :: body_of(:), n_press(:), last(:)
+    integer :: i, k, pass
+
+    allocate (body_of(model%mesh%n_node), n_press(0:size(model%rigids)), last(0:size(model%rigids)))
+    body_of = 0
+    n_press = 0
+    do k = 1, size(model%rigids)
+      if (.not. all(model%rigids(k)%is_fixed)) body_of(model%rigids(k)%nodes) = k
+    end do
+    do pass = 1, 2
+      last = 0
+      do i = 1, size(raw%contacts)
+        if (raw%contacts(i)%contact%penalty_unit /= penalty_implicit) cycle
+        last(0) = i
+        associate (nodes => [model%contacts(i)%slave%nodes, model%contacts(i)%master%nodes])
+          do k = 1, size(nodes)
+            associate (body => body_of(nodes(k)))
+              if (last(body) == i) cycle
+              last(body) = i
+              if (pass == 1) n_press(body) = n_press(body) + 1
+              if (pass == 2 .and. n_press(body) > 1) call refuse(deck, raw%contacts(i), &
+                'share no rigid body that may move: part ' &
+                //to_text(model%parts(model%rigids(body)%part)%id) &
+                //' is pressed by another interface of PUNIT 4 too')
+            end associate
+          end do
+        end associate
+      end do
+    end do
+  end subroutine check_shared_bodies
+
+  !> An error of an interface with implicit penalties.
+  subroutine refuse(deck, entry, message)
+    type(deck_t), intent(inout) :: deck
+    type(raw_contact_t), intent(in) :: entry
+    character(*), intent(in) :: message
+
+    call reject_field(deck, entry%unit_place, 'asks for implicit springs, which in this version ' &
+      //message)
+  end subroutine refuse
 
 end module deck_resolve_contacts_m

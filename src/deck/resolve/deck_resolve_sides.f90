@@ -12,9 +12,8 @@ module deck_resolve_sides_m
   use deck_ids_m, only : a_node_set, a_part, a_part_set, a_segment_set, a_shell_set
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_cards_m, only : reject_field
-  use deck_maps_m, only : resolve_id
   use deck_raw_m, only : raw_t, raw_contact_t
-  use deck_raw_sets_m, only : raw_set_t
+  use deck_values_m, only : resolve_id
   implicit none
   private
   public :: find_side, require_side, resolve_side, side_none, side_parts, side_nodes, side_segments
@@ -97,7 +96,7 @@ contains
         call surface_of_parts(deck, model%part_sets(found)%parts, entry%places(side), model, &
           surface)
       case (side_nodes)
-        if (is_whole(raw%node_sets(found), model%node_sets(found)%nodes)) &
+        if (raw%is_whole(found)) &
           call surface_of_nodes(deck, model%node_sets(found)%nodes, side, entry%places(side), &
           outside, model, surface)
       case (side_segments)
@@ -118,16 +117,6 @@ contains
     if (.not. allocated(surface%nodes)) &
       allocate (surface%nodes(0), surface%segments(2, 0), surface%segment_element(0))
   end subroutine resolve_side
-
-  !> Whether all nodes that the cards of a set name exist.
-  pure function is_whole(set, nodes)
-    type(raw_set_t), intent(in) :: set
-    integer, intent(in) :: nodes(:) !! those that do
-    logical :: is_whole
-
-    is_whole = .not. set%damaged .and. (set%generate .or. allocated(set%actions) &
-      .or. size(nodes) == set%n)
-  end function is_whole
 
   !> Chains of the edges of a segment set, in any order and walked either way.
   subroutine surface_of_segments(deck, set, place, outside, model, surface)

@@ -1,8 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> The keywords that are known, and their cards.
 !>
-!> A line of the table that starts with a letter names a keyword, how it is treated and its
-!> options; the indented lines after it are its cards, fields in order as
+!> A line of the table that starts with a letter names a keyword and its options: t it may have a
+!> title, o it may have no card, r its cards are rows of which blank ones do not count, =KEYWORD its
+!> cards are those of another one; the indented lines after it are its cards, fields in order as
 !> `NAME:kind[treatment][width][=default][range]`. Kinds: i integer, f real, a text, x not used.
 !> Treatments: none honoured, s silently without effect, w warning when given, r refused when given.
 !> A 0 in an honoured field means its default, as in LS-DYNA; `~default` is that of blank fields
@@ -27,11 +28,12 @@ module deck_schema_m
   character(188), parameter :: expectations(*) = [character(188) :: &
     'CONTROL_TERM.DTMIN a share of the first step', &
     'ENDTIM an end time', &
+    'DFLAG a policy (1 to 5)', &
     'NOSOL 0 or 1 (stop after the initialisation)', &
     'TERMINATION_NODE.STOP 1 (x), 2 (y) or 4 (contact)', &
     'TERMINATION_BODY.STOP 1 (x), 2 (y) or 4 (displacement)', &
     'TERMINATION_CONTACT.DOF 0 (both), 1 (x) or 2 (y)', &
-    'TSSFAC a scale of the step (above 0; blank and 0 mean 0.9)', &
+    'TSSFAC a scale of the step', &
     'LCTM a curve number', &
     'ISDO an element length rule (0 area over longest side, 1 area over longest diagonal)', &
     'ERODE 0 or 1 (1: elements whose step falls below DTMIN times the first step, or whose ' &
@@ -42,6 +44,8 @@ module deck_schema_m
     'DRFCTR a factor', &
     'IDRFLG 0 (relaxation where a curve asks for it), 1 (in any case) or -999 (in no case)', &
     'CONTROL_BULK_VISCOSITY.TYPE a kind of bulk viscosity that this version has (1 standard)', &
+    'QH an hourglass coefficient (0 to 10; 0.05 to 0.15 are usual)', &
+    'QM an hourglass coefficient (0 to 10; 0.05 to 0.15 are usual)', &
     'Q1 a coefficient of bulk viscosity (0 to 100; Q1 1.5 and Q2 0.06 are usual)', &
     'Q2 a coefficient of bulk viscosity (0 to 100; Q1 1.5 and Q2 0.06 are usual)', &
     'ECDT 0 (a warning where contact needs a smaller step), 1 (none) or 2 (a step stable with ' &
@@ -70,6 +74,14 @@ module deck_schema_m
     'VDC a damping in per cent of critical', &
     'IPF 0 or 1 (the strict rule of type 5)', &
     'FREQ a number of cycles between two searches', &
+    'NODE.NID a node number', &
+    'NODE.X a coordinate', &
+    'NODE.Y a coordinate', &
+    'TC a boundary code (0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)', &
+    'ELEMENT_SHELL.EID an element number', &
+    'ELEMENT_SHELL.PID a part number', &
+    'ELEMENT_BEAM.PID a part number', &
+    'SID a set number', &
     'RO a density', &
     'E a Young''s modulus', &
     'MAT_MOONEY-RIVLIN.PR a Poisson''s ratio of this law (more than 0 and less than 0.5; 0.49 ' &
@@ -120,6 +132,37 @@ module deck_schema_m
     'N3 a node number', &
     'N4 a node number', &
     'TIE 0 (contact), 1 (tied) or 2 (tied until it breaks)']
+  !> Why fields with treatment r may not be used; what ends without a `;` goes on as below.
+  character(145), parameter :: refusals(*) = [character(145) :: &
+    'FRIC_S is a shear factor of friction', &
+    'WVEL asks for welding of nodes to the wall', &
+    'IGAPCL asks to move nodes onto the surface that they are tied to, which this version does ' &
+    //'not have; leave it 0 (a tie keeps its gap)', &
+    'SURFB asks for the forces between two surfaces, which this version does not have; leave it ' &
+    //'0 (a transducer adds up all forces on SURFA)', &
+    'HSID,BSID,TSID,DSID is a set of elements that this version does not have; leave it 0 (SSID ' &
+    //'is the set of shells)', &
+    'CID,ICID,VID,ID is a local coordinate system', &
+    'TF lets the constraint fail, which this version does not have; leave it blank', &
+    'CIDL gives the points in another system', &
+    'SRC,SRP asks for a Cowper-Symonds strain rate effect', &
+    'TDEL,DTF,TEROD,CEROD,CHARL,NUMINT asks for deletion of elements', &
+    'IDAM,LCREGD,LCFLD,EPSTHIN,ENGCRT,RADCRT,LCEPS12,LCEPS13,LCEPSMX,MXTMP asks for a criterion ' &
+    //'of erosion that this version does not have; leave it 0', &
+    'RATEOP,C2_P_XNP_D,K asks for another form of the law of Johnson and Cook', &
+    'SGL,SW,ST asks for constants that fit a test, which this version does not have; leave it 0 ' &
+    //'and give A and B', &
+    'REF asks for stress from another reference shape', &
+    'SOLN asks for a thermal (1) or coupled thermal (2) analysis, which is not available in ' &
+    //'slideline; 0 is the mechanical one', &
+    'MODEL asks for another law of foams', &
+    'N5,N6,N7,N8 is a mid-side node; elements and edges have corner nodes only here', &
+    'BOXID is a box', &
+    'PHASE is a velocity of dynamic relaxation', &
+    'IRELAL asks for a factor that the program finds, which this version does not have; leave ' &
+    //'it 0 and give DRFCTR', &
+    'COUPLE,M,ALIAS couples the body to another program or to a surface file, which this ' &
+    //'version does not have; leave it blank']
   !> Characters by which a canonical name is longer than a short one at most (MAT_024).
   integer, parameter :: longest_addition = 24
   !> Cards of one keyword at most.
@@ -129,25 +172,45 @@ module deck_schema_m
 
 contains
 
-  !> The cards of a keyword (canonical name).
-  subroutine keyword_cards(name, cards, n_card)
+  !> The cards of a keyword (canonical name) and its options.
+  subroutine keyword_cards(name, cards, n_card, options)
     character(*), intent(in) :: name
     character(*), intent(out) :: cards(max_card)
     integer, intent(out) :: n_card
-    integer :: i, k
+    character(*), intent(out), optional :: options
+    integer :: i, k, at
 
     cards = ''
     n_card = 0
-    do i = 1, size(table)
-      if (.not. begins_with(table(i), trim(name))) cycle
-      do k = i + 1, min(i + max_card, size(table))
-        if (table(k)(1:1) /= ' ') return
-        n_card = n_card + 1
-        cards(n_card) = table(k)
-      end do
-      return
+    i = row_of(name)
+    if (present(options)) options = ''
+    if (i == 0) return
+    if (present(options)) options = table(i)(len_trim(name) + 2:)
+    at = index(table(i), '=')
+    if (at > 0) i = row_of(trim(table(i)(at + 1:)))
+    do k = i + 1, min(i + max_card, size(table))
+      if (table(k)(1:1) /= ' ') return
+      n_card = n_card + 1
+      cards(n_card) = table(k)
     end do
   end subroutine keyword_cards
+
+  !> The row of a keyword (canonical name), 0 where it is not honoured: its name, then a blank. Rows
+  !> of cards begin with a blank. One character tells for most.
+  function row_of(name) result(i)
+    character(*), intent(in) :: name
+    integer :: i
+    integer :: n
+
+    n = len_trim(name)
+    if (n > 0 .and. n < len(table)) then
+      do i = 1, size(table)
+        if (table(i)(n + 1:n + 1) /= ' ') cycle
+        if (table(i)(:n) == name(:n)) return
+      end do
+    end if
+    i = 0
+  end function row_of
 
   !> What is known of a keyword as written: its canonical name, its treatment, and for a refused one
   !> the reason. The options _TITLE and _ID are taken off where the keyword has them.
@@ -158,22 +221,18 @@ contains
     logical, intent(out) :: titled
     character(:), allocatable, intent(out) :: reason
     character(len(given)) :: base
-    character(60) :: options
+    integer :: i
 
     reason = ''
+    known = known_honoured
     name = canonical(given)
     titled = .false.
-    call look(name, known, options)
-    if (known == known_honoured) return
+    if (row_of(name) > 0) return
     call take_option(given, base)
-    if (len_trim(base) > 0) then
-      name = canonical(base)
-      titled = .true.
-      call look(name, known, options)
-      if (known == known_honoured .and. index(options, 't') > 0) return
-    end if
-    known = known_not
-    titled = .false.
+    name = canonical(base)
+    i = row_of(name)
+    if (i > 0) titled = index(table(i)(len_trim(name) + 1:), 't') > 0
+    if (titled) return
     name = given
     call look_others(given, known, reason)
   end subroutine find_keyword
@@ -245,34 +304,6 @@ contains
       name = 'INCLUDE_PATH'
     end select
   end function canonical
-
-  !> Whether a canonical name is honoured, and its options.
-  subroutine look(name, known, options)
-    character(*), intent(in) :: name
-    integer, intent(out) :: known
-    character(*), intent(out) :: options
-    integer :: i
-
-    known = known_not
-    options = ''
-    do i = 1, size(table)
-      if (.not. begins_with(table(i), trim(name))) cycle
-      known = known_honoured
-      options = table(i)(len_trim(name) + 2:)
-      return
-    end do
-  end subroutine look
-
-  !> Whether a row of a table is that of a keyword: its name, then a blank. Rows of cards begin with
-  !> a blank. One character tells for most.
-  pure function begins_with(row, name) result(begins)
-    character(*), intent(in) :: row, name
-    logical :: begins
-
-    begins = len(name) > 0 .and. len(name) < len(row)
-    if (begins) begins = row(len(name) + 1:len(name) + 1) == ' '
-    if (begins) begins = row(:len(name)) == name
-  end function begins_with
 
   !> The honoured keyword that a name is likely meant for: at most two letters away. Blank where
   !> none is so near, or where the name is one that the table of others has for itself.
@@ -378,64 +409,15 @@ contains
   pure function refusal_reason(field) result(text)
     character(*), intent(in) :: field
     character(:), allocatable :: text
+    integer :: i, at
 
-    select case (field)
-    case ('FRIC_S')
-      text = 'is a shear factor of friction, which this version does not have; leave it 0'
-    case ('WVEL')
-      text = 'asks for welding of nodes to the wall, which this version does not have; leave it 0'
-    case ('IGAPCL')
-      text = 'asks to move nodes onto the surface that they are tied to, which this version does ' &
-        //'not have; leave it 0 (a tie keeps its gap)'
-    case ('SURFB')
-      text = 'asks for the forces between two surfaces, which this version does not have; leave ' &
-        //'it 0 (a transducer adds up all forces on SURFA)'
-    case ('HSID', 'BSID', 'TSID', 'DSID')
-      text = 'is a set of elements that this version does not have; leave it 0 (SSID is the set ' &
-        //'of shells)'
-    case ('CID', 'ICID', 'VID', 'ID')
-      text = 'is a local coordinate system, which this version does not have; leave it 0'
-    case ('TF')
-      text = 'lets the constraint fail, which this version does not have; leave it blank'
-    case ('CIDL')
-      text = 'gives the points in another system, which this version does not have; leave it 0'
-    case ('SRC', 'SRP')
-      text = 'asks for a Cowper-Symonds strain rate effect, which this version does not have; ' &
-        //'leave it 0'
-    case ('TDEL', 'DTF', 'TEROD', 'CEROD', 'CHARL', 'NUMINT')
-      text = 'asks for deletion of elements, which this version does not have; leave it 0'
-    case ('IDAM', 'LCREGD', 'LCFLD', 'EPSTHIN', 'ENGCRT', 'RADCRT', 'LCEPS12', 'LCEPS13', &
-        'LCEPSMX', 'MXTMP')
-      text = 'asks for a criterion of erosion that this version does not have; leave it 0'
-    case ('RATEOP', 'C2_P_XNP_D', 'K')
-      text = 'asks for another form of the law of Johnson and Cook, which this version does not ' &
-        //'have; leave it 0'
-    case ('SGL', 'SW', 'ST')
-      text = 'asks for constants that fit a test, which this version does not have; leave it 0 ' &
-        //'and give A and B'
-    case ('REF')
-      text = 'asks for stress from another reference shape, which this version does not have; ' &
-        //'leave it 0'
-    case ('SOLN')
-      text = 'asks for a thermal (1) or coupled thermal (2) analysis, which is not available in ' &
-        //'slideline; 0 is the mechanical one'
-    case ('MODEL')
-      text = 'asks for another law of foams, which this version does not have; leave it 0'
-    case ('N5', 'N6', 'N7', 'N8')
-      text = 'is a mid-side node; elements and edges have corner nodes only here'
-    case ('BOXID')
-      text = 'is a box, which this version does not have; leave it 0'
-    case ('PHASE')
-      text = 'is a velocity of dynamic relaxation, which this version does not have; leave it 0'
-    case ('IRELAL')
-      text = 'asks for a factor that the program finds, which this version does not have; leave ' &
-        //'it 0 and give DRFCTR'
-    case ('COUPLE', 'M', 'ALIAS')
-      text = 'couples the body to another program or to a surface file, which this version does ' &
-        //'not have; leave it blank'
-    case default
-      text = 'is not supported here; leave it at its default'
-    end select
+    text = 'is not supported here; leave it at its default'
+    do i = 1, size(refusals)
+      at = index(refusals(i), ' ')
+      if (index(','//refusals(i)(:at - 1)//',', ','//field//',') == 0) cycle
+      text = trim(refusals(i)(at + 1:))
+      if (index(text, ';') == 0) text = text//', which this version does not have; leave it 0'
+    end do
   end function refusal_reason
 
 end module deck_schema_m

@@ -23,7 +23,7 @@ module deck_card_specs_m
     real(wp) :: defaults(max_field) = 0.0_wp
     character :: zeros(max_field) = ''          !! what a 0 means where blank is another value: =
                                                 !! the default, ~ 0
-    character(20) :: ranges(max_field) = ''     !! as in the table; blank: any value
+    character(32) :: ranges(max_field) = ''     !! as in the table; blank: any value
     real(wp) :: least(max_field) = -huge(1.0_wp), most(max_field) = huge(1.0_wp) !! of the range
   end type card_spec_t
 

@@ -27,6 +27,7 @@ module deck_expression_m
     character(:), allocatable :: text
     integer :: at = 1
     integer :: depth = 0
+    type(named_value_t), allocatable :: names(:)
     character(:), allocatable :: trouble !! first mistake
   end type scanner_t
 
@@ -41,7 +42,8 @@ contains
     type(scanner_t) :: scanner
 
     scanner%text = trim(upper_case(text))//' '
-    call take_sum(scanner, names, value)
+    scanner%names = names
+    call take_sum(scanner, value)
     call skip_blanks(scanner)
     if (.not. allocated(scanner%trouble) .and. scanner%at < len(scanner%text)) &
       call complain(scanner, 'cannot read "'//trim(scanner%text(scanner%at:))//'"')
@@ -84,22 +86,21 @@ contains
   end function take
 
   !> term {+ term | - term}
-  recursive subroutine take_sum(scanner, names, value)
+  recursive subroutine take_sum(scanner, value)
     type(scanner_t), intent(inout) :: scanner
-    type(named_value_t), intent(in) :: names(:)
     real(wp), intent(out) :: value
     real(wp) :: term
 
     value = 0.0_wp
     scanner%depth = scanner%depth + 1
     if (scanner%depth > max_depth) call complain(scanner, 'too many parentheses or signs')
-    call take_product(scanner, names, value)
+    call take_product(scanner, value)
     do while (.not. allocated(scanner%trouble))
       if (take(scanner, '+')) then
-        call take_product(scanner, names, term)
+        call take_product(scanner, term)
         value = value + term
       else if (take(scanner, '-')) then
-        call take_product(scanner, names, term)
+        call take_product(scanner, term)
         value = value - term
       else
         exit
@@ -110,24 +111,23 @@ contains
   end subroutine take_sum
 
   !> factor {* factor | / factor}
-  recursive subroutine take_product(scanner, names, value)
+  recursive subroutine take_product(scanner, value)
     type(scanner_t), intent(inout) :: scanner
-    type(named_value_t), intent(in) :: names(:)
     real(wp), intent(out) :: value
     real(wp) :: factor
 
     value = 0.0_wp
-    call take_signed(scanner, names, value)
+    call take_signed(scanner, value)
     do while (.not. allocated(scanner%trouble))
       if (take(scanner, '*')) then
-        call take_signed(scanner, names, factor)
+        call take_signed(scanner, factor)
         if (exponent(value) + exponent(factor) > 996) then
           call complain(scanner, 'the value is too large')
         else
           value = value*factor
         end if
       else if (take(scanner, '/')) then
-        call take_signed(scanner, names, factor)
+        call take_signed(scanner, factor)
         if (.not. abs(factor) > 0.0_wp) then
           call complain(scanner, 'division by zero')
         else if (exponent(value) - exponent(factor) > 995) then
@@ -142,9 +142,8 @@ contains
   end subroutine take_product
 
   !> A factor with signs before it; a power binds stronger than a sign, as in Fortran.
-  recursive subroutine take_signed(scanner, names, value)
+  recursive subroutine take_signed(scanner, value)
     type(scanner_t), intent(inout) :: scanner
-    type(named_value_t), intent(in) :: names(:)
     real(wp), intent(out) :: value
     logical :: negative
 
@@ -156,24 +155,23 @@ contains
         exit
       end if
     end do
-    call take_power(scanner, names, value)
+    call take_power(scanner, value)
     if (negative) value = -value
   end subroutine take_signed
 
   !> base [** power], taken from the right
-  recursive subroutine take_power(scanner, names, value)
+  recursive subroutine take_power(scanner, value)
     type(scanner_t), intent(inout) :: scanner
-    type(named_value_t), intent(in) :: names(:)
     real(wp), intent(out) :: value
     real(wp) :: power
     character(:), allocatable :: trouble
 
-    call take_primary(scanner, names, value)
+    call take_primary(scanner, value)
     if (allocated(scanner%trouble)) return
     if (.not. take(scanner, '**')) return
     scanner%depth = scanner%depth + 1
     if (scanner%depth > max_depth) call complain(scanner, 'too many powers')
-    call take_signed(scanner, names, power)
+    call take_signed(scanner, power)
     scanner%depth = scanner%depth - 1
     if (allocated(scanner%trouble)) return
     call raise_power(power, value, trouble)
@@ -181,16 +179,15 @@ contains
   end subroutine take_power
 
   !> A number, a name, a function or an expression in parentheses.
-  recursive subroutine take_primary(scanner, names, value)
+  recursive subroutine take_primary(scanner, value)
     type(scanner_t), intent(inout) :: scanner
-    type(named_value_t), intent(in) :: names(:)
     real(wp), intent(out) :: value
     character(:), allocatable :: word
     integer :: n, i
 
     value = 0.0_wp
     if (take(scanner, '(')) then
-      call take_sum(scanner, names, value)
+      call take_sum(scanner, value)
       if (.not. take(scanner, ')')) call complain(scanner, 'a ")" is missing')
       return
     end if
@@ -205,15 +202,15 @@ contains
     end if
     word = scanner%text(scanner%at:scanner%at + n - 1)
     scanner%at = scanner%at + n
-    do i = 1, size(names)
-      if (names(i)%name /= word) cycle
-      value = names(i)%value
-      return
+    do i = size(scanner%names), 1, -1
+      if (scanner%names(i)%name == word) exit
     end do
-    if (word == 'PI') then
+    if (i > 0) then
+      value = scanner%names(i)%value
+    else if (word == 'PI') then
       value = pi
     else if (take(scanner, '(')) then
-      call take_function(scanner, names, word, value)
+      call take_function(scanner, word, value)
     else
       call complain(scanner, 'there is no parameter '//word//' up to here')
     end if
@@ -243,9 +240,8 @@ contains
   end subroutine take_number
 
   !> The arguments of a function (its opening parenthesis has been taken) and its value.
-  recursive subroutine take_function(scanner, names, word, value)
+  recursive subroutine take_function(scanner, word, value)
     type(scanner_t), intent(inout) :: scanner
-    type(named_value_t), intent(in) :: names(:)
     character(*), intent(in) :: word
     real(wp), intent(out) :: value
     real(wp) :: arguments(10)
@@ -258,7 +254,7 @@ contains
       n = n + 1
       if (n > size(arguments)) call complain(scanner, word//' has more than 10 arguments')
       if (allocated(scanner%trouble)) return
-      call take_sum(scanner, names, arguments(n))
+      call take_sum(scanner, arguments(n))
       if (.not. take(scanner, ',')) exit
     end do
     if (allocated(scanner%trouble)) return

@@ -5,15 +5,15 @@ module deck_fields_m
   use kinds_m, only : wp
   use text_m, only : read_real, read_integer, number_good, number_range, number_fraction
   use log_m, only : to_text
-  use deck_card_specs_m, only : card_spec_t, field_number, is_in_range, range_text
+  use deck_card_specs_m, only : card_spec_t, is_in_range, range_text
   use deck_schema_m, only : expected
   use deck_report_m, only : spot_t, add_error, count_only
-  use deck_lines_m, only : deck_t, place_t, line_text, where_text, line_warning, line_spot, &
-    deck_error, given_by, words_of, order_line, keyword_of_line, written_text, shown_text, &
-    marked_line, flag_comma, max_field
+  use deck_lines_m, only : deck_t, line_text, where_text, line_warning, line_spot, deck_error, &
+    given_by, words_of, order_line, keyword_of_line, written_text, shown_text, marked_line, &
+    flag_comma, max_field
   implicit none
   private
-  public :: card_t, cut_card, read_numbers, field_text, field_error, place_error, place_field, &
+  public :: card_t, cut_card, read_numbers, field_text, field_error, &
     largest_value, smallest_value
 
   !> Numbers beyond the largest are refused, those below the smallest are zero, so that products of
@@ -124,9 +124,7 @@ contains
     shift = 0
     if (card%line > 0) first = deck%first(card%line)
     do k = 1, spec%n
-      card%r(k) = spec%defaults(k)
-      card%i(k) = 0
-      if (spec%kinds(k) == 'i') card%i(k) = nint(spec%defaults(k))
+      call set_default(spec, card, k)
       if (spec%kinds(k) == 'x' .or. spec%kinds(k) == 'a') cycle
       if (card%blank(k)) then
         call check_range(deck, spec, card, k)
@@ -216,8 +214,7 @@ contains
       return
     end if
     call append_zero(deck%default_zeros)
-    card%r(k) = spec%defaults(k)
-    if (spec%kinds(k) == 'i') card%i(k) = nint(spec%defaults(k))
+    call set_default(spec, card, k)
 
   contains
 
@@ -240,27 +237,29 @@ contains
     type(card_t), intent(inout) :: card
     integer, intent(in) :: k
     integer, intent(in) :: status
-    character(:), allocatable :: text
+    character(:), allocatable :: text, message
 
     text = field_text(deck, card, k)
-    if (text(1:1) == '<' .or. index(text, '&(') == 1 .or. index(text, '-&(') == 1) then
-      call field_error(deck, card, k, 'is an inline expression, which is not read here; ' &
-        //'give it a name with *PARAMETER_EXPRESSION')
-    else if (status == number_fraction) then
-      call field_error(deck, card, k, 'is not a whole number')
-    else if (status == number_range .and. spec%kinds(k) == 'i') then
-      call field_error(deck, card, k, 'is too large: whole numbers reach 2147483647')
-    else if (status == number_range) then
-      call field_error(deck, card, k, 'is too large: numbers reach 1e40')
-    else if (spec%kinds(k) == 'i') then
-      call field_error(deck, card, k, 'is not a whole number')
-    else
-      call field_error(deck, card, k, 'is not a number')
-    end if
+    message = 'is not a '//trim(merge('whole number', 'number      ', status == number_fraction &
+      .or. spec%kinds(k) == 'i'))
+    if (status == number_range) message = 'is too large: '//trim(merge( &
+      'whole numbers reach 2147483647', 'numbers reach 1e40            ', spec%kinds(k) == 'i'))
+    if (text(1:1) == '<' .or. index(text, '&(') == 1 .or. index(text, '-&(') == 1) message = &
+      'is an inline expression, which is not read here; give it a name with *PARAMETER_EXPRESSION'
+    call field_error(deck, card, k, message)
+    call set_default(spec, card, k)
+  end subroutine number_error
+
+  !> The default of a field.
+  pure subroutine set_default(spec, card, k)
+    type(card_spec_t), intent(in) :: spec
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: k
+
+    card%r(k) = spec%defaults(k)
     card%i(k) = 0
     if (spec%kinds(k) == 'i') card%i(k) = nint(spec%defaults(k))
-    card%r(k) = spec%defaults(k)
-  end subroutine number_error
+  end subroutine set_default
 
   !> Text of a field, without blanks around it.
   pure function field_text(deck, card, k) result(text)
@@ -283,6 +282,7 @@ contains
     integer, intent(in) :: k
     character(*), intent(in) :: message
     character(:), allocatable :: text, written
+    type(spot_t) :: spot
     logical :: is_done
 
     card%bad(k) = .true.
@@ -295,7 +295,7 @@ contains
     text = where_text(deck, card%line)//' card '//to_text(card%number)//' field '//to_text(k) &
       //' ('//trim(card%names(k))//'): '
     if (card%present .and. .not. card%blank(k)) then
-      text = text//'"'//printable(field_text(deck, card, k))//'"'
+      text = text//'"'//shown_text(field_text(deck, card, k))//'"'
     else
       text = text//'blank'
     end if
@@ -305,61 +305,16 @@ contains
       card%first(k), max(card%last(k), card%first(k)))
     written = written_text(deck, card%line)
     if (len(written) > 0) text = text//new_line('a')//'  | written: '//trim(shown_text(written))
-    call add_error(deck%report, order_line(deck, card%line), text//words_of(deck, card%line), &
-      field_spot(deck, card, k, message))
-  end subroutine field_error
-
-  !> A message that belongs to field `k`.
-  pure function field_spot(deck, card, k, message) result(spot)
-    type(deck_t), intent(in) :: deck
-    type(card_t), intent(in) :: card
-    integer, intent(in) :: k
-    character(*), intent(in) :: message
-    type(spot_t) :: spot
-
     spot = line_spot(deck, card%line, message)
     spot%card = card%number
     spot%field = k
     spot%name = card%names(k)
-    spot%found = printable(field_text(deck, card, k))
-    if (.not. card%present .or. len(written_text(deck, card%line)) > 0) return
-    spot%first = card%first(k)
-    spot%last = max(card%last(k), card%first(k))
-  end function field_spot
-
-  !> The text with what is not printable replaced.
-  pure function printable(text) result(shown)
-    character(*), intent(in) :: text
-    character(len(text)) :: shown
-    integer :: i
-
-    shown = text
-    do i = 1, len(text)
-      if (iachar(text(i:i)) < 32 .or. iachar(text(i:i)) > 126) shown(i:i) = '?'
-    end do
-  end function printable
-
-  !> As `field_error` for a card that has been left: it is cut again.
-  subroutine place_error(deck, spec, place, source, message)
-    type(deck_t), intent(inout) :: deck
-    type(card_spec_t), intent(in) :: spec
-    type(place_t), intent(in) :: place
-    integer, intent(in) :: source
-    character(*), intent(in) :: message
-    type(card_t) :: card
-
-    call cut_card(deck, spec, source, place%line, card)
-    call field_error(deck, card, place_field(spec, place), message)
-  end subroutine place_error
-
-  !> Position of the field of a place.
-  function place_field(spec, place) result(k)
-    type(card_spec_t), intent(in) :: spec
-    type(place_t), intent(in) :: place
-    integer :: k
-
-    k = place%field
-    if (len_trim(place%name) > 0) k = field_number(spec%names(:spec%n), place%name)
-  end function place_field
+    spot%found = shown_text(field_text(deck, card, k))
+    if (card%present .and. len(written) == 0) then
+      spot%first = card%first(k)
+      spot%last = max(card%last(k), card%first(k))
+    end if
+    call add_error(deck%report, order_line(deck, card%line), text//words_of(deck, card%line), spot)
+  end subroutine field_error
 
 end module deck_fields_m

@@ -21,7 +21,8 @@ module deck_ids_m
   type :: id_map_t
     logical :: lost = .false.                !! some definitions were refused: others may be meant
     logical :: incomplete = .false.          !! lost, or there is none where a deck has some
-    integer, allocatable :: lines(:)         !! where each is defined
+    integer :: n = 0                         !! things defined so far
+    integer, allocatable :: ids(:), lines(:) !! of each, and where it is defined
     integer :: low = 1                       !! smallest id of the table
     integer, allocatable :: table(:)         !! index of id low, low + 1, ..., 0 where there is none
     integer, allocatable :: sorted(:)        !! ids in increasing order ...

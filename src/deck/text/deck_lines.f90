@@ -12,14 +12,17 @@ module deck_lines_m
   use log_m, only : to_text
   implicit none
   private
-  public :: deck_t, blocks_of, source_t, block_t, place_t, parameter_t, parameters_t, again_error, &
+  public :: deck_t, blocks_of, count_rows, source_t, block_t, place_t, parameter_t, parameters_t, &
+    again_error, &
     file_paths, line_text, order_line, block_of_line, where_text, line_error, deck_error, &
     line_warning, replace_line, written_text, line_spot, keyword_of_line, shown_text, marked_line, &
-    layout_mark, word_t, made_line_t, given_by, words_of, format_standard, format_long, &
+    layout_marks, word_t, made_line_t, given_by, words_of, format_standard, format_long, &
     format_i10, flag_comma, flag_parameter, flag_blank, max_source, max_field
 
   !> Column layout of a block.
   integer, parameter :: format_standard = 0, format_long = 1, format_i10 = 2
+  !> What a keyword line has of them.
+  character(2), parameter :: layout_marks(0:2) = ['  ', ' +', ' %']
   !> Bits of `flags`.
   integer(int8), parameter :: flag_comma = 1_int8, flag_parameter = 2_int8, flag_blank = 4_int8
   !> Files in one deck, fields of one card.
@@ -50,6 +53,7 @@ module deck_lines_m
     logical :: titled = .false.          !! _TITLE or _ID: a text line comes first
     logical :: dropped = .false.         !! not part of the effective deck
     logical :: is_honoured = .false.     !! its cards are read
+    logical :: is_empty = .false.        !! it lacks the card that it needs
   end type block_t
 
   !> A field of a card, for messages after the card has been left.
@@ -160,6 +164,17 @@ contains
     blocks = pack([(i, i=1, deck%n_block)], [(deck%blocks(i)%is_honoured &
       .and. index(deck%blocks(i)%name, head) == 1, i=1, deck%n_block)])
   end function blocks_of
+
+  !> Rows that the keywords that begin so may have.
+  pure function count_rows(deck, head) result(n)
+    type(deck_t), intent(in) :: deck
+    character(*), intent(in) :: head
+    integer :: n
+
+    associate (which => blocks_of(deck, head))
+      n = sum(max(deck%blocks(which)%last - deck%blocks(which)%first + 1, 0))
+    end associate
+  end function count_rows
 
   !> The block that holds a line (keyword line or data line); 0 before the first.
   pure function block_of_line(deck, line) result(i_block)
@@ -394,20 +409,5 @@ contains
     marked = '  | '//trim(shown_text(text))//new_line('a')//'  | '//repeat(' ', from - 1) &
       //repeat('^', to - from + 1)
   end function marked_line
-
-  !> The mark of a keyword's column layout.
-  pure function layout_mark(layout) result(mark)
-    integer, intent(in) :: layout
-    character(:), allocatable :: mark
-
-    select case (layout)
-    case (format_long)
-      mark = ' +'
-    case (format_i10)
-      mark = ' %'
-    case default
-      mark = ''
-    end select
-  end function layout_mark
 
 end module deck_lines_m

@@ -42,7 +42,7 @@ def schema(path=TABLES):
     for line in re.findall(r"^ +'([^']*)'[,\]]", text, re.MULTILINE):
         if line[0] != " ":
             name, _, options = line.partition(" ")
-            cards = []
+            cards = keywords[line.partition("=")[2]][1] if "=" in line else []
             keywords[name] = ("t" in options, cards)
             continue
         fields = []

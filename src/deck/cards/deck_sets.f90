@@ -1,0 +1,472 @@
+! SPDX-License-Identifier: MIT
+!> *SET_, and *ELEMENT_BEAM, as mesh generators write the edges of a plane mesh: no elements here,
+!> but the segment set and the node set of the number of their part. What *DATABASE_HISTORY_ and
+!> *DATABASE_NODAL_FORCE_GROUP choose.
+module deck_sets_m
+  use kinds_m, only : long
+  use log_m, only : to_text
+  use text_m, only : upper_case
+  use controls_m, only : force_group_t
+  use sorting_m, only : sorted_order
+  use boundary_m, only : boundary_t, find_boundary
+  use model_m, only : model_t
+  use deck_lines_m, only : deck_t, blocks_of, count_rows, line_error, line_warning
+  use deck_fields_m, only : card_t, field_text
+  use deck_cards_m, only : cursor_t, open_cursor, next_text, next_card, next_row, next_of, &
+    rows_of, report_field
+  use deck_ids_m, only : ids_between, kind_names, a_node, an_element, a_part, a_node_set, &
+    a_part_set, a_segment_set, a_shell_set
+  use deck_values_m, only : integer_of, is_bad, map_kind, lose, find_id
+  implicit none
+  private
+  public :: read_sets, read_histories, keep_first, check_edge
+
+  !> One set: indices of its members, in a segment set pairs of nodes.
+  type :: set_t
+    integer :: id = 0
+    integer :: line = 0
+    character(:), allocatable :: title
+    logical :: of_beams = .false.
+    logical :: is_whole = .true.        !! all that its cards name exists
+    logical :: is_boundary = .false.    !! of a segment set: the members are parts
+    integer :: n_named = 0              !! members that its cards name
+    integer :: n = 0
+    integer, allocatable :: members(:)  !! n, while it is read maybe longer
+    integer, allocatable :: place(:)    !! (n_node) of a general set, while it is read: where each
+                                        !! node stands, 0 where it does not
+  end type set_t
+
+contains
+
+  !> All sets of the deck. The mesh and parts are known.
+  subroutine read_sets(deck, model, is_whole)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(inout) :: model
+    logical, allocatable, intent(out) :: is_whole(:) !! of each node set: all nodes that its cards
+                                                     !! name exist
+    type(set_t), allocatable :: sets(:), beams(:, :)
+    integer :: i
+
+    call read_kind(deck, 'SET_PART', a_part_set, model, sets)
+    allocate (model%part_sets(size(sets)))
+    do i = 1, size(sets)
+      model%part_sets(i)%id = sets(i)%id
+      call move_alloc(sets(i)%members, model%part_sets(i)%parts)
+    end do
+    call read_kind(deck, 'SET_SHELL', a_shell_set, model, sets)
+    allocate (model%shell_sets(size(sets)))
+    do i = 1, size(sets)
+      model%shell_sets(i)%id = sets(i)%id
+      call move_alloc(sets(i)%members, model%shell_sets(i)%elements)
+    end do
+    call read_beams(deck, model, beams)
+    call read_kind(deck, 'SET_NODE', a_node_set, model, sets, beams(:, 1))
+    allocate (model%node_sets(size(sets)))
+    do i = 1, size(sets)
+      model%node_sets(i)%id = sets(i)%id
+      if (allocated(sets(i)%title)) model%node_sets(i)%title = sets(i)%title
+      call move_alloc(sets(i)%members, model%node_sets(i)%nodes)
+    end do
+    is_whole = sets%is_whole
+    call read_kind(deck, 'SEGMENT', a_segment_set, model, sets, beams(:, 2))
+    allocate (model%segment_sets(size(sets)))
+    do i = 1, size(sets)
+      model%segment_sets(i)%id = sets(i)%id
+      if (sets(i)%is_boundary) then
+        call move_alloc(sets(i)%members, model%segment_sets(i)%parts)
+        call bound_parts(model, model%segment_sets(i)%parts, model%segment_sets(i)%nodes)
+      else
+        if (.not. sets(i)%is_whole) sets(i)%n = 0
+        model%segment_sets(i)%nodes = reshape(sets(i)%members(:sets(i)%n), [2, sets(i)%n/2])
+      end if
+    end do
+  end subroutine read_sets
+
+  !> The sets of one kind, with those of beams among them in the order of the deck.
+  subroutine read_kind(deck, word, kind, model, sets, of_beams)
+    type(deck_t), intent(inout) :: deck
+    character(*), intent(in) :: word         !! in the names of their keywords
+    integer, intent(in) :: kind
+    type(model_t), intent(in) :: model
+    type(set_t), allocatable, intent(out) :: sets(:)
+    type(set_t), intent(in), optional :: of_beams(:)
+    integer, allocatable :: blocks(:), order(:)
+    integer :: i, n
+
+    blocks = blocks_of(deck, 'SET_')
+    blocks = pack(blocks, [(index(deck%blocks(blocks(i))%name, word) > 0, i=1, size(blocks))])
+    allocate (sets(size(blocks)))
+    n = 0
+    do i = 1, size(blocks)
+      call read_set(deck, blocks(i), model, sets(n + 1))
+      if (sets(n + 1)%id > 0) n = n + 1
+    end do
+    if (n < size(sets)) sets = sets(:n)
+    if (present(of_beams)) then
+      if (size(of_beams) > 0) then
+        order = sorted_order(int([sets%line, of_beams%line], long))
+        sets = [sets, of_beams]
+        sets = sets(order)
+      end if
+    end if
+    call map_kind(deck, kind, sets%id, sets%line, 'SID', sets%of_beams)
+  end subroutine read_kind
+
+  !> A set of nodes, parts, elements or segments: its number, then its members.
+  subroutine read_set(deck, i_block, model, set)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i_block
+    type(model_t), intent(in) :: model
+    type(set_t), intent(out) :: set           !! its id is 0 where it was refused
+    type(cursor_t) :: cursor
+    type(card_t) :: head, card
+    logical :: found, is_sound
+    integer :: k
+
+    call open_cursor(deck, i_block, cursor)
+    if (deck%blocks(i_block)%titled) call next_text(deck, cursor, set%title)
+    call next_card(deck, cursor, 1, head)
+    set%line = head%line
+    allocate (set%members(64))
+    is_sound = .true.
+    do
+      call next_row(deck, cursor, 2, card, found)
+      if (.not. found) exit
+      select case (deck%blocks(i_block)%name)
+      case ('SET_NODE_LIST')
+        call take_members(deck, card, a_node, set)
+      case ('SET_PART_LIST', 'SET_2D_SEGMENT')
+        call take_members(deck, card, a_part, set)
+      case ('SET_SHELL_LIST')
+        call take_members(deck, card, an_element, set)
+      case ('SET_NODE_LIST_GENERATE')
+        call take_blocks(deck, card, a_node, set)
+      case ('SET_PART_LIST_GENERATE')
+        call take_blocks(deck, card, a_part, set)
+      case ('SET_SHELL_LIST_GENERATE')
+        call take_blocks(deck, card, an_element, set)
+      case ('SET_2D_SEGMENT_SET')
+        call take_part_set(deck, card, model, set)
+      case ('SET_SEGMENT')
+        call check_edge(deck, card)
+        if (.not. any(card%bad)) call take_edge(deck, card, set)
+      case ('SET_NODE_GENERAL')
+        call take_action(deck, card, model, set)
+      end select
+      is_sound = is_sound .and. .not. any(card%bad)
+    end do
+    set%is_boundary = index(deck%blocks(i_block)%name, 'SET_2D_SEGMENT') == 1
+    set%is_whole = is_sound
+    set%members = set%members(:set%n)
+    if (allocated(set%place)) then
+      set%members = pack(set%members, set%place(set%members) == [(k, k=1, set%n)])
+      set%n_named = size(set%members)
+    end if
+    if (is_sound .and. set%n_named == 0) call line_error(deck, set%line, 'the set is empty')
+    if (is_bad(head, 'SID')) call lose(deck, [a_node_set, a_part_set, a_segment_set, a_shell_set])
+    if (.not. is_bad(head, 'SID')) set%id = integer_of(head, 'SID')
+  end subroutine read_set
+
+  !> One more member; 0 is none.
+  subroutine append(set, member)
+    type(set_t), intent(inout) :: set
+    integer, intent(in) :: member
+
+    set%n_named = set%n_named + 1
+    if (member == 0) return
+    if (set%n == size(set%members)) set%members = [set%members, set%members]
+    set%n = set%n + 1
+    set%members(set%n) = member
+  end subroutine append
+
+  !> The ids of a row, one in each of its fields; zeros are padding.
+  subroutine take_members(deck, card, kind, set)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: kind               !! of the members
+    type(set_t), intent(inout) :: set
+    integer :: k, found
+
+    do k = 1, count(card%kinds == 'i')
+      if (card%i(k) < 0) call report_field(deck, card, k, 'is not a number of 1 or more')
+      if (card%i(k) < 1) cycle
+      call find_id(deck, kind, card, k, found)
+      call append(set, found)
+    end do
+  end subroutine take_members
+
+  !> Pairs of first and last id.
+  subroutine take_blocks(deck, card, kind, set)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: kind
+    type(set_t), intent(inout) :: set
+    integer, allocatable :: block(:)
+    integer :: k, i
+
+    do k = 1, count(card%kinds == 'i') - 1, 2
+      if (all(card%i(k:k + 1) == 0)) cycle
+      if (card%i(k) < 1) call report_field(deck, card, k, 'is not a number of 1 or more')
+      if (card%i(k + 1) < card%i(k)) call report_field(deck, card, k + 1, &
+        'is not the end of a block that begins with "'//to_text(card%i(k))//'"')
+      if (any(card%bad(k:k + 1))) cycle
+      call ids_between(deck%maps(kind), card%i(k), card%i(k + 1), block)
+      if (size(block) == 0 .and. .not. deck%maps(kind)%incomplete) call &
+        report_field(deck, card, k, 'to "'//to_text(card%i(k + 1))//'": there is no ' &
+        //trim(kind_names(kind))//' in this block')
+      set%n_named = set%n_named + 1
+      do i = 1, size(block)
+        call append(set, block(i))
+      end do
+    end do
+  end subroutine take_blocks
+
+  !> The parts of a part set.
+  subroutine take_part_set(deck, card, model, set)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    type(model_t), intent(in) :: model
+    type(set_t), intent(inout) :: set
+    integer :: found, i
+
+    call find_id(deck, a_part_set, card, 'PSID', found)
+    set%n_named = set%n_named + 1
+    if (found == 0) return
+    do i = 1, size(model%part_sets(found)%parts)
+      call append(set, model%part_sets(found)%parts(i))
+    end do
+  end subroutine take_part_set
+
+  !> Two nodes from N1 on.
+  subroutine take_edge(deck, card, set)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    type(set_t), intent(inout) :: set
+    integer :: ends(2)
+
+    call find_id(deck, a_node, card, 'N1', ends(1))
+    call find_id(deck, a_node, card, 'N2', ends(2))
+    call append(set, ends(1))
+    call append(set, ends(2))
+  end subroutine take_edge
+
+  !> A row of a general set: what it adds or takes out. Each node stands in the set once, where it
+  !> was added.
+  subroutine take_action(deck, card, model, set)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    type(model_t), intent(in) :: model
+    type(set_t), intent(inout) :: set
+    character(:), allocatable :: action
+    integer :: i, k, found
+
+    action = upper_case(field_text(deck, card, 1))
+    if (.not. allocated(set%place)) allocate (set%place(model%mesh%n_node), source=0)
+    if (all(action /= ['ALL  ', 'NODE ', 'DNODE', 'PART ', 'DPART'])) then
+      call report_field(deck, card, 'OPTION', 'is not ALL, NODE, DNODE, PART or DPART (boxes are ' &
+        //'not available in slideline)')
+      return
+    else if (action == 'ALL') then
+      call take([(i, i=1, model%mesh%n_node)])
+      return
+    end if
+    if (all(card%i(2:) == 0)) call report_field(deck, card, 'E1', 'is not a number of 1 or more')
+    do k = 2, 1 + count(card%kinds == 'i')
+      if (card%i(k) < 0) call report_field(deck, card, k, 'is not a number of 1 or more')
+      if (card%i(k) < 1) cycle
+      call find_id(deck, merge(a_part, a_node, index(action, 'PART') > 0), card, k, found)
+      if (found > 0 .and. index(action, 'PART') == 0) call take([found])
+      if (found == 0 .or. index(action, 'PART') == 0) cycle
+      do i = 1, model%mesh%n_element
+        if (model%mesh%element_part(i) == found) call take(model%mesh%element_nodes(:, i))
+      end do
+    end do
+
+  contains
+
+    !> Add nodes that are not there, or take them out; 0 is none.
+    subroutine take(nodes)
+      integer, intent(in) :: nodes(:)
+      integer :: j
+
+      do j = 1, size(nodes)
+        if (nodes(j) == 0) cycle
+        if (action(1:1) == 'D') then
+          set%place(nodes(j)) = 0
+        else if (set%place(nodes(j)) == 0) then
+          call append(set, nodes(j))
+          set%place(nodes(j)) = set%n
+        end if
+      end do
+    end subroutine take
+
+  end subroutine take_action
+
+  !> N1 to N4 of an edge: two nodes, and what may stand behind them.
+  subroutine check_edge(deck, card)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    integer :: first, k
+
+    first = findloc(card%names, 'N1  ', dim=1)
+    if (card%i(first) == card%i(first + 1)) call report_field(deck, card, first + 1, &
+      'is the first node again; an edge has two nodes')
+    do k = first + 2, first + 3
+      if (any(card%bad)) exit
+      if (all(card%i(k) /= [0, card%i(first:first + 1)])) call report_field(deck, card, k, &
+        'is a further node; an edge in the plane has two (repeat N2 or leave it 0)')
+    end do
+  end subroutine check_edge
+
+  !> The boundary of some parts.
+  subroutine bound_parts(model, parts, nodes)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: parts(:)
+    integer, allocatable, intent(out) :: nodes(:, :) !! (2, n) nodes of its edges
+    type(boundary_t) :: boundary
+    logical, allocatable :: is_chosen(:), all_nodes(:)
+    logical :: is_of_part(0:size(model%parts))
+
+    allocate (nodes(2, 0))
+    ! Of a mesh with mistakes only these are told.
+    if (any(model%mesh%element_nodes < 1)) return
+    is_of_part = .false.
+    is_of_part(parts) = .true.
+    is_chosen = is_of_part(model%mesh%element_part)
+    allocate (all_nodes(model%mesh%n_node), source=.true.)
+    call find_boundary(model%mesh%element_nodes, is_chosen, all_nodes, boundary)
+    nodes = boundary%nodes
+  end subroutine bound_parts
+
+  !> *ELEMENT_BEAM: the node set and the segment set of the number of each part.
+  subroutine read_beams(deck, model, sets)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(in) :: model
+    type(set_t), allocatable, intent(out) :: sets(:, :) !! (n, 2) of nodes, of segments
+    type(set_t), allocatable :: edges(:)
+    type(set_t) :: unset
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    integer, allocatable :: kept(:)
+    integer :: i
+    logical :: found
+
+    allocate (edges(0), unset%members(64))
+    call rows_of('ELEMENT_BEAM', cursor)
+    do
+      call next_of(deck, cursor, card, found)
+      if (.not. found) exit
+      if (any(card%bad)) call lose(deck, [a_node_set, a_segment_set])
+      if (any(card%bad)) cycle
+      call line_warning(deck, card%line, 'beams', 'beams are no elements of a plane mesh: the ' &
+        //'edges of each of their parts are the segment set, and the node set, of its number')
+      ! The last part is mostly the one.
+      do i = size(edges), 1, -1
+        if (edges(i)%id == integer_of(card, 'PID')) exit
+      end do
+      if (i == 0) then
+        edges = [edges, unset]
+        i = size(edges)
+        edges(i)%id = integer_of(card, 'PID')
+        edges(i)%line = card%line
+        edges(i)%of_beams = .true.
+      end if
+      call take_edge(deck, card, edges(i))
+      edges(i)%is_whole = edges(i)%is_whole .and. .not. any(card%bad)
+    end do
+    allocate (sets(size(edges), 2))
+    do i = 1, size(edges)
+      edges(i)%members = edges(i)%members(:edges(i)%n)
+      sets(i, :) = edges(i)
+      call keep_first(edges(i)%members, model%mesh%n_node, kept)
+      sets(i, 1)%members = kept
+    end do
+  end subroutine read_beams
+
+  !> Nodes and elements of *DATABASE_HISTORY_, each once, in deck order; force groups.
+  subroutine read_histories(deck, model)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(inout) :: model
+    integer, allocatable :: members(:), sets(:)
+    integer :: i
+
+    call read_chosen(deck, 'DATABASE_HISTORY_NODE', [a_node, a_node_set], members, sets)
+    members = [members, (model%node_sets(sets(i))%nodes, i=1, size(sets))]
+    call keep_first(members, model%mesh%n_node, model%controls%output%history_nodes)
+    call read_chosen(deck, 'DATABASE_HISTORY_SHELL', [an_element, a_shell_set], members, sets)
+    members = [members, (model%shell_sets(sets(i))%elements, i=1, size(sets))]
+    call keep_first(members, model%mesh%n_element, model%controls%output%history_elements)
+    call read_groups(deck, model)
+  end subroutine read_histories
+
+  !> What the keywords that begin so name: members, and by those that end so sets.
+  subroutine read_chosen(deck, head, kinds, members, sets)
+    type(deck_t), intent(inout) :: deck
+    character(*), intent(in) :: head
+    integer, intent(in) :: kinds(2)           !! of members and of sets
+    integer, allocatable, intent(out) :: members(:), sets(:)
+    type(set_t) :: chosen(2)
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    integer :: k
+    logical :: found
+
+    allocate (chosen(1)%members(64), chosen(2)%members(64))
+    call rows_of(head, cursor)
+    do
+      call next_of(deck, cursor, card, found)
+      if (.not. found) exit
+      k = merge(2, 1, deck%blocks(cursor%block)%name == head//'_SET')
+      call take_members(deck, card, kinds(k), chosen(k))
+    end do
+    members = chosen(1)%members(:chosen(1)%n)
+    sets = chosen(2)%members(:chosen(2)%n)
+  end subroutine read_chosen
+
+  !> *DATABASE_NODAL_FORCE_GROUP: node sets, none of them twice.
+  subroutine read_groups(deck, model)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(inout) :: model
+    type(force_group_t), allocatable :: groups(:)
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    integer :: set, n
+    logical :: found, is_taken(size(model%node_sets))
+
+    allocate (groups(count_rows(deck, 'DATABASE_NODAL_FORCE_GROUP')))
+    if (size(groups) == 0) return
+    is_taken = .false.
+    n = 0
+    call rows_of('DATABASE_NODAL_FORCE_GROUP', cursor)
+    do
+      call next_of(deck, cursor, card, found)
+      if (.not. found) exit
+      call find_id(deck, a_node_set, card, 'NSID', set)
+      if (set == 0) cycle
+      if (is_taken(set)) call report_field(deck, card, 'NSID', &
+        'is the node set of another force group')
+      is_taken(set) = .true.
+      n = n + 1
+      groups(n)%id = integer_of(card, 'NSID')
+      call keep_first(model%node_sets(set)%nodes, model%mesh%n_node, groups(n)%nodes)
+    end do
+    model%controls%output%force_groups = groups(:n)
+  end subroutine read_groups
+
+  !> Members of a list, each where it comes first.
+  pure subroutine keep_first(members, n_all, kept)
+    integer, intent(in) :: members(:)
+    integer, intent(in) :: n_all           !! members are 1 to this
+    integer, allocatable, intent(out) :: kept(:)
+    logical, allocatable :: is_first(:), listed(:)
+    integer :: i
+
+    allocate (listed(n_all), is_first(size(members)), source=.false.)
+    do i = 1, size(members)
+      is_first(i) = .not. listed(members(i))
+      listed(members(i)) = .true.
+    end do
+    kept = pack(members, is_first)
+  end subroutine keep_first
+
+end module deck_sets_m
