@@ -123,7 +123,7 @@ contains
           interval = plan%plot
         call start_schedule(monitor%tables(k), interval, model%curves, end_time)
       end do
-      monitor%scheduled = pack([(k, k=1, n_table)], monitor%tables%active)
+      monitor%scheduled = pack([(k, k=1, n_table)], [(monitor%tables(k)%active, k=1, n_table)])
     end associate
   end subroutine start_schedules
 
