@@ -21,7 +21,7 @@ module deck_m
   use deck_parameters_m, only : read_parameters
   use deck_overrides_m, only : read_words, edit_controls, check_words
   use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
-  use deck_raw_m, only : raw_t, start_raw, trim_lists
+  use deck_raw_m, only : raw_t
   use deck_control_m, only : read_control, read_database, check_step
   use deck_contact_m, only : read_contact
   use deck_friction_m, only : warn_of_unused
@@ -90,7 +90,7 @@ contains
     character(:), allocatable, intent(out) :: effective
     type(error_t), allocatable, intent(out) :: error
     type(raw_t), allocatable :: raw
-    integer :: i, pass
+    integer :: i, n, pass
 
     allocate (raw, deck%words(0))
     call know_blocks(deck, raw)
@@ -101,7 +101,8 @@ contains
     if (allocated(request%overrides)) call read_words(request%overrides, deck)
     call read_parameters(deck)
     call edit_controls(deck)
-    call start_raw(deck, raw)
+    n = count([(index(deck%blocks(i)%name, 'CONTACT_') == 1, i=1, deck%n_block)])
+    allocate (raw%contacts(n), raw%transducers(n), raw%explicit_only(0))
     raw%controls%title = ''
     do i = 1, deck%n_block
       if (deck%blocks(i)%is_honoured) call check_empty(deck, i)
@@ -115,7 +116,8 @@ contains
           call read_block(deck, i, kinds, raw)
       end do
     end do
-    call trim_lists(raw)
+    raw%contacts = raw%contacts(:raw%n_contact)
+    raw%transducers = raw%transducers(:raw%n_transducer)
     call warn_of_unused(deck, raw)
     call check_words(deck, raw%contacts%contact%id)
     call check_step(deck, raw)

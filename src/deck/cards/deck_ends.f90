@@ -26,6 +26,7 @@ contains
     type(end_condition_t) :: ending
     type(cursor_t) :: cursor
     type(card_t) :: card
+    integer :: part
     logical :: found
 
     if (size(blocks_of(deck, 'TERMINATION_')) == 0) return
@@ -48,7 +49,11 @@ contains
       else
         call take_bounds(deck, card, end_body_place, end_body_way, ending)
         ending%id = integer_of(card, 'PID')
-        call find_body(deck, card, model, ending%where)
+        call find_id(deck, a_part, card, 'PID', part)
+        if (part == 0) cycle
+        ending%where = findloc(model%rigids%part, part, 1)
+        if (ending%where == 0 .and. model%parts(part)%material > 0) call report_field(deck, card, &
+          'PID', 'is no rigid part (*MAT_RIGID)')
       end if
       ends = [ends, ending]
     end do
@@ -75,22 +80,6 @@ contains
         //'forces cancel')
     end if
   end subroutine take_contact
-
-  !> The rigid body of a part.
-  subroutine find_body(deck, card, model, body)
-    type(deck_t), intent(inout) :: deck
-    type(card_t), intent(inout) :: card
-    type(model_t), intent(in) :: model
-    integer, intent(out) :: body
-    integer :: part
-
-    body = 0
-    call find_id(deck, a_part, card, 'PID', part)
-    if (part == 0) return
-    body = findloc(model%rigids%part, part, 1)
-    if (body == 0 .and. model%parts(part)%material > 0) call report_field(deck, card, 'PID', &
-      'is no rigid part (*MAT_RIGID)')
-  end subroutine find_body
 
   !> Bounds of a node or a rigid body. A bound that is blank, of bodies also 0, does not count.
   subroutine take_bounds(deck, card, along, other, ending)

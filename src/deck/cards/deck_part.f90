@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> *PART, *SECTION_SHELL and *HOURGLASS, and what parts of a deck have to have in common.
+!> *PART, *SECTION_SHELL and *HOURGLASS, what parts of a deck have to have in common, and rigid
+!> bodies from the parts of *MAT_RIGID.
 module deck_part_m
   use kinds_m, only : wp
   use text_m, only : read_integer, number_good
@@ -8,17 +9,17 @@ module deck_part_m
   use model_m, only : model_t
   use parts_m, only : section_t, hourglass_t, part_t, hourglass_viscous, hourglass_stiffness, &
     hourglass_assumed, form_one_point, form_full, form_round_one_point, form_round_full
-  use deck_eos_m, only : take_equation
-  use deck_ids_m, only : a_part, a_section, a_material, an_hourglass
+  use deck_ids_m, only : a_part, a_section, a_material, an_hourglass, an_element
   use deck_lines_m, only : deck_t, place_t, blocks_of, line_text, line_error, line_warning, &
     flag_blank
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
     next_of, rows_of, row_comes, report_field, reject_field, find_field
   use deck_values_m, only : integer_of, real_of, is_blank, is_bad, define, map_defined, find_id
+  use deck_material_m, only : take_equation
   implicit none
   private
-  public :: read_parts, read_sections, hourglass_form, hourglass_coefficient
+  public :: read_parts, read_sections, hourglass_form, hourglass_coefficient, make_rigids
 
 contains
 
@@ -274,7 +275,13 @@ contains
         if (model%sections(part%section)%is_full .or. model%materials(part%material)%is_rigid) cycle
         if (part%hourglass%form == hourglass_assumed .and. .not. (model%controls%implicit%is_on &
           .and. allocated(model%materials(part%material)%rubber))) then
-          call check_shear(deck, deck%maps(a_part)%lines(i), i, model)
+          ! The stiffness of assumed strain is that of shear.
+          associate (material => model%materials(part%material))
+            if (material%needs_eos .and. .not. material%shear > 0.0_wp) call line_error(deck, &
+              deck%maps(a_part)%lines(i), 'part '//to_text(part%id)//' has hourglass control by ' &
+              //'assumed strain (IHQ 6), whose stiffness comes from the shear modulus, and its ' &
+              //'material '//to_text(material%id)//' has none (take IHQ 1 to 3)')
+          end associate
         else if (model%controls%implicit%is_on) then
           if (len(changed) == 0) line = deck%maps(a_section)%lines(part%section)
           changed = changed//', '//to_text(part%id)
@@ -287,22 +294,6 @@ contains
       //'takes parts whose NIP is not 4 as NIP 4 where hourglass control is not by ' &
       //'assumed strain (IHQ 6), which would keep them as they are (but for rubber): '//changed(3:))
   end subroutine settle_points
-
-  !> The stiffness of assumed strain is that of shear.
-  subroutine check_shear(deck, line, i, model)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: line     !! card of the part
-    integer, intent(in) :: i        !! part
-    type(model_t), intent(in) :: model
-
-    associate (part => model%parts(i))
-      if (model%materials(part%material)%shear > 0.0_wp) return
-      if (.not. model%materials(part%material)%needs_eos) return ! told as a field
-      call line_error(deck, line, 'part '//to_text(part%id)//' has hourglass control by assumed ' &
-        //'strain (IHQ 6), whose stiffness comes from the shear modulus, and its material ' &
-        //to_text(model%materials(part%material)%id)//' has none (take IHQ 1 to 3)')
-    end associate
-  end subroutine check_shear
 
   !> The fully integrated twin of a section, which other parts may go on sharing as it is.
   pure subroutine add_full_section(section, model, twins)
@@ -317,5 +308,74 @@ contains
     model%sections = [model%sections, twin]
     twins(section) = size(model%sections)
   end subroutine add_full_section
+
+  !> One body for each part of *MAT_RIGID.
+  subroutine make_rigids(deck, model, owner)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(inout) :: model
+    integer, allocatable, intent(out) :: owner(:) !! (n_node) the body of each node, 0 for none
+    integer, allocatable :: parts(:)
+    logical :: is_there(0:model%mesh%n_node)
+    integer :: i, k
+
+    associate (mesh => model%mesh)
+      parts = pack([(i, i=1, size(model%parts))], &
+        [(is_rigid_part(model, i), i=1, size(model%parts))])
+      allocate (model%rigids(size(parts)), owner(mesh%n_node))
+      owner = 0
+      do i = 1, size(parts)
+        associate (body => model%rigids(i))
+          body%part = parts(i)
+          body%is_fixed = model%materials(model%parts(parts(i))%material)%is_fixed
+          if (model%is_round) body%is_fixed([1, 3]) = .true.
+          is_there = .false.
+          do k = 1, mesh%n_element
+            if (mesh%element_part(k) == parts(i)) is_there(mesh%element_nodes(:, k)) = .true.
+          end do
+          body%nodes = pack([(k, k=1, mesh%n_node)], is_there(1:))
+        end associate
+        call own_nodes(deck, i, model, owner)
+      end do
+    end associate
+    if (size(parts) == 0) return
+    if (model%controls%implicit%is_on) call line_error(deck, &
+      deck%maps(a_material)%lines(model%parts(parts(1))%material), '*MAT_RIGID: the implicit ' &
+      //'method does not have rigid bodies')
+    if (size(parts) == size(model%parts) .and. model%controls%dt_curve == 0) call line_error(deck, &
+      deck%maps(a_part)%lines(1), 'all parts are rigid, so no element gives a time step; give ' &
+      //'one by a curve (LCTM of *CONTROL_TIMESTEP)')
+  end subroutine make_rigids
+
+  !> Whether a part has *MAT_RIGID.
+  pure function is_rigid_part(model, i_part) result(yes)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_part
+    logical :: yes
+
+    yes = model%parts(i_part)%material > 0
+    if (yes) yes = model%materials(model%parts(i_part)%material)%is_rigid
+  end function is_rigid_part
+
+  !> No node may have two bodies, and a body needs some.
+  subroutine own_nodes(deck, i, model, owner)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: i                !! body
+    type(model_t), intent(in) :: model
+    integer, intent(inout) :: owner(:)      !! (n_node) of the bodies so far
+    type(place_t) :: place
+    integer :: k
+
+    associate (body => model%rigids(i))
+      place = place_t(deck%maps(a_part)%lines(body%part), 2, 'PID')
+      if (size(body%nodes) == 0 .and. .not. deck%maps(an_element)%lost) call reject_field(deck, &
+        place, ': this rigid part has no elements, so no mass')
+      k = findloc(owner(body%nodes) > 0, .true., dim=1)
+      if (k > 0) call reject_field(deck, place, ': node ' &
+        //to_text(model%mesh%node_id(body%nodes(k)))//' belongs to this rigid part and to rigid ' &
+        //'part '//to_text(model%parts(model%rigids(owner(body%nodes(k)))%part)%id) &
+        //'; bodies that share nodes must be one part')
+      owner(body%nodes) = i
+    end associate
+  end subroutine own_nodes
 
 end module deck_part_m

@@ -8,10 +8,10 @@ module deck_raw_m
   use contacts_m, only : contact_t, friction_rule_t
   use controls_m, only : controls_t
   use history_tables_m, only : n_table
-  use deck_lines_m, only : place_t, deck_t
+  use deck_lines_m, only : place_t
   implicit none
   private
-  public :: raw_t, start_raw, raw_contact_t, history_t, output_plot, trim_lists
+  public :: raw_t, raw_contact_t, history_t, output_plot
 
   !> Files of the output plan: states, and histories by their `table_` constants.
   integer, parameter :: output_plot = 0
@@ -66,25 +66,5 @@ module deck_raw_m
     type(place_t), allocatable :: explicit_only(:) !! fields given that the implicit method leaves
     type(history_t) :: outputs(output_plot:n_table)
   end type raw_t
-
-contains
-
-  !> Empty lists, with room for all interfaces of the deck.
-  subroutine start_raw(deck, raw)
-    type(deck_t), intent(in) :: deck
-    type(raw_t), intent(inout) :: raw
-    integer :: i, n
-
-    n = count([(index(deck%blocks(i)%name, 'CONTACT_') == 1, i=1, deck%n_block)])
-    allocate (raw%contacts(n), raw%transducers(n), raw%explicit_only(0))
-  end subroutine start_raw
-
-  !> Shorten the lists to what they hold.
-  subroutine trim_lists(raw)
-    type(raw_t), intent(inout) :: raw
-
-    raw%contacts = raw%contacts(:raw%n_contact)
-    raw%transducers = raw%transducers(:raw%n_transducer)
-  end subroutine trim_lists
 
 end module deck_raw_m

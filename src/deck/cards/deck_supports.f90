@@ -4,7 +4,7 @@
 module deck_supports_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use conditions_m, only : prescribed_motion_t, skew_support_t, common_motion_t, &
+  use conditions_m, only : conditions_t, prescribed_motion_t, skew_support_t, common_motion_t, &
     motion_acceleration
   use model_m, only : model_t
   use rigids_m, only : mark_rigid_nodes
@@ -12,16 +12,12 @@ module deck_supports_m
   use deck_cards_m, only : cursor_t, next_of, rows_of, report_field, reject_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, an_element, a_part, a_curve, a_node_set, a_system
-  use deck_lines_m, only : deck_t, place_t, line_warning, line_error
-  use deck_values_m, only : integer_of, real_of, has_field, take_life, find_id
+  use deck_lines_m, only : deck_t, place_t, blocks_of, line_warning, line_error
+  use deck_values_m, only : integer_of, real_of, has_field, take_life, find_id, along_axes
   implicit none
   private
   public :: read_supports, read_motions, read_common_motions, card_nodes, mark_axis, mark_massive
 
-  !> Directions of the codes TC and DOF: 0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz.
-  logical, parameter :: along_axes(2, 0:7) = reshape([.false., .false., .true., .false., .false., &
-    .true., .false., .false., .true., .true., .false., .true., .true., .false., .true., .true.], &
-    [2, 8])
   !> Why a rigid body of an axisymmetric deck does not go where it is told to.
   character(*), parameter, public :: across_axis = 'asks a rigid body of an axisymmetric deck ' &
     //'(ELFORM 15) to move in r or to turn; it moves along the axis alone'
@@ -88,7 +84,7 @@ contains
     is_free = .not. mark_massive(deck, model)
     allocate (fixed(2, model%mesh%n_node), source=.false.)
     do i = 1, model%mesh%n_node
-      if (codes(i) >= 0 .and. codes(i) <= 7) fixed(:, i) = along_axes(:, codes(i))
+      if (codes(i) >= 0 .and. codes(i) <= 7) fixed(:, i) = along_axes(:2, codes(i))
       if (owner(i) > 0 .and. any(fixed(:, i))) call reject_field(deck, &
         place_t(deck%maps(a_node)%lines(i), 1, 'TC'), ': node '//follows(model, i, owner(i)) &
         //'CON1 and CON2 of *MAT_RIGID hold the body')
@@ -117,7 +113,10 @@ contains
       end if
     end do
     where (mark_axis(model)) fixed(1, :) = .true.
-    call list_fixed(fixed, model)
+    associate (conditions => model%conditions, n => model%mesh%n_node)
+      conditions%fixed_nodes = pack(spread([(i, i=1, n)], 1, 2), fixed)
+      conditions%fixed_directions = pack(spread([1, 2], 2, n), fixed)
+    end associate
   end subroutine read_supports
 
   !> Fix nodes along the axes of a coordinate system. Axes along x and y, and both of any two, are
@@ -191,18 +190,6 @@ contains
     text = to_text(model%mesh%node_id(node))//' belongs to rigid part ' &
       //to_text(model%parts(model%rigids(body)%part)%id)//' and follows it; '
   end function follows
-
-  !> Fixed pairs of node and direction as lists.
-  pure subroutine list_fixed(fixed, model)
-    logical, intent(in) :: fixed(:, :)
-    type(model_t), intent(inout) :: model
-    integer :: i, k
-
-    associate (conditions => model%conditions)
-      conditions%fixed_nodes = pack(spread([(i, i=1, size(fixed, 2))], 1, 2), fixed)
-      conditions%fixed_directions = pack(spread([(k, k=1, 2)], 2, size(fixed, 2)), fixed)
-    end associate
-  end subroutine list_fixed
 
   !> *BOUNDARY_PRESCRIBED_MOTION_: of nodes and of rigid bodies.
   subroutine read_motions(deck, owner, fixed, model)
@@ -355,7 +342,8 @@ contains
     lines = [lines, card%line]
   end subroutine take_rigid_motion
 
-  !> *CONSTRAINED_NODE_SET: the sets whose nodes nothing else holds or moves.
+  !> *CONSTRAINED_NODE_SET: the sets whose nodes nothing else holds or moves along the same
+  !> direction.
   subroutine read_common_motions(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
@@ -364,9 +352,11 @@ contains
     type(card_t) :: card
     logical :: taken(2, model%mesh%n_node), is_rigid(model%mesh%n_node), meshed(model%mesh%n_node)
     logical :: found
-    integer :: k
+    character(:), allocatable :: message
+    integer :: i, k
 
-    call mark_taken(model, taken)
+    if (size(blocks_of(deck, 'CONSTRAINED_NODE_SET')) == 0) return
+    call mark_taken(model%conditions, taken)
     meshed = mark_meshed_nodes(model)
     is_rigid = mark_rigid_nodes(model%rigids, model%mesh%n_node)
     call rows_of('CONSTRAINED_NODE_SET', cursor)
@@ -377,9 +367,19 @@ contains
       if (model%controls%implicit%is_on) call line_error(deck, card%line, &
         '*CONSTRAINED_NODE_SET is a constraint that the implicit method does not have')
       call card_nodes(deck, card, model, common%nodes)
-      common%along = along_axes(:, integer_of(card, 'DOF'))
+      common%along = along_axes(:2, integer_of(card, 'DOF'))
       if (.not. any(common%along) .or. size(common%nodes) == 0) cycle
-      call check_common(deck, card, model, common, meshed, is_rigid, taken)
+      do i = 1, size(common%nodes)
+        associate (node => common%nodes(i))
+          message = ''
+          if (any(taken(:, node) .and. common%along)) message = &
+            'is held, moved or in another such set along the same direction'
+          if (is_rigid(node)) message = 'belongs to a rigid part and follows it'
+          if (.not. meshed(node)) message = 'belongs to no element'
+          if (len(message) > 0) call report_field(deck, card, 'NSID', ': node ' &
+            //to_text(model%mesh%node_id(node))//' '//message)
+        end associate
+      end do
       if (any(card%bad)) cycle
       do k = 1, 2
         if (common%along(k)) taken(k, common%nodes) = .true.
@@ -390,52 +390,20 @@ contains
     end do
   end subroutine read_common_motions
 
-  !> Nodes that move alike may not be held or moved otherwise along the same direction: an error of
-  !> the first that is.
-  subroutine check_common(deck, card, model, common, meshed, is_rigid, taken)
-    type(deck_t), intent(inout) :: deck
-    type(card_t), intent(inout) :: card
-    type(model_t), intent(in) :: model
-    type(common_motion_t), intent(in) :: common
-    logical, intent(in) :: meshed(:), is_rigid(:)   !! (n_node)
-    logical, intent(in) :: taken(:, :)              !! (2, n_node)
-    character(:), allocatable :: message
-    integer :: i
-
-    do i = 1, size(common%nodes)
-      associate (node => common%nodes(i))
-        if (.not. meshed(node)) then
-          message = 'belongs to no element'
-        else if (is_rigid(node)) then
-          message = 'belongs to a rigid part and follows it'
-        else if (any(taken(:, node) .and. common%along)) then
-          message = 'is held, moved or in another such set along the same direction'
-        else
-          cycle
-        end if
-        call report_field(deck, card, 'NSID', ': node '//to_text(model%mesh%node_id(node))//' ' &
-          //message)
-        return
-      end associate
-    end do
-  end subroutine check_common
-
   !> Degrees of freedom that something holds or moves.
-  pure subroutine mark_taken(model, taken)
-    type(model_t), intent(in) :: model
+  pure subroutine mark_taken(conditions, taken)
+    type(conditions_t), intent(in) :: conditions
     logical, intent(out) :: taken(:, :) !! (2, n_node)
     integer :: i
 
     taken = .false.
-    associate (conditions => model%conditions)
-      do i = 1, size(conditions%fixed_nodes)
-        taken(conditions%fixed_directions(i), conditions%fixed_nodes(i)) = .true.
-      end do
-      do i = 1, size(conditions%motions)
-        taken(conditions%motions(i)%direction, conditions%motions(i)%node) = .true.
-      end do
-      if (allocated(conditions%skew_supports)) taken(:, conditions%skew_supports%node) = .true.
-    end associate
+    do i = 1, size(conditions%fixed_nodes)
+      taken(conditions%fixed_directions(i), conditions%fixed_nodes(i)) = .true.
+    end do
+    do i = 1, size(conditions%motions)
+      taken(conditions%motions(i)%direction, conditions%motions(i)%node) = .true.
+    end do
+    if (allocated(conditions%skew_supports)) taken(:, conditions%skew_supports%node) = .true.
   end subroutine mark_taken
 
 end module deck_supports_m

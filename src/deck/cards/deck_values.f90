@@ -14,6 +14,11 @@ module deck_values_m
   public :: integer_of, real_of, reals_of, has_field, is_blank, is_bad, place_of, take_life, &
     define, map_defined, map_kind, find_id, resolve_id, refuse_again, lose
 
+  !> Directions x, y and z of the codes TC, DOF and CON: 0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7
+  !> xyz.
+  logical, parameter, public :: along_axes(3, 0:7) = reshape([.false., .false., .false., .true., &
+    .false., .false., .false., .true., .false., .false., .false., .true., .true., .true., .false., &
+    .false., .true., .true., .true., .false., .true., .true., .true., .true.], [3, 8])
   !> Index of what a field refers to.
   interface find_id
     module procedure find_by_name, find_by_position

@@ -14,10 +14,9 @@ module deck_resolve_m
   use eos_m, only : eos_t
   use hardenings_m, only : depends_on_rate
   use deck_curves_m, only : table_t, read_curves, read_systems
-  use deck_eos_m, only : read_equations, settle_pressures
   use deck_erosion_m, only : read_erosions
-  use deck_material_m, only : read_materials
-  use deck_part_m, only : read_parts, read_sections
+  use deck_material_m, only : read_materials, read_equations, settle_pressures
+  use deck_part_m, only : read_parts, read_sections, make_rigids
   use deck_damping_m, only : read_damping
   use deck_ids_m, only : a_part, a_material, a_curve
   use deck_ends_m, only : read_ends
@@ -31,7 +30,6 @@ module deck_resolve_m
     read_masses, warn_of_bores
   use deck_raw_m, only : raw_t, raw_contact_t, history_t, output_plot
   use deck_resolve_contacts_m, only : resolve_contacts, check_implicit_penalties
-  use deck_rigids_m, only : make_rigids
   use deck_supports_m, only : read_supports, read_motions, read_common_motions
   use deck_velocity_m, only : read_velocities
   use deck_wall_m, only : read_walls
