@@ -9,7 +9,7 @@ module deck_ends_m
   use deck_cards_m, only : cursor_t, next_of, rows_of, report_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, a_part
-  use deck_lines_m, only : deck_t, blocks_of
+  use deck_lines_m, only : deck_t, count_rows
   use deck_values_m, only : integer_of, real_of, is_blank, has_field, find_id
   implicit none
   private
@@ -26,11 +26,12 @@ contains
     type(end_condition_t) :: ending
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer :: part
+    integer :: part, n
     logical :: found
 
-    if (size(blocks_of(deck, 'TERMINATION_')) == 0) return
-    allocate (ends(0))
+    allocate (ends(count_rows(deck, 'TERMINATION_')))
+    if (size(ends) == 0) return
+    n = 0
     call rows_of('TERMINATION_', cursor)
     do
       call next_of(deck, cursor, card, found)
@@ -55,9 +56,10 @@ contains
         if (ending%where == 0 .and. model%parts(part)%material > 0) call report_field(deck, card, &
           'PID', 'is no rigid part (*MAT_RIGID)')
       end if
-      ends = [ends, ending]
+      n = n + 1
+      ends(n) = ending
     end do
-    model%controls%ends = ends
+    model%controls%ends = ends(:n)
   end subroutine read_ends
 
   !> *TERMINATION_CONTACT.

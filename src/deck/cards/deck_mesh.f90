@@ -6,7 +6,7 @@ module deck_mesh_m
   use log_m, only : to_text
   use mesh_m, only : mesh_t
   use model_m, only : model_t
-  use deck_lines_m, only : deck_t, place_t, blocks_of, line_error, line_warning
+  use deck_lines_m, only : deck_t, place_t, count_rows, line_error, line_warning
   use deck_fields_m, only : card_t
   use deck_card_specs_m, only : field_number
   use deck_cards_m, only : cursor_t, next_of, rows_of, report_field, reject_field
@@ -100,17 +100,6 @@ contains
         'z is the same for all nodes and is ignored')
     end if
   end subroutine read_nodes
-
-  !> Rows of the keywords that begin so at most.
-  pure function count_rows(deck, head) result(n)
-    type(deck_t), intent(in) :: deck
-    character(*), intent(in) :: head
-    integer :: n
-
-    associate (which => blocks_of(deck, head))
-      n = sum(max(deck%blocks(which)%last - deck%blocks(which)%first + 1, 0))
-    end associate
-  end function count_rows
 
   !> *ELEMENT_SHELL: id, part and corner nodes; N4 = 0 or N3 makes a triangle.
   subroutine read_elements(deck, mesh)

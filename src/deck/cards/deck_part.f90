@@ -10,8 +10,8 @@ module deck_part_m
   use parts_m, only : section_t, hourglass_t, part_t, hourglass_viscous, hourglass_stiffness, &
     hourglass_assumed, form_one_point, form_full, form_round_one_point, form_round_full
   use deck_ids_m, only : a_part, a_section, a_material, an_hourglass, an_element
-  use deck_lines_m, only : deck_t, place_t, blocks_of, line_text, line_error, line_warning, &
-    flag_blank
+  use deck_lines_m, only : deck_t, place_t, blocks_of, count_rows, line_text, line_error, &
+    line_warning, flag_blank
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
     next_of, rows_of, row_comes, report_field, reject_field, find_field
@@ -41,8 +41,7 @@ contains
     call read_hourglasses(deck, default, hourglasses)
     taken = spread(-1, 1, size(model%materials))
     blocks = blocks_of(deck, 'PART')
-    n = sum(deck%blocks(blocks)%last - deck%blocks(blocks)%first + 1)
-    allocate (parts(n))
+    allocate (parts(count_rows(deck, 'PART')))
     do i = 1, size(blocks)
       call open_cursor(deck, blocks(i), cursor)
       do
@@ -100,6 +99,7 @@ contains
   subroutine read_sections(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
+    type(section_t), allocatable :: sections(:)
     type(section_t) :: section
     type(cursor_t) :: cursor
     type(card_t) :: card, thickness
@@ -108,7 +108,7 @@ contains
     logical :: found
 
     blocks = blocks_of(deck, 'SECTION_SHELL')
-    allocate (model%sections(0))
+    allocate (sections(count_rows(deck, 'SECTION_SHELL') + size(blocks)))
     do i = 1, size(blocks)
       call open_cursor(deck, blocks(i), cursor)
       found = .true.
@@ -125,9 +125,10 @@ contains
         if (section%is_round) section%element_form = merge(form_round_full, form_round_one_point, &
           section%is_full)
         call define(deck, a_section, card, 'SECID', n)
-        if (n > 0) model%sections = [model%sections, section]
+        if (n > 0) sections(n) = section
       end do
     end do
+    model%sections = sections(:deck%maps(a_section)%n)
     call map_defined(deck, a_section, 'SECID')
   end subroutine read_sections
 
@@ -162,7 +163,7 @@ contains
     integer :: n
     logical :: found
 
-    allocate (hourglasses(0))
+    allocate (hourglasses(count_rows(deck, 'HOURGLASS')))
     call rows_of('HOURGLASS', cursor)
     do
       call next_of(deck, cursor, card, found)
@@ -176,7 +177,7 @@ contains
       if (.not. is_blank(card, 'Q1')) hourglass%quadratic = real_of(card, 'Q1')
       if (.not. is_blank(card, 'Q2')) hourglass%linear = real_of(card, 'Q2')
       call define(deck, an_hourglass, card, 'HGID', n)
-      if (n > 0) hourglasses = [hourglasses, hourglass]
+      if (n > 0) hourglasses(n) = hourglass
     end do
     call map_defined(deck, an_hourglass, 'HGID')
   end subroutine read_hourglasses

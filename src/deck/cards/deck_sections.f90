@@ -8,7 +8,7 @@ module deck_sections_m
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, row_comes, report_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node_set, a_shell_set
-  use deck_lines_m, only : deck_t, blocks_of
+  use deck_lines_m, only : deck_t, blocks_of, count_rows
   use deck_sets_m, only : keep_first
   use deck_values_m, only : integer_of, find_id, refuse_again
   implicit none
@@ -25,12 +25,15 @@ contains
     type(cross_section_t) :: section
     type(cursor_t) :: cursor
     integer, allocatable :: blocks(:), ids(:), lines(:)
-    integer :: i
+    integer :: i, n, n_row
     logical :: found, is_sound
 
     blocks = blocks_of(deck, 'DATABASE_CROSS_SECTION_SET')
     if (size(blocks) == 0) return
-    allocate (sections(0), ids(0), lines(0))
+    n = count_rows(deck, 'DATABASE_CROSS_SECTION_SET')
+    allocate (sections(n), ids(n), lines(n))
+    n = 0
+    n_row = 0
     do i = 1, size(blocks)
       call open_cursor(deck, blocks(i), cursor)
       call row_comes(deck, cursor, found)
@@ -39,17 +42,19 @@ contains
         section%title = ''
         if (deck%blocks(blocks(i))%titled) call next_heading(deck, cursor, section%id, &
           section%title)
-        if (section%id == 0) section%id = size(ids) + 1
-        ids = [ids, section%id]
-        lines = [lines, cursor%line]
+        n_row = n_row + 1
+        if (section%id == 0) section%id = n_row
+        ids(n_row) = section%id
+        lines(n_row) = cursor%line
         call take_section(deck, cursor, model, section, is_sound)
-        if (is_sound) sections = [sections, section]
+        if (is_sound) n = n + 1
+        if (is_sound) sections(n) = section
         call row_comes(deck, cursor, found)
       end do
     end do
-    call refuse_again(deck, ids, lines, 'number ', 'cross section (without a number it is the ' &
-      //'position in the deck)')
-    model%controls%output%cross_sections = sections
+    call refuse_again(deck, ids(:n_row), lines(:n_row), 'number ', 'cross section ' &
+      //'(without a number it is the position in the deck)')
+    model%controls%output%cross_sections = sections(:n)
   end subroutine read_cross_sections
 
   !> One row.

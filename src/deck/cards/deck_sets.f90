@@ -10,7 +10,7 @@ module deck_sets_m
   use sorting_m, only : sorted_order
   use boundary_m, only : boundary_t, find_boundary
   use model_m, only : model_t
-  use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
+  use deck_lines_m, only : deck_t, blocks_of, count_rows, line_error, line_warning
   use deck_fields_m, only : card_t, field_text
   use deck_cards_m, only : cursor_t, open_cursor, next_text, next_card, next_row, next_of, &
     rows_of, report_field
@@ -428,29 +428,29 @@ contains
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
     type(force_group_t), allocatable :: groups(:)
-    type(force_group_t) :: group
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer :: set
-    logical :: found
+    integer :: set, n
+    logical :: found, is_taken(size(model%node_sets))
 
-    if (size(blocks_of(deck, 'DATABASE_NODAL_FORCE_GROUP')) == 0) return
-    allocate (groups(0))
+    allocate (groups(count_rows(deck, 'DATABASE_NODAL_FORCE_GROUP')))
+    if (size(groups) == 0) return
+    is_taken = .false.
+    n = 0
     call rows_of('DATABASE_NODAL_FORCE_GROUP', cursor)
     do
       call next_of(deck, cursor, card, found)
       if (.not. found) exit
       call find_id(deck, a_node_set, card, 'NSID', set)
       if (set == 0) cycle
-      group%id = integer_of(card, 'NSID')
-      if (any(groups%id == group%id)) then
-        call report_field(deck, card, 'NSID', 'is the node set of another force group')
-        cycle
-      end if
-      call keep_first(model%node_sets(set)%nodes, model%mesh%n_node, group%nodes)
-      groups = [groups, group]
+      if (is_taken(set)) call report_field(deck, card, 'NSID', &
+        'is the node set of another force group')
+      is_taken(set) = .true.
+      n = n + 1
+      groups(n)%id = integer_of(card, 'NSID')
+      call keep_first(model%node_sets(set)%nodes, model%mesh%n_node, groups(n)%nodes)
     end do
-    model%controls%output%force_groups = groups
+    model%controls%output%force_groups = groups(:n)
   end subroutine read_groups
 
   !> Members of a list, each where it comes first.

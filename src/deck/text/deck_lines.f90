@@ -12,7 +12,8 @@ module deck_lines_m
   use log_m, only : to_text
   implicit none
   private
-  public :: deck_t, blocks_of, source_t, block_t, place_t, parameter_t, parameters_t, again_error, &
+  public :: deck_t, blocks_of, count_rows, source_t, block_t, place_t, parameter_t, parameters_t, &
+    again_error, &
     file_paths, line_text, order_line, block_of_line, where_text, line_error, deck_error, &
     line_warning, replace_line, written_text, line_spot, keyword_of_line, shown_text, marked_line, &
     layout_marks, word_t, made_line_t, given_by, words_of, format_standard, format_long, &
@@ -163,6 +164,17 @@ contains
     blocks = pack([(i, i=1, deck%n_block)], [(deck%blocks(i)%is_honoured &
       .and. index(deck%blocks(i)%name, head) == 1, i=1, deck%n_block)])
   end function blocks_of
+
+  !> Rows that the keywords that begin so may have.
+  pure function count_rows(deck, head) result(n)
+    type(deck_t), intent(in) :: deck
+    character(*), intent(in) :: head
+    integer :: n
+
+    associate (which => blocks_of(deck, head))
+      n = sum(max(deck%blocks(which)%last - deck%blocks(which)%first + 1, 0))
+    end associate
+  end function count_rows
 
   !> The block that holds a line (keyword line or data line); 0 before the first.
   pure function block_of_line(deck, line) result(i_block)
