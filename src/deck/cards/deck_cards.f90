@@ -104,8 +104,7 @@ contains
     type(card_t), intent(inout) :: card
     logical, intent(out) :: found
 
-    call skip_blank(deck, cursor)
-    found = cursor%line <= cursor%last
+    call row_comes(deck, cursor, found)
     if (found) call read_line(deck, cursor, number, card)
   end subroutine next_row
 
@@ -141,26 +140,18 @@ contains
     end do
   end subroutine next_of
 
-  !> Whether a line that is not blank is left.
+  !> Whether a line that is not blank is left; those before it are passed.
   subroutine row_comes(deck, cursor, found)
     type(deck_t), intent(in) :: deck
     type(cursor_t), intent(inout) :: cursor
     logical, intent(out) :: found
 
-    call skip_blank(deck, cursor)
-    found = cursor%line <= cursor%last
-  end subroutine row_comes
-
-  !> Move past blank lines.
-  subroutine skip_blank(deck, cursor)
-    type(deck_t), intent(in) :: deck
-    type(cursor_t), intent(inout) :: cursor
-
     do while (cursor%line <= cursor%last)
       if (iand(deck%flags(cursor%line), flag_blank) == 0) exit
       cursor%line = cursor%line + 1
     end do
-  end subroutine skip_blank
+    found = cursor%line <= cursor%last
+  end subroutine row_comes
 
   !> The next line as plain text (titles and names are never cut).
   subroutine next_text(deck, cursor, text)

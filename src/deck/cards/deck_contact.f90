@@ -21,7 +21,7 @@ module deck_contact_m
     warn_of_rule
   use deck_tie_m, only : take_tie, take_stock_tie, check_tie
   use deck_raw_m, only : raw_t, raw_contact_t
-  use deck_overrides_m, only : has_words, find_word, edit_contact
+  use deck_overrides_m, only : contact_names, find_word, edit_contact
   implicit none
   private
   public :: read_contact, leaves_type, write_choice
@@ -41,7 +41,7 @@ contains
     type(contact_kind_t), intent(in) :: kinds(:)
     type(raw_t), intent(inout) :: raw
     type(raw_contact_t) :: entry
-    integer :: n_error
+    integer :: n_error, k
     logical :: is_stock
 
     is_stock = deck%blocks(i_block)%name /= our_own
@@ -53,7 +53,8 @@ contains
       raw%transducers(raw%n_transducer) = entry
       return
     end if
-    if (has_words(deck, entry%contact%id)) then
+    if (any([(find_word(deck, trim(contact_names(k)), entry%contact%id) > 0, k=1, &
+      size(contact_names))])) then
       if (is_stock) then
         call leave_negatives(deck, i_block, entry%contact%id)
         call read_cards(deck, i_block, kinds, raw, entry)
@@ -291,9 +292,13 @@ contains
     type(card_t), intent(inout) :: cards(:)
     type(contact_kind_t), intent(in) :: kinds(:)
     type(raw_contact_t), intent(inout) :: entry
+    character(:), allocatable :: name
     logical :: leaves_penalty
 
     associate (contact => entry%contact)
+      name = 'type '//to_text(contact%contact_type)
+      if (any(kinds%number == contact%contact_type)) &
+        name = kind_text(kinds(findloc(kinds%number, contact%contact_type, 1)))
       if (contact%penalty_unit == penalty_implicit .and. .not. abs(contact%penalty) > 0.0_wp) &
         contact%penalty = implicit_factor
       leaves_penalty = leaves_type(contact) .and. .not. abs(contact%penalty) > 0.0_wp &
@@ -309,7 +314,7 @@ contains
       if (len(given_by(deck, cards(3)%line, findloc(cards(3)%names, 'TARGET', 1))) > 0 &
         .and. .not. leaves_type(contact)) call report_field(deck, cards(3), 'TARGET', &
         'is for types that the program chooses (CTYPE 0); interface '//to_text(contact%id) &
-        //' has '//name_of(kinds, contact%contact_type))
+        //' has '//name)
       if (contact%penalty_unit == penalty_share .and. contact%penalty > 1.0_wp) call report_field( &
         deck, cards(1), 'PEN', &
         'is not a share of the largest stable penalty (PUNIT 3: above 0, at most 1)')
@@ -384,18 +389,6 @@ contains
     call set_field(deck, i_block, 'PENT', shortest(max(contact%master_penalty, 0.0_wp)))
     call set_field(deck, i_block, 'TARGET', shortest(contact%target))
   end subroutine write_choice
-
-  !> The name of a type, or its number where there is none.
-  pure function name_of(kinds, number) result(text)
-    type(contact_kind_t), intent(in) :: kinds(:)
-    integer, intent(in) :: number
-    character(:), allocatable :: text
-    integer :: i
-
-    text = 'type '//to_text(number)
-    i = findloc(kinds%number, number, 1)
-    if (i > 0) text = kind_text(kinds(i))
-  end function name_of
 
   !> `, which only name (type n) has`.
   pure function implicit_names(kinds) result(text)

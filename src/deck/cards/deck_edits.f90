@@ -12,41 +12,30 @@ module deck_edits_m
   use deck_source_m, only : add_line, open_block
   implicit none
   private
-  public :: given_text, given_number, set_field, rewrite_block, append_block
+  public :: given_number, set_field, rewrite_block, append_block
 
 contains
 
-  !> Text of a field of a keyword with one line for each card, parameters put in.
-  subroutine given_text(deck, i_block, name, text)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    character(*), intent(in) :: name              !! of the field
-    character(:), allocatable, intent(out) :: text
-    type(card_spec_t) :: spec
-    type(card_t) :: card
-    integer :: line, k
-
-    call find_field(deck, i_block, name, spec, line, k)
-    text = ''
-    if (k == 0 .or. line > deck%blocks(i_block)%last) return
-    call cut_card(deck, spec, deck%blocks(i_block)%source, line, card)
-    text = field_text(deck, card, k)
-    if (index(text, '&') > 0) call look_up(deck%parameters, text, deck%blocks(i_block)%source, text)
-  end subroutine given_text
-
-  !> Number of a field, 0 where it is blank or none.
+  !> Number of a field of a keyword with one line for each card, parameters put in; 0 where it is
+  !> blank or none.
   subroutine given_number(deck, i_block, name, value)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
     character(*), intent(in) :: name              !! of the field
     real(wp), intent(out) :: value
+    type(card_spec_t) :: spec
+    type(card_t) :: card
     character(:), allocatable :: text
-    integer :: status
+    integer :: line, k, status
 
-    call given_text(deck, i_block, name, text)
     value = 0.0_wp
-    if (len(text) > 0) call read_real(text, value, status)
-    if (len(text) > 0 .and. status /= number_good) value = 0.0_wp
+    call find_field(deck, i_block, name, spec, line, k)
+    if (k == 0 .or. line > deck%blocks(i_block)%last) return
+    call cut_card(deck, spec, deck%blocks(i_block)%source, line, card)
+    text = field_text(deck, card, k)
+    if (index(text, '&') > 0) call look_up(deck%parameters, text, deck%blocks(i_block)%source, text)
+    call read_real(text, value, status)
+    if (status /= number_good) value = 0.0_wp
   end subroutine given_number
 
   !> Give a field of a keyword with one line for each card another text.

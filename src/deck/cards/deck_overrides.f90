@@ -12,7 +12,7 @@ module deck_overrides_m
   implicit none
   private
   public :: is_override, override_mistake, read_words, edit_controls, edit_contact, find_word, &
-    has_words, check_words, contact_names, run_names
+    check_words, contact_names, run_names
 
   !> Values of interfaces, fields of *CONTACT_2D_SLIDELINE; the others are those of the run.
   character(6), parameter :: contact_names(12) = [character(6) :: 'CTYPE', 'NGAUSS', 'PEN', &
@@ -144,16 +144,6 @@ contains
       found = i
     end do
   end function find_word
-
-  !> Whether the command line changes an interface.
-  pure function has_words(deck, interface) result(has)
-    type(deck_t), intent(in) :: deck
-    integer, intent(in) :: interface
-    logical :: has
-    integer :: k
-
-    has = any([(find_word(deck, trim(contact_names(k)), interface) > 0, k=1, size(contact_names))])
-  end function has_words
 
   !> Values of the run. dt= is DT0 where the deck is implicit; otherwise a constant curve, named as
   !> LCTM.

@@ -157,7 +157,7 @@ contains
       //'node '//to_text(model%mesh%node_id(crossing))//'; give the surface as a node set')
   end subroutine surface_of_segments
 
-  !> Exterior boundary of a set of parts.
+  !> Exterior boundary of a set of parts, found in a mesh of these parts alone.
   subroutine surface_of_parts(deck, parts, place, model, surface)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: parts(:)
@@ -165,22 +165,40 @@ contains
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
     type(boundary_t) :: boundary
-    logical, allocatable :: chosen_part(:), all_nodes(:)
-    integer :: crossing
+    logical :: chosen_part(size(model%parts))
+    integer, allocatable :: elements(:), element_nodes(:, :), nodes(:), local(:)
+    integer :: crossing, i, k
 
-    allocate (chosen_part(size(model%parts)), source=.false.)
-    allocate (all_nodes(model%mesh%n_node), source=.true.)
+    chosen_part = .false.
     chosen_part(parts) = .true.
-    call find_boundary(model%mesh%element_nodes, chosen_part(model%mesh%element_part), all_nodes, &
-      boundary)
-    if (boundary%n_edge == 0) then
+    elements = pack([(i, i=1, model%mesh%n_element)], chosen_part(model%mesh%element_part))
+    if (size(elements) == 0) then
       call reject_field(deck, place, 'has no boundary: its parts have no elements')
       return
     end if
+    element_nodes = model%mesh%element_nodes(:, elements)
+    allocate (local(model%mesh%n_node), source=0)
+    do i = 1, size(elements)
+      do k = 1, 4
+        local(element_nodes(k, i)) = 1
+      end do
+    end do
+    nodes = pack([(i, i=1, model%mesh%n_node)], local > 0)
+    local(nodes) = [(i, i=1, size(nodes))]
+    do i = 1, size(elements)
+      element_nodes(:, i) = local(element_nodes(:, i))
+    end do
+    call find_boundary(element_nodes, spread(.true., 1, size(elements)), &
+      spread(.true., 1, size(nodes)), boundary)
     call boundary_surface(boundary, surface, crossing)
+    if (crossing > 0) then
+      call reject_field(deck, place, 'has a boundary that touches itself at node ' &
+        //to_text(model%mesh%node_id(nodes(crossing)))//'; give the surface as a node set')
+      return
+    end if
+    surface%nodes = nodes(surface%nodes)
+    surface%segment_element = elements(surface%segment_element)
     if (model%erodes) surface%parts = parts
-    if (crossing > 0) call reject_field(deck, place, 'has a boundary that touches itself at node ' &
-      //to_text(model%mesh%node_id(crossing))//'; give the surface as a node set')
   end subroutine surface_of_parts
 
   !> Chain of a node set.

@@ -237,7 +237,9 @@ contains
     deck%sources(i)%layout = deck%sources(source)%layout
     call read_file(path, deck%sources(i)%text, reason)
     if (.not. allocated(reason)) then
-      if (total_length(deck) > max_character) reason = 'the deck is larger than 2 GB'
+      ! A real, since the sum may pass the largest integer.
+      if (sum([(real(len(deck%sources(above)%text)), above=1, i)]) > max_character) &
+        reason = 'the deck is larger than 2 GB'
     end if
     if (allocated(reason)) then
       deck%sources(i)%text = ''
@@ -247,18 +249,6 @@ contains
     end if
     call cut_source(deck, i, depth + 1, folders)
   end subroutine include_file
-
-  !> Characters of all files; a real, since the sum may pass the largest integer.
-  pure function total_length(deck) result(total)
-    type(deck_t), intent(in) :: deck
-    real :: total
-    integer :: i
-
-    total = 0.0
-    do i = 1, deck%n_source
-      if (allocated(deck%sources(i)%text)) total = total + real(len(deck%sources(i)%text))
-    end do
-  end function total_length
 
   !> Where an included file is: as given, in the *INCLUDE_PATH folders (which may be meant from
   !> where the deck is), beside the including file.

@@ -132,30 +132,23 @@ contains
   pure function key_of(keyword, name, message) result(key)
     character(*), intent(in) :: keyword, name, message
     character(:), allocatable :: key
-
-    key = keyword//' '//without_numbers(trim(name)//' '//message)
-  end function key_of
-
-  !> A text, a # for each whole number in it.
-  pure function without_numbers(text) result(short)
-    character(*), intent(in) :: text
-    character(:), allocatable :: short
-    character(len(text)) :: kept
+    character(len_trim(name) + 1 + len(message)) :: text
     integer :: i, n
     logical :: is_digit, was_digit
 
+    text = trim(name)//' '//message
     n = 0
     was_digit = .false.
     do i = 1, len(text)
       is_digit = text(i:i) >= '0' .and. text(i:i) <= '9'
       if (.not. (is_digit .and. was_digit)) then
         n = n + 1
-        kept(n:n) = merge('#', text(i:i), is_digit)
+        text(n:n) = merge('#', text(i:i), is_digit)
       end if
       was_digit = is_digit
     end do
-    short = kept(:n)
-  end function without_numbers
+    key = keyword//' '//text(:n)
+  end function key_of
 
   !> Whether an error of this text, which belongs to no line, is kept.
   pure function has_error(report, text) result(found)
