@@ -119,7 +119,7 @@ contains
     raw%contacts = raw%contacts(:raw%n_contact)
     raw%transducers = raw%transducers(:raw%n_transducer)
     call warn_of_unused(deck, raw)
-    call check_words(deck, raw%contacts%contact%id)
+    call check_words(deck, [raw%contacts%contact%id])
     call check_step(deck, raw)
     if (.not. (raw%terminated .or. deck%incomplete)) call line_error(deck, 0, &
       'the deck has no end time (*CONTROL_TERMINATION)')

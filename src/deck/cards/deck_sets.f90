@@ -109,7 +109,7 @@ contains
         sets = sets(order)
       end if
     end if
-    call map_kind(deck, kind, sets%id, sets%line, 'SID', sets%of_beams)
+    call map_kind(deck, kind, [sets%id], [sets%line], 'SID', [sets%of_beams])
   end subroutine read_kind
 
   !> A set of nodes, parts, elements or segments: its number, then its members.

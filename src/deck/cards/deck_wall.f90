@@ -38,7 +38,7 @@ contains
       call look_at_motions(deck, lines(i), model, model%walls(i))
     end do
     has_number = model%walls%id > 0
-    call refuse_again(deck, pack(model%walls%id, has_number), pack(lines, has_number), &
+    call refuse_again(deck, pack([model%walls%id], has_number), pack(lines, has_number), &
       'wall number ', 'wall')
     call number_walls(model%walls)
   end subroutine read_walls
