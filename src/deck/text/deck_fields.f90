@@ -174,7 +174,7 @@ contains
     real(wp) :: value
     character(:), allocatable :: words, range
 
-    if (spec%ranges(k) == ' ' .or. card%bad(k)) return
+    if (spec%ranges(k)(1:1) == ' ' .or. card%bad(k)) return
     value = card%r(k)
     if (spec%kinds(k) == 'i') value = real(card%i(k), wp)
     if (is_in_range(spec, k, value)) return
