@@ -90,7 +90,6 @@ contains
     character(:), allocatable, intent(out) :: effective
     type(error_t), allocatable, intent(out) :: error
     type(raw_t), allocatable :: raw
-    integer, allocatable :: ids(:)
     integer :: i, n, pass
 
     allocate (raw, deck%words(0))
@@ -120,8 +119,7 @@ contains
     raw%contacts = raw%contacts(:raw%n_contact)
     raw%transducers = raw%transducers(:raw%n_transducer)
     call warn_of_unused(deck, raw)
-    ids = raw%contacts%contact%id
-    call check_words(deck, ids)
+    call check_words(deck, [raw%contacts%contact%id])
     call check_step(deck, raw)
     if (.not. (raw%terminated .or. deck%incomplete)) call line_error(deck, 0, &
       'the deck has no end time (*CONTROL_TERMINATION)')

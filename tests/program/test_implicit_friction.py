@@ -30,9 +30,9 @@ def drawn(kind):
 def test_drawn_and_let_go(slideline, tmp_path, kind):
     """Drawn on, a step needs no more iterations than without friction; let go, friction alone holds the block.
 
-    Type 6 is not let go: once all its nodes slip in an iteration the matrix is singular, and whether they do is decided by
-    round-off (doc/theory/contact.md, 9.8)."""
-    is_let_go = kind != 6
+    Types 6 and 7 are not let go: once all their places slip in an iteration the matrix is singular, and whether they do is
+    decided by round-off (doc/theory/contact.md, 9.8): of 20 loads that differ by 0.1 % some 10 and 6 runs end there."""
+    is_let_go = kind not in (6, 7)
     done = slideline("d=x", *([] if is_let_go else ["endtim=1.0"]), deck=drawn(kind))
     assert done.returncode == 0, done.stderr
     log = (tmp_path / "x" / "job.log").read_text()

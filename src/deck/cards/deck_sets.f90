@@ -90,8 +90,7 @@ contains
     type(model_t), intent(in) :: model
     type(set_t), allocatable, intent(out) :: sets(:)
     type(set_t), intent(in), optional :: of_beams(:)
-    integer, allocatable :: blocks(:), order(:), ids(:), lines(:)
-    logical, allocatable :: are_of_beams(:)
+    integer, allocatable :: blocks(:), order(:)
     integer :: i, n
 
     blocks = blocks_of(deck, 'SET_')
@@ -110,10 +109,7 @@ contains
         sets = sets(order)
       end if
     end if
-    ids = sets%id
-    lines = sets%line
-    are_of_beams = sets%of_beams
-    call map_kind(deck, kind, ids, lines, 'SID', are_of_beams)
+    call map_kind(deck, kind, [sets%id], [sets%line], 'SID', [sets%of_beams])
   end subroutine read_kind
 
   !> A set of nodes, parts, elements or segments: its number, then its members.

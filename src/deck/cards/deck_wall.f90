@@ -22,7 +22,7 @@ contains
   subroutine read_walls(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
-    integer, allocatable :: blocks(:), lines(:), numbers(:)
+    integer, allocatable :: blocks(:), lines(:)
     logical, allocatable :: has_number(:)
     integer :: i
 
@@ -38,8 +38,7 @@ contains
       call look_at_motions(deck, lines(i), model, model%walls(i))
     end do
     has_number = model%walls%id > 0
-    numbers = model%walls%id
-    call refuse_again(deck, pack(numbers, has_number), pack(lines, has_number), &
+    call refuse_again(deck, pack([model%walls%id], has_number), pack(lines, has_number), &
       'wall number ', 'wall')
     call number_walls(model%walls)
   end subroutine read_walls

@@ -127,7 +127,7 @@ contains
       call set_default(spec, card, k)
       if (spec%kinds(k) == 'x' .or. spec%kinds(k) == 'a') cycle
       if (card%blank(k)) then
-        call check_range(deck, spec, card, k)
+        if (spec%ranges(k)(1:1) /= ' ') call check_range(deck, spec, card, k)
         cycle
       end if
       status = number_good
@@ -144,7 +144,7 @@ contains
         cycle
       end if
       if (spec%zeros(k) /= ' ') call take_zero(deck, spec, card, k)
-      call check_range(deck, spec, card, k)
+      if (spec%ranges(k)(1:1) /= ' ') call check_range(deck, spec, card, k)
     end do
 
   contains
@@ -174,7 +174,7 @@ contains
     real(wp) :: value
     character(:), allocatable :: words, range
 
-    if (spec%ranges(k) == ' ' .or. card%bad(k)) return
+    if (card%bad(k)) return
     value = card%r(k)
     if (spec%kinds(k) == 'i') value = real(card%i(k), wp)
     if (is_in_range(spec, k, value)) return
