@@ -28,7 +28,9 @@ static int count_open(const char *p) {
   return 0644; }
 int open(const char *p, int f, ...) { return NEXT(int, "open", const char *, int, ...)(p, f, count_open(p)); }
 int open64(const char *p, int f, ...) { return NEXT(int, "open64", const char *, int, ...)(p, f, count_open(p)); }
-int creat(const char *p, mode_t m) { made++; return NEXT(int, "creat", const char *, mode_t)(p, m); }
+FILE *fopen(const char *p, const char *m) {
+  if (*m == 'w') made++;
+  return NEXT(FILE *, "fopen", const char *, const char *)(p, m); }
 int rename(const char *a, const char *b) { renamed++; return NEXT(int, "rename", const char *, const char *)(a, b); }
 int fsync(int f) { synced++; return NEXT(int, "fsync", int)(f); }
 int fdatasync(int f) { synced++; return NEXT(int, "fdatasync", int)(f); }

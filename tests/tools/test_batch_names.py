@@ -128,7 +128,7 @@ def test_refusals_of_the_program_stand_in_the_table(place, slideline):
     call(place, "run_folder.sh", "decks", program=slideline)
     (place / "decks" / "b.k").write_text(text.replace("      -0.1", "       0.1"))
     call(place, "sweep.sh", "-o", "swept", "decks/b.k", "ctype=8,9", program=slideline)
-    reason = 'decks/a.k:54: *HOURGLASS card 1 field 3 (QM): "-0.1" is negative'
+    reason = 'decks/a.k:54: *HOURGLASS card 1 field 3 (QM): "-0.1" is not an hourglass coefficient (0 to 10; 0.05 to 0.15 are usual)'
     assert [row["reason"] for row in summary(place / "decks" / "results").values()] == [reason]
     first, second = (row["reason"] for row in summary(place / "swept").values())
     assert '"ctype=8" on the command line is not a contact type' in first
