@@ -28,7 +28,7 @@ module run_m
   use rank_model_m, only : hand_model, hand_others
   use rank_shares_m, only : forget_others
   use ranks_m, only : ranks_t, share_error
-  use relaxation_m, only : relax, leave_relaxation
+  use relaxation_m, only : relax, switch_loads
   use renumber_m, only : renumber_model, forget_start
   use restart_file_m, only : open_restart
   use restart_m, only : forget_files
@@ -260,7 +260,8 @@ contains
       (state%relaxation%n > 0 .or. .not. monitor%restarts%goes_on)
     if (relaxes) call relax(model, monitor, state, error)
     if (allocated(error)) return
-    call leave_relaxation(model)
+    ! The loads of relaxation alone (SIDR 1) no longer act.
+    if (any(model%curves%phase == 1)) call switch_loads(model, 1)
     call forget_start(model)
     call give_back_memory()
     monitor%progress%first_cycle = state%cycle

@@ -3,11 +3,10 @@
 !> them: where a history wants them their chunks are stepped a second time, and then are what they
 !> were.
 module cut_forces_m
-  use block_state_m, only : block_state_t
+  use block_state_m, only : block_state_t, stays
   use element_chunk_m, only : element_chunk_t
   use element_dispatch_m, only : advance_chunk
   use eroding_tiles_m, only : add_eroding_tile_forces, take_nodes
-  use erosion_state_m, only : stays
   use packed_buffer_m, only : packed_buffer_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size, tile_t

@@ -3,8 +3,7 @@
 module element_state_m
   use element_dispatch_m, only : point_count
   use kinds_m, only : wp
-  use block_state_m, only : block_state_t
-  use erosion_state_m, only : erosion_state_t, stays, has_left, has_gone
+  use block_state_m, only : block_state_t, erosion_state_t, stays, has_left, has_gone
   use layout_m, only : chunk_size, slot_part
   use material_dispatch_m, only : find_failed, history_size, column_temperature, column_damage, &
     has_plastic_strain, has_mean_dilatation

@@ -3,11 +3,10 @@
 !> rule the time step.
 module element_steps_m
   use kinds_m, only : wp
-  use block_state_m, only : block_state_t
+  use block_state_m, only : block_state_t, stays
   use element_chunk_m, only : element_chunk_t, gather_motion, reference_mass
   use element_dispatch_m, only : point_count
   use eos_pressure_m, only : finish_limits, take_now
-  use erosion_state_m, only : stays
   use hourglass_m, only : form_resistance
   use layout_m, only : chunk_size, slot_part
   use model_m, only : model_t

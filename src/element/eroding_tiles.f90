@@ -2,14 +2,13 @@
 !> Element forces of tiles some elements of which may leave the mesh. An element that has left stays
 !> in its slot as padding does: much larger, all of its nodes one, without stress and without force.
 module eroding_tiles_m
-  use block_state_m, only : block_state_t
+  use block_state_m, only : block_state_t, stays, has_left
   use element_chunk_m, only : element_chunk_t, reference_inverse, reference_sum, &
     scatter_forces
   use element_dispatch_m, only : advance_chunk
   use element_state_m, only : smallest_ratio, initial_volume
   use eos_pressure_m, only : look_for_failed
   use erosion_m, only : erosion_t, asks_for_strain, asks_for_stress
-  use erosion_state_m, only : stays, has_left
   use kinds_m, only : wp
   use layout_m, only : chunk_size, tile_t
   use material_dispatch_m, only : history_size

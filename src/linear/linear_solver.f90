@@ -8,6 +8,7 @@ module linear_solver_m
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use banded_lu_m, only : banded_lu_t, factor_banded, order_equations, solve_banded
   use kinds_m, only : long, wp
+  use log_m, only : to_text
   use memory_m, only : available_bytes
   use sparse_m, only : multiply, sparse_t
   use umfpack_m, only : has_umfpack, factor_umfpack, free_umfpack, solve_umfpack, umfpack_t
@@ -83,7 +84,7 @@ contains
     real(wp), intent(out) :: x(:)           !! (n)
     type(report_t), intent(out) :: report
     integer, intent(in), optional :: method !! one of `method_`; absent: the best
-    type(sparse_t) :: scaled
+    type(sparse_t) :: scaled, magnitudes
     type(factor_t) :: factor
     real(wp), allocatable :: row_scale(:), column_scale(:)
     integer :: wanted
@@ -115,9 +116,11 @@ contains
     if (.not. factored) then
       call report_memory(matrix%n, factor, report)
     else
-      call find_free_motion(scaled, factor, column_scale, report)
+      magnitudes = scaled
+      magnitudes%value = abs(magnitudes%value)
+      call find_free_motion(scaled, magnitudes, factor, column_scale, report)
       if (.not. factor%has_tiny_pivot) then
-        call solve_refined(scaled, factor, row_scale*b, x, report)
+        call solve_refined(scaled, magnitudes, factor, row_scale*b, x, report)
         x = column_scale*x
       end if
     end if
@@ -156,10 +159,9 @@ contains
     type(report_t), intent(inout) :: report
 
     report%out_of_memory = .true.
-    report%message = 'the factors of '//in_words(real(n, wp))//' equations ('//report%method// &
-      ', bandwidth '//in_words(real(report%bandwidth, wp))//') need '// &
-      in_words(1.0e-6_wp*report%bytes)//' MB, but '//in_words(1.0e-6_wp*available_bytes())// &
-      ' MB are free'
+    report%message = 'the factors of '//to_text(n)//' equations ('//report%method//', bandwidth ' &
+      //to_text(report%bandwidth)//') need '//to_text(nint(1.0e-6_wp*report%bytes))//' MB, but ' &
+      //to_text(nint(1.0e-6_wp*available_bytes()))//' MB are free'
     if (factor%method == method_sparse .and. .not. has_umfpack) then
       report%message = 'this program was built without UMFPACK'
     else if (.not. has_umfpack) then
@@ -168,25 +170,16 @@ contains
     end if
   end subroutine report_memory
 
-  !> A number without decimals.
-  pure function in_words(number) result(text)
-    real(wp), intent(in) :: number
-    character(:), allocatable :: text
-    character(24) :: field
-
-    write (field, '(ss,i0)') nint(number, long)
-    text = trim(field)
-  end function in_words
-
   !> The motion z that meets least stiffness: one step of inverse iteration for the least singular
   !> value, z = A^-1 A^-T s. For a singular matrix both solves grow without bound along the motion
   !> that is free, and what remains of A z is rounding.
-  subroutine find_free_motion(scaled, factor, column_scale, report)
-    type(sparse_t), intent(in) :: scaled
+  subroutine find_free_motion(scaled, magnitudes, factor, column_scale, report)
+    type(sparse_t), intent(in) :: scaled, magnitudes !! A and |A|
     type(factor_t), intent(in) :: factor
     real(wp), intent(in) :: column_scale(:) !! (n)
     type(report_t), intent(inout) :: report
     real(wp), allocatable :: s(:), z(:)
+    real(wp) :: least
     integer :: i
 
     if (factor%has_tiny_pivot) then
@@ -201,10 +194,19 @@ contains
     s = z/maxval(abs(z))
     call solve_factored(factor, .false., s, z)
     z = z/maxval(abs(z))
-    report%stiffness = stiffness_met(scaled, z)
+    report%stiffness = stiffness_met(scaled, magnitudes, z)
     do i = 1, n_correction
       if (report%stiffness <= singular_tolerance .or. report%stiffness > doubtful) exit
-      call correct_motion(scaled, factor, z, report%stiffness)
+      ! With exact factors nothing would be left of z - A^-1 A z; with those of A + E, z is free of
+      ! A + E, and this takes away what of A z is due to E.
+      call solve_factored(factor, .false., multiply(scaled, z), s)
+      s = z - s
+      if (.not. maxval(abs(s)) > 0.0_wp) exit
+      s = s/maxval(abs(s))
+      least = stiffness_met(scaled, magnitudes, s)
+      if (.not. least < report%stiffness) exit
+      report%stiffness = least
+      z = s
     end do
     report%is_singular = report%stiffness <= singular_tolerance
     if (.not. report%is_singular) return
@@ -213,39 +215,18 @@ contains
   end subroutine find_free_motion
 
   !> |A z| / ||A||z||, Euclidean norms.
-  pure function stiffness_met(scaled, z) result(stiffness)
-    type(sparse_t), intent(in) :: scaled
+  pure function stiffness_met(scaled, magnitudes, z) result(stiffness)
+    type(sparse_t), intent(in) :: scaled, magnitudes !! A and |A|
     real(wp), intent(in) :: z(:) !! (n), not zero
     real(wp) :: stiffness
 
-    stiffness = norm2(multiply(scaled, z))/norm2(multiply_magnitudes(scaled, z))
+    stiffness = norm2(multiply(scaled, z))/norm2(multiply(magnitudes, abs(z)))
   end function stiffness_met
-
-  !> z - A^-1 A z instead of z where that meets less stiffness. With exact factors nothing would be
-  !> left; with those of A + E, z is free of A + E, and this takes away what of A z is due to E.
-  subroutine correct_motion(scaled, factor, z, stiffness)
-    type(sparse_t), intent(in) :: scaled
-    type(factor_t), intent(in) :: factor
-    real(wp), intent(inout) :: z(:)       !! (n)
-    real(wp), intent(inout) :: stiffness
-    real(wp), allocatable :: better(:)
-    real(wp) :: least
-
-    allocate (better(scaled%n))
-    call solve_factored(factor, .false., multiply(scaled, z), better)
-    better = z - better
-    if (.not. maxval(abs(better)) > 0.0_wp) return
-    better = better/maxval(abs(better))
-    least = stiffness_met(scaled, better)
-    if (.not. least < stiffness) return
-    stiffness = least
-    z = better
-  end subroutine correct_motion
 
   !> Solve and refine: the residual is solved for again until no equation
   !> gains (as LAPACK's dgerfs).
-  subroutine solve_refined(scaled, factor, b, x, report)
-    type(sparse_t), intent(in) :: scaled
+  subroutine solve_refined(scaled, magnitudes, factor, b, x, report)
+    type(sparse_t), intent(in) :: scaled, magnitudes !! A and |A|
     type(factor_t), intent(in) :: factor
     real(wp), intent(in) :: b(:)    !! (n)
     real(wp), intent(out) :: x(:)   !! (n)
@@ -258,7 +239,7 @@ contains
     last_error = huge(last_error)
     do
       residual = b - multiply(scaled, x)
-      magnitude = multiply_magnitudes(scaled, x) + abs(b)
+      magnitude = multiply(magnitudes, abs(x)) + abs(b)
       ! Equation by equation; those in which next to nothing happens count little.
       error = maxval(abs(residual)/(magnitude + tiny(1.0_wp) + epsilon(1.0_wp)*maxval(magnitude)))
       report%residual = maxval(abs(residual))/max(maxval(magnitude), tiny(1.0_wp))
@@ -274,64 +255,40 @@ contains
       report%message = 'the linear system could not be solved accurately'
   end subroutine solve_refined
 
-  !> |A||x|.
-  pure function multiply_magnitudes(matrix, x) result(y)
-    type(sparse_t), intent(in) :: matrix
-    real(wp), intent(in) :: x(:) !! (n)
-    real(wp) :: y(matrix%n)
-    integer :: i, k
-
-    do i = 1, matrix%n
-      y(i) = 0.0_wp
-      do k = matrix%first(i), matrix%first(i + 1) - 1
-        y(i) = y(i) + abs(matrix%value(k)*x(matrix%column(k)))
-      end do
-    end do
-  end function multiply_magnitudes
-
   !> Factorise a compressed matrix that is equilibrated. `factored` is false where memory does not
-  !> suffice.
+  !> suffice. One whose sparse factors have a zero pivot is factorised again with its diagonal
+  !> changed in the last digit of one, which no entry exceeds by much: singular still, but to be
+  !> solved with.
   subroutine factor_matrix(matrix, method, factor, factored)
     type(sparse_t), intent(in) :: matrix
     integer, intent(in) :: method          !! one of `method_`
     type(factor_t), intent(inout) :: factor
     logical, intent(out) :: factored
+    type(sparse_t) :: shifted
+    integer :: i, k
 
     call order_equations(matrix, factor%banded)
     factor%method = method
     if (method == method_best) factor%method = merge(method_sparse, method_banded, &
       has_umfpack .and. factor%banded%width > widest_band)
-    select case (factor%method)
-    case (method_sparse)
-      call factor_sparse(matrix, factor, factored)
-      factor%is_negative = factor%sparse%is_negative
-    case default
+    if (factor%method /= method_sparse) then
       call factor_banded(matrix, least_pivot, factor%banded, factored)
       factor%is_negative = factor%banded%is_negative
-    end select
-  end subroutine factor_matrix
-
-  !> Sparse factors. A matrix with a zero pivot is factorised again with its diagonal changed in the
-  !> last digit of one, which no entry exceeds by much: singular still, but to be solved with.
-  subroutine factor_sparse(matrix, factor, factored)
-    type(sparse_t), intent(in) :: matrix
-    type(factor_t), intent(inout) :: factor
-    logical, intent(out) :: factored
-    type(sparse_t) :: shifted
-    integer :: i, k
-
+      return
+    end if
     call factor_umfpack(matrix, factor%sparse, factored)
-    factor%has_tiny_pivot = .false.
-    if (.not. factored .or. factor%sparse%smallest_pivot >= least_pivot) return
-    shifted = matrix
-    do i = 1, matrix%n
-      do k = matrix%first(i), matrix%first(i + 1) - 1
-        if (matrix%column(k) == i) shifted%value(k) = matrix%value(k) + 2.0_wp*epsilon(1.0_wp)
+    if (factored .and. factor%sparse%smallest_pivot < least_pivot) then
+      shifted = matrix
+      do i = 1, matrix%n
+        do k = matrix%first(i), matrix%first(i + 1) - 1
+          if (matrix%column(k) == i) shifted%value(k) = matrix%value(k) + 2.0_wp*epsilon(1.0_wp)
+        end do
       end do
-    end do
-    call factor_umfpack(shifted, factor%sparse, factored)
-    factor%has_tiny_pivot = factor%sparse%smallest_pivot < least_pivot
-  end subroutine factor_sparse
+      call factor_umfpack(shifted, factor%sparse, factored)
+      factor%has_tiny_pivot = factor%sparse%smallest_pivot < least_pivot
+    end if
+    factor%is_negative = factor%sparse%is_negative
+  end subroutine factor_matrix
 
   !> x := A^-1 b, or A^-T b.
   subroutine solve_factored(factor, transposed, b, x)

@@ -40,9 +40,16 @@ contains
     integer, intent(in) :: row_equations(:)    !! (m)
     integer, intent(in) :: column_equations(:) !! (k)
     real(wp), intent(in) :: block(:, :)        !! (m, k)
-    integer :: i, j
+    integer :: i, j, more
 
-    call make_room(matrix, size(block))
+    associate (n => matrix%n_entry, capacity => size(matrix%rows))
+      more = max(capacity, n + size(block) - capacity)
+      if (n + size(block) > capacity) then
+        matrix%rows = [matrix%rows(:n), spread(0, 1, capacity + more - n)]
+        matrix%columns = [matrix%columns(:n), spread(0, 1, capacity + more - n)]
+        matrix%values = [matrix%values(:n), spread(0.0_wp, 1, capacity + more - n)]
+      end if
+    end associate
     do j = 1, size(column_equations)
       if (column_equations(j) == 0) cycle
       do i = 1, size(row_equations)
@@ -54,28 +61,6 @@ contains
       end do
     end do
   end subroutine add_block
-
-  !> Double the capacity where `n_more` entries do not fit.
-  pure subroutine make_room(matrix, n_more)
-    type(sparse_t), intent(inout) :: matrix
-    integer, intent(in) :: n_more
-    integer, allocatable :: numbers(:)
-    real(wp), allocatable :: values(:)
-    integer :: n, capacity
-
-    n = matrix%n_entry
-    if (n + n_more <= size(matrix%rows)) return
-    capacity = max(2*size(matrix%rows), n + n_more)
-    allocate (numbers(capacity))
-    numbers(:n) = matrix%rows(:n)
-    call move_alloc(numbers, matrix%rows)
-    allocate (numbers(capacity))
-    numbers(:n) = matrix%columns(:n)
-    call move_alloc(numbers, matrix%columns)
-    allocate (values(capacity))
-    values(:n) = matrix%values(:n)
-    call move_alloc(values, matrix%values)
-  end subroutine make_room
 
   !> Rows from the collected entries: two counting sorts (by column, then stably by row) and one
   !> pass that sums duplicates in the order in which they were added.

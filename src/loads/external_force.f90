@@ -2,7 +2,7 @@
 !> Loads from outside: nodal forces, pressure on edges, base acceleration; rates of damping by mass
 !> (*DAMPING_GLOBAL and *DAMPING_PART_MASS).
 module external_force_m
-  use conditions_m, only : conditions_t, pressure_load_t
+  use conditions_m, only : conditions_t
   use curves_m, only : curve_t, curve_value
   use kinds_m, only : wp
   use model_m, only : model_t
@@ -40,43 +40,35 @@ contains
     end associate
   end subroutine add_nodal_loads
 
-  !> Pressures at `time` on the present geometry.
+  !> Pressures at `time` on the present geometry, half of that on an edge to each node: against the
+  !> outward normal (t_y, -t_x). On a round body per radian: with the edge times (2 r_a + r_b)/6 to
+  !> node a.
   subroutine add_pressures(model, motion, time, force)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)    !! (4, n_node)
     real(wp), intent(in) :: time
     real(wp), intent(inout) :: force(:, :)
+    real(wp) :: edge(2), half(2), radii(2)
     integer :: i
 
     do i = 1, size(model%conditions%pressures)
-      call add_pressure(model, model%conditions%pressures(i), motion, time, force)
+      associate (load => model%conditions%pressures(i), x => model%mesh%coordinates, &
+        a => model%conditions%pressures(i)%nodes(1), b => model%conditions%pressures(i)%nodes(2))
+        if (time < load%arrival) cycle
+        edge = (x(:, b) - x(:, a)) + (motion(1:2, b) - motion(1:2, a))
+        half = 0.5_wp*load%scale*curve_value(model%curves(load%curve), time - load%arrival) &
+          *[-edge(2), edge(1)]
+        if (model%is_round) then
+          radii = x(1, load%nodes) + motion(1, load%nodes)
+          force(:, a) = force(:, a) + half*(2.0_wp*radii(1) + radii(2))/3.0_wp
+          force(:, b) = force(:, b) + half*(radii(1) + 2.0_wp*radii(2))/3.0_wp
+        else
+          force(:, a) = force(:, a) + half
+          force(:, b) = force(:, b) + half
+        end if
+      end associate
     end do
   end subroutine add_pressures
-
-  !> Pressure on one edge, half of it to each node: against the outward normal (t_y, -t_x). On a
-  !> round body per radian: with the edge times (2 r_a + r_b)/6 to node a.
-  subroutine add_pressure(model, load, motion, time, force)
-    type(model_t), intent(in) :: model
-    type(pressure_load_t), intent(in) :: load
-    real(wp), intent(in) :: motion(:, :)
-    real(wp), intent(in) :: time
-    real(wp), intent(inout) :: force(:, :)
-    real(wp) :: edge(2), half(2), radii(2)
-
-    if (time < load%arrival) return
-    edge = (model%mesh%coordinates(:, load%nodes(2)) - model%mesh%coordinates(:, load%nodes(1))) &
-      + (motion(1:2, load%nodes(2)) - motion(1:2, load%nodes(1)))
-    half = 0.5_wp*load%scale*curve_value(model%curves(load%curve), time - load%arrival) &
-      *[-edge(2), edge(1)]
-    if (model%is_round) then
-      radii = model%mesh%coordinates(1, load%nodes) + motion(1, load%nodes)
-      force(:, load%nodes(1)) = force(:, load%nodes(1)) + half*(2.0_wp*radii(1) + radii(2))/3.0_wp
-      force(:, load%nodes(2)) = force(:, load%nodes(2)) + half*(radii(1) + 2.0_wp*radii(2))/3.0_wp
-      return
-    end if
-    force(:, load%nodes(1)) = force(:, load%nodes(1)) + half
-    force(:, load%nodes(2)) = force(:, load%nodes(2)) + half
-  end subroutine add_pressure
 
   !> Acceleration that *LOAD_BODY gives every node: minus the base acceleration.
   pure function body_acceleration(conditions, curves, time) result(acceleration)

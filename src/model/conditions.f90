@@ -122,6 +122,8 @@ contains
     class(visitor_t), intent(inout) :: visitor
 
     call visitor%visit('n_support', self%n_support)
+    call visitor%visit('fixed_nodes', self%fixed_nodes)
+    call visitor%visit('fixed_directions', self%fixed_directions)
     if (visitor%makes(length(self%motions))) allocate (self%motions(visitor%n_item))
     if (visitor%n_item > 0) &
       call visitor%plain(c_loc(self%motions(1)), storage_size(self%motions), visitor%n_item)

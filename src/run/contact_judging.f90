@@ -66,7 +66,7 @@ contains
     allocate (others(2*n_told(model%contacts)))
     if (rows%are_shared) call find_others(model, state, snapshot%slaves, others)
     do i = 1, n_told(model%contacts)
-      contact = present_contact(model, state, i)
+      contact = present_contact(state, i)
       side = side_t()
       associate (slaves => snapshot%slaves(i), result => snapshot%interfaces(i))
         call add_side(model, state, rows, contact%slave, slaves%pressure, &
@@ -142,13 +142,8 @@ contains
     if (model%controls%implicit%is_on) return
     do i = 1, size(results)
       scale = merge(0.0_wp, 1.0_wp, model%contacts(i)%penalty_unit == penalty_implicit)
-      if (model%erodes) then
-        call bound_springs(state%outlines(i:i), state%contact_mass, state%contacts(i:i), scale, &
-          bounds(i:i))
-      else
-        call bound_springs(model%contacts(i:i), state%contact_mass, state%contacts(i:i), scale, &
-          bounds(i:i))
-      end if
+      call bound_springs(state%outlines(i:i), state%contact_mass, state%contacts(i:i), scale, &
+        bounds(i:i))
     end do
     results%step_limit = stable_step(minval(state%elements%time_limit), bounds)
   end subroutine find_limits

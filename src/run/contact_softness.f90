@@ -41,11 +41,7 @@ contains
       if (.not. allocated(bodies)) call find_bodies(model, bodies)
       associate (contact => model%contacts(i), memory => state%contacts(i), &
         estimate => state%estimates(told_as(model%contacts, i)))
-        if (model%erodes) then
-          call follow_arcs(state%outlines(i), memory, estimate)
-        else
-          call follow_arcs(contact, memory, estimate)
-        end if
+        call follow_arcs(state%outlines(i), memory, estimate)
         if (state%cycle == 0) cycle
         estimate%bodies = max(estimate%bodies, internal_energy(parts, &
           of_bodies(bodies, parts_behind(model, contact))))

@@ -31,13 +31,8 @@ contains
 
     call check_relaxation(model, state, archive)
     do i = 1, size(state%contacts)
-      if (model%erodes) then
-        call check_contact(state%outlines(i), state%contacts(i), &
-          'state/contacts/'//to_text(i)//'/', archive)
-      else
-        call check_contact(model%contacts(i), state%contacts(i), &
-          'state/contacts/'//to_text(i)//'/', archive)
-      end if
+      call check_contact(state%outlines(i), state%contacts(i), &
+        'state/contacts/'//to_text(i)//'/', archive)
     end do
   end subroutine check_state
 

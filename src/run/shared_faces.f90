@@ -49,19 +49,13 @@ contains
   end function shares_nodes
 
   !> An interface between the surfaces that it has now.
-  function present_contact(model, state, i) result(contact)
-    type(model_t), intent(in) :: model
+  function present_contact(state, i) result(contact)
     type(state_t), intent(in) :: state
     integer, intent(in) :: i
     type(contact_t) :: contact
 
-    if (state%contacts(i)%facing%is_used) then
-      contact = state%contacts(i)%facing%present
-    else if (model%erodes) then
-      contact = state%outlines(i)
-    else
-      contact = model%contacts(i)
-    end if
+    contact = state%outlines(i)
+    if (state%contacts(i)%facing%is_used) contact = state%contacts(i)%facing%present
   end function present_contact
 
   !> What other interfaces put on the faces of each side. The pressure of a node acts on all of its
@@ -79,7 +73,7 @@ contains
     integer :: i, k, m, s
 
     do i = 1, size(others)/2
-      contact = present_contact(model, state, i)
+      contact = present_contact(state, i)
       surfaces(2*i - 1) = contact%slave
       surfaces(2*i) = contact%master
       ! Of a surface with itself all is on the slave.

@@ -387,13 +387,9 @@ contains
     integer :: i
 
     do i = 1, size(model%contacts)
-      if (model%erodes) then
-        ! Its nodes may be others than those of the state before.
-        snapshot%slaves(i) = slave_result_t()
-        call slave_rows(state%outlines(i), state%motion, state%contacts(i), snapshot%slaves(i))
-      else
-        call slave_rows(model%contacts(i), state%motion, state%contacts(i), snapshot%slaves(i))
-      end if
+      ! Its nodes may be others than those of the state before.
+      if (model%erodes) snapshot%slaves(i) = slave_result_t()
+      call slave_rows(state%outlines(i), state%motion, state%contacts(i), snapshot%slaves(i))
     end do
   end subroutine fill_slaves
 

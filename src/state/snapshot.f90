@@ -182,7 +182,9 @@ contains
 
     expected = energies%initial + energies%external_work
     total = total_energy(energies)
-    noise = round_off*largest_term(energies)
+    noise = round_off*maxval(abs([energies%kinetic, energies%internal, energies%hourglass, &
+      energies%viscous, energies%damping, energies%contact, energies%friction, energies%leapfrog, &
+      energies%external_work, energies%initial, energies%eroded]))
     if (abs(expected) <= noise .and. abs(total) <= noise) then
       ratio = 1.0_wp
     else if (abs(expected) > 0.0_wp) then
@@ -191,15 +193,5 @@ contains
       ratio = huge(1.0_wp)
     end if
   end function energy_ratio
-
-  !> The largest of all terms by size.
-  pure function largest_term(energies) result(largest)
-    type(energies_t), intent(in) :: energies
-    real(wp) :: largest
-
-    largest = maxval(abs([energies%kinetic, energies%internal, energies%hourglass, &
-      energies%viscous, energies%damping, energies%contact, energies%friction, energies%leapfrog, &
-      energies%external_work, energies%initial, energies%eroded]))
-  end function largest_term
 
 end module snapshot_m

@@ -78,8 +78,7 @@ module state_m
     type(block_state_t) :: elements
     type(contact_state_t), allocatable :: contacts(:)
     type(contact_estimate_t), allocatable :: estimates(:) !! of the interfaces of the deck
-    type(contact_t), allocatable :: outlines(:) !! interfaces with the surfaces that are left; only
-                                               !! where elements may leave the mesh
+    type(contact_t), allocatable :: outlines(:) !! interfaces with the surfaces that are left
     type(rigid_state_t), allocatable :: rigids(:)
     type(wall_state_t), allocatable :: walls(:) !! only where the deck has any
     real(wp), allocatable :: boundary_force(:, :) !! (3, n_boundary) x, y and moment about z of the

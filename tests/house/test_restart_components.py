@@ -33,7 +33,6 @@ EXEMPT = {
     "trial_t": {"motion": "of the step that is over", "elements": "those of the state", "contacts": "those of the state",
                 "slots": "formed with each force", "before": "used up before a file is written"},
     "mesh_t": {"deck_node": "the order of results, which the first process writes"},
-    "conditions_t": dict.fromkeys(("fixed_nodes", "fixed_directions"), "of its own nodes, rank_model.f90"),
     "model_t": dict.fromkeys(("node_sets", "segment_sets", "part_sets", "shell_sets"), "conditions and surfaces have been made of them"),
     "controls_t": {"implicit": "runs of several processes are explicit, its default"},
 }

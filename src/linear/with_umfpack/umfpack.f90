@@ -123,7 +123,7 @@ contains
     type(sparse_t), intent(in) :: matrix
     type(umfpack_t), intent(inout) :: factor !! earlier factors in it are freed
     logical, intent(out) :: factored
-    real(c_double) :: info(n_info), mantissa, exponent
+    real(c_double) :: info(n_info), mantissa, exponent, entries
     type(c_ptr) :: symbolic
     integer(c_int) :: status
 
@@ -140,7 +140,11 @@ contains
     status = umfpack_di_symbolic(matrix%n, matrix%n, factor%start, factor%index, factor%entry, &
       symbolic, factor%control, info)
     if (status /= status_good .and. status /= status_singular) return
-    factor%bytes = int(bytes_per_entry*expected_entries(info), long)
+    ! Entries of the factors: as counted where pivots are taken from the diagonal; where the pattern
+    ! allows none of that, an upper bound.
+    entries = info(info_factor_entries)
+    if (entries < 0.0_wp) entries = info(info_lower_entries) + info(info_upper_entries)
+    factor%bytes = int(bytes_per_entry*entries, long)
     if (factor%bytes < available_bytes()) then
       status = umfpack_di_numeric(factor%start, factor%index, factor%entry, symbolic, &
         factor%numeric, factor%control, info)
@@ -151,16 +155,6 @@ contains
     end if
     call umfpack_di_free_symbolic(symbolic)
   end subroutine factor_umfpack
-
-  !> Entries of the factors: as counted where pivots are taken from the diagonal; where the pattern
-  !> allows none of that, an upper bound.
-  pure function expected_entries(info) result(entries)
-    real(c_double), intent(in) :: info(n_info)
-    real(wp) :: entries
-
-    entries = info(info_factor_entries)
-    if (entries < 0.0_wp) entries = info(info_lower_entries) + info(info_upper_entries)
-  end function expected_entries
 
   !> x := A^-1 b, or A^-T b.
   subroutine solve_umfpack(factor, transposed, b, x)

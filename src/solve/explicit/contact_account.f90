@@ -115,45 +115,34 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(log_t), intent(inout) :: log
+    character(:), allocatable :: name
     integer :: i, sign_of
 
     do i = 1, size(state%contacts)
-      associate (watch => state%contacts(i)%watch, limit => state%contacts(i)%limit, &
-        id => model%contacts(i)%id)
-        if (limit%n_limited > 0) call write_log(log, 'interface '//to_text(id)//limit_text(limit))
+      associate (memory => state%contacts(i), watch => state%contacts(i)%watch)
+        name = 'interface '//to_text(model%contacts(i)%id)
+        if (memory%limit%n_limited > 0) call write_log(log, name//limit_text(memory%limit))
         sign_of = merge(has_made, has_lost, watch%balance < 0.0_wp)
         if (sign_of == has_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) then
-          call report_impacts(model, i, state, log)
+          ! Impact is plastic within the first row of elements.
+          if (watch%balance > 0.0_wp) call write_log(log, name//': impacts have taken ' &
+            //to_text(watch%balance)//per_depth(model%controls%units, 'F L', model%is_round) &
+            //', '//percent(watch%balance, state%largest_energy) &
+            //' of the largest energy so far; finer meshes lose less')
+          if (memory%n_swept > 0) call write_log(log, name//': in '//to_text(memory%n_swept) &
+            //' cycles sweeps had to settle which nodes press')
+          if (memory%n_dropped > 0) call write_log(log, name//': in '//to_text(memory%n_dropped) &
+            //' cycles pressures depended on each other, and some were left to the others')
         else if (abs(watch%balance) > noticed_share*state%largest_energy .and. state%cycle > 0) then
-          call warn(log, 'interface '//to_text(id)//': in the whole run the contact springs have ' &
+          call warn(log, name//': in the whole run the contact springs have ' &
             //amount_text(model, i, sign_of, state))
         else if (any(watch%changes%warned)) then
-          call write_log(log, 'interface '//to_text(id)//': at the end the contact springs have ' &
+          call write_log(log, name//': at the end the contact springs have ' &
             //amount_text(model, i, sign_of, state))
         end if
       end associate
     end do
   end subroutine report_contact_energies
-
-  !> What implicit springs have taken: impact is plastic within the first row of elements.
-  subroutine report_impacts(model, i, state, log)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i
-    type(state_t), intent(in) :: state
-    type(log_t), intent(inout) :: log
-
-    if (state%contacts(i)%watch%balance > 0.0_wp) call write_log(log, 'interface ' &
-      //to_text(model%contacts(i)%id)//': impacts have taken ' &
-      //to_text(state%contacts(i)%watch%balance)//per_depth(model%controls%units, 'F L', &
-      model%is_round)//', '//percent(state%contacts(i)%watch%balance, state%largest_energy) &
-      //' of the largest energy so far; finer meshes lose less')
-    if (state%contacts(i)%n_swept > 0) call write_log(log, 'interface ' &
-      //to_text(model%contacts(i)%id)//': in '//to_text(state%contacts(i)%n_swept) &
-      //' cycles sweeps had to settle which nodes press')
-    if (state%contacts(i)%n_dropped > 0) call write_log(log, 'interface ' &
-      //to_text(model%contacts(i)%id)//': in '//to_text(state%contacts(i)%n_dropped) &
-      //' cycles pressures depended on each other, and some were left to the others')
-  end subroutine report_impacts
 
   !> How much, of what, and where most of it.
   function amount_text(model, i, sign_of, state) result(text)

@@ -12,7 +12,7 @@ module contact_pressing_m
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
-  use node_motion_m, only : leap_t, find_factors
+  use node_motion_m, only : leap_t, look_ahead
   use external_force_m, only : part_damping_rate
   use pressing_m, only : pressing_t, start_pressing
   use rigid_motion_m, only : solve_rigids, damping_of
@@ -36,6 +36,7 @@ contains
     type(log_t), intent(inout) :: log
     type(state_t), intent(inout) :: state
     type(pressing_t), intent(inout) :: steps(:) !! (interfaces) of the call before
+    real(wp) :: free(2)
     logical :: are_solved !! rigid bodies: no two interfaces press one that moves
     integer :: i, k
 
@@ -51,7 +52,14 @@ contains
       steps(i)%dt = leap%dt
       if (state%contacts(i)%points%n > 0) then
         call find_rows(steps(i), state%contacts(i))
-        call foresee(leap, state%contacts(i)%nodes, state, steps(i))
+        ! The step ahead as the nodes that have rows would make it without the interface: what a
+        ! force adds to their velocities, and these; 0 where nothing moves them.
+        do k = 1, steps(i)%rows%n_node
+          associate (l => steps(i)%rows%node(node_of, k))
+            call look_ahead(leap, state, state%contacts(i)%nodes(l), steps(i)%mobility(:, l), free)
+            steps(i)%velocity(:, l) = merge(free, 0.0_wp, steps(i)%mobility(:, l) > 0.0_wp)
+          end associate
+        end do
         do k = 1, size(steps(i)%led, 2)
           associate (prescribed => model%conditions%motions(steps(i)%led(1, k)))
             if (is_active(prescribed, state%time)) steps(i)%velocity(prescribed%direction, &
@@ -61,7 +69,7 @@ contains
         if (size(steps(i)%riders, 2) > 0) then
           if (.not. are_solved) call solve_rigids(model, damping, state)
           are_solved = .true.
-          call carry(model, leap, damping, state, steps(i))
+          call ride(model, leap, damping, state, steps(i))
         end if
       end if
       steps(i)%dt_before = state%dt_before
@@ -74,52 +82,6 @@ contains
       call follow_contact(model, i, state, log)
     end do
   end subroutine press_contacts
-
-  !> The step ahead as the nodes that have rows would make it without the interface, by the forces
-  !> that are known: what a force adds to their velocities, and these; 0 where nothing moves them.
-  subroutine foresee(leap, nodes, state, step)
-    type(leap_t), intent(in) :: leap
-    integer, intent(in), contiguous :: nodes(:) !! of the interface
-    type(state_t), intent(in) :: state
-    type(pressing_t), intent(inout) :: step
-    real(wp) :: half(2), keep(2), push(2), free(2)
-    integer :: i
-
-    half = leap%half
-    keep = leap%keep
-    push = leap%half*leap%body
-    !GCC$ NOVECTOR
-    do i = 1, step%rows%n_node
-      associate (l => step%rows%node(node_of, i), k => nodes(step%rows%node(node_of, i)))
-        if (allocated(state%node_damping)) then
-          call find_factors(leap, state, k, half, keep)
-          push = half*leap%body
-        end if
-        step%mobility(:, l) = half*state%inverse_mass(:, k)
-        free = keep*state%motion(3:4, k) + push + step%mobility(:, l)*(state%force_special(:, k) &
-          - state%internal_force(:, k))
-        step%velocity(:, l) = merge(free, 0.0_wp, step%mobility(:, l) > 0.0_wp)
-      end associate
-    end do
-  end subroutine foresee
-
-  !> Nodes of rigid bodies, by the forces that are known.
-  subroutine carry(model, leap, damping, state, step)
-    type(model_t), intent(in) :: model
-    type(leap_t), intent(in) :: leap
-    real(wp), intent(in) :: damping(2) !! D per direction
-    type(state_t), intent(in) :: state
-    type(pressing_t), intent(inout) :: step
-    real(wp) :: counted(3, size(model%rigids)), rate(3)
-    integer :: i
-
-    do i = 1, size(model%rigids)
-      rate = damping_of(state%rigids(i), damping + part_damping_rate(model, &
-        model%rigids(i)%part, state%time))
-      counted(:, i) = leap%mean/(1.0_wp + 0.5_wp*rate*leap%mean)
-    end do
-    call ride(model, counted, state, step)
-  end subroutine carry
 
   !> Which motions lead which nodes of an interface, and which of its nodes belong to which body.
   subroutine list_company(model, nodes, step)
@@ -155,12 +117,13 @@ contains
 
   !> Velocities of the nodes of bodies whose v(n+1/2) without the interface is known, and the modes
   !> by which these are free to move, times the root of what a unit force along them makes.
-  subroutine ride(model, half, state, step)
+  subroutine ride(model, leap, damping, state, step)
     type(model_t), intent(in) :: model
-    real(wp), intent(in) :: half(:, :)       !! (3, n_body) what an acceleration counts, s
+    type(leap_t), intent(in) :: leap
+    real(wp), intent(in) :: damping(2)       !! D per direction
     type(state_t), intent(in) :: state
     type(pressing_t), intent(inout) :: step
-    real(wp) :: speed(3), arm(2), unit(3), root
+    real(wp) :: speed(3), arm(2), unit(3), root, rate(3)
     logical :: is_free(3)
     integer :: i, k, body
 
@@ -171,6 +134,8 @@ contains
         if (body > 0) step%n_mode = step%n_mode + count(is_free)
         body = step%riders(1, i)
         is_free = are_free(model, body, state%time)
+        rate = damping_of(state%rigids(body), damping + part_damping_rate(model, &
+          model%rigids(body)%part, state%time))
         do k = 1, count(is_free)
           step%modes(:, :, step%n_mode + k) = 0.0_wp
         end do
@@ -185,7 +150,7 @@ contains
           if (.not. is_free(k)) cycle
           unit = 0.0_wp
           unit(k) = 1.0_wp
-          root = sqrt(half(k, body)/rigid%inertia(k))
+          root = sqrt(leap%mean/(1.0_wp + 0.5_wp*rate(k)*leap%mean)/rigid%inertia(k))
           step%modes(:, node, step%n_mode + count(is_free(:k))) = root*velocity_of(unit, arm)
         end do
       end associate

@@ -29,11 +29,10 @@ module explicit_cycle_m
   use outlines_m, only : follow_outlines
   use packed_buffer_m, only : stream_starts
   use progress_m, only : follow_progress
-  use rank_borders_m, only : borders_t, plan_borders
   use rank_exchange_m, only : parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, &
     exchange_erosion, gather_motion, gather_state, judge_elements, &
     hear_requests, cut_sections
-  use rank_shares_m, only : shares_t, share_out
+  use rank_shares_m, only : shares_t, share_out, borders_t, plan_borders
   use ranks_m, only : ranks_t, bring_integers, bring_reals, share_error
   use requests_m, only : requests_t, take_requests, echoes_t
   use restart_file_m, only : close_restart
@@ -172,15 +171,8 @@ contains
     do i = 1, size(model%contacts)
       k = told_as(model%contacts, i)
       if (k < i) call hear_tie(state%contacts(k), state%contacts(i))
-      if (model%erodes) then
-        call apply_contact(state%outlines(i), state%motion, state%contact_mass, &
-          state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
-          state%force_special)
-      else
-        call apply_contact(model%contacts(i), state%motion, state%contact_mass, &
-          state%time, state%dt_before, state%cycle, monitor%clock, state%contacts(i), &
-          state%force_special)
-      end if
+      call apply_contact(state%outlines(i), state%motion, state%contact_mass, state%time, &
+        state%dt_before, state%cycle, monitor%clock, state%contacts(i), state%force_special)
       if (k < i) call settle_with_tie(state%contacts(i), state%contacts(k))
       call share_contact(monitor%clock, k)
       call follow_contact(model, i, state, monitor%log)

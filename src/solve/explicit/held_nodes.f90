@@ -8,7 +8,7 @@ module held_nodes_m
   use common_motion_m, only : common_drive
   use kinds_m, only : wp
   use model_m, only : model_t
-  use node_motion_m, only : leap_t, find_factors
+  use node_motion_m, only : leap_t, look_ahead
   use snapshot_m, only : wall_result_t
   use state_m, only : state_t
   use walls_m, only : wall_t, wall_distance, wall_tangent, friction_sticks
@@ -30,18 +30,14 @@ contains
     type(leap_t), intent(in) :: leap
     integer, intent(in) :: first, last
     type(state_t), intent(inout) :: state
-    real(wp) :: half(2), keep(2), mobility(2), velocity(2), gain
+    real(wp) :: mobility(2), velocity(2), gain
     integer :: i
 
     do i = 1, size(model%conditions%skew_supports)
       associate (node => model%conditions%skew_supports(i)%node, &
         normal => model%conditions%skew_supports(i)%normal)
         if (node < first .or. node > last) cycle
-        call find_factors(leap, state, node, half, keep)
-        mobility = half*state%inverse_mass(:, node)
-        velocity = keep*state%motion(3:4, node) + half*merge(leap%body, 0.0_wp, &
-          state%inverse_mass(:, node) > 0.0_wp) + mobility*(state%force_special(:, node) &
-          - state%internal_force(:, node))
+        call look_ahead(leap, state, node, mobility, velocity)
         gain = dot_product(normal**2, mobility)
         if (gain > 0.0_wp) state%force_special(:, node) = state%force_special(:, node) &
           - dot_product(normal, velocity)/gain*normal
@@ -95,7 +91,7 @@ contains
     type(leap_t), intent(in) :: leap
     integer, intent(in) :: node
     type(state_t), intent(inout) :: state
-    real(wp) :: velocity(2), mobility(2), half(2), keep(2), more, most
+    real(wp) :: velocity(2), mobility(2), more, most
     integer :: i, k, round, n_seen
     logical :: settles
 
@@ -114,11 +110,7 @@ contains
       settles = .false.
     end do
     if (n_seen == 0) return
-    call find_factors(leap, state, node, half, keep)
-    mobility = half*state%inverse_mass(:, node)
-    velocity = keep*state%motion(3:4, node) + half*merge(leap%body, 0.0_wp, &
-      state%inverse_mass(:, node) > 0.0_wp) + mobility*(state%force_special(:, node) &
-      - state%internal_force(:, node))
+    call look_ahead(leap, state, node, mobility, velocity)
     do round = 1, most_rounds
       most = 0.0_wp
       do i = 1, size(model%walls)

@@ -26,7 +26,7 @@ contains
     real(wp), intent(in) :: damping(2)       !! D per direction
     real(wp), intent(in) :: velocity_next(:) !! (n_motion) v(n+1/2) of prescribed motions
     type(snapshot_t), intent(inout) :: snapshot
-    real(wp) :: dt, mean, inertia, led
+    real(wp) :: dt, mean, inertia, led, work, velocity(2), acceleration(2)
     integer :: i
 
     ! Time zero has no step behind: that of equal steps stands for it.
@@ -52,8 +52,18 @@ contains
     if (allocated(state%walls) .and. .not. state%dt_before > 0.0_wp) &
       inertia = inertia - wall_power(model, state, damping)
     snapshot%energies%leapfrog = -0.125_wp*dt**2*inertia
-    if (allocated(state%former_velocity)) snapshot%energies%damping = &
-      snapshot%energies%damping + half_step_damping(model, state, damping, snapshot)
+    if (.not. allocated(state%former_velocity)) return
+    ! Work that the damping forces D m v(n) take over the half step behind.
+    work = 0.0_wp
+    do i = 1, model%mesh%n_node
+      if (allocated(snapshot%velocity)) then
+        velocity = snapshot%velocity(:, i)
+      else
+        call find_motion(model%layout%n_special, state, damping, i, velocity, acceleration)
+      end if
+      work = work + state%mass(i)*sum(damping_at(state, damping, i)*velocity*state%motion(3:4, i))
+    end do
+    snapshot%energies%damping = snapshot%energies%damping + 0.5_wp*state%dt_before*work
   end subroutine complete_balance
 
   !> Sum of m a^2 over degrees of freedom that move freely, with a = (v(n+1/2) - v(n-1/2))/h.
@@ -127,29 +137,5 @@ contains
       end do
     end do
   end function wall_power
-
-  !> Work that the damping forces D m v(n) take over the half step behind.
-  pure function half_step_damping(model, state, damping, snapshot) result(work)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    real(wp), intent(in) :: damping(2)
-    type(snapshot_t), intent(in) :: snapshot !! may keep velocities
-    real(wp) :: work
-    real(wp) :: velocity(2), acceleration(2), d(2)
-    integer :: i
-
-    d = damping
-    work = 0.0_wp
-    do i = 1, model%mesh%n_node
-      if (allocated(snapshot%velocity)) then
-        velocity = snapshot%velocity(:, i)
-      else
-        call find_motion(model%layout%n_special, state, damping, i, velocity, acceleration)
-      end if
-      if (allocated(state%node_damping)) d = state%node_damping(:, i)
-      work = work + state%mass(i)*sum(d*velocity*state%motion(3:4, i))
-    end do
-    work = 0.5_wp*state%dt_before*work
-  end function half_step_damping
 
 end module leapfrog_balance_m

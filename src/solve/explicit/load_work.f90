@@ -101,29 +101,14 @@ contains
     integer :: i
 
     do i = 1, size(state%contacts)
-      call clear(state%contacts(i)%nodes)
+      state%force_special(:, state%contacts(i)%nodes) = 0.0_wp
     end do
-    if (allocated(model%conditions%skew_supports)) then
-      do i = 1, size(model%conditions%skew_supports)
-        call clear([model%conditions%skew_supports(i)%node])
-      end do
-    end if
+    if (allocated(model%conditions%skew_supports)) &
+      state%force_special(:, model%conditions%skew_supports%node) = 0.0_wp
     if (.not. allocated(state%walls)) return
     do i = 1, size(model%walls)
-      call clear(model%walls(i)%nodes)
+      state%force_special(:, model%walls(i)%nodes) = 0.0_wp
     end do
-
-  contains
-
-    subroutine clear(nodes)
-      integer, intent(in), contiguous :: nodes(:)
-      integer :: k
-
-      do k = 1, size(nodes)
-        state%force_special(:, nodes(k)) = 0.0_wp
-      end do
-    end subroutine clear
-
   end subroutine clear_forces
 
   !> Power of forces on the first nodes.
@@ -144,7 +129,7 @@ contains
   pure subroutine plan_sums(model, sums)
     type(model_t), intent(in) :: model
     type(motion_sums_t), intent(out) :: sums
-    integer :: n_tile, n_special, n_moved, n_block, i
+    integer :: n_tile, n_special, n_moved
 
     if (size(model%conditions%body_loads) == 0 .and. .not. allocated(model%conditions%damping) &
       .and. .not. allocated(model%conditions%part_damping)) return
@@ -152,27 +137,22 @@ contains
     n_special = model%layout%n_special
     n_moved = n_special
     if (n_tile > 0) n_moved = model%layout%tiles(n_tile)%last_node
-    n_block = blocks_of(n_special)
-    sums%n_special = n_block
-    sums%last = n_block
-    allocate (sums%blocks(2, n_block + blocks_of(model%mesh%n_node - n_moved)))
-    do i = 1, size(sums%blocks, 2)
-      if (i <= n_block) then
-        sums%blocks(:, i) = [(i - 1)*block_size + 1, min(i*block_size, n_special)]
-      else
-        sums%blocks(:, i) = [n_moved + (i - n_block - 1)*block_size + 1, &
-          min(n_moved + (i - n_block)*block_size, model%mesh%n_node)]
-      end if
-    end do
+    associate (own => blocks_of(1, n_special), rest => blocks_of(n_moved + 1, model%mesh%n_node))
+      sums%n_special = size(own, 2)
+      sums%last = size(own, 2)
+      sums%blocks = reshape([own, rest], [2, size(own, 2) + size(rest, 2)])
+    end associate
     allocate (sums%parts(4, n_tile + size(sums%blocks, 2)), source=0.0_wp)
   end subroutine plan_sums
 
-  !> Blocks that hold so many nodes.
-  pure function blocks_of(n_node) result(n_block)
-    integer, intent(in) :: n_node
-    integer :: n_block
+  !> Nodes first .. last in blocks.
+  pure function blocks_of(first, last) result(blocks)
+    integer, intent(in) :: first, last
+    integer :: blocks(2, (last - first + block_size)/block_size) !! first and last node of each
+    integer :: i
 
-    n_block = (n_node + block_size - 1)/block_size
+    blocks(1, :) = [(i, i=first, last, block_size)]
+    blocks(2, :) = min(blocks(1, :) + block_size - 1, last)
   end function blocks_of
 
   !> Sums over the nodes first .. last; those of damping where the state keeps former velocities,

@@ -14,7 +14,7 @@ module node_motion_m
   use state_m, only : state_t
   implicit none
   private
-  public :: leap_t, make_leap, find_factors, move_tile_nodes, move_special_nodes, &
+  public :: leap_t, make_leap, find_factors, look_ahead, move_tile_nodes, move_special_nodes, &
     move_damped_nodes, follow_damping
 
   !> Factors of one leap, the same for all nodes.
@@ -58,6 +58,21 @@ contains
     keep = (1.0_wp - 0.5_wp*state%node_damping(:, node)*leap%mean) &
       /(1.0_wp + 0.5_wp*state%node_damping(:, node)*leap%mean)
   end subroutine find_factors
+
+  !> v(n+1/2) of a special node by the forces that are known, and what a force adds to it.
+  subroutine look_ahead(leap, state, node, mobility, velocity)
+    type(leap_t), intent(in) :: leap
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: node
+    real(wp), intent(out) :: mobility(2), velocity(2)
+    real(wp) :: half(2), keep(2)
+
+    call find_factors(leap, state, node, half, keep)
+    mobility = half*state%inverse_mass(:, node)
+    velocity = keep*state%motion(3:4, node) + half*merge(leap%body, 0.0_wp, &
+      state%inverse_mass(:, node) > 0.0_wp) + mobility*(state%force_special(:, node) &
+      - state%internal_force(:, node))
+  end subroutine look_ahead
 
   !> Move the nodes first .. last where each has its own damping.
   subroutine move_damped_nodes(leap, n_special, first, last, force, state)

@@ -16,8 +16,7 @@ module rank_exchange_m
   use monitor_m, only : monitor_t
   use load_work_m, only : motion_sums_t
   use packed_buffer_m, only : packed_buffer_t, start_loading, start_unloading, choose_slots
-  use rank_borders_m, only : borders_t
-  use rank_shares_m, only : shares_t
+  use rank_shares_m, only : shares_t, borders_t
   use ranks_m, only : ranks_t, bring_reals, bring_integers, swap_reals, find_least, share_error
   use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
   use state_m, only : state_t
@@ -203,7 +202,7 @@ contains
     type(shares_t), intent(in) :: shares
     type(block_state_t), intent(inout) :: elements
 
-    associate (erosion => elements%erosion, slots => slots_of(shares%chunks))
+    associate (erosion => elements%erosion, slots => (shares%chunks - 1)*chunk_size + 1)
       call bring_integers(ranks, shares%chunks, 1, .true., erosion%n_gone)
       call bring_integers(ranks, slots, 1, .true., erosion%status)
       call bring_reals(ranks, slots, 1, .true., erosion%hourglass)
@@ -274,14 +273,6 @@ contains
       end do
     end do
   end subroutine gather_elements
-
-  !> Ranges of slots from those of chunks.
-  pure function slots_of(chunks) result(slots)
-    integer, intent(in) :: chunks(0:)
-    integer :: slots(0:size(chunks) - 1)
-
-    slots = (chunks - 1)*chunk_size + 1
-  end function slots_of
 
   !> The first process looks at all elements, whose state it has gathered, and tells the others.
   subroutine judge_elements(ranks, model, state, error)

@@ -23,7 +23,6 @@ module rank_model_m
 
   !> What is handed besides the model.
   type, extends(visited_t) :: handed_t
-    integer, allocatable :: nodes(:), directions(:) !! fixed degrees of freedom
     integer, allocatable :: parts(:)                !! of elements behind surfaces
     integer, allocatable :: corners(:, :)           !! (4, elements) their nodes
     real(wp), allocatable :: places(:, :)           !! (2, 4 elements) where these are
@@ -42,8 +41,6 @@ contains
     class(handed_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
 
-    call visitor%visit('nodes', self%nodes)
-    call visitor%visit('directions', self%directions)
     call visitor%visit('parts', self%parts)
     call visitor%visit('corners', self%corners)
     call visitor%visit('places', self%places)
@@ -60,6 +57,7 @@ contains
     logical, intent(out) :: has_all !! each process gets all of it
     type(packed_buffer_t) :: buffer
     type(shares_t) :: shares
+    logical, allocatable :: is_known(:)
     integer :: n_node
 
     has_all = .true.
@@ -82,7 +80,14 @@ contains
       call hand_shares(ranks, of_slots, shares, n_node, model)
       call hand_faces(ranks, model)
     end if
-    call hand_fixed(ranks, has_all, model)
+    if (has_all .or. ranks%mine == 0) return
+    ! Of fixed degrees of freedom each process keeps those of the nodes that it has.
+    associate (nodes => model%conditions%fixed_nodes, starts => shares%nodes)
+      is_known = nodes <= model%layout%n_special .or. nodes >= starts(ranks%n) &
+        .or. (nodes >= starts(ranks%mine) .and. nodes < starts(ranks%mine + 1))
+    end associate
+    model%conditions%fixed_directions = pack(model%conditions%fixed_directions, is_known)
+    model%conditions%fixed_nodes = pack(model%conditions%fixed_nodes, is_known)
   end subroutine hand_model
 
   !> Single elements that all have to know: those behind contact surfaces with their nodes, and
@@ -126,31 +131,6 @@ contains
       end do
     end associate
   end subroutine hand_faces
-
-  !> Fixed degrees of freedom, of which each process keeps those of the nodes that it has.
-  subroutine hand_fixed(ranks, has_all, model)
-    type(ranks_t), intent(inout) :: ranks
-    logical, intent(in) :: has_all
-    type(model_t), intent(inout) :: model
-    type(packed_buffer_t) :: buffer
-    type(handed_t) :: handed
-    type(shares_t) :: shares
-    logical, allocatable :: is_known(:)
-
-    if (ranks%mine == 0) then
-      handed%nodes = model%conditions%fixed_nodes
-      handed%directions = model%conditions%fixed_directions
-    end if
-    call hand(ranks, everyone, buffer, handed)
-    if (ranks%mine == 0) return
-    shares = share_out(model%layout, ranks%mine, ranks%n)
-    associate (nodes => handed%nodes, starts => shares%nodes)
-      is_known = has_all .or. nodes <= model%layout%n_special .or. nodes >= starts(ranks%n) &
-        .or. (nodes >= starts(ranks%mine) .and. nodes < starts(ranks%mine + 1))
-      model%conditions%fixed_nodes = pack(nodes, is_known)
-    end associate
-    model%conditions%fixed_directions = pack(handed%directions, is_known)
-  end subroutine hand_fixed
 
   !> What a process that starts its own share alone has to know of the state of the first one.
   subroutine hand_others(model, ranks, state, others, answers)

@@ -28,7 +28,7 @@ module relaxation_m
   use time_step_m, only : volume_step
   implicit none
   private
-  public :: relax, leave_relaxation
+  public :: relax, switch_loads
 
   !> Cycles after which relaxation is given up where DRTERM does not end it.
   integer, parameter :: most_cycles = 5000000
@@ -242,13 +242,6 @@ contains
     if (allocated(state%elements%damping_work)) state%elements%damping_work = 0.0_wp
     if (allocated(state%elements%damping_stress)) state%elements%damping_stress = 0.0_wp
   end subroutine begin_at_zero
-
-  !> The loads of the run: those of relaxation alone (SIDR 1) no longer act.
-  subroutine leave_relaxation(model)
-    type(model_t), intent(inout) :: model
-
-    if (any(model%curves%phase == 1)) call switch_loads(model, 1)
-  end subroutine leave_relaxation
 
   !> Switch off the loads whose curves are of one phase alone.
   subroutine switch_loads(model, phase)

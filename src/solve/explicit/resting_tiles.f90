@@ -59,12 +59,21 @@ contains
     integer, intent(in) :: run_tiles(:)  !! of the runs of special nodes that this process moves
     logical, intent(in) :: watches_all   !! resting tiles have to be looked at in each cycle
     type(rest_t), intent(out) :: rest
+    logical :: may_rest
     integer :: i
 
+    ! Nothing but motion of its nodes can change the next step of a tile: no body load, no mass that
+    ! grows, no element that leaves the mesh at a given time.
+    may_rest = size(model%conditions%body_loads) == 0 .and. (model%controls%masses_stay &
+      .or. .not. abs(model%controls%mass_step) > 0.0_wp)
+    do i = 1, size(model%materials)
+      if (allocated(model%materials(i)%erosion)) &
+        may_rest = may_rest .and. .not. model%materials(i)%erosion%time < huge(1.0_wp)
+    end do
     associate (n => size(model%layout%tiles), first => shares%first_tile, last => shares%last_tile)
       allocate (rest%status(n), source=awake)
       ! Where all bodies are rigid the one tile is empty.
-      if (may_rest(model)) rest%status(first:last) = merge(n_try, awake, &
+      if (may_rest) rest%status(first:last) = merge(n_try, awake, &
         model%layout%tiles(first:last)%last_chunk >= model%layout%tiles(first:last)%first_chunk)
       allocate (rest%stepped(last - first + 1), source=[(i, i = first, last)])
       allocate (rest%watched(0))
@@ -75,21 +84,6 @@ contains
     rest%last_tile = shares%last_tile
     rest%watches_all = watches_all
   end subroutine plan_rest
-
-  !> Whether nothing but motion of its nodes can change the next step of a tile: no body load, no
-  !> mass that grows, no element that leaves the mesh at a given time.
-  pure function may_rest(model) result(may)
-    type(model_t), intent(in) :: model
-    logical :: may
-    integer :: i
-
-    may = size(model%conditions%body_loads) == 0 .and. (model%controls%masses_stay &
-      .or. .not. abs(model%controls%mass_step) > 0.0_wp)
-    do i = 1, size(model%materials)
-      if (allocated(model%materials(i)%erosion)) &
-        may = may .and. .not. model%materials(i)%erosion%time < huge(1.0_wp)
-    end do
-  end function may_rest
 
   !> Before the step of a tile that is tried: what its elements are, if its nodes are in one motion;
   !> if not it is awake for good.

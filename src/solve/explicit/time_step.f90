@@ -273,13 +273,8 @@ contains
         .or. any(state%contacts(model%contacts(i)%behind)%ties%state == is_broken)
     end do
     if (.not. allocated(bounds)) allocate (bounds(size(model%contacts)))
-    if (model%erodes) then
-      call bound_springs(state%outlines, state%contact_mass, state%contacts, &
-        merge(1.0_wp, 0.0_wp, counts), bounds)
-    else
-      call bound_springs(model%contacts, state%contact_mass, state%contacts, &
-        merge(1.0_wp, 0.0_wp, counts), bounds)
-    end if
+    call bound_springs(state%outlines, state%contact_mass, state%contacts, &
+      merge(1.0_wp, 0.0_wp, counts), bounds)
     where (.not. counts) bounds%rate = 0.0_wp
   end subroutine follow_springs
 

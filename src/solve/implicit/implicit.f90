@@ -8,6 +8,7 @@ module implicit_m
   use contact_springs_m, only : measure_springs
   use contacts_m, only : breaks
   use contact_work_m, only : count_step
+  use cut_forces_m, only : keep_cut_chunks
   use early_end_m, only : find_early_end
   use equations_m, only : number_equations, find_equation
   use errors_m, only : error_t, raise, status_run
@@ -15,7 +16,7 @@ module implicit_m
   use health_m, only : check_static_step, what_would_do
   use implicit_report_m, only : count_step_boundaries, reactions_work, report_step, held_energy, &
     spent_energy
-  use implicit_forces_m, only : trial_t, start_trial, damping_force, net_force, keep_sections
+  use implicit_forces_m, only : trial_t, start_trial, damping_force, net_force
   use implicit_start_m, only : implicit_memory_t, write_files, begin_steps, plan_next, has_ended
   use implicit_prescribed_m, only : prescribe_step
   use implicit_tangent_m, only : step_t, new_acceleration, new_velocity
@@ -245,7 +246,8 @@ contains
       call count_step_boundaries(model, trial, attempt, step%time, velocity, state)
     end if
     trial = attempt
-    call keep_sections(model, state, trial)
+    ! What the forces of cross sections are formed of if anyone asks for them.
+    if (allocated(state%cut_force)) call keep_cut_chunks(model, state%elements, trial%before)
     state%motion(1:2, :) = attempt%motion(1:2, :)
     state%elements = attempt%elements
     state%contacts = attempt%contacts

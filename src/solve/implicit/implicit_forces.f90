@@ -10,7 +10,7 @@ module implicit_forces_m
   use clock_m, only : clock_t, lap, share_contact, phase_elements, &
     phase_contact_force, phase_nodes
   use contact_state_m, only : contact_state_t
-  use cut_forces_m, only : find_cut_forces, keep_cut_chunks
+  use cut_forces_m, only : find_cut_forces
   use element_dispatch_m, only : add_tile_forces
   use element_mass_m, only : mass_times
   use external_force_m, only : form_external_force, body_acceleration, damping_rates
@@ -22,7 +22,7 @@ module implicit_forces_m
   implicit none
   private
   public :: trial_t, start_trial, assemble_forces, damping_force, net_force, trouble_of, &
-    keep_sections, cut_sections
+    cut_sections
 
   !> Step of the kernels: motion holds increments in place of velocities.
   real(wp), parameter :: unit_step = 1.0_wp
@@ -68,11 +68,22 @@ contains
     logical, intent(in) :: is_first         !! touching counts as closed
     type(clock_t), intent(inout) :: clock
     type(trial_t), intent(inout) :: trial
+    real(wp), allocatable :: force(:, :)
     real(wp) :: body(2)
     integer :: i, k
 
     trial%motion(3:4, :) = trial%motion(1:2, :) - state%motion(1:2, :)
-    call assemble_internal(model, state, trial)
+    ! Element forces from the committed history.
+    trial%elements = state%elements
+    allocate (force(2, model%layout%n_local))
+    do i = 1, size(model%layout%tiles)
+      associate (tile => model%layout%tiles(i))
+        call add_tile_forces(model, tile, trial%motion, unit_step, trial%elements, force)
+        call share_tile_forces(tile, force, trial%slots)
+        call keep_tile_forces(tile, force, trial%internal)
+      end associate
+    end do
+    call sum_special_forces(model%layout, trial%slots, 1, model%layout%n_special, trial%internal)
     call lap(clock, phase_elements)
     trial%contact = 0.0_wp
     trial%contacts = state%contacts
@@ -92,36 +103,6 @@ contains
     end if
     call lap(clock, phase_nodes)
   end subroutine assemble_forces
-
-  !> Element forces from the committed history.
-  subroutine assemble_internal(model, state, trial)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(trial_t), intent(inout) :: trial
-    real(wp), allocatable :: force(:, :)
-    integer :: i_tile
-
-    trial%elements = state%elements
-    allocate (force(2, model%layout%n_local))
-    do i_tile = 1, size(model%layout%tiles)
-      associate (tile => model%layout%tiles(i_tile))
-        call add_tile_forces(model, tile, trial%motion, unit_step, trial%elements, force)
-        call share_tile_forces(tile, force, trial%slots)
-        call keep_tile_forces(tile, force, trial%internal)
-      end associate
-    end do
-    call sum_special_forces(model%layout, trial%slots, 1, model%layout%n_special, trial%internal)
-  end subroutine assemble_internal
-
-  !> What the forces of cross sections are formed of if anyone asks for them: before the trial
-  !> becomes the state.
-  subroutine keep_sections(model, state, trial)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state !! stays as it is
-    type(trial_t), intent(inout) :: trial
-
-    if (allocated(state%cut_force)) call keep_cut_chunks(model, state%elements, trial%before)
-  end subroutine keep_sections
 
   !> Forces of the elements of cross sections, unless the state has them.
   subroutine cut_sections(model, trial, state)

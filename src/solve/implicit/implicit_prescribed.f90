@@ -111,8 +111,11 @@ contains
         path = [curve_moment(curve, times(1), times(2)), &
           curve_integral(curve, times(1), times(2)), curve_value(curve, times(2))]
       case (motion_displacement)
-        path = [curve_value(curve, times(2)), mean_slope(curve, times(2), dt, life), &
-          curvature(curve, times(2), dt, life)]
+        path = [curve_value(curve, times(2)), mean_slope(curve, times(2), dt, life), 0.0_wp]
+        ! The change of slope; none where one side lies outside the life of the motion.
+        if (times(2) - dt >= life(1) - same_time*dt .and. times(2) + dt <= life(2) + same_time*dt) &
+          path(3) = ((curve_value(curve, times(2) + dt) - path(1)) &
+          - (path(1) - curve_value(curve, times(2) - dt)))/dt**2
       end select
     end associate
     path = motion%scale*path
@@ -143,21 +146,6 @@ contains
     slope = 0.0_wp
     if (x(2) > x(1)) slope = (curve_value(curve, x(2)) - curve_value(curve, x(1)))/(x(2) - x(1))
   end function mean_slope
-
-  !> Change of slope at `time` over `dt` to both sides; none where one side lies
-  !> outside the life of the motion.
-  pure function curvature(curve, time, dt, life) result(change)
-    type(curve_t), intent(in) :: curve
-    real(wp), intent(in) :: time
-    real(wp), intent(in) :: dt
-    real(wp), intent(in) :: life(2)
-    real(wp) :: change
-
-    change = 0.0_wp
-    if (time - dt < life(1) - same_time*dt .or. time + dt > life(2) + same_time*dt) return
-    change = ((curve_value(curve, time + dt) - curve_value(curve, time)) &
-      - (curve_value(curve, time) - curve_value(curve, time - dt)))/dt**2
-  end function curvature
 
   !> Integral of (b - s) f(s) from a to b, the displacement from an acceleration: exact (Simpson's
   !> rule from point to point, the integrand is of second degree).

@@ -9,12 +9,13 @@ module implicit_start_m
   use contact_springs_m, only : measure_springs
   use contact_state_m, only : contact_state_t
   use contacts_m, only : is_tied
+  use cut_forces_m, only : keep_cut_chunks
   use damping_m, only : of_stuck
   use element_mass_m, only : add_mass, mass_times
   use equations_m, only : equations_t, number_equations, take_free
   use errors_m, only : error_t, raise, status_run
   use implicit_forces_m, only : trial_t, start_trial, net_force, cut_sections, assemble_forces, &
-    damping_force, keep_sections
+    damping_force
   use implicit_prescribed_m, only : prescribe_start, list_changes
   use implicit_tangent_m, only : step_t
   use kinds_m, only : wp
@@ -28,7 +29,7 @@ module implicit_start_m
   use restart_plan_m, only : wanted_files
   use sparse_m, only : sparse_t, start_matrix, compress_matrix
   use state_m, only : state_t
-  use step_control_m, only : step_control_t, start_step_control, plan_step, is_over
+  use step_control_m, only : step_control_t, start_step_control, plan_step, round_off
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
@@ -152,7 +153,7 @@ contains
     type(step_control_t), intent(in) :: control
     logical :: ended
 
-    ended = is_over(control, state%time)
+    ended = state%time >= control%end_time - round_off*control%dt
     if (model%controls%end_cycle > 0) ended = ended .or. state%cycle >= model%controls%end_cycle
   end function has_ended
 
@@ -212,7 +213,8 @@ contains
     end if
     call start_trial(model, state, memory%trial)
     call assemble_forces(model, state, 0.0_wp, .false., monitor%clock, memory%trial)
-    call keep_sections(model, state, memory%trial)
+    if (allocated(state%cut_force)) call keep_cut_chunks(model, state%elements, &
+      memory%trial%before)
     state%contacts = memory%trial%contacts
     ! Springs loaded at time zero hold energy that no force has put in.
     do i = 1, size(state%contacts)

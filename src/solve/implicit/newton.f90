@@ -255,7 +255,7 @@ contains
     type(clock_t), intent(inout) :: clock
     type(trial_t), intent(inout) :: trial
     type(way_t), intent(inout) :: way
-    real(wp), allocatable :: start(:, :)
+    real(wp), allocatable :: start(:, :) !! (2, n_node) displacement where the way begins
     logical :: is_straight
     integer :: i
 
@@ -263,68 +263,56 @@ contains
     way%factor = 1.0_wp
     is_straight = .not. any(abs(way%moved) > 0.0_wp)
     do i = 0, most_halvings
-      call go_part(model, state, step, clock, start, trial, way)
+      call go_part()
       if (len(way%trouble) == 0 .or. .not. is_straight) exit
       if (i < most_halvings) way%factor = 0.5_wp*way%factor
     end do
-    if (is_straight .and. step%searches .and. len(way%trouble) == 0) &
-      call search_line(model, state, step, clock, start, trial, way)
-  end subroutine move_nodes
+    if (is_straight .and. step%searches .and. len(way%trouble) == 0) call search_line()
 
-  !> Shorten the way by secants until the slope dU.R at its end is no longer uphill. A way that does
-  !> not lead downhill at its start says nothing and is gone to the end.
-  subroutine search_line(model, state, step, clock, start, trial, way)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(step_t), intent(in) :: step
-    type(clock_t), intent(inout) :: clock
-    real(wp), intent(in) :: start(:, :)
-    type(trial_t), intent(inout) :: trial
-    type(way_t), intent(inout) :: way
-    real(wp) :: slope_start, slope, sound_factor
-    integer :: i
+  contains
 
-    slope_start = -dot_product(way%x, way%b)
-    if (.not. slope_start < 0.0_wp) return
-    do i = 1, most_searches
-      slope = dot_product(way%x, take_free(step%equations, &
-        assemble_residual(model, state, step, trial)))
-      if (slope <= model%controls%implicit%search_tolerance*abs(slope_start)) return
-      sound_factor = way%factor
-      way%factor = way%factor*max(least_part, slope_start/(slope_start - slope))
-      call go_part(model, state, step, clock, start, trial, way)
-      if (len(way%trouble) == 0) cycle
-      way%factor = sound_factor
-      call go_part(model, state, step, clock, start, trial, way)
-      return
-    end do
-  end subroutine search_line
+    !> The trial at `way%factor`, and whether it is sound.
+    subroutine go_part()
+      integer :: j, k, n
 
-  !> The trial at `way%factor`, and whether it is sound.
-  subroutine go_part(model, state, step, clock, start, trial, way)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(step_t), intent(in) :: step
-    type(clock_t), intent(inout) :: clock
-    real(wp), intent(in) :: start(:, :) !! (2, n_node) displacement where the way begins
-    type(trial_t), intent(inout) :: trial
-    type(way_t), intent(inout) :: way
-    integer :: j, k, n
-
-    do j = 1, size(start, 2)
-      do k = 1, 2
-        n = step%equations%number(k, j)
-        if (n == 0) cycle
-        if (n <= step%equations%n_free) then
-          trial%motion(k, j) = start(k, j) + way%factor*way%x(n)
-        else
-          trial%motion(k, j) = start(k, j) + way%moved(n - step%equations%n_free)
-        end if
+      do j = 1, size(start, 2)
+        do k = 1, 2
+          n = step%equations%number(k, j)
+          if (n == 0) cycle
+          if (n <= step%equations%n_free) then
+            trial%motion(k, j) = start(k, j) + way%factor*way%x(n)
+          else
+            trial%motion(k, j) = start(k, j) + way%moved(n - step%equations%n_free)
+          end if
+        end do
       end do
-    end do
-    call assemble_forces(model, state, step%time, .false., clock, trial)
-    way%trouble = trouble_of(trial)
-  end subroutine go_part
+      call assemble_forces(model, state, step%time, .false., clock, trial)
+      way%trouble = trouble_of(trial)
+    end subroutine go_part
+
+    !> Shorten the way by secants until the slope dU.R at its end is no longer uphill. A way that
+    !> does not lead downhill at its start says nothing and is gone to the end.
+    subroutine search_line()
+      real(wp) :: slope_start, slope, sound_factor
+      integer :: k
+
+      slope_start = -dot_product(way%x, way%b)
+      if (.not. slope_start < 0.0_wp) return
+      do k = 1, most_searches
+        slope = dot_product(way%x, take_free(step%equations, &
+          assemble_residual(model, state, step, trial)))
+        if (slope <= model%controls%implicit%search_tolerance*abs(slope_start)) return
+        sound_factor = way%factor
+        way%factor = way%factor*max(least_part, slope_start/(slope_start - slope))
+        call go_part()
+        if (len(way%trouble) == 0) cycle
+        way%factor = sound_factor
+        call go_part()
+        return
+      end do
+    end subroutine search_line
+
+  end subroutine move_nodes
 
   !> After an iteration. States that stay as they are make no cycle.
   pure subroutine watch_slips(contacts, residual, cycle)

@@ -7,7 +7,7 @@ module step_control_m
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: step_control_t, start_step_control, plan_step, is_over, grow_step, cut_step
+  public :: step_control_t, start_step_control, plan_step, grow_step, cut_step, round_off
 
   !> What a step that took few iterations grows by, and what one that failed shrinks to.
   real(wp), parameter :: growth = 1.5_wp, cut = 0.5_wp
@@ -84,15 +84,6 @@ contains
       control%is_last = control%next >= control%end_time
     end associate
   end subroutine plan_step
-
-  !> Whether the run has come to its end.
-  pure function is_over(control, time) result(over)
-    type(step_control_t), intent(in) :: control
-    real(wp), intent(in) :: time
-    logical :: over
-
-    over = time >= control%end_time - round_off*control%dt
-  end function is_over
 
   !> After a step of length `dt` that converged. Few iterations of a shortened step
   !> say nothing of a whole one.

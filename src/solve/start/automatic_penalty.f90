@@ -167,17 +167,31 @@ contains
       factor(i) = fitting_scale(steps(1), steps(2), bounds(i))
       if (model%contacts(i)%penalty_unit == penalty_factor) factor(i) = min(factor(i), 1.0_wp)
     end do
-    if (fits(model, state, steps, share, factor)) return
+    if (fits(factor)) return
     low = 0.0_wp
     high = 1.0_wp
     do i = 1, n_halving
-      if (fits(model, state, steps, share, 0.5_wp*(low + high)*factor)) then
+      if (fits(0.5_wp*(low + high)*factor)) then
         low = 0.5_wp*(low + high)
       else
         high = 0.5_wp*(low + high)
       end if
     end do
     where (share > 0.0_wp) factor = low*factor
+
+  contains
+
+    !> Whether the step is stable for all automatic interfaces with the whole of these penalties
+    !> (share 1), others as given.
+    pure logical function fits(factor)
+      real(wp), intent(in) :: factor(:)
+      type(spring_bound_t) :: bounds(size(factor))
+
+      call bound_whole(model, state, share, factor, bounds)
+      fits = all(stable_step(steps(2), bounds) >= steps(1)*(1.0_wp - round_off) &
+        .or. .not. share > 0.0_wp)
+    end function fits
+
   end subroutine find_factors
 
   !> Bounds with the whole of these penalties (share 1) for automatic interfaces, others as given.
@@ -192,19 +206,5 @@ contains
     where (share > 0.0_wp) scale = factor/share
     call bound_springs(model%contacts, state%contact_mass, state%contacts, scale, bounds)
   end subroutine bound_whole
-
-  !> Whether the step is stable for all automatic interfaces with the whole of these penalties
-  !> (share 1), others as given.
-  pure function fits(model, state, steps, share, factor)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    real(wp), intent(in) :: steps(2), share(:), factor(:)
-    logical :: fits
-    type(spring_bound_t) :: bounds(size(factor))
-
-    call bound_whole(model, state, share, factor, bounds)
-    fits = all(stable_step(steps(2), bounds) >= steps(1)*(1.0_wp - round_off) &
-      .or. .not. share > 0.0_wp)
-  end function fits
 
 end module automatic_penalty_m

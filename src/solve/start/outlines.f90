@@ -3,7 +3,7 @@
 module outlines_m
   use rigid_start_m, only : weigh_contacts
   use contacts_m, only : contact_t
-  use erosion_state_m, only : stays
+  use block_state_m, only : stays
   use exposed_quads_m, only : find_exposed
   use kinds_m, only : wp
   use model_m, only : model_t

@@ -30,7 +30,14 @@ contains
     do i = 1, size(model%rigids)
       associate (body => model%rigids(i), rigid => state%rigids(i))
         call weigh_body(model%mesh%coordinates(:, body%nodes), state%mass(body%nodes), rigid)
-        call find_velocity(state%mass(body%nodes), state%motion(3:4, body%nodes), rigid)
+        ! The velocity that keeps momentum, exactly where all nodes have one, and angular momentum.
+        associate (mass => state%mass(body%nodes), v => state%motion(3:4, body%nodes))
+          do k = 1, 2
+            rigid%velocity(k) = v(k, 1) + sum(mass*(v(k, :) - v(k, 1)))/rigid%inertia(1)
+          end do
+          rigid%velocity(3) = sum(mass*(rigid%arms(1, :)*(v(2, :) - rigid%velocity(2)) &
+            - rigid%arms(2, :)*(v(1, :) - rigid%velocity(1))))/rigid%inertia(3)
+        end associate
         if (body%has_velocity) rigid%velocity = body%velocity
         ! What is fixed rests; what has a prescribed velocity from the start has its first value.
         where (body%is_fixed) rigid%velocity = 0.0_wp
@@ -70,22 +77,6 @@ contains
       sum(mass*rigid%arms(1, :)*rigid%arms(2, :))]
     rigid%inertia(3) = rigid%second(1) + rigid%second(2)
   end subroutine weigh_body
-
-  !> The velocity that keeps momentum and angular momentum of the nodes.
-  pure subroutine find_velocity(mass, velocity, rigid)
-    real(wp), intent(in) :: mass(:)        !! (n)
-    real(wp), intent(in) :: velocity(:, :) !! (2, n)
-    type(rigid_state_t), intent(inout) :: rigid
-    integer :: k
-
-    do k = 1, 2
-      ! Exact where all nodes have one velocity.
-      rigid%velocity(k) = velocity(k, 1) &
-        + sum(mass*(velocity(k, :) - velocity(k, 1)))/rigid%inertia(1)
-    end do
-    rigid%velocity(3) = sum(mass*(rigid%arms(1, :)*(velocity(2, :) - rigid%velocity(2)) &
-      - rigid%arms(2, :)*(velocity(1, :) - rigid%velocity(1))))/rigid%inertia(3)
-  end subroutine find_velocity
 
   !> The mass of a body is shared among its nodes that contact can touch, in proportion to their
   !> lumped masses and so that no motion of the body gives these nodes more kinetic energy than the

@@ -6,7 +6,7 @@ module start_m
   use behind_ties_m, only : hear_tie
   use automatic_penalty_m, only : set_automatic_penalties
   use rigid_start_m, only : start_common, weigh_contacts, start_rigids
-  use constraints_m, only : fix_nodes, update_activity
+  use constraints_m, only : start_motion, fix_nodes, update_activity
   use element_log_m, only : log_elements
   use element_mass_m, only : lump_mass
   use element_start_m, only : start_elements
@@ -17,7 +17,6 @@ module start_m
   use errors_m, only : error_t, raise, status_input
   use history_tables_m, only : table_nodfor
   use others_memory_m, only : answers_t, others_t, known_nodes, known_slots
-  use initial_values_m, only : start_motion
   use log_m, only : log_t, to_text
   use model_log_m, only : log_added_mass, log_masses
   use mass_scaling_m, only : scales_masses, start_mass_scaling
@@ -90,7 +89,7 @@ contains
       allocate (state%quiet_since(size(model%controls%ends)), source=-1.0_wp)
     call start_contacts(model, log, state, error, answers)
     if (allocated(error)) return
-    if (model%erodes) state%outlines = model%contacts
+    state%outlines = model%contacts
     call weigh_contacts(model, state)
     if (present(others)) then
       do i = 1, size(state%contacts)
@@ -180,11 +179,7 @@ contains
     integer :: i, k
 
     do i = 1, size(state%contacts)
-      if (model%erodes) then
-        call resume_contact(state%outlines(i), state%contacts(i))
-      else
-        call resume_contact(model%contacts(i), state%contacts(i))
-      end if
+      call resume_contact(state%outlines(i), state%contacts(i))
       k = told_as(model%contacts, i)
       if (k < i) call hear_tie(state%contacts(k), state%contacts(i))
     end do
