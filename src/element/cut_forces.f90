@@ -32,10 +32,12 @@ contains
     type(packed_buffer_t), intent(inout), optional :: before(:) !! of `keep_cut_chunks`
     type(packed_buffer_t) :: present_values
     real(wp), allocatable :: of_slots(:, :, :) !! of the chunks with cut elements
+    real(wp), allocatable :: of_tile(:, :)
     integer, allocatable :: list(:), place(:)
-    integer :: i
+    integer :: i, k
 
     call list_chunks(model, list, place)
+    if (model%erodes) allocate (of_tile(2, model%layout%n_local))
     allocate (of_slots(8, chunk_size, size(list)))
     do i = 1, size(list)
       if (list(i) < chunks(1) .or. list(i) > chunks(2)) cycle
@@ -44,7 +46,12 @@ contains
       call step_chunk(model, list(i), motion, times(2), elements, of_slots(:, :, i))
       call put_values(present_values, elements)
       if (model%erodes) then
-        call clear_gone(model, list(i), motion, times, elements, of_slots(:, :, i))
+        ! Elements that have left the mesh, or leave it in this step, do not push.
+        call add_eroding_tile_forces(model, tile_of(list(i)), motion, times, elements, of_tile)
+        do k = 1, chunk_size
+          if (elements%erosion%status((list(i) - 1)*chunk_size + k) /= stays) &
+            of_slots(:, k, i) = 0.0_wp
+        end do
         call put_values(present_values, elements)
       end if
     end do
@@ -66,7 +73,8 @@ contains
     end do
   end subroutine keep_cut_chunks
 
-  !> Corner forces of the elements of a chunk.
+  !> What each element of a chunk puts on its four corners, x and y of each: minus its internal
+  !> force. The third of a triangle is its fourth as well.
   subroutine step_chunk(model, i_chunk, motion, dt, elements, of_slots)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_chunk
@@ -75,35 +83,23 @@ contains
     type(block_state_t), intent(inout) :: elements
     real(wp), intent(inout) :: of_slots(8, chunk_size)
     type(element_chunk_t) :: chunk
+    real(wp) :: hoop(2)
     integer :: i, first, nodes(4, chunk_size)
 
+    hoop = 0.0_wp
     first = (i_chunk - 1)*chunk_size + 1
     nodes = model%layout%slot_nodes(:, first:first + chunk_size - 1)
     if (model%erodes) call take_nodes(model%layout%slot_nodes(:, first:first + chunk_size - 1), &
       elements%erosion%status(first:first + chunk_size - 1), nodes)
     call advance_chunk(model, i_chunk, nodes, motion, dt, elements, chunk)
     do i = 1, model%layout%chunk_elements(i_chunk)
-      of_slots(:, i) = corner_forces(i, chunk)
+      if (chunk%is_round) hoop(1) = chunk%hoop(i)
+      associate (f3 => chunk%force3(:, i), f4 => chunk%force4(:, i), swing => chunk%swing(:, i))
+        of_slots(:, i) = [f3 - swing - hoop, f4 + swing - hoop, -f3 - swing - hoop, &
+          -f4 + swing - hoop]
+      end associate
     end do
   end subroutine step_chunk
-
-  !> Elements that have left the mesh, or leave it in this step, do not push.
-  subroutine clear_gone(model, i_chunk, motion, times, elements, of_slots)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i_chunk
-    real(wp), intent(in), contiguous :: motion(:, :)
-    real(wp), intent(in) :: times(2)
-    type(block_state_t), intent(inout) :: elements
-    real(wp), intent(inout) :: of_slots(8, chunk_size)
-    real(wp), allocatable :: force(:, :)
-    integer :: i
-
-    allocate (force(2, model%layout%n_local))
-    call add_eroding_tile_forces(model, tile_of(i_chunk), motion, times, elements, force)
-    do i = 1, chunk_size
-      if (elements%erosion%status((i_chunk - 1)*chunk_size + i) /= stays) of_slots(:, i) = 0.0_wp
-    end do
-  end subroutine clear_gone
 
   !> A chunk alone.
   pure function tile_of(i_chunk) result(tile)
@@ -168,20 +164,5 @@ contains
       end associate
     end do
   end subroutine take_slots
-
-  !> What one element puts on its four corners, x and y of each: minus its internal force. The third
-  !> of a triangle is its fourth as well.
-  pure function corner_forces(i, chunk) result(force)
-    integer, intent(in) :: i                   !! its place in the chunk
-    type(element_chunk_t), intent(in) :: chunk
-    real(wp) :: force(8)
-    real(wp) :: hoop(2)
-
-    hoop = 0.0_wp
-    if (chunk%is_round) hoop(1) = chunk%hoop(i)
-    associate (f3 => chunk%force3(:, i), f4 => chunk%force4(:, i), swing => chunk%swing(:, i))
-      force = [f3 - swing - hoop, f4 + swing - hoop, -f3 - swing - hoop, -f4 + swing - hoop]
-    end associate
-  end function corner_forces
 
 end module cut_forces_m

@@ -24,7 +24,7 @@ contains
     type(model_t), intent(in) :: model
     integer, intent(in) :: known(:, :) !! (2, n) first and last slot of those that are asked for
     type(block_state_t), intent(out) :: elements
-    integer :: n_chunk, i_slot, k
+    integer :: n_chunk, k
 
     allocate (elements%reference(model%layout%n_slot, merge(n_round_reference, 6, model%is_round)))
     allocate (elements%deviator(model%layout%n_slot, 3))
@@ -34,7 +34,12 @@ contains
       elements%viscous_work(n_chunk), source=0.0_wp)
     allocate (elements%time_limit(n_chunk), elements%volume_limit(n_chunk), source=1.0_wp)
     allocate (elements%volume_change(n_chunk), source=0.0_wp)
-    call start_exposed(model, elements)
+    if (allocated(model%layout%exposed)) then
+      if (size(model%layout%exposed) > 0) then
+        allocate (elements%mass_shares(4, model%layout%n_slot), source=0.0_wp)
+        elements%mass_shares(:, model%layout%exposed) = model%layout%exposed_shares
+      end if
+    end if
     call reserve_memories(model, elements)
     if (any([(has_viscous_pressure(model, k), k = 1, size(model%parts))])) &
       allocate (elements%viscous_pressure(model%layout%n_slot))
@@ -42,29 +47,12 @@ contains
       associate (first => known(1, k), last => known(2, k))
         elements%deviator(first:last, :) = 0.0_wp
         if (allocated(elements%viscous_pressure)) elements%viscous_pressure(first:last) = 0.0_wp
-        do i_slot = first, last
-          call fill_reference(model, i_slot, elements%reference)
-        end do
-        if (model%is_round) call fill_round_reference(model, first, last, elements%reference)
+        call fill_reference(model, first, last, elements%reference)
         call clear_memories(model, (first - 1)/chunk_size + 1, last/chunk_size, elements)
       end associate
     end do
     if (model%erodes) call start_erosion(model, elements)
   end subroutine start_elements
-
-  !> Exposed quads of the whole mesh.
-  pure subroutine start_exposed(model, elements)
-    type(model_t), intent(in) :: model
-    type(block_state_t), intent(inout) :: elements
-    integer :: i
-
-    if (.not. allocated(model%layout%exposed)) return
-    if (size(model%layout%exposed) == 0) return
-    allocate (elements%mass_shares(4, model%layout%n_slot), source=0.0_wp)
-    do i = 1, size(model%layout%exposed)
-      elements%mass_shares(:, model%layout%exposed(i)) = model%layout%exposed_shares(:, i)
-    end do
-  end subroutine start_exposed
 
   !> Whether a part keeps the bulk viscosity of the last step by itself: an equation of state has
   !> it in its own memory.
@@ -80,23 +68,38 @@ contains
     end associate
   end function has_viscous_pressure
 
-  !> Diagonals and h.X of one slot; padding is the first element of its chunk, much larger: it
-  !> divides by no zero and its stable step never counts.
-  subroutine fill_reference(model, i_slot, reference)
+  !> Diagonals and h.X of slots; in axisymmetric bodies also the sum of the radii, 1/V and density
+  !> over nodal mass. Padding is the first element of its chunk, much larger: it divides by no zero
+  !> and its stable step never counts.
+  subroutine fill_reference(model, from, to, reference)
     type(model_t), intent(in) :: model
-    integer, intent(in) :: i_slot
-    real(wp), intent(inout) :: reference(:, :)
+    integer, intent(in) :: from, to            !! slots
+    real(wp), intent(inout) :: reference(:, :) !! (n_slot, 6 or n_round_reference)
     real(wp), parameter :: much = 1.0e6_wp
-    real(wp) :: x(2, 4)
+    real(wp) :: x(2, 4), volumes(4)
+    integer :: i, first, n
 
-    if (model%layout%slot_element(i_slot) == 0) then
-      reference(i_slot, :6) = much*reference(i_slot - mod(i_slot - 1, chunk_size), :6)
-      return
-    end if
-    x = model%mesh%coordinates(:, model%layout%slot_nodes(:, i_slot))
-    reference(i_slot, 1:2) = x(:, 3) - x(:, 1)
-    reference(i_slot, 3:4) = x(:, 4) - x(:, 2)
-    reference(i_slot, 5:6) = (x(:, 1) - x(:, 2)) + (x(:, 3) - x(:, 4))
+    do i = from, to
+      if (model%layout%slot_element(i) == 0) then
+        first = i - mod(i - 1, chunk_size)
+        n = min(size(reference, 2), reference_sum)
+        reference(i, :n) = much*reference(first, :n)
+        reference(i, n + 1:) = reference(first, n + 1:)/much**3
+        cycle
+      end if
+      associate (nodes => model%layout%slot_nodes(:, i))
+        x = model%mesh%coordinates(:, nodes)
+        reference(i, 1:2) = x(:, 3) - x(:, 1)
+        reference(i, 3:4) = x(:, 4) - x(:, 2)
+        reference(i, 5:6) = (x(:, 1) - x(:, 2)) + (x(:, 3) - x(:, 4))
+        if (.not. model%is_round) cycle
+        volumes = node_volumes(x, nodes(4) == nodes(3))
+        reference(i, reference_sum) = sum(x(1, :))
+        reference(i, reference_inverse) = 1.0_wp/sum(volumes)
+        reference(i, reference_mass:) = 0.0_wp
+        where (volumes > 0.0_wp) reference(i, reference_mass:) = 1.0_wp/volumes
+      end associate
+    end do
   end subroutine fill_reference
 
   !> Where each chunk's points, history, equation of state and hourglass memory start.
@@ -174,33 +177,5 @@ contains
     end subroutine clear
 
   end subroutine clear_memories
-
-  !> Sum of the radii, 1/V and density over nodal mass of slots; padding is its chunk's first
-  !> element, larger by the factor that its diagonals are.
-  subroutine fill_round_reference(model, from, to, reference)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: from, to            !! slots
-    real(wp), intent(inout) :: reference(:, :) !! (n_slot, n_round_reference)
-    real(wp) :: x(2, 4), volumes(4), factor
-    integer :: i, first
-
-    do i = from, to
-      first = i - mod(i - 1, chunk_size)
-      if (model%layout%slot_element(i) == 0) then
-        factor = maxval(abs(reference(i, 1:4)))/maxval(abs(reference(first, 1:4)))
-        reference(i, reference_sum) = factor*reference(first, reference_sum)
-        reference(i, reference_inverse:) = reference(first, reference_inverse:)/factor**3
-        cycle
-      end if
-      associate (nodes => model%layout%slot_nodes(:, i))
-        x = model%mesh%coordinates(:, nodes)
-        volumes = node_volumes(x, nodes(4) == nodes(3))
-        reference(i, reference_sum) = sum(x(1, :))
-        reference(i, reference_inverse) = 1.0_wp/sum(volumes)
-        reference(i, reference_mass:) = 0.0_wp
-        where (volumes > 0.0_wp) reference(i, reference_mass:) = 1.0_wp/volumes
-      end associate
-    end do
-  end subroutine fill_round_reference
 
 end module element_start_m

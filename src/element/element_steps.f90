@@ -14,7 +14,7 @@ module element_steps_m
   use quad_kinematics_m, only : form_shape, form_increments
   use quad_points_m, only : n_point, round_point_t, step_sums_t, form_point, form_radii, &
     start_sums, add_point_sums, form_row_sums
-  use stable_step_m, only : stable_step, round_step, full_step, round_full_step
+  use stable_step_m, only : stable_step, axisymmetric_step, full_step, axisymmetric_full_step
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
@@ -104,8 +104,8 @@ contains
       call full_steps(material, part%hourglass, nodes, start, chunk, steps)
     else if (model%is_round) then
       call form_resistance(model%materials(part%material), part%hourglass, chunk)
-      call round_step(material, part%hourglass, start(1, reference_mass), chunk_size, chunk, &
-        limit, volume, steps)
+      call axisymmetric_step(material, part%hourglass, start(1, reference_mass), chunk_size, &
+        chunk, limit, volume, steps)
     else
       call stable_step(model%controls%length_rule, material%sound_speed, part%hourglass, nodes, &
         chunk, limit, volume, steps)
@@ -148,7 +148,7 @@ contains
     end do
     if (chunk%is_round) then
       call form_row_sums(shape(1, reference_mass), chunk_size, places, sums)
-      call round_full_step(material, hourglass, chunk, sums, limit, volume, steps)
+      call axisymmetric_full_step(material, hourglass, chunk, sums, limit, volume, steps)
     else
       call full_step(material, hourglass, nodes, chunk, sums, limit, volume, steps)
     end if

@@ -105,15 +105,6 @@ contains
     c%slope = p%slope + factor*q%slope
   end function along
 
-  !> p q
-  pure function times(p, q) result(c)
-    type(dual_t), intent(in) :: p, q
-    type(dual_t) :: c
-
-    c%value = p%value*q%value
-    c%slope = p%value*q%slope + q%value*p%slope
-  end function times
-
   !> p q + r s
   pure function products(p, q, r, s) result(c)
     type(dual_t), intent(in) :: p, q, r, s
@@ -155,7 +146,7 @@ contains
     do k = 1, n_point
       call form_place(k, element%is_round, element%now, places(k))
       volumes(k) = twice_area(places(k))
-      if (element%is_round) volumes(k) = times(places(k)%s, volumes(k))
+      if (element%is_round) volumes(k) = volumes(k)*places(k)%s
       volumes(k) = 0.125_wp*volumes(k)
       volume = along(volume, 1.0_wp, volumes(k))
     end do
@@ -227,13 +218,13 @@ contains
     f(3) = cross(stress(3), place%a(1), stress(1), place%a(2))
     f(4) = cross(stress(2), place%a(1), stress(3), place%a(2))
     if (is_round) then
-      hoop = times(twice_area(place), stress(4))
+      hoop = stress(4)*twice_area(place)
       force(1) = along(force(1), weight*along_a(k), hoop)
       force(3) = along(force(3), weight*along_b(k), hoop)
       force(5) = along(force(5), weight*along_h(k), hoop)
       force(7) = along(force(7), 0.25_wp*weight, hoop)
       do i = 1, 4
-        f(i) = times(place%s, f(i))
+        f(i) = f(i)*place%s
       end do
     end if
     do i = 1, 4

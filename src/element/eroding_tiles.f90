@@ -238,7 +238,7 @@ contains
     real(wp), intent(in) :: times(2)
     type(block_state_t), intent(inout) :: elements
     logical, intent(inout) :: leaves(chunk_size)
-    real(wp), dimension(chunk_size) :: pressure, principal, mises
+    real(wp), dimension(chunk_size) :: pressure, volumetric, principal, mises
     integer :: common(chunk_size), met(chunk_size), points(chunk_size), first, k, n
 
     first = elements%eos_start(i_chunk)
@@ -247,7 +247,12 @@ contains
       common = count_of(pressure >= erosion%most_pressure) &
         + count_of(pressure <= erosion%least_pressure)
       if (times(1) >= erosion%time) common = common + 1
-      call count_volumes(erosion, elements%eos_state(first + 2*chunk_size), common)
+      if (min(erosion%most_volume, -erosion%least_volume) < huge(1.0_wp)) then
+        volumetric = log(max(tiny(1.0_wp), 1.0_wp + elements%eos_state(first + 2*chunk_size: &
+          first + 3*chunk_size - 1)))
+        common = common + count_of(volumetric >= erosion%most_volume .or. &
+          volumetric <= erosion%least_volume)
+      end if
       if (asks_for_strain(erosion)) call count_strains(erosion, i_chunk, nodes, motion, elements, &
         common)
       if (erosion%impulse < huge(1.0_wp)) call add_impulses(erosion, i_chunk, pressure, times(2), &
@@ -274,21 +279,6 @@ contains
 
     n = merge(1, 0, holds)
   end function count_of
-
-  !> Volumetric strain ln(V/V0).
-  pure subroutine count_volumes(erosion, stretch, met)
-    type(erosion_t), intent(in) :: erosion
-    real(wp), intent(in) :: stretch(chunk_size) !! V/V0 - 1
-    integer, intent(inout) :: met(chunk_size)
-    integer :: i
-
-    if (min(erosion%most_volume, -erosion%least_volume) >= huge(1.0_wp)) return
-    do i = 1, chunk_size
-      associate (strain => log(max(tiny(1.0_wp), 1.0_wp + stretch(i))))
-        if (strain >= erosion%most_volume .or. strain <= erosion%least_volume) met(i) = met(i) + 1
-      end associate
-    end do
-  end subroutine count_volumes
 
   !> Largest principal stress and von Mises stress of a point, tension positive.
   pure subroutine form_stresses(i_chunk, k, pressure, elements, principal, mises)

@@ -18,7 +18,7 @@ module quad_full_m
   use quad_points_m, only : n_point, round_point_t, step_sums_t, form_point, form_radii, &
     add_hoop_strain, add_hoop_force, add_point_force, start_sums, add_point_sums, &
     form_row_sums
-  use stable_step_m, only : full_step, round_full_step
+  use stable_step_m, only : full_step, axisymmetric_full_step
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
   use viscous_stress_m, only : add_bulk_viscosity, viscous_start, add_viscous_deviator, &
     add_viscous_pressure, trace_of
@@ -125,7 +125,7 @@ contains
     if (chunk%is_round) then
       call form_row_sums(elements%reference((i_chunk - 1)*chunk_size + 1, reference_mass), &
         size(elements%reference, 1), sums%places, sums%step)
-      call round_full_step(now, hourglass, chunk, sums%step, elements%time_limit(i_chunk), &
+      call axisymmetric_full_step(now, hourglass, chunk, sums%step, elements%time_limit(i_chunk), &
         elements%volume_limit(i_chunk))
     else
       call full_step(now, hourglass, nodes, chunk, sums%step, elements%time_limit(i_chunk), &

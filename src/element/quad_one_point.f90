@@ -15,7 +15,7 @@ module quad_one_point_m
   use quad_plain_m, only : is_plain, advance_plain
   use quad_kinematics_m, only : form_shape, form_increments, form_forces, form_round_forces, &
     inverse_start
-  use stable_step_m, only : stable_step, round_step
+  use stable_step_m, only : stable_step, axisymmetric_step
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
   use viscous_stress_m, only : add_bulk_viscosity, viscous_start, add_viscous_deviator, &
     add_viscous_pressure
@@ -152,7 +152,7 @@ contains
     type(element_chunk_t), intent(inout) :: chunk
 
     if (chunk%is_round) then
-      call round_step(now, hourglass, elements%reference((i_chunk - 1)*chunk_size + 1, &
+      call axisymmetric_step(now, hourglass, elements%reference((i_chunk - 1)*chunk_size + 1, &
         reference_mass), size(elements%reference, 1), chunk, elements%time_limit(i_chunk), &
         elements%volume_limit(i_chunk))
     else

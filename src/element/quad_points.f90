@@ -47,7 +47,7 @@ module quad_points_m
   real(wp), parameter :: on_axis = 1.0e-12_wp
 
   !> What the stable step takes of the points. Of plane quads the scalar matrix in d31, d42 and h.x
-  !> (11 22 12 13 23 33), of round ones the largest row sums of H and T (`round_full_step`);
+  !> (11 22 12 13 23 33), of round ones the largest row sums of H and T (`axisymmetric_full_step`);
   !> smallest J.
   type :: step_sums_t
     real(wp) :: h(chunk_size, 6)
@@ -272,10 +272,10 @@ contains
     end do
   end subroutine add_point_sums
 
-  !> Largest row sums of the matrices H and T (`round_full_step`) of the elements, over the volumes
-  !> of the nodes. H is that of the patterns (s11 s22 s12 s13 s23 s33), of which the nodes have (-1,
-  !> 0, 1), (0, -1, -1), (1, 0, 1) and (0, 1, -1); rows of T sum to the integral of N_a/r dA, but
-  !> for what is held on the axis.
+  !> Largest row sums of the matrices H and T (`axisymmetric_full_step`) of the elements, over the
+  !> volumes of the nodes. H is that of the patterns (s11 s22 s12 s13 s23 s33), of which the nodes
+  !> have (-1, 0, 1), (0, -1, -1), (1, 0, 1) and (0, 1, -1); rows of T sum to the integral of
+  !> N_a/r dA, but for what is held on the axis.
   pure subroutine form_row_sums(inverse_mass, stride, points, sums)
     integer, intent(in) :: stride
     real(wp), intent(in) :: inverse_mass(stride, *)

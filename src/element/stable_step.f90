@@ -15,18 +15,18 @@ module stable_step_m
   use quad_points_m, only : step_sums_t
   implicit none
   private
-  public :: stable_step, round_step, full_step, round_full_step, harmless_coefficient
+  public :: stable_step, axisymmetric_step, full_step, axisymmetric_full_step, harmless_coefficient
 
   !> Coefficient up to which hourglass control never asks for less than L/c in a convex quad of its
   !> initial area (doc/theory/elements.md).
   real(wp), parameter :: harmless_coefficient = 0.25_wp
 
-  !> Of one-point round quads, over the masses: bounds of omega^2 of strain and of its part by
-  !> volume (over lambda); of hourglass control its gamma.gamma, and the square of its coupling to
-  !> strain, both times the resistance.
-  type :: round_sums_t
+  !> Of one-point axisymmetric quads, over the masses: bounds of omega^2 of strain and of its part
+  !> by volume (over lambda); of hourglass control its gamma.gamma, and the square of its coupling
+  !> to strain, both times the resistance.
+  type :: axisymmetric_sums_t
     real(wp), dimension(chunk_size) :: strain, dilation, pattern, coupling
-  end type round_sums_t
+  end type axisymmetric_sums_t
 
 contains
 
@@ -141,12 +141,12 @@ contains
     steps = 2.0_wp/(sound_speed*sqrt(max(hourglass%coefficient*pattern, tiny(1.0_wp))))
   end function hourglass_steps
 
-  !> The same of one-point round quads, hourglass control and bulk viscosity included. With
+  !> The same of one-point axisymmetric quads, hourglass control and bulk viscosity included. With
   !> x = omega^2 dt^2/4 of strain, y the same of hourglass control and z^2 the coupling, the element
   !> is stable where (1 - x)(1 - y) >= z^2, and so where y <= 1/2 and x + 2 z^2 <= 1. The volume is
   !> below 0 where an area is.
-  pure subroutine round_step(material, hourglass, inverse_mass, stride, chunk, limit, volume, &
-      single)
+  pure subroutine axisymmetric_step(material, hourglass, inverse_mass, stride, chunk, limit, &
+      volume, single)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass      !! bulk viscosity too
     integer, intent(in) :: stride
@@ -157,7 +157,7 @@ contains
     real(wp), intent(out) :: limit                  !! s
     real(wp), intent(out) :: volume
     real(wp), intent(out), optional :: single(chunk_size) !! steps of the elements, each alone
-    type(round_sums_t) :: sums
+    type(axisymmetric_sums_t) :: sums
     real(wp) :: largest, pattern, coupled, factor, lame, shear
     integer :: i
 
@@ -187,7 +187,7 @@ contains
     call form_viscous_rates(hourglass, material%sound_speed, chunk, sums%dilation, largest)
     limit = limit/(1.0_wp + 0.5_wp*limit*largest)
     if (present(single)) single = single/(1.0_wp + 0.5_wp*single*sums%dilation)
-  end subroutine round_step
+  end subroutine axisymmetric_step
 
   !> By which the square of the coupling counts. Resistances of the viscous form act on velocities,
   !> those of the stiffness form on their sum.
@@ -271,18 +271,18 @@ contains
     end do
   end subroutine join_third_nodes
 
-  !> The sums over the nodes of round quads. With p, q, o, t, u, w the sums of b_r^2, b_z^2, b_r
-  !> b_z, M^2, M b_r, M b_z over m V: omega^2 <= 2G Lambda + lambda (p + q + t + 2 u), where Lambda
-  !> is the largest row sum (Gershgorin) of the matrix [p o u; o q w; u w t]. In the patterns nodes
-  !> 1 and 3 have b = h -+ a, nodes 2 and 4 have -h -+ b (M: s -+ a and s -+ b), so that the sum v
-  !> and the difference d of two opposite nodes' 1/m give the weights v a + d h and v h + d a of a
-  !> pattern.
+  !> The sums over the nodes of axisymmetric quads. With p, q, o, t, u, w the sums of b_r^2, b_z^2,
+  !> b_r b_z, M^2, M b_r, M b_z over m V: omega^2 <= 2G Lambda + lambda (p + q + t + 2 u), where
+  !> Lambda is the largest row sum (Gershgorin) of the matrix [p o u; o q w; u w t]. In the patterns
+  !> nodes 1 and 3 have b = h -+ a, nodes 2 and 4 have -h -+ b (M: s -+ a and s -+ b), so that the
+  !> sum v and the difference d of two opposite nodes' 1/m give the weights v a + d h and v h + d a
+  !> of a pattern.
   pure subroutine form_sums(lame, shear, inverse_mass, stride, chunk, sums)
     real(wp), intent(in) :: lame, shear            !! lambda/rho and 2G/rho
     integer, intent(in) :: stride
     real(wp), intent(in) :: inverse_mass(stride, *)
     type(element_chunk_t), intent(in) :: chunk
-    type(round_sums_t), intent(inout) :: sums
+    type(axisymmetric_sums_t), intent(inout) :: sums
     real(wp) :: va, da, vb, db, wa, wb, wha, whb, ga, gb, gr, gz, gm, p, q, o, t, u, w
     integer :: i
 
@@ -430,12 +430,12 @@ contains
     squared = 0.75_wp*sides*abs(chunk%inverse_area(i))
   end function triangle_part
 
-  !> Of fully integrated round quads, in their present shape, u_r = 0 on the axis. With H the matrix
-  !> of |grad v|^2 and T that of (v_r/r)^2 of nodes off the axis over the masses, their largest row
-  !> sums bound their eigenvalues, and with D:C:D <= 2G (|grad v|^2 + (v_r/r)^2) + lambda (div v +
-  !> v_r/r)^2
+  !> Of fully integrated axisymmetric quads, in their present shape, u_r = 0 on the axis. With H the
+  !> matrix of |grad v|^2 and T that of (v_r/r)^2 of nodes off the axis over the masses, their
+  !> largest row sums bound their eigenvalues, and with D:C:D <= 2G (|grad v|^2 + (v_r/r)^2) +
+  !> lambda (div v + v_r/r)^2
   !>   omega^2 <= 2G (H + T) + lambda (sqrt(2H) + sqrt(T))^2,   K for lambda with mean dilatation.
-  pure subroutine round_full_step(material, viscosity, chunk, sums, limit, volume, single)
+  pure subroutine axisymmetric_full_step(material, viscosity, chunk, sums, limit, volume, single)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: viscosity      !! its Q1 and Q2 count
     type(element_chunk_t), intent(in) :: chunk
@@ -465,6 +465,6 @@ contains
     call form_viscous_rates(viscosity, material%sound_speed, chunk, both, largest)
     limit = limit/(1.0_wp + 0.5_wp*limit*largest)
     if (present(single)) single = single/(1.0_wp + 0.5_wp*single*both)
-  end subroutine round_full_step
+  end subroutine axisymmetric_full_step
 
 end module stable_step_m

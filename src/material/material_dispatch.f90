@@ -9,7 +9,7 @@ module material_dispatch_m
   use stress_chunk_m, only : stress_chunk_t, stress_point_t
   use material_crushable_foam_m, only : update_crushable_foam
   use material_elastic_m, only : update_elastic, tangent_elastic, update_null
-  use material_j2_m, only : update_j2_isotropic, update_j2_mixed, tangent_j2
+  use material_j2_m, only : update_j2_isotropic, update_j2_mixed, tangent_of_return
   use material_johnson_cook_m, only : update_johnson_cook, update_hot_johnson_cook
   use material_piecewise_m, only : update_piecewise, tangent_piecewise
   use material_rubber_m, only : update_mooney_rivlin, update_blatz_ko
@@ -97,32 +97,11 @@ contains
     type(stress_chunk_t), intent(inout) :: chunk
     real(wp), intent(inout), optional :: history(chunk_size, *) !! history_size(material) columns;
                                                                 !! absent for a law without history
-
-    if (material%failure_strain < huge(1.0_wp)) then
-      call update_failing(material, chunk, history)
-    else
-      call update_law(material, chunk, history)
-    end if
-  end subroutine update_stress
-
-  !> The same where points may fail; apart, since other laws have no use for its array.
-  pure subroutine update_failing(material, chunk, history)
-    type(material_t), intent(in) :: material
-    type(stress_chunk_t), intent(inout) :: chunk
-    real(wp), intent(inout) :: history(chunk_size, *)
     real(wp) :: before(chunk_size)
+    logical :: may_break
 
-    before = history(:, 1)
-    call update_law(material, chunk, history)
-    call fail(material%failure_strain, before, chunk, history(:, 1))
-  end subroutine update_failing
-
-  !> Advance the deviator, whatever fails.
-  pure subroutine update_law(material, chunk, history)
-    type(material_t), intent(in) :: material
-    type(stress_chunk_t), intent(inout) :: chunk
-    real(wp), intent(inout), optional :: history(chunk_size, *)
-
+    may_break = material%failure_strain < huge(1.0_wp)
+    if (may_break) before = history(:, 1)
     select case (material%law)
     case (law_elastic)
       call update_elastic(material%shear, chunk)
@@ -149,7 +128,8 @@ contains
     case (law_crushable_foam)
       call update_crushable_foam(material, chunk, history(:, 1))
     end select
-  end subroutine update_law
+    if (may_break) call fail(material%failure_strain, before, chunk, history(:, 1))
+  end subroutine update_stress
 
   !> Points whose plastic strain has reached that of failure carry no stress; it stays what it was.
   pure subroutine fail(limit, before, chunk, plastic_strain)
@@ -205,7 +185,8 @@ contains
     case (law_elastic)
       call tangent_elastic(material%shear, point)
     case (law_plastic)
-      call tangent_j2(material, point)
+      call tangent_of_return(material%shear, material%yield + material%beta*material%hardening &
+        *point%plastic_strain, material%hardening, point)
     case (law_piecewise)
       call tangent_piecewise(material%shear, material%curve, point)
     end select

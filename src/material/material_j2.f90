@@ -10,7 +10,7 @@ module material_j2_m
   use stress_chunk_m, only : stress_chunk_t, rotate_deviator, stress_point_t, turn, turn_rate
   implicit none
   private
-  public :: update_j2_isotropic, update_j2_mixed, tangent_j2, tangent_of_return, trial_mises
+  public :: update_j2_isotropic, update_j2_mixed, tangent_of_return, trial_mises
 
   !> Part of the yield stress by which a point on the surface may miss it by round-off.
   real(wp), parameter :: on_surface = 1.0e-9_wp
@@ -90,15 +90,6 @@ contains
         + 2.0_wp*chunk%sxy(i)*exy)
     end do
   end subroutine update_j2_mixed
-
-  !> The same at one point, with its derivative.
-  pure subroutine tangent_j2(material, point)
-    type(material_t), intent(in) :: material
-    type(stress_point_t), intent(inout) :: point !! `stress` and `tangent` out
-
-    call tangent_of_return(material%shear, material%yield + material%beta*material%hardening &
-      *point%plastic_strain, material%hardening, point)
-  end subroutine tangent_j2
 
   !> Von Mises value of the trial flow direction xi* = Q s Q^T + 2G dev(e) - Q alpha Q^T.
   pure function trial_mises(shear, point) result(mises)

@@ -1,6 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Exterior edges of a set of elements.
 module boundary_m
+  use kinds_m, only : long
+  use sorting_m, only : sorted_order
   implicit none
   private
   public :: boundary_t, find_boundary, find_edge
@@ -24,34 +26,41 @@ module boundary_m
 contains
 
   !> Edges that exactly one of the chosen elements has. Only edges with both nodes in `among` are
-  !> looked at. Linear in elements and nodes.
+  !> looked at. Linear in elements and nodes, but for the sorting of the edges found.
   pure subroutine find_boundary(element_nodes, chosen, among, boundary)
     integer, intent(in) :: element_nodes(:, :) !! (4, n) counter-clockwise; triangles repeat node 3
     logical, intent(in) :: chosen(:)           !! (n)
     logical, intent(in) :: among(:)            !! (n_node)
     type(boundary_t), intent(out) :: boundary
     type(edge_table_t) :: table
-    integer :: node, i, n_node, leaving
+    integer, allocatable :: order(:)
+    integer :: node, i, n, n_node
 
     n_node = size(among)
     call file_edges(element_nodes, chosen, among, table)
     call strike_shared(table, n_node)
-    ! Sort by the node that each edge leaves: count, sum up, put in place.
-    allocate (boundary%start(n_node + 1), source=0)
+    boundary%n_edge = count(table%owner > 0)
+    allocate (boundary%nodes(2, boundary%n_edge), boundary%elements(boundary%n_edge))
+    n = 0
     do node = 1, n_node
       do i = table%start(node), table%start(node + 1) - 1
         if (table%owner(i) == 0) cycle
-        leaving = merge(node, -table%far(i), table%far(i) > 0)
-        boundary%start(leaving) = boundary%start(leaving) + 1
+        n = n + 1
+        boundary%nodes(:, n) = [node, table%far(i)]
+        if (table%far(i) < 0) boundary%nodes(:, n) = [-table%far(i), node]
+        boundary%elements(n) = table%owner(i)
       end do
     end do
-    boundary%n_edge = sum(boundary%start)
-    boundary%start(n_node + 1) = boundary%n_edge + 1
-    do node = n_node, 1, -1
-      boundary%start(node) = boundary%start(node + 1) - boundary%start(node)
+    order = sorted_order(int(boundary%nodes(1, :), long))
+    boundary%nodes = boundary%nodes(:, order)
+    boundary%elements = boundary%elements(order)
+    allocate (boundary%start(n_node + 1), source=1)
+    do i = 1, n
+      boundary%start(boundary%nodes(1, i) + 1) = i + 1
     end do
-    allocate (boundary%nodes(2, boundary%n_edge), boundary%elements(boundary%n_edge))
-    call put_edges(table, n_node, boundary)
+    do node = 1, n_node ! some have none
+      boundary%start(node + 1) = max(boundary%start(node), boundary%start(node + 1))
+    end do
   end subroutine find_boundary
 
   !> File the edges of the chosen elements.
@@ -111,27 +120,6 @@ contains
       end do
     end do
   end subroutine strike_shared
-
-  !> Put the edges that are left into the boundary.
-  pure subroutine put_edges(table, n_node, boundary)
-    type(edge_table_t), intent(in) :: table
-    integer, intent(in) :: n_node
-    type(boundary_t), intent(inout) :: boundary
-    integer, allocatable :: next(:)
-    integer :: node, i, ends(2)
-
-    allocate (next(size(boundary%start)), source=boundary%start)
-    do node = 1, n_node
-      do i = table%start(node), table%start(node + 1) - 1
-        if (table%owner(i) == 0) cycle
-        ends = [node, table%far(i)]
-        if (table%far(i) < 0) ends = [-table%far(i), node]
-        boundary%nodes(:, next(ends(1))) = ends
-        boundary%elements(next(ends(1))) = table%owner(i)
-        next(ends(1)) = next(ends(1)) + 1
-      end do
-    end do
-  end subroutine put_edges
 
   !> The exterior edge from node `a` to node `b`, or 0.
   pure function find_edge(boundary, a, b) result(edge)

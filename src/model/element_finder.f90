@@ -88,16 +88,11 @@ contains
     type(model_t), intent(in) :: model
     integer, intent(in) :: element
     real(wp) :: box(2, 2)
-    integer :: k
+    real(wp) :: x(2, 4)
 
-    associate (x => model%mesh%coordinates, nodes => model%mesh%element_nodes(:, element))
-      box(:, 1) = x(:, nodes(1))
-      box(:, 2) = x(:, nodes(1))
-      do k = 2, 4
-        box(:, 1) = min(box(:, 1), x(:, nodes(k)))
-        box(:, 2) = max(box(:, 2), x(:, nodes(k)))
-      end do
-    end associate
+    x = model%mesh%coordinates(:, model%mesh%element_nodes(:, element))
+    box(:, 1) = minval(x, 2)
+    box(:, 2) = maxval(x, 2)
   end function box_of
 
   !> Counting sort of the elements into the cells that their boxes touch.
@@ -163,32 +158,21 @@ contains
     real(wp), intent(in) :: x(2)
     integer, intent(in) :: carriers(:)
     integer :: element
-    integer :: cell(2), k, i
+    integer :: cell(2), k, i, j
 
     element = 0
     if (any(x < finder%low) .or. any(x > finder%high)) return
     cell = cell_of(finder, x)
     k = 1 + cell(1) + cell(2)*finder%cells(1)
     do i = finder%first(k) + 1, finder%first(k + 1)
-      if (has_all(model%mesh%element_nodes(:, finder%items(i)), carriers)) cycle
+      associate (nodes => model%mesh%element_nodes(:, finder%items(i)))
+        if (all([(any(nodes == carriers(j)), j=1, size(carriers))])) cycle
+      end associate
       if (.not. is_in_element(model, finder%items(i), x)) cycle
       element = finder%items(i)
       return
     end do
   end function element_at
-
-  !> Whether an element has all of the given nodes.
-  pure function has_all(nodes, wanted)
-    integer, intent(in) :: nodes(4), wanted(:)
-    logical :: has_all
-    integer :: k
-
-    has_all = .false.
-    do k = 1, size(wanted)
-      if (all(nodes /= wanted(k))) return
-    end do
-    has_all = .true.
-  end function has_all
 
   !> Whether x is in an element, edges included.
   pure function is_in_element(model, element, x) result(is_in)

@@ -22,99 +22,63 @@ module layout_building_m
 
 contains
 
-  !> Tiles, chunks and slots of the elements (no node numbers yet).
+  !> Tiles, chunks and slots of the elements (no node numbers yet): tile by tile along the curve,
+  !> rigid elements behind all tiles; in a tile part by part, each from the first slot of a chunk.
   subroutine build_slots(mesh, is_rigid, layout)
     type(mesh_t), intent(in) :: mesh
     logical, intent(in) :: is_rigid(:)    !! (n_element) of a rigid body
     type(layout_t), intent(out) :: layout !! tiles' chunks, chunk_part, slot_element, element_slot
-    integer, allocatable :: order(:)
-    integer :: n_tile, i_tile, first, last, n_moving
+    integer, allocatable :: order(:), tile(:)
+    integer :: n_tile, n_moving, i, i_chunk
 
-    ! Rigid elements behind all others.
     order = sorted_order(hilbert_keys(mesh) + merge(behind_all, 0_long, is_rigid))
     n_moving = count(.not. is_rigid)
     n_tile = max(1, (n_moving + tile_elements - 1)/tile_elements)
-    allocate (layout%tiles(n_tile), layout%element_slot(mesh%n_element))
-    allocate (layout%chunk_part(0), layout%slot_element(0))
-    call reserve_chunks(mesh, order, n_moving, layout)
-    layout%n_chunk = 0
-    do i_tile = 1, n_tile
-      call tile_range(n_moving, n_tile, i_tile, first, last)
-      layout%tiles(i_tile)%first_chunk = layout%n_chunk + 1
-      call fill_chunks(mesh, by_part(mesh, order(first:last)), layout)
-      layout%tiles(i_tile)%last_chunk = layout%n_chunk
+    allocate (layout%tiles(n_tile), tile(mesh%n_element))
+    tile(order(n_moving + 1:)) = n_tile + 1
+    do i = 1, n_moving
+      ! Elements n (t - 1)/n_tile + 1 .. n t/n_tile, rounded down, of tile t.
+      tile(order(i)) = int((int(i, long)*n_tile + n_moving - 1)/n_moving)
     end do
-    call fill_chunks(mesh, by_part(mesh, order(n_moving + 1:)), layout)
-    layout%n_slot = layout%n_chunk*chunk_size
+    call fill_slots(mesh, tile, layout)
+    allocate (layout%chunk_part(layout%n_chunk), layout%chunk_elements(layout%n_chunk), &
+      layout%slot_element(layout%n_slot), source=0)
+    do i = 1, mesh%n_element
+      i_chunk = (layout%element_slot(i) - 1)/chunk_size + 1
+      layout%slot_element(layout%element_slot(i)) = i
+      layout%chunk_part(i_chunk) = mesh%element_part(i)
+      layout%chunk_elements(i_chunk) = layout%chunk_elements(i_chunk) + 1
+      if (tile(i) > n_tile) cycle
+      layout%tiles(tile(i))%last_chunk = max(layout%tiles(tile(i))%last_chunk, i_chunk)
+    end do
+    do i = 2, n_tile
+      layout%tiles(i)%first_chunk = layout%tiles(i - 1)%last_chunk + 1
+    end do
   end subroutine build_slots
 
-  !> Elements sorted by part, and by number within a part.
-  function by_part(mesh, elements) result(sorted)
+  !> Slot of each element: by tile, part and number.
+  subroutine fill_slots(mesh, tile, layout)
     type(mesh_t), intent(in) :: mesh
-    integer, intent(in) :: elements(:)
-    integer, allocatable :: sorted(:)
-
-    sorted = elements(sorted_order(int(mesh%element_part(elements), long)*huge(0) + elements))
-  end function by_part
-
-  !> Elements first .. last of the curve belong to a tile.
-  pure subroutine tile_range(n_element, n_tile, i_tile, first, last)
-    integer, intent(in) :: n_element, n_tile, i_tile
-    integer, intent(out) :: first, last
-
-    first = int(int(n_element, long)*(i_tile - 1)/n_tile) + 1
-    last = int(int(n_element, long)*i_tile/n_tile)
-  end subroutine tile_range
-
-  !> Allocate the chunk arrays once their number is known.
-  subroutine reserve_chunks(mesh, order, n_moving, layout)
-    type(mesh_t), intent(in) :: mesh
-    integer, intent(in) :: order(:)          !! elements along the curve
-    integer, intent(in) :: n_moving          !! the first so many are not rigid
+    integer, intent(in) :: tile(:)           !! (n_element)
     type(layout_t), intent(inout) :: layout
-    integer, allocatable :: counts(:)
-    integer :: i_tile, n_tile, n_chunk, first, last, i
+    integer(long), allocatable :: keys(:)
+    integer, allocatable :: order(:)
+    integer :: i
 
-    n_tile = size(layout%tiles)
-    allocate (counts(maxval(mesh%element_part)))
-    n_chunk = 0
-    do i_tile = 1, n_tile + 1
-      call tile_range(n_moving, n_tile, i_tile, first, last)
-      if (i_tile > n_tile) last = mesh%n_element
-      counts = 0
-      do i = first, last
-        counts(mesh%element_part(order(i))) = counts(mesh%element_part(order(i))) + 1
-      end do
-      n_chunk = n_chunk + sum((counts + chunk_size - 1)/chunk_size)
-    end do
-    deallocate (layout%chunk_part, layout%slot_element)
-    allocate (layout%chunk_part(n_chunk), layout%chunk_elements(n_chunk), &
-      layout%slot_element(n_chunk*chunk_size), source=0)
-  end subroutine reserve_chunks
-
-  !> Put the elements of one tile, sorted by part, into chunks.
-  subroutine fill_chunks(mesh, elements, layout)
-    type(mesh_t), intent(in) :: mesh
-    integer, intent(in) :: elements(:)      !! sorted by part
-    type(layout_t), intent(inout) :: layout
-    integer :: i, part, filled, slot
-
-    part = 0
-    filled = 0
-    do i = 1, size(elements)
-      if (mesh%element_part(elements(i)) /= part .or. filled == chunk_size) then
-        part = mesh%element_part(elements(i))
-        filled = 0
-        layout%n_chunk = layout%n_chunk + 1
-        layout%chunk_part(layout%n_chunk) = part
+    keys = int(tile, long)*(maxval(mesh%element_part) + 1) + mesh%element_part
+    order = sorted_order(keys)
+    allocate (layout%element_slot(mesh%n_element))
+    do i = 1, mesh%n_element
+      if (i > 1) then
+        if (keys(order(i)) > keys(order(i - 1))) &
+          layout%n_slot = (layout%n_slot + chunk_size - 1)/chunk_size*chunk_size
       end if
-      filled = filled + 1
-      layout%chunk_elements(layout%n_chunk) = filled
-      slot = (layout%n_chunk - 1)*chunk_size + filled
-      layout%slot_element(slot) = elements(i)
-      layout%element_slot(elements(i)) = slot
+      layout%n_slot = layout%n_slot + 1
+      layout%element_slot(order(i)) = layout%n_slot
     end do
-  end subroutine fill_chunks
+    layout%n_chunk = (layout%n_slot + chunk_size - 1)/chunk_size
+    layout%n_slot = layout%n_chunk*chunk_size
+  end subroutine fill_slots
 
   !> Node numbers of the slots, global and local to the tile, and the force slots of special nodes.
   !> `mesh` holds the new node order.
@@ -214,24 +178,15 @@ contains
   !> For each special node the force slots that hold its parts, in rising order.
   subroutine list_node_slots(layout)
     type(layout_t), intent(inout) :: layout
-    integer, allocatable :: position(:)
-    integer :: i_slot, node
+    integer :: i, node
 
-    allocate (layout%node_slots(layout%n_special + 1), source=0)
-    do i_slot = 1, size(layout%special_node)
-      node = layout%special_node(i_slot)
-      layout%node_slots(node + 1) = layout%node_slots(node + 1) + 1
+    layout%slot_list = sorted_order(int(layout%special_node, long))
+    allocate (layout%node_slots(layout%n_special + 1), source=1)
+    do i = 1, size(layout%slot_list)
+      layout%node_slots(layout%special_node(layout%slot_list(i)) + 1) = i + 1
     end do
-    layout%node_slots(1) = 1
-    do node = 1, layout%n_special
-      layout%node_slots(node + 1) = layout%node_slots(node) + layout%node_slots(node + 1)
-    end do
-    allocate (layout%slot_list(size(layout%special_node)))
-    position = layout%node_slots
-    do i_slot = 1, size(layout%special_node)
-      node = layout%special_node(i_slot)
-      layout%slot_list(position(node)) = i_slot
-      position(node) = position(node) + 1
+    do node = 1, layout%n_special ! some have none
+      layout%node_slots(node + 1) = max(layout%node_slots(node), layout%node_slots(node + 1))
     end do
   end subroutine list_node_slots
 
@@ -328,41 +283,26 @@ contains
   end subroutine order_nodes
 
   !> Special nodes, and the tile that owns each. Nodes that several tiles touch are special; so is a
-  !> node without any element, and a node of a rigid body with an element that is not rigid. Tiles
-  !> share their common nodes evenly: the threads that have them wait for each other.
+  !> node without any element, and a node of a rigid body with an element that is not rigid. Every
+  !> tile gets every second of the special nodes that it has in common with a later one, and those
+  !> that only it is left to take: the threads that share nodes wait for each other.
   subroutine find_owners(mesh, is_rigid, layout, is_special, owner)
     type(mesh_t), intent(in) :: mesh
     logical, intent(in) :: is_rigid(:)
     type(layout_t), intent(in) :: layout
     logical, intent(inout) :: is_special(:)
     integer, allocatable, intent(out) :: owner(:) !! (n_node) a tile or no_owner
-    integer, allocatable :: last_tile(:), n_touch(:), nodes(:)
+    integer, allocatable :: last_tile(:), seen(:), n_touch(:), nodes(:), n_common(:)
     integer :: i_tile, i
 
     allocate (owner(mesh%n_node), source=no_owner)
-    allocate (last_tile(mesh%n_node), n_touch(mesh%n_node), source=0)
+    allocate (last_tile(mesh%n_node), seen(mesh%n_node), n_touch(mesh%n_node), &
+      n_common(size(layout%tiles)), source=0)
     do i_tile = 1, size(layout%tiles)
       call list_nodes(mesh, layout%tiles(i_tile), layout%slot_element, i_tile, last_tile, nodes)
-      do i = 1, size(nodes)
-        n_touch(nodes(i)) = n_touch(nodes(i)) + 1
-      end do
+      n_touch(nodes) = n_touch(nodes) + 1
     end do
     is_special = is_special .or. n_touch > 1 .or. (n_touch == 0 .neqv. is_rigid)
-    call share_nodes(mesh, layout, is_special, last_tile, owner)
-  end subroutine find_owners
-
-  !> Every tile gets every second of the special nodes that it has in common with a later one, and
-  !> those that only it is left to take.
-  subroutine share_nodes(mesh, layout, is_special, last_tile, owner)
-    type(mesh_t), intent(in) :: mesh
-    type(layout_t), intent(in) :: layout
-    logical, intent(in) :: is_special(:)
-    integer, intent(in) :: last_tile(:)   !! (n_node) the last tile that touches it
-    integer, intent(inout) :: owner(:)
-    integer, allocatable :: seen(:), nodes(:), n_common(:)
-    integer :: i_tile, i
-
-    allocate (seen(mesh%n_node), n_common(size(layout%tiles)), source=0)
     do i_tile = 1, size(layout%tiles)
       call list_nodes(mesh, layout%tiles(i_tile), layout%slot_element, i_tile, seen, nodes)
       nodes = pack(nodes, is_special(nodes) .and. owner(nodes) == no_owner)
@@ -374,7 +314,7 @@ contains
       end do
       n_common(last_tile(nodes)) = 0
     end do
-  end subroutine share_nodes
+  end subroutine find_owners
 
   !> The nodes of a tile in the order in which its elements touch them.
   subroutine list_nodes(mesh, tile, slot_element, mark, marks, nodes)

@@ -27,16 +27,12 @@ contains
   pure function mark_supports(model) result(is_support)
     type(model_t), intent(in) :: model
     logical :: is_support(model%mesh%n_node)
-    integer :: i
 
     is_support = .false.
     associate (conditions => model%conditions)
       if (allocated(conditions%fixed_nodes)) is_support(conditions%fixed_nodes) = .true.
-      if (allocated(conditions%skew_supports)) then
-        do i = 1, size(conditions%skew_supports)
-          is_support(conditions%skew_supports(i)%node) = .true.
-        end do
-      end if
+      if (allocated(conditions%skew_supports)) &
+        is_support(conditions%skew_supports%node) = .true.
     end associate
     if (any(is_support)) is_support = is_support .and. mark_meshed_nodes(model)
   end function mark_supports

@@ -97,9 +97,9 @@ contains
     type(surface_t), intent(out) :: surface
     integer, intent(out) :: outcome        !! one of the `chain_` constants
     integer, intent(out) :: trouble(2)
-    integer, allocatable :: chain(:), position(:)
+    integer, allocatable :: chain(:), position(:), ahead(:), back(:)
     logical :: closed, is_ring
-    integer :: n, i, n_forward, n_backward
+    integer :: n, i, n_link
 
     trouble = 0
     outcome = chain_short
@@ -117,26 +117,26 @@ contains
       position(chain(i)) = i
     end do
     trouble = 0
-    n_forward = 0
-    n_backward = 0
-    do i = 1, merge(n, n - 1, closed)
-      if (find_edge(boundary, chain(i), chain(mod(i, n) + 1)) > 0) n_forward = n_forward + 1
-      if (find_edge(boundary, chain(mod(i, n) + 1), chain(i)) > 0) n_backward = n_backward + 1
-    end do
     outcome = chain_good
-    if (n_forward < merge(n, n - 1, closed)) then
-      if (n_backward == merge(n, n - 1, closed)) then
-        outcome = chain_turned
-        chain = chain(n:1:-1)
-      else
-        is_ring = closed
-        call order_chain(boundary, position, chain, closed, outcome)
-        if (is_ring .and. .not. closed) outcome = chain_broken
-        if (outcome == chain_broken) call find_break(boundary, given(:n), is_ring, &
-          n_forward >= n_backward, trouble)
-      end if
+    n_link = merge(n, n - 1, closed)
+    ahead = [(find_edge(boundary, chain(i), chain(mod(i, n) + 1)), i=1, n_link)]
+    back = [(find_edge(boundary, chain(mod(i, n) + 1), chain(i)), i=1, n_link)]
+    if (any(ahead == 0) .and. all(back > 0)) then
+      outcome = chain_turned
+      chain = chain(n:1:-1)
+    else if (any(ahead == 0)) then
+      is_ring = closed
+      call order_chain(boundary, position, chain, closed, outcome)
+      if (is_ring .and. .not. closed) outcome = chain_broken
     end if
-    if (outcome /= chain_broken) call build_chain(boundary, chain, closed, surface)
+    if (outcome == chain_broken) then
+      ! In the walking direction that most of the edges have.
+      if (count(ahead > 0) < count(back > 0)) ahead = back
+      i = findloc(ahead > 0, .false., 1)
+      trouble = given([i, mod(i, n) + 1])
+      return
+    end if
+    call build_chain(boundary, chain, closed, surface)
   end subroutine chain_surface
 
   !> Put the nodes into the one order that their exterior edges allow.
@@ -177,25 +177,6 @@ contains
     chain = ordered
     outcome = chain_ordered
   end subroutine order_chain
-
-  !> The first two neighbours of the list that no exterior edge joins in the walking direction.
-  pure subroutine find_break(boundary, chain, closed, forward, trouble)
-    type(boundary_t), intent(in) :: boundary
-    integer, intent(in) :: chain(:)
-    logical, intent(in) :: closed, forward
-    integer, intent(out) :: trouble(2)
-    integer :: i, n
-
-    n = size(chain)
-    do i = 1, merge(n, n - 1, closed)
-      trouble = [chain(i), chain(mod(i, n) + 1)]
-      if (forward) then
-        if (find_edge(boundary, trouble(1), trouble(2)) == 0) return
-      else
-        if (find_edge(boundary, trouble(2), trouble(1)) == 0) return
-      end if
-    end do
-  end subroutine find_break
 
   !> Fill a surface from a chain whose edges are all there.
   pure subroutine build_chain(boundary, chain, closed, surface)
