@@ -67,8 +67,9 @@ contains
     end if
   end subroutine check_deck
 
-  !> The state at time zero: forces, step or acceleration, and what the run says of them. A model
-  !> that can not start is written all the same, undeformed.
+  !> The state at time zero: forces, step or acceleration, and what the run says of them; with d= in
+  !> the file `<job>.start.vtkhdf`, with the model in it. A model that can not start is written all
+  !> the same, undeformed.
   subroutine start_run(arguments, info, model, monitor, error)
     type(arguments_t), intent(in) :: arguments
     type(run_info_t), intent(inout) :: info
@@ -87,7 +88,18 @@ contains
     if (monitor%has_plot .and. .not. is_asked(model%controls%output%plot)) &
       model%controls%output%plot%dt = model%controls%end_time
     call renumber_model(model)
-    if (monitor%has_plot) call open_start(arguments, info, model, monitor, failure)
+    if (monitor%has_plot) then
+      info%deck = arguments%deck(index(arguments%deck, '/', back=.true.) + 1:)
+      if (allocated(model%controls%title)) info%title = model%controls%title
+      info%version = version
+      info%options = arguments%line
+      call make_directory(arguments%directory, failure)
+      if (.not. allocated(failure)) call open_results(monitor%results, &
+        join_path(arguments%directory, arguments%job//'.start.vtkhdf'), model, info, .false., &
+        failure)
+      call write_model(monitor%results%id, model, failure)
+      call publish(monitor%results, failure)
+    end if
     call start_state(model, monitor%log, state, error)
     has_history = .false.
     if (allocated(state%elements%history)) has_history = size(state%elements%history) > 0
@@ -105,25 +117,6 @@ contains
       call finish_results(monitor%results, monitor%histories, failure)
     if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
   end subroutine start_run
-
-  !> The file of the state at time zero, `<job>.start.vtkhdf`, with the model in it.
-  subroutine open_start(arguments, info, model, monitor, error)
-    type(arguments_t), intent(in) :: arguments
-    type(run_info_t), intent(inout) :: info
-    type(model_t), intent(in) :: model
-    type(monitor_t), intent(inout) :: monitor
-    type(error_t), allocatable, intent(out) :: error
-
-    info%deck = arguments%deck(index(arguments%deck, '/', back=.true.) + 1:)
-    if (allocated(model%controls%title)) info%title = model%controls%title
-    info%version = version
-    info%options = arguments%line
-    call make_directory(arguments%directory, error)
-    if (.not. allocated(error)) call open_results(monitor%results, &
-      join_path(arguments%directory, arguments%job//'.start.vtkhdf'), model, info, .false., error)
-    call write_model(monitor%results%id, model, error)
-    call publish(monitor%results, error)
-  end subroutine open_start
 
   !> The warnings that wait in a log.
   subroutine add_warnings(log, findings)

@@ -2,6 +2,7 @@
 !> slideline: arguments in, exit status out.
 program slideline
   use, intrinsic :: iso_c_binding, only : c_int
+  use c_files_m, only : c_exit
   use check_m, only : check_deck
   use arguments_m, only : arguments_t, read_arguments, help_text
   use build_info_m, only : version, build_type, compiler, flags, solvers
@@ -14,14 +15,6 @@ program slideline
   use signals_m, only : catch_requests
   use source_version_m, only : source_version
   implicit none
-
-  interface
-    !> C library: end the process with a status that is known only now.
-    subroutine c_exit(status) bind(c, name='exit')
-      import :: c_int
-      integer(c_int), value :: status
-    end subroutine c_exit
-  end interface
 
   type(arguments_t) :: arguments
   type(ranks_t) :: ranks

@@ -7,7 +7,8 @@ module run_m
   use arguments_m, only : arguments_t, file_stem, timing_by_interface, timing_off
   use build_info_m, only : version, build_type, compiler, flags
   use checksum_m, only : add_bytes, checksum_text
-  use clock_m, only : lap, start_clock, look_at_clock, split_contact, phase_input, phase_output
+  use clock_m, only : lap, start_clock, look_at_clock, split_contact, elapsed_seconds, &
+    phase_input, phase_output
   use contact_dispatch_m, only : contact_kinds
   use deck_m, only : deck_request_t, read_deck
   use errors_m, only : error_t, raise, status_input, status_stopped
@@ -42,8 +43,8 @@ module run_m
   use source_version_m, only : source_version
   use start_m, only : start_state
   use state_m, only : state_t
-  use status_file_m, only : start_status
-  use timing_file_m, only : write_timing
+  use status_file_m, only : write_status
+  use timing_file_m, only : timing_text
   implicit none
   private
   public :: run_deck
@@ -293,19 +294,26 @@ contains
     if (.not. allocated(error)) call write_whole(prefix//'.effective.k', effective, error)
   end subroutine write_deck
 
-  !> The file status.out from where the run begins.
+  !> The file status.out from where the run begins; <job>.status.out where the job has a name of its
+  !> own (jobid=), as in LS-DYNA.
   subroutine begin_status(model, state, monitor)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(monitor_t), intent(inout) :: monitor
 
     associate (status => monitor%progress%status, restarts => monitor%restarts)
+      status%job = restarts%job
+      status%path = join_path(restarts%directory, 'status.out')
+      if (restarts%job /= file_stem(restarts%deck)) &
+        status%path = join_path(restarts%directory, restarts%job//'.status.out')
       status%cycle = state%cycle
-      status%time = state%time
-      status%end_time = model%controls%end_time
+      status%start_cycle = state%cycle
       status%end_cycle = model%controls%end_cycle
-      call start_status(status, restarts%directory, restarts%job, &
-        restarts%job /= file_stem(restarts%deck), monitor%clock)
+      status%time = state%time
+      status%start_time = state%time
+      status%end_time = model%controls%end_time
+      status%start_seconds = elapsed_seconds(monitor%clock)
+      call write_status(status, monitor%clock, 'running')
     end associate
   end subroutine begin_status
 
@@ -386,7 +394,7 @@ contains
     call look_at_clock(monitor%clock)
     allocate (interfaces(0))
     if (allocated(model%contacts)) interfaces = model%contacts(:n_told(model%contacts))%id
-    call write_timing(prefix//'.timing.csv', monitor%clock, interfaces, problem)
+    call write_whole(prefix//'.timing.csv', timing_text(monitor%clock, interfaces), problem)
     if (.not. allocated(error) .and. allocated(problem)) call move_alloc(problem, error)
     if (.not. allocated(error) .and. allocated(monitor%log%trouble)) error = monitor%log%trouble
     told = reason

@@ -8,7 +8,7 @@ module c_files_m
   implicit none
   private
   public :: c_mkdir, c_rename, c_unlink, c_write, c_fopen, c_fileno, c_fclose, c_fsync, &
-    c_flock, c_ftruncate, c_memcpy, system_reason, system_failure
+    c_flock, c_ftruncate, c_memcpy, c_exit, system_reason, system_failure
 
   interface
     !> POSIX mkdir; 0 on success.
@@ -86,6 +86,12 @@ module c_files_m
       integer(c_size_t), value :: length    !! bytes that stay
       integer(c_int) :: status
     end function c_ftruncate
+
+    !> C library: end the process with a status; handlers of exits are called.
+    subroutine c_exit(status) bind(c, name='exit')
+      import :: c_int
+      integer(c_int), value :: status
+    end subroutine c_exit
 
     !> Where the C library of Linux keeps `errno`.
     function c_errno() bind(c, name='__errno_location') result(place)

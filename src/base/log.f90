@@ -55,32 +55,26 @@ contains
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: text
     type(error_t), allocatable :: error
+    character(:), allocatable :: longer
+    integer :: last
 
     if (log%is_mute) return
     if (log%is_open) then
       if (allocated(log%trouble)) return
       call append_text(log%file, text//new_line('a'), error)
       if (allocated(error)) call move_alloc(error, log%trouble)
-    else
-      call keep_waiting(log, text//new_line('a'))
+      return
     end if
-  end subroutine write_log
-
-  !> Keep a text until the file is open.
-  subroutine keep_waiting(log, text)
-    type(log_t), intent(inout) :: log
-    character(*), intent(in) :: text
-    character(:), allocatable :: longer
-
     if (.not. allocated(log%waiting)) log%waiting = repeat(' ', 4096)
-    if (log%n_waiting + len(text) > len(log%waiting)) then
-      allocate (character(2*log%n_waiting + len(text)) :: longer)
+    last = log%n_waiting + len(text) + 1
+    if (last > len(log%waiting)) then
+      allocate (character(last + log%n_waiting) :: longer)
       longer(:) = log%waiting(:log%n_waiting)
       call move_alloc(longer, log%waiting)
     end if
-    log%waiting(log%n_waiting + 1:log%n_waiting + len(text)) = text
-    log%n_waiting = log%n_waiting + len(text)
-  end subroutine keep_waiting
+    log%waiting(log%n_waiting + 1:last) = text//new_line('a')
+    log%n_waiting = last
+  end subroutine write_log
 
   !> Forget the lines that wait for the file.
   subroutine forget_waiting(log)

@@ -5,7 +5,7 @@
 !> procedures below (--wrap), which end it with a message.
 module refused_memory_m
   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_ptr, c_size_t
-  use c_files_m, only : c_write
+  use c_files_m, only : c_write, c_exit
   implicit none
   private
   public :: expect_refusal, need_memory
@@ -42,12 +42,6 @@ module refused_memory_m
       import :: c_ptr
       type(c_ptr), value :: place
     end subroutine c_free
-
-    !> C library: end the process; handlers of exits are called.
-    subroutine c_exit(status) bind(c, name='exit')
-      import :: c_int
-      integer(c_int), value :: status
-    end subroutine c_exit
   end interface
 
 contains

@@ -13,8 +13,8 @@ module text_files_m
   implicit none
   private
   public :: text_file_t, create_text_file, continue_text_file, append_text, close_text_file, &
-    write_whole, overwrite_start, line_file_t, open_lines, put_lines, keep_up, flush_lines, &
-    close_lines
+    read_whole, write_whole, overwrite_start, line_file_t, open_lines, put_lines, keep_up, &
+    flush_lines, close_lines
 
   !> Bytes of lines that wait, at most.
   integer, parameter :: buffer_size = 65536
@@ -51,19 +51,26 @@ contains
     character(*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
 
+    if (len(what_hinders(path)) == 0) call remove_file(path, error)
+    if (.not. allocated(error)) call open_stream(file, path, 'w', error)
+    file%n_byte = 0
+  end subroutine create_text_file
+
+  !> Open a file in a mode of C.
+  subroutine open_stream(file, path, mode, error)
+    type(text_file_t), intent(out) :: file
+    character(*), intent(in) :: path, mode
+    type(error_t), allocatable, intent(out) :: error
+
     file%path = path
-    if (len(what_hinders(path)) == 0) then
-      call remove_file(path, error)
-      if (allocated(error)) return
-      file%stream = c_fopen(path//c_null_char, 'w'//c_null_char)
-    end if
+    if (len(what_hinders(path)) == 0) &
+      file%stream = c_fopen(path//c_null_char, mode//c_null_char)
     if (c_associated(file%stream)) then
       file%descriptor = c_fileno(file%stream)
     else
       call raise(error, 'cannot write '//path//': '//open_failure(path), status_files)
     end if
-    file%n_byte = 0
-  end subroutine create_text_file
+  end subroutine open_stream
 
   !> Open a text file to write on behind what it holds, or from its start, for this process alone as
   !> long as it is open; it is made when there is none. A file that holds something is not written
@@ -76,6 +83,8 @@ contains
     type(error_t), allocatable :: ignored
     type(text_file_t) :: before
     type(file_facts_t) :: facts
+    character(:), allocatable :: text
+    logical :: is_read
 
     call open_alone(file, path, error)
     if (allocated(error)) return
@@ -84,7 +93,12 @@ contains
     before = file
     call remove_file(path//unfinished, error)
     if (.not. allocated(error)) call open_alone(file, path//unfinished, error)
-    if (keeps .and. .not. allocated(error)) call copy_text(path, file, error)
+    if (keeps .and. .not. allocated(error)) then
+      call read_whole(path, text, is_read)
+      if (is_read) call append_text(file, text, error)
+      if (.not. is_read) call raise(error, 'cannot read '//path//', behind which the run would ' &
+        //'write', status_files)
+    end if
     if (.not. allocated(error)) call rename_file(path//unfinished, path, error)
     if (allocated(error)) call remove_file(path//unfinished, ignored)
     file%path = path
@@ -102,14 +116,8 @@ contains
     type(file_facts_t) :: facts
     logical :: is_taken
 
-    file%path = path
-    if (len(what_hinders(path)) == 0) &
-      file%stream = c_fopen(path//c_null_char, 'a'//c_null_char)
-    if (.not. c_associated(file%stream)) then
-      call raise(error, 'cannot write '//path//': '//open_failure(path), status_files)
-      return
-    end if
-    file%descriptor = c_fileno(file%stream)
+    call open_stream(file, path, 'a', error)
+    if (allocated(error)) return
     is_taken = c_flock(file%descriptor, lock_alone) /= 0
     if (is_taken) is_taken = system_failure() == is_locked
     facts = facts_of_descriptor(file%descriptor)
@@ -121,12 +129,11 @@ contains
       //'it open; give this one another name (jobid=) or folder (d=)', status_files)
   end subroutine open_alone
 
-  !> Append what a file holds to one that is open.
-  subroutine copy_text(path, file, error)
+  !> All bytes of a file.
+  subroutine read_whole(path, text, is_read)
     character(*), intent(in) :: path
-    type(text_file_t), intent(inout) :: file
-    type(error_t), allocatable, intent(out) :: error
-    character(:), allocatable :: text
+    character(:), allocatable, intent(out) :: text
+    logical, intent(out) :: is_read
     integer(long) :: n_byte
     integer :: unit, status
 
@@ -138,12 +145,8 @@ contains
       read (unit, iostat=status) text
       close (unit)
     end if
-    if (status == 0) then
-      call append_text(file, text, error)
-    else
-      call raise(error, 'cannot read '//path//', behind which the run would write', status_files)
-    end if
-  end subroutine copy_text
+    is_read = status == 0
+  end subroutine read_whole
 
   !> Append text as it is, line ends included, with one system call as long as the system takes all.
   !> Fails too where the file is no longer what this program has written.
@@ -190,13 +193,8 @@ contains
     type(error_t), allocatable :: closing
     type(text_file_t) :: file
 
-    file%path = path
-    file%stream = c_fopen(path//c_null_char, 'r+'//c_null_char)
-    if (.not. c_associated(file%stream)) then
-      call raise(error, 'cannot write '//path//': '//open_failure(path), status_files)
-      return
-    end if
-    file%descriptor = c_fileno(file%stream)
+    call open_stream(file, path, 'r+', error)
+    if (allocated(error)) return
     call append_text(file, text, error)
     call close_text_file(file, closing)
     if (.not. allocated(error) .and. allocated(closing)) call move_alloc(closing, error)

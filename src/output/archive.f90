@@ -298,7 +298,7 @@ contains
     if (is_alike) found%text = trim(content_names(content))//found_shape(kind_of_space, found)
     if (found%is_readable .and. found%is_there) then
       found%is_readable = layout == H5D_CONTIGUOUS_F .and. real(stored, wp) &
-        >= real(bytes_of(content), wp)*product(real(found%dims(:found%rank), wp))
+        >= merge(4.0_wp, 8.0_wp, content == as_integer)*product(real(found%dims(:found%rank), wp))
       if (.not. found%is_readable) found%text = found%text//' that are not stored in it as they ' &
         //'should be'
     end if
@@ -326,14 +326,6 @@ contains
     end do
     text = trim(text)
   end function found_shape
-
-  !> Bytes of a number.
-  pure function bytes_of(content) result(n)
-    integer, intent(in) :: content         !! one of the `as_` constants
-    integer :: n
-
-    n = merge(4, 8, content == as_integer)
-  end function bytes_of
 
   !> Close a dataset.
   subroutine close_array(dataset)

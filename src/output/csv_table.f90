@@ -12,7 +12,7 @@ module csv_table_m
   use visitor_m, only : visitor_t, any_length
   implicit none
   private
-  public :: csv_table_t, plan_table, open_table, add_row, check_table, flush_table, close_table, &
+  public :: csv_table_t, plan_table, open_table, add_row, flush_table, close_table, &
     row_text, visit_rows, kind_real, kind_integer, kind_side
 
   !> Kinds of columns: a real, an integer, a side of an interface (1 = slave, 2 = master).
@@ -126,15 +126,6 @@ contains
     end do
     text = buffer(:n - 1)//new_line('a')
   end function row_text
-
-  !> The failure that the table or its text file has had, if any.
-  pure subroutine check_table(table, error)
-    type(csv_table_t), intent(in) :: table
-    type(error_t), allocatable, intent(out) :: error
-
-    if (allocated(table%text%file%trouble)) error = table%text%file%trouble
-    if (allocated(table%file%trouble)) error = table%file%trouble
-  end subroutine check_table
 
   !> Bring all rows into the files.
   subroutine flush_table(table, error)

@@ -6,8 +6,8 @@ module history_file_m
   use errors_m, only : error_t
   use model_m, only : model_t
   use controls_m, only : is_asked
-  use csv_table_m, only : csv_table_t, plan_table, open_table, check_table, flush_table, &
-    close_table, visit_rows
+  use csv_table_m, only : csv_table_t, plan_table, open_table, flush_table, close_table, &
+    visit_rows
   use dyna_text_m, only : open_dyna_text
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -111,14 +111,17 @@ contains
     end associate
   end function n_each
 
-  !> The first failure that any table has had so far.
+  !> The first failure that any table or its text file has had so far.
   pure subroutine check_histories(histories, error)
     type(histories_t), intent(in) :: histories
     type(error_t), allocatable, intent(out) :: error
-    integer :: i_table
+    integer :: k
 
-    do i_table = 1, n_table
-      call check_table(histories%tables(i_table), error)
+    do k = 1, n_table
+      associate (table => histories%tables(k))
+        if (allocated(table%text%file%trouble)) error = table%text%file%trouble
+        if (allocated(table%file%trouble)) error = table%file%trouble
+      end associate
       if (allocated(error)) return
     end do
   end subroutine check_histories

@@ -31,32 +31,22 @@ contains
     if (.not. table%file%is_open) return
     select case (i_table)
     case (table_glstat)
-      call append_energies(table, shot)
+      associate (e => shot%energies)
+        call add_row(table, [shot%time, real(shot%cycle, wp), shot%dt, e%kinetic, e%internal, &
+          e%hourglass, e%viscous, e%damping, e%contact, e%external_work, total_energy(e), &
+          energy_ratio(e), e%leapfrog, e%friction, e%added_mass, sum(e%eroded), e%mass_increase, &
+          real(shot%by_dt2ms, wp), e%eroded, shot%mean_velocity, real(shot%slowest, wp)])
+      end associate
     case (table_matsum, table_rbdout, table_elout, table_nodout)
       call append_motion(table, i_table, model, shot)
     case (table_rcforc, table_sleout)
       call append_interfaces(table, i_table, model, shot)
     case (table_contact)
       call append_slaves(table, model, shot)
-    case (table_bndout)
-      call append_boundaries(table, model, shot)
     case default
       call append_forces(table, i_table, model, shot)
     end select
   end subroutine append_rows
-
-  !> The energy account.
-  subroutine append_energies(table, shot)
-    type(csv_table_t), intent(inout) :: table
-    type(snapshot_t), intent(in) :: shot
-
-    associate (e => shot%energies)
-      call add_row(table, [shot%time, real(shot%cycle, wp), shot%dt, e%kinetic, e%internal, &
-        e%hourglass, e%viscous, e%damping, e%contact, e%external_work, total_energy(e), &
-        energy_ratio(e), e%leapfrog, e%friction, e%added_mass, sum(e%eroded), e%mass_increase, &
-        real(shot%by_dt2ms, wp), e%eroded, shot%mean_velocity, real(shot%slowest, wp)])
-    end associate
-  end subroutine append_energies
 
   !> Sums over parts, motion of rigid bodies and nodes, stress of elements.
   subroutine append_motion(table, i_table, model, shot)
@@ -169,33 +159,14 @@ contains
     end do
   end subroutine append_slaves
 
-  !> Force and work of what acts on nodes and rigid bodies.
-  subroutine append_boundaries(table, model, shot)
-    type(csv_table_t), intent(inout) :: table
-    type(model_t), intent(in) :: model
-    type(snapshot_t), intent(in) :: shot
-    integer :: i, id
-
-    associate (rows => model%controls%output%boundaries)
-      do i = 1, size(rows%where)
-        if (any(rows%condition(i) == [boundary_body_load, boundary_body_motion])) then
-          id = model%parts(model%rigids(rows%where(i))%part)%id
-        else
-          id = model%mesh%node_id(rows%where(i))
-        end if
-        call add_row(table, [shot%time, real([rows%condition(i), id], wp), &
-          shot%boundary_force(:, i), shot%boundary_work(i)])
-      end do
-    end associate
-  end subroutine append_boundaries
-
-  !> Resultants of rigid walls and cross sections, forces on fixed nodes and of groups of nodes.
+  !> Resultants of rigid walls and cross sections, forces on fixed nodes and of groups of nodes,
+  !> force and work of what acts on nodes and rigid bodies.
   subroutine append_forces(table, i_table, model, shot)
     type(csv_table_t), intent(inout) :: table
     integer, intent(in) :: i_table
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(in) :: shot
-    integer :: i, k, n
+    integer :: i, k, n, id
 
     select case (i_table)
     case (table_rwforc)
@@ -211,6 +182,18 @@ contains
         call add_row(table, [shot%time, real(model%mesh%node_id(shot%supports(i)), wp), &
           shot%reaction(:, i)])
       end do
+    case (table_bndout)
+      associate (rows => model%controls%output%boundaries)
+        do i = 1, size(rows%where)
+          if (any(rows%condition(i) == [boundary_body_load, boundary_body_motion])) then
+            id = model%parts(model%rigids(rows%where(i))%part)%id
+          else
+            id = model%mesh%node_id(rows%where(i))
+          end if
+          call add_row(table, [shot%time, real([rows%condition(i), id], wp), &
+            shot%boundary_force(:, i), shot%boundary_work(i)])
+        end do
+      end associate
     case (table_nodfor)
       n = 0
       do i = 1, size(model%controls%output%force_groups)

@@ -106,13 +106,24 @@ contains
   end subroutine advance
 
   !> Take up how far an output is. Where the run goes on with another interval, the first output
-  !> comes at the next multiple of the new one.
+  !> comes at the next multiple of the new one. That of a curve may have come to its end.
   pure subroutine go_on_with(kept, time, dt, schedule)
     type(schedule_t), intent(in) :: kept            !! of the run before
     real(wp), intent(in) :: time, dt      !! of the state before, as given to `is_due` then
     type(schedule_t), intent(inout) :: schedule     !! planned from the deck
+    logical :: same, follows
 
-    if (is_same_plan(kept, schedule)) then
+    same = kept%varies .eqv. schedule%varies
+    follows = same .and. schedule%varies
+    if (same .and. .not. follows) same = (kept%active .eqv. schedule%active) &
+      .and. .not. abs(kept%interval - schedule%interval) > 0.0_wp
+    if (follows) same = allocated(kept%curve%ordinate) .and. allocated(kept%curve%abscissa)
+    if (follows .and. same) same = size(kept%curve%ordinate) == size(schedule%curve%ordinate) &
+      .and. size(kept%curve%abscissa) == size(schedule%curve%abscissa)
+    if (follows .and. same) same = &
+      all(.not. abs(kept%curve%ordinate - schedule%curve%ordinate) > 0.0_wp) &
+      .and. all(.not. abs(kept%curve%abscissa - schedule%curve%abscissa) > 0.0_wp)
+    if (same) then
       schedule%active = kept%active
       schedule%count = kept%count
       schedule%next = kept%next
@@ -120,25 +131,6 @@ contains
       call mark_written(schedule, time, dt)
     end if
   end subroutine go_on_with
-
-  !> Whether two schedules have the same output times. One of a curve may have come to its end.
-  pure function is_same_plan(kept, schedule) result(same)
-    type(schedule_t), intent(in) :: kept, schedule
-    logical :: same
-
-    same = kept%varies .eqv. schedule%varies
-    if (.not. same) return
-    if (.not. schedule%varies) then
-      same = (kept%active .eqv. schedule%active) &
-        .and. .not. abs(kept%interval - schedule%interval) > 0.0_wp
-    else
-      same = allocated(kept%curve%ordinate) .and. allocated(kept%curve%abscissa)
-      if (same) same = size(kept%curve%ordinate) == size(schedule%curve%ordinate) &
-        .and. size(kept%curve%abscissa) == size(schedule%curve%abscissa)
-      if (same) same = all(.not. abs(kept%curve%ordinate - schedule%curve%ordinate) > 0.0_wp) &
-        .and. all(.not. abs(kept%curve%abscissa - schedule%curve%abscissa) > 0.0_wp)
-    end if
-  end function is_same_plan
 
   !> Its components; the deck, which may change it, has the end.
   subroutine visit_schedule(self, visitor)

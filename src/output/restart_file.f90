@@ -91,41 +91,30 @@ contains
     call remove_file(archive%path//unfinished, ignored)
   end subroutine finish_restart
 
-  !> Length and checksum of what follows the head.
+  !> Write the head, length and checksum of what follows it, and read it back.
   subroutine write_head(path, error)
     character(*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
-    character(head_size) :: head
+    character(head_size) :: head, found
     character(:), allocatable :: checksum, reason
-    integer(long) :: length
+    integer(long) :: length, n_byte
+    integer :: unit, status
 
     call file_checksum(path, head_size, length, checksum, reason)
     if (.not. allocated(reason)) then
       head = head_text(length, checksum)
       call overwrite_start(path, head, error)
       if (allocated(error)) return
-      call compare_start(path, head, length + head_size, reason)
+      call open_bytes(path, unit, n_byte, reason)
+    end if
+    if (.not. allocated(reason)) then
+      read (unit, iostat=status) found
+      if (status /= 0 .or. n_byte /= length + head_size .or. found /= head) &
+        reason = 'its head can not be read back'
+      close (unit, iostat=status)
     end if
     if (allocated(reason)) call raise(error, 'cannot write '//path//': '//reason, status_files)
   end subroutine write_head
-
-  !> What went wrong if a file does not begin with this head, or has another length.
-  subroutine compare_start(path, head, n_byte, reason)
-    character(*), intent(in) :: path
-    character(head_size), intent(in) :: head
-    integer(long), intent(in) :: n_byte              !! length that the file should have
-    character(:), allocatable, intent(out) :: reason
-    character(head_size) :: found
-    integer(long) :: length
-    integer :: unit, status
-
-    call open_bytes(path, unit, length, reason)
-    if (allocated(reason)) return
-    read (unit, iostat=status) found
-    if (status /= 0 .or. length /= n_byte .or. found /= head) &
-      reason = 'its head can not be read back'
-    close (unit, iostat=status)
-  end subroutine compare_start
 
   !> The head of a file.
   pure function head_text(length, checksum) result(head)

@@ -188,7 +188,9 @@ contains
     integer, intent(in) :: n_planned                   !! states
     type(error_t), allocatable, intent(inout) :: error
     character(len(fields%name)) :: name
-    integer :: i, content
+    integer(hid_t) :: steps, space
+    integer(long), target :: zero
+    integer :: status(6), i, content
 
     call make_group(group, 'Steps', error)
     do i = 1, n_step_array
@@ -196,7 +198,16 @@ contains
       call create_growing(file%id, 'Steps', content, 0, max(least_step_rows, 2*n_planned), &
         file%steps(i), error)
     end do
-    call create_n_steps(file, group, error)
+    if (.not. allocated(error)) then
+      zero = 0
+      call h5gopen_f(group, 'Steps', steps, status(1))
+      call h5screate_f(H5S_SCALAR_F, space, status(2))
+      call h5acreate_f(steps, 'NSteps', H5T_STD_I64LE, space, file%n_steps, status(3))
+      call h5awrite_f(file%n_steps, h5kind_to_type(long, H5_INTEGER_KIND), c_loc(zero), status(4))
+      call h5sclose_f(space, status(5))
+      call h5gclose_f(steps, status(6))
+      call check_status(minval(status), 'Steps', error)
+    end if
     call make_group(group, 'Steps/PointDataOffsets', error)
     call make_group(group, 'Steps/CellDataOffsets', error)
     call link_growing(file%steps(step_values), group, 'Steps/Values', error)
@@ -215,25 +226,5 @@ contains
         //'Offsets'//trim(name(index(name, '/'):)), error)
     end do
   end subroutine create_steps
-
-  !> Make the attribute NSteps of the group Steps, zero, and keep it open.
-  subroutine create_n_steps(file, group, error)
-    type(results_file_t), intent(inout) :: file
-    integer(hid_t), intent(in) :: group                !! the open group /VTKHDF
-    type(error_t), allocatable, intent(inout) :: error
-    integer(hid_t) :: steps, space
-    integer(long), target :: zero
-    integer :: status(6)
-
-    if (allocated(error)) return
-    zero = 0
-    call h5gopen_f(group, 'Steps', steps, status(1))
-    call h5screate_f(H5S_SCALAR_F, space, status(2))
-    call h5acreate_f(steps, 'NSteps', H5T_STD_I64LE, space, file%n_steps, status(3))
-    call h5awrite_f(file%n_steps, h5kind_to_type(long, H5_INTEGER_KIND), c_loc(zero), status(4))
-    call h5sclose_f(space, status(5))
-    call h5gclose_f(steps, status(6))
-    call check_status(minval(status), 'Steps', error)
-  end subroutine create_n_steps
 
 end module results_arrays_m

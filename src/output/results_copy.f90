@@ -65,25 +65,17 @@ contains
     integer(hid_t), intent(in) :: id       !! open file
     character(*), intent(in) :: path       !! for messages
     type(error_t), allocatable, intent(out) :: error
+    character(len(fields%name)) :: names(2 + size(fields))
     integer :: i
 
-    call check_own('Steps/Values')
-    call check_own('PointData/node_id')
-    do i = 1, size(fields)
-      call check_own(fields(i)%name)
+    names = [character(len(names)) :: 'Steps/Values', 'PointData/node_id', fields%name]
+    do i = 1, size(names)
+      if (is_own(id, 'VTKHDF/'//trim(names(i)))) cycle
+      call raise(error, path//' is refused: its VTKHDF/'//trim(names(i))//' is not stored in it, ' &
+        //'but a link, a virtual dataset or outer storage; move it away, or give another folder ' &
+        //'by d=', status_input)
+      return
     end do
-
-  contains
-
-    subroutine check_own(name)
-      character(*), intent(in) :: name
-
-      if (allocated(error) .or. is_own(id, 'VTKHDF/'//trim(name))) return
-      call raise(error, path//' is refused: its VTKHDF/'//trim(name)//' is not stored in it, but ' &
-        //'a link, a virtual dataset or outer storage; move it away, or give another folder by ' &
-        //'d=', status_input)
-    end subroutine check_own
-
   end subroutine check_own_arrays
 
   !> Whether an array is stored in the file itself, as are the groups that it lies in; an array that

@@ -338,33 +338,27 @@ contains
     type(results_file_t), intent(inout) :: file
     type(histories_t), intent(in) :: histories
     type(error_t), allocatable, intent(out) :: error
+    integer :: i, status
 
     if (file%id < 0 .or. file%is_broken) return
     call check_untouched(file, error)
     call write_histories(file%id, histories, error)
     call flush_file(file, error)
-    if (.not. allocated(error)) call close_file(file, error)
+    if (.not. allocated(error)) then
+      call h5aclose_f(file%n_steps, status)
+      do i = 1, size(fields)
+        call close_growing(file%fields(i), error)
+      end do
+      do i = 1, n_step_array
+        call close_growing(file%steps(i), error)
+      end do
+      call h5fclose_f(file%id, status)
+      file%id = -1
+      call check_status(status, 'the end of the file', error)
+      call h5close_f(status)
+    end if
     call take_name(file, error)
     call note_failure(file, error)
   end subroutine finish_results
-
-  !> Close all that is open.
-  subroutine close_file(file, error)
-    type(results_file_t), intent(inout) :: file
-    type(error_t), allocatable, intent(inout) :: error
-    integer :: i, status
-
-    call h5aclose_f(file%n_steps, status)
-    do i = 1, size(fields)
-      call close_growing(file%fields(i), error)
-    end do
-    do i = 1, n_step_array
-      call close_growing(file%steps(i), error)
-    end do
-    call h5fclose_f(file%id, status)
-    file%id = -1
-    call check_status(status, 'the end of the file', error)
-    call h5close_f(status)
-  end subroutine close_file
 
 end module results_file_m

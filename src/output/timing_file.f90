@@ -4,29 +4,18 @@
 module timing_file_m
   use kinds_m, only : wp, long
   use clock_m, only : clock_t, phase_names, n_phase, n_contact_phase, phase_contact_search
-  use errors_m, only : error_t
-  use text_files_m, only : write_whole
   use log_m, only : to_text
   implicit none
   private
-  public :: write_timing, timing_text
+  public :: timing_text
 
 contains
 
-  !> Write `phase,seconds,calls,share`, one row per phase and the row `total`, which is the time
-  !> from the start to the last lap. Where interfaces are timed, rows such as `contact_force.2`
-  !> follow their phase and add up to it. Where no laps are taken there is the total alone.
-  subroutine write_timing(path, clock, interfaces, error)
-    character(*), intent(in) :: path
-    type(clock_t), intent(in) :: clock
-    integer, intent(in) :: interfaces(:) !! their ids
-    type(error_t), allocatable, intent(out) :: error
-
-    call write_whole(path, timing_text(clock, interfaces), error)
-  end subroutine write_timing
-
-  !> The file as text. Seconds are whole nanoseconds with nine decimals, so that the phases add up
-  !> to the total to the last digit.
+  !> The file as text: `phase,seconds,calls,share`, one row per phase and the row `total`, which is
+  !> the time from the start to the last lap. Where interfaces are timed, rows such as
+  !> `contact_force.2` follow their phase and add up to it. Where no laps are taken there is the
+  !> total alone. Seconds are whole nanoseconds with nine decimals, so that the phases add up to the
+  !> total to the last digit.
   function timing_text(clock, interfaces) result(text)
     type(clock_t), intent(in) :: clock
     integer, intent(in) :: interfaces(:) !! their ids

@@ -1,19 +1,21 @@
 ! SPDX-License-Identifier: MIT
 !> What the run says about its interfaces at its start and at its end.
 module contact_check_m
+  use contact_facets_m, only : report_facets
+  use contact_judging_m, only : parts_behind, of_noise
   use contact_log_m, only : report_initial_contact, report_released, report_tie_step, &
     report_broken
-  use contacts_m, only : contact_t, is_tied, penalty_factor, penalty_implicit
-  use contact_judging_m, only : report_estimates
+  use contacts_m, only : contact_t, is_tied, penalty_factor, penalty_share, penalty_implicit
   use contact_overhang_m, only : report_overhang
-  use contact_softness_m, only : report_softness
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
     opening_step, binding_bound, fitting_scale, sharpness
-  use controls_m, only : controls_t, contact_step_free
+  use controls_m, only : controls_t, contact_step_free, contact_step_rules
   use kinds_m, only : wp
-  use log_m, only : log_t, warn, write_log, to_text
+  use law_state_m, only : contact_estimate_t
+  use log_m, only : log_t, warn, write_log, to_text, percent, two_decimals
   use model_m, only : model_t
   use state_m, only : state_t
+  use type_charts_m, only : better_type, refinement
   use units_m, only : per_depth
   implicit none
   private
@@ -21,6 +23,17 @@ module contact_check_m
 
   !> By which a step may miss the bound that its penalty was made for (PUNIT 3).
   real(wp), parameter :: round_off = 1.0e-12_wp
+  !> Springs that store more than this many times what the elements beside them do are soft.
+  real(wp), parameter :: soft = 2.0_wp
+  !> Waves are told where they are more than a tenth of the square of the estimate.
+  real(wp), parameter :: told_below = 0.9_wp
+  !> Part of the internal energy of the bodies from which on what springs stored is told.
+  real(wp), parameter :: noticed_part = 0.1_wp
+  !> Compliance of springs, over that of a row of elements on either side, below which stiffer ones
+  !> take little away; a penalty that is named goes to half of it at most.
+  real(wp), parameter :: stiff = 0.5_wp
+  !> Ratio of bulk moduli from which on one body is hard beside the other: 10, less round-off.
+  real(wp), parameter :: much_harder = 9.999_wp
 
 contains
 
@@ -32,7 +45,7 @@ contains
     type(state_t), intent(in) :: state
     type(log_t), intent(inout) :: log
     type(spring_bound_t) :: bounds(size(model%contacts))
-    real(wp) :: element_limit
+    real(wp) :: element_limit, limit
     logical :: limits_step
     integer :: i
 
@@ -45,122 +58,103 @@ contains
       merge(0.0_wp, 1.0_wp, model%contacts%behind > 0 &
       .or. model%contacts%penalty_unit == penalty_implicit), bounds)
     do i = 1, size(model%contacts)
-      if (is_tied(model%contacts(i))) then
-        if (limits_step) then
-          call report_tie_step(model%contacts(i)%id, element_limit, &
-            stable_step(element_limit, bounds(i)), log)
+      associate (contact => model%contacts(i))
+        if (.not. is_tied(contact)) then
+          call report_initial_contact(contact, model, state%contacts(i), log)
+          if (contact%behind > 0) cycle
+          call report_overhang(contact, model, state%contacts(i), log)
+          if (limits_step .and. contact%penalty_unit /= penalty_implicit) &
+            call tell_step(model, state, i, element_limit, bounds(i), log)
+        else if (limits_step) then
+          call report_tie_step(contact%id, element_limit, stable_step(element_limit, bounds(i)), &
+            log)
         else if (.not. model%controls%implicit%is_on) then
-          call warn_of_free_ties(model%contacts(i)%id, state%dt, &
-            closed_step(element_limit, bounds(i)), log)
+          limit = closed_step(element_limit, bounds(i))
+          if (state%dt > limit*(1.0_wp + round_off)) call warn(log, 'interface ' &
+            //to_text(contact%id)//': with its ties the stable step is '//to_text(limit) &
+            //', the step is '//to_text(state%dt)//' (ECDT 1 of *CONTROL_CONTACT leaves springs ' &
+            //'out of it): the run may gain energy without bound')
         end if
-        cycle
-      end if
-      call report_initial_contact(model%contacts(i), model, state%contacts(i), log)
-      if (model%contacts(i)%behind > 0) cycle
-      call report_overhang(model%contacts(i), model, state%contacts(i), log)
-      if (.not. limits_step .or. model%contacts(i)%penalty_unit == penalty_implicit) cycle
-      if (state%contacts(i)%rules_step) call tell_obeyed_step(model%contacts(i)%id, &
-        model%controls%dt_scale*element_limit, element_limit, bounds(i), log)
-      if (state%dt <= stable_step(element_limit, bounds(i))*(1.0_wp + round_off)) cycle
-      if (has_usual_penalty(model%contacts(i), model%controls) .and. state%dt < element_limit &
-        .and. state%dt*sharpness <= stable_step(element_limit, bounds(i))) then
-        call tell_usual_step(model%contacts(i)%id, state%dt, element_limit, bounds(i), log)
-      else
-        call warn_of_step(model, i, state%dt, element_limit, bounds(i), log)
-      end if
+      end associate
     end do
   end subroutine report_contact_start
 
-  !> Whether nobody has made the penalty larger than the built-in one.
-  pure function has_usual_penalty(contact, controls) result(has)
-    type(contact_t), intent(in) :: contact
-    type(controls_t), intent(in) :: controls
-    logical :: has
-    type(controls_t) :: default
-
-    has = contact%penalty_unit == penalty_factor &
-      .and. max(contact%penalty, contact%master_penalty) <= 1.0_wp &
-      .and. controls%penalty_scale <= default%penalty_scale
-  end function has_usual_penalty
-
-  !> The line for an interface whose springs the step obeys, since nobody has chosen either.
-  subroutine tell_obeyed_step(id, dt, element_limit, bound, log)
-    integer, intent(in) :: id
-    real(wp), intent(in) :: dt            !! step without this contact, s
+  !> A step that obeys the springs of an interface; or one that is too large for them: which bound
+  !> asks for what, the node and the penalty that would fit. No warning of the built-in penalty,
+  !> which nobody has made larger, where the step need not be too large.
+  subroutine tell_step(model, state, i, element_limit, bound, log)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: i              !! the interface
     real(wp), intent(in) :: element_limit !! s
     type(spring_bound_t), intent(in) :: bound
     type(log_t), intent(inout) :: log
+    type(controls_t) :: default
+    character(:), allocatable :: name
+    logical :: is_usual
 
-    call write_log(log, 'interface '//to_text(id)//': the step obeys its springs, since the deck ' &
-      //'leaves penalty and step to the program: stable step ' &
-      //to_text(stable_step(element_limit, bound))//', of the elements alone ' &
-      //to_text(element_limit)//'; a penalty of ' &
-      //to_text(fitting_scale(dt, element_limit, bound)) &
-      //' times this one would fit the step of the elements')
-  end subroutine tell_obeyed_step
+    name = 'interface '//to_text(model%contacts(i)%id)//': '
+    associate (contact => model%contacts(i), dt => state%dt, &
+      limit => stable_step(element_limit, bound))
+      if (state%contacts(i)%rules_step) call write_log(log, name//'the step obeys its springs, ' &
+        //'since the deck leaves penalty and step to the program: stable step '//to_text(limit) &
+        //', of the elements alone '//to_text(element_limit)//'; a penalty of ' &
+        //to_text(fitting_scale(model%controls%dt_scale*element_limit, element_limit, bound)) &
+        //' times this one would fit the step of the elements')
+      if (dt <= limit*(1.0_wp + round_off)) return
+      is_usual = contact%penalty_unit == penalty_factor &
+        .and. max(contact%penalty, contact%master_penalty) <= 1.0_wp &
+        .and. model%controls%penalty_scale <= default%penalty_scale
+      if (.not. dt < element_limit) then
+        call warn(log, name//'the time step '//to_text(dt)//' lies above the limit of the ' &
+          //'elements '//to_text(element_limit)//' and leaves no room for contact springs')
+      else if (is_usual .and. dt*sharpness <= limit) then
+        call write_log(log, name//'the step '//to_text(dt)//' is above '//to_text(limit) &
+          //', the bound of '//binding_bound(element_limit, bound)//', by less than that may be ' &
+          //'too low for the built-in penalty; ECDT 2 of *CONTROL_CONTACT, or ' &
+          //to_text(fitting_scale(dt, element_limit, bound))//' times the penalty, keeps to it')
+      else
+        call warn(log, name//'its penalty demands a time step of at most '//to_text(limit) &
+          //', the bound of '//binding_bound(element_limit, bound)//' (while they stay closed ' &
+          //to_text(closed_step(element_limit, bound))//', where they open and close ' &
+          //to_text(opening_step(bound))//', elements alone '//to_text(element_limit) &
+          //', springs of all contacts at its nodes alone ' &
+          //to_text(closed_step(huge(1.0_wp), bound))//' at node ' &
+          //to_text(model%mesh%node_id(bound%node))//'), the step is '//to_text(dt) &
+          //'; a penalty of '//to_text(fitting_scale(dt, element_limit, bound)) &
+          //' times the present one would fit')
+      end if
+    end associate
+  end subroutine tell_step
 
-  !> The line for such an interface.
-  subroutine tell_usual_step(id, dt, element_limit, bound, log)
-    integer, intent(in) :: id
-    real(wp), intent(in) :: dt, element_limit !! s
-    type(spring_bound_t), intent(in) :: bound
-    type(log_t), intent(inout) :: log
-
-    call write_log(log, 'interface '//to_text(id)//': the step '//to_text(dt)//' is above ' &
-      //to_text(stable_step(element_limit, bound))//', the bound of ' &
-      //binding_bound(element_limit, bound)//', by less than that may be too low for the ' &
-      //'built-in penalty; ECDT 2 of *CONTROL_CONTACT, or ' &
-      //to_text(fitting_scale(dt, element_limit, bound))//' times the penalty, keeps to it')
-  end subroutine tell_usual_step
-
-  !> A step that leaves ties out of account, where it lies above what they bear.
-  subroutine warn_of_free_ties(id, dt, limit, log)
-    integer, intent(in) :: id
-    real(wp), intent(in) :: dt, limit !! s
-    type(log_t), intent(inout) :: log
-
-    if (dt > limit*(1.0_wp + round_off)) call warn(log, 'interface '//to_text(id)//': with its ' &
-      //'ties the stable step is '//to_text(limit)//', the step is '//to_text(dt) &
-      //' (ECDT 1 of *CONTROL_CONTACT leaves springs out of it): the run may gain energy ' &
-      //'without bound')
-  end subroutine warn_of_free_ties
-
-  !> The warning for one interface: which bound asks for what, the node and the penalty that would
-  !> fit.
-  subroutine warn_of_step(model, i, dt, element_limit, bound, log)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i
-    real(wp), intent(in) :: dt, element_limit !! s
-    type(spring_bound_t), intent(in) :: bound
-    type(log_t), intent(inout) :: log
-
-    if (dt < element_limit) then
-      call warn(log, 'interface '//to_text(model%contacts(i)%id)//': its penalty demands a time ' &
-        //'step of at most '//to_text(stable_step(element_limit, bound))//', the bound of ' &
-        //binding_bound(element_limit, bound)//' (while they stay closed ' &
-        //to_text(closed_step(element_limit, bound))//', where they open and close ' &
-        //to_text(opening_step(bound))//', elements alone '//to_text(element_limit) &
-        //', springs of all contacts at its nodes alone ' &
-        //to_text(closed_step(huge(1.0_wp), bound))//' at node ' &
-        //to_text(model%mesh%node_id(bound%node))//'), the step is '//to_text(dt) &
-        //'; a penalty of '//to_text(fitting_scale(dt, element_limit, bound)) &
-        //' times the present one would fit')
-    else
-      call warn(log, 'interface '//to_text(model%contacts(i)%id)//': the time step ' &
-        //to_text(dt)//' lies above the limit of the elements '//to_text(element_limit) &
-        //' and leaves no room for contact springs')
-    end if
-  end subroutine warn_of_step
-
-  !> First contacts that were released, and how good the answer is.
+  !> How good the answer is, of each interface that was loaded at an instant that was judged;
+  !> springs that stored much beside the bodies, and pressure that is made by facets; first contacts
+  !> that were released, ties that broke, and what friction took. Implicit springs without
+  !> compliance store nothing and have no penetration.
   subroutine report_contact_end(model, state, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(log_t), intent(inout) :: log
     integer :: i
 
-    call report_estimates(model, state, log)
-    call report_softness(model, state, log)
+    do i = 1, size(state%estimates)
+      associate (contact => model%contacts(i), estimate => state%estimates(i))
+        if (.not. estimate%load > 0.0_wp) cycle
+        call write_log(log, 'interface '//to_text(contact%id)//': '//words(estimate, state, i))
+        if (contact%target > 0.0_wp) call write_log(log, 'interface '//to_text(contact%id)//': ' &
+          //target_words(contact, estimate))
+      end associate
+    end do
+    do i = 1, size(state%estimates)
+      if (log%is_mute) exit ! the first process alone knows the parts of all elements
+      associate (estimate => state%estimates(i), contact => model%contacts(i))
+        if (contact%penalty_unit == penalty_implicit .and. &
+          .not. state%contacts(i)%slave_penalty > 0.0_wp) cycle
+        if (estimate%bodies > 0.0_wp .and. estimate%stored > noticed_part*estimate%bodies) &
+          call tell_softness(model, contact, estimate, log)
+        call report_facets(contact, estimate, log)
+      end associate
+    end do
     do i = 1, size(model%contacts)
       call report_released(model%contacts(i), state%contacts(i), log)
       call report_broken(model%contacts(i), model%controls%units, state%contacts(i), log)
@@ -172,5 +166,134 @@ contains
       end associate
     end do
   end subroutine report_contact_end
+
+  !> What is known of one.
+  function words(estimate, state, i) result(text)
+    type(contact_estimate_t), intent(in) :: estimate
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: i
+    character(:), allocatable :: text
+
+    text = 'contact pressure and the stress behind it differ by ' &
+      //percent(sqrt(estimate%misfit), sqrt(estimate%load))//' (r.m.s. of ' &
+      //to_text(estimate%n)//' instant(s)), by '//percent(estimate%at_heaviest, 1.0_wp) &
+      //' at the largest load'
+    if (tells_waves(estimate)) text = text//', without waves by ' &
+      //percent(sqrt(estimate%still), sqrt(estimate%load))
+    if (estimate%rows > 0.0_wp) then
+      text = text//'; springs store '//two_decimals(estimate%springs/estimate%rows) &
+        //' times what the elements beside them do'
+      if (estimate%springs > soft*estimate%rows) text = text//', the penalty is soft'
+    end if
+    if (estimate%forces > 0.0_wp) text = text//'; the force is rough by ' &
+      //percent(sqrt(estimate%jumps/of_noise), sqrt(estimate%forces))//' between instants'
+    if (state%largest_energy > 0.0_wp) text = text//'; contact has ' &
+      //trim(merge('made', 'lost', state%contacts(i)%watch%balance < 0.0_wp))//' ' &
+      //percent(abs(state%contacts(i)%watch%balance), state%largest_energy) &
+      //' of the largest energy'
+    if (estimate%least_margin < huge(1.0_wp)) text = text//'; the step is ' &
+      //percent(1.0_wp, estimate%least_margin)//' of the stable one'
+  end function words
+
+  !> Whether a target was kept, and if not what would: another type, or else a finer mesh. Both are
+  !> known of bodies at rest: neither is sure to take away what waves make.
+  pure function target_words(contact, estimate) result(text)
+    type(contact_t), intent(in) :: contact
+    type(contact_estimate_t), intent(in) :: estimate
+    character(:), allocatable :: text
+    integer :: better
+    real(wp) :: at_rest, expected
+
+    text = 'the target '//percent(contact%target, 1.0_wp)//' is '
+    if (sqrt(estimate%misfit/estimate%load) <= contact%target) then
+      text = text//'kept'
+      return
+    end if
+    text = text//'not kept; '
+    at_rest = sqrt(estimate%still/estimate%load)
+    if (at_rest <= contact%target) then
+      text = text//'by waves, without them it is '//percent(at_rest, 1.0_wp)
+      return
+    end if
+    call better_type(contact%scene, contact%contact_type, at_rest, contact%target, better, &
+      expected)
+    if (tells_waves(estimate)) text = text//'without waves it is '//percent(at_rest, 1.0_wp) &
+      //', and then '
+    if (expected <= contact%target) then
+      text = text//'by the published studies type '//to_text(better)//' would keep it'
+    else
+      text = text//'by the published studies no type would, but elements smaller by a factor of ' &
+        //two_decimals(refinement(expected, contact%target))
+      if (better /= contact%contact_type) text = text//' with type '//to_text(better)
+    end if
+  end function target_words
+
+  !> Whether waves, the inertia of the rows, make a part of the estimate that is worth telling.
+  elemental function tells_waves(estimate) result(tells)
+    type(contact_estimate_t), intent(in) :: estimate
+    logical :: tells
+
+    tells = estimate%still < told_below*estimate%misfit
+  end function tells_waves
+
+  !> One interface whose springs stored much. Like bodies part as if both were softer; of a hard one
+  !> on a soft one the springs give back what the soft one would in part have kept, and the rebound
+  !> is wrong: a warning, unless the springs are stiff beside the elements, too coarse ones then.
+  subroutine tell_softness(model, contact, estimate, log)
+    type(model_t), intent(in) :: model
+    type(contact_t), intent(in) :: contact
+    type(contact_estimate_t), intent(in) :: estimate
+    type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
+    integer, allocatable :: behind(:) !! materials of the parts behind the surfaces
+    real(wp) :: softest, hardest
+    integer :: i
+
+    behind = pack([model%parts%material], parts_behind(model, contact))
+    softest = huge(1.0_wp)
+    hardest = 0.0_wp
+    do i = 1, size(behind)
+      softest = min(softest, model%materials(behind(i))%bulk)
+      hardest = max(hardest, model%materials(behind(i))%bulk)
+      if (model%materials(behind(i))%is_rigid) hardest = huge(1.0_wp)
+    end do
+    text = 'interface '//to_text(contact%id)//': its springs have stored up to ' &
+      //to_text(estimate%stored)//', '//percent(estimate%stored, estimate%bodies) &
+      //' of the largest internal energy of the bodies on both sides, ' &
+      //to_text(estimate%bodies)
+    if (estimate%softness > stiff .and. hardest >= much_harder*softest) then
+      call warn(log, text//': springs give back all of it, of which the soft body would keep a ' &
+        //'part, so that the hard one goes in deeper and may rebound faster than it should; ' &
+        //remedy(model%controls, contact, estimate))
+    else
+      call write_log(log, text//'; '//remedy(model%controls, contact, estimate))
+    end if
+  end subroutine tell_softness
+
+  !> The penalty whose springs would store no more than that part, and the step that bears it. By a
+  !> given force their energy goes with the power -1 of their stiffness, by blows of a hard block on
+  !> a soft one -0.64, and less where rows are coarse: no penalty makes less what the first row of
+  !> nodes takes.
+  pure function remedy(controls, contact, estimate) result(text)
+    type(controls_t), intent(in) :: controls
+    type(contact_t), intent(in) :: contact
+    type(contact_estimate_t), intent(in) :: estimate
+    character(:), allocatable :: text
+    real(wp) :: factor
+
+    text = 'finer elements would take more of it'
+    if (.not. estimate%softness > stiff) return
+    factor = min((estimate%stored/(noticed_part*estimate%bodies))**2, &
+      2.0_wp*estimate%softness/stiff)
+    associate (wanted => factor*contact%penalty)
+      text = 'PEN '//to_text(wanted)//' would do'
+      if (contact%penalty_unit == penalty_factor) text = 'SFACT '//to_text(wanted) &
+        //', or PEN with PUNIT 2, would do'
+      if (contact%penalty_unit == penalty_share .and. wanted > 1.0_wp) text = &
+        'a penalty '//to_text(factor)//' times as large would do'
+    end associate
+    if (.not. controls%implicit%is_on .and. controls%contact_step /= contact_step_rules) &
+      text = text//', with the step of the springs (ECDT 2 of *CONTROL_CONTACT)'
+  end function remedy
 
 end module contact_check_m

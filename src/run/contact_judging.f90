@@ -1,32 +1,29 @@
 ! SPDX-License-Identifier: MIT
-!> How good the answer of each interface is, from what both sides know: the pressure that contact
-!> puts on a face, and the stress of the elements behind it (doc/theory/contact.md, section 8.1).
-!> At instants that are written, and in words at the end.
+!> How good the answer of each interface is, at instants that are written: from what both sides
+!> know, the pressure that contact puts on a face and the stress of the elements behind it
+!> (doc/theory/contact.md, section 8.1), and from what springs store beside the bodies that they
+!> hold apart (section 8.2).
 module contact_judging_m
+  use contact_facets_m, only : follow_arcs
   use law_state_m, only : contact_estimate_t
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step
-  use contacts_m, only : contact_t, n_told, penalty_implicit
+  use contacts_m, only : contact_t, n_told, told_as, is_tied, penalty_implicit
   use controls_m, only : is_asked
   use history_tables_m, only : table_sleout
   use kinds_m, only : wp
-  use log_m, only : log_t, write_log, to_text, percent, two_decimals
+  use layout_m, only : slot_part
   use model_m, only : model_t
   use rows_behind_m, only : face_rows_t, find_rows, face_pressure, face_inertia, &
     elastic_energy, has_stress
   use shared_faces_m, only : others_t, find_others, face_share, present_contact
   use snapshot_filling_m, only : fill_slaves, join_slaves
-  use snapshot_m, only : snapshot_t, interface_result_t
+  use snapshot_m, only : snapshot_t, interface_result_t, part_result_t
   use state_m, only : state_t
   use surfaces_m, only : surface_t
-  use type_charts_m, only : better_type, refinement
   implicit none
   private
-  public :: judge_contacts, report_estimates
+  public :: judge_contacts, follow_softness, parts_behind, of_noise
 
-  !> Springs that store more than this many times what the elements beside them do are soft.
-  real(wp), parameter :: soft = 2.0_wp
-  !> Waves are told where they are more than a tenth of the square of the estimate.
-  real(wp), parameter :: told_below = 0.9_wp
   !> The second difference of noise that is not correlated has so many times its square.
   real(wp), parameter :: of_noise = 6.0_wp
 
@@ -184,90 +181,88 @@ contains
       estimate%least_margin = min(estimate%least_margin, result%step_limit/dt)
   end subroutine sum_up
 
-  !> In words, of each interface that was loaded at an instant that was judged.
-  subroutine report_estimates(model, state, log)
+  !> Follow all interfaces: the largest energies of their springs and of the bodies on both sides,
+  !> which have none yet at time zero, and the facets of curved surfaces.
+  subroutine follow_softness(model, parts, bodies, state)
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(log_t), intent(inout) :: log
+    type(part_result_t), intent(in) :: parts(:)      !! their internal energies are known
+    integer, allocatable, intent(inout) :: bodies(:) !! (n_part) found in the first call
+    type(state_t), intent(inout) :: state
     integer :: i
 
-    do i = 1, size(state%estimates)
-      if (.not. state%estimates(i)%load > 0.0_wp) cycle
-      call write_log(log, 'interface '//to_text(model%contacts(i)%id)//': ' &
-        //words(state%estimates(i), state, i))
-      if (model%contacts(i)%target > 0.0_wp) call write_log(log, 'interface ' &
-        //to_text(model%contacts(i)%id)//': '//target_words(model%contacts(i), &
-        state%estimates(i)))
+    do i = 1, size(model%contacts)
+      if (is_tied(model%contacts(i))) cycle
+      if (.not. allocated(bodies)) call find_bodies(model, bodies)
+      associate (contact => model%contacts(i), memory => state%contacts(i), &
+        estimate => state%estimates(told_as(model%contacts, i)))
+        call follow_arcs(state%outlines(i), memory, estimate)
+        if (state%cycle == 0) cycle
+        estimate%bodies = max(estimate%bodies, sum(parts%internal, &
+          of_bodies(bodies, parts_behind(model, contact))))
+        estimate%stored = max(estimate%stored, memory%watch%stored)
+      end associate
     end do
-  end subroutine report_estimates
+  end subroutine follow_softness
 
-  !> What is known of one.
-  function words(estimate, state, i) result(text)
-    type(contact_estimate_t), intent(in) :: estimate
-    type(state_t), intent(in) :: state
-    integer, intent(in) :: i
-    character(:), allocatable :: text
+  !> Bodies: parts that share nodes, or are tied to each other, have one number.
+  pure subroutine find_bodies(model, bodies)
+    type(model_t), intent(in) :: model
+    integer, allocatable, intent(out) :: bodies(:) !! (n_part)
+    integer, allocatable :: first(:) !! (n_node) part that a node was first met in
+    logical :: is_joined(size(model%parts))
+    integer :: i, k, slot, part
 
-    text = 'contact pressure and the stress behind it differ by ' &
-      //percent(sqrt(estimate%misfit), sqrt(estimate%load))//' (r.m.s. of ' &
-      //to_text(estimate%n)//' instant(s)), by '//percent(estimate%at_heaviest, 1.0_wp) &
-      //' at the largest load'
-    if (tells_waves(estimate)) text = text//', without waves by ' &
-      //percent(sqrt(estimate%still), sqrt(estimate%load))
-    if (estimate%rows > 0.0_wp) then
-      text = text//'; springs store '//two_decimals(estimate%springs/estimate%rows) &
-        //' times what the elements beside them do'
-      if (estimate%springs > soft*estimate%rows) text = text//', the penalty is soft'
-    end if
-    if (estimate%forces > 0.0_wp) text = text//'; the force is rough by ' &
-      //percent(sqrt(estimate%jumps/of_noise), sqrt(estimate%forces))//' between instants'
-    if (state%largest_energy > 0.0_wp) text = text//'; contact has ' &
-      //trim(merge('made', 'lost', state%contacts(i)%watch%balance < 0.0_wp))//' ' &
-      //percent(abs(state%contacts(i)%watch%balance), state%largest_energy) &
-      //' of the largest energy'
-    if (estimate%least_margin < huge(1.0_wp)) text = text//'; the step is ' &
-      //percent(1.0_wp, estimate%least_margin)//' of the stable one'
-  end function words
+    bodies = [(i, i=1, size(model%parts))]
+    allocate (first(model%mesh%n_node), source=0)
+    do slot = 1, model%layout%n_slot
+      if (model%layout%slot_element(slot) == 0) cycle
+      part = slot_part(model%layout, slot)
+      do k = 1, size(model%layout%slot_nodes, 1)
+        associate (node => model%layout%slot_nodes(k, slot))
+          if (first(node) == 0) first(node) = part
+          if (bodies(first(node)) == bodies(part)) cycle
+          where (bodies == bodies(part)) bodies = bodies(first(node))
+        end associate
+      end do
+    end do
+    do i = 1, size(model%contacts)
+      if (.not. is_tied(model%contacts(i))) cycle
+      is_joined = of_bodies(bodies, parts_behind(model, model%contacts(i)))
+      where (is_joined) bodies = minval(bodies, mask=is_joined)
+    end do
+  end subroutine find_bodies
 
-  !> Whether a target was kept, and if not what would: another type, or else a finer mesh. Both are
-  !> known of bodies at rest: neither is sure to take away what waves make.
-  pure function target_words(contact, estimate) result(text)
+  !> Which parts are behind the surfaces of an interface.
+  pure function parts_behind(model, contact) result(is_behind)
+    type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact
-    type(contact_estimate_t), intent(in) :: estimate
-    character(:), allocatable :: text
-    integer :: better
-    real(wp) :: at_rest, expected
+    logical :: is_behind(size(model%parts))
+    integer :: s
 
-    text = 'the target '//percent(contact%target, 1.0_wp)//' is '
-    if (sqrt(estimate%misfit/estimate%load) <= contact%target) then
-      text = text//'kept'
-      return
-    end if
-    text = text//'not kept; '
-    at_rest = sqrt(estimate%still/estimate%load)
-    if (at_rest <= contact%target) then
-      text = text//'by waves, without them it is '//percent(at_rest, 1.0_wp)
-      return
-    end if
-    call better_type(contact%scene, contact%contact_type, at_rest, contact%target, better, &
-      expected)
-    if (tells_waves(estimate)) text = text//'without waves it is '//percent(at_rest, 1.0_wp) &
-      //', and then '
-    if (expected <= contact%target) then
-      text = text//'by the published studies type '//to_text(better)//' would keep it'
-    else
-      text = text//'by the published studies no type would, but elements smaller by a factor of ' &
-        //two_decimals(refinement(expected, contact%target))
-      if (better /= contact%contact_type) text = text//' with type '//to_text(better)
-    end if
-  end function target_words
+    is_behind = .false.
+    do s = 1, contact%slave%n_segment
+      is_behind(slot_part(model%layout, model%layout%element_slot( &
+        contact%slave%segment_element(s)))) = .true.
+    end do
+    do s = 1, contact%master%n_segment
+      is_behind(slot_part(model%layout, model%layout%element_slot( &
+        contact%master%segment_element(s)))) = .true.
+    end do
+  end function parts_behind
 
-  !> Whether waves, the inertia of the rows, make a part of the estimate that is worth telling.
-  elemental function tells_waves(estimate) result(tells)
-    type(contact_estimate_t), intent(in) :: estimate
-    logical :: tells
+  !> Which parts are of the bodies that some of them belong to.
+  pure function of_bodies(bodies, is_some) result(is_of)
+    integer, intent(in) :: bodies(:)  !! (n_part)
+    logical, intent(in) :: is_some(:) !! (n_part)
+    logical :: is_of(size(bodies))
+    logical :: is_body(size(bodies))
+    integer :: i
 
-    tells = estimate%still < told_below*estimate%misfit
-  end function tells_waves
+    is_body = .false.
+    do i = 1, size(bodies)
+      if (is_some(i)) is_body(bodies(i)) = .true.
+    end do
+    is_of = is_body(bodies)
+  end function of_bodies
 
 end module contact_judging_m

@@ -22,6 +22,7 @@ contains
     logical, intent(inout) :: last   !! the run ends anyway; or for a condition of the deck
     character(:), allocatable, intent(inout) :: reason !! of the end
     character(:), allocatable :: found
+    real(wp) :: way
     integer :: i
 
     if (.not. allocated(model%controls%ends)) return
@@ -30,12 +31,19 @@ contains
         found = ''
         select case (ending%kind)
         case (end_node_place)
-          found = judge_node(model, state, ending)
+          found = beyond('node '//to_text(ending%id)//' has come to ', '', &
+            model%mesh%coordinates(ending%direction, ending%where) &
+            + state%motion(ending%direction, ending%where), ending, ' (*TERMINATION_NODE)')
         case (end_node_touch)
           if (norm2(force_on(state, ending%where)) > 0.0_wp) found = 'node '// &
             to_text(ending%id)//' is in contact (*TERMINATION_NODE)'
-        case (end_body_place, end_body_way)
-          found = judge_body(state, ending)
+        case (end_body_place)
+          found = beyond('body '//to_text(ending%id)//' has gone to ', 'displacement ', &
+            state%rigids(ending%where)%place(ending%direction), ending, ' (*TERMINATION_BODY)')
+        case (end_body_way)
+          way = norm2(state%rigids(ending%where)%place(1:2))
+          if (way >= ending%most) found = 'body '//to_text(ending%id)//' has gone ' &
+            //to_text(way)//' (*TERMINATION_BODY)'
         case (end_contact)
           call judge_contact(model, ending, state, state%quiet_since(i), found)
         end select
@@ -45,36 +53,6 @@ contains
       reason = found
     end do
   end subroutine find_early_end
-
-  !> A coordinate of a node against its bounds.
-  function judge_node(model, state, ending) result(found)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(end_condition_t), intent(in) :: ending
-    character(:), allocatable :: found
-
-    found = beyond('node '//to_text(ending%id)//' has come to ', '', &
-      model%mesh%coordinates(ending%direction, ending%where) &
-      + state%motion(ending%direction, ending%where), ending, ' (*TERMINATION_NODE)')
-  end function judge_node
-
-  !> A displacement of a rigid body against its bounds.
-  function judge_body(state, ending) result(found)
-    type(state_t), intent(in) :: state
-    type(end_condition_t), intent(in) :: ending
-    character(:), allocatable :: found
-
-    associate (place => state%rigids(ending%where)%place)
-      if (ending%kind == end_body_way) then
-        found = ''
-        if (norm2(place(1:2)) >= ending%most) found = 'body '//to_text(ending%id)//' has gone ' &
-          //to_text(norm2(place(1:2)))//' (*TERMINATION_BODY)'
-      else
-        found = beyond('body '//to_text(ending%id)//' has gone to ', 'displacement ', &
-          place(ending%direction), ending, ' (*TERMINATION_BODY)')
-      end if
-    end associate
-  end function judge_body
 
   !> What is said of a value at or beyond its bounds; empty within them.
   pure function beyond(what, of, value, ending, keyword) result(found)

@@ -17,7 +17,7 @@ module health_m
   private
   public :: tile_check_t, check_tile, are_sound, check_elements, check_step, name_collapsed, &
     check_cycle, check_energy, check_ratio, check_static_step, check_radii, judge_energies, &
-    judge_ratio, judge_contact, made_by_springs, made_by_forces, most_work, what_would_do, &
+    judge_contact, made_by_springs, made_by_forces, most_work, what_would_do, &
     unaccounted, dissipated
 
   !> Work beyond this means nothing any more; it is found before numbers overflow, which a
@@ -393,27 +393,20 @@ contains
       //'(SRCH limits that)')
   end subroutine judge_contact
 
-  !> Warnings at the end of a run whose figures deserve a second look.
-  subroutine judge_energies(energies, log)
+  !> Warnings at the end of a run whose figures deserve a second look, or do not add up.
+  subroutine judge_energies(energies, spent, cause, log)
     type(energies_t), intent(in) :: energies
+    real(wp), intent(in) :: spent     !! energy that may go without an account, J/m
+    character(*), intent(in) :: cause !! `unaccounted` or `dissipated`
     type(log_t), intent(inout) :: log
 
     if (energies%hourglass > 0.1_wp*max(energies%internal, 1.0e-6_wp*largest_energy(energies))) &
       call warn(log, &
       'the hourglass energy '//to_text(energies%hourglass)//' is more than 10 % of the internal ' &
       //'energy '//to_text(energies%internal))
-  end subroutine judge_energies
-
-  !> A warning at the end of a run whose energies do not add up.
-  subroutine judge_ratio(energies, spent, cause, log)
-    type(energies_t), intent(in) :: energies
-    real(wp), intent(in) :: spent     !! energy that may go without an account, J/m
-    character(*), intent(in) :: cause !! `unaccounted` or `dissipated`
-    type(log_t), intent(inout) :: log
-
     if (abs(energy_ratio(energies) - 1.0_wp) > ratio_band .and. abs(unexplained(energies, spent)) &
       > ratio_band*abs(energies%initial + energies%external_work)) call warn(log, &
       'the energy ratio ends at '//to_text(energy_ratio(energies))//': '//cause)
-  end subroutine judge_ratio
+  end subroutine judge_energies
 
 end module health_m

@@ -3,41 +3,22 @@
 !> groups of nodes (bndout, nodfor) and cross sections (secforc). Both drivers fill them into the
 !> snapshot where they are due.
 module history_filling_m
-  use controls_m, only : cross_section_t, is_asked, boundary_load, boundary_pressure
+  use controls_m, only : cross_section_t, boundary_load, boundary_pressure
   use element_state_m, only : stress_of_slot, plastic_strain_of_slot, is_gone
   use external_force_m, only : add_nodal_loads, add_pressures
-  use history_tables_m, only : table_spcforc, table_elout
-  use kinds_m, only : wp, long
-  use layout_m, only : slot_part
+  use kinds_m, only : wp
   use model_m, only : model_t
   use snapshot_m, only : snapshot_t, section_result_t
-  use sorting_m, only : sorted_order
   use state_m, only : state_t
-  use supports_m, only : mark_supports
   implicit none
   private
-  public :: find_supports, fill_reactions, fill_explicit_reactions, find_history_elements, &
-    fill_history_elements, form_loads, fill_boundaries, fill_sections
+  public :: fill_reactions, fill_explicit_reactions, fill_history_elements, form_loads, &
+    fill_boundaries, fill_sections
 
 contains
 
   ! ---- forces of supports: where a degree of freedom is fixed, R = m a + f with a = 0 and f the
   ! internal less all other forces
-
-  !> Nodes with mass and a fixed degree of freedom by rising id; none where the deck does
-  !> not ask for their forces.
-  subroutine find_supports(model, snapshot)
-    type(model_t), intent(in) :: model
-    type(snapshot_t), intent(inout) :: snapshot
-    integer :: i
-
-    allocate (snapshot%supports(0))
-    if (is_asked(model%controls%output%histories(table_spcforc))) &
-      snapshot%supports = pack([(i, i=1, model%mesh%n_node)], mark_supports(model))
-    snapshot%supports = snapshot%supports(sorted_order(int(model%mesh%node_id(snapshot%supports), &
-      long)))
-    allocate (snapshot%reaction(2, size(snapshot%supports)), source=0.0_wp)
-  end subroutine find_supports
 
   !> Reactions from R of all degrees of freedom; 0 in directions that are free.
   pure subroutine fill_reactions(model, reaction, snapshot)
@@ -84,24 +65,7 @@ contains
 
   ! ---- elements
 
-  !> Room for the elements of *DATABASE_HISTORY_SHELL, where the deck asks for elout, and their
-  !> parts.
-  subroutine find_history_elements(model, snapshot)
-    type(model_t), intent(in) :: model
-    type(snapshot_t), intent(inout) :: snapshot
-    integer :: i
-
-    if (.not. is_asked(model%controls%output%histories(table_elout))) return
-    associate (chosen => model%controls%output%history_elements)
-      allocate (snapshot%history_elements(size(chosen)))
-      do i = 1, size(chosen)
-        snapshot%history_elements(i)%part = &
-          model%parts(slot_part(model%layout, model%layout%element_slot(chosen(i))))%id
-      end do
-    end associate
-  end subroutine find_history_elements
-
-  !> Their stresses and plastic strains.
+  !> Stresses and plastic strains of the elements of *DATABASE_HISTORY_SHELL.
   subroutine fill_history_elements(model, state, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

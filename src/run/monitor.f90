@@ -14,14 +14,14 @@ module monitor_m
   use output_schedule_m, only : schedule_t, start_schedule, is_due, mark_written
   use progress_m, only : progress_t, start_progress
   use ranks_m, only : ranks_t
-  use restart_plan_m, only : restarts_t, plan_restarts
+  use restart_plan_m, only : restarts_t
   use results_file_m, only : results_file_t, run_info_t, open_results, append_state, finish_results
   use rows_behind_m, only : face_rows_t
   use snapshot_m, only : snapshot_t
   use snapshot_filling_m, only : start_snapshot
   implicit none
   private
-  public :: monitor_t, open_files, start_monitor, plan_outputs, find_due, any_due, write_due, &
+  public :: monitor_t, open_files, start_monitor, start_schedules, find_due, any_due, write_due, &
     finish_monitor, due_t
 
   !> What is due in one cycle.
@@ -91,19 +91,11 @@ contains
     call start_schedules(model, monitor)
     call start_progress(monitor%progress, model%controls%end_time, &
       model%controls%output%status_interval)
-    call plan_restarts(monitor%restarts, model%controls)
+    monitor%restarts%is_implicit = model%controls%implicit%is_on
+    monitor%restarts%dump_cycles = model%controls%output%dump_cycles
+    monitor%restarts%running_cycles = model%controls%output%running_cycles
     if (monitor%ranks%mine == 0) call start_snapshot(model, has_history, monitor%snapshot)
   end subroutine start_monitor
-
-  !> Tables and schedules of a run that opens no files: what a restart file says of them can be
-  !> read.
-  subroutine plan_outputs(model, monitor)
-    type(model_t), intent(in) :: model
-    type(monitor_t), intent(inout) :: monitor
-
-    call plan_histories(monitor%histories, model)
-    call start_schedules(model, monitor)
-  end subroutine plan_outputs
 
   !> Energies go with the plot states where the deck gives them no interval of their own, since
   !> every run has an energy history.

@@ -7,7 +7,7 @@ module progress_m
     lap_seconds, phase_names, n_phase, phase_input, phase_output
   use endings_m, only : normal_ending, error_ending
   use kinds_m, only : wp, long
-  use log_m, only : log_t, write_log
+  use log_m, only : log_t, write_log, to_text
   use screen_m, only : show, show_part
   use signals_m, only : output_is_terminal
   use status_file_m, only : status_t, keep_status, write_status, done_share, &
@@ -22,6 +22,7 @@ module progress_m
   real(wp), parameter :: terminal_interval = 0.25_wp, pipe_interval = 10.0_wp
   !> Lines in a pipe before the end of a run, at most: thousands of runs write into one file.
   integer, parameter :: most_lines = 20
+  character(1), parameter :: n = new_line('a')
 
   !> What the lines need to know.
   type :: progress_t
@@ -149,7 +150,7 @@ contains
     progress%status%cycle = cycle
     progress%status%time = time
     call write_status(progress%status, clock, trim(merge('normal termination', &
-      'error termination ', normal))//': '//reason(:scan(reason//new_line('a'), new_line('a')) - 1))
+      'error termination ', normal))//': '//reason(:scan(reason//n, n) - 1))
     seconds = phase_seconds(clock)
     elapsed = elapsed_seconds(clock)
     cost = 0.0_wp
@@ -157,20 +158,14 @@ contains
       *(total_seconds(clock) - sum(seconds([phase_output, phase_input])))/real(cycle &
       - progress%first_cycle, wp)/n_element
     ending = trim(merge(normal_ending, error_ending//'  ', normal))
-    lines = ''
-    call add(lines, '')
-    call add(lines, ' *** '//reason//' ***')
-    call add(lines, ending)
-    call add(lines, '')
-    write (line, '(ss,a,es16.8)') ' Problem time        = ', time
-    call add(lines, line)
-    write (line, '(ss,a,i0)') ' Problem cycle       = ', cycle
-    call add(lines, line)
-    call add(lines, ' Elapsed time        = '//fixed(elapsed, 3)//' seconds')
-    call add(lines, ' Time per zone cycle = '//fixed(cost, 2)//' nanoseconds (output and input ' &
-      //trim(merge('apart   ', 'included', clock%is_on))//')')
-    write (line, '(ss,a,i0)') ' Warnings            = ', log%n_warning
-    call add(lines, line)
+    write (line, '(ss,es16.8)') time
+    lines = n//' *** '//reason//' ***'//n//ending//n//n &
+      //' Problem time        = '//trim(line)//n &
+      //' Problem cycle       = '//to_text(cycle)//n &
+      //' Elapsed time        = '//fixed(elapsed, 3)//' seconds'//n &
+      //' Time per zone cycle = '//fixed(cost, 2)//' nanoseconds (output and input ' &
+      //trim(merge('apart   ', 'included', clock%is_on))//')'//n &
+      //' Warnings            = '//to_text(log%n_warning)//n
     if (clock%is_on) call add_timing(lines, clock, seconds)
     ! In one piece: beside a small run each line of its own would be felt.
     lines = lines(:len(lines) - 1)
@@ -192,28 +187,18 @@ contains
     integer :: i
 
     total = max(sum(seconds), tiny(1.0_wp))
-    call add(lines, '')
-    call add(lines, &
-      ' T i m i n g   i n f o r m a t i o n      seconds   share %        calls')
+    lines = lines//n//' T i m i n g   i n f o r m a t i o n      seconds   share %        calls'//n
     do i = 1, n_phase
       if (clock%calls(i) == 0) cycle
       write (line, '(ss,a,a24,f17.4,f10.2,i13)') '  ', phase_names(i), seconds(i), &
         100.0_wp*seconds(i)/total, clock%calls(i)
-      call add(lines, line)
+      lines = lines//trim(line)//n
     end do
     each = lap_seconds()
     write (line, '(ss,a,i0)') ' Clock               = ', sum(clock%calls)
-    call add(lines, trim(line)//' readings of '//fixed(1.0e9_wp*each, 1)//' nanoseconds, ' &
-      //fixed(100.0_wp*each*sum(clock%calls)/total, 2)//' % of the time')
+    lines = lines//trim(line)//' readings of '//fixed(1.0e9_wp*each, 1)//' nanoseconds, ' &
+      //fixed(100.0_wp*each*sum(clock%calls)/total, 2)//' % of the time'//n
   end subroutine add_timing
-
-  !> One line more.
-  pure subroutine add(lines, text)
-    character(:), allocatable, intent(inout) :: lines
-    character(*), intent(in) :: text
-
-    lines = lines//trim(text)//new_line('a')
-  end subroutine add
 
   !> A number of 0 or more with `digits` behind the point and at least one before it.
   pure function fixed(number, digits) result(text)

@@ -1,8 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> What is due of an instant: the part of it that both drivers do.
 module reporting_m
-  use contact_judging_m, only : judge_contacts
-  use contact_softness_m, only : follow_softness
+  use contact_judging_m, only : judge_contacts, follow_softness
   use snapshot_m, only : total_energy
   use errors_m, only : error_t
   use history_filling_m, only : fill_boundaries, fill_history_elements, fill_sections

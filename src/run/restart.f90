@@ -18,6 +18,7 @@ module restart_m
   use restart_file_m, only : create_restart, finish_restart, file_checksum
   use restart_plan_m, only : restarts_t, dump_path, running_path, place_text, numbered_file
   use state_m, only : state_t
+  use text_files_m, only : read_whole
   use visitor_m, only : visited_t, any_length
   implicit none
   private
@@ -70,7 +71,7 @@ contains
     character(:), allocatable, intent(out) :: text
     character(:), allocatable :: path, checksum, reason
     integer(long) :: length
-    integer :: unit, status
+    logical :: is_read
 
     if (allocated(archive%error)) return
     path = restarts%prefix//'.effective.k'
@@ -79,12 +80,8 @@ contains
       if (checksum /= restarts%effective_deck_checksum) reason = 'it has been changed'
     end if
     if (.not. allocated(reason)) then
-      allocate (character(length) :: text)
-      open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
-        action='read', iostat=status)
-      if (status == 0) read (unit, iostat=status) text
-      if (status == 0) close (unit)
-      if (status /= 0) reason = 'it can not be read'
+      call read_whole(path, text, is_read)
+      if (.not. is_read) reason = 'it can not be read'
     end if
     if (allocated(reason)) call archive%fail('no restart file can be written, since it ' &
       //'would hold the deck as run, '//path//': '//reason, status_files)
@@ -158,36 +155,27 @@ contains
 
   end subroutine keep_outputs
 
-  !> Remove what an earlier run of this name has left: files that it has not finished, and whole
-  !> ones too unless the run goes on.
+  !> Remove what an earlier run of this name has left, the running file and the numbered ones that
+  !> follow without a gap: files that it has not finished, and whole ones too unless the run goes
+  !> on.
   subroutine forget_files(restarts, error)
     type(restarts_t), intent(in) :: restarts
     type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable :: path
     logical :: found
     integer :: i
 
-    call forget_file(running_path(restarts), .not. restarts%goes_on, found, error)
     i = 0
-    do while (found .or. i == 0)
+    path = running_path(restarts)
+    do
+      found = file_exists(path)
+      if (.not. found) found = file_exists(path//unfinished)
+      if (found) call remove_file(path//unfinished, error)
+      if (found .and. .not. (restarts%goes_on .or. allocated(error))) call remove_file(path, error)
+      if (allocated(error) .or. .not. (found .or. i == 0)) exit
       i = i + 1
-      if (.not. allocated(error)) &
-        call forget_file(dump_path(restarts, i), .not. restarts%goes_on, found, error)
+      path = dump_path(restarts, i)
     end do
   end subroutine forget_files
-
-  !> Remove an unfinished file, and a whole one if asked.
-  subroutine forget_file(path, whole_too, found, error)
-    character(*), intent(in) :: path
-    logical, intent(in) :: whole_too
-    logical, intent(out) :: found       !! there was one, and nothing stood in the way
-    type(error_t), allocatable, intent(out) :: error
-
-    found = file_exists(path)
-    if (.not. found) found = file_exists(path//unfinished)
-    if (.not. found) return
-    call remove_file(path//unfinished, error)
-    if (whole_too .and. .not. allocated(error)) call remove_file(path, error)
-    found = found .and. .not. allocated(error)
-  end subroutine forget_file
 
 end module restart_m

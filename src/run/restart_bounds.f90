@@ -7,7 +7,7 @@ module restart_bounds_m
   use archive_m, only : archive_t
   use contact_state_m, only : contact_state_t, tracking_t, bucket_grid_t, is_free, is_touching
   use contacts_m, only : contact_t
-  use facing_state_m, only : facing_t, facing_side_t
+  use facing_state_m, only : facing_side_t
   use law_state_m, only : is_open, is_held, is_broken
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -22,26 +22,14 @@ module restart_bounds_m
 
 contains
 
-  !> Look at a whole state; the first thing that is wrong is told as an error of the archive.
+  !> Look at a whole state; the first thing that is wrong is told as an error of the archive. A
+  !> phase before time zero is one that the deck has, with a velocity of each node.
   subroutine check_state(model, state, archive)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state      !! of the shapes of the model
     type(archive_t), intent(inout) :: archive
-    integer :: i
-
-    call check_relaxation(model, state, archive)
-    do i = 1, size(state%contacts)
-      call check_contact(state%outlines(i), state%contacts(i), &
-        'state/contacts/'//to_text(i)//'/', archive)
-    end do
-  end subroutine check_state
-
-  !> The phase before time zero: one that the deck has, with a velocity of each node.
-  subroutine check_relaxation(model, state, archive)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(archive_t), intent(inout) :: archive
     logical :: fits
+    integer :: i
 
     associate (relaxation => state%relaxation)
       call archive%expect('state/relaxation/n', relaxation%n == 0 .or. (relaxation%n > 0 .and. &
@@ -54,7 +42,11 @@ contains
       call archive%expect('state/time', relaxation%n == 0 .or. .not. state%time > 0.0_wp, &
         'a time after that of the relaxation')
     end associate
-  end subroutine check_relaxation
+    do i = 1, size(state%contacts)
+      call check_contact(state%outlines(i), state%contacts(i), &
+        'state/contacts/'//to_text(i)//'/', archive)
+    end do
+  end subroutine check_state
 
   !> The memory of one interface.
   subroutine check_contact(contact, memory, folder, archive)
@@ -72,7 +64,8 @@ contains
     n_spot = memory%n_slave
     if (allocated(memory%spot_xi)) n_spot = size(memory%spot_xi)*n_segments(1)
     if (memory%facing%is_used) then
-      call check_facing(memory%facing, n_segments, folder//'facing/', archive)
+      call check_side(memory%facing%slave, n_segments(1), folder//'facing/slave/', archive)
+      call check_side(memory%facing%master, n_segments(2), folder//'facing/master/', archive)
       if (allocated(archive%error)) return
       n_segments = [memory%facing%slave%n, memory%facing%master%n]
       if (allocated(memory%spot_xi)) n_spot = size(memory%spot_xi)*n_segments(1)
@@ -84,34 +77,20 @@ contains
       folder//'master_tracking/', archive)
   end subroutine check_contact
 
-  !> Runs of facing segments: rising numbers of segments that there are.
-  subroutine check_facing(facing, n_segments, folder, archive)
-    type(facing_t), intent(in) :: facing
-    integer, intent(in) :: n_segments(2) !! of slave and master
+  !> Runs of facing segments of one surface: rising numbers of segments that there are.
+  subroutine check_side(side, n, folder, archive)
+    type(facing_side_t), intent(in) :: side
+    integer, intent(in) :: n !! segments of the surface
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
 
-    call check_side(facing%slave, n_segments(1), folder//'slave/')
-    if (.not. allocated(archive%error)) &
-      call check_side(facing%master, n_segments(2), folder//'master/')
-
-  contains
-
-    !> The list of one surface.
-    subroutine check_side(side, n, folder)
-      type(facing_side_t), intent(in) :: side
-      integer, intent(in) :: n
-      character(*), intent(in) :: folder
-
-      call archive%expect(folder//'n', side%n >= 0 .and. side%n <= n, &
-        'a number beyond the length of its list')
-      if (allocated(archive%error)) return
-      call archive%expect(folder//'segments', all(side%segments(:side%n) >= 1 &
-        .and. side%segments(:side%n) <= n) .and. all(side%segments(2:side%n) &
-        > side%segments(:side%n - 1)), 'numbers that do not rise, or that no segment has')
-    end subroutine check_side
-
-  end subroutine check_facing
+    call archive%expect(folder//'n', side%n >= 0 .and. side%n <= n, &
+      'a number beyond the length of its list')
+    if (allocated(archive%error)) return
+    call archive%expect(folder//'segments', all(side%segments(:side%n) >= 1 &
+      .and. side%segments(:side%n) <= n) .and. all(side%segments(2:side%n) &
+      > side%segments(:side%n - 1)), 'numbers that do not rise, or that no segment has')
+  end subroutine check_side
 
   !> The list of points: as many in all its arrays, and nodes of the interface.
   subroutine check_points(memory, folder, archive)

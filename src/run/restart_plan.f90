@@ -2,13 +2,12 @@
 !> When a run writes restart files and under which names, and the one that it goes on from.
 module restart_plan_m
   use archive_m, only : archive_t
-  use controls_m, only : controls_t
   use kinds_m, only : wp, long
   use log_m, only : to_text
   use state_m, only : state_t
   implicit none
   private
-  public :: restarts_t, plan_restarts, dump_path, running_path, place_text, wanted_files, &
+  public :: restarts_t, dump_path, running_path, place_text, wanted_files, &
     numbered_file, running_file, wants_look
 
   !> Kinds of restart files: those that stay, and the one that is replaced again and again.
@@ -39,16 +38,6 @@ module restart_plan_m
   end type restarts_t
 
 contains
-
-  !> Take the plan from the deck.
-  pure subroutine plan_restarts(restarts, controls)
-    type(restarts_t), intent(inout) :: restarts
-    type(controls_t), intent(in) :: controls
-
-    restarts%is_implicit = controls%implicit%is_on
-    restarts%dump_cycles = controls%output%dump_cycles
-    restarts%running_cycles = controls%output%running_cycles
-  end subroutine plan_restarts
 
   !> Path of the numbered file `i`.
   pure function dump_path(restarts, i) result(path)

@@ -73,26 +73,17 @@ contains
           edge = first(nodes(mod(k, n_corner) + 1))
           do while (edge > 0)
             i = (edge - 1)/n_corner + 1
-            if (end_of(model, rows, edge) == nodes(k) .and. rows%elements(i) &
-              /= model%layout%slot_element(slot)) &
-              rows%across(edge - n_corner*(i - 1), i) = model%layout%slot_element(slot)
+            associate (other => model%layout%element_slot(rows%elements(i)))
+              a = model%layout%slot_nodes(mod(edge, n_corner) + 1, other) ! at which it ends
+              if (a == nodes(k) .and. other /= slot) &
+                rows%across(edge - n_corner*(i - 1), i) = model%layout%slot_element(slot)
+            end associate
             edge = next(edge)
           end do
         end associate
       end do
     end do
   end subroutine find_across
-
-  !> Node at which an edge of the rows ends.
-  pure integer function end_of(model, rows, edge)
-    type(model_t), intent(in) :: model
-    type(face_rows_t), intent(in) :: rows
-    integer, intent(in) :: edge
-
-    associate (slot => model%layout%element_slot(rows%elements((edge - 1)/n_corner + 1)))
-      end_of = model%layout%slot_nodes(mod(edge, n_corner) + 1, slot)
-    end associate
-  end function end_of
 
   !> Whether the stress of an element bears what presses on it: not in rigid bodies, where elements
   !> have left the mesh, nor where all nodes are held or led.

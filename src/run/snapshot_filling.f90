@@ -2,8 +2,7 @@
 !> Fills a snapshot from the state, only what is due. Forces, energies and motion of one cycle
 !> belong to one instant: v(n) = v(n-1/2) + a(n) dt/2.
 module snapshot_filling_m
-  use history_filling_m, only : find_history_elements, find_supports
-  use kinds_m, only : wp
+  use kinds_m, only : wp, long
   use block_state_m, only : block_state_t
   use common_motion_m, only : fill_common
   use constraints_m, only : is_active
@@ -11,15 +10,17 @@ module snapshot_filling_m
   use element_mass_m, only : element_shares
   use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains, &
     element_heats, element_erosion, hoop_strains
-  use contacts_m, only : transducer_t, has_shear, n_told, told_as
+  use contacts_m, only : has_shear, n_told, told_as
   use controls_m, only : is_asked
-  use history_tables_m, only : table_matsum, table_rbdout
+  use history_tables_m, only : table_elout, table_matsum, table_rbdout, table_spcforc
   use layout_m, only : slot_part
   use mass_scaling_m, only : scales_masses, added_masses
   use model_m, only : model_t
   use parts_m, only : has_memory_of_heat
   use snapshot_m, only : snapshot_t, interface_result_t, slave_result_t
+  use sorting_m, only : sorted_order
   use state_m, only : state_t
+  use supports_m, only : mark_supports
   implicit none
   private
   public :: start_snapshot, fill_motion, find_motion, damping_at, fill_energies, fill_parts, &
@@ -36,7 +37,7 @@ contains
     type(model_t), intent(in) :: model
     logical, intent(in) :: has_history !! some part keeps a plastic strain
     type(snapshot_t), intent(out) :: snapshot
-    integer :: n_node, n_element
+    integer :: n_node, n_element, i
 
     n_node = model%mesh%n_node
     n_element = model%mesh%n_element
@@ -49,8 +50,19 @@ contains
     if (allocated(model%walls)) allocate (snapshot%walls(size(model%walls)))
     if (allocated(model%transducers)) allocate (snapshot%transducers(size(model%transducers)))
     allocate (snapshot%interfaces(n_told(model%contacts)), snapshot%slaves(size(model%contacts)))
-    call find_supports(model, snapshot)
-    call find_history_elements(model, snapshot)
+    ! Nodes with mass and a fixed degree of freedom by rising id, where their forces are asked for.
+    allocate (snapshot%supports(0))
+    if (is_asked(model%controls%output%histories(table_spcforc))) &
+      snapshot%supports = pack([(i, i=1, n_node)], mark_supports(model))
+    snapshot%supports = snapshot%supports(sorted_order(int(model%mesh%node_id(snapshot%supports), &
+      long)))
+    allocate (snapshot%reaction(2, size(snapshot%supports)), source=0.0_wp)
+    if (is_asked(model%controls%output%histories(table_elout))) then
+      associate (chosen => model%controls%output%history_elements)
+        allocate (snapshot%history_elements(size(chosen)))
+        snapshot%history_elements%part = model%parts(model%mesh%element_part(chosen))%id
+      end associate
+    end if
     if (is_asked(model%controls%output%histories(table_rbdout))) &
       allocate (snapshot%bodies(size(model%rigids)))
     if (.not. is_asked(model%controls%output%plot)) return
@@ -254,13 +266,15 @@ contains
     end do
   end subroutine fill_parts
 
-  !> Resultants of all interfaces.
+  !> Resultants of all interfaces, where those of contact behind ties are with what these have; and
+  !> what all do to the surface of a transducer, and how many of its nodes carry force.
   subroutine fill_interfaces(model, state, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(snapshot_t), intent(inout) :: snapshot
     type(interface_result_t) :: result
-    integer :: i
+    logical, allocatable :: is_on(:), is_loaded(:)
+    integer :: i, j, k
 
     do i = 1, size(model%contacts)
       associate (contact => state%contacts(i), friction => state%contacts(i)%friction)
@@ -273,50 +287,36 @@ contains
       if (told_as(model%contacts, i) == i) then
         snapshot%interfaces(i) = result
       else
-        call add_result(result, snapshot%interfaces(told_as(model%contacts, i)))
+        associate (total => snapshot%interfaces(told_as(model%contacts, i)))
+          total%slave_force = total%slave_force + result%slave_force
+          total%master_force = total%master_force + result%master_force
+          total%n_active = total%n_active + result%n_active
+          total%energy = total%energy + result%energy
+          total%friction = total%friction + result%friction
+          total%damping = total%damping + result%damping
+          total%stored = total%stored + result%stored
+        end associate
       end if
     end do
     if (.not. allocated(model%transducers)) return
-    do i = 1, size(model%transducers)
-      call add_up_forces(model%transducers(i), state, snapshot%transducers(i))
+    allocate (is_on(size(state%mass)), is_loaded(size(state%mass)))
+    do j = 1, size(model%transducers)
+      snapshot%transducers(j) = interface_result_t()
+      is_loaded = .false.
+      is_on = .false.
+      is_on(model%transducers(j)%nodes) = .true.
+      do i = 1, size(state%contacts)
+        associate (memory => state%contacts(i), force => snapshot%transducers(j)%slave_force)
+          do k = 1, size(memory%nodes)
+            if (.not. is_on(memory%nodes(k))) cycle
+            force = force + memory%force(:, k)
+            if (any(abs(memory%force(:, k)) > 0.0_wp)) is_loaded(memory%nodes(k)) = .true.
+          end do
+        end associate
+      end do
+      snapshot%transducers(j)%n_active = count(is_loaded)
     end do
   end subroutine fill_interfaces
-
-  !> Contact behind ties, to what these have.
-  pure subroutine add_result(part, total)
-    type(interface_result_t), intent(in) :: part
-    type(interface_result_t), intent(inout) :: total
-
-    total%slave_force = total%slave_force + part%slave_force
-    total%master_force = total%master_force + part%master_force
-    total%n_active = total%n_active + part%n_active
-    total%energy = total%energy + part%energy
-    total%friction = total%friction + part%friction
-    total%damping = total%damping + part%damping
-    total%stored = total%stored + part%stored
-  end subroutine add_result
-
-  !> What all interfaces do to the surface of a transducer, and how many of its nodes carry force.
-  subroutine add_up_forces(transducer, state, resultants)
-    type(transducer_t), intent(in) :: transducer
-    type(state_t), intent(in) :: state
-    type(interface_result_t), intent(out) :: resultants
-    logical, allocatable :: is_on(:), is_loaded(:)
-    integer :: i, k
-
-    allocate (is_on(size(state%mass)), is_loaded(size(state%mass)), source=.false.)
-    is_on(transducer%nodes) = .true.
-    do i = 1, size(state%contacts)
-      associate (memory => state%contacts(i))
-        do k = 1, size(memory%nodes)
-          if (.not. is_on(memory%nodes(k))) cycle
-          resultants%slave_force = resultants%slave_force + memory%force(:, k)
-          if (any(abs(memory%force(:, k)) > 0.0_wp)) is_loaded(memory%nodes(k)) = .true.
-        end do
-      end associate
-    end do
-    resultants%n_active = count(is_loaded)
-  end subroutine add_up_forces
 
   !> Fields of a plot state and the rows of slave nodes.
   subroutine fill_plot(model, state, snapshot)

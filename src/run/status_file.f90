@@ -4,13 +4,13 @@
 module status_file_m
   use clock_m, only : clock_t, elapsed_seconds
   use errors_m, only : error_t
-  use files_m, only : join_path, rename_file, unfinished
+  use files_m, only : rename_file, unfinished
   use text_files_m, only : write_whole
   use kinds_m, only : wp, long
   use log_m, only : to_text
   implicit none
   private
-  public :: status_t, start_status, keep_status, write_status, done_share, seconds_to_go, &
+  public :: status_t, keep_status, write_status, done_share, seconds_to_go, &
     duration
 
   !> Seconds between two files at least.
@@ -34,52 +34,32 @@ module status_file_m
 
 contains
 
-  !> Begin: status.out, or <job>.status.out where the job has a name of its
-  !> own (jobid=), as in LS-DYNA.
-  subroutine start_status(status, directory, job, has_name, clock)
-    type(status_t), intent(inout) :: status  !! times and cycles are set
-    character(*), intent(in) :: directory
-    character(*), intent(in) :: job
-    logical, intent(in) :: has_name
-    type(clock_t), intent(in) :: clock
-    integer(long) :: now, rate
-
-    status%job = job
-    status%path = join_path(directory, 'status.out')
-    if (has_name) status%path = join_path(directory, job//'.status.out')
-    status%start_time = status%time
-    status%start_cycle = status%cycle
-    status%start_seconds = elapsed_seconds(clock)
-    call write_status(status, clock, 'running')
-    call system_clock(now, rate)
-    status%next_tick = now + int(file_interval*real(rate, wp), long)
-  end subroutine start_status
-
   !> Take new numbers, and write them when the last file is old enough.
   subroutine keep_status(status, clock, cycle, time, dt, ratio)
     type(status_t), intent(inout) :: status
     type(clock_t), intent(in) :: clock
     integer, intent(in) :: cycle
     real(wp), intent(in) :: time, dt, ratio
-    integer(long) :: now, rate
+    integer(long) :: now
 
     status%cycle = cycle
     status%time = time
     status%dt = dt
     status%ratio = ratio
-    call system_clock(now, rate)
-    if (now < status%next_tick) return
-    status%next_tick = now + int(file_interval*real(rate, wp), long)
-    call write_status(status, clock, 'running')
+    call system_clock(now)
+    if (now >= status%next_tick) call write_status(status, clock, 'running')
   end subroutine keep_status
 
   !> Write the file.
   subroutine write_status(status, clock, state)
-    type(status_t), intent(in) :: status
+    type(status_t), intent(inout) :: status
     type(clock_t), intent(in) :: clock
     character(*), intent(in) :: state !! running, or how the run has ended
     type(error_t), allocatable :: error
+    integer(long) :: now, rate
 
+    call system_clock(now, rate)
+    status%next_tick = now + int(file_interval*real(rate, wp), long)
     if (.not. allocated(status%path)) return
     call write_whole(status%path//unfinished, status_text(status, clock, state), error)
     if (.not. allocated(error)) call rename_file(status%path//unfinished, status%path, error)

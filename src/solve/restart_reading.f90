@@ -10,7 +10,8 @@ module restart_reading_m
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
-  use monitor_m, only : monitor_t, plan_outputs
+  use history_file_m, only : plan_histories
+  use monitor_m, only : monitor_t, start_schedules
   use outlines_m, only : resume_outlines
   use output_schedule_m, only : output_reach
   use progress_m, only : show_note
@@ -115,7 +116,8 @@ contains
     type(implicit_memory_t) :: memory
     type(explicit_cycle_t) :: cycle
 
-    call plan_outputs(model, planned)
+    call plan_histories(planned%histories, model)
+    call start_schedules(model, planned)
     call keep_outputs(source, state%time - state%dt_before, &
       output_reach(model%controls, state%dt_before), planned)
     if (model%controls%implicit%is_on) then

@@ -17,7 +17,7 @@ module explicit_m
   use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, exchange_tiles, &
     end_cycle
   use explicit_report_m, only : report_cycle
-  use health_m, only : check_tile, judge_energies, judge_ratio, unaccounted
+  use health_m, only : check_tile, judge_energies, unaccounted
   use kinds_m, only : wp
   use mass_scaling_m, only : refine_limits
   use model_m, only : model_t
@@ -70,8 +70,7 @@ contains
     if (monitor%ranks%n > 1) call report_exchange(cycle%parcel, monitor%ranks, monitor%log)
     call report_rest(monitor%ranks, cycle%rest, monitor%log)
     if (allocated(error)) return
-    call judge_energies(monitor%snapshot%energies, monitor%log)
-    call judge_ratio(monitor%snapshot%energies, 0.0_wp, unaccounted, monitor%log)
+    call judge_energies(monitor%snapshot%energies, 0.0_wp, unaccounted, monitor%log)
   end subroutine advance_explicit
 
   !> The cycles, run by every thread of the team. The end of a cycle and the beginning of the next

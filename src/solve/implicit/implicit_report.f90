@@ -11,8 +11,8 @@ module implicit_report_m
   use snapshot_m, only : energy_ratio
   use equations_m, only : equations_t
   use errors_m, only : error_t
-  use health_m, only : check_energy, check_ratio, check_radii, judge_energies, judge_ratio, &
-    judge_contact, made_by_forces, unaccounted, dissipated
+  use health_m, only : check_energy, check_ratio, check_radii, judge_energies, judge_contact, &
+    made_by_forces, unaccounted, dissipated
   use history_filling_m, only : fill_reactions, form_loads
   use history_tables_m, only : table_matsum, table_spcforc, table_bndout, table_nodfor, &
     table_secforc
@@ -92,8 +92,7 @@ contains
       call check_radii(model, state, monitor%told_radii, monitor%log)
       if (last .and. .not. allocated(error)) then
         call judge_contact(shot%energies, monitor%log)
-        call judge_energies(shot%energies, monitor%log)
-        call judge_ratio(shot%energies, spent_energy(state, memory%step), cause, monitor%log)
+        call judge_energies(shot%energies, spent_energy(state, memory%step), cause, monitor%log)
       end if
     end associate
     call lap(monitor%clock, phase_output)
