@@ -230,18 +230,10 @@ contains
     type(card_t), intent(inout) :: card
     integer, intent(in) :: k
     character(:), allocatable :: name
-    logical :: asks
 
     if (card%bad(k)) return
-    select case (spec%kinds(k))
-    case ('i')
-      asks = card%i(k) /= 0 .and. card%i(k) /= nint(spec%defaults(k))
-    case ('f')
-      asks = abs(card%r(k)) > 0.0_wp .and. abs(card%r(k) - spec%defaults(k)) > 0.0_wp
-    case default
-      asks = .true.
-    end select
-    if (.not. asks) return
+    if (index('if', spec%kinds(k)) > 0 .and. (.not. abs(card%r(k)) > 0.0_wp &
+      .or. .not. abs(card%r(k) - spec%defaults(k)) > 0.0_wp)) return
     name = trim(deck%blocks(block_of_line(deck, card%line))%name)
     if (spec%treatments(k) == 'r') then
       call field_error(deck, card, k, refusal_reason(trim(spec%names(k))))

@@ -157,7 +157,7 @@ contains
     integer :: k
 
     k = field_number(card%names, name)
-    if (.not. card%blank(k) .and. (card%i(k) /= 0 .or. abs(card%r(k)) > 0.0_wp)) &
+    if (.not. card%blank(k) .and. abs(card%r(k)) > 0.0_wp) &
       raw%explicit_only = [raw%explicit_only, place_of(card, name)]
   end subroutine note_explicit
 

@@ -59,7 +59,7 @@ contains
     real(wp) :: scale(2)
 
     call first_card(deck, i_block, cursor, head)
-    call define(deck, a_curve, head, 'LCID', n)
+    call define(deck, a_curve, head, n)
     scale = reals_of(head, 'SFA', 'SFO')
     scale(1) = abs(scale(1)) ! a negative one has been refused
     curve%phase = integer_of(head, 'SIDR')
@@ -90,7 +90,7 @@ contains
       call read_rows(deck, ['VALUE'], [abs(real_of(head, 'SFA'))], [real_of(head, 'OFFA')], &
         'is not beyond the value before it: the values of a table must increase', cursor, values)
       if (size(values, 2) == 0) call line_error(deck, head%line, 'the table has no values')
-      call define(deck, a_table, head, 'TBID', n)
+      call define(deck, a_table, head, n)
       if (n == 0) cycle
       tables(n)%values = values(1, :)
       if (index_of(deck%maps(a_curve), integer_of(head, 'TBID')) > 0) call &
@@ -175,7 +175,7 @@ contains
       call first_card(deck, blocks(i), cursor, card)
       call next_card(deck, cursor, 2, more)
       call check_rest(deck, cursor)
-      call define(deck, a_system, card, 'CID', n)
+      call define(deck, a_system, card, n)
       if (n == 0) cycle
       if (abs(real_of(more, 'ZP') - real_of(card, 'ZO')) > 0.0_wp) &
         call report_field(deck, more, 'ZP', leaves)

@@ -78,7 +78,7 @@ contains
         call take_rigid(deck, cursor, material)
       end select
       call check_rest(deck, cursor)
-      call define(deck, a_material, card, 'MID', n)
+      call define(deck, a_material, card, n)
       if (n > 0) materials(n) = material
     end do
     model%materials = materials(:deck%maps(a_material)%n)
@@ -227,7 +227,7 @@ contains
       call first_card(deck, blocks(i), cursor, card)
       call next_card(deck, cursor, 2, start)
       call check_rest(deck, cursor)
-      call define(deck, an_eos, card, 'EOSID', n)
+      call define(deck, an_eos, card, n)
       if (n == 0) cycle
       associate (eos => equations(n))
         eos%id = integer_of(card, 'EOSID')

@@ -75,7 +75,7 @@ contains
         z = field_number(card%names, 'Z')
         code = field_number(card%names, 'TC')
       end if
-      call define(deck, a_node, card, 'NID', n)
+      call define(deck, a_node, card, n)
       if (n == 0) cycle
       codes(n) = card%i(code)
       coordinates(1, n) = card%r(x)
@@ -123,7 +123,7 @@ contains
       end if
       if (any(card%bad)) call lose(deck, [an_element])
       if (any(card%bad)) cycle
-      call define(deck, an_element, card, 'EID', n)
+      call define(deck, an_element, card, n)
       call find_id(deck, a_part, card, part, parts(n))
       do k = 1, 3
         call find_id(deck, a_node, card, first + k - 1, nodes(k, n))

@@ -54,7 +54,7 @@ contains
           call line_error(deck, cursor%line - 1, 'a heading without the card of its part after it')
           exit
         end if
-        call define(deck, a_part, card, 'PID', n)
+        call define(deck, a_part, card, n)
         if (n == 0) cycle
         part%id = integer_of(card, 'PID')
         call find_id(deck, a_section, card, 'SECID', part%section)
@@ -124,7 +124,7 @@ contains
         section%element_form = merge(form_full, form_one_point, section%is_full)
         if (section%is_round) section%element_form = merge(form_round_full, form_round_one_point, &
           section%is_full)
-        call define(deck, a_section, card, 'SECID', n)
+        call define(deck, a_section, card, n)
         if (n > 0) sections(n) = section
       end do
     end do
@@ -176,7 +176,7 @@ contains
       hourglass%linear = default%linear
       if (.not. is_blank(card, 'Q1')) hourglass%quadratic = real_of(card, 'Q1')
       if (.not. is_blank(card, 'Q2')) hourglass%linear = real_of(card, 'Q2')
-      call define(deck, an_hourglass, card, 'HGID', n)
+      call define(deck, an_hourglass, card, n)
       if (n > 0) hourglasses(n) = hourglass
     end do
     call map_defined(deck, an_hourglass, 'HGID')

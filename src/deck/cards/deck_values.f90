@@ -114,19 +114,16 @@ contains
     end if
   end subroutine take_life
 
-  !> One more thing of a kind, which has its number in a field of a card: its index, 0 where the
-  !> number was refused.
-  subroutine define(deck, kind, card, name, n)
+  !> One more thing of a kind, which has its number in the first field of a card: its index, 0 where
+  !> the number was refused.
+  subroutine define(deck, kind, card, n)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: kind
     type(card_t), intent(in) :: card
-    character(*), intent(in) :: name
     integer, intent(out) :: n
-    integer :: k
 
     n = 0
-    k = field_number(card%names, name)
-    if (card%bad(k)) then
+    if (card%bad(1)) then
       call lose(deck, [kind])
       return
     end if
@@ -138,7 +135,7 @@ contains
       end if
       map%n = map%n + 1
       n = map%n
-      map%ids(n) = card%i(k)
+      map%ids(n) = card%i(1)
       map%lines(n) = card%line
     end associate
   end subroutine define

@@ -9,7 +9,7 @@ module deck_card_specs_m
   use deck_lines_m, only : format_long, format_i10, max_field
   implicit none
   private
-  public :: card_spec_t, make_spec, field_number, is_in_range, range_text
+  public :: card_spec_t, make_spec, field_number, is_listed, range_text
 
   !> What a card may hold.
   type :: card_spec_t
@@ -24,7 +24,8 @@ module deck_card_specs_m
     character :: zeros(max_field) = ''          !! what a 0 means where blank is another value: =
                                                 !! the default, ~ 0
     character(32) :: ranges(max_field) = ''     !! as in the table; blank: any value
-    real(wp) :: least(max_field) = -huge(1.0_wp), most(max_field) = huge(1.0_wp) !! of the range
+    real(wp) :: least(max_field) = -huge(1.0_wp), most(max_field) = huge(1.0_wp) !! of the range;
+                                                !! between those of a list there is no number
   end type card_spec_t
 
 contains
@@ -88,6 +89,7 @@ contains
     integer :: at, finish, status
 
     spec%ranges(spec%n) = text
+    if (text(1:1) == '|') spec%most(spec%n) = -huge(1.0_wp)
     at = 1
     do while (at <= len(text) .and. text(1:1) /= '|')
       finish = scan(text(at + 1:)//' ', '<> ') + at - 1
@@ -100,18 +102,16 @@ contains
     end do
   end subroutine set_range
 
-  !> Whether a number is in the range of field `k`.
-  pure function is_in_range(spec, k, value) result(yes)
-    type(card_spec_t), intent(in) :: spec
-    integer, intent(in) :: k
+  !> Whether a range is a list of whole numbers that has the number.
+  pure function is_listed(range, value) result(yes)
+    character(*), intent(in) :: range    !! as in the table
     real(wp), intent(in) :: value
     logical :: yes
 
-    yes = value >= spec%least(k) .and. value <= spec%most(k)
-    if (spec%ranges(k)(1:1) == '|') yes = abs(value) < 1.0e6_wp &
-      .and. .not. abs(value - anint(value)) > 0.0_wp &
-      .and. index(trim(spec%ranges(k))//'|', '|'//to_text(nint(value))//'|') > 0
-  end function is_in_range
+    yes = .false.
+    if (range(1:1) == '|' .and. abs(value) < 1.0e6_wp .and. .not. abs(value - anint(value)) &
+      > 0.0_wp) yes = index(trim(range)//'|', '|'//to_text(nint(value))//'|') > 0
+  end function is_listed
 
   !> The range of a field in words.
   pure function range_text(range) result(text)

@@ -5,7 +5,7 @@ module deck_fields_m
   use kinds_m, only : wp
   use text_m, only : read_real, read_integer, number_good, number_range, number_fraction
   use log_m, only : to_text
-  use deck_card_specs_m, only : card_spec_t, is_in_range, range_text
+  use deck_card_specs_m, only : card_spec_t, is_listed, range_text
   use deck_schema_m, only : expected
   use deck_report_m, only : spot_t, add_error, count_only
   use deck_lines_m, only : deck_t, line_text, where_text, line_warning, line_spot, deck_error, &
@@ -33,7 +33,7 @@ module deck_fields_m
     character(12) :: names(max_field) = ''
     character :: kinds(max_field) = 'x'     !! as those of `card_spec_t`
     integer :: i(max_field) = 0             !! values of the integer fields
-    real(wp) :: r(max_field) = 0.0_wp       !! values of the real fields
+    real(wp) :: r(max_field) = 0.0_wp       !! values of these and of the real fields
   end type card_t
 
 contains
@@ -89,13 +89,9 @@ contains
         finish = min(start + spec%widths(k) - 1, len(text))
       end if
       first = start
-      last = finish
-      do while (last >= first)
-        if (text(last:last) /= ' ') exit
-        last = last - 1
-      end do
+      last = start - 1 + len_trim(text(start:finish))
       do while (first < last)
-        if (text(first:first) /= ' ') exit
+        if (iachar(text(first:first)) /= iachar(' ')) exit ! as numbers: without a library call
         first = first + 1
       end do
       card%first(k) = first
@@ -126,25 +122,23 @@ contains
     do k = 1, spec%n
       call set_default(spec, card, k)
       if (spec%kinds(k) == 'x' .or. spec%kinds(k) == 'a') cycle
-      if (card%blank(k)) then
-        if (spec%ranges(k)(1:1) /= ' ') call check_range(deck, spec, card, k)
-        cycle
+      if (.not. card%blank(k)) then
+        if (first < 0) then
+          shift = -first - 1
+          call read_field(deck%patch(shift + card%first(k):shift + card%last(k)), spec%kinds(k))
+        else
+          shift = first - 1
+          call read_field(deck%sources(source)%text(shift + card%first(k):shift + card%last(k)), &
+            spec%kinds(k))
+        end if
+        if (status /= number_good) then
+          call number_error(deck, spec, card, k, status)
+          cycle
+        end if
+        if (.not. abs(card%r(k)) > 0.0_wp) call take_zero(deck, spec, card, k)
       end if
-      status = number_good
-      if (first < 0) then
-        shift = -first - 1
-        call read_field(deck%patch(shift + card%first(k):shift + card%last(k)), spec%kinds(k))
-      else
-        shift = first - 1
-        call read_field(deck%sources(source)%text(shift + card%first(k):shift + card%last(k)), &
-          spec%kinds(k))
-      end if
-      if (status /= number_good) then
-        call number_error(deck, spec, card, k, status)
-        cycle
-      end if
-      if (spec%zeros(k) /= ' ') call take_zero(deck, spec, card, k)
-      if (spec%ranges(k)(1:1) /= ' ') call check_range(deck, spec, card, k)
+      if (card%r(k) < spec%least(k) .or. card%r(k) > spec%most(k)) &
+        call check_range(deck, spec, card, k)
     end do
 
   contains
@@ -156,6 +150,7 @@ contains
 
       if (kind == 'i') then
         call read_integer(text, card%i(k), status)
+        card%r(k) = real(card%i(k), wp)
       else
         call read_real(text, card%r(k), status)
         if (abs(card%r(k)) > largest_value) status = number_range
@@ -165,22 +160,18 @@ contains
 
   end subroutine read_numbers
 
-  !> An error of a number that the range of its field does not hold.
+  !> An error of a number outside the bounds of its field, unless it is one of a list.
   subroutine check_range(deck, spec, card, k)
     type(deck_t), intent(inout) :: deck
     type(card_spec_t), intent(in) :: spec
     type(card_t), intent(inout) :: card
     integer, intent(in) :: k
-    real(wp) :: value
     character(:), allocatable :: words, range
 
-    if (card%bad(k)) return
-    value = card%r(k)
-    if (spec%kinds(k) == 'i') value = real(card%i(k), wp)
-    if (is_in_range(spec, k, value)) return
+    if (card%bad(k) .or. is_listed(spec%ranges(k), card%r(k))) return
     words = expected(keyword_of_line(deck, card%line), trim(spec%names(k)))
     range = range_text(spec%ranges(k))
-    if (len(words) == 0 .and. spec%ranges(k)(:3) == '>=0' .and. value < 0.0_wp) then
+    if (len(words) == 0 .and. spec%ranges(k)(:3) == '>=0' .and. card%r(k) < 0.0_wp) then
       call field_error(deck, card, k, 'is negative')
       return
     else if (len(words) == 0) then
@@ -202,7 +193,7 @@ contains
     integer, intent(in) :: k
     character(:), allocatable :: name, place
 
-    if (merge(abs(card%i(k)) > 0, abs(card%r(k)) > 0.0_wp, spec%kinds(k) == 'i')) return
+    if (spec%zeros(k) == ' ') return
     name = to_text(spec%defaults(k))
     if (abs(spec%defaults(k)) < 1.0e6_wp .and. .not. abs(spec%defaults(k) &
       - anint(spec%defaults(k))) > 0.0_wp) name = to_text(nint(spec%defaults(k)))
@@ -258,7 +249,7 @@ contains
 
     card%r(k) = spec%defaults(k)
     card%i(k) = 0
-    if (spec%kinds(k) == 'i') card%i(k) = nint(spec%defaults(k))
+    if (spec%kinds(k) == 'i') card%i(k) = int(spec%defaults(k))
   end subroutine set_default
 
   !> Text of a field, without blanks around it.
