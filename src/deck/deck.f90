@@ -1,31 +1,45 @@
 ! SPDX-License-Identifier: MIT
-!> Deck in, model out: the one dispatch on keywords.
+!> Deck in, model out: the families of keywords in their order.
 !>
-!> The file is cut into keyword blocks, parameters are read, then each block is read by the
-!> procedure of its keyword into `raw_t` (user ids), then ids become indices and surfaces are built.
-!> All mistakes on the way are collected and come back as one error, in deck order.
+!> The file is cut into keyword blocks, parameters are read, then each family of keywords is read
+!> into the model when its turn comes. All mistakes on the way are collected and come back as one
+!> error, in deck order.
 module deck_m
   use errors_m, only : error_t
   use log_m, only : log_t, write_log
   use contacts_m, only : contact_kind_t
   use model_m, only : model_t
+  use eos_m, only : eos_t
+  use parts_m, only : hourglass_t
+  use deck_contact_sides_m, only : outline_t
+  use deck_contacts_m, only : read_contacts
+  use deck_control_m, only : read_controls, read_outputs, read_relaxation
+  use deck_curves_m, only : table_t, read_curves, read_systems
+  use deck_damping_m, only : read_damping
+  use deck_ends_m, only : read_ends
+  use deck_erosion_m, only : read_erosions
+  use deck_implicit_m, only : read_implicit, check_implicit
+  use deck_loads_m, only : read_nodal_loads, read_rigid_loads, read_body_loads, read_pressures, &
+    read_masses, warn_of_bores
+  use deck_material_m, only : read_materials, read_equations, settle_pressures
+  use deck_mesh_m, only : read_mesh
+  use deck_part_m, only : read_parts, read_sections, make_rigids
+  use deck_sections_m, only : read_cross_sections
+  use deck_sets_m, only : read_sets, read_histories
+  use deck_supports_m, only : read_supports, read_motions, read_common_motions
+  use deck_velocity_m, only : read_velocities
+  use deck_wall_m, only : read_walls
   use deck_findings_m, only : list_findings
   use deck_report_m, only : emit_warnings, emit_errors
   use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, a_curve, &
     a_system, a_node_set, a_part_set, a_segment_set, a_shell_set
-  use deck_lines_m, only : deck_t, line_error, line_warning, shown_text, file_paths, &
-    flag_blank
+  use deck_lines_m, only : deck_t, place_t, line_error, line_warning, file_paths, flag_blank
   use deck_reader_m, only : read_blocks, cut_deck
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
   use deck_parameters_m, only : read_parameters
-  use deck_overrides_m, only : read_words, edit_controls, check_words
-  use deck_cards_m, only : cursor_t, open_cursor, next_text, row_comes
-  use deck_raw_m, only : raw_t
-  use deck_control_m, only : read_control, read_database, check_step
-  use deck_contact_m, only : read_contact
-  use deck_friction_m, only : warn_of_unused
-  use deck_resolve_m, only : resolve_model
+  use deck_overrides_m, only : read_words, edit_controls
+  use deck_cards_m, only : cursor_t, open_cursor
   use deck_effective_m, only : forget_places, write_effective
   use deck_echo_m, only : echo_model
   use text_m, only : upper_case
@@ -89,11 +103,12 @@ contains
     type(model_t), intent(out) :: model
     character(:), allocatable, intent(out) :: effective
     type(error_t), allocatable, intent(out) :: error
-    type(raw_t), allocatable :: raw
-    integer :: i, n, pass
+    logical :: is_ended                !! it has *CONTROL_TERMINATION, be it misspelt
+    integer :: i
 
-    allocate (raw, deck%words(0))
-    call know_blocks(deck, raw)
+    allocate (deck%words(0))
+    is_ended = .false.
+    call know_blocks(deck, is_ended)
     if (deck%n_block == 0) then
       call emit_errors(deck%report, request%path, error)
       return
@@ -101,30 +116,14 @@ contains
     if (allocated(request%overrides)) call read_words(request%overrides, deck)
     call read_parameters(deck)
     call edit_controls(deck)
-    n = count([(index(deck%blocks(i)%name, 'CONTACT_') == 1, i=1, deck%n_block)])
-    allocate (raw%contacts(n), raw%transducers(n), raw%explicit_only(0))
-    raw%controls%title = ''
     do i = 1, deck%n_block
       if (deck%blocks(i)%is_honoured) call check_empty(deck, i)
-      if (deck%blocks(i)%is_empty) call note_lost(deck, i, raw)
+      if (deck%blocks(i)%is_empty) call note_lost(deck, i, is_ended)
     end do
-    ! Interfaces come last: friction of *CONTROL_CONTACT is known then.
-    do pass = 1, 2
-      do i = 1, deck%n_block
-        if (.not. deck%blocks(i)%is_honoured) cycle
-        if ((index(deck%blocks(i)%name, 'CONTACT_') == 1) .eqv. pass == 2) &
-          call read_block(deck, i, kinds, raw)
-      end do
-    end do
-    raw%contacts = raw%contacts(:raw%n_contact)
-    raw%transducers = raw%transducers(:raw%n_transducer)
-    call warn_of_unused(deck, raw)
-    call check_words(deck, [raw%contacts%contact%id])
-    call check_step(deck, raw)
-    if (.not. (raw%terminated .or. deck%incomplete)) call line_error(deck, 0, &
+    is_ended = is_ended .or. any(deck%blocks(:deck%n_block)%name == 'CONTROL_TERMINATION')
+    if (.not. (is_ended .or. deck%incomplete)) call line_error(deck, 0, &
       'the deck has no end time (*CONTROL_TERMINATION)')
-    call resolve_model(deck, raw, model)
-    deallocate (raw) ! before the effective deck takes its place
+    call read_model(deck, kinds, model)
     call emit_warnings(deck%report, log)
     call emit_errors(deck%report, request%path, error)
     if (allocated(error)) return
@@ -137,11 +136,62 @@ contains
     call write_effective(deck, effective)
   end subroutine interpret_deck
 
+  !> All families of keywords in an order in which each finds what it refers to.
+  subroutine read_model(deck, kinds, model)
+    type(deck_t), intent(inout) :: deck
+    type(contact_kind_t), intent(in) :: kinds(:)     !! contact types that exist
+    type(model_t), intent(inout) :: model
+    type(table_t), allocatable :: tables(:)
+    type(eos_t), allocatable :: equations(:)
+    logical, allocatable :: is_sound(:), fixed(:, :) !! (n_element), (2, n_node)
+    integer, allocatable :: codes(:), owner(:)
+    type(hourglass_t) :: hourglass
+    logical :: erodes
+    type(place_t), allocatable :: places(:)          !! of pressure loads
+    type(outline_t) :: body
+    integer :: i, step_line
+
+    call read_curves(deck, model, tables)
+    call read_implicit(deck, model%controls%implicit)
+    call read_controls(deck, model, hourglass, erodes, step_line)
+    call read_outputs(deck, model)
+    call read_systems(deck)
+    call read_materials(deck, tables, model)
+    call read_equations(deck, equations)
+    call read_sections(deck, model)
+    call read_parts(deck, hourglass, equations, model)
+    call read_erosions(deck, erodes, step_line, model)
+    call settle_pressures(deck, equations, model)
+    call read_mesh(deck, model, codes, is_sound, body%is_sound)
+    call read_sets(deck, model, body%is_whole)
+    call read_histories(deck, model)
+    call read_cross_sections(deck, model)
+    if (model%controls%implicit%is_on) call check_implicit(deck, model)
+    call make_rigids(deck, model, owner)
+    call read_supports(deck, codes, owner, model, fixed)
+    call read_motions(deck, owner, fixed, model)
+    call read_nodal_loads(deck, model)
+    call read_rigid_loads(deck, model)
+    call read_body_loads(deck, model)
+    call read_pressures(deck, model, places)
+    call read_masses(deck, model)
+    call read_common_motions(deck, model)
+    call read_damping(deck, model)
+    call read_velocities(deck, model)
+    call read_walls(deck, model)
+    call warn_of_bores(deck, model)
+    allocate (model%mesh%deck_node(model%mesh%n_node))
+    model%mesh%deck_node = [(i, i=1, model%mesh%n_node)]
+    call read_contacts(deck, kinds, places, is_sound, body, model)
+    call read_relaxation(deck, model)
+    call read_ends(deck, model, body%is_sound)
+  end subroutine read_model
+
   !> Look every keyword up: canonical names, options taken off; unknown and refused ones are errors,
   !> those without effect one warning each.
-  subroutine know_blocks(deck, raw)
+  subroutine know_blocks(deck, is_ended)
     type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(inout) :: raw
+    logical, intent(inout) :: is_ended
     character(:), allocatable :: reason
     character(100) :: name
     logical :: has_beams     !! beams are bodies, not the edges of a mesh
@@ -178,11 +228,11 @@ contains
             call line_error(deck, block%keyword, reason//' not available in slideline' &
               //meant(block%given))
           end if
-          call note_lost(deck, i, raw)
+          call note_lost(deck, i, is_ended)
         case default
           call line_error(deck, block%keyword, 'is not a keyword that this version knows' &
             //meant(block%given))
-          call note_lost(deck, i, raw)
+          call note_lost(deck, i, is_ended)
         end select
         if (block%name /= 'COMMENT' .and. index(' '//upper_case(block%rest), ' CID=') > 0) &
           call line_error(deck, block%keyword, 'keywords of one of several runs (CID=) are' &
@@ -227,10 +277,10 @@ contains
 
   !> What a refused keyword would have defined, by its name and by what that may have been meant
   !> for.
-  subroutine note_lost(deck, i_block, raw)
+  subroutine note_lost(deck, i_block, is_ended)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
+    logical, intent(inout) :: is_ended
     character(:), allocatable :: name
     integer :: i
 
@@ -244,36 +294,9 @@ contains
       if (index(name, 'EOS') == 1) call lose(deck, [an_eos])
       if (index(name, 'DEFINE') == 1) call lose(deck, [a_curve, a_system])
       if (index(name, 'SET') == 1) call lose(deck, sets)
-      raw%terminated = raw%terminated .or. name == 'CONTROL_TERMINATION'
+      is_ended = is_ended .or. name == 'CONTROL_TERMINATION'
       name = trim(nearest_keyword(deck%blocks(i_block)%given))
     end do
   end subroutine note_lost
-
-  !> Read one block by its family. What is not named here is read when the model is made.
-  subroutine read_block(deck, i, kinds, raw)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i
-    type(contact_kind_t), intent(in) :: kinds(:)
-    type(raw_t), intent(inout) :: raw
-    type(cursor_t) :: cursor
-    character(:), allocatable :: text
-    logical :: found
-
-    associate (name => deck%blocks(i)%name)
-      if (name == 'TITLE') then
-        call open_cursor(deck, i, cursor)
-        call row_comes(deck, cursor, found)
-        call next_text(deck, cursor, text)
-        raw%controls%title = trim(adjustl(shown_text(text)))
-      else if (index(name, 'CONTROL_') == 1) then
-        call read_control(deck, i, raw)
-      else if (index(name, 'DATABASE_') == 1) then
-        if (all([index(name, '_HISTORY'), index(name, '_NODAL'), index(name, '_CROSS')] == 0)) &
-          call read_database(deck, i, raw)
-      else if (index(name, 'CONTACT_') == 1) then
-        call read_contact(deck, i, kinds, raw)
-      end if
-    end associate
-  end subroutine read_block
 
 end module deck_m

@@ -1,34 +1,41 @@
 ! SPDX-License-Identifier: MIT
-!> *CONTROL_ cards, and the *DATABASE_ cards that say how often files are written.
+!> *TITLE, *CONTROL_ cards but those of the implicit method and of contact, and the *DATABASE_ cards
+!> that say how often files are written.
 module deck_control_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use text_m, only : upper_case
   use units_m, only : units_t, find_unit, set_force
-  use controls_m, only : length_by_side, length_by_diagonal
-  use deck_lines_m, only : deck_t, line_warning, given_by
+  use controls_m, only : controls_t, interval_t, is_asked, length_by_side, length_by_diagonal
+  use curves_m, only : curve_t
+  use parts_m, only : hourglass_t
+  use model_m, only : model_t
+  use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning, given_by, shown_text, &
+    block_of_line
   use deck_fields_m, only : card_t, field_text
   use deck_card_specs_m, only : field_number
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, check_rest, report_field, warn_of_field
-  use deck_values_m, only : integer_of, real_of, place_of, is_blank, is_bad
-  use deck_implicit_m, only : take_implicit, take_dynamics, take_solution, take_automatic
-  use deck_raw_m, only : raw_t, history_t, output_plot
-  use history_tables_m, only : table_of_keyword
-  use deck_friction_m, only : take_default_friction
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_text, row_comes, check_rest, &
+    report_field, warn_of_field
+  use deck_ids_m, only : a_curve
+  use deck_values_m, only : integer_of, real_of, place_of, is_bad, find_id
+  use history_tables_m, only : history_tables, n_table, table_of_keyword, table_nodout, &
+    table_elout, table_nodfor, table_secforc
   use deck_part_m, only : hourglass_form, hourglass_coefficient
   implicit none
   private
-  public :: read_control, read_database, check_step
+  public :: control_cards, warn_of_explicit, read_controls, read_outputs, read_relaxation
+
+  !> Files of the output plan: states, and histories by their `table_` constants.
+  integer, parameter :: output_plot = 0
 
 contains
 
-  !> One *CONTROL_ keyword: its cards in order, then what they mean.
-  subroutine read_control(deck, i_block, raw)
+  !> The cards of one *CONTROL_ keyword in order. Of two the later one counts.
+  subroutine control_cards(deck, i_block, cards)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
+    type(card_t), intent(out) :: cards(6)
     type(cursor_t) :: cursor
-    type(card_t) :: cards(6)
     integer :: k
 
     call open_cursor(deck, i_block, cursor)
@@ -40,149 +47,155 @@ contains
       call next_card(deck, cursor, k, cards(k))
     end do
     call check_rest(deck, cursor)
-    call warn_of_repetition(deck, i_block)
-    select case (deck%blocks(i_block)%name)
-    case ('CONTROL_TERMINATION')
-      call take_termination(cards(1), raw)
-    case ('CONTROL_TIMESTEP')
-      call take_timestep(cards(1), raw)
-    case ('CONTROL_DYNAMIC_RELAXATION')
-      call take_relaxation(cards(1), raw)
-    case ('CONTROL_HOURGLASS')
-      call hourglass_form(deck, cards(1), 'IHQ', raw%hourglass_default%form)
-      call hourglass_coefficient(deck, cards(1), 'QH', &
-        raw%hourglass_default%coefficient)
-    case ('CONTROL_BULK_VISCOSITY')
-      ! Off without the keyword; blank fields of it are LS-DYNA's defaults.
-      raw%hourglass_default%quadratic = real_of(cards(1), 'Q1')
-      raw%hourglass_default%linear = real_of(cards(1), 'Q2')
-    case ('CONTROL_CONTACT')
-      raw%controls%penalty_scale = real_of(cards(1), 'SLSFAC')
-      raw%controls%contact_step = integer_of(cards(2), 'ECDT')
-      call note_explicit(cards(2), 'ECDT', raw)
-      call take_default_friction(cards(3), raw)
-    case ('CONTROL_IMPLICIT_GENERAL')
-      call take_implicit(deck, cards(1), raw)
-    case ('CONTROL_IMPLICIT_DYNAMICS')
-      call take_dynamics(deck, cards(1), raw)
-    case ('CONTROL_IMPLICIT_SPECTRAL_RADIUS')
-      raw%spectral_radius = real_of(cards(1), 'RHO')
-      if (is_blank(cards(1), 'RHO')) call report_field(deck, cards(1), 'RHO', &
-        'is not a spectral radius (0 to 1)')
-    case ('CONTROL_IMPLICIT_SOLUTION')
-      call take_solution(cards(1), raw%controls%implicit)
-    case ('CONTROL_IMPLICIT_AUTO')
-      call take_automatic(deck, cards(1), raw%controls%implicit)
-    case ('CONTROL_UNITS')
-      call take_units(deck, cards(1), raw)
-    case ('CONTROL_OUTPUT')
-      raw%controls%output%status_interval = integer_of(cards(1), 'IKEDIT')
-    end select
-  end subroutine read_control
+    if (any(deck%blocks(:i_block - 1)%name == deck%blocks(i_block)%name)) call line_warning(deck, &
+      deck%blocks(i_block)%keyword, 'again'//to_text(i_block), 'is given again; this one counts')
+  end subroutine control_cards
 
-  !> A control that is given again: the later one counts.
-  subroutine warn_of_repetition(deck, i_block)
+  !> A field that the implicit method leaves, where it asks for something.
+  subroutine warn_of_explicit(deck, card, name)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
+    type(card_t), intent(in) :: card
+    character(*), intent(in) :: name
+    integer :: k
+
+    k = field_number(card%names, name)
+    if (.not. card%blank(k) .and. (card%i(k) /= 0 .or. abs(card%r(k)) > 0.0_wp)) call &
+      warn_of_field(deck, place_of(card, name), 'has no effect with the implicit method')
+  end subroutine warn_of_explicit
+
+  !> End, step, units and what parts have of hourglass control. Curves, and whether the run is
+  !> implicit, are known.
+  subroutine read_controls(deck, model, hourglass, erodes, step_line)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(inout) :: model
+    type(hourglass_t), intent(out) :: hourglass !! of parts that name no control of their own
+    logical, intent(out) :: erodes              !! ERODE of *CONTROL_TIMESTEP
+    integer, intent(out) :: step_line           !! its card, 0 = none
+    type(card_t) :: cards(6), step
+    integer, allocatable :: blocks(:)
     integer :: i
 
-    do i = 1, i_block - 1
-      if (deck%blocks(i)%name /= deck%blocks(i_block)%name) cycle
-      call line_warning(deck, deck%blocks(i_block)%keyword, 'again'//to_text(i_block), &
-        'is given again; this one counts')
-      return
+    call read_title(deck, model%controls%title)
+    blocks = blocks_of(deck, 'CONTROL_')
+    do i = 1, size(blocks)
+      associate (name => deck%blocks(blocks(i))%name)
+        if (any([index(name, '_IMPLICIT'), index(name, '_CONTACT'), index(name, '_DYNAMIC')] > 0)) &
+          cycle
+        call control_cards(deck, blocks(i), cards)
+        select case (name)
+        case ('CONTROL_TERMINATION')
+          call take_termination(deck, cards(1), model%controls)
+        case ('CONTROL_TIMESTEP')
+          step = cards(1)
+          call take_timestep(deck, step, model%controls)
+        case ('CONTROL_HOURGLASS')
+          call hourglass_form(deck, cards(1), 'IHQ', hourglass%form)
+          call hourglass_coefficient(deck, cards(1), 'QH', hourglass%coefficient)
+        case ('CONTROL_BULK_VISCOSITY')
+          ! Off without the keyword; blank fields of it are LS-DYNA's defaults.
+          hourglass%quadratic = real_of(cards(1), 'Q1')
+          hourglass%linear = real_of(cards(1), 'Q2')
+        case ('CONTROL_UNITS')
+          call take_units(deck, cards(1), model%controls%units)
+        case ('CONTROL_OUTPUT')
+          model%controls%output%status_interval = integer_of(cards(1), 'IKEDIT')
+        end select
+      end associate
     end do
-  end subroutine warn_of_repetition
+    erodes = .false.
+    step_line = step%line
+    if (step_line == 0) return
+    erodes = integer_of(step, 'ERODE') == 1
+    call check_step(deck, step, model)
+  end subroutine read_controls
+
+  !> The title of the deck, the last one given.
+  subroutine read_title(deck, title)
+    type(deck_t), intent(inout) :: deck
+    character(:), allocatable, intent(out) :: title
+    type(cursor_t) :: cursor
+    integer, allocatable :: blocks(:)
+    logical :: found
+
+    title = ''
+    blocks = blocks_of(deck, 'TITLE')
+    if (size(blocks) == 0) return
+    call open_cursor(deck, blocks(size(blocks)), cursor)
+    call row_comes(deck, cursor, found)
+    call next_text(deck, cursor, title)
+    title = trim(adjustl(shown_text(title)))
+  end subroutine read_title
 
   !> *CONTROL_TERMINATION.
-  subroutine take_termination(card, raw)
+  subroutine take_termination(deck, card, controls)
+    type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
-    type(raw_t), intent(inout) :: raw
+    type(controls_t), intent(inout) :: controls
 
-    raw%terminated = .true.
-    raw%controls%end_time = real_of(card, 'ENDTIM')
-    raw%controls%end_cycle = integer_of(card, 'ENDCYC')
-    raw%controls%dt_floor = real_of(card, 'DTMIN')
-    raw%controls%energy_limit = real_of(card, 'ENDENG')
-    raw%controls%most_added = real_of(card, 'ENDMAS')
-    raw%controls%check_only = integer_of(card, 'NOSOL') == 1
+    controls%end_time = real_of(card, 'ENDTIM')
+    controls%end_cycle = integer_of(card, 'ENDCYC')
+    controls%dt_floor = real_of(card, 'DTMIN')
+    controls%energy_limit = real_of(card, 'ENDENG')
+    controls%most_added = real_of(card, 'ENDMAS')
+    controls%check_only = integer_of(card, 'NOSOL') == 1
+    if (controls%implicit%is_on .and. controls%dt_floor > 0.0_wp) call line_warning(deck, &
+      deck%blocks(block_of_line(deck, card%line))%keyword, 'implicit step floor', &
+      'DTMIN has no effect with the implicit method; DTMIN of *CONTROL_IMPLICIT_AUTO is its ' &
+      //'shortest step')
   end subroutine take_termination
 
   !> *CONTROL_TIMESTEP.
-  subroutine take_timestep(card, raw)
+  subroutine take_timestep(deck, card, controls)
+    type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
-    type(raw_t), intent(inout) :: raw
+    type(controls_t), intent(inout) :: controls
     character(6), parameter :: names(5) = [character(6) :: 'DTINIT', 'TSSFAC', 'ISDO', 'LCTM', &
       'DT2MS']
     integer :: k
 
     do k = 1, size(names)
-      call note_explicit(card, trim(names(k)), raw)
+      if (controls%implicit%is_on) call warn_of_explicit(deck, card, trim(names(k)))
     end do
-    raw%erodes_by_step = integer_of(card, 'ERODE') == 1
-    raw%controls%dt_initial = real_of(card, 'DTINIT')
-    raw%controls%dt_scale = real_of(card, 'TSSFAC')
-    raw%controls%length_rule = merge(length_by_diagonal, length_by_side, &
-      integer_of(card, 'ISDO') == 1)
-    raw%controls%mass_step = real_of(card, 'DT2MS')
-    raw%controls%masses_stay = integer_of(card, 'MS1ST') == 1
-    raw%step_line = card%line
-    raw%dt_curve = integer_of(card, 'LCTM')
-    raw%dt_curve_place = place_of(card, 'LCTM')
-    raw%scale_place = place_of(card, 'TSSFAC')
+    controls%dt_initial = real_of(card, 'DTINIT')
+    controls%dt_scale = real_of(card, 'TSSFAC')
+    controls%length_rule = merge(length_by_diagonal, length_by_side, integer_of(card, 'ISDO') == 1)
+    controls%mass_step = real_of(card, 'DT2MS')
+    controls%masses_stay = integer_of(card, 'MS1ST') == 1
   end subroutine take_timestep
 
-  !> *CONTROL_DYNAMIC_RELAXATION. Whether it takes place may depend on the curves too.
-  subroutine take_relaxation(card, raw)
-    type(card_t), intent(in) :: card
-    type(raw_t), intent(inout) :: raw
-
-    associate (relaxation => raw%controls%relaxation)
-      relaxation%is_on = integer_of(card, 'IDRFLG') == 1
-      raw%never_relaxes = integer_of(card, 'IDRFLG') == -999
-      raw%relaxation_line = card%line
-      relaxation%check_cycles = integer_of(card, 'NRCYCK')
-      relaxation%tolerance = real_of(card, 'DRTOL')
-      relaxation%factor = real_of(card, 'DRFCTR')
-      if (real_of(card, 'DRTERM') > 0.0_wp) relaxation%most_time = real_of(card, 'DRTERM')
-      relaxation%step_scale = real_of(card, 'TSSFDR')
-    end associate
-  end subroutine take_relaxation
-
-  !> A field that the implicit method leaves, where it asks for something.
-  subroutine note_explicit(card, name, raw)
-    type(card_t), intent(in) :: card
-    character(*), intent(in) :: name
-    type(raw_t), intent(inout) :: raw
-    integer :: k
-
-    k = field_number(card%names, name)
-    if (.not. card%blank(k) .and. abs(card%r(k)) > 0.0_wp) &
-      raw%explicit_only = [raw%explicit_only, place_of(card, name)]
-  end subroutine note_explicit
-
-  !> Rules of the step, from the card or from a word.
-  subroutine check_step(deck, raw)
+  !> The curve that caps the step, and rules of the step, from the card or from a word.
+  subroutine check_step(deck, card, model)
     type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(in) :: raw
+    type(card_t), intent(inout) :: card
+    type(model_t), intent(inout) :: model
     character(:), allocatable :: given
 
-    if (raw%controls%implicit%is_on .or. raw%step_line == 0) return
-    given = given_by(deck, raw%step_line, raw%scale_place%field)
-    if (len(given) == 0) given = 'TSSFAC'
-    if (raw%controls%dt_scale > 1.0_wp) call line_warning(deck, raw%step_line, 'tssfac', given &
-      //' is above 1: the run may become unstable')
-    given = given_by(deck, raw%step_line, raw%dt_curve_place%field)
-    if (len(given) == 0) given = 'the curve LCTM'
-    if (raw%controls%dt_initial > 0.0_wp .and. raw%dt_curve > 0) call line_warning(deck, &
-      raw%step_line, 'dtinit', 'DTINIT has no effect beside '//given)
+    associate (controls => model%controls, k => model%controls%dt_curve)
+      if (integer_of(card, 'LCTM') > 0) then
+        call find_id(deck, a_curve, card, 'LCTM', k)
+        if (k > 0) then
+          if (minval(model%curves(k)%ordinate) <= 0.0_wp) call line_error(deck, &
+            deck%maps(a_curve)%lines(k), 'curve '//to_text(integer_of(card, 'LCTM')) &
+            //' caps the time step (LCTM) and must be above 0 everywhere')
+        end if
+      end if
+      if (controls%implicit%is_on) return
+      given = given_by(deck, card%line, field_number(card%names, 'TSSFAC'))
+      if (len(given) == 0) given = 'TSSFAC'
+      if (controls%dt_scale > 1.0_wp) call line_warning(deck, card%line, 'tssfac', given &
+        //' is above 1: the run may become unstable')
+      given = given_by(deck, card%line, field_number(card%names, 'LCTM'))
+      if (len(given) == 0) given = 'the curve LCTM'
+      if (controls%dt_initial > 0.0_wp .and. integer_of(card, 'LCTM') > 0) call line_warning(deck, &
+        card%line, 'dtinit', 'DTINIT has no effect beside '//given)
+    end associate
   end subroutine check_step
 
   !> *CONTROL_UNITS: names for messages alone. A word that is not known leaves them without.
-  subroutine take_units(deck, card, raw)
+  subroutine take_units(deck, card, units)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
-    type(raw_t), intent(inout) :: raw
+    type(units_t), intent(out) :: units
     character(*), parameter :: fields(3) = ['LENGTH', 'TIME  ', 'MASS  '], &
       defaults(3) = ['M  ', 'SEC', 'KG ']
     character(*), parameter :: known(3) = [character(40) :: 'm, cm, mm, in, ft', &
@@ -191,60 +204,157 @@ contains
     real(wp) :: values(3)
     integer :: k
 
-    raw%controls%units = units_t()
     do k = 1, 3
       word = upper_case(field_text(deck, card, field_number(card%names, fields(k))))
       if (len(word) == 0) word = trim(defaults(k))
-      call find_unit(k, word, raw%controls%units%names(k), values(k))
-      if (len_trim(raw%controls%units%names(k)) > 0) cycle
+      call find_unit(k, word, units%names(k), values(k))
+      if (len_trim(units%names(k)) > 0) cycle
       call warn_of_field(deck, place_of(card, fields(k)), 'is no unit that messages know (' &
         //trim(known(k))//'), so that they name none')
       values(k) = 0.0_wp
     end do
-    if (all(values > 0.0_wp)) call set_force(values, raw%controls%units)
+    if (all(values > 0.0_wp)) call set_force(values, units)
   end subroutine take_units
 
-  !> One *DATABASE_ keyword with an interval.
-  subroutine read_database(deck, i_block, raw)
+  !> *CONTROL_DYNAMIC_RELAXATION: whether the run begins with it, which curves may ask for too, and
+  !> what may not be in it. All else of the model is known.
+  subroutine read_relaxation(deck, model)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    type(raw_t), intent(inout) :: raw
-    type(cursor_t) :: cursor
-    type(card_t) :: card, rest
-    type(history_t) :: history
-    character(4) :: curve
-    integer :: file, k
+    type(model_t), intent(inout) :: model
+    type(card_t) :: cards(6)
+    integer, allocatable :: blocks(:)
+    logical :: never
+    integer :: i, line
 
-    call open_cursor(deck, i_block, cursor)
-    call next_card(deck, cursor, 1, card)
-    do k = 2, cursor%n_card
-      call next_card(deck, cursor, k, rest)
+    never = .false.
+    line = 0
+    associate (relaxation => model%controls%relaxation, conditions => model%conditions)
+      blocks = blocks_of(deck, 'CONTROL_DYNAMIC_RELAXATION')
+      do i = 1, size(blocks)
+        call control_cards(deck, blocks(i), cards)
+        line = cards(1)%line
+        never = integer_of(cards(1), 'IDRFLG') == -999
+        relaxation%is_on = integer_of(cards(1), 'IDRFLG') == 1
+        relaxation%check_cycles = integer_of(cards(1), 'NRCYCK')
+        relaxation%tolerance = real_of(cards(1), 'DRTOL')
+        relaxation%factor = real_of(cards(1), 'DRFCTR')
+        if (real_of(cards(1), 'DRTERM') > 0.0_wp) relaxation%most_time = real_of(cards(1), 'DRTERM')
+        relaxation%step_scale = real_of(cards(1), 'TSSFDR')
+      end do
+      relaxation%is_on = relaxation%is_on .or. (any(model%curves%phase > 0) .and. .not. never)
+      if (.not. relaxation%is_on) return
+      if (line == 0) line = deck%maps(a_curve)%lines(findloc(model%curves%phase > 0, .true., &
+        dim=1))
+      if (model%controls%implicit%is_on) call refuse('with the implicit method')
+      if (size(model%contacts) > 0) call refuse('with contact')
+      if (model%erodes) call refuse('with elements that may leave the mesh')
+      if (allocated(model%walls)) call refuse('with rigid walls')
+      if (size(model%rigids) > 0) call refuse('with rigid bodies')
+      if (size(conditions%motions) > 0) call refuse('with prescribed motion')
+      if (allocated(conditions%common_motions)) call refuse('with *CONSTRAINED_NODE_SET')
+    end associate
+
+  contains
+
+    !> One error.
+    subroutine refuse(what)
+      character(*), intent(in) :: what
+
+      call line_error(deck, line, 'asks for dynamic relaxation '//what &
+        //', which this version does not have')
+    end subroutine refuse
+
+  end subroutine read_relaxation
+
+  !> *DATABASE_ keywords with an interval; of one that is given again the later one counts. The end
+  !> time and curves are known.
+  subroutine read_outputs(deck, model)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(inout) :: model
+    type(card_t) :: card, rest, plans(output_plot:n_table)
+    type(cursor_t) :: cursor
+    integer, allocatable :: blocks(:)
+    integer :: i, k
+
+    blocks = blocks_of(deck, 'DATABASE_')
+    do i = 1, size(blocks)
+      associate (name => deck%blocks(blocks(i))%name, output => model%controls%output)
+        if (any([index(name, '_HISTORY'), index(name, '_NODAL'), index(name, '_CROSS')] > 0)) cycle
+        call open_cursor(deck, blocks(i), cursor)
+        call next_card(deck, cursor, 1, card)
+        do k = 2, cursor%n_card
+          call next_card(deck, cursor, k, rest)
+        end do
+        call check_rest(deck, cursor)
+        select case (name)
+        case ('DATABASE_BINARY_D3PLOT')
+          plans(output_plot) = card
+        case ('DATABASE_BINARY_D3DUMP')
+          call take_cycles(deck, card, output%dump_cycles)
+        case ('DATABASE_BINARY_RUNRSF')
+          call take_cycles(deck, card, output%running_cycles)
+        case default
+          plans(table_of_keyword(name)) = card
+        end select
+      end associate
     end do
-    call check_rest(deck, cursor)
-    select case (deck%blocks(i_block)%name)
-    case ('DATABASE_BINARY_D3PLOT')
-      file = output_plot
-    case ('DATABASE_BINARY_D3DUMP')
-      call take_cycles(deck, card, raw%controls%output%dump_cycles)
-      return
-    case ('DATABASE_BINARY_RUNRSF')
-      call take_cycles(deck, card, raw%controls%output%running_cycles)
-      return
+    associate (output => model%controls%output)
+      if (plans(output_plot)%line > 0) then
+        call take_interval(deck, 'LCDT', model%curves, plans(output_plot), output%plot)
+        k = integer_of(plans(output_plot), 'NPLTC')
+        if (k > 0) output%plot%dt = model%controls%end_time/real(k, wp)
+      end if
+      do i = 1, n_table
+        if (plans(i)%line == 0) cycle
+        call take_interval(deck, 'LCUR', model%curves, plans(i), output%histories(i))
+        k = integer_of(plans(i), 'BINARY')
+        output%histories(i)%is_text = k /= 2
+        output%histories(i)%is_binout = k >= 2
+        call warn_of_empty(deck, plans(i)%line, i, output%histories(i))
+      end do
+    end associate
+  end subroutine read_outputs
+
+  !> Interval of one output file.
+  subroutine take_interval(deck, name, curves, card, interval)
+    type(deck_t), intent(inout) :: deck
+    character(*), intent(in) :: name            !! of the field of its curve
+    type(curve_t), intent(in) :: curves(:)
+    type(card_t), intent(inout) :: card
+    type(interval_t), intent(out) :: interval
+
+    interval%dt = real_of(card, 'DT')
+    if (integer_of(card, name) == 0) return
+    call find_id(deck, a_curve, card, name, interval%curve)
+    if (interval%curve == 0) return
+    if (.not. minval(curves(interval%curve)%ordinate) > 0.0_wp) call line_error(deck, &
+      card%line, 'curve '//to_text(integer_of(card, name)) &
+      //' is an output interval and must be above 0 everywhere')
+  end subroutine take_interval
+
+  !> A history that is asked for and has no file, for want of a keyword that says of what.
+  subroutine warn_of_empty(deck, line, table, interval)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line, table
+    type(interval_t), intent(in) :: interval
+    character(:), allocatable :: needed
+
+    select case (table)
+    case (table_nodout)
+      needed = 'DATABASE_HISTORY_NODE'
+    case (table_elout)
+      needed = 'DATABASE_HISTORY_SHELL'
+    case (table_nodfor)
+      needed = 'DATABASE_NODAL_FORCE_GROUP'
+    case (table_secforc)
+      needed = 'DATABASE_CROSS_SECTION_SET'
     case default
-      file = table_of_keyword(deck%blocks(i_block)%name)
+      return
     end select
-    curve = merge('LCDT', 'LCUR', file == output_plot)
-    history%dt = real_of(card, 'DT')
-    history%curve = integer_of(card, curve)
-    history%place = place_of(card, curve)
-    if (file == output_plot) then
-      history%n_state = max(integer_of(card, 'NPLTC'), 0)
-    else
-      history%is_text = integer_of(card, 'BINARY') /= 2
-      history%is_binout = integer_of(card, 'BINARY') >= 2
-    end if
-    raw%outputs(file) = history
-  end subroutine read_database
+    if (size(blocks_of(deck, needed)) > 0 .or. deck%incomplete) return
+    if (is_asked(interval)) call line_warning(deck, line, 'empty '//history_tables(table)%name, &
+      'asks for a history and the deck has no *'//needed//': no file is written')
+  end subroutine warn_of_empty
 
   !> Cycles between two restart files.
   subroutine take_cycles(deck, card, cycles)

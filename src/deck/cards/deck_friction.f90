@@ -3,48 +3,52 @@
 module deck_friction_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use contacts_m, only : friction_rule_t, has_friction
+  use contacts_m, only : contact_t, friction_rule_t, has_friction
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_fields_m, only : card_t, smallest_value
   use deck_cards_m, only : report_field, warn_of_field
-  use deck_raw_m, only : raw_t, raw_contact_t
   use deck_values_m, only : real_of, is_bad, place_of
   implicit none
   private
   public :: take_friction, take_stock_friction, take_penalty_friction, take_default_friction, &
-    warn_of_unused, warn_of_rule
+    warn_of_unused, warn_of_rule, default_friction_t
+
+  !> Friction of *CONTROL_CONTACT.
+  type :: default_friction_t
+    type(friction_rule_t) :: rule
+    type(place_t) :: place      !! SFRIC, line 0 without the keyword
+    logical :: acts = .false.   !! some interface takes it
+  end type default_friction_t
 
 contains
 
   !> *CONTACT_2D_SLIDELINE: FD follows FS where it is blank or 0.
-  subroutine take_friction(cards, entry)
+  subroutine take_friction(cards, rule, place)
     type(card_t), intent(in) :: cards(:)
-    type(raw_contact_t), intent(inout) :: entry
+    type(friction_rule_t), intent(inout) :: rule
+    type(place_t), intent(out) :: place       !! of the coefficient
 
-    associate (rule => entry%contact%friction)
-      call take_rule(cards(1), cards(3), ['FS', 'FD', 'DC', 'VC'], rule, entry%friction_place)
-      if (.not. abs(rule%sliding) > 0.0_wp) rule%sliding = rule%at_rest
-      rule%stiffness = real_of(cards(3), 'TFAC')
-    end associate
+    call take_rule(cards(1), cards(3), ['FS', 'FD', 'DC', 'VC'], rule, place)
+    if (.not. abs(rule%sliding) > 0.0_wp) rule%sliding = rule%at_rest
+    rule%stiffness = real_of(cards(3), 'TFAC')
   end subroutine take_friction
 
   !> *CONTACT_2D_AUTOMATIC_: without friction of its own that of *CONTROL_CONTACT.
-  subroutine take_stock_friction(cards, raw, entry)
+  subroutine take_stock_friction(cards, default, rule, place)
     type(card_t), intent(in) :: cards(:)
-    type(raw_t), intent(inout) :: raw
-    type(raw_contact_t), intent(inout) :: entry
+    type(default_friction_t), intent(inout) :: default
+    type(friction_rule_t), intent(inout) :: rule
+    type(place_t), intent(out) :: place       !! of the coefficient
 
-    associate (rule => entry%contact%friction)
-      call take_rule(cards(1), cards(3), ['FS', 'FD', 'DC', 'VC'], rule, entry%friction_place)
-      if (max(abs(rule%at_rest), abs(rule%sliding), abs(rule%decay), abs(rule%most)) > 0.0_wp) then
-        call keep_zero(rule)
-        return
-      end if
-      raw%friction_acts = .true.
-      if (.not. max(raw%friction%at_rest, raw%friction%sliding) > 0.0_wp) return
-      rule = raw%friction
-      entry%friction_place = raw%friction_place
-    end associate
+    call take_rule(cards(1), cards(3), ['FS', 'FD', 'DC', 'VC'], rule, place)
+    if (max(abs(rule%at_rest), abs(rule%sliding), abs(rule%decay), abs(rule%most)) > 0.0_wp) then
+      call keep_zero(rule)
+      return
+    end if
+    default%acts = .true.
+    if (.not. max(default%rule%at_rest, default%rule%sliding) > 0.0_wp) return
+    rule = default%rule
+    place = default%place
   end subroutine take_stock_friction
 
   !> Coefficients at rest and sliding, decay, largest stress; and where the coefficient stands.
@@ -74,60 +78,57 @@ contains
 
   !> *CONTACT_2D_PENALTY_FRICTION: FRIC alone, or FRIC_L and FRIC_H as FS and FD. The card has no
   !> decay between two that differ.
-  subroutine take_penalty_friction(deck, card, entry)
+  subroutine take_penalty_friction(deck, card, rule, place)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
-    type(raw_contact_t), intent(inout) :: entry
+    type(friction_rule_t), intent(inout) :: rule
+    type(place_t), intent(out) :: place       !! of the coefficient
     character(6), parameter :: names(3) = ['FRIC  ', 'FRIC_L', 'FRIC_H']
     integer :: i
 
-    associate (rule => entry%contact%friction)
-      entry%friction_place = place_of(card, names(1))
-      do i = 1, size(names)
-        if (is_bad(card, names(i)) .or. .not. real_of(card, names(i)) > 0.0_wp) cycle
-        if (.not. rule%at_rest > 0.0_wp) then
-          rule%at_rest = real_of(card, names(i))
-          entry%friction_place = place_of(card, names(i))
-        else if (abs(real_of(card, names(i)) - rule%at_rest) > 0.0_wp) then
-          call report_field(deck, card, names(i), 'is not '//trim(entry%friction_place%name) &
-            //' "'//to_text(rule%at_rest)//'", and the card does not say at which speeds they ' &
-            //'act; *CONTACT_2D_SLIDELINE has FS, FD and the decay DC')
-        end if
-      end do
-      rule%sliding = rule%at_rest
-    end associate
+    place = place_of(card, names(1))
+    do i = 1, size(names)
+      if (is_bad(card, names(i)) .or. .not. real_of(card, names(i)) > 0.0_wp) cycle
+      if (.not. rule%at_rest > 0.0_wp) then
+        rule%at_rest = real_of(card, names(i))
+        place = place_of(card, names(i))
+      else if (abs(real_of(card, names(i)) - rule%at_rest) > 0.0_wp) then
+        call report_field(deck, card, names(i), 'is not '//trim(place%name) &
+          //' "'//to_text(rule%at_rest)//'", and the card does not say at which speeds they ' &
+          //'act; *CONTACT_2D_SLIDELINE has FS, FD and the decay DC')
+      end if
+    end do
+    rule%sliding = rule%at_rest
   end subroutine take_penalty_friction
 
   !> SFRIC, DFRIC, EDC and VFC of *CONTROL_CONTACT.
-  subroutine take_default_friction(card, raw)
+  subroutine take_default_friction(card, default)
     type(card_t), intent(in) :: card
-    type(raw_t), intent(inout) :: raw
+    type(default_friction_t), intent(inout) :: default
 
-    call take_rule(card, card, ['SFRIC', 'DFRIC', 'EDC  ', 'VFC  '], raw%friction, &
-      raw%friction_place)
-    call keep_zero(raw%friction)
+    call take_rule(card, card, ['SFRIC', 'DFRIC', 'EDC  ', 'VFC  '], default%rule, default%place)
+    call keep_zero(default%rule)
   end subroutine take_default_friction
 
   !> Friction of *CONTROL_CONTACT that no interface takes.
-  subroutine warn_of_unused(deck, raw)
+  subroutine warn_of_unused(deck, default)
     type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(in) :: raw
+    type(default_friction_t), intent(in) :: default
 
-    if (max(raw%friction%at_rest, raw%friction%sliding) > 0.0_wp .and. .not. raw%friction_acts) &
-      call warn_of_field(deck, raw%friction_place, 'has no effect here: it is the friction of ' &
+    if (max(default%rule%at_rest, default%rule%sliding) > 0.0_wp .and. .not. default%acts) &
+      call warn_of_field(deck, default%place, 'has no effect here: it is the friction of ' &
       //'*CONTACT_2D_AUTOMATIC_ cards that have none (FS, FD, DC and VC 0)')
   end subroutine warn_of_unused
 
   !> Coefficients that are allowed and are likely not what is meant.
-  subroutine warn_of_rule(deck, entry)
+  subroutine warn_of_rule(deck, line, contact)
     type(deck_t), intent(inout) :: deck
-    type(raw_contact_t), intent(in) :: entry
+    integer, intent(in) :: line               !! of the coefficient
+    type(contact_t), intent(in) :: contact
     character(:), allocatable :: id
-    integer :: line
 
-    line = entry%friction_place%line
-    id = to_text(entry%contact%id)
-    associate (rule => entry%contact%friction)
+    id = to_text(contact%id)
+    associate (rule => contact%friction)
       if (rule%sliding > max(0.0_wp, rule%at_rest)) call line_warning(deck, line, &
         'friction rises'//id, 'the coefficient of friction in fast sliding (FD) of interface ' &
         //id//', "'//to_text(rule%sliding)//'", is above that at rest (FS), "' &
@@ -136,7 +137,7 @@ contains
         .not. rule%decay > 0.0_wp) call line_warning(deck, line, 'friction decay'//id, &
         'without a decay (DC) the coefficient of friction of interface '//id//' is that at ' &
         //'rest (FS) at any speed: the one in fast sliding (FD) has no effect')
-      if (rule%most > 0.0_wp .and. .not. has_friction(entry%contact)) call line_warning(deck, &
+      if (rule%most > 0.0_wp .and. .not. has_friction(contact)) call line_warning(deck, &
         line, 'friction cap'//id, 'the largest friction stress (VC) of interface '//id &
         //' has no effect without a coefficient of friction (FS)')
     end associate

@@ -1,59 +1,87 @@
 ! SPDX-License-Identifier: MIT
-!> *CONTROL_IMPLICIT_ cards.
+!> *CONTROL_IMPLICIT_ cards, and what the implicit method asks of the rest of the deck.
 module deck_implicit_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use controls_m, only : implicit_t
-  use deck_lines_m, only : deck_t, line_warning
+  use hardenings_m, only : depends_on_rate
+  use model_m, only : model_t
+  use deck_control_m, only : control_cards
+  use deck_ids_m, only : a_part, a_material
+  use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
   use deck_fields_m, only : card_t
   use deck_cards_m, only : report_field
-  use deck_values_m, only : integer_of, real_of
-  use deck_raw_m, only : raw_t
+  use deck_values_m, only : integer_of, real_of, is_blank
   implicit none
   private
-  public :: take_implicit, take_dynamics, take_solution, take_automatic, settle_scheme, check_scheme
+  public :: read_implicit, check_implicit
 
   !> Spectral radius at infinite frequency where the deck gives none.
   real(wp), parameter :: default_radius = 0.8_wp
 
 contains
 
-  !> *CONTROL_IMPLICIT_GENERAL.
-  subroutine take_implicit(deck, card, raw)
+  !> The implicit method: its cards, then its scheme.
+  subroutine read_implicit(deck, implicit)
     type(deck_t), intent(inout) :: deck
-    type(card_t), intent(inout) :: card
-    type(raw_t), intent(inout) :: raw
+    type(implicit_t), intent(inout) :: implicit
+    type(card_t) :: cards(6)
+    integer, allocatable :: blocks(:)
+    real(wp) :: newmark(2), alpha, radius !! 0 = blank; a radius below 0 is not given
+    integer :: i, line                    !! of *CONTROL_IMPLICIT_DYNAMICS
 
-    raw%controls%implicit%is_on = integer_of(card, 'IMFLAG') == 1
-    raw%controls%implicit%dt = real_of(card, 'DT0')
-    if (raw%controls%implicit%is_on .and. raw%controls%implicit%dt <= 0.0_wp) call report_field( &
-      deck, card, 'DT0', 'is not a step (more than 0)')
-  end subroutine take_implicit
+    newmark = 0.0_wp
+    alpha = 0.0_wp
+    radius = -1.0_wp
+    line = 0
+    blocks = blocks_of(deck, 'CONTROL_IMPLICIT_')
+    do i = 1, size(blocks)
+      call control_cards(deck, blocks(i), cards)
+      select case (deck%blocks(blocks(i))%name)
+      case ('CONTROL_IMPLICIT_GENERAL')
+        implicit%is_on = integer_of(cards(1), 'IMFLAG') == 1
+        implicit%dt = real_of(cards(1), 'DT0')
+        if (implicit%is_on .and. implicit%dt <= 0.0_wp) call report_field(deck, cards(1), 'DT0', &
+          'is not a step (more than 0)')
+      case ('CONTROL_IMPLICIT_DYNAMICS')
+        line = cards(1)%line
+        implicit%is_dynamic = integer_of(cards(1), 'IMASS') == 1
+        call take_newmark(deck, cards(1), newmark)
+        alpha = real_of(cards(1), 'ALPHA')
+      case ('CONTROL_IMPLICIT_SPECTRAL_RADIUS')
+        radius = real_of(cards(1), 'RHO')
+        if (is_blank(cards(1), 'RHO')) call report_field(deck, cards(1), 'RHO', &
+          'is not a spectral radius (0 to 1)')
+      case ('CONTROL_IMPLICIT_SOLUTION')
+        call take_solution(cards(1), implicit)
+      case ('CONTROL_IMPLICIT_AUTO')
+        call take_automatic(deck, cards(1), implicit)
+      end select
+    end do
+    if (.not. implicit%is_on) return
+    call settle_scheme(newmark, -alpha, radius, implicit)
+    if (implicit%is_dynamic) call check_scheme(deck, line, implicit)
+  end subroutine read_implicit
 
-  !> *CONTROL_IMPLICIT_DYNAMICS: GAMMA and BETA ask for Newmark's method, ALPHA below 0 for HHT;
+  !> GAMMA and BETA of *CONTROL_IMPLICIT_DYNAMICS ask for Newmark's method (ALPHA below 0 for HHT);
   !> blank fields leave the generalised-alpha method with its spectral radius.
-  subroutine take_dynamics(deck, card, raw)
+  subroutine take_newmark(deck, card, newmark)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
-    type(raw_t), intent(inout) :: raw
-    real(wp), parameter :: most = 10.0_wp
-    character(*), parameter :: too_large = 'is not a parameter of Newmark''s method (at most 10)'
-    real(wp) :: gamma, beta, alpha
+    real(wp), intent(out) :: newmark(2)
+    character(5), parameter :: names(2) = ['GAMMA', 'BETA '], leasts(2) = ['0.5  ', '0.25 ']
+    real(wp), parameter :: least(2) = [0.5_wp, 0.25_wp], most = 10.0_wp
+    integer :: k
 
-    gamma = real_of(card, 'GAMMA')
-    beta = real_of(card, 'BETA')
-    alpha = real_of(card, 'ALPHA')
-    raw%controls%implicit%is_dynamic = integer_of(card, 'IMASS') == 1
-    if (gamma < 0.0_wp .or. (gamma > 0.0_wp .and. gamma < 0.5_wp)) call report_field(deck, &
-      card, 'GAMMA', 'is not a stable GAMMA of Newmark''s method (0.5 or more)')
-    if (gamma > most) call report_field(deck, card, 'GAMMA', too_large)
-    if (beta > most) call report_field(deck, card, 'BETA', too_large)
-    if (beta < 0.0_wp .or. (beta > 0.0_wp .and. beta < 0.25_wp)) call report_field(deck, &
-      card, 'BETA', 'is not a stable BETA of Newmark''s method (0.25 or more)')
-    raw%newmark_line = card%line
-    raw%newmark = [gamma, beta]
-    raw%hht = -alpha
-  end subroutine take_dynamics
+    do k = 1, 2
+      newmark(k) = real_of(card, names(k))
+      if (newmark(k) < 0.0_wp .or. (newmark(k) > 0.0_wp .and. newmark(k) < least(k))) call &
+        report_field(deck, card, names(k), 'is not a stable '//trim(names(k))//' of Newmark''s ' &
+        //'method ('//trim(leasts(k))//' or more)')
+      if (newmark(k) > most) call report_field(deck, card, names(k), &
+        'is not a parameter of Newmark''s method (at most 10)')
+    end do
+  end subroutine take_newmark
 
   !> *CONTROL_IMPLICIT_SOLUTION. Every iteration forms the tangent anew (full Newton), whatever
   !> ILIMIT.
@@ -126,12 +154,68 @@ contains
     real(wp), parameter :: round_off = 1.0e-9_wp
     real(wp) :: least
 
-    if (.not. (implicit%is_on .and. implicit%is_dynamic)) return
     least = 0.25_wp*(implicit%gamma + 0.5_wp)**2
     if (implicit%beta >= least*(1.0_wp - round_off)) return
     call line_warning(deck, line, 'newmark', 'Newmark''s method with GAMMA ' &
       //to_text(implicit%gamma)//' and BETA '//to_text(implicit%beta)//' is stable for small ' &
       //'steps only: for all steps BETA must be at least (GAMMA + 1/2)^2/4 = '//to_text(least))
   end subroutine check_scheme
+
+  !> What the implicit method asks of the rest of the deck.
+  subroutine check_implicit(deck, model)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(in) :: model
+    integer :: i
+
+    do i = 1, size(model%parts)
+      associate (part => model%parts(i))
+        if (part%hourglass%quadratic > 0.0_wp .or. part%hourglass%linear > 0.0_wp) &
+          call line_error(deck, deck%maps(a_part)%lines(i), 'part '//to_text(part%id)//' has ' &
+          //'bulk viscosity (*CONTROL_BULK_VISCOSITY or *HOURGLASS), which the implicit method ' &
+          //'does not have')
+      end associate
+    end do
+    call check_implicit_laws(deck, model)
+  end subroutine check_implicit
+
+  !> Laws with rates, heat, energy or failure have no tangent.
+  subroutine check_implicit_laws(deck, model)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(in) :: model
+    character(:), allocatable :: reason
+    integer :: i
+
+    do i = 1, size(model%materials)
+      associate (material => model%materials(i))
+        reason = ''
+        if (allocated(material%flow)) then
+          reason = 'a flow stress of Johnson and Cook'
+        else if (material%failure_strain < huge(1.0_wp)) then
+          reason = 'a plastic strain at failure'
+        else if (allocated(material%crush)) then
+          reason = 'the law of a crushable foam'
+        else if ((allocated(material%eos) .or. material%needs_eos) .and. .not. &
+          allocated(material%rubber)) then
+          reason = 'an equation of state'
+        end if
+        if (len(reason) > 0) call refuse(reason)
+        if (.not. allocated(material%curve)) cycle
+        if (depends_on_rate(material%curve)) call refuse( &
+          'a yield stress that depends on the strain rate (C, LCSR or a table)')
+      end associate
+    end do
+
+  contains
+
+    !> One error.
+    subroutine refuse(what)
+      character(*), intent(in) :: what
+
+      call line_error(deck, deck%maps(a_material)%lines(i), 'material ' &
+        //to_text(model%materials(i)%id)//' has '//what &
+        //', which the implicit method does not have')
+    end subroutine refuse
+
+  end subroutine check_implicit_laws
 
 end module deck_implicit_m

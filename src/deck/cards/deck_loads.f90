@@ -208,20 +208,18 @@ contains
 
   !> Edges that carry pressure walked counter-clockwise round the body; others are errors, one for
   !> each card.
-  subroutine settle_pressures(deck, places, outside, model, in_doubt)
+  subroutine settle_pressures(deck, places, outside, in_doubt, model)
     type(deck_t), intent(inout) :: deck
     type(place_t), intent(in) :: places(:)       !! where each load stands
     type(boundary_t), intent(in) :: outside
+    logical, intent(in) :: in_doubt(:)           !! (n_node) edges of these are not judged
     type(model_t), intent(inout) :: model
-    logical, intent(in), optional :: in_doubt(:) !! (n_node) edges of these are not judged
     integer :: i, told
 
     told = 0
     do i = 1, size(places)
       associate (nodes => model%conditions%pressures(i)%nodes)
-        if (present(in_doubt)) then
-          if (any(in_doubt(nodes))) cycle
-        end if
+        if (any(in_doubt(nodes))) cycle
         if (find_edge(outside, nodes(1), nodes(2)) > 0) cycle
         if (find_edge(outside, nodes(2), nodes(1)) > 0) then
           nodes = nodes([2, 1])

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> The surfaces of an interface from the sets that SURFA and SURFB name: parts, nodes or segments.
-module deck_resolve_sides_m
+module deck_contact_sides_m
   use log_m, only : to_text
   use surfaces_m, only : surface_t
   use model_m, only : model_t
@@ -8,15 +8,23 @@ module deck_resolve_sides_m
   use boundary_m, only : boundary_t, find_boundary, find_edge
   use surface_building_m, only : boundary_surface, chain_surface, chain_turned, chain_ordered, &
     chain_broken, chain_repeated, chain_short
-  use deck_ids_m, only : index_of
-  use deck_ids_m, only : a_node_set, a_part, a_part_set, a_segment_set, a_shell_set
+  use deck_ids_m, only : index_of, a_node_set, a_part, a_part_set, a_segment_set, a_shell_set
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_cards_m, only : reject_field
-  use deck_raw_m, only : raw_t, raw_contact_t
-  use deck_values_m, only : resolve_id
+  use deck_contact_m, only : contact_cards_t, side_fields
+  use deck_values_m, only : resolve_id, place_of
   implicit none
   private
-  public :: find_side, require_side, resolve_side, side_none, side_parts, side_nodes, side_segments
+  public :: outline_t, find_side, mark_set, mark_surface, find_surface
+
+  !> Where surfaces are looked for. Of a mesh some elements of which are refused those are made that
+  !> have no nodes of them: mistakes that do not follow from theirs are told in the same pass.
+  type :: outline_t
+    type(boundary_t) :: outside
+    logical :: is_sound = .true.        !! no element is refused
+    logical, allocatable :: in_doubt(:) !! (n_node) refused elements have them
+    logical, allocatable :: is_whole(:) !! of each node set: all its nodes exist
+  end type outline_t
 
   !> What a side is given by.
   integer, parameter :: side_none = 0, side_parts = 1, side_nodes = 2, side_segments = 3
@@ -29,7 +37,7 @@ contains
   !> where the deck has no such set of that number.
   subroutine find_side(deck, entry, side, kind, found)
     type(deck_t), intent(in) :: deck
-    type(raw_contact_t), intent(in) :: entry
+    type(contact_cards_t), intent(in) :: entry
     integer, intent(in) :: side
     integer, intent(out) :: kind  !! one of the `side_` constants
     integer, intent(out) :: found !! index of the set, 0 for none
@@ -46,20 +54,60 @@ contains
     end associate
   end subroutine find_side
 
-  !> The same, with an error where there is no such set.
-  subroutine require_side(deck, entry, side, kind, found)
+  !> Nodes of a transducer, with an error where there is no such set; of parts all, since the inner
+  !> ones carry no contact. None where they are in doubt.
+  subroutine mark_surface(deck, entry, body, model, is_on)
     type(deck_t), intent(inout) :: deck
-    type(raw_contact_t), intent(in) :: entry
-    integer, intent(in) :: side
-    integer, intent(out) :: kind, found
+    type(contact_cards_t), intent(in) :: entry
+    type(outline_t), intent(in) :: body
+    type(model_t), intent(in) :: model
+    logical, intent(out) :: is_on(:)  !! (n_node)
+    logical :: is_of_part(size(model%parts))
+    integer :: kind, found, k
 
-    call find_side(deck, entry, side, kind, found)
-    if (kind /= side_none) return
-    if (entry%sides(side) > 0) call resolve_id(deck, a_part_set, entry%sides(side), &
-      entry%places(side), found, namesakes(deck, entry%sides(side)))
-    if (entry%sides(side) < 0) call resolve_id(deck, a_node_set, -entry%sides(side), &
-      entry%places(side), found, namesakes(deck, entry%sides(side)))
-  end subroutine require_side
+    is_on = .false.
+    call find_side(deck, entry, 1, kind, found)
+    if (kind == side_none) then
+      call refuse_side(deck, entry, 1)
+    else if (.not. is_certain(body, model, kind, found)) then
+      return
+    else if (kind == side_parts) then
+      is_of_part = .false.
+      is_of_part(model%part_sets(found)%parts) = .true.
+      do k = 1, model%mesh%n_element
+        if (is_of_part(model%mesh%element_part(k))) is_on(model%mesh%element_nodes(:, k)) = .true.
+      end do
+    else
+      call mark_set(model, kind, found, is_on)
+    end if
+  end subroutine mark_surface
+
+  !> Nodes of a node or segment set.
+  pure subroutine mark_set(model, kind, found, is_on)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: kind, found
+    logical, intent(inout) :: is_on(:)
+
+    if (kind == side_nodes) then
+      is_on(model%node_sets(found)%nodes) = .true.
+    else if (kind == side_segments) then
+      is_on(model%segment_sets(found)%nodes(1, :)) = .true.
+      is_on(model%segment_sets(found)%nodes(2, :)) = .true.
+    end if
+  end subroutine mark_set
+
+  !> An error of a side that names no set.
+  subroutine refuse_side(deck, entry, side)
+    type(deck_t), intent(inout) :: deck
+    type(contact_cards_t), intent(in) :: entry
+    integer, intent(in) :: side
+    integer :: found
+
+    associate (id => entry%sides(side))
+      if (id /= 0) call resolve_id(deck, merge(a_part_set, a_node_set, id > 0), abs(id), &
+        place_of(entry%cards(1), side_fields(side)), found, namesakes(deck, id))
+    end associate
+  end subroutine refuse_side
 
   !> What else has the number of a set that is not there, for a message; nothing where nothing has.
   pure function namesakes(deck, side) result(text)
@@ -77,46 +125,61 @@ contains
     if (len(text) > 0) text(1:1) = ';'
   end function namesakes
 
-  !> The surface of one side of an interface; without nodes where some of a node set do not exist,
-  !> which has been told.
-  subroutine resolve_side(deck, raw, i, side, outside, model, surface)
+  !> The surface of one side of an interface. It has no nodes where some of a node set do not exist,
+  !> which has been told, and where it is in doubt.
+  subroutine find_surface(deck, entry, side, body, model, surface)
     type(deck_t), intent(inout) :: deck
-    type(raw_t), intent(in) :: raw
-    integer, intent(in) :: i      !! interface
+    type(contact_cards_t), intent(in) :: entry
     integer, intent(in) :: side
-    type(boundary_t), intent(in) :: outside
+    type(outline_t), intent(in) :: body
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
+    type(place_t) :: place
     integer :: kind, found
 
-    associate (entry => raw%contacts(i))
-      call require_side(deck, entry, side, kind, found)
+    place = place_of(entry%cards(1), side_fields(side))
+    call find_side(deck, entry, side, kind, found)
+    if (kind == side_none) then
+      call refuse_side(deck, entry, side)
+    else if (is_certain(body, model, kind, found)) then
       select case (kind)
       case (side_parts)
-        call surface_of_parts(deck, model%part_sets(found)%parts, entry%places(side), model, &
-          surface)
+        call surface_of_parts(deck, model%part_sets(found)%parts, place, model, surface)
       case (side_nodes)
-        if (raw%is_whole(found)) &
-          call surface_of_nodes(deck, model%node_sets(found)%nodes, side, entry%places(side), &
-          outside, model, surface)
+        if (body%is_whole(found)) call surface_of_nodes(deck, model%node_sets(found)%nodes, side, &
+          place, body%outside, model, surface)
       case (side_segments)
         if (allocated(model%segment_sets(found)%parts)) then
-          call surface_of_parts(deck, model%segment_sets(found)%parts, entry%places(side), model, &
-            surface)
+          call surface_of_parts(deck, model%segment_sets(found)%parts, place, model, surface)
         else
-          call surface_of_segments(deck, model%segment_sets(found), entry%places(side), outside, &
-            model, surface)
+          call surface_of_segments(deck, model%segment_sets(found), place, body%outside, model, &
+            surface)
           if (entry%contact%is_self .and. allocated(surface%previous)) then
-            if (any(surface%previous == 0)) call reject_field(deck, entry%places(side), 'is a ' &
-              //'segment set with an open chain; contact of a surface with itself is that of ' &
-              //'whole outlines')
+            if (any(surface%previous == 0)) call reject_field(deck, place, 'is a segment set ' &
+              //'with an open chain; contact of a surface with itself is that of whole outlines')
           end if
         end if
       end select
-    end associate
+    end if
     if (.not. allocated(surface%nodes)) &
       allocate (surface%nodes(0), surface%segments(2, 0), surface%segment_element(0))
-  end subroutine resolve_side
+  end subroutine find_surface
+
+  !> Whether no refused element has nodes of the surface.
+  pure function is_certain(body, model, kind, found)
+    type(outline_t), intent(in) :: body
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: kind, found
+    logical :: is_certain
+
+    is_certain = body%is_sound
+    if (is_certain .or. kind == side_parts) return
+    if (kind == side_nodes) then
+      is_certain = .not. any(body%in_doubt(model%node_sets(found)%nodes))
+    else if (.not. allocated(model%segment_sets(found)%parts)) then
+      is_certain = .not. any(body%in_doubt([model%segment_sets(found)%nodes]))
+    end if
+  end function is_certain
 
   !> Chains of the edges of a segment set, in any order and walked either way.
   subroutine surface_of_segments(deck, set, place, outside, model, surface)
@@ -235,4 +298,4 @@ contains
     end select
   end subroutine surface_of_nodes
 
-end module deck_resolve_sides_m
+end module deck_contact_sides_m

@@ -4,14 +4,15 @@
 !> deck has the type chosen and the target, so that runs from it and restarts go on in the same way.
 module deck_choose_type_m
   use conditions_m, only : conditions_t
-  use contact_types_m, only : type_nts_ar, type_nts_mar, type_segmented_mortar
+  use contact_types_m, only : type_nts_ar, type_nts_mar, type_segmented_mortar, type_chosen
   use contacts_m, only : contact_t, has_friction, is_tied, penalty_factor, penalty_share, &
     penalty_implicit, tie_factor
-  use deck_contact_m, only : leaves_type, write_choice
+  use deck_edits_m, only : set_field
   use deck_lines_m, only : deck_t
   use kinds_m, only : wp
   use log_m, only : to_text
   use model_m, only : model_t
+  use number_text_m, only : shortest
   use surfaces_m, only : surface_t
   use type_charts_m, only : scene_bound, scene_matching, scene_general, scene_led, &
     scene_friction, scene_name, published_estimate, cheapest_type
@@ -34,11 +35,12 @@ contains
     integer, intent(in) :: i_block       !! of the interface
     type(model_t), intent(in) :: model
     type(contact_t), intent(inout) :: contact
-    logical :: has_target
+    logical :: has_target, is_chosen
 
+    is_chosen = type_chosen == contact%contact_type
     has_target = contact%target > 0.0_wp
-    if (has_target .or. leaves_type(contact)) contact%scene = scene_of(model, contact)
-    if (.not. leaves_type(contact)) return
+    if (has_target .or. is_chosen) contact%scene = scene_of(model, contact)
+    if (.not. is_chosen) return
     if (has_target .and. contact%scene /= scene_bound) then
       call decide_by_charts(contact)
     else
@@ -47,7 +49,12 @@ contains
     if (.not. has_target) contact%target = default_target
     if (.not. abs(contact%penalty) > 0.0_wp) call take_penalty(model%controls%implicit%is_on, &
       contact)
-    call write_choice(deck, i_block, contact)
+    ! The card shows what was chosen.
+    call set_field(deck, i_block, 'CTYPE', to_text(contact%contact_type))
+    call set_field(deck, i_block, 'PEN', shortest(contact%penalty))
+    call set_field(deck, i_block, 'PUNIT', to_text(contact%penalty_unit))
+    call set_field(deck, i_block, 'PENT', shortest(max(contact%master_penalty, 0.0_wp)))
+    call set_field(deck, i_block, 'TARGET', shortest(contact%target))
   end subroutine choose_type
 
   !> The penalty where the deck has none: the largest that an explicit step bears; K L/A of implicit
