@@ -114,7 +114,7 @@ contains
       end if
       ids(i) = entry%contact%id
     end do
-    call refuse_again(deck, ids, deck%blocks(blocks)%keyword, 'interface number ', &
+    call refuse_again(deck, ids, [deck%blocks(blocks)%keyword], 'interface number ', &
       'interface (without a number it is the position in the deck)')
     call warn_of_unused(deck, default)
     call check_words(deck, pack(ids, .not. measures))
