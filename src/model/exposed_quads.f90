@@ -33,10 +33,8 @@ contains
     logical, allocatable :: is_surrounded(:)
     integer :: i, k
 
-    if (model%is_round) then
-      allocate (shares(4, model%mesh%n_element), source=0.0_wp)
-      return
-    end if
+    allocate (shares(4, model%mesh%n_element), source=0.0_wp)
+    if (model%is_round) return
     allocate (mass(model%mesh%n_node), source=0.0_wp)
     allocate (is_surrounded(model%mesh%n_node), source=.true.)
     shares = corner_masses(model, is_left)

@@ -120,7 +120,7 @@ contains
   subroutine append_line(deck, i_block, number)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
-    integer, intent(in) :: number !! of the line in the file that messages name
+    integer, value :: number !! of the line in the file that messages name; a copy, as lists grow
     type(made_line_t), allocatable :: longer(:)
     integer :: n
 
