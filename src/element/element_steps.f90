@@ -396,7 +396,7 @@ contains
       rate = 2.0_wp*length*(viscosity%linear*now%sound_speed + viscosity%quadratic*length &
         *gradients%rate)*(xx + yy)
     end if
-    step = 2.0_wp/(rate + sqrt(rate**2 + omega**2))
+    step = 2.0_wp/max(rate + sqrt(rate**2 + omega**2), tiny(1.0_wp)) ! no motion, no limit
   end function mode_step
 
   !> Largest eigenvalue of the product of a diagonal and a symmetric matrix, both without negative

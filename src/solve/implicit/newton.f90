@@ -9,7 +9,7 @@ module newton_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : told_as
   use controls_m, only : implicit_t
-  use equations_m, only : take_free, move_prescribed, find_equation, equations_t
+  use equations_m, only : take_free, move_prescribed, find_equation
   use friction_m, only : let_stick
   use implicit_forces_m, only : trial_t, assemble_forces, trouble_of
   use implicit_tangent_m, only : step_t, assemble_tangent, assemble_residual
