@@ -10,7 +10,6 @@ module contact_log_m
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
-  use runs_m, only : count_runs
   use surfaces_m, only : surface_t, has_closed_chain
   use tied_interface_m, only : tie_reach
   use ties_m, only : tied_nodes
@@ -75,14 +74,6 @@ contains
       //to_text(contact%damping)//' of critical')
     if (allocated(memory%friction%state)) call write_log(log, '  friction: ' &
       //friction_text(contact%friction, model%controls%units))
-    if (memory%facing%is_used) then
-      associate (present => memory%facing%present)
-        title = runs_text(present%slave)
-        if (.not. contact%is_self) title = title//' of the slave and '//runs_text(present%master) &
-          //' of the master'
-      end associate
-      call write_log(log, '  whole outlines: at the start '//title//' face each other')
-    end if
     if (is_tied(contact)) then
       call log_ties(contact, model, memory, log)
     else
@@ -274,14 +265,6 @@ contains
       //in_units(units, 'F/L^2')
     text = text//'; tangential penalty '//to_text(rule%stiffness)//' of the normal one'
   end function friction_text
-
-  !> `n runs with m segments`.
-  pure function runs_text(surface) result(text)
-    type(surface_t), intent(in) :: surface
-    character(:), allocatable :: text
-
-    text = to_text(count_runs(surface))//' runs with '//to_text(surface%n_segment)//' segments'
-  end function runs_text
 
   !> What counts of a slave segment that hangs over the end of the master.
   pure function overhang_text(is_strict) result(text)

@@ -8,8 +8,7 @@ module contact_preparation_m
     allocate_tractions, allocate_scratch, places_of_segment
   use contacts_m, only : contact_t, has_friction, is_tied, penalty_implicit
   use law_state_m, only : allocate_limit, allocate_friction, allocate_interference
-  use facing_look_m, only : has_outline, prepare_facing
-  use first_search_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments
+  use initial_status_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments
   use kinds_m, only : wp
   use model_m, only : model_t
   use spots_m, only : start_spots
@@ -70,7 +69,6 @@ contains
     if (allocated(contact%interference)) call allocate_interference(memory%interference, &
       places_of_segment(memory)*n_slave, n_master)
     call allocate_scratch(memory)
-    if (has_outline(contact)) call prepare_facing(contact, model, memory)
   end subroutine prepare_contact
 
 end module contact_preparation_m

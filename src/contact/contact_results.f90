@@ -28,31 +28,8 @@ contains
     resultants%n_active = memory%n_active
   end subroutine interface_resultants
 
-  !> Rows of all slave nodes in walking order. Where runs of a whole outline face each other,
-  !> lengths are those of the runs; a node in none has its length all the same, and no pressure.
+  !> Rows of all slave nodes in walking order.
   pure subroutine slave_rows(contact, motion, memory, rows)
-    type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, v
-    type(contact_state_t), intent(in) :: memory
-    type(slave_result_t), intent(inout) :: rows
-    integer :: i
-
-    if (.not. memory%facing%is_used) then
-      call rows_between(contact, motion, memory, rows)
-      return
-    end if
-    call rows_between(memory%facing%present, motion, memory, rows)
-    associate (places => memory%places(:, :memory%n_slave))
-      call fill_arc_lengths(contact%slave, places, rows%arc_length)
-      do i = 1, memory%n_slave
-        if (.not. rows%length(i) > 0.0_wp) &
-          rows%length(i) = competence_area(contact%slave, places, contact%is_round, i)
-      end do
-    end associate
-  end subroutine slave_rows
-
-  !> The same between two surfaces.
-  pure subroutine rows_between(contact, motion, memory, rows)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, v
     type(contact_state_t), intent(in) :: memory
@@ -90,7 +67,7 @@ contains
     call fill_rubbed(contact%master, n, places(:, n + 1:), contact%is_round, pull(n + 1:), memory, &
       rows%rubbed(n + 1:))
     if (allocated(memory%ties%side)) call fill_ties(memory, rows)
-  end subroutine rows_between
+  end subroutine slave_rows
 
   !> What ties have besides: gaps and slips of nodes as means of their springs, by area, and states.
   pure subroutine fill_ties(memory, rows)

@@ -17,7 +17,6 @@ module contact_step_limit_m
   use contact_spring_ratios_m, only : spring_ratios
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t, is_tied
-  use facing_state_m, only : facing_side_t
   use kinds_m, only : wp
   use visitor_m, only : visited_t, visitor_t
   implicit none
@@ -216,21 +215,9 @@ contains
     limit = huge(limit)
     if (is_tied(contact) .or. contact%search_depth > 0.0_wp) return
     depth = min(memory%slave_tracking%shallowest, memory%master_tracking%shallowest)
-    ! Runs are what faces each other now; others may in the next step.
-    if (memory%facing%is_used) depth = min(least_depth(memory%facing%slave), &
-      least_depth(memory%facing%master))
     depth = approach_share*depth
     if (memory%advance > 0.01_wp*depth) limit = dt*(depth/memory%advance)
   end function approach_step
-
-  !> Least depth of a first contact of or with a whole surface, m.
-  pure function least_depth(side) result(depth)
-    type(facing_side_t), intent(in) :: side
-    real(wp) :: depth
-
-    depth = huge(depth)
-    if (allocated(side%caught)) depth = min(minval(side%caught), minval(side%reached))
-  end function least_depth
 
   !> Springs that stay closed: the largest dt with
   !> (dt/element_limit)^2 + dt^2 rate/4 + dt damping <= 1, s.

@@ -27,8 +27,6 @@ contains
     equations = equation(:, memory%nodes)
     if (is_tied(contact)) then
       call add_tie_tangent(memory, equations, matrix)
-    else if (memory%facing%is_used) then
-      call add_tangent(memory%facing%present, memory, equations, matrix)
     else
       call add_tangent(contact, memory, equations, matrix)
     end if

@@ -5,17 +5,14 @@ module renewal_m
   use contact_preparation_m, only : prepare_contact
   use contact_springs_m, only : measure_springs
   use contact_state_m, only : contact_state_t, tracking_t, make_room, places_of_segment, &
-    n_side
+    n_side, is_touching
   use contacts_m, only : contact_t
   use energy_limit_m, only : form_springs
-  use facing_change_m, only : move_memory
-  use facing_look_m, only : make_present
-  use facing_state_m, only : facing_side_t
   use gather_m, only : power_of
   use kinds_m, only : wp
   use model_m, only : model_t
   use surfaces_m, only : surface_t
-  use tracking_m, only : list_touching
+  use contact_status_m, only : list_touching
   implicit none
   private
   public :: renew_contact, close_contact, reshape_contact
@@ -50,13 +47,9 @@ contains
     call carry_nodes([sides(1)%node, shifted(sides(2)%node, memory%n_slave)], old, memory)
     if (allocated(old%friction%force)) call carry_places(sides, old, memory)
     call carry_points([sides(1)%node, shifted(sides(2)%node, memory%n_slave)], contact, old, memory)
-    if (memory%facing%is_used) then
-      call carry_runs(contact, sides, old, memory)
-    else
-      call carry_trackings(sides(1)%segment, sides(2)%segment, sides, old, memory)
-      call list_touching(memory%slave_tracking)
-      if (memory%master_tracking%n > 0) call list_touching(memory%master_tracking)
-    end if
+    call carry_trackings(sides(1)%segment, sides(2)%segment, sides, old, memory)
+    call list_touching(memory%slave_tracking)
+    if (memory%master_tracking%n > 0) call list_touching(memory%master_tracking)
     call form_springs(memory)
     stored_at = old%watch%node
     call measure_springs(old)
@@ -97,12 +90,6 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     call prepare_contact(contact, model, memory)
-    if (.not. memory%facing%is_used) return
-    call make_present(contact, memory)
-    if (.not. allocated(memory%spot_xi)) return
-    ! There are no spots where there is no run.
-    memory%slave_tracking%n = 0
-    memory%slave_tracking%chord = 1
   end subroutine reshape_contact
 
   !> Numbers moved by an offset; 0 stays.
@@ -306,56 +293,9 @@ contains
     if (follows) follows = surface%segments(2, s) == nodes(2)
   end function follows
 
-  !> Runs of a whole outline, and what is known of them; the next call looks who faces whom.
-  pure subroutine carry_runs(contact, sides, old, memory)
-    type(contact_t), intent(in) :: contact
-    type(passage_t), intent(in) :: sides(2)
-    type(contact_state_t), intent(in) :: old
-    type(contact_state_t), intent(inout) :: memory
-    integer, allocatable :: former_slave(:), former_master(:), slave(:), master(:)
-
-    call carry_side(old%facing%slave, sides(1)%segment, memory%facing%slave, slave, former_slave)
-    call carry_side(old%facing%master, sides(2)%segment, memory%facing%master, master, &
-      former_master)
-    call carry_trackings(slave, master, sides, old, memory)
-    memory%facing%n_look = old%facing%n_look
-    memory%facing%n_change = old%facing%n_change
-    memory%facing%next_look = -huge(1.0_wp)
-    call make_present(contact, memory)
-    call move_memory(former_slave, former_master, memory)
-  end subroutine carry_runs
-
-  !> The runs of one side: `place` says where each of their segments stands in the list `left` of
-  !> those that are still there, by present numbers and in the former order.
-  pure subroutine carry_side(old, now, side, place, left)
-    type(facing_side_t), intent(in) :: old
-    integer, intent(in) :: now(:)              !! (n_segment) passage of segments
-    type(facing_side_t), intent(inout) :: side
-    integer, allocatable, intent(out) :: place(:), left(:)
-    logical, allocatable :: is_cut(:), is_in(:)
-    integer :: k, n
-
-    allocate (place(old%n), source=0)
-    allocate (left(count(now(old%segments(:old%n)) > 0)))
-    allocate (is_cut(size(side%segments)), is_in(size(side%segments)), source=.false.)
-    n = 0
-    do k = 1, old%n
-      if (now(old%segments(k)) == 0) cycle
-      n = n + 1
-      place(k) = n
-      left(n) = now(old%segments(k))
-      is_in(left(n)) = .true.
-      is_cut(left(n)) = old%is_cut(k)
-    end do
-    side%n = n
-    side%segments(:n) = pack([(k, k=1, size(is_in))], is_in)
-    side%is_cut(:n) = pack(is_cut, is_in)
-  end subroutine carry_side
-
   !> Both trackings, and the memory of slave segments.
   pure subroutine carry_trackings(slave, master, sides, old, memory)
-    integer, intent(in) :: slave(:), master(:) !! present numbers of the segments of the runs, or of
-                                               !! the surfaces
+    integer, intent(in) :: slave(:), master(:) !! present numbers of the segments
     type(passage_t), intent(in) :: sides(2)
     type(contact_state_t), intent(in) :: old
     type(contact_state_t), intent(inout) :: memory
@@ -374,9 +314,9 @@ contains
     call carry_tracking(old%slave_tracking, spots, master, memory%slave_tracking)
     if (memory%master_tracking%n > 0) call carry_tracking(old%master_tracking, sides(2)%node, &
       slave, memory%master_tracking)
-    if (.not. allocated(old%segments%status)) return
+    if (.not. allocated(old%segment_status)) return
     do k = 1, size(slave)
-      if (slave(k) > 0) memory%segments%status(slave(k)) = old%segments%status(k)
+      if (slave(k) > 0) memory%segment_status(slave(k)) = old%segment_status(k)
     end do
   end subroutine carry_trackings
 
@@ -387,6 +327,7 @@ contains
     type(tracking_t), intent(inout) :: tracking
     integer :: i, k
 
+    tracking%has_offset = old%has_offset
     do i = 1, min(old%n, size(spots))
       k = spots(i)
       if (k == 0 .or. old%segment(i) == 0) cycle
@@ -396,6 +337,8 @@ contains
       tracking%xi(k) = old%xi(i)
       tracking%gap(k) = old%gap(i)
       tracking%normal(:, k) = old%normal(:, i)
+      tracking%offset(k) = old%offset(i)
+      tracking%wake(k) = merge(huge(1.0_wp), -huge(1.0_wp), old%status(i) == is_touching)
     end do
   end subroutine carry_tracking
 

@@ -2,7 +2,6 @@
 !> A tied interface: placed once, in the reference geometry; then one step is gather, hold, work.
 module tied_interface_m
   use clock_m, only : clock_t, lap, phase_contact_search, phase_contact_force
-  use closing_m, only : close_contacts
   use contact_dispatch_m, only : place_points, formulation_t, formulation_of
   use contact_penalty_m, only : mean_length
   use contact_springs_m, only : begin_look, measure_springs, end_look
@@ -21,40 +20,23 @@ module tied_interface_m
 
 contains
 
-  !> After the first search: place the points of all that lies within reach and freeze them.
+  !> After the first search, which takes gaps within reach as closed: generate the contact points and
+  !> freeze them.
   subroutine start_ties(contact, model, memory)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
-    type(contact_t), allocatable :: present
+    type(formulation_t) :: formulation
+    real(wp) :: reach
 
     call allocate_tractions(memory%points)
-    if (memory%facing%is_used) then
-      call move_alloc(memory%facing%present, present)
-      if (min(present%slave%n_segment, present%master%n_segment) > 0) call place(present)
-      call move_alloc(present, memory%facing%present)
-    else
-      call place(contact)
-    end if
-
-  contains
-
-    !> Between two surfaces, or runs of them.
-    subroutine place(between)
-      type(contact_t), intent(in) :: between
-      type(formulation_t) :: formulation
-      real(wp) :: reach
-
-      formulation = formulation_of(contact)
-      reach = tie_reach(contact, model)
-      call close_contacts(between, reach, memory)
-      call place_points(between, memory)
-      memory%closed_gap = 0.0_wp
-      call freeze_ties(between, reach, memory)
-      if (breaks(contact)) call start_breaking(between, formulation%has_unit_area, &
-        formulation%has_two_passes, memory)
-    end subroutine place
-
+    formulation = formulation_of(contact)
+    reach = tie_reach(contact, model)
+    call place_points(contact, memory)
+    memory%closed_gap = 0.0_wp
+    call freeze_ties(contact, reach, memory)
+    if (breaks(contact)) call start_breaking(contact, formulation%has_unit_area, &
+      formulation%has_two_passes, memory)
   end subroutine start_ties
 
   !> How far apart places may lie that are tied, m.

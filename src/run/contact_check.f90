@@ -6,7 +6,6 @@ module contact_check_m
   use contact_log_m, only : report_initial_contact, report_released, report_tie_step, &
     report_broken
   use contacts_m, only : contact_t, is_tied, penalty_factor, penalty_share, penalty_implicit
-  use contact_overhang_m, only : report_overhang
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
     opening_step, binding_bound, fitting_scale, sharpness
   use controls_m, only : controls_t, contact_step_free, contact_step_rules
@@ -37,8 +36,7 @@ module contact_check_m
 
 contains
 
-  !> Initial penetrations, places just beyond ends of the master, and in explicit runs where the
-  !> penalty demands a smaller step than `state%dt`: a warning, unless it is the built-in penalty
+  !> Initial penetrations, and in explicit runs where the penalty demands a smaller step than `state%dt`: a warning, unless it is the built-in penalty
   !> and the step need not be too large.
   subroutine report_contact_start(model, state, log)
     type(model_t), intent(in) :: model
@@ -62,7 +60,6 @@ contains
         if (.not. is_tied(contact)) then
           call report_initial_contact(contact, model, state%contacts(i), log)
           if (contact%behind > 0) cycle
-          call report_overhang(contact, model, state%contacts(i), log)
           if (limits_step .and. contact%penalty_unit /= penalty_implicit) &
             call tell_step(model, state, i, element_limit, bounds(i), log)
         else if (limits_step) then

@@ -5,9 +5,8 @@
 !> it is sound.
 module restart_bounds_m
   use archive_m, only : archive_t
-  use contact_state_m, only : contact_state_t, tracking_t, bucket_grid_t, is_free, is_touching
+  use contact_state_m, only : contact_state_t, tracking_t, is_free, is_touching
   use contacts_m, only : contact_t
-  use facing_state_m, only : facing_side_t
   use law_state_m, only : is_open, is_held, is_broken
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -17,8 +16,6 @@ module restart_bounds_m
   private
   public :: check_state
 
-  !> Cells of the smallest side that the reach of a search takes, at most: 100 but for rounding.
-  real(wp), parameter :: most_cells = 101.0_wp
 
 contains
 
@@ -63,34 +60,12 @@ contains
     n_segments = [contact%slave%n_segment, contact%master%n_segment]
     n_spot = memory%n_slave
     if (allocated(memory%spot_xi)) n_spot = size(memory%spot_xi)*n_segments(1)
-    if (memory%facing%is_used) then
-      call check_side(memory%facing%slave, n_segments(1), folder//'facing/slave/', archive)
-      call check_side(memory%facing%master, n_segments(2), folder//'facing/master/', archive)
-      if (allocated(archive%error)) return
-      n_segments = [memory%facing%slave%n, memory%facing%master%n]
-      if (allocated(memory%spot_xi)) n_spot = size(memory%spot_xi)*n_segments(1)
-    end if
     call check_tracking(memory%slave_tracking, n_spot, n_segments(2), &
       folder//'slave_tracking/', archive)
     if (allocated(archive%error)) return
     call check_tracking(memory%master_tracking, memory%n_master, n_segments(1), &
       folder//'master_tracking/', archive)
   end subroutine check_contact
-
-  !> Runs of facing segments of one surface: rising numbers of segments that there are.
-  subroutine check_side(side, n, folder, archive)
-    type(facing_side_t), intent(in) :: side
-    integer, intent(in) :: n !! segments of the surface
-    character(*), intent(in) :: folder
-    type(archive_t), intent(inout) :: archive
-
-    call archive%expect(folder//'n', side%n >= 0 .and. side%n <= n, &
-      'a number beyond the length of its list')
-    if (allocated(archive%error)) return
-    call archive%expect(folder//'segments', all(side%segments(:side%n) >= 1 &
-      .and. side%segments(:side%n) <= n) .and. all(side%segments(2:side%n) &
-      > side%segments(:side%n - 1)), 'numbers that do not rise, or that no segment has')
-  end subroutine check_side
 
   !> The list of points: as many in all its arrays, and nodes of the interface.
   subroutine check_points(memory, folder, archive)
@@ -166,9 +141,6 @@ contains
       return
     end if
     call archive%expect(folder//'n', n == n_spot, 'another number of spots than there are')
-    call archive%expect(folder//'chord', all(tracking%chord >= 1 &
-      .and. tracking%chord <= max(1, n)), 'numbers that no spot has')
-    if (allocated(archive%error)) return
     call archive%expect(folder//'n_touching', tracking%n_touching >= 0 &
       .and. tracking%n_touching <= n, 'more than there are spots')
     call archive%expect(folder//'segment', all(tracking%segment >= 0 &
@@ -183,9 +155,7 @@ contains
       tracking%touching(:tracking%n_touching)) == is_touching), 'spots that do not touch')
     call archive%expect(folder//'n_touching', count(tracking%status == is_touching) &
       == tracking%n_touching, 'another number than there are spots in contact')
-    call archive%expect(folder//'reach', tracking%reach >= 0.0_wp .and. tracking%reach &
-      <= most_cells*tracking%grid%least_cell, 'a distance that does not fit its cells')
-    call check_grid(tracking%grid, n_segment, folder//'grid/', archive)
+    call archive%expect(folder//'reach', tracking%reach >= 0.0_wp, 'a distance below zero')
   end subroutine check_tracking
 
   !> Whether numbers are from 1 to n, each at most once.
@@ -205,26 +175,5 @@ contains
     end do
     is_list = .true.
   end function is_list
-
-  !> Segments in cells: each bucket ends where the next one starts.
-  subroutine check_grid(grid, n_segment, folder, archive)
-    type(bucket_grid_t), intent(in) :: grid
-    integer, intent(in) :: n_segment
-    character(*), intent(in) :: folder
-    type(archive_t), intent(inout) :: archive
-    integer :: n
-
-    n = size(grid%first)
-    if (.not. grid%cell > 0.0_wp) return ! never filled, or to be filled anew
-    call archive%expect(folder//'cell', grid%cell >= grid%least_cell .and. &
-      grid%cell > tiny(1.0_wp), 'a side below the smallest')
-    call archive%expect(folder//'first', grid%first(1) >= 0 .and. grid%first(n) &
-      <= size(grid%items) .and. all(grid%first(2:) >= grid%first(:n - 1)), &
-      'places that do not follow each other in its list')
-    if (allocated(archive%error)) return
-    call archive%expect(folder//'items', all(grid%items(grid%first(1) + 1:grid%first(n)) >= 1 &
-      .and. grid%items(grid%first(1) + 1:grid%first(n)) <= n_segment), &
-      'numbers that no segment has')
-  end subroutine check_grid
 
 end module restart_bounds_m

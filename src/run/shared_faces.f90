@@ -55,7 +55,6 @@ contains
     type(contact_t) :: contact
 
     contact = state%outlines(i)
-    if (state%contacts(i)%facing%is_used) contact = state%contacts(i)%facing%present
   end function present_contact
 
   !> What other interfaces put on the faces of each side. The pressure of a node acts on all of its

@@ -12,31 +12,29 @@
 !> to the first slave node, so that places between nodes lose no digit far from the origin; in
 !> axisymmetry X is the radius itself.
 !>
-!> A tracking follows spots (nodes of one surface, or places between them) over the chain of the
-!> other. It measures time in `travel`: the sum over all steps of a bound on how far any two nodes
-!> of the interface have moved relative to each other. A spot at distance d from everything cannot
-!> touch before the travel has grown by d: until then it sleeps.
+!> Contact is looked for among candidate pairs alone: master segments near each slave segment. A
+!> separated point at distance d from all of its candidates is skipped until `travel` has grown by d:
+!> the sum over all steps of a bound on how far any two nodes of the interface have moved relative to
+!> each other.
 module contact_state_m
   use law_state_m, only : contact_watch_t, energy_limit_t, friction_memory_t, &
     interference_memory_t, tie_memory_t
-  use facing_state_m, only : facing_t
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
   use visitor_m, only : visited_t, visitor_t, any_length, length, whole
   implicit none
   private
-  public :: contact_state_t, contact_points_t, tracking_t, bucket_grid_t, &
-    segment_memory_t, contact_scratch_t, allocate_points, allocate_loads, &
-    allocate_tractions, make_room, allocate_tracking, allocate_grid, allocate_scratch, n_side, &
-    n_load, places_of_segment, is_free, is_in_front, is_touching, is_behind
+  public :: contact_state_t, contact_points_t, tracking_t, bucket_grid_t, candidates_t, pass_t, &
+    contact_scratch_t, allocate_points, allocate_loads, allocate_tractions, make_room, &
+    allocate_tracking, allocate_grid, allocate_scratch, n_side, n_load, places_of_segment, is_free, &
+    is_touching
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
   !> What a point loads its nodes with: force, and the part of it that nodes have apart as well.
   integer, parameter :: n_load = 4
-  !> What a tracked spot is doing: free (no face is known that it stands before), in front of its
-  !> segment, touching it, or behind it without contact because it was never caught.
-  integer, parameter :: is_free = 0, is_in_front = 1, is_touching = 2, is_behind = 3
+  !> Status of a contact point: separated or active.
+  integer, parameter :: is_free = 0, is_touching = 1
 
   !> The list, one column per point.
   type, extends(visited_t) :: contact_points_t
@@ -59,61 +57,62 @@ module contact_state_m
     procedure :: visit => visit_points
   end type contact_points_t
 
-  !> Segments sorted into square cells by hashing; tells which segments are near a place.
-  type, extends(visited_t) :: bucket_grid_t
+  !> Segments sorted into square cells by hashing: which segments are near a position.
+  type :: bucket_grid_t
     real(wp) :: cell = 0.0_wp         !! side of a cell, m; 0 = never filled
-    real(wp) :: least_cell = 0.0_wp   !! smallest side, m: cells that much smaller than the reach
-                                      !! cost more
-    real(wp) :: filled_at = 0.0_wp    !! travel when it was filled
+    real(wp) :: least_cell = 0.0_wp   !! smallest side, m: cells that much smaller than the search
+                                      !! radius cost more
     real(wp) :: low(2) = 0.0_wp       !! corners of the box of the chain, relative to its first node
     real(wp) :: high(2) = 0.0_wp
     integer, allocatable :: first(:)  !! (n_bucket + 1) where each bucket starts ...
     integer, allocatable :: items(:)  !! ... in this list of segments
-  contains
-    procedure :: visit => visit_grid
   end type bucket_grid_t
 
-  !> Spots followed over a chain.
+  !> Candidate pairs: for each segment of one surface the segments of the other that it may touch
+  !> before the lists are made anew. No result depends on them; a restart makes them again.
+  type :: candidates_t
+    real(wp) :: valid_until = -huge(1.0_wp) !! travel, m
+    integer, allocatable :: first(:) !! (n_segment + 1) where each row starts ...
+    integer, allocatable :: items(:) !! ... on this list of segments of the other surface
+  end type candidates_t
+
+  !> What one call asks of the points of one surface over the segments of the other.
+  type :: pass_t
+    integer :: own_at = 0              !! local number before the first node of the points' surface
+    integer :: other_at = 0            !! and before the first node of the other surface
+    integer :: n_on_segment = 0        !! points of a segment; 0: points at nodes
+    real(wp), allocatable :: xi(:)     !! (n_on_segment) where they are on it
+    logical :: is_self = .false.       !! both surfaces are one
+    logical :: has_history = .false.   !! increments are those of a step
+    real(wp) :: travel = 0.0_wp        !! accumulated relative displacement, m
+    real(wp) :: closed_gap = 0.0_wp    !! gaps below it are contact, m
+  end type pass_t
+
+  !> Status of the points of one surface over the segments of the other.
   type, extends(visited_t) :: tracking_t
-    integer :: n = 0                         !! spots
+    integer :: n = 0                         !! points
     integer :: n_touching = 0
-    real(wp) :: next_wake = -huge(1.0_wp)    !! travel before which no spot that is not in contact
-                                             !! can change
-    real(wp) :: reach = 0.0_wp               !! spots farther away than this are unpaired, m
-    integer, allocatable :: touching(:)      !! (n) the first n_touching: spots in contact, in order
-    integer, allocatable :: due(:)           !! (n) scratch: what is to be looked at, first the
-                                             !! spots of that list by their place on it, then others
-                                             !! by number; after an update the first n_aside:
-                                             !! spots caught from beside
-    integer :: n_aside = 0                   !! set by each update
-    integer, allocatable :: segment(:)       !! (n) segment of the chain, 0 = unpaired
-    integer, allocatable :: status(:)        !! (n) one of the constants above
+    real(wp) :: next_wake = -huge(1.0_wp)    !! travel before which no separated point can touch
+    real(wp) :: reach = 0.0_wp               !! search radius: points farther away are unpaired, m
+    integer, allocatable :: touching(:)      !! (n) the first n_touching: active points, in order
+    integer, allocatable :: due(:)           !! (n) scratch: points to be looked at one by one
+    integer, allocatable :: segment(:)       !! (n) active: its segment; else the closest, 0 = none
+    integer, allocatable :: status(:)        !! (n) is_free or is_touching
     real(wp), allocatable :: xi(:)           !! (n) 0 to 1 along the segment (a little more at ends)
-    real(wp), allocatable :: gap(:)          !! (n) m; up to date while touching
-    real(wp), allocatable :: normal(:, :)    !! (2, n) from the chain to the spot's side
-    real(wp), allocatable :: wake(:)         !! (n) travel at which the spot must be looked at again
-    real(wp), allocatable :: recheck(:)      !! (n) travel at which another segment may be reached
-    real(wp), allocatable :: spot_depth(:)   !! (n) deepest first contact of a spot, m
+    real(wp), allocatable :: gap(:)          !! (n) m; up to date while active
+    real(wp), allocatable :: normal(:, :)    !! (2, n) from the segment to the point's side
+    real(wp), allocatable :: offset(:)       !! (n) entry offset, m: pressure acts from gap + offset
+    real(wp), allocatable :: wake(:)         !! (n) next search time: travel before which the point
+                                             !! can not touch; huge while active
+    logical :: has_offset = .false.          !! some offset is above 0
+    real(wp), allocatable :: spot_depth(:)   !! (n) deepest first contact of a point, m
     real(wp), allocatable :: segment_depth(:) !! (n_segment) deepest first contact of a segment, m
     real(wp) :: deepest = huge(1.0_wp)       !! largest of these, m
     real(wp) :: shallowest = huge(1.0_wp)    !! smallest of both, m
-    integer, allocatable :: chord(:, :)      !! (2, n) neighbours along the spot's own surface
-    integer :: own_spots = -1                !! where the chain is the spots' own surface: how many
-                                             !! there are on a segment, 0: at its nodes; else -1
-    type(bucket_grid_t) :: grid
+    type(pass_t) :: pass                     !! of the present call
   contains
     procedure :: visit => visit_tracking
   end type tracking_t
-
-  !> What formulations that go along both chains remember of each slave segment; empty for others.
-  type, extends(visited_t) :: segment_memory_t
-    integer, allocatable :: status(:)     !! (n_segment) is_free, is_touching (may be deep) or
-                                          !! is_behind
-    real(wp), allocatable :: wake(:)      !! (n_segment) travel before which it can not touch
-    real(wp) :: next_wake = -huge(1.0_wp) !! travel before which none can touch
-  contains
-    procedure :: visit => visit_segments
-  end type segment_memory_t
 
   !> Room that procedures use within a step; nothing in it lasts to the next one.
   type :: contact_scratch_t
@@ -151,10 +150,7 @@ module contact_state_m
                                             !! known
     logical :: had_force = .false.          !! the call before had some
     logical :: is_born = .false.            !! contact begins in this call, after time zero; these
-                                            !! three and the next only of implicit penalties
-    integer :: n_ahead = 0                  !! spots in contact for as long as points are placed
-    integer, allocatable :: ahead(:)        !! (n_ahead or more) these
-    real(wp), allocatable :: ahead_wake(:)  !! their alarms, m of travel
+                                            !! three only of implicit penalties
     type(piece_table_t), allocatable :: pieces !! lent to the placement while it works
   end type contact_scratch_t
 
@@ -176,8 +172,13 @@ module contact_state_m
                                             !! this part of its segment about its spot_xi
     type(tracking_t) :: slave_tracking      !! slave nodes, or `spots`, over the master chain
     type(tracking_t) :: master_tracking     !! master nodes over the slave chain; empty for one pass
-    type(segment_memory_t) :: segments      !! of the slave surface
-    type(facing_t) :: facing                !! runs of facing segments, where there is an outline
+    type(candidates_t) :: candidates        !! of slave segments
+    type(candidates_t) :: reversed          !! of master segments: the same pairs; for two passes
+    integer, allocatable :: segment_status(:) !! (slave segments) is_touching: overlaps of it are in
+                                            !! contact; only where these make points
+    real(wp), allocatable :: segment_wake(:) !! (slave segments) travel before which its overlaps
+                                            !! can not touch, m
+    real(wp) :: next_segment_wake = -huge(1.0_wp) !! smallest of these, m
     type(contact_points_t) :: points
     real(wp) :: closed_gap = 0.0_wp         !! gaps below it are contact, m; more than 0 only where
                                             !! a tangent of touching bodies is wanted
@@ -268,8 +269,7 @@ contains
     points = larger
   end subroutine make_room
 
-  !> Allocate for `n` spots over `n_segment` segments. A segment lies in few cells: cells are at
-  !> least as long as the mean segment, so that all together fill at most 8 items per segment.
+  !> Allocate for `n` points over `n_segment` segments.
   pure subroutine allocate_tracking(tracking, n, n_segment)
     type(tracking_t), intent(inout) :: tracking
     integer, intent(in) :: n, n_segment
@@ -279,11 +279,12 @@ contains
       source=0)
     allocate (tracking%xi(n), tracking%gap(n), tracking%normal(2, n), tracking%spot_depth(n), &
       tracking%segment_depth(n_segment), source=0.0_wp)
-    allocate (tracking%wake(n), tracking%recheck(n), source=-huge(1.0_wp))
-    call allocate_grid(tracking%grid, n_segment)
+    allocate (tracking%offset(n), source=0.0_wp)
+    allocate (tracking%wake(n), source=-huge(1.0_wp))
   end subroutine allocate_tracking
 
-  !> Allocate a grid for so many segments.
+  !> Allocate a grid for so many segments. A segment lies in few cells: cells are at least as long as
+  !> the mean segment, so that all together fill at most 8 items per segment.
   pure subroutine allocate_grid(grid, n_segment)
     type(bucket_grid_t), intent(inout) :: grid
     integer, intent(in) :: n_segment
@@ -313,8 +314,8 @@ contains
           scratch%former_traction(size(memory%friction%state)), source=0.0_wp)
         allocate (scratch%former_state(size(memory%friction%state)), source=0)
       end if
-      if (.not. allocated(memory%segments%status)) return
-      allocate (scratch%is_placed(size(memory%segments%status)), source=.false.)
+      if (.not. allocated(memory%segment_status)) return
+      allocate (scratch%is_placed(size(memory%segment_status)), source=.false.)
       allocate (scratch%pieces)
       call allocate_pieces(scratch%pieces, n_piece_block)
     end associate
@@ -352,20 +353,6 @@ contains
       'values where the deck has no friction and no tie, or none where it has')
   end subroutine visit_points
 
-  !> Its components.
-  subroutine visit_grid(self, visitor)
-    class(bucket_grid_t), intent(inout), target :: self
-    class(visitor_t), intent(inout) :: visitor
-
-    call visitor%visit('cell', self%cell, 0.0_wp, 'a side below zero')
-    call visitor%visit('least_cell', self%least_cell)
-    call visitor%visit('filled_at', self%filled_at)
-    call visitor%fixed('low', self%low)
-    call visitor%fixed('high', self%high)
-    call visitor%visit('first', self%first)
-    call visitor%visit('items', self%items)
-  end subroutine visit_grid
-
   !> Its components; extremes are found again.
   subroutine visit_tracking(self, visitor)
     class(tracking_t), intent(inout), target :: self
@@ -379,29 +366,17 @@ contains
       'numbers that no spot has')
     call visitor%visit('due', self%due, whole, 0, length(self%due), 'numbers that no spot has')
     call visitor%visit('segment', self%segment)
-    call visitor%visit('status', self%status, whole, is_free, is_behind, &
+    call visitor%visit('status', self%status, whole, is_free, is_touching, &
       'numbers that mean nothing')
     call visitor%visit('xi', self%xi)
     call visitor%visit('gap', self%gap)
     call visitor%visit('normal', self%normal)
+    call visitor%visit('offset', self%offset)
+    call visitor%visit('has_offset', self%has_offset)
     call visitor%visit('wake', self%wake)
-    call visitor%visit('recheck', self%recheck)
     call visitor%visit('spot_depth', self%spot_depth)
     call visitor%visit('segment_depth', self%segment_depth)
-    call visitor%visit('chord', self%chord)
-    call visitor%part('grid', self%grid)
   end subroutine visit_tracking
-
-  !> Its components.
-  subroutine visit_segments(self, visitor)
-    class(segment_memory_t), intent(inout), target :: self
-    class(visitor_t), intent(inout) :: visitor
-
-    call visitor%visit('status', self%status, whole, is_free, is_behind, &
-      'numbers that mean nothing')
-    call visitor%visit('wake', self%wake)
-    call visitor%visit('next_wake', self%next_wake)
-  end subroutine visit_segments
 
   !> Its components.
   subroutine visit_contact(self, visitor)
@@ -422,8 +397,10 @@ contains
     call visitor%visit('spot_spread', self%spot_spread)
     call visitor%part('slave_tracking', self%slave_tracking)
     call visitor%part('master_tracking', self%master_tracking)
-    call visitor%part('segments', self%segments)
-    call visitor%part('facing', self%facing)
+    call visitor%visit('segment_status', self%segment_status, whole, is_free, is_touching, &
+      'numbers that mean nothing')
+    call visitor%visit('segment_wake', self%segment_wake)
+    call visitor%visit('next_segment_wake', self%next_segment_wake)
     call visitor%part('points', self%points)
     call visitor%visit('closed_gap', self%closed_gap)
     call visitor%visit('node_pressure', self%node_pressure)

@@ -9,7 +9,7 @@ module piece_list_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: list_kept, list_run, note_segments, may_list, hair
+  public :: list_kept, note_segments, may_list
 
   !> Most pieces of a slave segment that are listed without a walk, and length of a closed master
   !> chain up to which the way forwards may be the shorter one.
@@ -162,20 +162,6 @@ contains
     end do
     n_segment = i - 1
   end subroutine list_runs
-
-  !> The same of one slave segment.
-  pure subroutine list_run(ends, feet, previous, table, is_listed)
-    integer, intent(in) :: ends(2), feet(2)
-    integer, intent(in) :: previous(*)  !! of the master
-    type(piece_table_t), intent(inout) :: table
-    logical, intent(out) :: is_listed
-    integer :: n
-
-    n = 1
-    call list_runs(ends, feet, previous, size(table%master), n, table%n, table%ends, table%master, &
-      table%kind, table%last(table%n_segment + 1))
-    is_listed = n == 1
-  end subroutine list_run
 
   !> Note slave segments from s on whose pieces, up to the last of each, have been listed.
   pure subroutine note_segments(s, n, touch, table)

@@ -2,13 +2,13 @@
 !> Type 6, mortar: Gauss points on each whole slave segment, pressure from the slave nodes
 !> (doc/theory/contact.md, section 5.6).
 module place_mortar_m
-  use contact_state_m, only : contact_state_t, tracking_t, is_touching, is_behind
+  use contact_state_m, only : contact_state_t, tracking_t, is_touching
   use contacts_m, only : contact_t
   use foot_block_m, only : n_block, project_block, settle_odd
   use foot_m, only : foot_t, near_foot, facing_share, face_on
   use geometry_m, only : separation
   use kinds_m, only : wp
-  use pairing_m, only : present_pair, has_chains
+  use candidate_overlaps_m, only : closest_candidate
   use point_list_m, only : place_block_t, append_points, drop_places, weigh_points
   use tips_m, only : has_folds, belongs_to
   implicit none
@@ -219,15 +219,14 @@ contains
       k = 0
       do q = 1, m
         i = (s - 1)*m + q
-        if (tracking%status(i) == is_behind) cycle
         k = k + 1
         spots(k) = i
         block%ends(:, k) = ends
         block%xi(k) = memory%spot_xi(q)
         block%area(k) = memory%spot_share(q)*length
         feet%segment(k) = tracking%segment(i)
-        if (has_chains(memory, contact%master)) feet%segment(k) = present_pair(tracking, &
-          contact%master, chain, memory%spots, i, memory%travel)
+        if (tracking%status(i) /= is_touching) &
+          feet%segment(k) = closest_candidate(contact%master, memory, s, memory%spots(:, i))
         is_lost(k) = feet%segment(k) == 0
         if (is_lost(k)) feet%segment(k) = near
         associate (nodes => contact%master%segments(:, feet%segment(k)))
@@ -252,8 +251,9 @@ contains
           feet%normal(:, k) = foot%normal
           if (.not. foot%is_on) block%area(k) = -1.0_wp
         end if
-        ! What is within reach of nothing stands before this, if at all.
-        if (is_lost(k) .and. feet%gap(k) < 0.0_wp) block%area(k) = -1.0_wp
+        ! A separated point stands in front of what it is over, if at all.
+        if (tracking%status(spots(k)) /= is_touching .and. feet%gap(k) < 0.0_wp) &
+          block%area(k) = -1.0_wp
         block%nodes(:, k) = memory%n_slave + contact%master%segments(:, feet%segment(k))
       end do
     end associate

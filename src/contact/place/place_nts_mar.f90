@@ -11,10 +11,10 @@ module place_nts_mar_m
   use kinds_m, only : wp
   use lengths_m, only : competence_area
   use piece_table_m, only : piece_table_t, is_last_piece
-  use pieces_m, only : clear_pieces, list_awake, cut_pieces
+  use pieces_m, only : clear_pieces, list_due, cut_pieces
   use radii_m, only : end_radius, radius_between
   use point_list_m, only : place_block_t, append_points, append_touching, add_length
-  use sleep_m, only : all_asleep, keep_segment, judge_segment, note_next_wake
+  use overlap_status_m, only : none_due, keep_segment, judge_segment, note_next_wake
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -30,7 +30,7 @@ contains
     type(piece_table_t), allocatable :: table
     integer :: s, n, k
 
-    if (all_asleep(memory)) return
+    if (none_due(memory)) return
     call append_touching(memory%slave_tracking, contact%master, [0, memory%n_slave], 0.0_wp, &
       memory%slave_penalty, memory%points)
     n = memory%points%n
@@ -41,7 +41,7 @@ contains
     s = 1
     do while (s <= contact%slave%n_segment)
       call clear_pieces(table)
-      call list_awake(contact, memory, contact%strict, s, table)
+      call list_due(contact, memory, contact%strict, s, table)
       call cut_pieces(contact, memory, table)
       call share_pieces(contact, table, memory)
     end do
@@ -53,7 +53,7 @@ contains
 
   !> Divide the segments of a table among their ends and the master nodes that cut them: half of
   !> each piece to either of its ends, as far as it counts; in axisymmetry weighted with the radius.
-  !> With the strict rule all of it counts but the backs of walls.
+  !> With the strict rule all of it counts.
   pure subroutine share_pieces(contact, table, memory)
     type(contact_t), intent(in) :: contact
     type(piece_table_t), intent(inout) :: table
@@ -61,9 +61,6 @@ contains
 
     call halve_pieces(table%n, table%low, table%high, table%length, table%half)
     if (.not. contact%strict) table%half(:table%n) = table%half(:table%n)*table%share(:table%n)
-    if (contact%is_self) then
-      where (table%share(:table%n) < 0.0_wp) table%half(:table%n) = 0.0_wp
-    end if
     if (contact%is_round) then
       call share_weighted(contact, table, memory)
     else
@@ -111,8 +108,8 @@ contains
           call add_ends(first, last, table%ends, to_first, to_last, memory%scratch%point_at, &
             memory%points%area)
           call list_cuts(first, last, table%node_gap, memory%closed_gap, n, table%rows)
-          call keep_segment(n > n_before, memory%travel, memory%segments%status(s), &
-            memory%segments%wake(s))
+          call keep_segment(n > n_before, memory%travel, memory%segment_status(s), &
+            memory%segment_wake(s))
           cycle
         end if
         if (cuts%n + last - first >= n_block) &
@@ -121,8 +118,8 @@ contains
         n_points = memory%points%n
         call share_segment(table, first, last, to_first, to_last, memory, cuts, deepest)
         if (table%touches(i)) then
-          call keep_segment(deepest < memory%closed_gap, memory%travel, memory%segments%status(s), &
-            memory%segments%wake(s))
+          call keep_segment(deepest < memory%closed_gap, memory%travel, memory%segment_status(s), &
+            memory%segment_wake(s))
         else
           call judge_segment(contact, memory, s, contact%slave%segments(:, s), deepest, counts)
           if (.not. counts) call drop_last(n_points, n_before, memory%points, cuts)

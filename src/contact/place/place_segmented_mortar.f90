@@ -8,9 +8,9 @@ module place_segmented_mortar_m
   use foot_m, only : foot_t, near_foot, facing_share
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t, n_piece_block
-  use pieces_m, only : clear_pieces, list_awake, list_segment, cut_pieces
+  use pieces_m, only : clear_pieces, list_due, list_segment, cut_pieces
   use point_list_m, only : place_block_t, append_points, drop_places, weigh_points
-  use sleep_m, only : all_asleep, keep_segment, judge_segment, note_next_wake
+  use overlap_status_m, only : none_due, keep_segment, judge_segment, note_next_wake
   use tips_m, only : has_folds, sharpen_tips
   implicit none
   private
@@ -36,13 +36,13 @@ contains
     type(piece_table_t), allocatable :: table
     integer :: s
 
-    if (all_asleep(memory)) return
+    if (none_due(memory)) return
     call move_alloc(memory%scratch%pieces, table)
     memory%scratch%is_placed = .false.
     s = 1
     do while (s <= contact%slave%n_segment)
       call clear_pieces(table, least_cut)
-      call list_awake(contact, memory, .false., s, table)
+      call list_due(contact, memory, .false., s, table)
       call place_pieces(contact, table, .true., memory)
     end do
     call note_next_wake(memory)
@@ -66,7 +66,7 @@ contains
 
     call clear_pieces(table, least_cut)
     do s = 1, contact%slave%n_segment
-      if (memory%segments%status(s) /= is_touching) cycle
+      if (memory%segment_status(s) /= is_touching) cycle
       neighbours = [contact%slave%previous(s), contact%slave%next(s)]
       do k = 1, 2
         if (neighbours(k) == 0) cycle
@@ -161,8 +161,8 @@ contains
     counts = .true.
     memory%scratch%is_placed(s) = .true.
     if (touches) then
-      call keep_segment(deepest < memory%closed_gap, memory%travel, memory%segments%status(s), &
-        memory%segments%wake(s))
+      call keep_segment(deepest < memory%closed_gap, memory%travel, memory%segment_status(s), &
+        memory%segment_wake(s))
       return
     end if
     associate (ends => contact%slave%segments(:, s))

@@ -3,7 +3,7 @@
 !> tip comes first, and its flanks, which are still open, would hold it off the sum. There the
 !> points of the segment give way to its two nodes (doc/theory/contact.md, section 5.7).
 module tips_m
-  use contact_state_m, only : contact_state_t, make_room, is_touching, is_behind
+  use contact_state_m, only : contact_state_t, make_room, is_touching
   use contacts_m, only : contact_t, is_tied
   use foot_m, only : foot_t, near_foot
   use kinds_m, only : wp
@@ -160,7 +160,6 @@ contains
     node = memory%points%slave_nodes(k, first)
     if (.not. allocated(memory%spots)) then
       associate (tracking => memory%slave_tracking)
-        if (tracking%status(node) == is_behind) return
         if (tracking%status(node) == is_touching) then
           foot%segment = tracking%segment(node)
           foot%is_on = .true.

@@ -35,7 +35,7 @@ contains
     has_area = .false.
     call allocate_pieces(table, n_piece_block)
     do s = 1, contact%slave%n_segment
-      if (memory%segments%status(s) == is_touching .or. any(memory%slave_tracking%status( &
+      if (memory%segment_status(s) == is_touching .or. any(memory%slave_tracking%status( &
         contact%slave%segments(:, s)) == is_touching)) &
         call add_segment(contact, memory, s, table, equations, matrix, has_area)
     end do
@@ -124,7 +124,7 @@ contains
     do i = 1, 2
       point%area = halves(i)
       if (cuts(i) > 0) then
-        if (memory%segments%status(table%slave(1)) /= is_touching) cycle
+        if (memory%segment_status(table%slave(1)) /= is_touching) cycle
         place = memory%n_slave + cuts(i)
         call stand_at_master_node(memory, place, point)
       else

@@ -1,0 +1,327 @@
+! SPDX-License-Identifier: MIT
+!> Overlaps of a slave segment with its candidates: both nodes of each opposed master segment are
+!> projected on the slave segment and clipped to it. Segments beyond the projection of an end are left
+!> out, and the overlap there is extended to the end. Where overlaps of different bodies lie over
+!> each other the nearest penetrated one wins (doc/theory/contact.md, section 3.5).
+module candidate_overlaps_m
+  use contact_state_m, only : contact_state_t, is_touching
+  use contacts_m, only : contact_t
+  use foot_m, only : foot_t, closest_foot, side_on, round_off
+  use geometry_m, only : sight_t, sight_of_segment, separation, closest_distance
+  use kinds_m, only : wp
+  use piece_table_m, only : piece_table_t, grow_pieces, is_walked_piece
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: list_candidate_overlaps, closest_candidate
+
+  !> Deepest middle of an overlap of a slave segment that is not in contact, by the depth of a first
+  !> contact: deeper ones are the far side of something.
+  real(wp), parameter :: deep = 1.5_wp
+  !> One overlap.
+  type :: overlap_t
+    integer :: master = 0
+    real(wp) :: low = 0.0_wp, high = 0.0_wp !! range of the slave segment, 0 to 1
+    integer :: first = 0, last = 0          !! master nodes at its breakpoints, 0: a slave node
+    real(wp) :: gap(2) = 0.0_wp             !! of the master at both ends of the slave segment, over
+                                            !! that, m
+  end type overlap_t
+
+contains
+
+  !> Append the overlaps of a slave segment to a table.
+  pure subroutine list_candidate_overlaps(contact, memory, s, is_strict, table)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s         !! slave segment
+    logical, intent(in) :: is_strict !! with an end beyond the master it has one without a master
+    type(piece_table_t), intent(inout) :: table
+    type(overlap_t) :: overlaps(2*(memory%candidates%first(s + 1) - memory%candidates%first(s)) + 1)
+    integer :: ends(2), anchors(2), j, k, n
+    logical :: is_in_contact
+
+    ends = contact%slave%segments(:, s)
+    do k = 1, 2
+      anchors(k) = segment_below(contact, memory, s, ends(k))
+    end do
+    if (is_strict .and. any(anchors == 0)) then
+      call append_overlap(ends, overlap_t(high=1.0_wp), table)
+      return
+    end if
+    is_in_contact = memory%segment_status(s) == is_touching &
+      .or. any(memory%slave_tracking%status(ends) == is_touching)
+    n = 0
+    do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
+      associate (m => memory%candidates%items(j))
+        if (is_beyond(contact%master, anchors, m, size(overlaps))) cycle
+        call cut_by(contact, memory, ends, anchors, m, overlaps(n + 1))
+        if (.not. overlaps(n + 1)%high > overlaps(n + 1)%low) cycle
+        if (.not. is_in_contact .and. middle_gap(overlaps(n + 1)) < -deep &
+          *memory%slave_tracking%segment_depth(m)) cycle
+        n = n + 1
+      end associate
+    end do
+    call sort_overlaps(overlaps(:n))
+    if (any(overlaps(2:n)%low < overlaps(:n - 1)%high)) call resolve_overlaps(overlaps, n)
+    do k = 1, n
+      call append_overlap(ends, overlaps(k), table)
+    end do
+  end subroutine list_candidate_overlaps
+
+  !> Master segment on which an end of a slave segment has its projection: of an active end that of
+  !> its status, else the closest of the candidates if it is over that; 0: none.
+  pure function segment_below(contact, memory, s, node) result(segment)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s, node
+    integer :: segment
+    type(foot_t) :: foot
+
+    if (memory%slave_tracking%status(node) == is_touching) then
+      segment = memory%slave_tracking%segment(node)
+      return
+    end if
+    segment = closest_candidate(contact%master, memory, s, memory%places(:, node))
+    if (segment == 0) return
+    foot = closest_foot(contact%master, memory%places(:, memory%n_slave + 1:), &
+      memory%places(:, node), segment)
+    segment = merge(foot%segment, 0, foot%is_on)
+  end function segment_below
+
+  !> The opposed candidate of a slave segment that is closest to a position on it; 0: none.
+  pure function closest_candidate(master, memory, s, point) result(closest)
+    type(surface_t), intent(in) :: master
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s
+    real(wp), intent(in) :: point(4)
+    integer :: closest
+    real(wp) :: square, least
+    integer :: j
+
+    closest = 0
+    least = huge(1.0_wp)
+    do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
+      associate (ends => memory%n_slave + master%segments(:, memory%candidates%items(j)))
+        square = closest_distance(sight_of_segment(point, memory%places(:, ends(1)), &
+          memory%places(:, ends(2))))
+      end associate
+      if (square >= least) cycle
+      least = square
+      closest = memory%candidates%items(j)
+    end do
+  end function closest_candidate
+
+  !> Whether a master segment lies beyond the projection of an end of the slave segment: the slave
+  !> runs against the master, so that its first end is followed by what comes before.
+  pure function is_beyond(master, anchors, segment, n_most) result(beyond)
+    type(surface_t), intent(in) :: master
+    integer, intent(in) :: anchors(2) !! below the first end and the second, 0: none
+    integer, intent(in) :: segment
+    integer, intent(in) :: n_most     !! steps along the surface
+    logical :: beyond
+    integer :: k, up, down, i
+
+    beyond = .false.
+    do k = 1, 2
+      if (anchors(k) == 0 .or. anchors(k) == segment) cycle
+      if (master%chain(anchors(k)) /= master%chain(segment)) cycle
+      up = anchors(k)
+      down = anchors(k)
+      do i = 1, n_most
+        if (up > 0) up = master%next(up)
+        if (down > 0) down = master%previous(down)
+        if (up == segment .or. down == segment) exit
+        if (up + down == 0) exit
+      end do
+      if (up == segment .and. down == segment) cycle
+      beyond = beyond .or. (k == 1 .and. up == segment) .or. (k == 2 .and. down == segment)
+    end do
+  end function is_beyond
+
+  !> The overlap with one master segment; empty where they are not opposed.
+  pure subroutine cut_by(contact, memory, ends, anchors, m, overlap)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2), anchors(2), m
+    type(overlap_t), intent(out) :: overlap
+    type(sight_t) :: sights(2)
+    real(wp) :: other(2), xi(2), gaps(2)
+    integer :: nodes(2), k
+
+    nodes = [contact%master%segments(2, m), contact%master%segments(1, m)]
+    do k = 1, 2
+      sights(k) = sight_of_segment(memory%places(:, memory%n_slave + nodes(k)), &
+        memory%places(:, ends(1)), memory%places(:, ends(2)))
+      xi(k) = sights(k)%along/sights(k)%square
+      gaps(k) = sights(k)%across/sqrt(sights(k)%square)
+    end do
+    other = sights(1)%d - sights(2)%d
+    ! Opposed: the tangents have the cosine of the normals.
+    if (.not. dot_product(sights(1)%t, other) < side_on*norm2(other)*sqrt(sights(1)%square) &
+      .and. .not. any(anchors == m)) return
+    overlap%master = m
+    overlap%low = clipped(xi(1))
+    overlap%high = clipped(xi(2))
+    if (overlap%low > 0.0_wp .and. overlap%low < 1.0_wp) overlap%first = nodes(1)
+    if (overlap%high > 0.0_wp .and. overlap%high < 1.0_wp) overlap%last = nodes(2)
+    if (anchors(1) == m) then
+      overlap%low = 0.0_wp
+      overlap%first = 0
+    end if
+    if (anchors(2) == m) then
+      overlap%high = 1.0_wp
+      overlap%last = 0
+    end if
+    if (abs(xi(2) - xi(1)) > round_off) overlap%gap = gaps(1) + (gaps(2) - gaps(1)) &
+      *([0.0_wp, 1.0_wp] - xi(1))/(xi(2) - xi(1))
+  end subroutine cut_by
+
+  !> A projection within the slave segment; neighbours share one, and within round-off it is an end.
+  pure function clipped(xi) result(at)
+    real(wp), intent(in) :: xi
+    real(wp) :: at
+
+    at = min(max(xi, 0.0_wp), 1.0_wp)
+    if (at < round_off) at = 0.0_wp
+    if (1.0_wp - at < round_off) at = 1.0_wp
+  end function clipped
+
+  !> Gap in the middle of an overlap, m.
+  pure function middle_gap(overlap) result(gap)
+    type(overlap_t), intent(in) :: overlap
+    real(wp) :: gap
+
+    gap = gap_at(overlap, 0.5_wp*(overlap%low + overlap%high))
+  end function middle_gap
+
+  !> Gap of the master segment over the slave segment at a local coordinate of that, m.
+  pure function gap_at(overlap, xi) result(gap)
+    type(overlap_t), intent(in) :: overlap
+    real(wp), intent(in) :: xi
+    real(wp) :: gap
+
+    gap = (1.0_wp - xi)*overlap%gap(1) + xi*overlap%gap(2)
+  end function gap_at
+
+  !> Order overlaps along the slave segment.
+  pure subroutine sort_overlaps(overlaps)
+    type(overlap_t), intent(inout) :: overlaps(:)
+    type(overlap_t) :: next
+    integer :: i, k
+
+    do i = 2, size(overlaps)
+      next = overlaps(i)
+      k = i - 1
+      do while (k >= 1)
+        if (overlaps(k)%low <= next%low) exit
+        overlaps(k + 1) = overlaps(k)
+        k = k - 1
+      end do
+      overlaps(k + 1) = next
+    end do
+  end subroutine sort_overlaps
+
+  !> Split overlaps that lie over each other: between any two breakpoints one is left.
+  pure subroutine resolve_overlaps(overlaps, n)
+    type(overlap_t), intent(inout) :: overlaps(:) !! with room for twice as many
+    integer, intent(inout) :: n
+    type(overlap_t) :: former(n)
+    real(wp) :: points(2*n), low, high
+    integer :: nodes(2*n), i, winner, n_former
+
+    n_former = n
+    former = overlaps(:n)
+    call list_breakpoints(former, points, nodes)
+    n = 0
+    do i = 1, 2*n_former - 1
+      low = points(i)
+      high = points(i + 1)
+      if (.not. high > low) cycle
+      winner = nearest_penetrated(former, low, high)
+      if (winner == 0) cycle
+      if (n > 0) then
+        if (overlaps(n)%master == former(winner)%master .and. .not. low > overlaps(n)%high) then
+          overlaps(n)%high = high
+          overlaps(n)%last = nodes(i + 1)
+          cycle
+        end if
+      end if
+      n = n + 1
+      overlaps(n) = former(winner)
+      overlaps(n)%low = low
+      overlaps(n)%high = high
+      overlaps(n)%first = nodes(i)
+      overlaps(n)%last = nodes(i + 1)
+    end do
+  end subroutine resolve_overlaps
+
+  !> All breakpoints in order, with the master nodes that stand there.
+  pure subroutine list_breakpoints(overlaps, points, nodes)
+    type(overlap_t), intent(in) :: overlaps(:)
+    real(wp), intent(out) :: points(2*size(overlaps))
+    integer, intent(out) :: nodes(2*size(overlaps))
+    real(wp) :: point
+    integer :: i, k, node
+
+    do i = 1, 2*size(overlaps)
+      associate (overlap => overlaps((i + 1)/2))
+        point = merge(overlap%low, overlap%high, modulo(i, 2) == 1)
+        node = merge(overlap%first, overlap%last, modulo(i, 2) == 1)
+      end associate
+      k = i - 1
+      do while (k >= 1)
+        if (points(k) <= point) exit
+        points(k + 1) = points(k)
+        nodes(k + 1) = nodes(k)
+        k = k - 1
+      end do
+      points(k + 1) = point
+      nodes(k + 1) = node
+    end do
+  end subroutine list_breakpoints
+
+  !> Of the overlaps that cover a stretch the nearest that is penetrated, or the nearest if none is.
+  pure function nearest_penetrated(overlaps, low, high) result(nearest)
+    type(overlap_t), intent(in) :: overlaps(:)
+    real(wp), intent(in) :: low, high
+    integer :: nearest
+    real(wp) :: gap, best
+    integer :: k
+
+    nearest = 0
+    best = 0.0_wp
+    do k = 1, size(overlaps)
+      if (overlaps(k)%low > low .or. overlaps(k)%high < high) cycle
+      gap = gap_at(overlaps(k), 0.5_wp*(low + high))
+      if (nearest > 0) then
+        if (gap < 0.0_wp .and. best < 0.0_wp) then
+          if (gap <= best) cycle
+        else if (gap >= best) then
+          cycle
+        end if
+      end if
+      nearest = k
+      best = gap
+    end do
+  end function nearest_penetrated
+
+  !> Append an overlap to the table.
+  pure subroutine append_overlap(ends, overlap, table)
+    integer, intent(in) :: ends(2) !! nodes of the slave segment
+    type(overlap_t), intent(in) :: overlap
+    type(piece_table_t), intent(inout) :: table
+
+    if (table%n + 1 >= size(table%master)) call grow_pieces(table)
+    associate (k => table%n + 1)
+      table%ends(:, k) = ends
+      table%master(k) = overlap%master
+      table%low(k) = overlap%low
+      table%high(k) = overlap%high
+      table%first_cut(k) = overlap%first
+      table%last_cut(k) = overlap%last
+      table%kind(k) = is_walked_piece
+    end associate
+    table%n = table%n + 1
+  end subroutine append_overlap
+
+end module candidate_overlaps_m

@@ -1,0 +1,129 @@
+! SPDX-License-Identifier: MIT
+!> Status of slave segments whose overlaps make contact points between the slave nodes: what may
+!> begin, and which segments are not due (doc/theory/contact.md, sections 3.3 and 4).
+module overlap_status_m
+  use contact_state_m, only : contact_state_t, is_free, is_touching
+  use contacts_m, only : contact_t
+  use foot_m, only : side_on
+  use geometry_m, only : sight_t, sight_of_segment, closest_distance
+  use kinds_m, only : wp
+  implicit none
+  private
+  public :: none_due, is_due, keep_segment, judge_segment, note_next_wake
+
+contains
+
+  !> Whether no slave segment can touch yet.
+  pure function none_due(memory)
+    type(contact_state_t), intent(in) :: memory
+    logical :: none_due
+
+    none_due = memory%slave_tracking%n_touching == 0 .and. memory%travel < memory%next_segment_wake
+  end function none_due
+
+  !> Whether a slave segment may touch: its next search time has come, or an end of it is active.
+  pure function is_due(memory, segment, ends) result(due)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: segment
+    integer, intent(in) :: ends(2) !! its nodes
+    logical :: due
+
+    due = .not. memory%travel < memory%segment_wake(segment)
+    if (.not. due) due = any(memory%slave_tracking%status(ends) == is_touching)
+  end function is_due
+
+  !> Note a segment with both ends active: it stays, whatever its gaps. Of one in contact nothing is
+  !> written again.
+  pure subroutine keep_segment(is_deep, travel, status, wake)
+    logical, intent(in) :: is_deep   !! some gap of it is closed
+    real(wp), intent(in) :: travel   !! m
+    integer, intent(inout) :: status !! of the segment
+    real(wp), intent(inout) :: wake  !! m
+
+    if (is_deep .and. status == is_touching) return
+    status = merge(is_touching, is_free, is_deep)
+    wake = merge(-huge(1.0_wp), travel, is_deep)
+  end subroutine keep_segment
+
+  !> Whether the points on a segment count. One that is in contact, or has an active end, stays; a
+  !> new one must not be deeper than a first contact may be.
+  pure subroutine judge_segment(contact, memory, segment, ends, deepest, counts)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: segment
+    integer, intent(in) :: ends(2)     !! its nodes
+    real(wp), intent(in) :: deepest    !! smallest gap of its points, m
+    logical, intent(out) :: counts
+
+    counts = .true.
+    if (deepest >= memory%closed_gap) then
+      memory%segment_status(segment) = is_free
+      memory%segment_wake(segment) = memory%travel + distance_to_candidates(contact, memory, &
+        segment) - memory%closed_gap
+      return
+    end if
+    memory%segment_wake(segment) = -huge(1.0_wp)
+    associate (status => memory%segment_status(segment))
+      if (any(memory%slave_tracking%status(ends) == is_touching) &
+        .or. -deepest <= deepest_first_contact(memory, segment, ends)) status = is_touching
+      counts = status == is_touching
+    end associate
+  end subroutine judge_segment
+
+  !> Deepest first contact of a segment: that of its ends and of the least of its candidates, m.
+  pure function deepest_first_contact(memory, segment, ends) result(depth)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: segment, ends(2)
+    real(wp) :: depth
+    integer :: j
+
+    depth = minval(memory%slave_tracking%spot_depth(ends))
+    do j = memory%candidates%first(segment), memory%candidates%first(segment + 1) - 1
+      depth = min(depth, memory%slave_tracking%segment_depth(memory%candidates%items(j)))
+    end do
+  end function deepest_first_contact
+
+  !> Distance from a slave segment to the candidates that are opposed to it, m: two segments that do
+  !> not cross are nearest to each other at a node of one of them.
+  pure function distance_to_candidates(contact, memory, s) result(distance)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s
+    real(wp) :: distance
+    type(sight_t) :: of_master(2), of_slave(2)
+    real(wp) :: square
+    integer :: j, k
+
+    square = memory%slave_tracking%reach**2
+    associate (own => contact%slave%segments(:, s), places => memory%places)
+      do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
+        associate (other => memory%n_slave + contact%master%segments(:, memory%candidates%items(j)))
+          do k = 1, 2
+            of_slave(k) = sight_of_segment(places(:, own(k)), places(:, other(1)), &
+              places(:, other(2)))
+            of_master(k) = sight_of_segment(places(:, other(k)), places(:, own(1)), &
+              places(:, own(2)))
+          end do
+        end associate
+        if (.not. dot_product(of_slave(1)%t, of_master(1)%t) < side_on*sqrt(of_slave(1)%square &
+          *of_master(1)%square)) cycle
+        do k = 1, 2
+          square = min(square, closest_distance(of_slave(k)), closest_distance(of_master(k)))
+        end do
+        if (of_slave(1)%across*of_slave(2)%across <= 0.0_wp .and. of_master(1)%across &
+          *of_master(2)%across <= 0.0_wp) square = 0.0_wp
+      end do
+    end associate
+    distance = sqrt(square)
+  end function distance_to_candidates
+
+  !> After all segments have been looked at. Not asked for as long as something is active.
+  pure subroutine note_next_wake(memory)
+    type(contact_state_t), intent(inout) :: memory
+
+    memory%next_segment_wake = -huge(1.0_wp)
+    if (memory%slave_tracking%n_touching == 0) &
+      memory%next_segment_wake = minval(memory%segment_wake)
+  end subroutine note_next_wake
+
+end module overlap_status_m

@@ -1,0 +1,228 @@
+! SPDX-License-Identifier: MIT
+!> How contact begins: a separated point among its candidate pairs. It has come through a face within
+!> the step, at any depth, or it stands behind the closest face although it has not come through it:
+!> then it is active up to the depth of a first contact, with an entry offset that takes off the
+!> depth that it had before (doc/theory/contact.md, section 3.3).
+module entry_m
+  use contact_state_m, only : tracking_t, candidates_t, pass_t
+  use foot_m, only : foot_t, closest_foot, face_foot, end_tolerance, round_off
+  use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal, closest_distance, &
+    segment_length
+  use kinds_m, only : wp
+  use opposed_m, only : segments_of, is_opposed, turns_sharply
+  use surfaces_m, only : surface_t, meets_axis
+  implicit none
+  private
+  public :: found_contact_t, find_contact, is_pair, is_opposed_at, former_gap
+
+  !> What is found of a separated point.
+  type :: found_contact_t
+    type(foot_t) :: foot              !! on the face that it has entered, or the closest; segment 0:
+                                      !! none within the search radius
+    integer :: nearest = 0            !! candidate
+    logical :: is_active = .false.
+    real(wp) :: offset = 0.0_wp       !! entry offset, m
+    real(wp) :: distance = 0.0_wp     !! relative motion before which it can not touch, m
+  end type found_contact_t
+
+contains
+
+  !> Look at all candidates of a separated point, as they lie now and lay before the step.
+  pure function find_contact(tracking, own, other, pairs, places, increments, point, &
+      i) result(found)
+    type(tracking_t), intent(in) :: tracking
+    type(surface_t), intent(in) :: own                   !! of the points
+    type(surface_t), intent(in) :: other                 !! of the segments
+    type(candidates_t), intent(in) :: pairs              !! of the segments of `own`
+    real(wp), intent(in), contiguous :: places(:, :)     !! (4, n_node) of the interface
+    real(wp), intent(in), contiguous :: increments(:, :) !! (2, n_node) displacements of the step, m
+    real(wp), intent(in) :: point(4)                     !! position
+    integer, intent(in) :: i                             !! number of the point
+    type(found_contact_t) :: found
+    type(sight_t) :: sight
+    integer :: segments(2), k, j
+    real(wp) :: gap, square, least
+
+    least = huge(1.0_wp)
+    segments = segments_of(own, tracking%pass%n_on_segment, i)
+    associate (pass => tracking%pass, nearest => found%nearest)
+      do k = 1, merge(1, 2, segments(1) == segments(2))
+        if (segments(k) == 0) cycle
+        do j = pairs%first(segments(k)), pairs%first(segments(k) + 1) - 1
+          associate (segment => pairs%items(j), ends => other%segments(:, pairs%items(j)))
+            ! A node of a side that folds upon itself belongs to the segment.
+            if (pass%is_self .and. pass%n_on_segment == 0 .and. any(ends == i)) cycle
+            sight = sight_of_segment(point, places(:, pass%other_at + ends(1)), &
+              places(:, pass%other_at + ends(2)))
+            square = closest_distance(sight)
+            if (square < least) nearest = segment
+            least = min(least, square)
+            if (sight%across >= 0.0_wp .and. .not. pass%closed_gap > 0.0_wp) cycle
+            gap = sight_gap(sight)
+            if (gap >= pass%closed_gap) cycle
+            if (found%is_active .and. abs(gap) >= abs(found%foot%gap)) cycle
+            if (.not. has_entered(tracking, own, other, places, increments, sight, i, segment)) cycle
+            found%foot = face_foot(sight, segment)
+            found%is_active = .true.
+          end associate
+        end do
+      end do
+    end associate
+    if (found%is_active) return
+    found%distance = tracking%reach
+    if (found%nearest > 0) &
+      call look_at_closest(tracking, own, other, places, increments, point, i, found)
+  end function find_contact
+
+  !> Whether a point behind a segment has come through it: it is over it, was not behind it before
+  !> the step, and the face is opposed to it. Without a step before, the depth of a first contact
+  !> says.
+  pure function has_entered(tracking, own, other, places, increments, sight, i, &
+      segment) result(entered)
+    type(tracking_t), intent(in) :: tracking
+    type(surface_t), intent(in) :: own, other
+    real(wp), intent(in), contiguous :: places(:, :), increments(:, :)
+    type(sight_t), intent(in) :: sight !! of the point from the segment
+    integer, intent(in) :: i, segment
+    logical :: entered
+
+    entered = is_over(other, places(:, tracking%pass%other_at + 1:), sight, segment)
+    if (.not. entered) return
+    if (tracking%pass%has_history) then
+      entered = former_gap(tracking%pass, own, other, places, increments, i, segment) >= 0.0_wp
+    else
+      entered = -sight_gap(sight) <= depth_limit(tracking, i, segment)
+    end if
+    if (entered) entered = is_opposed_at(tracking%pass, own, places, i, sight_normal(sight))
+  end function has_entered
+
+  !> The closest candidate: in front of it the point is separated; behind it, it is active from now
+  !> on unless it is too deep.
+  pure subroutine look_at_closest(tracking, own, other, places, increments, point, i, found)
+    type(tracking_t), intent(in) :: tracking
+    type(surface_t), intent(in) :: own, other
+    real(wp), intent(in), contiguous :: places(:, :), increments(:, :)
+    real(wp), intent(in) :: point(4)
+    integer, intent(in) :: i
+    type(found_contact_t), intent(inout) :: found
+
+    associate (pass => tracking%pass, foot => found%foot)
+      foot = closest_foot(other, places(:, pass%other_at + 1:), point, found%nearest)
+      found%distance = min(tracking%reach, foot%distance)
+      if (.not. foot%is_on) then
+        ! A face reaches a little beyond its end.
+        associate (ends => pass%other_at + other%segments(:, foot%segment))
+          found%distance = found%distance - end_tolerance*segment_length(places(:, ends(1)), &
+            places(:, ends(2)))
+        end associate
+      else if (foot%gap < pass%closed_gap) then
+        found%distance = 0.0_wp
+        found%is_active = -foot%gap <= depth_limit(tracking, i, foot%segment)
+        if (found%is_active) found%is_active = is_opposed_at(pass, own, places, i, foot%normal)
+        if (found%is_active .and. pass%has_history) found%offset = max(0.0_wp, min(-foot%gap, &
+          -former_gap(pass, own, other, places, increments, i, foot%segment)))
+      end if
+    end associate
+  end subroutine look_at_closest
+
+  !> Deepest first contact of a point with a segment, m.
+  pure function depth_limit(tracking, i, segment) result(depth)
+    type(tracking_t), intent(in) :: tracking
+    integer, intent(in) :: i, segment
+    real(wp) :: depth
+
+    depth = min(tracking%spot_depth(i), tracking%segment_depth(segment))
+  end function depth_limit
+
+  !> Whether a point is over a segment; beyond an end of an open surface, or a sharp vertex, by a
+  !> tolerance of 1 % too.
+  pure function is_over(surface, chain, sight, segment) result(over)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_node) positions
+    type(sight_t), intent(in) :: sight
+    integer, intent(in) :: segment
+    logical :: over
+    integer :: beside
+    real(wp) :: beyond
+    logical :: is_first
+
+    is_first = sight%along < 0.0_wp
+    beyond = max(-sight%along, sight%along - sight%square)
+    over = beyond <= round_off*sight%square
+    if (over) return
+    beside = merge(surface%previous(segment), surface%next(segment), is_first)
+    if (beside == 0) then
+      over = beyond <= end_tolerance*sight%square .or. meets_axis(surface, segment, is_first)
+    else if (beyond <= end_tolerance*sight%square) then
+      over = turns_sharply(surface, chain, merge(beside, segment, is_first), &
+        merge(segment, beside, is_first))
+    end if
+  end function is_over
+
+  !> Gap of a point over the line of a segment before the step, m.
+  pure function former_gap(pass, own, other, places, increments, i, segment) result(gap)
+    type(pass_t), intent(in) :: pass
+    type(surface_t), intent(in) :: own, other
+    real(wp), intent(in), contiguous :: places(:, :), increments(:, :)
+    integer, intent(in) :: i, segment
+    real(wp) :: gap
+    integer :: ends(2), s, q
+
+    ends = pass%other_at + other%segments(:, segment)
+    if (pass%n_on_segment == 0) then
+      gap = sight_gap(sight_of_segment(former(pass%own_at + i), former(ends(1)), former(ends(2))))
+    else
+      s = 1 + (i - 1)/pass%n_on_segment
+      q = i - (s - 1)*pass%n_on_segment
+      associate (own_ends => pass%own_at + own%segments(:, s))
+        gap = sight_gap(sight_of_segment((1.0_wp - pass%xi(q))*former(own_ends(1)) &
+          + pass%xi(q)*former(own_ends(2)), former(ends(1)), former(ends(2))))
+      end associate
+    end if
+
+  contains
+
+    !> Position of a node before the step.
+    pure function former(node) result(place)
+      integer, intent(in) :: node
+      real(wp) :: place(4)
+
+      place(1:2) = places(1:2, node)
+      place(3:4) = places(3:4, node) - increments(:, node)
+    end function former
+
+  end function former_gap
+
+  !> Whether a segment is a candidate of a point.
+  pure function is_pair(pass, own, pairs, i, segment) result(is)
+    type(pass_t), intent(in) :: pass
+    type(surface_t), intent(in) :: own
+    type(candidates_t), intent(in) :: pairs
+    integer, intent(in) :: i, segment
+    logical :: is
+    integer :: segments(2), k
+
+    is = .false.
+    segments = segments_of(own, pass%n_on_segment, i)
+    do k = 1, 2
+      if (segments(k) == 0) cycle
+      associate (first => pairs%first(segments(k)), last => pairs%first(segments(k) + 1) - 1)
+        is = is .or. any(pairs%items(first:last) == segment)
+      end associate
+    end do
+  end function is_pair
+
+  !> Whether a face is opposed to a point.
+  pure function is_opposed_at(pass, own, places, i, normal) result(opposed)
+    type(pass_t), intent(in) :: pass
+    type(surface_t), intent(in) :: own
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of the interface
+    integer, intent(in) :: i
+    real(wp), intent(in) :: normal(2)                !! outward, of the face
+    logical :: opposed
+
+    opposed = is_opposed(own, places(:, pass%own_at + 1:), segments_of(own, pass%n_on_segment, i), &
+      normal)
+  end function is_opposed_at
+
+end module entry_m

@@ -1,0 +1,286 @@
+! SPDX-License-Identifier: MIT
+!> Status of contact points at time zero, and what the search knows from the initial mesh. Initial
+!> penetrations are taken as they are, however deep, but only where the point lies inside the body
+!> behind the segments: points beyond the far side of a body are no penetrations
+!> (doc/theory/contact.md, section 3.4).
+module initial_status_m
+  use contact_state_m, only : contact_state_t, tracking_t, candidates_t, allocate_tracking, is_free, &
+    is_touching
+  use contact_status_m, only : list_touching, measure_depths
+  use contacts_m, only : contact_t, is_tied
+  use element_finder_m, only : element_finder_t, start_finder, is_inside_body
+  use foot_m, only : foot_t, closest_foot, see_segment
+  use geometry_m, only : closest_distance
+  use entry_m, only : is_opposed_at
+  use kinds_m, only : wp
+  use model_m, only : model_t
+  use opposed_m, only : segments_of
+  use others_memory_m, only : answers_t
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: allocate_slave_tracking, allocate_master_tracking, allocate_segments, &
+    activate_deep_points, activate_deep_segments
+
+contains
+
+  !> The points of the slave side before anything is looked for.
+  subroutine allocate_slave_tracking(contact, model, memory)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(inout) :: memory
+    integer :: n
+
+    associate (tracking => memory%slave_tracking)
+      n = contact%slave%n_node
+      if (allocated(memory%spot_xi)) then
+        tracking%pass%xi = memory%spot_xi
+        tracking%pass%n_on_segment = size(memory%spot_xi)
+        n = tracking%pass%n_on_segment*contact%slave%n_segment
+      end if
+      tracking%pass%other_at = memory%n_slave
+      tracking%pass%is_self = contact%is_self
+      call allocate_tracking(tracking, n, contact%master%n_segment)
+      call set_depths(tracking, contact, model, contact%slave, contact%master)
+    end associate
+  end subroutine allocate_slave_tracking
+
+  !> Master nodes of the second pass before anything is looked for.
+  subroutine allocate_master_tracking(contact, model, memory)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(inout) :: memory
+
+    associate (tracking => memory%master_tracking)
+      tracking%pass%own_at = memory%n_slave
+      call allocate_tracking(tracking, contact%master%n_node, contact%slave%n_segment)
+      call set_depths(tracking, contact, model, contact%master, contact%slave)
+    end associate
+  end subroutine allocate_master_tracking
+
+  !> Status of slave segments.
+  pure subroutine allocate_segments(contact, memory)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+
+    allocate (memory%segment_status(contact%slave%n_segment), source=is_free)
+    allocate (memory%segment_wake(contact%slave%n_segment), source=-huge(1.0_wp))
+  end subroutine allocate_segments
+
+  !> Deepest first contact: SRCH, or half of the shortest of the point's own segments, the segment
+  !> that it meets, and the thickness of the element behind that. All from the initial mesh. The
+  !> search radius also is the longest segment of both sides: what is opposed to any part of a
+  !> segment is within reach of one of its ends.
+  subroutine set_depths(tracking, contact, model, own, other)
+    type(tracking_t), intent(inout) :: tracking
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: own, other
+    real(wp) :: length, longest
+    integer :: i, k, segments(2)
+
+    tracking%spot_depth = huge(1.0_wp)
+    longest = 0.0_wp
+    do i = 1, tracking%n
+      segments = segments_of(own, tracking%pass%n_on_segment, i)
+      do k = 1, 2
+        if (segments(k) == 0) cycle
+        length = initial_length(model, own, segments(k))
+        longest = max(longest, length)
+        tracking%spot_depth(i) = min(tracking%spot_depth(i), 0.5_wp*length)
+      end do
+    end do
+    do i = 1, other%n_segment
+      length = initial_length(model, other, i)
+      longest = max(longest, length)
+      tracking%segment_depth(i) = 0.5_wp*min(length, area_behind(model, other, i)/length)
+    end do
+    if (contact%search_depth > 0.0_wp) then
+      tracking%spot_depth = contact%search_depth
+      tracking%segment_depth = contact%search_depth
+    end if
+    tracking%reach = max(longest, 2.0_wp*maxval(tracking%segment_depth))
+    if (is_tied(contact)) then
+      ! What is tied its reach says alone, at whatever depth.
+      tracking%reach = max(tracking%reach, contact%tie_reach, -0.01_wp*contact%tie_reach*longest)
+      tracking%spot_depth = tracking%reach
+      tracking%segment_depth = tracking%reach
+    end if
+    call measure_depths(tracking)
+  end subroutine set_depths
+
+  !> Initial length of a segment, m.
+  pure function initial_length(model, surface, segment) result(length)
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: segment
+    real(wp) :: length
+
+    length = norm2(model%mesh%coordinates(:, surface%nodes(surface%segments(2, segment))) &
+      - model%mesh%coordinates(:, surface%nodes(surface%segments(1, segment))))
+  end function initial_length
+
+  !> Initial area of the element behind a segment, m^2.
+  pure function area_behind(model, surface, segment) result(area)
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: segment
+    real(wp) :: area
+
+    associate (x => model%mesh%coordinates, &
+      nodes => model%mesh%element_nodes(:, surface%segment_element(segment)))
+      area = 0.5_wp*((x(1, nodes(3)) - x(1, nodes(1)))*(x(2, nodes(4)) - x(2, nodes(2))) &
+        - (x(1, nodes(4)) - x(1, nodes(2)))*(x(2, nodes(3)) - x(2, nodes(1))))
+    end associate
+  end function area_behind
+
+  !> Points deeper than a first contact may be that lie inside an element behind the other surface
+  !> are active on the closest face that is opposed to them.
+  subroutine activate_deep_points(tracking, model, own, other, places, points, answers)
+    type(tracking_t), intent(inout) :: tracking
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: own, other
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of the interface
+    real(wp), intent(in), contiguous :: points(:, :) !! (4, n) positions of the points
+    type(answers_t), intent(inout), optional :: answers
+    type(element_finder_t) :: finder
+    type(foot_t) :: foot
+    logical :: inside
+    integer :: i, segments(2), at
+
+    at = tracking%pass%other_at
+    call begin_asking(model, other%segment_element, own%nodes, finder, answers)
+    do i = 1, tracking%n
+      segments = segments_of(own, tracking%pass%n_on_segment, i)
+      if (tracking%status(i) == is_touching .or. maxval(segments) == 0) cycle
+      call ask_inside(finder, model, model%mesh%coordinates(:, other%nodes(1)) &
+        + (points(1:2, i) - places(1:2, at + 1)), own%nodes(carriers(own, segments)), inside, &
+        answers)
+      if (.not. inside) cycle
+      foot = closest_opposed(tracking, own, other, places, points(:, i), i)
+      if (foot%segment == 0) cycle
+      tracking%segment(i) = foot%segment
+      tracking%xi(i) = foot%xi
+      tracking%gap(i) = foot%gap
+      tracking%normal(:, i) = foot%normal
+      tracking%status(i) = is_touching
+      tracking%wake(i) = huge(1.0_wp)
+    end do
+    call list_touching(tracking)
+  end subroutine activate_deep_points
+
+  !> Projection of a point on the closest of all segments that are opposed to it and in front of it;
+  !> segment 0: none.
+  pure function closest_opposed(tracking, own, other, places, point, i) result(foot)
+    type(tracking_t), intent(in) :: tracking
+    type(surface_t), intent(in) :: own, other
+    real(wp), intent(in), contiguous :: places(:, :)
+    real(wp), intent(in) :: point(4)
+    integer, intent(in) :: i
+    type(foot_t) :: foot, next
+    integer :: m
+
+    associate (chain => places(:, tracking%pass%other_at + 1:))
+      do m = 1, other%n_segment
+        if (tracking%pass%is_self .and. tracking%pass%n_on_segment == 0) then
+          if (any(other%segments(:, m) == i)) cycle
+        end if
+        next = closest_foot(other, chain, point, m)
+        if (.not. next%is_on .or. next%gap >= 0.0_wp) cycle
+        if (foot%segment > 0 .and. next%distance >= foot%distance) cycle
+        if (is_opposed_at(tracking%pass, own, places, i, next%normal)) foot = next
+      end do
+    end associate
+  end function closest_opposed
+
+  !> Slave segments with a master node deep inside the body behind them are in contact from the
+  !> start: of these the closest one of which the node is behind.
+  subroutine activate_deep_segments(contact, model, memory, answers)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(inout) :: memory
+    type(answers_t), intent(inout), optional :: answers
+    type(element_finder_t) :: finder
+    logical :: inside
+    integer :: i, s, nearest
+    real(wp) :: square, least
+
+    call begin_asking(model, contact%slave%segment_element, contact%master%nodes, finder, answers)
+    do i = 1, contact%master%n_node
+      associate (node => contact%master%nodes(i))
+        call ask_inside(finder, model, model%mesh%coordinates(:, node), [node], inside, answers)
+        if (.not. inside) cycle
+        nearest = 0
+        least = huge(1.0_wp)
+        do s = 1, contact%slave%n_segment
+          if (any(contact%slave%nodes(contact%slave%segments(:, s)) == node)) cycle
+          square = closest_distance(see_segment(contact%slave, memory%places(:, :memory%n_slave), &
+            memory%places(:, memory%n_slave + i), s))
+          if (square >= least) cycle
+          least = square
+          nearest = s
+        end do
+      end associate
+      if (nearest > 0) memory%segment_status(nearest) = is_touching
+    end do
+  end subroutine activate_deep_segments
+
+  !> Nodes that carry a point: those of its segment, or the node between two.
+  pure function carriers(own, segments) result(nodes)
+    type(surface_t), intent(in) :: own
+    integer, intent(in) :: segments(2)
+    integer :: nodes(2)
+
+    if (segments(1) == segments(2)) then
+      nodes = own%segments(:, segments(1))
+    else if (segments(1) > 0) then
+      nodes = own%segments(2, segments(1))
+    else
+      nodes = own%segments(1, segments(2))
+    end if
+  end function carriers
+
+  !> Know the bodies behind a surface, unless the answers are.
+  pure subroutine begin_asking(model, members, nodes, finder, answers)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: members(:) !! elements behind the surface
+    integer, intent(in) :: nodes(:)   !! of the surface whose places are asked about
+    type(element_finder_t), intent(out) :: finder
+    type(answers_t), intent(in), optional :: answers
+
+    if (present(answers)) then
+      if (answers%are_given) return
+    end if
+    call start_finder(model, members, nodes, finder)
+  end subroutine begin_asking
+
+  !> The next answer (`is_inside_body`).
+  pure subroutine ask_inside(finder, model, x, carriers, inside, answers)
+    type(element_finder_t), intent(in) :: finder
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: x(2)
+    integer, intent(in) :: carriers(:)
+    logical, intent(out) :: inside
+    type(answers_t), intent(inout), optional :: answers
+    logical, allocatable :: more(:)
+
+    if (.not. present(answers)) then
+      inside = is_inside_body(finder, model, x, carriers)
+      return
+    end if
+    answers%n = answers%n + 1
+    if (answers%are_given) then
+      inside = answers%is_inside(answers%n)
+      return
+    end if
+    inside = is_inside_body(finder, model, x, carriers)
+    if (.not. allocated(answers%is_inside)) allocate (answers%is_inside(64), source=.false.)
+    if (answers%n > size(answers%is_inside)) then
+      allocate (more(2*answers%n), source=.false.)
+      more(:answers%n - 1) = answers%is_inside
+      call move_alloc(more, answers%is_inside)
+    end if
+    answers%is_inside(answers%n) = inside
+  end subroutine ask_inside
+
+end module initial_status_m
