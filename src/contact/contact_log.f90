@@ -372,9 +372,11 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
+    integer :: n
 
-    if (memory%n_released == 0) return
-    call warn(log, 'interface '//to_text(contact%id)//': '//to_text(memory%n_released) &
+    n = memory%slave_tracking%n_released + memory%master_tracking%n_released
+    if (n == 0) return
+    call warn(log, 'interface '//to_text(contact%id)//': '//to_text(n) &
       //' first contacts were deeper than the limit and were released; SRCH sets the limit')
   end subroutine report_released
 

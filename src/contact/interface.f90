@@ -16,6 +16,7 @@ module interface_m
   use contact_state_m, only : contact_state_t, pass_t, is_free
   use contacts_m, only : contact_t, is_tied, penalty_implicit
   use damping_m, only : damp_points, find_lag
+  use entry_offset_m, only : has_offsets, update_offsets, faded_work
   use energy_limit_m, only : keep_former_springs, form_springs, limit_forces
   use friction_m, only : start_trial_slip, take_trial_motion, rub_places
   use initial_status_m, only : activate_deep_points, activate_deep_segments
@@ -137,6 +138,7 @@ contains
       call look_at_springs(cycle, memory)
       ! Springs born loaded make what they hold: that is reported, and may be returned.
       if (is_born) memory%limit%credit = memory%limit%credit + memory%watch%stored
+      if (has_offsets(memory)) memory%limit%credit = memory%limit%credit + faded_work(memory)
       if (has_decay(contact%friction) .and. times(2) > 0.0_wp) call find_lag(memory%points, &
         memory%nodes, mass, contact%is_self, times(2), memory%scratch%nodal, memory%scratch%lag)
       if (allocated(memory%friction%force)) &
@@ -246,6 +248,8 @@ contains
     call gather_points(contact, motion, memory)
     if (allocated(memory%friction%force)) call take_trial_motion(motion, memory)
     if (is_first) memory%closed_gap = closed_gap_of(contact, memory)
+    memory%slave_tracking%pass%is_trial = .true.
+    memory%master_tracking%pass%is_trial = .true.
     call search_pairs(contact, 0, .not. was_stale, memory)
     if (has_folds(contact) .and. formulation%where_pressed == pressed_at_slave_nodes) &
       call find_tips(contact%slave, memory, motion)
@@ -369,6 +373,7 @@ contains
         contact%master, contact%slave, memory%reversed, memory%places, increments, &
         memory%places(:, n + 1:))
     end associate
+    if (has_offsets(memory)) call update_offsets(contact, memory)
 
   contains
 

@@ -163,7 +163,8 @@ contains
     memory%energy = old%energy
     memory%damping_work = old%damping_work
     memory%n_active = old%n_active
-    memory%n_released = old%n_released
+    memory%slave_tracking%n_released = old%slave_tracking%n_released
+    memory%master_tracking%n_released = old%master_tracking%n_released
     memory%rules_step = old%rules_step
     memory%watch = old%watch
     memory%friction%work = old%friction%work

@@ -82,8 +82,11 @@ module contact_state_m
     integer :: other_at = 0            !! and before the first node of the other surface
     integer :: n_on_segment = 0        !! points of a segment; 0: points at nodes
     real(wp), allocatable :: xi(:)     !! (n_on_segment) where they are on it
+    integer, allocatable :: segment_at(:) !! (n_node) segment that starts at a node of their surface
     logical :: is_self = .false.       !! both surfaces are one
+    logical :: is_closed = .false.     !! the points' surface has a closed boundary
     logical :: has_history = .false.   !! increments are those of a step
+    logical :: is_trial = .false.      !! of an implicit step, which may lead to any depth
     real(wp) :: travel = 0.0_wp        !! accumulated relative displacement, m
     real(wp) :: closed_gap = 0.0_wp    !! gaps below it are contact, m
   end type pass_t
@@ -104,7 +107,10 @@ module contact_state_m
     real(wp), allocatable :: offset(:)       !! (n) entry offset, m: pressure acts from gap + offset
     real(wp), allocatable :: wake(:)         !! (n) next search time: travel before which the point
                                              !! can not touch; huge while active
+    real(wp), allocatable :: faded(:)        !! (n) scratch: by which offsets have faded in this
+                                             !! call, m
     logical :: has_offset = .false.          !! some offset is above 0
+    integer :: n_released = 0                !! first contacts deeper than the limit so far
     real(wp), allocatable :: spot_depth(:)   !! (n) deepest first contact of a point, m
     real(wp), allocatable :: segment_depth(:) !! (n_segment) deepest first contact of a segment, m
     real(wp) :: deepest = huge(1.0_wp)       !! largest of these, m
@@ -201,7 +207,6 @@ module contact_state_m
     type(energy_limit_t) :: limit           !! that they give back no more
     integer :: n_active = 0                 !! points that carry pressure
     logical :: rules_step = .false.         !! the step obeys the springs, which nobody has chosen
-    integer :: n_released = 0               !! first contacts deeper than the limit that were let go
     integer :: n_swept = 0                  !! calls in which sweeps had to settle which nodes press
     integer :: n_dropped = 0                !! calls in which some pressures depended on others
     type(contact_scratch_t) :: scratch
@@ -373,6 +378,7 @@ contains
     call visitor%visit('normal', self%normal)
     call visitor%visit('offset', self%offset)
     call visitor%visit('has_offset', self%has_offset)
+    call visitor%visit('n_released', self%n_released, 0, 10**9, 'a number that no run reaches')
     call visitor%visit('wake', self%wake)
     call visitor%visit('spot_depth', self%spot_depth)
     call visitor%visit('segment_depth', self%segment_depth)
@@ -419,7 +425,6 @@ contains
     call visitor%part('limit', self%limit)
     call visitor%visit('n_active', self%n_active, 0, what='a number below zero')
     call visitor%visit('rules_step', self%rules_step)
-    call visitor%visit('n_released', self%n_released, 0, 10**9, 'a number that no run reaches')
     call visitor%visit('n_swept', self%n_swept)
     call visitor%visit('n_dropped', self%n_dropped)
   end subroutine visit_contact

@@ -6,10 +6,11 @@
 module contact_law_m
   use contact_state_m, only : contact_state_t
   use dual_m, only : dual_t
+  use entry_offset_m, only : has_offsets, average_with_offsets
   use interference_m, only : take_overlaps, ease_gaps, ease_nodes, gather_moment
   use kinds_m, only : wp
   use law_penalty_m, only : press_penalty, vary_penalty, energy_penalty
-  use nodal_average_m, only : average_gaps, share_out
+  use nodal_average_m, only : share_out
   implicit none
   private
   public :: law_t, laws, law_penalty, pressed_at_points, pressed_at_slave_nodes, press_places, &
@@ -44,14 +45,14 @@ contains
     associate (points => memory%points, nodal => memory%scratch%nodal)
       select case (where_pressed)
       case (pressed_at_points)
-        if (allocated(memory%interference%depth)) then
+        if (allocated(memory%interference%depth) .or. has_offsets(memory)) then
           call press_eased(contact_law, memory)
         else
           call press(contact_law, points%n, points%stiffness, points%gap, points%pressure)
         end if
       case (pressed_at_slave_nodes)
         n = memory%n_slave
-        call average_gaps(points, n, nodal)
+        call average_with_offsets(memory, nodal)
         if (allocated(memory%interference%depth)) call ease_nodes(memory%interference, n, nodal)
         call press_nodes(contact_law, n, memory%slave_penalty, nodal, memory%node_pressure)
         call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
@@ -61,7 +62,7 @@ contains
     if (allocated(memory%interference%depth)) call gather_moment(memory)
   end subroutine press_places
 
-  !> Pressures of all points where an initial overlap grows.
+  !> Pressures of all points where an initial overlap grows or points have entry offsets.
   pure subroutine press_eased(contact_law, memory)
     integer, intent(in) :: contact_law
     type(contact_state_t), intent(inout) :: memory

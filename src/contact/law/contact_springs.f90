@@ -2,13 +2,13 @@
 !> Energy of the springs of an interface, of those whose points are on the list.
 module contact_springs_m
   use behind_ties_m, only : is_left_to_tie
+  use entry_offset_m, only : has_offsets, average_with_offsets
   use contact_law_m, only : density_of
   use contact_state_m, only : contact_state_t
   use law_state_m, only : contact_watch_t
   use friction_m, only : place_at
   use interference_m, only : eased_gap, ease_nodes
   use kinds_m, only : wp
-  use nodal_average_m, only : average_gaps
   use ties_m, only : tie_energy
   implicit none
   private
@@ -41,7 +41,7 @@ contains
     end if
     associate (watch => memory%watch, points => memory%points, nodal => memory%scratch%nodal)
       if (allocated(memory%node_pressure)) then
-        call average_gaps(points, memory%n_slave, nodal)
+        call average_with_offsets(memory, nodal)
         if (allocated(memory%interference%depth)) &
           call ease_nodes(memory%interference, memory%n_slave, nodal)
         do i = 1, memory%n_slave
@@ -55,7 +55,8 @@ contains
             if (memory%scratch%is_left(place_at(memory, i))) cycle
           end if
           gap = points%gap(i)
-          if (allocated(memory%interference%depth)) gap = eased_gap(memory, i)
+          if (allocated(memory%interference%depth) .or. has_offsets(memory)) &
+            gap = eased_gap(memory, i)
           call add_spring(points%area(i)*density_of(memory%contact_law, points%stiffness(i), &
             gap), points%area(i)*points%pressure(i), &
             memory%nodes(points%slave_nodes(maxloc(points%slave_weights(:, i), 1), i)), watch)

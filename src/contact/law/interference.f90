@@ -6,6 +6,7 @@ module interference_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use curves_m, only : curve_value
+  use entry_offset_m, only : has_offsets, offset_at
   use friction_m, only : place_of_point, spot_at
   use law_state_m, only : interference_memory_t
   use kinds_m, only : wp
@@ -72,7 +73,10 @@ contains
     integer, intent(in) :: p
     real(wp) :: gap
 
-    gap = memory%points%gap(p) + memory%interference%left*depth_at(memory, p)
+    gap = memory%points%gap(p)
+    if (has_offsets(memory)) gap = gap + offset_at(memory, p)
+    if (allocated(memory%interference%depth)) &
+      gap = gap + memory%interference%left*depth_at(memory, p)
   end function eased_gap
 
   !> The averaged gaps that the springs of slave nodes feel, from averages of the gaps.

@@ -10,6 +10,7 @@ module candidate_overlaps_m
   use geometry_m, only : sight_t, sight_of_segment, separation, closest_distance
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t, grow_pieces, is_walked_piece
+  use opposed_m, only : turns_sharply
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -45,7 +46,8 @@ contains
       anchors(k) = segment_below(contact, memory, s, ends(k))
     end do
     if (is_strict .and. any(anchors == 0)) then
-      call append_overlap(ends, overlap_t(high=1.0_wp), table)
+      if (is_opposed_to_contact(contact%slave, memory, s)) &
+        call append_overlap(ends, overlap_t(high=1.0_wp), table)
       return
     end if
     is_in_contact = memory%segment_status(s) == is_touching &
@@ -81,14 +83,87 @@ contains
       segment = memory%slave_tracking%segment(node)
       return
     end if
-    segment = closest_candidate(contact%master, memory, s, memory%places(:, node))
+    segment = closest_opposed(contact, memory, s, memory%places(:, node))
     if (segment == 0) return
-    foot = closest_foot(contact%master, memory%places(:, memory%n_slave + 1:), &
-      memory%places(:, node), segment)
-    segment = merge(foot%segment, 0, foot%is_on)
+    associate (chain => memory%places(:, memory%n_slave + 1:), point => memory%places(:, node))
+      foot = closest_foot(contact%master, chain, point, segment)
+      if (.not. foot%is_on) then
+        segment = 0
+      else if (abs(foot%xi - 0.5_wp) >= 0.5_wp) then
+        ! At a vertex: below the end of the slave segment only if the master goes on gently there.
+        segment = merge(foot%segment, 0, goes_on(contact%master, chain, foot))
+      end if
+    end associate
   end function segment_below
 
-  !> The opposed candidate of a slave segment that is closest to a position on it; 0: none.
+  !> Whether a surface goes on without a sharp turn at the node on which a projection stands.
+  pure function goes_on(surface, chain, foot)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_node) positions
+    type(foot_t), intent(in) :: foot
+    logical :: goes_on
+    integer :: before, behind
+
+    before = foot%segment
+    behind = surface%next(foot%segment)
+    if (foot%xi < 0.5_wp) then
+      before = surface%previous(foot%segment)
+      behind = foot%segment
+    end if
+    goes_on = min(before, behind) == 0
+    if (.not. goes_on) goes_on = .not. turns_sharply(surface, chain, before, behind)
+  end function goes_on
+
+  !> The candidate that is opposed to a slave segment and closest to a position on it; 0: none.
+  pure function closest_opposed(contact, memory, s, point) result(closest)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s
+    real(wp), intent(in) :: point(4)
+    integer :: closest
+    real(wp) :: own(2), square, least
+    type(sight_t) :: sight
+    integer :: j
+
+    closest = 0
+    least = huge(1.0_wp)
+    associate (ends => contact%slave%segments(:, s))
+      own = separation(memory%places(:, ends(2)), memory%places(:, ends(1)))
+    end associate
+    do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
+      associate (nodes => memory%n_slave + contact%master%segments(:, memory%candidates%items(j)))
+        sight = sight_of_segment(point, memory%places(:, nodes(1)), memory%places(:, nodes(2)))
+      end associate
+      if (.not. dot_product(own, sight%t) < side_on*norm2(own)*sqrt(sight%square)) cycle
+      square = closest_distance(sight)
+      if (square >= least) cycle
+      least = square
+      closest = memory%candidates%items(j)
+    end do
+  end function closest_opposed
+
+  !> Whether a slave segment is opposed to the face that one of its ends is active on.
+  pure function is_opposed_to_contact(slave, memory, s) result(opposed)
+    type(surface_t), intent(in) :: slave
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s
+    logical :: opposed
+    real(wp) :: t(2)
+    integer :: k
+
+    opposed = .false.
+    associate (ends => slave%segments(:, s), tracking => memory%slave_tracking)
+      t = separation(memory%places(:, ends(2)), memory%places(:, ends(1)))
+      do k = 1, 2
+        if (tracking%status(ends(k)) /= is_touching) cycle
+        associate (normal => tracking%normal(:, ends(k)))
+          opposed = opposed .or. t(2)*normal(1) - t(1)*normal(2) < side_on*norm2(t)
+        end associate
+      end do
+    end associate
+  end function is_opposed_to_contact
+
+  !> The candidate of a slave segment that is closest to a position on it; 0: none.
   pure function closest_candidate(master, memory, s, point) result(closest)
     type(surface_t), intent(in) :: master
     type(contact_state_t), intent(in) :: memory
@@ -157,8 +232,7 @@ contains
     end do
     other = sights(1)%d - sights(2)%d
     ! Opposed: the tangents have the cosine of the normals.
-    if (.not. dot_product(sights(1)%t, other) < side_on*norm2(other)*sqrt(sights(1)%square) &
-      .and. .not. any(anchors == m)) return
+    if (.not. dot_product(sights(1)%t, other) < side_on*norm2(other)*sqrt(sights(1)%square)) return
     overlap%master = m
     overlap%low = clipped(xi(1))
     overlap%high = clipped(xi(2))

@@ -39,9 +39,10 @@ contains
 
     call append_touching(memory%slave_tracking, contact%master, [0, memory%n_slave], 0.0_wp, &
       memory%slave_penalty, memory%points)
-    call set_lengths(memory%slave_tracking, contact%slave, memory%places(:, :memory%n_slave), 1, &
-      memory%points)
-    if (contact%is_round) call weigh_slaves(contact, memory)
+    call set_lengths(memory%slave_tracking, contact%slave, memory%places(:, :memory%n_slave), &
+      contact%is_round, 1, memory%points)
+    if (contact%is_round .and. .not. memory%slave_tracking%pass%is_closed) &
+      call weigh_slaves(contact, memory)
   end subroutine place_nts_ar
 
   !> Type 3: type 2, and again with the roles of slave and master exchanged; nothing is halved.
@@ -55,8 +56,9 @@ contains
     call append_touching(memory%master_tracking, contact%slave, [memory%n_slave, 0], 0.0_wp, &
       memory%master_penalty, memory%points)
     call set_lengths(memory%master_tracking, contact%master, &
-      memory%places(:, memory%n_slave + 1:), first, memory%points)
-    if (contact%is_round) call weigh_nodes(memory%master_tracking, contact%master, &
+      memory%places(:, memory%n_slave + 1:), contact%is_round, first, memory%points)
+    if (contact%is_round .and. .not. memory%master_tracking%pass%is_closed) &
+      call weigh_nodes(memory%master_tracking, contact%master, &
       memory%places(:, memory%n_slave + 1:), first, memory%points)
   end subroutine place_two_pass_ar
 

@@ -5,7 +5,7 @@ module point_list_m
   use contact_state_m, only : contact_points_t, tracking_t, make_room, n_side
   use foot_block_m, only : foot_block_t, n_block
   use kinds_m, only : wp
-  use lengths_m, only : put_lengths, mean_radius
+  use lengths_m, only : put_lengths, tributary_area, mean_radius
   use radii_m, only : radius_of
   use surfaces_m, only : surface_t
   implicit none
@@ -102,16 +102,28 @@ contains
     end do
   end subroutine append_touching
 
-  !> Let the points of tracked nodes from one to the last have the lengths of their nodes as areas.
-  pure subroutine set_lengths(tracking, own, places, first, points)
+  !> Let the points of active nodes from one to the last have the tributary lengths of their nodes as
+  !> areas; on closed boundaries, where sides count as far as they are opposed, in axisymmetry already
+  !> weighted with the radius.
+  pure subroutine set_lengths(tracking, own, places, is_round, first, points)
     type(tracking_t), intent(in) :: tracking
     type(surface_t), intent(in) :: own               !! of the tracked nodes
     real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of these
+    logical, intent(in) :: is_round
     integer, intent(in) :: first                     !! of the points
     type(contact_points_t), intent(inout) :: points
+    integer :: k
 
-    if (points%n >= first) &
+    if (tracking%pass%is_closed) then
+      do k = 1, tracking%n_touching
+        associate (node => tracking%touching(k))
+          points%area(first + k - 1) = tributary_area(own, places, is_round, node, &
+            tracking%normal(:, node))
+        end associate
+      end do
+    else if (points%n >= first) then
       call put_lengths(own, places, tracking%n_touching, tracking%touching, points%area(first:))
+    end if
   end subroutine set_lengths
 
   !> Give length to a point, if there is one.

@@ -193,6 +193,7 @@ contains
 
     found = find_contact(tracking, own, other, pairs, places, increments, point, i)
     call store_foot(tracking, i, found%foot)
+    if (found%is_released) tracking%n_released = tracking%n_released + 1
     tracking%offset(i) = found%offset
     tracking%has_offset = tracking%has_offset .or. found%offset > 0.0_wp
     if (found%is_active) then

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> How contact begins: a separated point among its candidate pairs. It has come through a face within
-!> the step, at any depth, or it stands behind the closest face although it has not come through it:
+!> the step, or it stands behind the closest face although it has not come through it:
 !> then it is active up to the depth of a first contact, with an entry offset that takes off the
 !> depth that it had before (doc/theory/contact.md, section 3.3).
 module entry_m
@@ -13,7 +13,7 @@ module entry_m
   use surfaces_m, only : surface_t, meets_axis
   implicit none
   private
-  public :: found_contact_t, find_contact, is_pair, is_opposed_at, former_gap
+  public :: found_contact_t, find_contact, is_pair, is_opposed_at
 
   !> What is found of a separated point.
   type :: found_contact_t
@@ -21,6 +21,7 @@ module entry_m
                                       !! none within the search radius
     integer :: nearest = 0            !! candidate
     logical :: is_active = .false.
+    logical :: is_released = .false.  !! it has come to lie deeper than a first contact may be
     real(wp) :: offset = 0.0_wp       !! entry offset, m
     real(wp) :: distance = 0.0_wp     !! relative motion before which it can not touch, m
   end type found_contact_t
@@ -75,8 +76,8 @@ contains
   end function find_contact
 
   !> Whether a point behind a segment has come through it: it is over it, was not behind it before
-  !> the step, and the face is opposed to it. Without a step before, the depth of a first contact
-  !> says.
+  !> the step, no deeper than a first contact may be unless the step is an implicit one, and the face
+  !> is opposed to it.
   pure function has_entered(tracking, own, other, places, increments, sight, i, &
       segment) result(entered)
     type(tracking_t), intent(in) :: tracking
@@ -85,13 +86,14 @@ contains
     type(sight_t), intent(in) :: sight !! of the point from the segment
     integer, intent(in) :: i, segment
     logical :: entered
+    type(sight_t) :: former
 
     entered = is_over(other, places(:, tracking%pass%other_at + 1:), sight, segment)
     if (.not. entered) return
-    if (tracking%pass%has_history) then
-      entered = former_gap(tracking%pass, own, other, places, increments, i, segment) >= 0.0_wp
-    else
-      entered = -sight_gap(sight) <= depth_limit(tracking, i, segment)
+    entered = -sight_gap(sight) <= depth_limit(tracking, i, segment)
+    if (tracking%pass%has_history .and. (entered .or. tracking%pass%is_trial)) then
+      former = former_sight(tracking%pass, own, other, places, increments, i, segment)
+      entered = former%across >= 0.0_wp
     end if
     if (entered) entered = is_opposed_at(tracking%pass, own, places, i, sight_normal(sight))
   end function has_entered
@@ -105,6 +107,8 @@ contains
     real(wp), intent(in) :: point(4)
     integer, intent(in) :: i
     type(found_contact_t), intent(inout) :: found
+    type(sight_t) :: former
+    real(wp) :: limit
 
     associate (pass => tracking%pass, foot => found%foot)
       foot = closest_foot(other, places(:, pass%other_at + 1:), point, found%nearest)
@@ -117,10 +121,16 @@ contains
         end associate
       else if (foot%gap < pass%closed_gap) then
         found%distance = 0.0_wp
-        found%is_active = -foot%gap <= depth_limit(tracking, i, foot%segment)
-        if (found%is_active) found%is_active = is_opposed_at(pass, own, places, i, foot%normal)
-        if (found%is_active .and. pass%has_history) found%offset = max(0.0_wp, min(-foot%gap, &
-          -former_gap(pass, own, other, places, increments, i, foot%segment)))
+        if (.not. is_opposed_at(pass, own, places, i, foot%normal)) return
+        limit = depth_limit(tracking, i, foot%segment)
+        found%is_active = -foot%gap <= limit
+        found%is_released = .not. found%is_active
+        if (.not. pass%has_history) return
+        former = former_sight(pass, own, other, places, increments, i, foot%segment)
+        if (found%is_active) found%offset = max(0.0_wp, min(-foot%gap, -sight_gap(former)))
+        ! What lay as deep before is known.
+        if (found%is_released) found%is_released = .not. (-sight_gap(former) > limit .and. &
+          is_over(other, places(:, pass%other_at + 1:), former, foot%segment))
       end if
     end associate
   end subroutine look_at_closest
@@ -159,24 +169,24 @@ contains
     end if
   end function is_over
 
-  !> Gap of a point over the line of a segment before the step, m.
-  pure function former_gap(pass, own, other, places, increments, i, segment) result(gap)
+  !> A point from a segment as both lay before the step.
+  pure function former_sight(pass, own, other, places, increments, i, segment) result(sight)
     type(pass_t), intent(in) :: pass
     type(surface_t), intent(in) :: own, other
     real(wp), intent(in), contiguous :: places(:, :), increments(:, :)
     integer, intent(in) :: i, segment
-    real(wp) :: gap
+    type(sight_t) :: sight
     integer :: ends(2), s, q
 
     ends = pass%other_at + other%segments(:, segment)
     if (pass%n_on_segment == 0) then
-      gap = sight_gap(sight_of_segment(former(pass%own_at + i), former(ends(1)), former(ends(2))))
+      sight = sight_of_segment(former(pass%own_at + i), former(ends(1)), former(ends(2)))
     else
       s = 1 + (i - 1)/pass%n_on_segment
       q = i - (s - 1)*pass%n_on_segment
       associate (own_ends => pass%own_at + own%segments(:, s))
-        gap = sight_gap(sight_of_segment((1.0_wp - pass%xi(q))*former(own_ends(1)) &
-          + pass%xi(q)*former(own_ends(2)), former(ends(1)), former(ends(2))))
+        sight = sight_of_segment((1.0_wp - pass%xi(q))*former(own_ends(1)) &
+          + pass%xi(q)*former(own_ends(2)), former(ends(1)), former(ends(2)))
       end associate
     end if
 
@@ -191,7 +201,7 @@ contains
       place(3:4) = places(3:4, node) - increments(:, node)
     end function former
 
-  end function former_gap
+  end function former_sight
 
   !> Whether a segment is a candidate of a point.
   pure function is_pair(pass, own, pairs, i, segment) result(is)

@@ -16,7 +16,7 @@ module initial_status_m
   use model_m, only : model_t
   use opposed_m, only : segments_of
   use others_memory_m, only : answers_t
-  use surfaces_m, only : surface_t
+  use surfaces_m, only : surface_t, has_closed_chain
   implicit none
   private
   public :: allocate_slave_tracking, allocate_master_tracking, allocate_segments, &
@@ -35,11 +35,13 @@ contains
       n = contact%slave%n_node
       if (allocated(memory%spot_xi)) then
         tracking%pass%xi = memory%spot_xi
+        tracking%pass%segment_at = contact%slave%outgoing
         tracking%pass%n_on_segment = size(memory%spot_xi)
         n = tracking%pass%n_on_segment*contact%slave%n_segment
       end if
       tracking%pass%other_at = memory%n_slave
       tracking%pass%is_self = contact%is_self
+      tracking%pass%is_closed = has_closed_chain(contact%slave)
       call allocate_tracking(tracking, n, contact%master%n_segment)
       call set_depths(tracking, contact, model, contact%slave, contact%master)
     end associate
@@ -53,6 +55,7 @@ contains
 
     associate (tracking => memory%master_tracking)
       tracking%pass%own_at = memory%n_slave
+      tracking%pass%is_closed = has_closed_chain(contact%master)
       call allocate_tracking(tracking, contact%master%n_node, contact%slave%n_segment)
       call set_depths(tracking, contact, model, contact%master, contact%slave)
     end associate

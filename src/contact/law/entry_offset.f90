@@ -1,0 +1,153 @@
+! SPDX-License-Identifier: MIT
+!> Entry offsets: a point that has come behind a face without coming through it starts without force,
+!> with the gap g + offset. The offset is never more than the depth, and fades with the slip over half
+!> of the segment; the work of its fading is admissible energy (doc/theory/contact.md, section 6.4).
+module entry_offset_m
+  use contact_state_m, only : contact_state_t, tracking_t
+  use contacts_m, only : contact_t
+  use friction_m, only : spot_at
+  use geometry_m, only : separation
+  use kinds_m, only : wp
+  use nodal_average_m, only : average_gaps, average_values
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: has_offsets, update_offsets, offset_at, average_with_offsets, faded_work
+
+contains
+
+  !> Whether some point has an entry offset.
+  pure function has_offsets(memory) result(has)
+    type(contact_state_t), intent(in) :: memory
+    logical :: has
+
+    has = memory%slave_tracking%has_offset .or. memory%master_tracking%has_offset
+  end function has_offsets
+
+  !> After the search: limit all offsets by the present depths, and let them fade.
+  pure subroutine update_offsets(contact, memory)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+
+    if (memory%slave_tracking%has_offset) call fade_offsets(memory%slave_tracking, contact%slave, &
+      contact%master, memory%places, memory%scratch%increment)
+    if (memory%master_tracking%has_offset) call fade_offsets(memory%master_tracking, &
+      contact%master, contact%slave, memory%places, memory%scratch%increment)
+  end subroutine update_offsets
+
+  !> The offsets of one pass.
+  pure subroutine fade_offsets(tracking, own, other, places, increments)
+    type(tracking_t), intent(inout) :: tracking
+    type(surface_t), intent(in) :: own, other
+    real(wp), intent(in), contiguous :: places(:, :)     !! (4, n_node) of the interface
+    real(wp), intent(in), contiguous :: increments(:, :) !! (2, n_node) displacements of the step, m
+    real(wp) :: limited, t(2), length, slip
+    integer :: k, i, ends(2)
+
+    if (.not. allocated(tracking%faded)) allocate (tracking%faded(tracking%n), source=0.0_wp)
+    tracking%faded = 0.0_wp
+    tracking%has_offset = .false.
+    do k = 1, tracking%n_touching
+      i = tracking%touching(k)
+      if (.not. tracking%offset(i) > 0.0_wp) cycle
+      limited = min(tracking%offset(i), max(0.0_wp, -tracking%gap(i)))
+      ends = tracking%pass%other_at + other%segments(:, tracking%segment(i))
+      t = separation(places(:, ends(2)), places(:, ends(1)))
+      length = norm2(t)
+      associate (xi => tracking%xi(i))
+        slip = dot_product(motion_of(tracking, own, increments, i) - (1.0_wp - xi) &
+          *increments(:, ends(1)) - xi*increments(:, ends(2)), t)/length
+      end associate
+      if (.not. tracking%pass%has_history) slip = 0.0_wp
+      tracking%offset(i) = limited*max(0.0_wp, 1.0_wp - 2.0_wp*abs(slip)/length)
+      tracking%faded(i) = limited - tracking%offset(i)
+      tracking%has_offset = tracking%has_offset .or. limited > 0.0_wp
+    end do
+  end subroutine fade_offsets
+
+  !> Displacement of a point in the step, m.
+  pure function motion_of(tracking, own, increments, i) result(motion)
+    type(tracking_t), intent(in) :: tracking
+    type(surface_t), intent(in) :: own
+    real(wp), intent(in), contiguous :: increments(:, :)
+    integer, intent(in) :: i
+    real(wp) :: motion(2)
+    integer :: s, q
+
+    if (tracking%pass%n_on_segment == 0) then
+      motion = increments(:, tracking%pass%own_at + i)
+    else
+      s = 1 + (i - 1)/tracking%pass%n_on_segment
+      q = i - (s - 1)*tracking%pass%n_on_segment
+      associate (ends => tracking%pass%own_at + own%segments(:, s), xi => tracking%pass%xi(q))
+        motion = (1.0_wp - xi)*increments(:, ends(1)) + xi*increments(:, ends(2))
+      end associate
+    end if
+  end function motion_of
+
+  !> Entry offset of a contact point on the list, m: that of its virtual node or Gauss point where the
+  !> search follows these, else of its slave nodes by their weights.
+  pure function offset_at(memory, p) result(offset)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: p
+    real(wp) :: offset
+
+    offset = value_at(memory, memory%slave_tracking%offset, memory%master_tracking%offset, p)
+  end function offset_at
+
+  !> A value of the points that are followed, at a contact point on the list.
+  pure function value_at(memory, of_slave, of_master, p) result(value)
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in), allocatable :: of_slave(:), of_master(:)
+    integer, intent(in) :: p
+    real(wp) :: value
+    integer :: n
+
+    value = 0.0_wp
+    associate (points => memory%points, nodes => memory%points%slave_nodes(:, p))
+      if (nodes(1) > memory%n_slave) then
+        if (allocated(of_master)) value = of_master(nodes(1) - memory%n_slave)
+      else if (.not. allocated(of_slave)) then
+        value = 0.0_wp
+      else if (allocated(memory%spots)) then
+        n = size(memory%spot_xi)
+        value = of_slave(n*(memory%slave_tracking%pass%segment_at(nodes(1)) - 1) &
+          + spot_at(points%slave_weights(2, p), memory%spot_xi))
+      else
+        value = dot_product(points%slave_weights(:, p), of_slave(nodes))
+      end if
+    end associate
+  end function value_at
+
+  !> Averaged gaps of the slave nodes, entry offsets included.
+  pure subroutine average_with_offsets(memory, nodal)
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(inout) :: nodal(2, *)
+    real(wp), allocatable :: gaps(:)
+    integer :: p
+
+    if (.not. has_offsets(memory)) then
+      call average_gaps(memory%points, memory%n_slave, nodal)
+      return
+    end if
+    gaps = memory%points%gap
+    do p = 1, memory%points%n
+      gaps(p) = gaps(p) + offset_at(memory, p)
+    end do
+    call average_values(memory%points, gaps, memory%n_slave, nodal)
+  end subroutine average_with_offsets
+
+  !> Work of the fading of this call, with the points pressed, J/m: the springs have been given it.
+  pure function faded_work(memory) result(work)
+    type(contact_state_t), intent(in) :: memory
+    real(wp) :: work
+    integer :: p
+
+    work = 0.0_wp
+    do p = 1, memory%points%n
+      work = work + memory%points%pressure(p)*memory%points%area(p) &
+        *value_at(memory, memory%slave_tracking%faded, memory%master_tracking%faded, p)
+    end do
+  end function faded_work
+
+end module entry_offset_m
