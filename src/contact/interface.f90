@@ -17,7 +17,7 @@ module interface_m
   use contacts_m, only : contact_t, is_tied, penalty_implicit
   use damping_m, only : damp_points, find_lag
   use entry_offset_m, only : has_offsets, update_offsets, faded_work
-  use energy_limit_m, only : keep_former_springs, form_springs, limit_forces
+  use energy_limit_m, only : keep_former_springs, form_springs, limit_forces, lend
   use friction_m, only : start_trial_slip, take_trial_motion, rub_places
   use initial_status_m, only : activate_deep_points, activate_deep_segments
   use gather_m, only : gather_places, take_force, keep_former
@@ -138,7 +138,7 @@ contains
       call look_at_springs(cycle, memory)
       ! Springs born loaded make what they hold: that is reported, and may be returned.
       if (is_born) memory%limit%credit = memory%limit%credit + memory%watch%stored
-      if (has_offsets(memory)) memory%limit%credit = memory%limit%credit + faded_work(memory)
+      if (has_offsets(memory)) call lend(faded_work(memory), memory%limit)
       if (has_decay(contact%friction) .and. times(2) > 0.0_wp) call find_lag(memory%points, &
         memory%nodes, mass, contact%is_self, times(2), memory%scratch%nodal, memory%scratch%lag)
       if (allocated(memory%friction%force)) &
@@ -309,8 +309,8 @@ contains
     memory%n_active = 0
   end subroutine suspend_contact
 
-  !> Positions and status of all points in an explicit step; implicit penalties take what may touch in
-  !> the step ahead as closed.
+  !> Positions and status of all points in an explicit step; implicit penalties take what may touch
+  !> in the step ahead as closed.
   pure subroutine find_contacts(contact, motion, cycle, memory)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: motion(:, :)
@@ -350,8 +350,8 @@ contains
     memory%is_stale = .false.
   end subroutine refresh_memory
 
-  !> Candidate pairs, and the status of the slave's points and of the master nodes where there are two
-  !> passes.
+  !> Candidate pairs, and the status of the slave's points and of the master nodes where there are
+  !> two passes.
   pure subroutine search_pairs(contact, cycle, has_history, memory)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: cycle

@@ -2,13 +2,16 @@
 !> Whether two surfaces are opposed: the outward normal of a face against those of the segments that
 !> a point is on (doc/theory/contact.md, section 3.3).
 module opposed_m
-  use foot_m, only : side_on, gentle_turn
+  use foot_m, only : face_on, gentle_turn
   use geometry_m, only : separation
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
   private
   public :: segments_at, segments_of, is_opposed, turns_sharply
+
+  !> Sine of the angle by which a direction lies between two others (10 degrees).
+  real(wp), parameter :: well_between = 0.17_wp
 
 contains
 
@@ -36,9 +39,11 @@ contains
     end if
   end function segments_of
 
-  !> Whether a face is opposed to a point: its outward normal has a cosine below -0.1 to that of one
-  !> of the point's segments, or its opposite lies between both of them at a convex vertex. At an end
-  !> of an open surface the tangent that leads out of it takes the place of the missing normal.
+  !> Whether a face is opposed to a point: its outward normal is opposite to that of one of the
+  !> point's segments within 60 degrees, or lies opposite between both of them at a convex vertex, by
+  !> 10 degrees at least: else the nodes of a body that slides on over a ramp would be held by the
+  !> end face in front of it. At an end of an open surface the tangent that leads out of it takes the
+  !> place of the missing normal.
   pure function is_opposed(own, places, segments, normal) result(opposed)
     type(surface_t), intent(in) :: own
     real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
@@ -57,12 +62,13 @@ contains
     end do
     if (segments(1) == 0) normals(:, 1) = -t(:, 2)
     if (segments(2) == 0) normals(:, 2) = t(:, 1)
-    opposed = dot_product(normals(:, 1), normal) < side_on &
-      .or. dot_product(normals(:, 2), normal) < side_on
+    opposed = dot_product(normals(:, 1), normal) < face_on &
+      .or. dot_product(normals(:, 2), normal) < face_on
     if (opposed) return
     ! The opposite of the normal turns counter-clockwise from the first to the second of the normals.
     opposed = cross(normals(:, 1), normals(:, 2)) > 0.0_wp .and. &
-      cross(normals(:, 1), -normal) > 0.0_wp .and. cross(-normal, normals(:, 2)) > 0.0_wp
+      cross(normals(:, 1), -normal) > well_between .and. &
+      cross(-normal, normals(:, 2)) > well_between
   end function is_opposed
 
   !> Whether a surface turns by more than 60 degrees from one segment to the next.

@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Overlaps of a slave segment with its candidates: both nodes of each opposed master segment are
-!> projected on the slave segment and clipped to it. Segments beyond the projection of an end are left
-!> out, and the overlap there is extended to the end. Where overlaps of different bodies lie over
-!> each other the nearest penetrated one wins (doc/theory/contact.md, section 3.5).
+!> projected on the slave segment and clipped to it. Segments beyond the projection of an end are
+!> left out, and the overlap there is extended to the end. Where overlaps of different bodies lie
+!> over each other the nearest penetrated one wins (doc/theory/contact.md, section 3.5).
 module candidate_overlaps_m
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t

@@ -102,9 +102,9 @@ contains
     end do
   end subroutine append_touching
 
-  !> Let the points of active nodes from one to the last have the tributary lengths of their nodes as
-  !> areas; on closed boundaries, where sides count as far as they are opposed, in axisymmetry already
-  !> weighted with the radius.
+  !> Let the points of active nodes from one to the last have the tributary lengths of their nodes
+  !> as areas; on closed boundaries, where sides count as far as they are opposed, in axisymmetry
+  !> already weighted with the radius.
   pure subroutine set_lengths(tracking, own, places, is_round, first, points)
     type(tracking_t), intent(in) :: tracking
     type(surface_t), intent(in) :: own               !! of the tracked nodes
@@ -147,7 +147,15 @@ contains
 
     do k = 1, tracking%n_touching
       p = first + k - 1
-      points%area(p) = points%area(p)*mean_radius(own, places, tracking%touching(k))
+      associate (node => tracking%touching(k))
+        if (tracking%pass%is_closed) then
+          points%area(p) = points%area(p)*tributary_area(own, places, .true., node, &
+            tracking%normal(:, node))/max(tributary_area(own, places, .false., node, &
+            tracking%normal(:, node)), tiny(1.0_wp))
+        else
+          points%area(p) = points%area(p)*mean_radius(own, places, node)
+        end if
+      end associate
     end do
   end subroutine weigh_nodes
 

@@ -80,8 +80,8 @@ contains
     n_left = 0
     do first = 1, tracking%n_touching, n_block
       block%n = min(n_block, tracking%n_touching - first + 1)
-      call see_points(block%n, tracking%touching(first), tracking%segment, surface%segments, chain, &
-        points, block%segment, block%t, block%d)
+      call see_points(block%n, tracking%touching(first), tracking%segment, surface%segments, &
+        chain, points, block%segment, block%t, block%d)
       call project_block(block)
       if (block%n_odd > 0) call settle_odd(surface, chain, block)
       i = tracking%touching(first)
@@ -172,7 +172,8 @@ contains
     stays = foot%is_on .and. foot%gap < tracking%pass%closed_gap
     if (stays .and. dot_product(foot%normal, tracking%normal(:, i)) < gentle_turn) &
       stays = is_opposed_at(tracking%pass, own, places, i, foot%normal)
-    if (stays .and. tracking%pass%is_self) stays = is_pair(tracking%pass, own, pairs, i, foot%segment)
+    if (stays .and. tracking%pass%is_self) &
+      stays = is_pair(tracking%pass, own, pairs, i, foot%segment)
     if (stays) then
       call store_foot(tracking, i, foot)
     else

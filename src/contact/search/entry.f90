@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> How contact begins: a separated point among its candidate pairs. It has come through a face within
-!> the step, or it stands behind the closest face although it has not come through it:
-!> then it is active up to the depth of a first contact, with an entry offset that takes off the
-!> depth that it had before (doc/theory/contact.md, section 3.3).
+!> How contact begins: a separated point among its candidate pairs. It has come through a face
+!> within the step, or it stands behind the closest face although it has not come through it: then
+!> it is active up to the depth of a first contact, with an entry offset that takes off the depth
+!> that it had before (doc/theory/contact.md, section 3.3).
 module entry_m
   use contact_state_m, only : tracking_t, candidates_t, pass_t
   use foot_m, only : foot_t, closest_foot, face_foot, end_tolerance, round_off

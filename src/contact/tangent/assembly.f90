@@ -7,6 +7,7 @@ module assembly_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : friction_rule_t
   use dual_m, only : dual_t, constant, n_partial, operator(+), operator(-), operator(*)
+  use entry_offset_m, only : has_offsets
   use friction_tangent_m, only : vary_grip
   use kinds_m, only : wp
   use sparse_m, only : sparse_t, add_block
@@ -82,10 +83,9 @@ contains
 
     if (is_left_to_tie(memory, place)) return
     gap = point%gap
-    if (allocated(memory%interference%depth)) then
-      gap = gap + vary_left(memory, place, point)
-      if (.not. gap%value < memory%closed_gap) return
-    end if
+    if (allocated(memory%interference%depth)) gap = gap + vary_left(memory, place, point)
+    if (has_offsets(memory)) gap = gap + vary_offset(memory, place, point)
+    if (.not. gap%value < memory%closed_gap) return
     pressure = vary_pressure(memory%contact_law, stiffness, gap)
     if (allocated(memory%friction%force)) then
       call add_varied_point(point, pressure*point%area, equations, matrix, &
@@ -112,6 +112,26 @@ contains
       left = left + ends(1)
     end associate
   end function vary_left
+
+  !> Entry offset of a point at a node; a master node of type 5 goes by the ends of its slave
+  !> segment.
+  pure function vary_offset(memory, place, point) result(offset)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: place
+    type(varied_point_t), intent(in) :: point
+    type(dual_t) :: offset
+    real(wp) :: ends(2)
+
+    if (place <= memory%n_slave) then
+      offset = constant(memory%slave_tracking%offset(place))
+    else if (memory%master_tracking%n > 0) then
+      offset = constant(memory%master_tracking%offset(place - memory%n_slave))
+    else
+      ends = memory%slave_tracking%offset(point%nodes(:2))
+      offset = (ends(2) - ends(1))*point%slave_xi
+      offset = offset + ends(1)
+    end if
+  end function vary_offset
 
   !> Scratch for an interface of n nodes.
   pure subroutine start_pattern(pattern, n)

@@ -207,16 +207,16 @@ contains
     call add_product(pattern, 1.0_wp/total, equations, matrix)
   end subroutine add_portions
 
-  !> The part of its initial overlap that does not act yet.
+  !> The part of its depth that does not act: entry offset, and what is left of an initial overlap.
   pure function left_at(contact, memory, spot) result(left)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: spot
     real(wp) :: left
 
-    left = 0.0_wp
+    left = memory%slave_tracking%offset(spot)
     if (.not. allocated(memory%interference%depth)) return
-    left = memory%interference%left*memory%interference%depth(2*contact%slave%segments(1, &
+    left = left + memory%interference%left*memory%interference%depth(2*contact%slave%segments(1, &
       1 + (spot - 1)/2) - mod(spot, 2))
   end function left_at
 

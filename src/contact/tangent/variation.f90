@@ -15,8 +15,8 @@ module variation_m
   implicit none
   private
   public :: varied_point_t, varied_foot_t, n_slot, round_off, apart, length_between, project, &
-    spot_foot, put_foot, see_from, take_piece, piece_ends, vary_share, vary_radius, &
-    vary_end_radius, vary_centroid
+    spot_foot, put_foot, see_from, take_piece, piece_ends, vary_share, share_of, &
+    vary_radius, vary_end_radius, vary_centroid
 
   !> Nodes that a point depends on, at most.
   integer, parameter :: n_slot = n_partial/2
@@ -209,9 +209,16 @@ contains
     integer, intent(in) :: nodes(n_slot)
     integer, intent(in) :: i
     type(dual_t), intent(in) :: normal(2)
-    type(dual_t) :: share, t(2)
+    type(dual_t) :: share
 
-    t = apart(places, nodes, i + 1, i)
+    share = share_of(apart(places, nodes, i + 1, i), normal)
+  end function vary_share
+
+  !> Share of a segment with the vector t that counts as opposed to a face with the given normal.
+  pure function share_of(t, normal) result(share)
+    type(dual_t), intent(in) :: t(2), normal(2)
+    type(dual_t) :: share
+
     share = (t(2)*normal(1) - t(1)*normal(2))/sqrt(t(1)*t(1) + t(2)*t(2))
     share = (1.0_wp/(side_on - face_on))*(side_on - share)
     if (share%value >= 1.0_wp) then
@@ -221,7 +228,7 @@ contains
     else
       share = share*share*(3.0_wp - 2.0_wp*share)
     end if
-  end function vary_share
+  end function share_of
 
   !> In axisymmetry: radius at xi of the segment in slots i, j.
   pure function vary_radius(places, nodes, i, j, xi) result(radius)
