@@ -214,6 +214,9 @@ contains
       return
     end if
     ! Slips are those of the slave side along the master's chain, which runs the other way.
+    ! At a corner the side next to it has no contact.
+    if (count(memory%friction%state(near) == is_open) == 1) &
+      near = near(maxloc(memory%friction%state(near), 1))
     slip = -0.5_wp*(memory%friction%slip(near(1)) + memory%friction%slip(near(2)))
     state = maxval(memory%friction%state(near))
   end subroutine find_state

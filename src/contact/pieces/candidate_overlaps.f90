@@ -50,8 +50,10 @@ contains
         call append_overlap(ends, overlap_t(high=1.0_wp), table)
       return
     end if
-    is_in_contact = memory%segment_status(s) == is_touching &
-      .or. any(memory%slave_tracking%status(ends) == is_touching)
+    ! One active end does not tell: what lies deep at the other may be the back of a wall.
+    is_in_contact = all(memory%slave_tracking%status(ends) == is_touching)
+    if (.not. any(memory%slave_tracking%status(ends) == is_touching)) &
+      is_in_contact = memory%segment_status(s) == is_touching
     n = 0
     do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
       associate (m => memory%candidates%items(j))

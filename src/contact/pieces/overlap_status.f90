@@ -18,7 +18,8 @@ contains
     type(contact_state_t), intent(in) :: memory
     logical :: none_due
 
-    none_due = memory%slave_tracking%n_touching == 0 .and. memory%travel < memory%next_segment_wake
+    none_due = memory%slave_tracking%n_touching == 0 &
+      .and. memory%travel + memory%closed_gap < memory%next_segment_wake
   end function none_due
 
   !> Whether a slave segment may touch: its next search time has come, or an end of it is active.
@@ -28,7 +29,7 @@ contains
     integer, intent(in) :: ends(2) !! its nodes
     logical :: due
 
-    due = .not. memory%travel < memory%segment_wake(segment)
+    due = .not. memory%travel + memory%closed_gap < memory%segment_wake(segment)
     if (.not. due) due = any(memory%slave_tracking%status(ends) == is_touching)
   end function is_due
 
@@ -59,7 +60,7 @@ contains
     if (deepest >= memory%closed_gap) then
       memory%segment_status(segment) = is_free
       memory%segment_wake(segment) = memory%travel + distance_to_candidates(contact, memory, &
-        segment) - memory%closed_gap
+        segment)
       return
     end if
     memory%segment_wake(segment) = -huge(1.0_wp)

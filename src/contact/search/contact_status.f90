@@ -24,16 +24,19 @@ contains
     real(wp), intent(in), contiguous :: places(:, :)    !! (4, n_node) of the interface
     real(wp), intent(in), contiguous :: increments(:, :) !! (2, n_node) displacements of the step, m
     real(wp), intent(in), contiguous :: points(:, :)    !! (4, n) positions of the points
+    real(wp) :: travel
     integer :: n_left, n_due, i, k
     logical :: has_changed, was_active
 
     n_left = 0
     if (tracking%n_touching > 0) call keep_contacts(tracking, other, &
       places(:, tracking%pass%other_at + 1:), points, n_left)
-    if (n_left == 0 .and. tracking%pass%travel < tracking%next_wake) return
+    ! Distances are to segments; contact begins at the closed gap.
+    travel = tracking%pass%travel + tracking%pass%closed_gap
+    if (n_left == 0 .and. travel < tracking%next_wake) return
     n_due = n_left
-    if (.not. tracking%pass%travel < tracking%next_wake) call list_due(tracking%n, tracking%wake, &
-      tracking%pass%travel, tracking%next_wake, tracking%due, n_due)
+    if (.not. travel < tracking%next_wake) call list_due(tracking%n, tracking%wake, travel, &
+      tracking%next_wake, tracking%due, n_due)
     has_changed = .false.
     do k = 1, n_due
       i = tracking%due(k)
@@ -202,8 +205,7 @@ contains
       tracking%wake(i) = huge(1.0_wp)
     else
       tracking%status(i) = is_free
-      tracking%wake(i) = tracking%pass%travel + max(0.0_wp, found%distance &
-        - tracking%pass%closed_gap)
+      tracking%wake(i) = tracking%pass%travel + found%distance
     end if
   end subroutine look_at_point
 

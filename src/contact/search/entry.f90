@@ -20,6 +20,8 @@ module entry_m
     type(foot_t) :: foot              !! on the face that it has entered, or the closest; segment 0:
                                       !! none within the search radius
     integer :: nearest = 0            !! candidate
+    integer :: behind = 0             !! nearest opposed candidate that it is over and behind
+    real(wp) :: depth = huge(1.0_wp)  !! behind that, m
     logical :: is_active = .false.
     logical :: is_released = .false.  !! it has come to lie deeper than a first contact may be
     real(wp) :: offset = 0.0_wp       !! entry offset, m
@@ -61,10 +63,15 @@ contains
             if (sight%across >= 0.0_wp .and. .not. pass%closed_gap > 0.0_wp) cycle
             gap = sight_gap(sight)
             if (gap >= pass%closed_gap) cycle
-            if (found%is_active .and. abs(gap) >= abs(found%foot%gap)) cycle
-            if (.not. has_entered(tracking, own, other, places, increments, sight, i, segment)) cycle
-            found%foot = face_foot(sight, segment)
-            found%is_active = .true.
+            if (.not. is_behind(tracking, own, other, places, sight, i, segment)) cycle
+            if (has_entered(tracking, own, other, places, increments, sight, i, segment)) then
+              if (found%is_active .and. abs(gap) >= abs(found%foot%gap)) cycle
+              found%foot = face_foot(sight, segment)
+              found%is_active = .true.
+            else if (.not. found%is_active .and. abs(gap) < found%depth) then
+              found%behind = segment
+              found%depth = abs(gap)
+            end if
           end associate
         end do
       end do
@@ -75,9 +82,21 @@ contains
       call look_at_closest(tracking, own, other, places, increments, point, i, found)
   end function find_contact
 
-  !> Whether a point behind a segment has come through it: it is over it, was not behind it before
-  !> the step, no deeper than a first contact may be unless the step is an implicit one, and the face
-  !> is opposed to it.
+  !> Whether a point on the inner side of a segment is over it, and the face opposed to it.
+  pure function is_behind(tracking, own, other, places, sight, i, segment) result(behind)
+    type(tracking_t), intent(in) :: tracking
+    type(surface_t), intent(in) :: own, other
+    real(wp), intent(in), contiguous :: places(:, :)
+    type(sight_t), intent(in) :: sight !! of the point from the segment
+    integer, intent(in) :: i, segment
+    logical :: behind
+
+    behind = is_over(other, places(:, tracking%pass%other_at + 1:), sight, segment)
+    if (behind) behind = is_opposed_at(tracking%pass, own, places, i, sight_normal(sight))
+  end function is_behind
+
+  !> Whether a point behind a segment has come through it: it was not behind it before the step, and
+  !> is no deeper than a first contact may be unless the step is an implicit one.
   pure function has_entered(tracking, own, other, places, increments, sight, i, &
       segment) result(entered)
     type(tracking_t), intent(in) :: tracking
@@ -88,18 +107,15 @@ contains
     logical :: entered
     type(sight_t) :: former
 
-    entered = is_over(other, places(:, tracking%pass%other_at + 1:), sight, segment)
-    if (.not. entered) return
     entered = -sight_gap(sight) <= depth_limit(tracking, i, segment)
     if (tracking%pass%has_history .and. (entered .or. tracking%pass%is_trial)) then
       former = former_sight(tracking%pass, own, other, places, increments, i, segment)
       entered = former%across >= 0.0_wp
     end if
-    if (entered) entered = is_opposed_at(tracking%pass, own, places, i, sight_normal(sight))
   end function has_entered
 
   !> The closest candidate: in front of it the point is separated; behind it, it is active from now
-  !> on unless it is too deep.
+  !> on unless it is too deep, on that or on the nearest face that is opposed to it.
   pure subroutine look_at_closest(tracking, own, other, places, increments, point, i, found)
     type(tracking_t), intent(in) :: tracking
     type(surface_t), intent(in) :: own, other
@@ -112,16 +128,22 @@ contains
 
     associate (pass => tracking%pass, foot => found%foot)
       foot = closest_foot(other, places(:, pass%other_at + 1:), point, found%nearest)
-      found%distance = min(tracking%reach, foot%distance)
-      if (.not. foot%is_on) then
+      found%distance = min(tracking%reach, foot%distance, abs(foot%gap))
+      if (foot%xi <= 0.0_wp .or. foot%xi >= 1.0_wp) then
         ! A face reaches a little beyond its end.
         associate (ends => pass%other_at + other%segments(:, foot%segment))
-          found%distance = found%distance - end_tolerance*segment_length(places(:, ends(1)), &
-            places(:, ends(2)))
+          found%distance = max(0.0_wp, min(tracking%reach, foot%distance) - end_tolerance &
+            *segment_length(places(:, ends(1)), places(:, ends(2))))
         end associate
-      else if (foot%gap < pass%closed_gap) then
+      end if
+      if (foot%is_on .and. foot%gap < pass%closed_gap) then
         found%distance = 0.0_wp
-        if (.not. is_opposed_at(pass, own, places, i, foot%normal)) return
+        if (.not. is_opposed_at(pass, own, places, i, foot%normal)) then
+          if (found%behind == 0) return
+          foot = face_foot(sight_of_segment(point, places(:, pass%other_at + other%segments(1, &
+            found%behind)), places(:, pass%other_at + other%segments(2, found%behind))), &
+            found%behind)
+        end if
         limit = depth_limit(tracking, i, foot%segment)
         found%is_active = -foot%gap <= limit
         found%is_released = .not. found%is_active
