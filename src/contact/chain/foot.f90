@@ -11,7 +11,8 @@ module foot_m
   private
   public :: foot_t, mark_t, see_segment, closest_foot, nearest_foot, near_foot, face_foot, &
     follow_contact, walk_to_closest, walk_to_mark, nearer_run, is_over_segment, turns_gently, &
-    facing_share, end_tolerance, gentle_turn, side_on, face_on, round_off
+    facing_share, side_share, end_tolerance, gentle_turn, side_on, face_on, least_excess, &
+    most_excess, round_off
 
   !> Overshoot accepted beyond the end of a chain, as a part of the segment; not clamped.
   real(wp), parameter :: end_tolerance = 0.01_wp
@@ -25,6 +26,10 @@ module foot_m
   !> surfaces). From there to `side_on` the share falls smoothly: a jump would create energy when a
   !> body turns.
   real(wp), parameter :: face_on = -0.5_wp
+  !> By how much the cosine of the more opposed of both segments at a vertex exceeds that of the other
+  !> where all of the other counts, and from where on nothing of it does: a side that stands at 70
+  !> degrees on a face is no part of a contact that the next one is in at 20.
+  real(wp), parameter :: least_excess = 0.1_wp, most_excess = 0.5_wp
   !> Part of a segment next to its ends where round-off decides on which side of a node a place is.
   real(wp), parameter :: round_off = 1.0e-12_wp
 
@@ -398,7 +403,12 @@ contains
         return
       end if
       other = see_segment(surface, chain, place, neighbour)
-      if (.not. turns_gently(sight, other)) exit
+      if (.not. turns_gently(sight, other)) then
+        ! At a sharp convex vertex the face ends as at the end of an open surface.
+        if (is_over_segment(sight) .and. merge(-1.0_wp, 1.0_wp, backwards)*(sight%t(1)*other%t(2) &
+          - sight%t(2)*other%t(1)) > 0.0_wp) return
+        exit
+      end if
       sight = other
       mark%segment = neighbour
       mark%n_step = mark%n_step + merge(-1, 1, backwards)
@@ -434,6 +444,16 @@ contains
         nearer = other
     end associate
   end function nearer_run
+
+  !> How much of the side next to a vertex counts, 0 to 1, where the segment on the other side of the
+  !> vertex is opposed to the same face by a cosine that is so much larger.
+  pure function side_share(excess) result(share)
+    real(wp), intent(in) :: excess
+    real(wp) :: share
+
+    share = max(0.0_wp, min(1.0_wp, (most_excess - excess)/(most_excess - least_excess)))
+    share = share*share*(3.0_wp - 2.0_wp*share)
+  end function side_share
 
   !> How much of a surface counts where its outward normal and that of the other side have this
   !> cosine, 0 to 1.

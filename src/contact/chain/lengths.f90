@@ -2,7 +2,7 @@
 !> Competence lengths: what each node of a surface stands for (doc/theory/contact.md, section 5).
 module lengths_m
   use geometry_m, only : segment_length, separation
-  use foot_m, only : facing_share
+  use foot_m, only : facing_share, side_share
   use kinds_m, only : wp
   use radii_m, only : radius_of, end_radius
   use surfaces_m, only : surface_t
@@ -55,8 +55,8 @@ contains
   end function competence_area
 
   !> Tributary length of a node of a closed boundary, m: half of each of its segments as far as that
-  !> is opposed to the face below the node, which at a corner leaves out the side. Where the face
-  !> stands between both normals of a convex vertex, what is missing to the larger share counts too.
+  !> is opposed to the face below the node; of the side at a corner less than that, or nothing (see
+  !> `side_share`). Where the face stands between both normals of a convex vertex, what is missing to the larger share counts too.
   !> In axisymmetry the integral of the radius, m^2 per radian.
   pure function tributary_area(surface, places, is_round, i_node, normal) result(area)
     type(surface_t), intent(in) :: surface
@@ -65,23 +65,27 @@ contains
     integer, intent(in) :: i_node
     real(wp), intent(in) :: normal(2)                !! outward, of the face
     real(wp) :: area
-    real(wp) :: t(2, 2), halves(2), shares(2)
+    real(wp) :: t(2, 2), halves(2), shares(2), cosines(2)
     integer :: segments(2), k
 
     segments = [surface%incoming(i_node), surface%outgoing(i_node)]
     halves = 0.0_wp
     shares = 0.0_wp
+    cosines = 0.0_wp
     do k = 1, 2
       if (segments(k) == 0) cycle
       associate (ends => surface%segments(:, segments(k)))
         t(:, k) = separation(places(:, ends(2)), places(:, ends(1)))
         halves(k) = 0.5_wp*norm2(t(:, k))
-        shares(k) = facing_share((t(2, k)*normal(1) - t(1, k)*normal(2)) &
-          /max(2.0_wp*halves(k), tiny(1.0_wp)))
+        cosines(k) = (t(2, k)*normal(1) - t(1, k)*normal(2)) &
+          /max(2.0_wp*halves(k), tiny(1.0_wp))
+        shares(k) = facing_share(cosines(k))
         if (is_round) halves(k) = halves(k)*end_radius(radius_of(places(:, i_node)), &
           radius_of(places(:, ends(k))))
       end associate
     end do
+    k = maxloc(cosines, 1)
+    shares(k) = shares(k)*side_share(maxval(cosines) - minval(cosines))
     area = dot_product(halves, shares)
     if (maxval(shares) >= 1.0_wp .or. any(segments == 0)) return
     ! The opposite of the normal turns from the first of both normals to the second.

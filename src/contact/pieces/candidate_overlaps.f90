@@ -6,7 +6,7 @@
 module candidate_overlaps_m
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
-  use foot_m, only : foot_t, closest_foot, side_on, round_off
+  use foot_m, only : foot_t, closest_foot, side_on, face_on, side_share, round_off
   use geometry_m, only : sight_t, sight_of_segment, separation, closest_distance
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t, grow_pieces, is_walked_piece
@@ -60,6 +60,7 @@ contains
         if (is_beyond(contact%master, anchors, m, size(overlaps))) cycle
         call cut_by(contact, memory, ends, anchors, m, overlaps(n + 1))
         if (.not. overlaps(n + 1)%high > overlaps(n + 1)%low) cycle
+        if (is_side_of_corner(contact, memory, s, m)) cycle
         if (.not. is_in_contact .and. middle_gap(overlaps(n + 1)) < -deep &
           *memory%slave_tracking%segment_depth(m)) cycle
         n = n + 1
@@ -143,6 +144,42 @@ contains
       closest = memory%candidates%items(j)
     end do
   end function closest_opposed
+
+  !> Whether a slave segment is the side next to a sharp convex vertex whose other segment is opposed
+  !> to a master segment so much more that nothing of the side counts.
+  pure function is_side_of_corner(contact, memory, s, m) result(is)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s, m
+    logical :: is
+    real(wp) :: own(2), beside(2), other(2), cosine
+    integer :: k, next
+
+    is = .false.
+    other = vector(contact%master, memory%places(:, memory%n_slave + 1:), m)
+    own = vector(contact%slave, memory%places(:, :memory%n_slave), s)
+    cosine = dot_product(own, other)/(norm2(own)*norm2(other))
+    if (cosine <= face_on) return
+    do k = 1, 2
+      next = merge(contact%slave%previous(s), contact%slave%next(s), k == 1)
+      if (next == 0) cycle
+      beside = vector(contact%slave, memory%places(:, :memory%n_slave), next)
+      if (merge(-1.0_wp, 1.0_wp, k == 1)*(own(1)*beside(2) - own(2)*beside(1)) <= 0.0_wp) cycle
+      is = is .or. .not. side_share(cosine - dot_product(beside, other) &
+        /(norm2(beside)*norm2(other))) > 0.0_wp
+    end do
+  end function is_side_of_corner
+
+  !> Vector of a segment, m.
+  pure function vector(surface, places, segment) result(t)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    integer, intent(in) :: segment
+    real(wp) :: t(2)
+
+    t = separation(places(:, surface%segments(2, segment)), &
+      places(:, surface%segments(1, segment)))
+  end function vector
 
   !> Whether a slave segment is opposed to the face that one of its ends is active on.
   pure function is_opposed_to_contact(slave, memory, s) result(opposed)

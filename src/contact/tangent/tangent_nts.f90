@@ -5,7 +5,7 @@ module tangent_nts_m
   use assembly_m, only : add_pressed_point
   use contact_state_m, only : contact_state_t
   use variation_m, only : varied_point_t, spot_foot, put_foot, length_between, &
-    apart, share_of, vary_end_radius
+    apart, share_of, side_share_of, cosine_of, vary_end_radius
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/)
   use kinds_m, only : wp
@@ -90,7 +90,7 @@ contains
     logical, intent(in) :: by_radius
     type(contact_state_t), intent(in) :: memory
     type(varied_point_t), intent(inout) :: point
-    type(dual_t) :: halves(2), shares(2), t(2), along(2)
+    type(dual_t) :: halves(2), shares(2), cosines(2), t(2), along(2)
     integer :: k
 
     call vary_competence(surface, offset, by_radius, memory, point)
@@ -99,13 +99,17 @@ contains
     halves = constant(0.0_wp)
     shares = constant(0.0_wp)
     along = constant(0.0_wp)
+    cosines = constant(0.0_wp)
     do k = 1, 2
       if (point%nodes(4 + k) == 0) cycle
       halves(k) = half_of(memory, by_radius, k, point)
       t = apart(memory%places, point%nodes, merge(1, 6, k == 1), merge(5, 1, k == 1))
       shares(k) = share_of(t, point%normal)
+      cosines(k) = cosine_of(t, point%normal)
       along(k) = t(1)*point%normal(1) + t(2)*point%normal(2)
     end do
+    k = merge(1, 2, cosines(1)%value >= cosines(2)%value)
+    shares(k) = shares(k)*side_share_of(cosines(k), cosines(3 - k))
     point%area = halves(1)*shares(1) + halves(2)*shares(2)
     if (max(shares(1)%value, shares(2)%value) >= 1.0_wp .or. any(point%nodes(5:6) == 0)) return
     k = merge(1, 2, shares(1)%value >= shares(2)%value)

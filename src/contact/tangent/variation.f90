@@ -7,7 +7,7 @@ module variation_m
   use contact_state_m, only : contact_state_t
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
     operator(/), sqrt
-  use foot_m, only : side_on, face_on
+  use foot_m, only : side_on, face_on, least_excess, most_excess
   use geometry_m, only : separation
   use kinds_m, only : wp
   use piece_table_m, only : piece_table_t
@@ -16,6 +16,7 @@ module variation_m
   private
   public :: varied_point_t, varied_foot_t, n_slot, round_off, apart, length_between, project, &
     spot_foot, put_foot, see_from, take_piece, piece_ends, vary_share, share_of, &
+    side_share_of, cosine_of, &
     vary_radius, vary_end_radius, vary_centroid
 
   !> Nodes that a point depends on, at most.
@@ -219,8 +220,32 @@ contains
     type(dual_t), intent(in) :: t(2), normal(2)
     type(dual_t) :: share
 
-    share = (t(2)*normal(1) - t(1)*normal(2))/sqrt(t(1)*t(1) + t(2)*t(2))
-    share = (1.0_wp/(side_on - face_on))*(side_on - share)
+    share = cosine_of(t, normal)
+    share = smooth_step((1.0_wp/(side_on - face_on))*(side_on - share))
+  end function share_of
+
+  !> Share of the less opposed of both segments at a vertex, by its cosine and that of the other.
+  pure function side_share_of(less, more) result(share)
+    type(dual_t), intent(in) :: less, more
+    type(dual_t) :: share
+
+    share = smooth_step((1.0_wp/(most_excess - least_excess))*(most_excess - (less - more)))
+  end function side_share_of
+
+  !> Cosine between the outward normals of a segment with the vector t and of a face.
+  pure function cosine_of(t, normal) result(cosine)
+    type(dual_t), intent(in) :: t(2), normal(2)
+    type(dual_t) :: cosine
+
+    cosine = (t(2)*normal(1) - t(1)*normal(2))/sqrt(t(1)*t(1) + t(2)*t(2))
+  end function cosine_of
+
+  !> A step from 0 to 1 with slopes of zero.
+  pure function smooth_step(along) result(share)
+    type(dual_t), intent(in) :: along
+    type(dual_t) :: share
+
+    share = along
     if (share%value >= 1.0_wp) then
       share = constant(1.0_wp)
     else if (share%value <= 0.0_wp) then
@@ -228,7 +253,7 @@ contains
     else
       share = share*share*(3.0_wp - 2.0_wp*share)
     end if
-  end function share_of
+  end function smooth_step
 
   !> In axisymmetry: radius at xi of the segment in slots i, j.
   pure function vary_radius(places, nodes, i, j, xi) result(radius)
