@@ -16,8 +16,9 @@ module candidate_overlaps_m
   private
   public :: list_candidate_overlaps, closest_candidate
 
-  !> Deepest middle of an overlap of a slave segment that is not in contact, by the depth of a first
-  !> contact: deeper ones are the far side of something.
+  !> Deepest middle of an overlap with a master segment that no end of the slave segment is active
+  !> on, by the depth of a first contact: deeper ones are the far side of something, or the back of
+  !> the own wall.
   real(wp), parameter :: deep = 1.5_wp
   !> One overlap.
   type :: overlap_t
@@ -39,7 +40,7 @@ contains
     type(piece_table_t), intent(inout) :: table
     type(overlap_t) :: overlaps(2*(memory%candidates%first(s + 1) - memory%candidates%first(s)) + 1)
     integer :: ends(2), anchors(2), j, k, n
-    logical :: is_in_contact
+    logical :: is_active(2), may_be_deep
 
     ends = contact%slave%segments(:, s)
     do k = 1, 2
@@ -50,10 +51,10 @@ contains
         call append_overlap(ends, overlap_t(high=1.0_wp), table)
       return
     end if
-    ! One active end does not tell: what lies deep at the other may be the back of a wall.
-    is_in_contact = all(memory%slave_tracking%status(ends) == is_touching)
-    if (.not. any(memory%slave_tracking%status(ends) == is_touching)) &
-      is_in_contact = memory%segment_status(s) == is_touching
+    is_active = memory%slave_tracking%status(ends) == is_touching
+    ! From the start a master node may lie deep behind a segment both ends of which are beside it.
+    may_be_deep = .not. contact%is_self .and. .not. any(is_active) &
+      .and. memory%segment_status(s) == is_touching
     n = 0
     do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
       associate (m => memory%candidates%items(j))
@@ -61,8 +62,8 @@ contains
         call cut_by(contact, memory, ends, anchors, m, overlaps(n + 1))
         if (.not. overlaps(n + 1)%high > overlaps(n + 1)%low) cycle
         if (is_side_of_corner(contact, memory, s, m)) cycle
-        if (.not. is_in_contact .and. middle_gap(overlaps(n + 1)) < -deep &
-          *memory%slave_tracking%segment_depth(m)) cycle
+        if (.not. (may_be_deep .or. any(is_active .and. anchors == m)) .and. &
+          middle_gap(overlaps(n + 1)) < -deep*memory%slave_tracking%segment_depth(m)) cycle
         n = n + 1
       end associate
     end do

@@ -225,7 +225,8 @@ contains
 
   end function former_sight
 
-  !> Whether a segment is a candidate of a point.
+  !> Whether a point on a surface in contact with itself may be followed to a segment: a candidate, or
+  !> none that shares a node or the element behind with the point's own.
   pure function is_pair(pass, own, pairs, i, segment) result(is)
     type(pass_t), intent(in) :: pass
     type(surface_t), intent(in) :: own
@@ -233,15 +234,21 @@ contains
     integer, intent(in) :: i, segment
     logical :: is
     integer :: segments(2), k
+    logical :: is_apart
 
     is = .false.
+    is_apart = .true.
     segments = segments_of(own, pass%n_on_segment, i)
     do k = 1, 2
       if (segments(k) == 0) cycle
       associate (first => pairs%first(segments(k)), last => pairs%first(segments(k) + 1) - 1)
         is = is .or. any(pairs%items(first:last) == segment)
       end associate
+      is_apart = is_apart .and. segments(k) /= segment .and. own%previous(segments(k)) /= segment &
+        .and. own%next(segments(k)) /= segment &
+        .and. own%segment_element(segments(k)) /= own%segment_element(segment)
     end do
+    is = is .or. is_apart
   end function is_pair
 
   !> Whether a face is opposed to a point.
