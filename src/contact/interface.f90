@@ -3,7 +3,7 @@
 module interface_m
   use clock_m, only : clock_t, lap, phase_contact_search, phase_contact_pairing, &
     phase_contact_force
-  use candidates_m, only : update_candidates
+  use candidates_m, only : update_candidates, list_candidates
   use closed_gap_m, only : closed_gap_of, gap_ahead
   use contact_dispatch_m, only : formulation_t, formulation_of, place_points
   use behind_ties_m, only : leave_to_tie, take_over
@@ -76,6 +76,8 @@ contains
     end associate
     if (allocated(memory%segment_status)) &
       call activate_deep_segments(contact, model, memory, answers)
+    ! Points that lie deep need pairs as deep.
+    memory%listed_until = -huge(1.0_wp)
   end subroutine start_search
 
   !> Contact forces of one interface at the present u, added to `force`, and their work since the
@@ -273,7 +275,7 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
 
-    memory%candidates%valid_until = -huge(1.0_wp)
+    call list_candidates(contact, memory)
     call measure_depths(memory%slave_tracking)
     call measure_depths(memory%master_tracking)
     call form_springs(memory)
@@ -322,7 +324,7 @@ contains
     call gather_points(contact, motion, memory)
     if (contact%penalty_unit == penalty_implicit) &
       memory%closed_gap = gap_ahead(contact, cycle == 0 .or. was_stale, memory)
-    call search_pairs(contact, cycle, .not. was_stale, memory)
+    call search_pairs(contact, cycle, .not. was_stale .and. cycle > 0, memory)
   end subroutine find_contacts
 
   !> The present positions of nodes and of points between them.
@@ -343,10 +345,13 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     memory%places(3:4, :) = motion(1:2, memory%nodes)
-    memory%candidates%valid_until = -huge(1.0_wp)
+    memory%listed_until = -huge(1.0_wp)
     call forget_pairs(memory%slave_tracking)
     call forget_pairs(memory%master_tracking)
-    if (allocated(memory%segment_status)) memory%segment_status = is_free
+    if (allocated(memory%segment_status)) then
+      memory%segment_status = is_free
+      memory%segment_gap = huge(1.0_wp)
+    end if
     memory%is_stale = .false.
   end subroutine refresh_memory
 

@@ -317,7 +317,9 @@ contains
       slave, memory%master_tracking)
     if (.not. allocated(old%segment_status)) return
     do k = 1, size(slave)
-      if (slave(k) > 0) memory%segment_status(slave(k)) = old%segment_status(k)
+      if (slave(k) == 0) cycle
+      memory%segment_status(slave(k)) = old%segment_status(k)
+      memory%segment_gap(slave(k)) = old%segment_gap(k)
     end do
   end subroutine carry_trackings
 

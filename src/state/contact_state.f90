@@ -71,7 +71,6 @@ module contact_state_m
   !> Candidate pairs: for each segment of one surface the segments of the other that it may touch
   !> before the lists are made anew. No result depends on them; a restart makes them again.
   type :: candidates_t
-    real(wp) :: valid_until = -huge(1.0_wp) !! travel, m
     integer, allocatable :: first(:) !! (n_segment + 1) where each row starts ...
     integer, allocatable :: items(:) !! ... on this list of segments of the other surface
   end type candidates_t
@@ -179,9 +178,12 @@ module contact_state_m
     type(tracking_t) :: slave_tracking      !! slave nodes, or `spots`, over the master chain
     type(tracking_t) :: master_tracking     !! master nodes over the slave chain; empty for one pass
     type(candidates_t) :: candidates        !! of slave segments
+    real(wp) :: listed_until = -huge(1.0_wp) !! travel for which these hold, m
     type(candidates_t) :: reversed          !! of master segments: the same pairs; for two passes
     integer, allocatable :: segment_status(:) !! (slave segments) is_touching: overlaps of it are in
                                             !! contact; only where these make points
+    real(wp), allocatable :: segment_gap(:) !! (slave segments) smallest gap of its points at the
+                                            !! last look, m
     real(wp), allocatable :: segment_wake(:) !! (slave segments) travel before which its overlaps
                                             !! can not touch, m
     real(wp) :: next_segment_wake = -huge(1.0_wp) !! smallest of these, m
@@ -369,7 +371,6 @@ contains
     call visitor%visit('reach', self%reach)
     call visitor%visit('touching', self%touching, whole, 0, length(self%touching), &
       'numbers that no spot has')
-    call visitor%visit('due', self%due, whole, 0, length(self%due), 'numbers that no spot has')
     call visitor%visit('segment', self%segment)
     call visitor%visit('status', self%status, whole, is_free, is_touching, &
       'numbers that mean nothing')
@@ -405,7 +406,9 @@ contains
     call visitor%part('master_tracking', self%master_tracking)
     call visitor%visit('segment_status', self%segment_status, whole, is_free, is_touching, &
       'numbers that mean nothing')
+    call visitor%visit('segment_gap', self%segment_gap)
     call visitor%visit('segment_wake', self%segment_wake)
+    call visitor%visit('listed_until', self%listed_until)
     call visitor%visit('next_segment_wake', self%next_segment_wake)
     call visitor%part('points', self%points)
     call visitor%visit('closed_gap', self%closed_gap)

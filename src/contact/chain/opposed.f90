@@ -2,7 +2,7 @@
 !> Whether two surfaces are opposed: the outward normal of a face against those of the segments that
 !> a point is on (doc/theory/contact.md, section 3.3).
 module opposed_m
-  use foot_m, only : face_on, gentle_turn
+  use foot_m, only : face_on, side_on, gentle_turn
   use geometry_m, only : separation
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
@@ -40,19 +40,20 @@ contains
   end function segments_of
 
   !> Whether a face is opposed to a point: its outward normal is opposite to that of one of the
-  !> point's segments within 60 degrees, or lies opposite between both of them at a convex vertex, by
+  !> point's segments within 60 degrees (points between nodes: 84 degrees), or lies opposite between both of them at a convex vertex, by
   !> 10 degrees at least: else the nodes of a body that slides on over a ramp would be held by the
   !> end face in front of it. At an end of an open surface the tangent that leads out of it takes the
-  !> place of the missing normal.
+  !> place of the missing normal there.
   pure function is_opposed(own, places, segments, normal) result(opposed)
     type(surface_t), intent(in) :: own
     real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
     integer, intent(in) :: segments(2)               !! of the point, 0: none
     real(wp), intent(in) :: normal(2)                !! outward, of the face
     logical :: opposed
-    real(wp) :: t(2, 2), normals(2, 2)
+    real(wp) :: t(2, 2), normals(2, 2), limit
     integer :: k
 
+    opposed = .false.
     do k = 1, 2
       if (segments(k) == 0) cycle
       t(:, k) = separation(places(:, own%segments(2, segments(k))), &
@@ -62,9 +63,12 @@ contains
     end do
     if (segments(1) == 0) normals(:, 1) = -t(:, 2)
     if (segments(2) == 0) normals(:, 2) = t(:, 1)
-    opposed = dot_product(normals(:, 1), normal) < face_on &
-      .or. dot_product(normals(:, 2), normal) < face_on
-    if (opposed) return
+    limit = merge(side_on, face_on, segments(1) == segments(2))
+    do k = 1, 2
+      if (segments(k) == 0) cycle
+      opposed = dot_product(normals(:, k), normal) < limit
+      if (opposed) return
+    end do
     ! The opposite of the normal turns counter-clockwise from the first to the second of the normals.
     opposed = cross(normals(:, 1), normals(:, 2)) > 0.0_wp .and. &
       cross(normals(:, 1), -normal) > well_between .and. &

@@ -58,7 +58,7 @@ contains
         slip = dot_product(motion_of(tracking, own, increments, i) - (1.0_wp - xi) &
           *increments(:, ends(1)) - xi*increments(:, ends(2)), t)/length
       end associate
-      if (.not. tracking%pass%has_history) slip = 0.0_wp
+      if (.not. tracking%pass%has_history .or. tracking%pass%is_trial) slip = 0.0_wp
       tracking%offset(i) = limited*max(0.0_wp, 1.0_wp - 2.0_wp*abs(slip)/length)
       tracking%faded(i) = limited - tracking%offset(i)
       tracking%has_offset = tracking%has_offset .or. limited > 0.0_wp

@@ -20,6 +20,8 @@ module candidate_overlaps_m
   !> on, by the depth of a first contact: deeper ones are the far side of something, or the back of
   !> the own wall.
   real(wp), parameter :: deep = 1.5_wp
+  !> Part of a segment within which a projection is on its node.
+  real(wp), parameter :: near_node = 1.0e-9_wp
   !> One overlap.
   type :: overlap_t
     integer :: master = 0
@@ -44,7 +46,7 @@ contains
 
     ends = contact%slave%segments(:, s)
     do k = 1, 2
-      anchors(k) = segment_below(contact, memory, s, ends(k))
+      anchors(k) = segment_below(contact, memory, s, ends, k)
     end do
     if (is_strict .and. any(anchors == 0)) then
       if (is_opposed_to_contact(contact%slave, memory, s)) &
@@ -61,7 +63,9 @@ contains
         if (is_beyond(contact%master, anchors, m, size(overlaps))) cycle
         call cut_by(contact, memory, ends, anchors, m, overlaps(n + 1))
         if (.not. overlaps(n + 1)%high > overlaps(n + 1)%low) cycle
-        if (is_side_of_corner(contact, memory, s, m)) cycle
+        if (memory%slave_tracking%pass%is_closed) then
+          if (is_side_of_corner(contact, memory, s, m)) cycle
+        end if
         if (.not. (may_be_deep .or. any(is_active .and. anchors == m)) .and. &
           middle_gap(overlaps(n + 1)) < -deep*memory%slave_tracking%segment_depth(m)) cycle
         n = n + 1
@@ -74,19 +78,39 @@ contains
     end do
   end subroutine list_candidate_overlaps
 
-  !> Master segment on which an end of a slave segment has its projection: of an active end that of
-  !> its status, else the closest of the candidates if it is over that; 0: none.
-  pure function segment_below(contact, memory, s, node) result(segment)
+  !> Master segment on which the k-th end of a slave segment has its projection: of an active end that
+  !> of its status, else the closest of the candidates if it is over that; 0: none. Of two that meet
+  !> where the projection is the outer one, so that their node lies between both ends.
+  pure function segment_below(contact, memory, s, ends, k) result(segment)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s, ends(2), k
+    integer :: segment, outer
+    real(wp) :: at
+
+    if (memory%slave_tracking%status(ends(k)) == is_touching) then
+      segment = memory%slave_tracking%segment(ends(k))
+      at = memory%slave_tracking%xi(ends(k))
+    else
+      call look_below(contact, memory, s, ends(k), segment, at)
+    end if
+    if (segment == 0) return
+    outer = 0
+    if (k == 1 .and. abs(at - 1.0_wp) <= near_node) outer = contact%master%next(segment)
+    if (k == 2 .and. abs(at) <= near_node) outer = contact%master%previous(segment)
+    if (outer > 0) segment = outer
+  end function segment_below
+
+  !> The same of an end that is not active, and where on the segment.
+  pure subroutine look_below(contact, memory, s, node, segment, at)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s, node
-    integer :: segment
+    integer, intent(out) :: segment
+    real(wp), intent(out) :: at !! 0 to 1
     type(foot_t) :: foot
 
-    if (memory%slave_tracking%status(node) == is_touching) then
-      segment = memory%slave_tracking%segment(node)
-      return
-    end if
+    at = 0.5_wp
     segment = closest_opposed(contact, memory, s, memory%places(:, node))
     if (segment == 0) return
     associate (chain => memory%places(:, memory%n_slave + 1:), point => memory%places(:, node))
@@ -97,8 +121,9 @@ contains
         ! At a vertex: below the end of the slave segment only if the master goes on gently there.
         segment = merge(foot%segment, 0, goes_on(contact%master, chain, foot))
       end if
+      at = foot%xi
     end associate
-  end function segment_below
+  end subroutine look_below
 
   !> Whether a surface goes on without a sharp turn at the node on which a projection stands.
   pure function goes_on(surface, chain, foot)
@@ -281,10 +306,15 @@ contains
     if (anchors(1) == m) then
       overlap%low = 0.0_wp
       overlap%first = 0
+    else if (anchors(1) > 0 .and. abs(xi(1)) <= near_node) then
+      ! A corner right below an end that is active on another body has a point of its own.
+      if (contact%master%next(m) /= anchors(1)) overlap%first = nodes(1)
     end if
     if (anchors(2) == m) then
       overlap%high = 1.0_wp
       overlap%last = 0
+    else if (anchors(2) > 0 .and. abs(xi(2) - 1.0_wp) <= near_node) then
+      if (contact%master%previous(m) /= anchors(2)) overlap%last = nodes(2)
     end if
     if (abs(xi(2) - xi(1)) > round_off) overlap%gap = gaps(1) + (gaps(2) - gaps(1)) &
       *([0.0_wp, 1.0_wp] - xi(1))/(xi(2) - xi(1))

@@ -46,8 +46,7 @@ contains
     wake = merge(-huge(1.0_wp), travel, is_deep)
   end subroutine keep_segment
 
-  !> Whether the points on a segment count. One that is in contact, or has an active end, stays; a
-  !> new one must not be deeper than a first contact may be.
+  !> Whether the points on a segment count. One that is in contact, or has an active end, stays.
   pure subroutine judge_segment(contact, memory, segment, ends, deepest, counts)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -59,17 +58,47 @@ contains
     counts = .true.
     if (deepest >= memory%closed_gap) then
       memory%segment_status(segment) = is_free
+      memory%segment_gap(segment) = deepest
       memory%segment_wake(segment) = memory%travel + distance_to_candidates(contact, memory, &
         segment)
       return
     end if
     memory%segment_wake(segment) = -huge(1.0_wp)
     associate (status => memory%segment_status(segment))
-      if (any(memory%slave_tracking%status(ends) == is_touching) &
-        .or. -deepest <= deepest_first_contact(memory, segment, ends)) status = is_touching
+      if (any(memory%slave_tracking%status(ends) == is_touching)) then
+        status = is_touching
+      else if (status == is_free) then
+        call begin_contact(memory, segment, ends, -deepest, status)
+      end if
       counts = status == is_touching
     end associate
+    memory%segment_gap(segment) = deepest
   end subroutine judge_segment
+
+  !> A segment neither end of which is active, behind which points have come: in contact if these have
+  !> come through it since the last look, and no deeper than a first contact may be unless the step is
+  !> an implicit one.
+  pure subroutine begin_contact(memory, segment, ends, depth, status)
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: segment, ends(2)
+    real(wp), intent(in) :: depth    !! of the deepest, m
+    integer, intent(inout) :: status !! of the segment
+    logical :: is_new, is_deep
+
+    associate (pass => memory%slave_tracking%pass)
+      is_new = .not. pass%has_history .or. memory%segment_gap(segment) >= 0.0_wp
+      is_deep = depth > deepest_first_contact(memory, segment, ends)
+      if (pass%has_history .and. pass%is_trial) is_deep = .false.
+    end associate
+    if (.not. is_new) return
+    if (is_deep) then
+      ! Ends that have come as deep have been counted.
+      if (all(memory%slave_tracking%gap(ends) >= 0.0_wp)) &
+        memory%slave_tracking%n_released = memory%slave_tracking%n_released + 1
+    else
+      status = is_touching
+    end if
+  end subroutine begin_contact
 
   !> Deepest first contact of a segment: that of its ends and of the least of its candidates, m.
   pure function deepest_first_contact(memory, segment, ends) result(depth)

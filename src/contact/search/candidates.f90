@@ -12,7 +12,7 @@ module candidates_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: update_candidates, list_pairs, mean_length
+  public :: update_candidates, list_candidates, list_pairs, mean_length
 
   !> Skin: relative motion for which a list holds, as a part of the finer mean segment.
   real(wp), parameter :: skin_part = 0.3_wp
@@ -30,13 +30,13 @@ contains
     type(contact_state_t), intent(inout) :: memory
     logical :: is_due
 
-    is_due = .not. memory%travel < memory%candidates%valid_until
+    is_due = .not. memory%travel < memory%listed_until
     if (contact%search_interval > 0 .and. cycle >= memory%next_search) then
       memory%next_search = cycle + contact%search_interval
       is_due = .true.
     end if
     if (.not. is_due) return
-    call list_candidates(contact, memory)
+    call list_candidates(contact, memory, memory%listed_until)
     call look_at_all(memory%slave_tracking)
     call look_at_all(memory%master_tracking)
     if (allocated(memory%segment_wake)) memory%segment_wake = -huge(1.0_wp)
@@ -54,9 +54,10 @@ contains
 
   !> All pairs within the search radius, the motion of this call, and the skin. Boxes farther apart
   !> are looked at again when they can have come that near.
-  pure subroutine list_candidates(contact, memory)
+  pure subroutine list_candidates(contact, memory, valid_until)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
+    real(wp), intent(inout), optional :: valid_until !! travel; after a restart it is known, m
     real(wp) :: skin, radius, apart
     integer :: n
 
@@ -64,14 +65,27 @@ contains
     skin = skin_part*min(mean_length(contact%slave, memory%places(:, :n)), &
       mean_length(contact%master, memory%places(:, n + 1:)))
     ! What a long step leads through a face lies as deep as that step.
-    radius = memory%slave_tracking%reach + memory%advance
+    radius = memory%advance + max(memory%slave_tracking%reach, deepest_of(memory%slave_tracking), &
+      deepest_of(memory%master_tracking))
     apart = box_gap(memory%places(:, :n), memory%places(:, n + 1:))
-    memory%candidates%valid_until = memory%travel + max(skin, apart - radius)
+    if (present(valid_until)) valid_until = memory%travel + max(skin, apart - radius)
     call list_pairs(contact, memory%places, merge(radius + skin, -1.0_wp, apart <= radius + skin), &
       memory%candidates)
     if (memory%master_tracking%n > 0) &
       call reverse_pairs(contact%master%n_segment, memory%candidates, memory%reversed)
   end subroutine list_candidates
+
+  !> Depth of the deepest active point, m.
+  pure function deepest_of(tracking) result(depth)
+    type(tracking_t), intent(in) :: tracking
+    real(wp) :: depth
+    integer :: k
+
+    depth = 0.0_wp
+    do k = 1, tracking%n_touching
+      depth = max(depth, -tracking%gap(tracking%touching(k)))
+    end do
+  end function deepest_of
 
   !> Mean length of the segments of a surface, m.
   pure function mean_length(surface, places) result(length)

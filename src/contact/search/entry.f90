@@ -15,6 +15,9 @@ module entry_m
   private
   public :: found_contact_t, find_contact, is_pair, is_opposed_at
 
+  !> Relative motion that a point without candidates is away from contact, m: any.
+  real(wp), parameter :: unpaired = 0.25_wp*huge(1.0_wp)
+
   !> What is found of a separated point.
   type :: found_contact_t
     type(foot_t) :: foot              !! on the face that it has entered, or the closest; segment 0:
@@ -22,6 +25,8 @@ module entry_m
     integer :: nearest = 0            !! candidate
     integer :: behind = 0             !! nearest opposed candidate that it is over and behind
     real(wp) :: depth = huge(1.0_wp)  !! behind that, m
+    real(wp) :: sideways = huge(1.0_wp) !! motion before which it can not have come behind any other
+                                      !! candidate from beside, m
     logical :: is_active = .false.
     logical :: is_released = .false.  !! it has come to lie deeper than a first contact may be
     real(wp) :: offset = 0.0_wp       !! entry offset, m
@@ -63,6 +68,7 @@ contains
             if (sight%across >= 0.0_wp .and. .not. pass%closed_gap > 0.0_wp) cycle
             gap = sight_gap(sight)
             if (gap >= pass%closed_gap) cycle
+            found%sideways = min(found%sideways, way_in(sight))
             if (.not. is_behind(tracking, own, other, places, sight, i, segment)) cycle
             if (has_entered(tracking, own, other, places, increments, sight, i, segment)) then
               if (found%is_active .and. abs(gap) >= abs(found%foot%gap)) cycle
@@ -77,10 +83,24 @@ contains
       end do
     end associate
     if (found%is_active) return
-    found%distance = tracking%reach
-    if (found%nearest > 0) &
+    ! Without candidates the next list is waited for. What lists hold beyond the search radius is a
+    ! matter of when they were made.
+    found%distance = merge(tracking%reach, unpaired, found%nearest > 0)
+    if (found%nearest > 0 .and. least <= tracking%reach**2) &
       call look_at_closest(tracking, own, other, places, increments, point, i, found)
   end function find_contact
+
+  !> Motion that brings a point on the inner side of a segment's line, beyond its ends, over the
+  !> segment, m.
+  pure function way_in(sight) result(way)
+    type(sight_t), intent(in) :: sight !! of the point from the segment
+    real(wp) :: way
+    real(wp) :: beyond
+
+    way = huge(1.0_wp)
+    beyond = max(-sight%along, sight%along - sight%square) - end_tolerance*sight%square
+    if (beyond > 0.0_wp) way = beyond/sqrt(sight%square)
+  end function way_in
 
   !> Whether a point on the inner side of a segment is over it, and the face opposed to it.
   pure function is_behind(tracking, own, other, places, sight, i, segment) result(behind)
@@ -128,12 +148,12 @@ contains
 
     associate (pass => tracking%pass, foot => found%foot)
       foot = closest_foot(other, places(:, pass%other_at + 1:), point, found%nearest)
-      found%distance = min(tracking%reach, foot%distance, abs(foot%gap))
+      found%distance = min(tracking%reach, foot%distance, abs(foot%gap), found%sideways)
       if (foot%xi <= 0.0_wp .or. foot%xi >= 1.0_wp) then
         ! A face reaches a little beyond its end.
         associate (ends => pass%other_at + other%segments(:, foot%segment))
-          found%distance = max(0.0_wp, min(tracking%reach, foot%distance) - end_tolerance &
-            *segment_length(places(:, ends(1)), places(:, ends(2))))
+          found%distance = max(0.0_wp, min(tracking%reach, foot%distance, found%sideways) &
+            - end_tolerance*segment_length(places(:, ends(1)), places(:, ends(2))))
         end associate
       end if
       if (foot%is_on .and. foot%gap < pass%closed_gap) then

@@ -10,7 +10,7 @@ module initial_status_m
   use contacts_m, only : contact_t, is_tied
   use element_finder_m, only : element_finder_t, start_finder, is_inside_body
   use foot_m, only : foot_t, closest_foot, see_segment
-  use geometry_m, only : closest_distance
+  use geometry_m, only : sight_t, closest_distance, sight_normal
   use entry_m, only : is_opposed_at
   use kinds_m, only : wp
   use model_m, only : model_t
@@ -67,6 +67,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     allocate (memory%segment_status(contact%slave%n_segment), source=is_free)
+    allocate (memory%segment_gap(contact%slave%n_segment), source=huge(1.0_wp))
     allocate (memory%segment_wake(contact%slave%n_segment), source=-huge(1.0_wp))
   end subroutine allocate_segments
 
@@ -172,28 +173,36 @@ contains
     call list_touching(tracking)
   end subroutine activate_deep_points
 
-  !> Projection of a point on the closest of all segments that are opposed to it and in front of it;
-  !> segment 0: none.
+  !> Projection of a point on the closest of all segments that it is behind and that are opposed to
+  !> it; segment 0: none.
   pure function closest_opposed(tracking, own, other, places, point, i) result(foot)
     type(tracking_t), intent(in) :: tracking
     type(surface_t), intent(in) :: own, other
     real(wp), intent(in), contiguous :: places(:, :)
     real(wp), intent(in) :: point(4)
     integer, intent(in) :: i
-    type(foot_t) :: foot, next
-    integer :: m
+    type(foot_t) :: foot
+    type(sight_t) :: sight
+    real(wp) :: square, least
+    integer :: m, closest
 
+    closest = 0
+    least = huge(1.0_wp)
     associate (chain => places(:, tracking%pass%other_at + 1:))
       do m = 1, other%n_segment
         if (tracking%pass%is_self .and. tracking%pass%n_on_segment == 0) then
           if (any(other%segments(:, m) == i)) cycle
         end if
-        next = closest_foot(other, chain, point, m)
-        if (.not. next%is_on .or. next%gap >= 0.0_wp) cycle
-        if (foot%segment > 0 .and. next%distance >= foot%distance) cycle
-        if (is_opposed_at(tracking%pass, own, places, i, next%normal)) foot = next
+        sight = see_segment(other, chain, point, m)
+        square = closest_distance(sight)
+        if (sight%across >= 0.0_wp .or. square >= least) cycle
+        if (.not. is_opposed_at(tracking%pass, own, places, i, sight_normal(sight))) cycle
+        closest = m
+        least = square
       end do
+      if (closest > 0) foot = closest_foot(other, chain, point, closest)
     end associate
+    if (.not. foot%is_on .or. foot%gap >= 0.0_wp) foot%segment = 0
   end function closest_opposed
 
   !> Slave segments with a master node deep inside the body behind them are in contact from the
