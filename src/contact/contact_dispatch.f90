@@ -7,7 +7,7 @@ module contact_dispatch_m
   use contact_state_m, only : contact_state_t
   use contact_types_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_vts_ppt, &
     type_nts_mar, type_mortar, type_segmented_mortar
-  use contacts_m, only : contact_t, contact_kind_t, kind_text
+  use contacts_m, only : contact_t, contact_kind_t
   use kinds_m, only : wp
   use place_mortar_m, only : place_mortar
   use place_nts_m, only : place_nts, place_nts_ar, place_two_pass_ar
@@ -22,7 +22,7 @@ module contact_dispatch_m
   use tangent_vts_ppt_m, only : add_vts_ppt_tangent
   implicit none
   private
-  public :: contact_kinds, formulation_t, formulation_of, is_strict, covering_names, place_points, &
+  public :: contact_kinds, formulation_t, formulation_of, is_strict, place_points, &
     add_tangent
 
   !> What the frame must know of a formulation before it places points.
@@ -84,19 +84,6 @@ contains
     formulation = formulation_of(contact)
     strict = formulation%kind%has_strict_rule .and. contact%strict
   end function is_strict
-
-  !> Names of the kinds that give what hangs over an end of the master no weight, for messages.
-  pure function covering_names() result(text)
-    character(:), allocatable :: text
-    integer :: i
-
-    text = ''
-    do i = 1, size(formulations)
-      if (.not. formulations(i)%covers_segments) cycle
-      if (len(text) > 0) text = text//' and '
-      text = text//kind_text(formulations(i)%kind)
-    end do
-  end function covering_names
 
   !> Place the contact points of one interface for the places and pairs in its memory.
   pure subroutine place_points(contact, memory)

@@ -10,7 +10,7 @@ module foot_m
   implicit none
   private
   public :: foot_t, mark_t, see_segment, closest_foot, nearest_foot, near_foot, face_foot, &
-    follow_contact, walk_to_closest, walk_to_mark, nearer_run, is_over_segment, turns_gently, &
+    follow_contact, walk_to_closest, walk_to_mark, is_over_segment, turns_gently, &
     facing_share, side_share, end_tolerance, gentle_turn, side_on, face_on, least_excess, &
     most_excess, round_off
 
@@ -415,35 +415,6 @@ contains
     end do
     mark%xi = max(0.0_wp, min(1.0_wp, mark%xi))
   end function walk_to_mark
-
-  !> Of two runs that meet at a sharp corner the segment that a place is more before. Beyond both
-  !> the corner is as near from either, and which one a search has found is a matter of round-off
-  !> and of when it was made.
-  pure function nearer_run(surface, chain, place, segment) result(nearer)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_node) places
-    real(wp), intent(in) :: place(4)
-    integer, intent(in) :: segment !! the one found
-    integer :: nearer, others(2) !! those that begin where it ends, before it and behind it
-    type(sight_t) :: sight
-    real(wp) :: beyond
-    logical :: at_start
-
-    nearer = segment
-    others = 0
-    if (surface%previous(segment) == 0) others(1) = surface%incoming(surface%segments(1, segment))
-    if (surface%next(segment) == 0) others(2) = surface%outgoing(surface%segments(2, segment))
-    if (all(others == 0)) return
-    sight = see_segment(surface, chain, place, segment)
-    at_start = sight%along < 0.0_wp
-    beyond = max(-sight%along, sight%along - sight%square)/sqrt(sight%square)
-    associate (other => others(merge(1, 2, at_start)))
-      if (other == 0 .or. .not. beyond > 0.0_wp) return
-      sight = see_segment(surface, chain, place, other)
-      if (merge(sight%along - sight%square, -sight%along, at_start)/sqrt(sight%square) < beyond) &
-        nearer = other
-    end associate
-  end function nearer_run
 
   !> How much of the side next to a vertex counts, 0 to 1, where the segment on the other side of the
   !> vertex is opposed to the same face by a cosine that is so much larger.

@@ -15,10 +15,10 @@ module candidates_m
   public :: update_candidates, list_candidates, list_pairs, mean_length
 
   !> Skin: relative motion for which a list holds, as a part of the finer mean segment.
-  real(wp), parameter :: skin_part = 0.3_wp
-  !> Cosine between outward normals from which on segments look the same way; while a list holds
-  !> none of these can turn far enough to be opposed.
-  real(wp), parameter :: same_way = 0.5_wp
+  real(wp), parameter :: skin_part = 0.5_wp
+  !> Cosine between outward normals from which on segments look the same way (30 degrees). While a
+  !> list holds each of them turns by 30 degrees at most, and none comes to be opposed (96 degrees).
+  real(wp), parameter :: same_way = 0.866_wp
 
 contains
 
@@ -259,7 +259,9 @@ contains
       other = b - a
       own = separation(slave(:, own_ends(2)), slave(:, own_ends(1)))
       product = dot_product(own, other)
-      if (product > same_way*norm2(own)*norm2(other)) return
+      if (product > 0.0_wp) then
+        if (product**2 > same_way**2*sum(own**2)*sum(other**2)) return
+      end if
       if (contact%slave%segment_element(s) == contact%master%segment_element(m)) return
       associate (nodes => contact%master%nodes(ends), own_nodes => contact%slave%nodes(own_ends))
         is = .true.

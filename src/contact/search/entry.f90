@@ -48,15 +48,25 @@ contains
     integer, intent(in) :: i                             !! number of the point
     type(found_contact_t) :: found
     type(sight_t) :: sight
-    integer :: segments(2), k, j
+    integer :: segments(2), k, j, at, last
     real(wp) :: gap, square, least
 
     least = huge(1.0_wp)
     segments = segments_of(own, tracking%pass%n_on_segment, i)
+    at = 1
+    last = 0
     associate (pass => tracking%pass, nearest => found%nearest)
       do k = 1, merge(1, 2, segments(1) == segments(2))
         if (segments(k) == 0) cycle
         do j = pairs%first(segments(k)), pairs%first(segments(k) + 1) - 1
+          ! Rows rise: what the first has had is passed over in the second.
+          do while (at <= last)
+            if (pairs%items(at) >= pairs%items(j)) exit
+            at = at + 1
+          end do
+          if (at <= last) then
+            if (pairs%items(at) == pairs%items(j)) cycle
+          end if
           associate (segment => pairs%items(j), ends => other%segments(:, pairs%items(j)))
             ! A node of a side that folds upon itself belongs to the segment.
             if (pass%is_self .and. pass%n_on_segment == 0 .and. any(ends == i)) cycle
@@ -80,6 +90,8 @@ contains
             end if
           end associate
         end do
+        at = pairs%first(segments(k))
+        last = pairs%first(segments(k) + 1) - 1
       end do
     end associate
     if (found%is_active) return

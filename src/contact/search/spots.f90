@@ -11,8 +11,7 @@ module spots_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: spots_at_nodes, spots_at_quarters, spots_at_gauss_points, start_spots, move_spots, &
-    list_owners, list_chords
+  public :: spots_at_nodes, spots_at_quarters, spots_at_gauss_points, start_spots, move_spots
 
   !> Rules for the places of spots.
   integer, parameter :: spots_at_nodes = 0, spots_at_quarters = 1, spots_at_gauss_points = 2
@@ -126,52 +125,5 @@ contains
       end do
     end do
   end subroutine move_on_segments
-
-  !> Segments of the own surface that each spot belongs to: one, or the two at a node (0: none
-  !> there).
-  pure function list_owners(surface, n_per_segment) result(owners)
-    type(surface_t), intent(in) :: surface
-    integer, intent(in) :: n_per_segment !! 0 for spots at nodes
-    integer, allocatable :: owners(:, :) !! (2, n_spot)
-    integer :: i
-
-    if (n_per_segment == 0) then
-      allocate (owners(2, surface%n_node))
-      owners(1, :) = surface%incoming
-      owners(2, :) = surface%outgoing
-    else
-      allocate (owners(2, n_per_segment*surface%n_segment))
-      do i = 1, size(owners, 2)
-        owners(:, i) = 1 + (i - 1)/n_per_segment
-      end do
-    end if
-  end function list_owners
-
-  !> Two spots of the own surface whose connection tells its direction at each spot: the first and
-  !> the last of a segment, or the neighbours of a node or of a lonely spot.
-  pure function list_chords(surface, n_per_segment) result(chords)
-    type(surface_t), intent(in) :: surface
-    integer, intent(in) :: n_per_segment
-    integer, allocatable :: chords(:, :) !! (2, n_spot)
-    integer :: i, s
-
-    if (n_per_segment == 0) then
-      allocate (chords(2, surface%n_node))
-      do i = 1, surface%n_node
-        chords(:, i) = i
-        if (surface%incoming(i) > 0) chords(1, i) = surface%segments(1, surface%incoming(i))
-        if (surface%outgoing(i) > 0) chords(2, i) = surface%segments(2, surface%outgoing(i))
-      end do
-      return
-    end if
-    allocate (chords(2, n_per_segment*surface%n_segment))
-    do i = 1, size(chords, 2)
-      s = 1 + (i - 1)/n_per_segment
-      chords(:, i) = [(s - 1)*n_per_segment + 1, s*n_per_segment]
-      if (n_per_segment > 1) cycle
-      if (surface%previous(s) > 0) chords(1, i) = surface%previous(s)
-      if (surface%next(s) > 0) chords(2, i) = surface%next(s)
-    end do
-  end function list_chords
 
 end module spots_m
