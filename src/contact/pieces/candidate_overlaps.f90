@@ -320,14 +320,12 @@ contains
       *([0.0_wp, 1.0_wp] - xi(1))/(xi(2) - xi(1))
   end subroutine cut_by
 
-  !> A projection within the slave segment; neighbours share one, and within round-off it is an end.
+  !> A projection within the slave segment; neighbours share one, whatever round-off is in it.
   pure function clipped(xi) result(at)
     real(wp), intent(in) :: xi
     real(wp) :: at
 
     at = min(max(xi, 0.0_wp), 1.0_wp)
-    if (at < round_off) at = 0.0_wp
-    if (1.0_wp - at < round_off) at = 1.0_wp
   end function clipped
 
   !> Gap in the middle of an overlap, m.
