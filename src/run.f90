@@ -26,7 +26,7 @@ module run_m
   use memory_m, only : processor_name
   use model_m, only : model_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
-  use progress_m, only : show_end, write_status
+  use progress_m, only : show_end, write_status, timing_text
   use rank_model_m, only : hand_model, hand_others
   use rank_shares_m, only : forget_others
   use ranks_m, only : ranks_t, share_error
@@ -44,7 +44,6 @@ module run_m
   use source_version_m, only : source_version
   use start_m, only : start_state
   use state_m, only : state_t
-  use timing_file_m, only : timing_text
   implicit none
   private
   public :: run_deck
@@ -235,37 +234,32 @@ contains
 
     if (monitor%ranks%mine == 0) then
       if (.not. has_all) allocate (answers)
-      call make_own_state(model, state, monitor, error, answers=answers)
+      call make_own_state()
     end if
     call share_error(monitor%ranks, error)
     if (allocated(error)) return
     if (.not. has_all) call hand_others(model, monitor%ranks, state, others, answers)
-    if (monitor%ranks%mine > 0) &
-      call make_own_state(model, state, monitor, error, others, answers)
+    if (monitor%ranks%mine > 0) call make_own_state()
     call share_error(monitor%ranks, error)
+
+  contains
+
+    !> That of time zero, or of the restart file if all that is read later can be; before any file
+    !> of an earlier run is touched.
+    subroutine make_own_state()
+      associate (restarts => monitor%restarts)
+        if (restarts%goes_on) then
+          call take_up_state(restarts%source, model, state, error, others, answers)
+          if (.not. allocated(error)) call check_rest(restarts%source, model, state, error)
+          if (.not. allocated(error) .and. monitor%ranks%mine == 0) &
+            call take_up_results(restarts, model, restarts%prefix//'.vtkhdf', error)
+        else
+          call start_state(model, monitor%log, state, error, others, answers)
+        end if
+      end associate
+    end subroutine make_own_state
+
   end subroutine make_state
-
-  !> That of time zero, or of the restart file if all that is read later can be; before any file of
-  !> an earlier run is touched.
-  subroutine make_own_state(model, state, monitor, error, others, answers)
-    type(model_t), intent(inout) :: model
-    type(state_t), intent(inout) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(error_t), allocatable, intent(out) :: error
-    type(others_t), intent(inout), optional :: others
-    type(answers_t), intent(inout), optional :: answers
-
-    if (.not. monitor%restarts%goes_on) then
-      call start_state(model, monitor%log, state, error, others, answers)
-      return
-    end if
-    associate (restarts => monitor%restarts)
-      call take_up_state(restarts%source, model, state, error, others, answers)
-      if (.not. allocated(error)) call check_rest(restarts%source, model, state, error)
-      if (.not. allocated(error) .and. monitor%ranks%mine == 0) &
-        call take_up_results(restarts, model, restarts%prefix//'.vtkhdf', error)
-    end associate
-  end subroutine make_own_state
 
   !> Version and build of the program.
   pure function program_text() result(text)
@@ -273,23 +267,6 @@ contains
 
     text = version//', '//build_type//', '//compiler//', '//flags
   end function program_text
-
-  !> What the results file keeps about the run, beside the effective deck.
-  subroutine describe_run(arguments, model, restarts, info)
-    type(arguments_t), intent(in) :: arguments
-    type(model_t), intent(in) :: model
-    type(restarts_t), intent(in) :: restarts
-    type(run_info_t), intent(inout) :: info
-
-    if (allocated(model%controls%title)) info%title = model%controls%title
-    info%deck = restarts%deck
-    info%version = version
-    info%build = build_type//', '//compiler//', '//flags
-    info%options = arguments%line
-    info%source = source_version
-    if (is_asked(model%controls%output%plot)) info%machine = processor_name()
-    info%checksum = restarts%effective_deck_checksum
-  end subroutine describe_run
 
   !> Open the files and make the state from which the run begins.
   subroutine begin_run(arguments, has_all, model, info, state, monitor, error)
@@ -302,10 +279,19 @@ contains
     type(error_t), allocatable, intent(out) :: error
     logical :: relaxes
 
-    if (monitor%ranks%mine == 0) &
+    if (monitor%ranks%mine == 0) then
       call write_deck(info%effective_deck, monitor%restarts, error)
+      ! What the results file keeps about the run besides.
+      if (allocated(model%controls%title)) info%title = model%controls%title
+      info%deck = monitor%restarts%deck
+      info%version = version
+      info%build = build_type//', '//compiler//', '//flags
+      info%options = arguments%line
+      info%source = source_version
+      if (is_asked(model%controls%output%plot)) info%machine = processor_name()
+      info%checksum = monitor%restarts%effective_deck_checksum
+    end if
     if (.not. allocated(error)) then
-      if (monitor%ranks%mine == 0) call describe_run(arguments, model, monitor%restarts, info)
       call open_files(model, monitor%restarts%prefix, info, monitor, error)
     end if
     call share_error(monitor%ranks, error)

@@ -399,33 +399,35 @@ contains
     integer(size_t) :: length
     integer(hsize_t) :: stored
     type(c_ptr) :: first
-    integer :: status(9), kind_of_space, class, padding, i
+    integer :: status(8), kind_of_space, class, padding, i
     logical :: varies
 
     text = ''
     is_good = .false.
     call h5dopen_f(parent, name, dataset, status(1))
     if (status(1) < 0) return
+    class = -1
+    padding = -1
+    kind_of_space = -1
+    length = 0
+    varies = .true.
     call h5dget_type_f(dataset, type_id, status(1))
     call h5tget_class_f(type_id, class, status(2))
     call h5tget_size_f(type_id, length, status(3))
-    call h5dget_space_f(dataset, space, status(4))
-    call h5sget_simple_extent_type_f(space, kind_of_space, status(5))
-    call h5dget_storage_size_f(dataset, stored, status(6))
-    is_good = minval(status(:6)) >= 0 .and. class == H5T_STRING_F &
-      .and. kind_of_space == H5S_SCALAR_F
-    varies = .true.
-    if (is_good) call h5tis_variable_str_f(type_id, varies, status(7))
-    if (is_good) call h5tget_strpad_f(type_id, padding, status(8))
-    is_good = is_good .and. .not. varies
-    if (is_good) is_good = length > 0 .and. int(length, hsize_t) <= stored &
-      .and. padding == H5T_STR_SPACEPAD_F
+    call h5tis_variable_str_f(type_id, varies, status(4))
+    call h5tget_strpad_f(type_id, padding, status(5))
+    call h5dget_space_f(dataset, space, status(6))
+    call h5sget_simple_extent_type_f(space, kind_of_space, status(7))
+    call h5dget_storage_size_f(dataset, stored, status(8))
+    is_good = minval(status) >= 0 .and. class == H5T_STRING_F .and. padding == H5T_STR_SPACEPAD_F &
+      .and. kind_of_space == H5S_SCALAR_F .and. length > 0 .and. .not. varies
+    if (is_good) is_good = int(length, hsize_t) <= stored
     if (is_good) then
       deallocate (text)
       allocate (character(length) :: text)
       first = c_loc(text)
-      call h5dread_f(dataset, type_id, first, status(9))
-      is_good = status(9) >= 0
+      call h5dread_f(dataset, type_id, first, i)
+      is_good = i >= 0
     end if
     call h5tclose_f(type_id, i)
     call h5sclose_f(space, i)

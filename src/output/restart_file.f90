@@ -204,7 +204,7 @@ contains
     character(:), allocatable, intent(out) :: reason
     character(head_size) :: head
     character(:), allocatable :: checksum
-    integer(long) :: length, n_byte
+    integer(long) :: length, expected, n_byte
     integer :: unit, status, version, i
 
     head = ''
@@ -237,28 +237,16 @@ contains
         //to_text(format_version)
     else
       call file_checksum(path, length, checksum, reason)
-      if (.not. allocated(reason)) call compare_heads(head, length, checksum, reason)
+      if (allocated(reason) .or. head == head_text(length, checksum)) return
+      reason = 'it is damaged (its checksum is '//checksum//', not that of its head)'
+      i = index(head, 'length ')
+      if (i == 0) return
+      read (head(i + 7:), *, iostat=status) expected
+      if (status /= 0 .or. expected == length) return
+      reason = 'it is damaged (it has another length than its head says)'
+      if (length < expected) reason = 'it is truncated'
     end if
   end subroutine judge_file
-
-  !> Compare what the head says with what the file is.
-  subroutine compare_heads(head, length, checksum, reason)
-    character(*), intent(in) :: head
-    integer(long), intent(in) :: length
-    character(*), intent(in) :: checksum
-    character(:), allocatable, intent(out) :: reason
-    integer(long) :: expected
-    integer :: at, status
-
-    if (head == head_text(length, checksum)) return
-    reason = 'it is damaged (its checksum is '//checksum//', not that of its head)'
-    at = index(head, 'length ')
-    if (at == 0) return
-    read (head(at + 7:), *, iostat=status) expected
-    if (status /= 0 .or. expected == length) return
-    reason = 'it is damaged (it has another length than its head says)'
-    if (length < expected) reason = 'it is truncated'
-  end subroutine compare_heads
 
   !> Close a file that was read.
   subroutine close_restart(archive, error)

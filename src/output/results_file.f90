@@ -6,31 +6,32 @@
 !>
 !> The mesh is stored once; each state appends rows to the arrays. All of a state is handed to the
 !> system before the file says that it is there: whenever the process is killed, the file opens with
-!> the states before (see results_arrays_m).
+!> the states before (see results_arrays_m). A restart takes the states before it over from the file
+!> that the run has left: into a new one, which then replaces the old one in one step.
 module results_file_m
   use, intrinsic :: iso_c_binding, only : c_loc
-  use archive_m, only : archive_t
-  use hdf5, only : hid_t, hsize_t, H5F_SCOPE_LOCAL_F, H5T_STD_I64LE, h5awrite_f, h5aclose_f, &
-    h5fflush_f, h5fclose_f, h5close_f, h5screate_simple_f
+  use archive_m, only : archive_t, is_hard, own_layout
+  use hdf5, only : hid_t, hsize_t, H5F_ACC_RDONLY_F, H5F_SCOPE_LOCAL_F, H5T_STD_I64LE, h5awrite_f, &
+    h5aclose_f, h5fflush_f, h5fclose_f, h5fopen_f, h5close_f, h5lexists_f, h5screate_simple_f
   use kinds_m, only : wp, long
   use contacts_m, only : has_shear
-  use errors_m, only : error_t, raise, status_files
+  use errors_m, only : error_t, raise, status_files, status_input
   use file_facts_m, only : file_facts_t, facts_of_name, is_same_file
-  use files_m, only : lengthen_file, remove_file, rename_file, unfinished
+  use files_m, only : file_exists, lengthen_file, remove_file, rename_file, unfinished
   use model_m, only : model_t
   use parts_m, only : has_memory_of_heat
   use snapshot_m, only : snapshot_t
   use history_file_m, only : histories_t
-  use results_tables_m, only : run_info_t, write_run, write_histories
-  use results_mesh_m, only : write_mesh, deck_nodes
+  use results_tables_m, only : run_info_t, write_mesh, write_run, write_histories, deck_nodes
   use results_arrays_m, only : results_file_t, create_file, create_steps, create_fields, &
     planned_states, block_rows, fields, n_step_array, step_values, step_points, step_ones
-  use hdf5_writing_m, only : as_index, end_of_file, append_rows, close_growing, text_attribute, &
-    write_attribute, check_status, memory_type
+  use hdf5_writing_m, only : growing_t, as_index, open_library, end_of_file, append_rows, &
+    open_growing, read_rows, close_growing, text_attribute, write_attribute, check_status, &
+    memory_type
   implicit none
   private
-  public :: results_file_t, run_info_t, open_results, append_state, append_instant, publish, &
-    take_name, note_failure, finish_results
+  public :: results_file_t, run_info_t, open_results, append_state, publish, finish_results, &
+    check_old_results, copy_states
 
 contains
 
@@ -313,5 +314,118 @@ contains
     call take_name(file, error)
     call note_failure(file, error)
   end subroutine finish_results
+
+  !> Whether there is a results file to take states over from. One that does not hold the states of
+  !> these times is an error: it is of another run, and would be lost.
+  subroutine check_old_results(path, n_node, times, found, error)
+    character(*), intent(in) :: path
+    integer, intent(in) :: n_node
+    real(wp), intent(in) :: times(:)
+    logical, intent(out) :: found
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: unread
+    type(growing_t) :: array
+    character(len(fields%name)) :: names(2 + size(fields))
+    real(wp), target :: stored(max(size(times), 1))
+    integer(hid_t) :: id
+    integer :: status, i
+    logical :: fits
+
+    found = file_exists(path)
+    if (.not. found) return
+    names = [character(len(names)) :: 'Steps/Values', 'PointData/node_id', fields%name]
+    call open_library(status)
+    call h5fopen_f(path, H5F_ACC_RDONLY_F, id, status)
+    fits = status >= 0
+    do i = 1, size(names)
+      if (allocated(error) .or. .not. fits) exit
+      call open_own(id, 'VTKHDF/'//trim(names(i)), path, array, error)
+      if (allocated(error)) exit
+      if (i == 1) then
+        fits = array%id >= 0 .and. array%n_row >= size(times)
+        if (fits .and. size(times) > 0) then
+          call read_rows(array, 0_long, size(times), c_loc(stored), unread)
+          fits = .not. allocated(unread)
+          if (fits) fits = all(.not. abs(stored(:size(times)) - times) > 0.0_wp)
+        end if
+      else if (i == 2) then
+        fits = array%id >= 0 .and. array%n_row == n_node
+      end if
+      call close_growing(array, error)
+    end do
+    if (status >= 0) call h5fclose_f(id, status)
+    if (.not. (fits .or. allocated(error))) call raise(error, path//' does not hold the states ' &
+      //'before the restart: it is of another run, or damaged; move it away, or give another ' &
+      //'folder by d=', status_input)
+  end subroutine check_old_results
+
+  !> Open an array of a results file, if it is there. One that lies elsewhere is refused: in another
+  !> file, by a link or as a virtual dataset, or in outer storage. It would get into the results of
+  !> this run.
+  subroutine open_own(id, name, path, array, error)
+    integer(hid_t), intent(in) :: id       !! open file
+    character(*), intent(in) :: name, path !! of the array; of the file, for messages
+    type(growing_t), intent(out) :: array
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: ignored
+    type(archive_t) :: file
+    integer :: n, status
+    logical :: is_own, found
+
+    file%id = id
+    file%folder = ''
+    is_own = .true.
+    found = .true.
+    n = 0
+    do while (n <= len(name) .and. found .and. is_own) ! the groups that it lies in, and itself
+      n = n + index(name(n + 1:)//'/', '/')
+      call h5lexists_f(id, name(:n - 1), found, status)
+      if (found) is_own = is_hard(file, name(:n - 1))
+    end do
+    if (found .and. is_own) call open_growing(id, name, 0, array)
+    if (array%id >= 0) is_own = own_layout(array%id) >= 0
+    if (is_own) return
+    call close_growing(array, ignored)
+    call raise(error, path//' is refused: its '//name//' is not stored in it, but a link, a ' &
+      //'virtual dataset or outer storage; move it away, or give another folder by d=', &
+      status_input)
+  end subroutine open_own
+
+  !> Copy the states of these times from the file under the name of the new one, which then takes
+  !> the name. The old file must have passed `check_old_results`.
+  subroutine copy_states(file, model, times, error)
+    type(results_file_t), intent(inout) :: file
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: times(:)
+    type(error_t), allocatable, intent(out) :: error
+    type(growing_t) :: array
+    real(wp), allocatable, target :: rows(:)
+    integer(hid_t) :: old
+    integer :: status, i, k, n
+
+    if (size(times) == 0) return
+    call h5fopen_f(file%path, H5F_ACC_RDONLY_F, old, status)
+    if (status < 0) then
+      call raise(error, 'cannot read '//file%path, status_files)
+      return
+    end if
+    do k = 1, size(times)
+      do i = 1, size(file%which)
+        associate (field => fields(file%which(i)))
+          n = merge(model%mesh%n_element, model%mesh%n_node, field%of_cells)
+          allocate (rows(n*max(field%n_column, 1)))
+          call open_growing(old, 'VTKHDF/'//trim(field%name), field%n_column, array)
+          call read_rows(array, (k - 1)*int(n, long), n, c_loc(rows), error)
+          call close_growing(array, error)
+        end associate
+        call append_rows(file%fields(file%which(i)), n, c_loc(rows), error)
+        deallocate (rows)
+      end do
+      call append_instant(file, model, times(k), error)
+    end do
+    call h5fclose_f(old, status)
+    call take_name(file, error)
+    call note_failure(file, error)
+  end subroutine copy_states
 
 end module results_file_m

@@ -6,7 +6,7 @@ module monitor_m
   use controls_m, only : interval_t, is_asked
   use errors_m, only : error_t
   use history_file_m, only : histories_t, plan_histories, open_histories, flush_histories, &
-    close_histories, has_rows
+    close_histories, n_each
   use history_filling_m, only : fill_boundaries, fill_history_elements, fill_sections
   use history_rows_m, only : append_rows
   use history_tables_m, only : history_tables, n_table, asked_or_states, asked_by_states, &
@@ -77,7 +77,7 @@ contains
     if (allocated(error)) return
     names = ''
     do k = 1, n_table
-      if (is_asked(model%controls%output%histories(k)) .and. .not. has_rows(model, k)) &
+      if (is_asked(model%controls%output%histories(k)) .and. n_each(model, k) <= 0) &
         names = names//', '//trim(history_tables(k)%name)
     end do
     if (len(names) > 0) call write_log(monitor%log, 'no file, since the model has nothing for ' &
@@ -114,7 +114,7 @@ contains
       call start_schedule(monitor%plot, plan%plot, model%curves, end_time)
       do k = 1, n_table
         ! Rows that no file receives must not make a cycle write.
-        if (.not. has_rows(model, k)) cycle
+        if (n_each(model, k) <= 0) cycle
         interval = plan%histories(k)
         if (history_tables(k)%asked == asked_or_states .and. .not. is_asked(interval)) &
           interval = plan%plot

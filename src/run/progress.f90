@@ -5,7 +5,8 @@
 !> same lines. Nor does a status.out that can not be written; it is replaced as a whole.
 module progress_m
   use clock_m, only : clock_t, look_at_clock, elapsed_seconds, total_seconds, phase_seconds, &
-    lap_seconds, phase_names, n_phase, phase_input, phase_output
+    lap_seconds, phase_names, n_phase, n_contact_phase, phase_contact_search, phase_input, &
+    phase_output
   use endings_m, only : normal_ending, error_ending
   use errors_m, only : error_t
   use files_m, only : rename_file, unfinished
@@ -17,7 +18,7 @@ module progress_m
   implicit none
   private
   public :: progress_t, start_progress, follow_progress, show_progress, show_note, show_end, &
-    write_status
+    write_status, timing_text
 
   !> Cycles between two looks at a clock that takes no laps.
   integer, parameter :: look_cycles = 64
@@ -335,5 +336,64 @@ contains
     text = date(1:4)//'-'//date(5:6)//'-'//date(7:8)//' '//hour(1:2)//':'//hour(3:4)//':' &
       //hour(5:6)
   end function time_stamp
+
+  !> The timing file as text, wall clock of the run by phase: `phase,seconds,calls,share`, one row
+  !> per phase and the row `total`, which is the time from the start to the last lap. Where
+  !> interfaces are timed, rows such as `contact_force.2` follow their phase and add up to it. Where
+  !> no laps are taken there is the total alone. Seconds are whole nanoseconds with nine decimals,
+  !> so that the phases add up to the total to the last digit.
+  function timing_text(clock, interfaces) result(text)
+    type(clock_t), intent(in) :: clock
+    integer, intent(in) :: interfaces(:) !! their ids
+    character(:), allocatable :: text
+    integer(long) :: nanoseconds(n_phase), total, first, rate
+    integer :: i_phase, i_row, i
+
+    call system_clock(first, rate)
+    nanoseconds = in_nanoseconds(clock%ticks, rate)
+    total = sum(nanoseconds)
+    if (.not. clock%is_on) total = in_nanoseconds(clock%last - clock%first, rate)
+    text = 'phase,seconds,calls,share'//new_line('a')
+    do i_phase = 1, n_phase
+      if (.not. clock%is_on) exit
+      text = text//timing_row(phase_names(i_phase), nanoseconds(i_phase), clock%calls(i_phase), &
+        total)
+      ! The rows of a contact phase by interface, with its id as in the other tables.
+      i_row = i_phase - phase_contact_search + 1
+      if (i_row < 1 .or. i_row > n_contact_phase .or. .not. allocated(clock%interface_ticks)) cycle
+      do i = 1, size(interfaces)
+        text = text//timing_row(trim(phase_names(i_phase))//'.'//to_text(interfaces(i)), &
+          in_nanoseconds(clock%interface_ticks(i_row, i), rate), clock%interface_calls(i_row, i), &
+          total)
+      end do
+    end do
+    text = text//timing_row('total', total, 1_long, total)
+  end function timing_text
+
+  !> Ticks as nanoseconds.
+  elemental function in_nanoseconds(ticks, rate) result(nanoseconds)
+    integer(long), intent(in) :: ticks, rate
+    integer(long) :: nanoseconds
+
+    if (rate == 1000000000_long) then
+      nanoseconds = ticks
+    else
+      nanoseconds = nint(1.0e9_wp*real(ticks, wp)/real(rate, wp), long)
+    end if
+  end function in_nanoseconds
+
+  !> One row, with its line end.
+  pure function timing_row(name, nanoseconds, n_call, total) result(row)
+    character(*), intent(in) :: name           !! of the phase
+    integer(long), intent(in) :: nanoseconds   !! spent in it
+    integer(long), intent(in) :: n_call        !! laps
+    integer(long), intent(in) :: total         !! nanoseconds of the whole run
+    character(:), allocatable :: row
+    character(80) :: buffer
+
+    write (buffer, '(ss,i0, ".", i9.9, ",", i0, ",", f8.6)') nanoseconds/1000000000_long, &
+      mod(nanoseconds, 1000000000_long), n_call, real(nanoseconds, wp)/real(max(total, 1_long), wp)
+    row = trim(name)//','//trim(buffer)//new_line('a')
+  end function timing_row
 
 end module progress_m

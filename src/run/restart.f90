@@ -94,6 +94,7 @@ contains
     type(archive_t), intent(inout) :: archive
     type(restarts_t), intent(inout) :: restarts
     character(:), allocatable, intent(inout) :: effective_deck
+    integer :: i
 
     call archive%enter('run')
     call archive%text('effective_deck', effective_deck)
@@ -102,22 +103,16 @@ contains
     call archive%text('program', restarts%program)
     call archive%visit('n_dump', restarts%n_dump, 0, most_dumps - 1, 'a number that no run reaches')
     call archive%visit('is_implicit', restarts%is_implicit)
-    if (archive%judges) call archive%expect('job', is_stem(restarts%job), &
-      'a name that no file can have')
+    ! It begins the names of files in the folder of the results.
+    if (archive%judges) then
+      associate (job => restarts%job)
+        call archive%expect('job', len(job) > 0 .and. len(job) <= longest_name .and. &
+          index(job, '/') == 0 .and. all([(iachar(job(i:i)) >= 32, i=1, len(job))]), &
+          'a name that no file can have')
+      end associate
+    end if
     call archive%leave()
   end subroutine keep_run
-
-  !> Whether a text may begin the names of files in the folder of the results.
-  pure function is_stem(text)
-    character(*), intent(in) :: text
-    logical :: is_stem
-    integer :: i
-
-    is_stem = len(text) > 0 .and. len(text) <= longest_name .and. index(text, '/') == 0
-    do i = 1, len(text)
-      is_stem = is_stem .and. iachar(text(i:i)) >= 32
-    end do
-  end function is_stem
 
   !> Write or read how far the outputs are.
   subroutine keep_outputs(archive, time, dt, monitor)

@@ -16,12 +16,6 @@ module result_names_m
   !> two digits.
   integer, parameter :: least_numbers = 99
 
-  !> A file that the run has read.
-  type :: input_t
-    character(:), allocatable :: path
-    type(file_facts_t) :: facts
-  end type input_t
-
 contains
 
   !> Refuse names of results under which something else stands than a file: a directory, a pipe, a
@@ -37,19 +31,15 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(12), parameter :: kinds(4) = [character(12) :: '.log', '.effective.k', '.vtkhdf', &
       '.timing.csv']
-    type(input_t) :: inputs(size(restarts%inputs) + 1) !! the last one: the restart file, if any
+    type(file_facts_t) :: inputs(size(restarts%inputs) + 1) !! last the restart file, if any
     integer :: i, n_deck
 
     n_deck = size(restarts%inputs)
     do i = 1, n_deck
-      inputs(i)%path = trim(restarts%inputs(i))
-      inputs(i)%facts = facts_of_target(inputs(i)%path)
+      inputs(i) = facts_of_target(trim(restarts%inputs(i)))
     end do
-    if (restarts%goes_on) then
-      inputs(n_deck + 1)%path = restarts%source%path
-      inputs(n_deck + 1)%facts = facts_of_target(restarts%source%path)
-    end if
-    call check_name(switch_path(restarts%directory), inputs, .true., error)
+    if (restarts%goes_on) inputs(n_deck + 1) = facts_of_target(restarts%source%path)
+    call check_name(switch_path(restarts%directory), size(inputs), .true.)
     do i = 1, size(kinds)
       call look(restarts%prefix//trim(kinds(i)), size(inputs))
     end do
@@ -76,9 +66,35 @@ contains
       character(*), intent(in) :: path
       integer, intent(in) :: n !! inputs whose name it may not have, the first ones
 
-      call check_name(path, inputs(:n), inputs_only, error)
-      call check_name(path//unfinished, inputs(:n), inputs_only, error)
+      call check_name(path, n, inputs_only)
+      call check_name(path//unfinished, n, inputs_only)
     end subroutine look
+
+    !> Refuse one name; the first failure stays.
+    subroutine check_name(path, n, may_be_any)
+      character(*), intent(in) :: path
+      integer, intent(in) :: n
+      logical, intent(in) :: may_be_any !! whatever else stands there
+      character(:), allocatable :: input
+      type(file_facts_t) :: facts
+      integer :: i
+
+      if (allocated(error)) return
+      facts = facts_of_name(path)
+      if (.not. facts%is_there) return
+      if (.not. (facts%is_regular .or. may_be_any)) then
+        call raise(error, 'cannot write '//path//': '//what_hinders(path), status_files)
+        return
+      end if
+      do i = 1, n
+        if (.not. is_same_file(facts, inputs(i))) cycle
+        if (i > n_deck) input = restarts%source%path
+        if (i <= n_deck) input = trim(restarts%inputs(i))
+        call raise(error, 'cannot write '//path//': it is the file '//input//', which this run ' &
+          //'reads; give the run another name (jobid=) or folder (d=)', status_files)
+        return
+      end do
+    end subroutine check_name
 
   end subroutine check_names
 
@@ -92,29 +108,5 @@ contains
     part = facts_of_name(path//unfinished)
     is_taken = whole%is_there .or. part%is_there
   end function is_taken
-
-  !> Refuse one name; the first failure stays.
-  subroutine check_name(path, inputs, inputs_only, error)
-    character(*), intent(in) :: path
-    type(input_t), intent(in) :: inputs(:)
-    logical, intent(in) :: inputs_only !! whatever else stands there
-    type(error_t), allocatable, intent(inout) :: error
-    type(file_facts_t) :: facts
-    integer :: i
-
-    if (allocated(error)) return
-    facts = facts_of_name(path)
-    if (.not. facts%is_there) return
-    if (.not. (facts%is_regular .or. inputs_only)) then
-      call raise(error, 'cannot write '//path//': '//what_hinders(path), status_files)
-      return
-    end if
-    do i = 1, size(inputs)
-      if (.not. is_same_file(facts, inputs(i)%facts)) cycle
-      call raise(error, 'cannot write '//path//': it is the file '//inputs(i)%path//', which ' &
-        //'this run reads; give the run another name (jobid=) or folder (d=)', status_files)
-      return
-    end do
-  end subroutine check_name
 
 end module result_names_m

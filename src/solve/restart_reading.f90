@@ -19,7 +19,7 @@ module restart_reading_m
   use restart_file_m, only : open_restart
   use restart_m, only : keep_run, keep_outputs
   use restart_plan_m, only : restarts_t, place_text
-  use results_copy_m, only : check_old_results, copy_states
+  use results_file_m, only : check_old_results, copy_states
   use start_m, only : start_state, resume_contacts
   use state_m, only : state_t
   use visitor_m, only : any_length
