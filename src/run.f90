@@ -34,12 +34,10 @@ module run_m
   use renumber_m, only : renumber_model, forget_start
   use restart_file_m, only : open_restart
   use restart_m, only : forget_files
-  use restart_plan_m, only : restarts_t
+  use restart_plan_m, only : restarts_t, check_names, switch_path
   use restart_reading_m, only : take_up_file, take_up_state, take_up_results, check_rest, &
     take_up_outputs
-  use result_names_m, only : check_names
   use results_file_m, only : run_info_t
-  use requests_m, only : switch_path
   use signals_m, only : catch_stops, limit_processor
   use source_version_m, only : source_version
   use start_m, only : start_state

@@ -5,7 +5,7 @@ module text_m
   use kinds_m, only : wp, long
   implicit none
   private
-  public :: upper_case, read_real, read_integer, text_of, &
+  public :: upper_case, read_real, read_integer, text_of, utf8_length, &
     number_good, number_wrong, number_range, number_fraction
 
   !> Outcome of reading a number: good, not a number, too large, not a whole number.
@@ -113,5 +113,39 @@ contains
     known = ''
     if (allocated(text)) known = text
   end function text_of
+
+  !> Bytes of the character of UTF-8 (RFC 3629) that a text begins with; 0 when it begins with none:
+  !> overlong forms, halves of surrogate pairs and codes beyond 10FFFF are none.
+  pure function utf8_length(text) result(n)
+    character(*), intent(in) :: text !! not empty
+    integer :: n
+    integer :: low, high, i
+
+    n = 1
+    low = 128
+    high = 191
+    select case (iachar(text(1:1)))
+    case (0:127); return
+    case (194:223); n = 2
+    case (224:239); n = 3
+    case (240:244); n = 4
+    case default; n = 0
+    end select
+    select case (iachar(text(1:1))) ! bounds of the second byte
+    case (224); low = 160
+    case (237); high = 159
+    case (240); low = 144
+    case (244); high = 143
+    end select
+    if (n > len(text)) n = 0
+    do i = 2, n
+      if (iachar(text(i:i)) < low .or. iachar(text(i:i)) > high) then
+        n = 0
+        return
+      end if
+      low = 128
+      high = 191
+    end do
+  end function utf8_length
 
 end module text_m

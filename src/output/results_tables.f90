@@ -11,7 +11,7 @@ module results_tables_m
   use hdf5_writing_m, only : text_attribute, write_text
   use mesh_m, only : mesh_t
   use model_m, only : model_t
-  use text_m, only : text_of
+  use text_m, only : text_of, utf8_length
   use visitor_m, only : as_bytes, item_t
   implicit none
   private
@@ -157,47 +157,32 @@ contains
 
   end subroutine write_run
 
-  !> The text in UTF-8: as it is, or taken for Latin-1 where it is not UTF-8 (decks are either).
+  !> The text in UTF-8: characters of UTF-8 pass, and a byte that belongs to none is taken for
+  !> Latin-1 (decks are either).
   pure function utf8_text(text) result(utf8)
     character(*), intent(in) :: text
     character(:), allocatable :: utf8
-    integer :: i, code
+    character(:), allocatable :: buffer
+    integer :: i, n, n_byte
 
-    if (is_utf8(text)) then
-      utf8 = text
-      return
-    end if
-    utf8 = ''
-    do i = 1, len(text)
-      code = ichar(text(i:i))
-      if (code < 128) then
-        utf8 = utf8//text(i:i)
+    allocate (character(2*len(text)) :: buffer)
+    n_byte = 0
+    i = 1
+    do while (i <= len(text))
+      n = utf8_length(text(i:))
+      if (n > 0) then
+        buffer(n_byte + 1:n_byte + n) = text(i:i + n - 1)
       else
-        utf8 = utf8//char(192 + code/64)//char(128 + mod(code, 64))
+        n = 2
+        buffer(n_byte + 1:n_byte + 2) = char(192 + ichar(text(i:i))/64)//char(128 &
+          + mod(ichar(text(i:i)), 64))
+        i = i - 1
       end if
+      n_byte = n_byte + n
+      i = i + n
     end do
+    utf8 = buffer(:n_byte)
   end function utf8_text
-
-  !> Whether the bytes form UTF-8: every leading byte has its number of continuation bytes.
-  pure function is_utf8(text) result(valid)
-    character(*), intent(in) :: text
-    logical :: valid
-    integer :: i, code, n_to_come
-
-    valid = .true.
-    n_to_come = 0
-    do i = 1, len(text)
-      code = ichar(text(i:i))
-      if (n_to_come > 0) then
-        valid = valid .and. code/64 == 2
-        n_to_come = n_to_come - 1
-      else if (code >= 128) then
-        valid = valid .and. code >= 194 .and. code < 245
-        n_to_come = merge(1, merge(2, 3, code < 240), code < 224)
-      end if
-    end do
-    valid = valid .and. n_to_come == 0
-  end function is_utf8
 
   !> Write all tables below /history, which is there, one dataset a column; nothing of one that was
   !> never planned. Columns that no CSV file has go below /dyna.

@@ -14,8 +14,7 @@ module contact_judging_m
   use layout_m, only : slot_part
   use model_m, only : model_t
   use rows_behind_m, only : face_rows_t, find_rows, face_pressure, face_inertia, &
-    elastic_energy, has_stress
-  use shared_faces_m, only : others_t, find_others, face_share, present_contact
+    elastic_energy, has_stress, others_t, find_others, face_share, present_contact
   use snapshot_filling_m, only : fill_slaves, join_slaves
   use snapshot_m, only : snapshot_t, interface_result_t, part_result_t
   use state_m, only : state_t

@@ -4,20 +4,19 @@
 !> the driver does the rest.
 module requests_m
   use errors_m, only : error_t
-  use files_m, only : file_exists, is_endless, join_path, remove_file
+  use files_m, only : file_exists, is_endless, remove_file
   use history_file_m, only : flush_histories
   use kinds_m, only : wp, long
   use log_m, only : warn
   use monitor_m, only : monitor_t
   use progress_m, only : show_progress
-  use restart_plan_m, only : wants_look
+  use restart_plan_m, only : wants_look, switch_path
   use signals_m, only : stop_requested, take_signals
   use state_m, only : state_t
   use text_m, only : upper_case
   implicit none
   private
-  public :: requests_t, take_requests, echoes_t, hear_signals, drop_echoes, switch_path, &
-    take_switch
+  public :: requests_t, take_requests, echoes_t, hear_signals, drop_echoes, take_switch
 
   !> Longest line that is read, whatever the environment says (GFORTRAN_DEFAULT_RECL).
   integer, parameter :: line_length = 100000
@@ -100,14 +99,6 @@ contains
       call warn(monitor%log, 'd3kil holds none of sw1, sw2, sw3, sw4, swa, stop')
     end select
   end subroutine take_requests
-
-  !> Where a request is looked for.
-  pure function switch_path(directory) result(path)
-    character(*), intent(in) :: directory !! of the results
-    character(:), allocatable :: path
-
-    path = join_path(directory, 'd3kil')
-  end function switch_path
 
   !> The word in the file d3kil of this folder, in capital letters and without the point of `SWA.`,
   !> as old manuals write it; the file is removed. One without a word is left: it may be about to be

@@ -11,13 +11,11 @@ module restart_reading_m
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use history_file_m, only : plan_histories
-  use monitor_m, only : monitor_t, start_schedules
+  use monitor_m, only : monitor_t, start_schedules, output_reach
   use outlines_m, only : resume_outlines
-  use output_schedule_m, only : output_reach
   use progress_m, only : show_note
-  use restart_bounds_m, only : check_state
   use restart_file_m, only : open_restart
-  use restart_m, only : keep_run, keep_outputs
+  use restart_m, only : keep_run, keep_outputs, check_state
   use restart_plan_m, only : restarts_t, place_text
   use results_file_m, only : check_old_results, copy_states
   use start_m, only : start_state, resume_contacts

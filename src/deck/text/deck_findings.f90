@@ -3,7 +3,7 @@
 module deck_findings_m
   use deck_report_m, only : report_t, note_t, spot_t, deck_order
   use log_m, only : to_text
-  use text_m, only : text_of
+  use text_m, only : text_of, utf8_length
   implicit none
   private
   public :: list_findings, add_finding, json_text
@@ -95,39 +95,5 @@ contains
     end do
     quoted = quoted//'"'
   end function json_text
-
-  !> Bytes of the character of UTF-8 (RFC 3629) that a text begins with; 0 when it begins with none:
-  !> overlong forms, halves of surrogate pairs and codes beyond 10FFFF are none.
-  pure function utf8_length(text) result(n)
-    character(*), intent(in) :: text !! not empty
-    integer :: n
-    integer :: low, high, i
-
-    n = 1
-    low = 128
-    high = 191
-    select case (iachar(text(1:1)))
-    case (0:127); return
-    case (194:223); n = 2
-    case (224:239); n = 3
-    case (240:244); n = 4
-    case default; n = 0
-    end select
-    select case (iachar(text(1:1))) ! bounds of the second byte
-    case (224); low = 160
-    case (237); high = 159
-    case (240); low = 144
-    case (244); high = 143
-    end select
-    if (n > len(text)) n = 0
-    do i = 2, n
-      if (iachar(text(i:i)) < low .or. iachar(text(i:i)) > high) then
-        n = 0
-        return
-      end if
-      low = 128
-      high = 191
-    end do
-  end function utf8_length
 
 end module deck_findings_m

@@ -24,7 +24,7 @@ module explicit_cycle_m
   use mass_scaling_m, only : needs_refinement, grow_masses
   use model_log_m, only : check_added_mass
   use model_m, only : model_t
-  use monitor_m, only : monitor_t, due_t, find_due, any_due
+  use monitor_m, only : monitor_t, due_t, find_due
   use node_motion_m, only : follow_damping, leap_t, make_leap
   use outlines_m, only : follow_outlines
   use packed_buffer_m, only : stream_starts
@@ -161,7 +161,7 @@ contains
     cycle%due = find_due(monitor, state%time, state%dt, state%cycle == 0 .or. cycle%last)
     cycle%due%plot = cycle%due%plot .or. (cycle%plots .and. monitor%has_plot)
     cycle%plots = .false.
-    cycle%writes = any_due(cycle%due) .or. state%cycle == 0 .or. cycle%last
+    cycle%writes = cycle%due%plot .or. any(cycle%due%tables) .or. state%cycle == 0 .or. cycle%last
     call apply_loads(model, state, cycle%damping, cycle%sums)
     if (allocated(state%boundary_work)) call count_boundary_loads(model, state)
     if (allocated(state%node_damping)) call follow_damping(model, cycle%rates, state)

@@ -21,8 +21,8 @@ module implicit_report_m
   use implicit_tangent_m, only : step_t
   use kinds_m, only : wp
   use model_m, only : model_t
-  use monitor_m, only : monitor_t, due_t, find_due, any_due, note_energies, write_instant
-  use output_schedule_m, only : output_reach
+  use monitor_m, only : monitor_t, due_t, find_due, note_energies, write_instant, &
+    output_reach
   use snapshot_filling_m, only : fill_energies, fill_parts
   use state_m, only : state_t
   implicit none
@@ -54,7 +54,7 @@ contains
       due%tables = due%tables .and. .not. memory%written%tables
     end if
     memory%written = due
-    if (.not. any_due(due)) return
+    if (.not. (due%plot .or. any(due%tables))) return
     associate (shot => monitor%snapshot, force => memory%step%old_force)
       shot%time = state%time
       shot%cycle = state%cycle
