@@ -12,7 +12,7 @@ module model_tables_m
   use kinds_m, only : wp
   use material_dispatch_m, only : law_name
   use model_m, only : model_t
-  use results_tables_m, only : utf8_text
+  use results_arrays_m, only : utf8_text
   use text_m, only : text_of
   implicit none
   private

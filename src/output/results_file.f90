@@ -22,9 +22,9 @@ module results_file_m
   use parts_m, only : has_memory_of_heat
   use snapshot_m, only : snapshot_t
   use history_file_m, only : histories_t
-  use results_tables_m, only : run_info_t, write_mesh, write_run, write_histories, deck_nodes
   use results_arrays_m, only : results_file_t, create_file, create_steps, create_fields, &
-    planned_states, block_rows, fields, n_step_array, step_values, step_points, step_ones
+    planned_states, block_rows, fields, n_step_array, step_values, step_points, step_ones, &
+    run_info_t, write_mesh, write_run, write_histories, deck_nodes
   use hdf5_writing_m, only : growing_t, as_index, open_library, end_of_file, append_rows, &
     open_growing, read_rows, close_growing, text_attribute, write_attribute, check_status, &
     memory_type
@@ -137,6 +137,7 @@ contains
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(in), target :: snapshot
     type(error_t), allocatable, intent(inout) :: error
+    integer, allocatable :: places(:)
     integer :: i, k, m, first, n, n_row
 
     do k = 1, size(file%which)
@@ -149,13 +150,9 @@ contains
       file%rows = 0.0_wp
       do first = 1, n_row, block_rows
         n = min(block_rows, n_row - first + 1)
-        if (fields(i)%of_cells) then
-          call gather_rows(fields(i)%name, [(m, m=first, first + n - 1)], model, snapshot, &
-            file%rows)
-        else
-          call gather_rows(fields(i)%name, deck_nodes(model%mesh, first, n), model, snapshot, &
-            file%rows)
-        end if
+        places = [(m, m=first, first + n - 1)]
+        if (.not. fields(i)%of_cells) places = deck_nodes(model%mesh, first, n)
+        call gather_rows(fields(i)%name, places, model, snapshot, file%rows)
         call append_rows(file%fields(i), n, c_loc(file%rows), error)
       end do
     end do

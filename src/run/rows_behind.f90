@@ -51,6 +51,7 @@ contains
     type(model_t), intent(in) :: model
     type(face_rows_t), intent(inout) :: rows
     logical, allocatable :: is_behind(:)
+    integer, allocatable :: user(:) !! an interface of each node
     integer :: i
 
     if (allocated(rows%elements)) return
@@ -64,7 +65,17 @@ contains
     allocate (rows%row_of(size(is_behind)), source=0)
     rows%row_of(rows%elements) = [(i, i=1, size(rows%elements))]
     call find_across(model, rows)
-    rows%are_shared = shares_nodes(model)
+    ! Where elements may leave the mesh a node may come to be in more than one interface.
+    if (n_told(model%contacts) < 2) return
+    rows%are_shared = model%erodes
+    allocate (user(model%mesh%n_node), source=0)
+    do i = 1, n_told(model%contacts)
+      associate (slave => model%contacts(i)%slave%nodes, master => model%contacts(i)%master%nodes)
+        rows%are_shared = rows%are_shared .or. any(user(slave) > 0) .or. any(user(master) > 0)
+        user(slave) = i
+        user(master) = i
+      end associate
+    end do
   end subroutine find_rows
 
   !> Neighbours: an edge that one element walks from a to b, the other walks from b to a.
@@ -288,27 +299,6 @@ contains
 
     place = model%mesh%coordinates(:, node) + state%motion(1:2, node)
   end function place_of
-
-  !> Whether a node is in more than one interface; where elements may leave the mesh it may become
-  !> so.
-  pure function shares_nodes(model) result(shares)
-    type(model_t), intent(in) :: model
-    logical :: shares
-    integer :: i
-    integer, allocatable :: user(:)
-
-    shares = .false.
-    if (n_told(model%contacts) < 2) return
-    shares = model%erodes
-    allocate (user(model%mesh%n_node), source=0)
-    do i = 1, n_told(model%contacts)
-      associate (slave => model%contacts(i)%slave%nodes, master => model%contacts(i)%master%nodes)
-        shares = shares .or. any(user(slave) > 0) .or. any(user(master) > 0)
-        user(slave) = i
-        user(master) = i
-      end associate
-    end do
-  end function shares_nodes
 
   !> An interface between the surfaces that it has now.
   function present_contact(state, i) result(contact)

@@ -14,7 +14,6 @@ module explicit_cycle_m
   use contact_pressing_m, only : pressing_t
   use contacts_m, only : told_as, penalty_implicit
   use load_work_m, only : apply_loads, motion_sums_t, plan_sums, count_sums
-  use early_end_m, only : find_early_end
   use element_losses_m, only : settle_elements, release_nodes, failure_watch_t, follow_failures
   use errors_m, only : error_t
   use health_m, only : tile_check_t, are_sound, check_step, name_collapsed, check_cycle
@@ -34,7 +33,7 @@ module explicit_cycle_m
     hear_requests, cut_sections
   use rank_shares_m, only : shares_t, share_out, borders_t, plan_borders
   use ranks_m, only : ranks_t, bring_integers, bring_reals, share_error
-  use requests_m, only : requests_t, take_requests, echoes_t
+  use requests_m, only : find_early_end, requests_t, take_requests, echoes_t
   use restart_file_m, only : close_restart
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files

@@ -9,7 +9,6 @@ module implicit_m
   use contacts_m, only : breaks
   use contact_work_m, only : count_step
   use cut_forces_m, only : keep_cut_chunks
-  use early_end_m, only : find_early_end
   use equations_m, only : number_equations, find_equation
   use errors_m, only : error_t, raise, status_run
   use friction_m, only : has_slipped
@@ -25,7 +24,7 @@ module implicit_m
   use monitor_m, only : monitor_t
   use newton_m, only : outcome_t, find_equilibrium
   use progress_m, only : follow_progress
-  use requests_m, only : requests_t, take_requests
+  use requests_m, only : find_early_end, requests_t, take_requests
   use restart_plan_m, only : wanted_files
   use state_m, only : state_t
   use law_state_m, only : tie_memory_t
