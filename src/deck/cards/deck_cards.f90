@@ -10,7 +10,7 @@ module deck_cards_m
   use deck_card_specs_m, only : card_spec_t, make_spec, field_number
   use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error
   use deck_schema_m, only : keyword_cards, refusal_reason, lost_effect, max_card
-  use deck_parameters_m, only : substitute
+  use deck_parameter_table_m, only : look_up
   implicit none
   private
   public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_of, rows_of, &
@@ -222,6 +222,36 @@ contains
     end associate
     cursor%line = cursor%line + 1
   end subroutine read_line
+
+  !> The line of a card with its references replaced, in free format.
+  subroutine substitute(deck, spec, source, card, text)
+    type(deck_t), intent(inout) :: deck
+    type(card_spec_t), intent(in) :: spec
+    integer, intent(in) :: source
+    type(card_t), intent(inout) :: card
+    character(:), allocatable, intent(out) :: text
+    character(:), allocatable :: field, value
+    integer :: k, last
+
+    last = 0
+    do k = 1, spec%n
+      if (.not. card%blank(k)) last = k
+    end do
+    text = ''
+    do k = 1, last
+      field = field_text(deck, card, k)
+      if (index(field, '&') == 1 .or. index(field, '-&') == 1 .or. index(field, '+&') == 1) then
+        if (index(field, '&(') == 0) then
+          call look_up(deck%parameters, field, source, value)
+          if (len(value) == 0 .and. .not. deck%incomplete) call field_error(deck, card, k, &
+            'is not defined by any *PARAMETER')
+          field = value
+        end if
+      end if
+      text = text//field
+      if (k < last .or. last == 1) text = text//','
+    end do
+  end subroutine substitute
 
   !> A field that is not honoured: a warning or an error when it asks for something.
   subroutine notice_field(deck, spec, card, k)

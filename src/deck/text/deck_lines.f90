@@ -8,13 +8,13 @@ module deck_lines_m
   use, intrinsic :: iso_fortran_env, only : int8
   use deck_report_m, only : report_t, spot_t, add_error, has_error, add_warning
   use deck_ids_m, only : id_map_t, n_kind
+  use deck_parameter_table_m, only : parameters_t
   use kinds_m, only : wp
   use log_m, only : to_text
   implicit none
   private
-  public :: deck_t, blocks_of, count_rows, source_t, block_t, place_t, parameter_t, parameters_t, &
-    again_error, &
-    file_paths, line_text, order_line, block_of_line, where_text, line_error, deck_error, &
+  public :: deck_t, blocks_of, count_rows, source_t, block_t, place_t, file_paths, &
+    line_text, order_line, block_of_line, where_text, line_error, deck_error, &
     line_warning, replace_line, written_text, line_spot, keyword_of_line, shown_text, marked_line, &
     layout_marks, word_t, made_line_t, given_by, words_of, format_standard, format_long, &
     format_i10, flag_comma, flag_parameter, flag_blank, max_source, max_field
@@ -27,9 +27,6 @@ module deck_lines_m
   integer(int8), parameter :: flag_comma = 1_int8, flag_parameter = 2_int8, flag_blank = 4_int8
   !> Files in one deck, fields of one card.
   integer, parameter :: max_source = 1000, max_field = 16
-
-  !> A second definition of a parameter with another value is an error.
-  integer, parameter :: again_error = 0
 
   !> One file.
   type :: source_t
@@ -63,25 +60,6 @@ module deck_lines_m
     character(12) :: name = ''  !! of the field
     integer :: field = 0        !! its position, where there is no name: members of sets
   end type place_t
-
-  !> One parameter.
-  type :: parameter_t
-    character(20) :: name = ''            !! upper case
-    character :: kind = 'R'               !! R real, I integer, C text
-    character(:), allocatable :: text     !! what is put in its place
-    integer :: source = 0                 !! file it is private to, 0 = the whole deck
-    logical :: fixed = .false.            !! given on the command line
-    logical :: found = .false.            !! the deck defines it
-    integer :: next = 0                   !! the next one of the same hash, in the order they come
-  end type parameter_t
-
-  !> All parameters, with the first and last one of each hash of a name.
-  type :: parameters_t
-    type(parameter_t), allocatable :: items(:)
-    integer :: n = 0
-    integer, allocatable :: first(:), last(:)
-    integer :: again = again_error
-  end type parameters_t
 
   !> A word of the command line that changes the deck.
   type :: word_t
