@@ -7,9 +7,9 @@ module deck_cards_m
   use text_m, only : read_integer, number_good
   use deck_lines_m, only : deck_t, place_t, line_text, line_warning, replace_line, flag_blank, &
     flag_parameter, block_of_line, given_by, format_long, max_field
-  use deck_card_specs_m, only : card_spec_t, make_spec, field_number
-  use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error
-  use deck_schema_m, only : keyword_cards, refusal_reason, lost_effect, max_card
+  use deck_fields_m, only : card_spec_t, make_spec, field_number, card_t, begin_card, cut_card, &
+    read_numbers, field_text, field_error
+  use deck_schema_m, only : table, keyword_cards, refusal_reason, lost_effect, max_card
   use deck_parameter_table_m, only : look_up
   implicit none
   private
@@ -41,16 +41,16 @@ contains
     type(deck_t), intent(in) :: deck
     integer, intent(in) :: i_block
     type(cursor_t), intent(out) :: cursor
-    character(160) :: cards(max_card)
-    integer :: k
+    integer :: k, row
 
     cursor%block = i_block
     cursor%source = deck%blocks(i_block)%source
     cursor%line = deck%blocks(i_block)%first
     cursor%last = deck%blocks(i_block)%last
-    call keyword_cards(deck%blocks(i_block)%name, cards, cursor%n_card, cursor%options)
+    call keyword_cards(deck%blocks(i_block)%name, row, cursor%n_card, cursor%options)
     do k = 1, cursor%n_card
-      call make_spec(cards(k), k, deck%blocks(i_block)%layout, cursor%specs(k))
+      call make_spec(table(row + k), k, deck%blocks(i_block)%layout, cursor%specs(k))
+      cursor%specs(k)%row = row + k
     end do
   end subroutine open_cursor
 
@@ -86,10 +86,7 @@ contains
     type(card_t), intent(out) :: card
 
     if (cursor%line > cursor%last) then
-      card%line = deck%blocks(cursor%block)%keyword
-      card%number = number
-      card%names = cursor%specs(number)%names
-      card%kinds = cursor%specs(number)%kinds
+      call begin_card(cursor%specs(number), deck%blocks(cursor%block)%keyword, card)
       call read_numbers(deck, cursor%specs(number), cursor%source, card)
       return
     end if

@@ -12,8 +12,7 @@ module deck_control_m
   use model_m, only : model_t
   use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning, given_by, shown_text, &
     block_of_line
-  use deck_fields_m, only : card_t, field_text
-  use deck_card_specs_m, only : field_number
+  use deck_fields_m, only : field_number, card_t, field_text
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_text, row_comes, check_rest, &
     report_field, warn_of_field
   use deck_ids_m, only : a_curve

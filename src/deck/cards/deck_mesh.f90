@@ -7,8 +7,7 @@ module deck_mesh_m
   use mesh_m, only : mesh_t
   use model_m, only : model_t
   use deck_lines_m, only : deck_t, place_t, count_rows, line_error, line_warning
-  use deck_fields_m, only : card_t
-  use deck_card_specs_m, only : field_number
+  use deck_fields_m, only : field_number, card_t
   use deck_cards_m, only : cursor_t, next_of, rows_of, report_field, reject_field
   use deck_ids_m, only : a_node, an_element, a_part
   use deck_values_m, only : define, map_defined, lose, find_id

@@ -54,6 +54,7 @@ contains
     character(*), intent(in) :: texts(:)
     type(deck_t), intent(inout) :: deck
     type(word_t) :: word
+    type(parameter_t) :: item
     character(:), allocatable :: mistake
     integer :: i
 
@@ -63,8 +64,9 @@ contains
         call line_error(deck, 0, word%phrase//mistake)
       else if (index(word%name, 'P:') == 1) then
         ! A value from the command line wins over the deck.
-        call add_parameter(deck%parameters, parameter_t(name=word%name(3:), kind='?', &
-          text=word%text, fixed=.true.))
+        item = parameter_t(name=word%name(3:), kind='?', fixed=.true.)
+        item%text = word%text
+        call add_parameter(deck%parameters, item)
       else
         deck%words = [deck%words, word]
       end if

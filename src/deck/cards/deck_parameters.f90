@@ -148,6 +148,7 @@ contains
     type(card_t), intent(inout) :: card
     integer, intent(in) :: k, k_value       !! fields of name and value
     character(*), intent(in) :: given       !! value
+    type(parameter_t) :: item
     character(:), allocatable :: name, text
     character :: kind
     integer :: status
@@ -178,9 +179,11 @@ contains
       text = to_text(int(value))
     end if
     associate (block => deck%blocks(block_of_line(deck, card%line)))
-      call settle_parameter(deck, card%line, parameter_t(name=name, kind=kind, text=text, &
-        source=merge(block%source, 0, index(block%name, '_LOCAL') > 0), found=.true.))
+      item = parameter_t(name=name, kind=kind, source=merge(block%source, 0, index(block%name, &
+        '_LOCAL') > 0), found=.true.)
     end associate
+    item%text = text
+    call settle_parameter(deck, card%line, item)
   end subroutine define
 
   !> Put a definition into the table, minding one of the same name that is there.

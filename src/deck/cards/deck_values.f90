@@ -5,8 +5,7 @@ module deck_values_m
   use kinds_m, only : wp
   use deck_ids_m, only : id_map_t, map_ids, index_of, kind_names, a_node, an_element, a_part
   use deck_lines_m, only : place_t, deck_t, line_error, where_text
-  use deck_card_specs_m, only : field_number
-  use deck_fields_m, only : card_t
+  use deck_fields_m, only : field_number, card_t
   use log_m, only : to_text
   use deck_cards_m, only : reject_field, report_field
   implicit none

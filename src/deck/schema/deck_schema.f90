@@ -17,8 +17,8 @@ module deck_schema_m
     table_database
   implicit none
   private
-  public :: keyword_cards, find_keyword, nearest_keyword, expected, refusal_reason, lost_effect, &
-    max_card, known_honoured, known_ignored, known_refused, known_not
+  public :: table, keyword_cards, find_keyword, nearest_keyword, expected, refusal_reason, &
+    lost_effect, max_card, known_honoured, known_ignored, known_refused, known_not
 
   !> All keywords that are honoured, and their cards.
   character(131), parameter :: table(*) = [character(131) :: table_control, table_mesh, &
@@ -132,6 +132,29 @@ module deck_schema_m
     'N3 a node number', &
     'N4 a node number', &
     'TIE 0 (contact), 1 (tied) or 2 (tied until it breaks)']
+  !> Other names of keywords, and those in the table.
+  character(42), parameter :: aliases(*) = [character(42) :: &
+    'MAT_001 MAT_ELASTIC', &
+    'MAT_003 MAT_PLASTIC_KINEMATIC', &
+    'MAT_007 MAT_BLATZ-KO_RUBBER', &
+    'MAT_009 MAT_NULL', &
+    'MAT_010 MAT_ELASTIC_PLASTIC_HYDRO', &
+    'MAT_015 MAT_JOHNSON_COOK', &
+    'MAT_020 MAT_RIGID', &
+    'MAT_024 MAT_PIECEWISE_LINEAR_PLASTICITY', &
+    'MAT_027 MAT_MOONEY-RIVLIN_RUBBER', &
+    'MAT_063 MAT_CRUSHABLE_FOAM', &
+    'MAT_098 MAT_SIMPLIFIED_JOHNSON_COOK', &
+    'EOS_001 EOS_LINEAR_POLYNOMIAL', &
+    'EOS_004 EOS_GRUNEISEN', &
+    'SET_NODE SET_NODE_LIST', &
+    'SET_NODE_GENERATE SET_NODE_LIST_GENERATE', &
+    'SET_PART SET_PART_LIST', &
+    'SET_PART_GENERATE SET_PART_LIST_GENERATE', &
+    'SET_SHELL SET_SHELL_LIST', &
+    'SET_SHELL_GENERATE SET_SHELL_LIST_GENERATE', &
+    'DATABASE_D3PLOT DATABASE_BINARY_D3PLOT', &
+    'INCLUDE_PATH_RELATIVE INCLUDE_PATH']
   !> Why fields with treatment r may not be used; what ends without a `;` goes on as below.
   character(145), parameter :: refusals(*) = [character(145) :: &
     'FRIC_S is a shear factor of friction', &
@@ -172,26 +195,24 @@ module deck_schema_m
 
 contains
 
-  !> The cards of a keyword (canonical name) and its options.
-  subroutine keyword_cards(name, cards, n_card, options)
+  !> Where the cards of a keyword (canonical name) stand, and its options.
+  subroutine keyword_cards(name, row, n_card, options)
     character(*), intent(in) :: name
-    character(*), intent(out) :: cards(max_card)
+    integer, intent(out) :: row       !! of the table; the cards are in the rows behind it
     integer, intent(out) :: n_card
-    character(*), intent(out), optional :: options
-    integer :: i, k, at
+    character(*), intent(out) :: options
+    integer :: at
 
-    cards = ''
+    options = ''
     n_card = 0
-    i = row_of(name)
-    if (present(options)) options = ''
-    if (i == 0) return
-    if (present(options)) options = table(i)(len_trim(name) + 2:)
-    at = index(table(i), '=')
-    if (at > 0) i = row_of(trim(table(i)(at + 1:)))
-    do k = i + 1, min(i + max_card, size(table))
-      if (table(k)(1:1) /= ' ') return
+    row = row_of(name)
+    if (row == 0) return
+    options = table(row)(len_trim(name) + 2:)
+    at = index(table(row), '=')
+    if (at > 0) row = row_of(trim(table(row)(at + 1:)))
+    do while (row + n_card < size(table))
+      if (table(row + n_card + 1)(1:1) /= ' ') return
       n_card = n_card + 1
-      cards(n_card) = table(k)
     end do
   end subroutine keyword_cards
 
@@ -257,52 +278,13 @@ contains
   pure function canonical(given) result(name)
     character(*), intent(in) :: given
     character(len(given) + longest_addition) :: name
+    integer :: i, at
 
     name = given
-    select case (given)
-    case ('MAT_001')
-      name = 'MAT_ELASTIC'
-    case ('MAT_003')
-      name = 'MAT_PLASTIC_KINEMATIC'
-    case ('MAT_024')
-      name = 'MAT_PIECEWISE_LINEAR_PLASTICITY'
-    case ('MAT_009')
-      name = 'MAT_NULL'
-    case ('MAT_010')
-      name = 'MAT_ELASTIC_PLASTIC_HYDRO'
-    case ('MAT_015')
-      name = 'MAT_JOHNSON_COOK'
-    case ('MAT_007')
-      name = 'MAT_BLATZ-KO_RUBBER'
-    case ('MAT_027')
-      name = 'MAT_MOONEY-RIVLIN_RUBBER'
-    case ('MAT_063')
-      name = 'MAT_CRUSHABLE_FOAM'
-    case ('MAT_098')
-      name = 'MAT_SIMPLIFIED_JOHNSON_COOK'
-    case ('EOS_001')
-      name = 'EOS_LINEAR_POLYNOMIAL'
-    case ('EOS_004')
-      name = 'EOS_GRUNEISEN'
-    case ('MAT_020')
-      name = 'MAT_RIGID'
-    case ('SET_NODE')
-      name = 'SET_NODE_LIST'
-    case ('SET_NODE_GENERATE')
-      name = 'SET_NODE_LIST_GENERATE'
-    case ('SET_PART')
-      name = 'SET_PART_LIST'
-    case ('SET_PART_GENERATE')
-      name = 'SET_PART_LIST_GENERATE'
-    case ('SET_SHELL')
-      name = 'SET_SHELL_LIST'
-    case ('SET_SHELL_GENERATE')
-      name = 'SET_SHELL_LIST_GENERATE'
-    case ('DATABASE_D3PLOT')
-      name = 'DATABASE_BINARY_D3PLOT'
-    case ('INCLUDE_PATH_RELATIVE')
-      name = 'INCLUDE_PATH'
-    end select
+    do i = 1, size(aliases)
+      at = index(aliases(i), ' ')
+      if (aliases(i)(:at) == given) name = aliases(i)(at + 1:)
+    end do
   end function canonical
 
   !> The honoured keyword that a name is likely meant for: at most two letters away. Blank where

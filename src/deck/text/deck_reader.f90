@@ -16,17 +16,6 @@ module deck_reader_m
   !> Characters of all files of a deck together.
   integer, parameter :: max_character = 2000000000
 
-  !> A folder of *INCLUDE_PATH.
-  type :: folder_t
-    character(:), allocatable :: path
-  end type folder_t
-
-  !> The folders that a file can see: those of its own so far behind those of the files above it.
-  type :: folders_t
-    type(folder_t), allocatable :: items(:)
-    integer :: n = 0
-  end type folders_t
-
 contains
 
   !> Read a deck and all that it includes. `error` is set when the deck itself cannot be read;
@@ -50,27 +39,28 @@ contains
     character(*), intent(in) :: path
     character(:), allocatable, intent(inout) :: text !! moves into the deck
     type(deck_t), intent(inout) :: deck
-    type(folders_t) :: folders
+    character(:), allocatable :: folders
 
-    allocate (deck%sources(max_source), deck%blocks(64), folders%items(16))
+    allocate (deck%sources(0:max_source), deck%blocks(64))
     deck%n_source = 1
     deck%sources(1)%path = path
     call move_alloc(text, deck%sources(1)%text)
-    call cut_source(deck, 1, 1, folders)
+    folders = ''
+    call cut_source(deck, 1, folders)
   end subroutine cut_deck
 
   !> Cut a file into lines and blocks, its includes in their place.
-  recursive subroutine cut_source(deck, source, depth, folders)
+  recursive subroutine cut_source(deck, source, folders)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
-    integer, intent(in) :: depth
-    type(folders_t), intent(inout) :: folders !! *INCLUDE_PATH entries so far; as before behind it
+    character(:), allocatable, intent(inout) :: folders !! of *INCLUDE_PATH so far, a line each; as
+                                                        !! before behind the file
     integer :: start, last, next, number, n_stray, n_above
     integer(int8) :: flags
     logical :: in_block
 
     call reserve_lines(deck, len(deck%sources(source)%text)/60 + 64)
-    n_above = folders%n
+    n_above = len(folders)
     start = 1
     number = 0
     n_stray = 0
@@ -81,7 +71,7 @@ contains
       call scan_line(deck%sources(source)%text, start, last, next, flags)
       number = number + 1
       if (deck%sources(source)%text(start:start) == '*' .and. last >= start) then
-        if (in_block) call close_block(deck, source, depth, folders)
+        if (in_block) call close_block(deck, source, folders)
         call add_line(deck, start, last, number, flags)
         call open_block(deck, source, deck%sources(source)%text(start + 1:min(last, &
           start + line_length - 1)))
@@ -105,8 +95,8 @@ contains
       end if
       start = next
     end do
-    if (in_block) call close_block(deck, source, depth, folders)
-    folders%n = n_above
+    if (in_block) call close_block(deck, source, folders)
+    folders = folders(:n_above)
     if (n_stray > 0) call line_error(deck, 0, 'in '//deck%sources(source)%path//', ' &
       //to_text(n_stray)//' line(s) before the first keyword (a line that starts with *)')
   end subroutine cut_source
@@ -126,23 +116,17 @@ contains
   end subroutine limit_line
 
   !> The block is complete: an include puts its files here.
-  recursive subroutine close_block(deck, source, depth, folders)
+  recursive subroutine close_block(deck, source, folders)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
-    integer, intent(in) :: depth
-    type(folders_t), intent(inout) :: folders
+    character(:), allocatable, intent(inout) :: folders
     character(:), allocatable :: name
     integer :: i_block, line
 
     i_block = deck%n_block
-    if (deck%blocks(i_block)%source /= source) return
-    select case (deck%blocks(i_block)%name)
-    case ('INCLUDE', 'INCLUDE_PATH', 'INCLUDE_PATH_RELATIVE')
-      continue
-    case default
-      return
-    end select
-    if (deck%blocks(i_block)%dropped) return
+    if (deck%blocks(i_block)%source /= source .or. deck%blocks(i_block)%dropped) return
+    if (all(deck%blocks(i_block)%name /= ['INCLUDE              ', 'INCLUDE_PATH         ', &
+      'INCLUDE_PATH_RELATIVE'])) return
     deck%blocks(i_block)%dropped = .true.
     line = deck%blocks(i_block)%first
     if (deck%blocks(i_block)%last < line) call line_error(deck, line - 1, 'a file name is missing')
@@ -150,27 +134,12 @@ contains
       call join_name(deck, i_block, line, name)
       if (len(name) == 0) cycle
       if (deck%blocks(i_block)%name == 'INCLUDE') then
-        call include_file(deck, source, depth, folders, name, line - 1)
+        call include_file(deck, source, folders, name, line - 1)
       else
-        call add_folder(folders, name)
+        folders = folders//name//new_line('a')
       end if
     end do
   end subroutine close_block
-
-  !> One more folder.
-  subroutine add_folder(folders, path)
-    type(folders_t), intent(inout) :: folders
-    character(*), intent(in) :: path
-    type(folder_t), allocatable :: longer(:)
-
-    if (folders%n == size(folders%items)) then
-      allocate (longer(2*folders%n))
-      longer(:folders%n) = folders%items
-      call move_alloc(longer, folders%items)
-    end if
-    folders%n = folders%n + 1
-    folders%items(folders%n)%path = path
-  end subroutine add_folder
 
   !> A file name that may go on over several lines (each ends with ` +`); `line` moves past it.
   subroutine join_name(deck, i_block, line, name)
@@ -185,31 +154,25 @@ contains
     do while (line <= deck%blocks(i_block)%last)
       text = trim(adjustl(line_text(deck, line)))
       line = line + 1
-      n = len(text)
-      if (n >= 2) then
-        if (text(n - 1:n) == ' +') then
-          name = name//trim(text(:n - 2))
-          cycle
-        end if
-      end if
-      name = name//text
-      return
+      n = max(len(text), 2) - 2
+      if (text(n + 1:) /= ' +') exit
+      name = name//trim(text(:n))
+      text = ''
     end do
+    if (allocated(text)) name = name//text
   end subroutine join_name
 
   !> Read an included file into the deck.
-  recursive subroutine include_file(deck, source, depth, folders, name, line)
+  recursive subroutine include_file(deck, source, folders, name, line)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
-    integer, intent(in) :: depth
-    type(folders_t), intent(inout) :: folders
+    character(:), allocatable, intent(inout) :: folders
     character(*), intent(in) :: name
     integer, intent(in) :: line !! where it is included
     character(:), allocatable :: path, reason
-    integer :: above, i
+    integer :: above, i, depth
 
-    call find_file(deck%sources(1)%path, deck%sources(source)%path, &
-      folders%items(:folders%n), name, path)
+    call find_file(deck%sources(1)%path, deck%sources(source)%path, folders, name, path)
     if (len(path) == 0) then
       call line_error(deck, line, 'the file "'//trim(shown_text(name))//'" was not found; what ' &
         //'refers to nodes, elements and so on is not judged without it')
@@ -217,7 +180,9 @@ contains
       return
     end if
     above = source
+    depth = 0
     do while (above > 0)
+      depth = depth + 1
       if (deck%sources(above)%path == path) then
         call line_error(deck, line, 'the file "'//name//'" includes itself')
         return
@@ -247,7 +212,7 @@ contains
       deck%incomplete = .true.
       return
     end if
-    call cut_source(deck, i, depth + 1, folders)
+    call cut_source(deck, i, folders)
   end subroutine include_file
 
   !> Where an included file is: as given, in the *INCLUDE_PATH folders (which may be meant from
@@ -255,29 +220,36 @@ contains
   subroutine find_file(main, including, folders, name, path)
     character(*), intent(in) :: main       !! the deck itself
     character(*), intent(in) :: including
-    type(folder_t), intent(in) :: folders(:)
+    character(*), intent(in) :: folders    !! each with its line end
     character(*), intent(in) :: name
     character(:), allocatable, intent(out) :: path !! empty when there is none
-    logical :: exists
-    integer :: i
+    integer :: start, next
 
-    path = name
-    inquire (file=path, exist=exists)
-    if (exists) return
+    if (is_there(name)) return
     if (name(1:1) /= '/') then
-      do i = 1, size(folders)
-        path = folders(i)%path//'/'//name
-        inquire (file=path, exist=exists)
-        if (exists) return
-        path = main(:index(main, '/', back=.true.))//folders(i)%path//'/'//name
-        inquire (file=path, exist=exists)
-        if (exists) return
+      start = 1
+      do while (start <= len(folders))
+        next = start + index(folders(start:), new_line('a'))
+        if (is_there(folders(start:next - 2)//'/'//name)) return
+        if (is_there(main(:index(main, '/', back=.true.))//folders(start:next - 2)//'/'//name)) &
+          return
+        start = next
       end do
-      path = including(:index(including, '/', back=.true.))//name
-      inquire (file=path, exist=exists)
-      if (exists) return
+      if (is_there(including(:index(including, '/', back=.true.))//name)) return
     end if
     path = ''
+
+  contains
+
+    !> Whether there is a file, whose path is kept.
+    function is_there(candidate) result(exists)
+      character(*), intent(in) :: candidate
+      logical :: exists
+
+      path = candidate
+      inquire (file=candidate, exist=exists)
+    end function is_there
+
   end subroutine find_file
 
 end module deck_reader_m

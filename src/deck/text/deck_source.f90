@@ -5,7 +5,7 @@ module deck_source_m
   use kinds_m, only : long
   use files_m, only : is_directory, is_endless
   use text_m, only : upper_case
-  use deck_lines_m, only : deck_t, block_t, flag_comma, flag_parameter, flag_blank, &
+  use deck_lines_m, only : deck_t, flag_comma, flag_parameter, flag_blank, &
     format_standard, format_long, format_i10
   implicit none
   private
@@ -89,41 +89,20 @@ contains
   subroutine reserve_lines(deck, n_more)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: n_more
-    integer :: n_room
+    integer, allocatable :: more(:)
+    integer :: n
 
     if (.not. allocated(deck%first)) then
       allocate (deck%first(n_more), deck%last(n_more), deck%number(n_more), deck%flags(n_more))
       return
     end if
     if (deck%n_line + n_more <= size(deck%first)) return
-    n_room = deck%n_line + max(n_more, deck%n_line/2)
-    call grow(deck%first)
-    call grow(deck%last)
-    call grow(deck%number)
-    call grow_bytes(deck%flags)
-
-  contains
-
-    !> Lengthen a list.
-    subroutine grow(list)
-      integer, allocatable, intent(inout) :: list(:)
-      integer, allocatable :: longer(:)
-
-      allocate (longer(n_room))
-      longer(:deck%n_line) = list(:deck%n_line)
-      call move_alloc(longer, list)
-    end subroutine grow
-
-    !> Lengthen a list of bytes.
-    subroutine grow_bytes(list)
-      integer(int8), allocatable, intent(inout) :: list(:)
-      integer(int8), allocatable :: longer(:)
-
-      allocate (longer(n_room))
-      longer(:deck%n_line) = list(:deck%n_line)
-      call move_alloc(longer, list)
-    end subroutine grow_bytes
-
+    n = deck%n_line
+    allocate (more(max(n_more, n/2)), source=0)
+    deck%first = [deck%first(:n), more]
+    deck%last = [deck%last(:n), more]
+    deck%number = [deck%number(:n), more]
+    deck%flags = [deck%flags(:n), int(more, int8)]
   end subroutine reserve_lines
 
   !> One more line.
@@ -145,17 +124,9 @@ contains
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
     character(*), intent(in) :: text !! the line without its asterisk
-    type(block_t), allocatable :: longer(:)
-    integer :: n_name, i
+    integer :: n_name
 
-    if (.not. allocated(deck%blocks)) allocate (deck%blocks(64))
-    if (deck%n_block == size(deck%blocks)) then
-      allocate (longer(2*deck%n_block))
-      do i = 1, deck%n_block
-        longer(i) = deck%blocks(i)
-      end do
-      call move_alloc(longer, deck%blocks)
-    end if
+    if (deck%n_block == size(deck%blocks)) deck%blocks = [deck%blocks, deck%blocks]
     deck%n_block = deck%n_block + 1
     n_name = length_of_name(upper_case(text)//' ')
     associate (block => deck%blocks(deck%n_block))
@@ -167,16 +138,9 @@ contains
       block%first = deck%n_line + 1
       block%last = deck%n_line
       block%layout = deck%sources(source)%layout
-      if (index(block%rest, ' ') == 2) then
-        select case (block%rest(1:1))
-        case ('+')
-          block%layout = format_long
-        case ('-')
-          block%layout = format_standard
-        case ('%')
-          block%layout = format_i10
-        end select
-      end if
+      if (index(block%rest, '+ ') == 1) block%layout = format_long
+      if (index(block%rest, '- ') == 1) block%layout = format_standard
+      if (index(block%rest, '% ') == 1) block%layout = format_i10
     end associate
   end subroutine open_block
 
