@@ -9,7 +9,7 @@ module deck_cards_m
     flag_parameter, block_of_line, given_by, format_long, max_field
   use deck_fields_m, only : card_spec_t, make_spec, field_number, card_t, begin_card, cut_card, &
     read_numbers, field_text, field_error
-  use deck_schema_m, only : table, keyword_cards, refusal_reason, lost_effect, max_card
+  use deck_schema_m, only : table, keyword_cards, refusal_reason, expected, max_card
   use deck_parameter_table_m, only : look_up
   implicit none
   private
@@ -256,7 +256,7 @@ contains
     type(card_spec_t), intent(in) :: spec
     type(card_t), intent(inout) :: card
     integer, intent(in) :: k
-    character(:), allocatable :: name
+    character(:), allocatable :: name, effect
 
     if (card%bad(k)) return
     if (index('if', spec%kinds(k)) > 0 .and. (.not. abs(card%r(k)) > 0.0_wp &
@@ -265,9 +265,11 @@ contains
     if (spec%treatments(k) == 'r') then
       call field_error(deck, card, k, refusal_reason(trim(spec%names(k))))
     else
+      effect = expected(name, trim(spec%names(k)))
+      if (index(effect, ':') /= 1) effect = ''
       call line_warning(deck, card%line, 'field '//name//' '//spec%names(k)//to_text(spec%number), &
         'card '//to_text(spec%number)//' field '//to_text(k)//' ('//trim(spec%names(k))//'): "' &
-        //field_text(deck, card, k)//'" has no effect here'//lost_effect(trim(spec%names(k))))
+        //field_text(deck, card, k)//'" has no effect here'//effect)
     end if
   end subroutine notice_field
 
