@@ -33,7 +33,7 @@ contains
     type(material_t), allocatable :: materials(:)
     type(material_t) :: material, unset
     type(cursor_t) :: cursor
-    type(card_t) :: card
+    type(card_t) :: card, more
     integer, allocatable :: blocks(:)
     integer :: i, n
 
@@ -48,7 +48,13 @@ contains
       case ('MAT_ELASTIC')
         material%law = law_elastic
       case ('MAT_PLASTIC_KINEMATIC')
-        call take_plastic_kinematic(deck, cursor, card, material)
+        material%law = law_plastic
+        call check_tangent_modulus(deck, card)
+        material%yield = real_of(card, 'SIGY')
+        material%beta = real_of(card, 'BETA')
+        if (.not. any(card%bad)) material%hardening = plastic_modulus(card)
+        call next_card(deck, cursor, 2, more)
+        call take_failure(more, 'FS', material)
       case ('MAT_PIECEWISE_LINEAR_PLASTICITY')
         call take_piecewise(deck, cursor, card, tables, model, material)
       case ('MAT_NULL')
@@ -103,23 +109,6 @@ contains
     end associate
     material%sound_speed = sqrt((material%bulk + 4.0_wp*material%shear/3.0_wp)/material%density)
   end subroutine take_moduli
-
-  !> *MAT_PLASTIC_KINEMATIC.
-  subroutine take_plastic_kinematic(deck, cursor, card, material)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(inout) :: cursor
-    type(card_t), intent(inout) :: card
-    type(material_t), intent(inout) :: material
-    type(card_t) :: rate
-
-    material%law = law_plastic
-    call check_tangent_modulus(deck, card)
-    material%yield = real_of(card, 'SIGY')
-    material%beta = real_of(card, 'BETA')
-    if (.not. any(card%bad)) material%hardening = plastic_modulus(card)
-    call next_card(deck, cursor, 2, rate)
-    call take_failure(rate, 'FS', material)
-  end subroutine take_plastic_kinematic
 
   !> *MAT_CRUSHABLE_FOAM: elastic up to a curve, which must not fall, and to TSC in tension.
   subroutine take_crushable_foam(deck, card, model, material)

@@ -169,6 +169,7 @@ contains
     type(deck_t), intent(inout) :: deck
     type(mesh_t), intent(inout) :: mesh
     logical, intent(inout) :: is_sound(:) !! (n_element) what is refused here is not
+    character(:), allocatable :: mistake
     integer :: i, n_turned, first_turned
     real(wp) :: corners(4), area, tolerance
 
@@ -183,18 +184,21 @@ contains
         area = corners(1) + corners(3)
       end if
       tolerance = 1.0e-10_wp*maxval(abs(corners))
-      is_sound(i) = .false.
-      if (repeated(mesh%element_nodes(:, i))) then
-        call reject_field(deck, place_t(deck%maps(an_element)%lines(i), 1, 'EID'), 'uses a node ' &
-          //'twice (a triangle repeats its third node, and no other)')
-      else if (minval(corners) < -tolerance .and. maxval(corners) > tolerance) then
-        call reject_field(deck, place_t(deck%maps(an_element)%lines(i), 1, 'EID'), &
-          'is not convex: its edges cross or a corner points inwards')
-      else if (.not. abs(area) > 2.0_wp*tolerance) then
-        call reject_field(deck, place_t(deck%maps(an_element)%lines(i), 1, 'EID'), 'has no area')
-      else
-        is_sound(i) = .true.
-        if (area > 0.0_wp) cycle
+      mistake = ''
+      associate (nodes => mesh%element_nodes(:, i))
+        if (any(nodes(1:2) == nodes([2, 3])) .or. nodes(1) == nodes(3) &
+          .or. any(nodes(1:2) == nodes(4))) then
+          mistake = 'uses a node twice (a triangle repeats its third node, and no other)'
+        else if (minval(corners) < -tolerance .and. maxval(corners) > tolerance) then
+          mistake = 'is not convex: its edges cross or a corner points inwards'
+        else if (.not. abs(area) > 2.0_wp*tolerance) then
+          mistake = 'has no area'
+        end if
+      end associate
+      is_sound(i) = len(mistake) == 0
+      if (.not. is_sound(i)) then
+        call reject_field(deck, place_t(deck%maps(an_element)%lines(i), 1, 'EID'), mistake)
+      else if (area <= 0.0_wp) then
         mesh%element_nodes(:, i) = mesh%element_nodes([1, 4, 3, 2], i)
         if (mesh%element_nodes(2, i) == mesh%element_nodes(3, i)) &
           mesh%element_nodes(3:4, i) = mesh%element_nodes(4, i)
@@ -227,14 +231,5 @@ contains
       areas(k) = before(1)*after(2) - before(2)*after(1)
     end do
   end function corner_areas
-
-  !> Whether a node comes twice, other than as the fourth node of a triangle.
-  pure function repeated(nodes) result(twice)
-    integer, intent(in) :: nodes(4)
-    logical :: twice
-
-    twice = nodes(1) == nodes(2) .or. nodes(1) == nodes(3) .or. nodes(2) == nodes(3) &
-      .or. nodes(4) == nodes(1) .or. nodes(4) == nodes(2)
-  end function repeated
 
 end module deck_mesh_m
