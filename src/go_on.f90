@@ -6,7 +6,7 @@ module go_on_m
   use contact_dispatch_m, only : contact_kinds
   use deck_m, only : deck_request_t, read_deck
   use deck_restart_m, only : merge_decks, is_whole_deck, deck_identity
-  use deck_source_m, only : read_file
+  use deck_reader_m, only : read_file
   use errors_m, only : error_t, raise, status_input
   use log_m, only : log_t, write_log
   use model_m, only : model_t

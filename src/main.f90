@@ -4,7 +4,7 @@ program slideline
   use, intrinsic :: iso_c_binding, only : c_int
   use c_files_m, only : c_exit
   use check_m, only : check_deck
-  use arguments_m, only : arguments_t, read_arguments, help_text
+  use arguments_m, only : arguments_t, read_arguments, help
   use build_info_m, only : version, build_type, compiler, flags, solvers
   use endings_m, only : watch_end, announce_end, error_ending
   use errors_m, only : error_t
@@ -20,6 +20,7 @@ program slideline
   type(ranks_t) :: ranks
   type(error_t), allocatable :: error
   integer(c_int) :: status
+  integer :: i
   logical :: has_ended = .true. !! no end is left to be told
 
   call join_ranks(ranks)
@@ -31,7 +32,9 @@ program slideline
     if (ranks%mine > 0 .and. (arguments%help .or. arguments%version .or. arguments%check)) then
       continue ! the first process answers
     else if (arguments%help) then
-      call show(help_text())
+      do i = 1, size(help)
+        call show(trim(help(i)))
+      end do
     else if (arguments%version) then
       call show('slideline '//version//' (source '//source_version//')')
       call show('build '//build_type//', '//compiler)

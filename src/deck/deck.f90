@@ -40,7 +40,7 @@ module deck_m
   use deck_parameters_m, only : read_parameters
   use deck_overrides_m, only : read_words, edit_controls
   use deck_cards_m, only : cursor_t, open_cursor
-  use deck_effective_m, only : forget_places, write_effective
+  use deck_effective_m, only : write_effective
   use deck_echo_m, only : echo_model
   use text_m, only : upper_case
   use deck_values_m, only : lose
@@ -62,9 +62,6 @@ module deck_m
   character(*), parameter :: instead_of_cases = ' not available in slideline: run the deck once ' &
     //'for each, in a shell loop or by tools/batch/sweep.sh, with ctype=, p:NAME=VALUE of a ' &
     //'*PARAMETER and the like, and *INCLUDE what several decks share'
-
-  !> All kinds of sets.
-  integer, parameter :: sets(4) = [a_node_set, a_part_set, a_segment_set, a_shell_set]
 
 contains
 
@@ -132,7 +129,6 @@ contains
       //'default, as in LS-DYNA: '//deck%default_zeros)
     if (allocated(deck%kept_zeros)) call write_log(log, 'a 0 in these fields is kept, where ' &
       //'LS-DYNA takes the default: '//deck%kept_zeros)
-    call forget_places(deck)
     call write_effective(deck, effective)
   end subroutine interpret_deck
 
@@ -293,7 +289,8 @@ contains
       if (index(name, 'MAT') == 1) call lose(deck, [a_material])
       if (index(name, 'EOS') == 1) call lose(deck, [an_eos])
       if (index(name, 'DEFINE') == 1) call lose(deck, [a_curve, a_system])
-      if (index(name, 'SET') == 1) call lose(deck, sets)
+      if (index(name, 'SET') == 1) call lose(deck, [a_node_set, a_part_set, a_segment_set, &
+        a_shell_set])
       is_ended = is_ended .or. name == 'CONTROL_TERMINATION'
       name = trim(nearest_keyword(deck%blocks(i_block)%given))
     end do

@@ -8,7 +8,7 @@ module deck_edits_m
   use deck_cards_m, only : cursor_t, open_cursor
   use deck_fields_m, only : card_spec_t, card_t, cut_card, field_text
   use deck_parameter_table_m, only : look_up
-  use deck_source_m, only : add_line, open_block
+  use deck_reader_m, only : add_line, open_block
   implicit none
   private
   public :: given_number, set_field, rewrite_block, append_block

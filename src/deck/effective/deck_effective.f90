@@ -6,26 +6,19 @@ module deck_effective_m
   use heap_m, only : give_back_memory
   implicit none
   private
-  public :: forget_places, write_effective
+  public :: write_effective
 
 contains
 
-  !> Give up what only messages need, before a second text of the deck takes room.
-  subroutine forget_places(deck)
-    type(deck_t), intent(inout) :: deck
-
-    if (allocated(deck%number)) deallocate (deck%number)
-    if (allocated(deck%flags)) deallocate (deck%flags)
-    call give_back_memory()
-  end subroutine forget_places
-
-  !> The text of the effective deck: its characters are counted, then written. The files that it is
-  !> made of are given up on the way.
+  !> The text of the effective deck: its characters are counted, then written. What only messages
+  !> need is given up before, the files that it is made of are on the way.
   subroutine write_effective(deck, effective)
     type(deck_t), intent(inout) :: deck
     character(:), allocatable, intent(out) :: effective
     integer :: i, k, line, source, n, last_block(deck%n_source)
 
+    if (allocated(deck%number)) deallocate (deck%number, deck%flags)
+    call give_back_memory()
     do i = 1, deck%n_block
       last_block(deck%blocks(i)%source) = i
     end do
