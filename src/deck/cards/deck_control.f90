@@ -121,7 +121,7 @@ contains
     blocks = blocks_of(deck, 'TITLE')
     if (size(blocks) == 0) return
     call open_cursor(deck, blocks(size(blocks)), cursor)
-    call row_comes(deck, cursor, found)
+    found = row_comes(deck, cursor)
     call next_text(deck, cursor, title)
     title = trim(adjustl(shown_text(title)))
   end subroutine read_title

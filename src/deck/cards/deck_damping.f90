@@ -7,7 +7,7 @@ module deck_damping_m
   use conditions_m, only : damping_t, part_damping_t
   use model_m, only : model_t
   use parts_m, only : gives_pressure
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_of, rows_of, &
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, next_of, &
     row_comes, check_rest, report_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_part, a_part_set, a_curve
@@ -43,7 +43,7 @@ contains
     blocks = blocks_of(deck, 'DAMPING_GLOBAL')
     do i = 1, size(blocks)
       call open_cursor(deck, blocks(i), cursor)
-      call next_row(deck, cursor, 1, card, found)
+      found = next_row(deck, cursor, 1, card)
       call check_rest(deck, cursor)
       if (any(card%bad)) cycle
       call refuse_static(deck, model, card%line, '*DAMPING_GLOBAL')
@@ -69,10 +69,7 @@ contains
     integer :: k
     logical :: found
 
-    call rows_of('DAMPING_PART_MASS', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'DAMPING_PART_MASS', cursor, card))
       damping%factor = 1.0_wp
       if (integer_of(card, 'FLAG') == 1) then
         call next_card(deck, cursor, 2, factors)
@@ -80,7 +77,7 @@ contains
       else
         ! A second card of zeros, which common writers put where FLAG is 0 too, is no row: there is
         ! no part 0.
-        call row_comes(deck, cursor, found)
+        found = row_comes(deck, cursor)
         if (found) found = verify(line_text(deck, cursor%line), ' 0.,+-eEdD') == 0
         if (found) cursor%line = cursor%line + 1
       end if
@@ -107,12 +104,8 @@ contains
     type(card_t) :: card
     integer, allocatable :: parts(:)
     integer :: k
-    logical :: found
 
-    call rows_of('DAMPING_PART_STIFFNESS', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'DAMPING_PART_STIFFNESS', cursor, card))
       if (any(card%bad)) cycle
       if (model%controls%implicit%is_on) call line_error(deck, card%line, &
         '*DAMPING_PART_STIFFNESS is damping that the implicit method does not have')

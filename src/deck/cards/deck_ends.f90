@@ -6,7 +6,7 @@ module deck_ends_m
   use controls_m, only : end_condition_t, end_node_place, end_node_touch, end_body_place, &
     end_body_way, end_contact
   use model_m, only : model_t
-  use deck_cards_m, only : cursor_t, next_of, rows_of, report_field
+  use deck_cards_m, only : cursor_t, next_of, report_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, a_part
   use deck_lines_m, only : deck_t, count_rows
@@ -27,15 +27,11 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     integer :: part, n
-    logical :: found
 
     allocate (ends(count_rows(deck, 'TERMINATION_')))
     if (size(ends) == 0) return
     n = 0
-    call rows_of('TERMINATION_', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'TERMINATION_', cursor, card))
       ending = end_condition_t()
       if (has_field(card, 'CID')) then
         call take_contact(deck, card, model, ending)

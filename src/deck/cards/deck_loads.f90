@@ -7,7 +7,7 @@ module deck_loads_m
   use conditions_m, only : nodal_load_t, pressure_load_t, body_load_t, lumped_mass_t
   use model_m, only : model_t
   use rigids_m, only : mark_rigid_nodes
-  use deck_cards_m, only : cursor_t, next_of, rows_of, open_cursor, next_row, check_rest, &
+  use deck_cards_m, only : cursor_t, next_of, open_cursor, next_row, check_rest, &
     report_field, reject_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, a_part, a_curve, a_segment_set, a_system
@@ -33,7 +33,7 @@ contains
     type(nodal_load_t), allocatable :: loads(:)
     type(cursor_t) :: cursor
     type(card_t) :: card
-    logical :: found, is_massive(model%mesh%n_node)
+    logical :: is_massive(model%mesh%n_node)
     integer, allocatable :: nodes(:)
     integer :: curve, j, k, n, first_radial
     real(wp) :: axis(2)
@@ -42,10 +42,7 @@ contains
     is_massive = mark_massive(deck, model)
     n = 0
     first_radial = 0
-    call rows_of('LOAD_NODE_', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'LOAD_NODE_', cursor, card))
       if (any(card%bad)) cycle
       if (integer_of(card, 'DOF') == 1 .and. first_radial == 0) first_radial = card%line
       call card_nodes(deck, card, model, nodes)
@@ -131,12 +128,8 @@ contains
     type(card_t) :: card
     integer :: part, curve, body, k
     real(wp) :: along(3)
-    logical :: found
 
-    call rows_of('LOAD_RIGID_BODY', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'LOAD_RIGID_BODY', cursor, card))
       if (any(card%bad)) cycle
       call find_id(deck, a_part, card, 'PID', part)
       call find_id(deck, a_curve, card, 'LCID', curve)
@@ -171,14 +164,10 @@ contains
     type(card_t) :: card
     integer, allocatable :: edges(:, :)
     integer :: curve, set, k, n
-    logical :: found
 
     allocate (loads(64), all_places(64))
     n = 0
-    call rows_of('LOAD_SEGMENT', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'LOAD_SEGMENT', cursor, card))
       if (has_field(card, 'N1')) call check_edge(deck, card)
       if (any(card%bad)) cycle
       edges = reshape([integer ::], [2, 0])
@@ -248,7 +237,7 @@ contains
     blocks = blocks_of(deck, 'LOAD_BODY_')
     do i = 1, size(blocks)
       call open_cursor(deck, blocks(i), cursor)
-      call next_row(deck, cursor, 1, card, found)
+      found = next_row(deck, cursor, 1, card)
       call check_rest(deck, cursor)
       if (any(card%bad)) cycle
       call find_id(deck, a_curve, card, 'LCID', load%curve)
@@ -267,7 +256,7 @@ contains
     type(lumped_mass_t), allocatable :: masses(:)
     type(cursor_t) :: cursor
     type(card_t) :: card
-    logical :: found, is_massive(model%mesh%n_node)
+    logical :: is_massive(model%mesh%n_node)
     integer, allocatable :: nodes(:)
     integer :: k, n
 
@@ -275,10 +264,7 @@ contains
     is_massive = mark_massive(deck, model)
     allocate (masses(64))
     n = 0
-    call rows_of('ELEMENT_MASS', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'ELEMENT_MASS', cursor, card))
       if (any(card%bad)) cycle
       call card_nodes(deck, card, model, nodes)
       k = findloc(is_massive(nodes), .false., dim=1)

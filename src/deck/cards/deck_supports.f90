@@ -9,7 +9,7 @@ module deck_supports_m
   use model_m, only : model_t
   use rigids_m, only : mark_rigid_nodes
   use supports_m, only : mark_meshed_nodes
-  use deck_cards_m, only : cursor_t, next_of, rows_of, report_field, reject_field
+  use deck_cards_m, only : cursor_t, next_of, report_field, reject_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, an_element, a_part, a_curve, a_node_set, a_system
   use deck_lines_m, only : deck_t, place_t, blocks_of, line_warning, line_error
@@ -77,7 +77,7 @@ contains
     logical, allocatable, intent(out) :: fixed(:, :) !! (2, n_node)
     type(cursor_t) :: cursor
     type(card_t) :: card
-    logical :: is_free(model%mesh%n_node), along(2), found
+    logical :: is_free(model%mesh%n_node), along(2)
     integer, allocatable :: nodes(:)
     integer :: i
 
@@ -96,10 +96,7 @@ contains
         //' node(s) belong to no element and are fixed; the first is ' &
         //to_text(model%mesh%node_id(i)))
     end if
-    call rows_of('BOUNDARY_SPC_', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'BOUNDARY_SPC_', cursor, card))
       if (any(card%bad)) cycle
       call card_nodes(deck, card, model, nodes)
       along = [integer_of(card, 'DOFX'), integer_of(card, 'DOFY')] == 1
@@ -203,15 +200,12 @@ contains
     type(card_t) :: card
     integer, allocatable :: nodes(:), lines(:), rigid_lines(:)
     integer :: k, n
-    logical :: found, is_sound, is_static
+    logical :: is_sound, is_static
 
     allocate (motions(64), lines(64), rigid_lines(0), model%conditions%rigid_motions(0))
     is_static = model%controls%implicit%is_on .and. .not. model%controls%implicit%is_dynamic
     n = 0
-    call rows_of('BOUNDARY_PRESCRIBED_MOTION_', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'BOUNDARY_PRESCRIBED_MOTION_', cursor, card))
       call take_motion(deck, card, motion, is_sound)
       if (.not. is_sound) cycle
       if (has_field(card, 'PID')) then
@@ -351,7 +345,6 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     logical :: taken(2, model%mesh%n_node), is_rigid(model%mesh%n_node), meshed(model%mesh%n_node)
-    logical :: found
     character(:), allocatable :: message
     integer :: i, k
 
@@ -359,10 +352,7 @@ contains
     call mark_taken(model%conditions, taken)
     meshed = mark_meshed_nodes(model)
     is_rigid = mark_rigid_nodes(model%rigids, model%mesh%n_node)
-    call rows_of('CONSTRAINED_NODE_SET', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'CONSTRAINED_NODE_SET', cursor, card))
       if (any(card%bad)) cycle
       if (model%controls%implicit%is_on) call line_error(deck, card%line, &
         '*CONSTRAINED_NODE_SET is a constraint that the implicit method does not have')

@@ -63,12 +63,9 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     integer :: node
-    logical :: found
 
     call open_cursor(deck, i_block, cursor)
-    do
-      call next_row(deck, cursor, 1, card, found)
-      if (.not. found) exit
+    do while (next_row(deck, cursor, 1, card))
       if (any(card%bad)) cycle
       if (first_line == 0) first_line = card%line
       call find_id(deck, a_node, card, 'NID', node)
@@ -192,12 +189,9 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     integer :: part, body
-    logical :: found
 
     call open_cursor(deck, i_block, cursor)
-    do
-      call next_row(deck, cursor, 1, card, found)
-      if (.not. found) exit
+    do while (next_row(deck, cursor, 1, card))
       if (any(card%bad)) cycle
       call find_id(deck, a_part, card, 'PID', part)
       if (part == 0) cycle
