@@ -8,8 +8,9 @@ module deck_ends_m
   use model_m, only : model_t
   use deck_cards_m, only : cursor_t, next_of, report_field
   use deck_fields_m, only : card_t
-  use deck_ids_m, only : a_node, a_part
+  use deck_ids_m, only : a_node
   use deck_lines_m, only : deck_t, count_rows
+  use deck_supports_m, only : find_body
   use deck_values_m, only : integer_of, real_of, is_blank, has_field, find_id
   implicit none
   private
@@ -26,7 +27,7 @@ contains
     type(end_condition_t) :: ending
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer :: part, n
+    integer :: n
 
     allocate (ends(count_rows(deck, 'TERMINATION_')))
     if (size(ends) == 0) return
@@ -46,11 +47,7 @@ contains
       else
         call take_bounds(deck, card, end_body_place, end_body_way, ending)
         ending%id = integer_of(card, 'PID')
-        call find_id(deck, a_part, card, 'PID', part)
-        if (part == 0) cycle
-        ending%where = findloc(model%rigids%part, part, 1)
-        if (ending%where == 0 .and. model%parts(part)%material > 0) call report_field(deck, card, &
-          'PID', 'is no rigid part (*MAT_RIGID)')
+        call find_body(deck, card, model, '', ending%where)
       end if
       n = n + 1
       ends(n) = ending

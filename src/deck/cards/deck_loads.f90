@@ -10,10 +10,11 @@ module deck_loads_m
   use deck_cards_m, only : cursor_t, next_of, open_cursor, next_row, check_rest, &
     report_field, reject_field
   use deck_fields_m, only : card_t
-  use deck_ids_m, only : a_node, a_part, a_curve, a_segment_set, a_system
-  use deck_lines_m, only : deck_t, place_t, blocks_of, line_warning
+  use deck_ids_m, only : a_node, a_curve, a_segment_set, a_system
+  use deck_lines_m, only : deck_t, place_t, blocks_of
   use deck_sets_m, only : check_edge
-  use deck_supports_m, only : card_nodes, mark_axis, mark_massive, across_axis
+  use deck_supports_m, only : card_nodes, find_body, mark_axis, mark_massive, warn_of_nodes, &
+    across_axis
   use deck_values_m, only : integer_of, real_of, has_field, find_id
   implicit none
   private
@@ -33,7 +34,7 @@ contains
     type(nodal_load_t), allocatable :: loads(:)
     type(cursor_t) :: cursor
     type(card_t) :: card
-    logical :: is_massive(model%mesh%n_node)
+    logical :: is_massive(model%mesh%n_node), is_axis(model%mesh%n_node)
     integer, allocatable :: nodes(:)
     integer :: curve, j, k, n, first_radial
     real(wp) :: axis(2)
@@ -62,7 +63,10 @@ contains
       end do
     end do
     model%conditions%nodal_loads = loads(:n)
-    if (model%is_round) call warn_of_axis_loads(deck, first_radial, model)
+    is_axis = mark_axis(model)
+    call warn_of_nodes(deck, first_radial, 'radial load', model, pack(loads(:n)%node, &
+      is_axis(loads(:n)%node) .and. loads(:n)%direction == 1), ' load(s) in r act on nodes on the ' &
+      //'axis (x = 0), which do not move in r: they do nothing; the first is on node ', '')
   end subroutine read_nodal_loads
 
   !> The direction of a load in the axes of the model; 0 for a moment.
@@ -81,42 +85,25 @@ contains
     if (system > 0) axis = deck%axes(:, direction, system)
   end subroutine load_axes
 
-  !> Warn of forces in r on nodes of the axis, at the first card with a force in r.
-  subroutine warn_of_axis_loads(deck, line, model)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: line
-    type(model_t), intent(in) :: model
-    logical :: is_there(model%mesh%n_node), is_lost(size(model%conditions%nodal_loads))
-
-    is_there = mark_axis(model)
-    associate (loads => model%conditions%nodal_loads)
-      is_lost = is_there(loads%node) .and. loads%direction == 1
-      if (any(is_lost)) call line_warning(deck, line, 'radial load', to_text(count(is_lost)) &
-        //' load(s) in r act on nodes on the axis (x = 0), which do not move in r: they do ' &
-        //'nothing; the first is on node ' &
-        //to_text(model%mesh%node_id(loads(findloc(is_lost, .true., dim=1))%node)))
-    end associate
-  end subroutine warn_of_axis_loads
-
   !> Warn of free nodes next to the axis: the hoop stress at the rim of a bore is not that of a body
   !> without one, however narrow it is.
   subroutine warn_of_bores(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(in) :: model
     logical :: is_rim(model%mesh%n_node)
-    integer :: first
+    integer, allocatable :: nodes(:)
+    integer :: i
 
     if (.not. model%is_round .or. model%mesh%n_node == 0) return
     associate (radius => model%mesh%coordinates(1, :), conditions => model%conditions)
       is_rim = radius > 0.0_wp .and. radius < bore_share*maxval(radius) &
         .and. .not. mark_rigid_nodes(model%rigids, model%mesh%n_node)
       is_rim(pack(conditions%fixed_nodes, conditions%fixed_directions == 1)) = .false.
-      if (.not. any(is_rim)) return
-      first = findloc(is_rim, .true., dim=1)
-      call line_warning(deck, deck%maps(a_node)%lines(first), 'bore', to_text(count(is_rim)) &
-        //' node(s) lie next to the axis but not on it, and move in r as the rim of a bore; the ' &
-        //'first is '//to_text(model%mesh%node_id(first))//' at the radius ' &
-        //to_text(radius(first))//'; give them x = 0, or hold them')
+      nodes = pack([(i, i=1, size(is_rim))], is_rim)
+      if (size(nodes) > 0) call warn_of_nodes(deck, deck%maps(a_node)%lines(nodes(1)), 'bore', &
+        model, nodes, ' node(s) lie next to the axis but not on it, and move in r as the rim of a ' &
+        //'bore; the first is ', ' at the radius '//to_text(radius(nodes(1))) &
+        //'; give them x = 0, or hold them')
     end associate
   end subroutine warn_of_bores
 
@@ -126,23 +113,16 @@ contains
     type(model_t), intent(inout) :: model
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer :: part, curve, body, k
+    integer :: curve, body, k
     real(wp) :: along(3)
 
     do while (next_of(deck, 'LOAD_RIGID_BODY', cursor, card))
       if (any(card%bad)) cycle
-      call find_id(deck, a_part, card, 'PID', part)
+      call find_body(deck, card, model, '; *LOAD_NODE_SET loads nodes', body)
       call find_id(deck, a_curve, card, 'LCID', curve)
       call load_axes(deck, card, along(:2))
       along(3) = merge(1.0_wp, 0.0_wp, integer_of(card, 'DOF') == 7)
-      if (part == 0 .or. curve == 0) cycle
-      if (model%parts(part)%material == 0) cycle
-      body = findloc(model%rigids%part, part, dim=1)
-      if (body == 0) then
-        call report_field(deck, card, 'PID', 'is not a rigid part (*MAT_RIGID); *LOAD_NODE_SET ' &
-          //'loads nodes')
-        cycle
-      end if
+      if (body == 0 .or. curve == 0) cycle
       if (model%is_round .and. any(abs(along([1, 3])) > 0.0_wp)) &
         call report_field(deck, card, 'DOF', across_axis)
       if (.not. allocated(model%conditions%rigid_loads)) allocate (model%conditions%rigid_loads(0))
