@@ -107,8 +107,8 @@ contains
     if (found) call read_line(deck, cursor, number, card)
   end function next_row
 
-  !> Read the next row that is not blank, as card 1, of the keywords that begin with `head`, from the
-  !> first of them on where the cursor is at no keyword yet; false behind the last row of the last.
+  !> Read the next row that is not blank, as card 1, of the keywords that begin with `head`, from
+  !> the first of them on where the cursor is at none yet; false behind the last row of the last.
   function next_of(deck, head, cursor, card) result(found)
     type(deck_t), intent(inout) :: deck
     character(*), intent(in) :: head
@@ -238,8 +238,9 @@ contains
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
 
-    if (row_comes(deck, cursor)) call line_warning(deck, cursor%line, 'rest'//to_text(cursor%line), &
-      'from here to the next keyword ignored: more lines than the keyword has cards')
+    if (row_comes(deck, cursor)) call line_warning(deck, cursor%line, 'rest' &
+      //to_text(cursor%line), 'from here to the next keyword ignored: more lines than the ' &
+      //'keyword has cards')
   end subroutine check_rest
 
   !> An error of the field of a name, of a card just read.

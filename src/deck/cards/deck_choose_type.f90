@@ -47,8 +47,17 @@ contains
       call decide_by_scene(contact)
     end if
     if (.not. has_target) contact%target = default_target
-    if (.not. abs(contact%penalty) > 0.0_wp) call take_penalty(model%controls%implicit%is_on, &
-      contact)
+    if (.not. abs(contact%penalty) > 0.0_wp) then
+      ! The largest that an explicit step bears; K L/A of implicit runs and ties, up to which
+      ! contact costs next to nothing.
+      contact%penalty_unit = penalty_share
+      contact%penalty = 1.0_wp
+      if (model%controls%implicit%is_on .or. is_tied(contact)) then
+        contact%penalty_unit = penalty_factor
+        contact%penalty = tie_factor
+      end if
+      contact%master_penalty = contact%penalty
+    end if
     ! The card shows what was chosen.
     call set_field(deck, i_block, 'CTYPE', to_text(contact%contact_type))
     call set_field(deck, i_block, 'PEN', shortest(contact%penalty))
@@ -56,22 +65,6 @@ contains
     call set_field(deck, i_block, 'PENT', shortest(max(contact%master_penalty, 0.0_wp)))
     call set_field(deck, i_block, 'TARGET', shortest(contact%target))
   end subroutine choose_type
-
-  !> The penalty where the deck has none: the largest that an explicit step bears; K L/A of implicit
-  !> runs and ties, up to which contact costs next to nothing.
-  pure subroutine take_penalty(is_implicit, contact)
-    logical, intent(in) :: is_implicit
-    type(contact_t), intent(inout) :: contact
-
-    if (is_implicit .or. is_tied(contact)) then
-      contact%penalty_unit = penalty_factor
-      contact%penalty = tie_factor
-    else
-      contact%penalty_unit = penalty_share
-      contact%penalty = 1.0_wp
-    end if
-    contact%master_penalty = contact%penalty
-  end subroutine take_penalty
 
   !> How the scene stands, the first that holds.
   pure function scene_of(model, contact) result(scene)

@@ -14,14 +14,15 @@ module deck_contact_sides_m
   use boundary_m, only : boundary_t, find_boundary, find_edge
   use surface_building_m, only : boundary_surface, chain_surface, chain_turned, chain_ordered, &
     chain_broken, chain_repeated, chain_short
-  use deck_ids_m, only : index_of, a_node_set, a_part, a_part_set, a_segment_set, a_shell_set
+  use deck_ids_m, only : index_of, kind_names, a_node_set, a_part, a_part_set, a_segment_set, &
+    a_shell_set
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_cards_m, only : reject_field
   use deck_contact_m, only : contact_cards_t, side_fields
   use deck_values_m, only : resolve_id, place_of
   implicit none
   private
-  public :: outline_t, find_side, mark_set, mark_surface, find_surface, check_overlap
+  public :: outline_t, find_side, set_nodes, mark_surface, find_surface, check_overlap
 
   !> Where surfaces are looked for. Of a mesh some elements of which are refused those are made that
   !> have no nodes of them: mistakes that do not follow from theirs are told in the same pass.
@@ -69,7 +70,7 @@ contains
     type(model_t), intent(in) :: model
     logical, intent(out) :: is_on(:)  !! (n_node)
     logical :: is_of_part(size(model%parts))
-    integer :: kind, found, k
+    integer :: kind, found
 
     is_on = .false.
     call find_side(deck, entry, 1, kind, found)
@@ -80,56 +81,44 @@ contains
     else if (kind == side_parts) then
       is_of_part = .false.
       is_of_part(model%part_sets(found)%parts) = .true.
-      do k = 1, model%mesh%n_element
-        if (is_of_part(model%mesh%element_part(k))) is_on(model%mesh%element_nodes(:, k)) = .true.
-      end do
+      is_on(pack(model%mesh%element_nodes, spread(is_of_part(model%mesh%element_part), 1, 4))) &
+        = .true.
     else
-      call mark_set(model, kind, found, is_on)
+      is_on(set_nodes(model, kind, found)) = .true.
     end if
   end subroutine mark_surface
 
-  !> Nodes of a node or segment set.
-  pure subroutine mark_set(model, kind, found, is_on)
+  !> Nodes of a node or segment set; none of parts.
+  pure function set_nodes(model, kind, found) result(nodes)
     type(model_t), intent(in) :: model
     integer, intent(in) :: kind, found
-    logical, intent(inout) :: is_on(:)
+    integer, allocatable :: nodes(:)
 
-    if (kind == side_nodes) then
-      is_on(model%node_sets(found)%nodes) = .true.
-    else if (kind == side_segments) then
-      is_on(model%segment_sets(found)%nodes(1, :)) = .true.
-      is_on(model%segment_sets(found)%nodes(2, :)) = .true.
-    end if
-  end subroutine mark_set
+    allocate (nodes(0))
+    if (kind == side_nodes) nodes = model%node_sets(found)%nodes
+    if (kind == side_segments) nodes = [model%segment_sets(found)%nodes]
+  end function set_nodes
 
-  !> An error of a side that names no set.
+  !> An error of a side that names no set, with what else has its number.
   subroutine refuse_side(deck, entry, side)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
     integer, intent(in) :: side
-    integer :: found
+    integer, parameter :: kinds(4) = [a_node_set, a_part_set, a_shell_set, a_part]
+    character(:), allocatable :: namesakes
+    integer :: found, k
 
+    namesakes = ''
     associate (id => entry%sides(side))
+      do k = 1, size(kinds)
+        if (index_of(deck%maps(kinds(k)), abs(id)) > 0) namesakes = namesakes//', ' &
+          //trim(kind_names(kinds(k)))//' '//to_text(abs(id))//' exists'
+      end do
+      if (len(namesakes) > 0) namesakes(1:1) = ';'
       if (id /= 0) call resolve_id(deck, merge(a_part_set, a_node_set, id > 0), abs(id), &
-        place_of(entry%cards(1), side_fields(side)), found, namesakes(deck, id))
+        place_of(entry%cards(1), side_fields(side)), found, namesakes)
     end associate
   end subroutine refuse_side
-
-  !> What else has the number of a set that is not there, for a message; nothing where nothing has.
-  pure function namesakes(deck, side) result(text)
-    type(deck_t), intent(in) :: deck
-    integer, intent(in) :: side  !! as on the card, with its sign
-    character(:), allocatable :: text
-    character(:), allocatable :: number
-
-    number = ' '//to_text(abs(side))//' exists'
-    text = ''
-    if (index_of(deck%maps(a_node_set), abs(side)) > 0) text = text//', node set'//number
-    if (index_of(deck%maps(a_part_set), abs(side)) > 0) text = text//', part set'//number
-    if (index_of(deck%maps(a_shell_set), abs(side)) > 0) text = text//', shell set'//number
-    if (index_of(deck%maps(a_part), abs(side)) > 0) text = text//', part'//number
-    if (len(text) > 0) text(1:1) = ';'
-  end function namesakes
 
   !> The surface of one side of an interface. It has no nodes where some of a node set do not exist,
   !> which has been told, and where it is in doubt.
@@ -180,11 +169,10 @@ contains
 
     is_certain = body%is_sound
     if (is_certain .or. kind == side_parts) return
-    if (kind == side_nodes) then
-      is_certain = .not. any(body%in_doubt(model%node_sets(found)%nodes))
-    else if (.not. allocated(model%segment_sets(found)%parts)) then
-      is_certain = .not. any(body%in_doubt([model%segment_sets(found)%nodes]))
+    if (kind == side_segments) then
+      if (allocated(model%segment_sets(found)%parts)) return
     end if
+    is_certain = .not. any(body%in_doubt(set_nodes(model, kind, found)))
   end function is_certain
 
   !> Chains of the edges of a segment set, in any order and walked either way.

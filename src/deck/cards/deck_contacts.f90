@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Interfaces and transducers of a deck: their cards, then their surfaces; and what interfaces do not
-!> go with: the implicit method, elements that leave the mesh, and what implicit penalties do not
-!> have.
+!> Interfaces and transducers of a deck: their cards, then their surfaces; and what interfaces do
+!> not go with: the implicit method, elements that leave the mesh, and what implicit penalties do
+!> not have.
 module deck_contacts_m
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -15,7 +15,7 @@ module deck_contacts_m
   use deck_cards_m, only : reject_field, warn_of_field
   use deck_choose_type_m, only : choose_type
   use deck_contact_m, only : contact_cards_t, transducer, read_contact
-  use deck_contact_sides_m, only : outline_t, find_side, mark_set, mark_surface, find_surface, &
+  use deck_contact_sides_m, only : outline_t, find_side, set_nodes, mark_surface, find_surface, &
     check_overlap
   use deck_control_m, only : control_cards, warn_of_explicit
   use deck_friction_m, only : default_friction_t, take_default_friction, warn_of_unused
@@ -119,7 +119,7 @@ contains
     do i = 1, size(contacts)
       do k = 1, 2
         call find_side(deck, contacts(i), k, kind, found)
-        call mark_set(model, kind, found, among)
+        among(set_nodes(model, kind, found)) = .true.
       end do
     end do
     do i = 1, size(model%conditions%pressures)
