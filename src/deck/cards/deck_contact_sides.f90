@@ -300,7 +300,7 @@ contains
     type(surface_t), intent(in) :: sides(2)
     type(model_t), intent(in) :: model
     type(body_view_t) :: views(2)
-    type(overlap_t) :: found
+    type(overlap_t) :: found(2)
     integer :: k, n_side, pair(2)
     logical :: crosses
 
@@ -319,23 +319,12 @@ contains
     if (crosses .or. entry%contact%birth > 0.0_wp) return
     if (.not. (has_closed_chain(sides(1)) .or. has_closed_chain(sides(2)))) return
     do k = 1, n_side
-      call find_overlap(model, sides(k), sides(k), views(k), .true., found)
-      if (found%segment > 0) call reject_field(deck, place_of(entry%cards(1), side_fields(k)), &
-        'is a surface that overlaps itself: '//depth_text(model, sides(k), found))
+      call find_overlap(model, sides(k), sides(k), views(k), .true., found(k))
+      if (found(k)%segment > 0) call reject_field(deck, place_of(entry%cards(1), side_fields(k)), &
+        'is a surface that overlaps itself: '//depth_text(model, sides(k), found(k)))
     end do
-    if (n_side == 2) call check_between(deck, entry, sides, views, model)
-  end subroutine check_overlap
-
-  !> Either side in the bodies of the other: the deeper one by the depth allowed is told.
-  subroutine check_between(deck, entry, sides, views, model)
-    type(deck_t), intent(inout) :: deck
-    type(contact_cards_t), intent(in) :: entry
-    type(surface_t), intent(in) :: sides(2)
-    type(body_view_t), intent(in) :: views(2)
-    type(model_t), intent(in) :: model
-    type(overlap_t) :: found(2)
-    integer :: k
-
+    if (n_side == 1) return
+    ! Either side in the bodies of the other: the deeper one by the depth allowed is told.
     do k = 1, 2
       call find_overlap(model, sides(k), sides(3 - k), views(3 - k), .false., found(k))
     end do
@@ -345,7 +334,7 @@ contains
       .or. found(1)%segment == 0) k = 2
     call reject_field(deck, place_of(entry%cards(1), 'SURFB'), 'overlaps the slave surface at ' &
       //'the start: '//depth_text(model, sides(3 - k), found(k)))
-  end subroutine check_between
+  end subroutine check_overlap
 
   !> Which place lies how deep, behind what, and how deep it may.
   function depth_text(model, other, found) result(text)

@@ -57,7 +57,16 @@ contains
       if (model%erodes) call check_eroding_contacts(deck, contacts, model)
     end if
     call take_transducers(deck, transducers, body, model)
-    if (body%is_sound .and. model%is_round) call mark_round_contacts(model)
+    if (body%is_sound .and. model%is_round) then
+      model%contacts%is_round = .true.
+      do i = 1, size(model%contacts)
+        associate (slave => model%contacts(i)%slave, master => model%contacts(i)%master, &
+          radii => model%mesh%coordinates(1, :))
+          slave%is_on_axis = .not. radii(slave%nodes) > 0.0_wp
+          master%is_on_axis = .not. radii(master%nodes) > 0.0_wp
+        end associate
+      end do
+    end if
     call check_implicit_penalties(deck, contacts, model, body%is_sound)
   end subroutine read_contacts
 
@@ -191,18 +200,18 @@ contains
     type(surface_t), intent(in) :: sides(2)
     type(model_t), intent(in) :: model
     logical, allocatable :: on_slave(:)
+    integer, allocatable :: shared(:)
     character(:), allocatable :: names
     integer :: i, n
 
     if (size(sides(1)%nodes) == 0 .or. size(sides(2)%nodes) == 0) return
     allocate (on_slave(model%mesh%n_node), source=.false.)
     on_slave(sides(1)%nodes) = .true.
-    n = 0
+    shared = pack(sides(2)%nodes, on_slave(sides(2)%nodes))
+    n = size(shared)
     names = ''
-    do i = 1, size(sides(2)%nodes)
-      if (.not. on_slave(sides(2)%nodes(i))) cycle
-      n = n + 1
-      if (n <= 5) names = names//' '//to_text(model%mesh%node_id(sides(2)%nodes(i)))
+    do i = 1, min(n, 5)
+      names = names//' '//to_text(model%mesh%node_id(shared(i)))
     end do
     if (n > 5) names = names//' and '//to_text(n - 5)//' more'
     if (n > 0) call reject_field(deck, place_of(entry%cards(1), 'SURFB'), &
@@ -240,21 +249,6 @@ contains
       end associate
     end do
   end subroutine take_transducers
-
-  !> Contacts of an axisymmetric deck know it, and which of their nodes are on the axis.
-  pure subroutine mark_round_contacts(model)
-    type(model_t), intent(inout) :: model
-    integer :: i
-
-    model%contacts%is_round = .true.
-    do i = 1, size(model%contacts)
-      associate (slave => model%contacts(i)%slave, master => model%contacts(i)%master, &
-        radii => model%mesh%coordinates(1, :))
-        slave%is_on_axis = .not. radii(slave%nodes) > 0.0_wp
-        master%is_on_axis = .not. radii(master%nodes) > 0.0_wp
-      end associate
-    end do
-  end subroutine mark_round_contacts
 
   !> What the implicit method asks of an interface: automatic and implicit penalties are made for
   !> explicit steps.

@@ -75,10 +75,19 @@ contains
     logical, intent(out) :: erodes              !! ERODE of *CONTROL_TIMESTEP
     integer, intent(out) :: step_line           !! its card, 0 = none
     type(card_t) :: cards(6), step
+    type(cursor_t) :: cursor
+    character(:), allocatable :: text
     integer, allocatable :: blocks(:)
     integer :: i
 
-    call read_title(deck, model%controls%title)
+    model%controls%title = ''
+    blocks = blocks_of(deck, 'TITLE')
+    if (size(blocks) > 0) then
+      ! The last one given.
+      call open_cursor(deck, blocks(size(blocks)), cursor)
+      if (row_comes(deck, cursor)) call next_text(deck, cursor, text)
+      if (allocated(text)) model%controls%title = trim(adjustl(shown_text(text)))
+    end if
     blocks = blocks_of(deck, 'CONTROL_')
     do i = 1, size(blocks)
       associate (name => deck%blocks(blocks(i))%name)
@@ -111,23 +120,6 @@ contains
     erodes = integer_of(step, 'ERODE') == 1
     call check_step(deck, step, model)
   end subroutine read_controls
-
-  !> The title of the deck, the last one given.
-  subroutine read_title(deck, title)
-    type(deck_t), intent(inout) :: deck
-    character(:), allocatable, intent(out) :: title
-    type(cursor_t) :: cursor
-    integer, allocatable :: blocks(:)
-    logical :: found
-
-    title = ''
-    blocks = blocks_of(deck, 'TITLE')
-    if (size(blocks) == 0) return
-    call open_cursor(deck, blocks(size(blocks)), cursor)
-    found = row_comes(deck, cursor)
-    call next_text(deck, cursor, title)
-    title = trim(adjustl(shown_text(title)))
-  end subroutine read_title
 
   !> *CONTROL_TERMINATION.
   subroutine take_termination(deck, card, controls)

@@ -55,7 +55,14 @@ contains
         if (is_blank(cards(1), 'RHO')) call report_field(deck, cards(1), 'RHO', &
           'is not a spectral radius (0 to 1)')
       case ('CONTROL_IMPLICIT_SOLUTION')
-        call take_solution(cards(1), implicit)
+        ! Every iteration forms the tangent anew (full Newton), whatever ILIMIT.
+        implicit%is_linear = integer_of(cards(1), 'NSOLVR') == 1
+        implicit%max_iteration = integer_of(cards(1), 'MAXREF')
+        implicit%step_tolerance = real_of(cards(1), 'DCTOL')
+        implicit%energy_tolerance = real_of(cards(1), 'ECTOL')
+        implicit%residual_tolerance = real_of(cards(1), 'RCTOL')
+        if (implicit%residual_tolerance >= 1.0e10_wp) implicit%residual_tolerance = 0.0_wp
+        implicit%search_tolerance = real_of(cards(1), 'LSTOL')
       case ('CONTROL_IMPLICIT_AUTO')
         call take_automatic(deck, cards(1), implicit)
       end select
@@ -89,21 +96,6 @@ contains
         'is not a parameter of Newmark''s method (at most 10)')
     end do
   end subroutine take_newmark
-
-  !> *CONTROL_IMPLICIT_SOLUTION. Every iteration forms the tangent anew (full Newton), whatever
-  !> ILIMIT.
-  subroutine take_solution(card, implicit)
-    type(card_t), intent(in) :: card
-    type(implicit_t), intent(inout) :: implicit
-
-    implicit%is_linear = integer_of(card, 'NSOLVR') == 1
-    implicit%max_iteration = integer_of(card, 'MAXREF')
-    implicit%step_tolerance = real_of(card, 'DCTOL')
-    implicit%energy_tolerance = real_of(card, 'ECTOL')
-    implicit%residual_tolerance = real_of(card, 'RCTOL')
-    if (implicit%residual_tolerance >= 1.0e10_wp) implicit%residual_tolerance = 0.0_wp
-    implicit%search_tolerance = real_of(card, 'LSTOL')
-  end subroutine take_solution
 
   !> *CONTROL_IMPLICIT_AUTO.
   subroutine take_automatic(deck, card, implicit)

@@ -22,8 +22,8 @@ contains
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
     real(wp), allocatable :: velocity(:, :)
-    integer, allocatable :: blocks(:)
-    integer :: i, turn, lines(2)
+    integer, allocatable :: blocks(:), held(:)
+    integer :: i, node, turn, lines(2)
     logical :: is_generation
 
     blocks = blocks_of(deck, 'INITIAL_VELOCITY')
@@ -49,7 +49,14 @@ contains
     i = merge(lines(2), lines(1), lines(2) > 0)
     if (model%controls%implicit%is_on .and. .not. model%controls%implicit%is_dynamic) call &
       line_warning(deck, i, 'static velocity', 'an initial velocity has no effect in statics')
-    if (model%is_round) call keep_on_axis(deck, i, model, velocity)
+    if (model%is_round) then
+      held = pack([(node, node=1, model%mesh%n_node)], abs(velocity(1, :)) > 0.0_wp &
+        .and. (mark_axis(model) .or. mark_rigid_nodes(model%rigids, model%mesh%n_node)))
+      velocity(1, held) = 0.0_wp
+      call warn_of_nodes(deck, i, 'radial velocity', model, held, ' node(s) on the axis or of ' &
+        //'rigid bodies have an initial velocity in r, which they can not take: it is left out; ' &
+        //'the first is ', '')
+    end if
     call move_alloc(velocity, model%conditions%initial_velocity)
   end subroutine read_velocities
 
@@ -205,22 +212,5 @@ contains
       end if
     end do
   end subroutine read_rigid_velocities
-
-  !> Initial velocities across the axis where there can be none.
-  subroutine keep_on_axis(deck, line, model, velocity)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: line
-    type(model_t), intent(in) :: model
-    real(wp), intent(inout) :: velocity(:, :)
-    integer, allocatable :: held(:)
-    integer :: i
-
-    held = pack([(i, i=1, model%mesh%n_node)], abs(velocity(1, :)) > 0.0_wp &
-      .and. (mark_axis(model) .or. mark_rigid_nodes(model%rigids, model%mesh%n_node)))
-    velocity(1, held) = 0.0_wp
-    call warn_of_nodes(deck, line, 'radial velocity', model, held, ' node(s) on the axis or of ' &
-      //'rigid bodies have an initial velocity in r, which they can not take: it is left out; ' &
-      //'the first is ', '')
-  end subroutine keep_on_axis
 
 end module deck_velocity_m

@@ -35,7 +35,6 @@ contains
     do i = 1, size(blocks)
       call read_wall(deck, blocks(i), model, model%walls(i))
       call look_at_nodes(deck, lines(i), model, model%walls(i))
-      call look_at_motions(deck, lines(i), model, model%walls(i))
     end do
     has_number = model%walls%id > 0
     call refuse_again(deck, pack([model%walls%id], has_number), pack(lines, has_number), &
@@ -145,13 +144,16 @@ contains
     end do
   end subroutine number_walls
 
-  !> A wall without nodes, and nodes that start behind it.
+  !> A wall without nodes, nodes that start behind it, and nodes that can not give way: wherever the
+  !> wall pushes, a motion is prescribed or the node is fixed. Nodes that are fixed in all such
+  !> directions never come nearer, so they are no reason for a warning.
   subroutine look_at_nodes(deck, line, model, wall)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line
     type(model_t), intent(in) :: model
     type(wall_t), intent(in) :: wall
     logical :: is_behind(size(wall%nodes))
+    logical, dimension(2, model%mesh%n_node) :: is_pushed, is_moved
     real(wp) :: round_off
     integer :: i
 
@@ -165,19 +167,6 @@ contains
     call warn_of_nodes(deck, line, 'behind the wall'//to_text(line), model, pack(wall%nodes, &
       is_behind), ' node(s) start behind the wall, the first is ', ': they are kept from going ' &
       //'further, not brought back')
-  end subroutine look_at_nodes
-
-  !> Nodes that can not give way: wherever the wall pushes, a motion is prescribed or the
-  !> node is fixed. Nodes that are fixed in all such directions never come nearer, so they
-  !> are no reason for a warning.
-  subroutine look_at_motions(deck, line, model, wall)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: line
-    type(model_t), intent(in) :: model
-    type(wall_t), intent(in) :: wall
-    logical, dimension(2, model%mesh%n_node) :: is_pushed, is_moved
-    integer :: i
-
     is_pushed = spread(abs(wall%normal) > 0.0_wp, 2, model%mesh%n_node)
     is_moved = .false.
     do i = 1, size(model%conditions%motions)
@@ -190,6 +179,6 @@ contains
     call warn_of_nodes(deck, line, 'wall and motion'//to_text(line), model, pack(wall%nodes, &
       is_moved(1, wall%nodes)), ' node(s) do not see the wall while their motion is prescribed ' &
       //'(*BOUNDARY_PRESCRIBED_MOTION), the first is ', ': they pass through it')
-  end subroutine look_at_motions
+  end subroutine look_at_nodes
 
 end module deck_wall_m
