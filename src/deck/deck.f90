@@ -13,14 +13,12 @@ module deck_m
   use parts_m, only : hourglass_t
   use deck_contact_sides_m, only : outline_t
   use deck_contacts_m, only : read_contacts
-  use deck_control_m, only : read_controls, read_outputs, read_relaxation
+  use deck_control_m, only : read_controls, read_outputs, read_relaxation, read_ends
   use deck_curves_m, only : table_t, read_curves, read_systems
-  use deck_damping_m, only : read_damping
-  use deck_ends_m, only : read_ends
   use deck_erosion_m, only : read_erosions
   use deck_implicit_m, only : read_implicit, check_implicit
   use deck_loads_m, only : read_nodal_loads, read_rigid_loads, read_body_loads, read_pressures, &
-    read_masses, warn_of_bores
+    read_masses, read_global_damping, read_mass_damping, read_stiffness_damping, warn_of_bores
   use deck_material_m, only : read_materials, read_equations, settle_pressures
   use deck_mesh_m, only : read_mesh
   use deck_part_m, only : read_parts, read_sections, make_rigids
@@ -172,7 +170,9 @@ contains
     call read_pressures(deck, model, places)
     call read_masses(deck, model)
     call read_common_motions(deck, model)
-    call read_damping(deck, model)
+    call read_global_damping(deck, model)
+    call read_mass_damping(deck, model)
+    call read_stiffness_damping(deck, model)
     call read_velocities(deck, model)
     call read_walls(deck, model)
     call warn_of_bores(deck, model)

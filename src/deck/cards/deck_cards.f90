@@ -13,7 +13,7 @@ module deck_cards_m
   use deck_parameter_table_m, only : look_up
   implicit none
   private
-  public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_of, rows_of, &
+  public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_of, &
     next_text, next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field, &
     find_field
 
@@ -25,7 +25,6 @@ module deck_cards_m
     integer :: last = 0           !! last line of the block
     integer :: n_card = 0         !! cards that the keyword has
     character(60) :: options = '' !! of the keyword (`deck_schema_m`)
-    character(27) :: head = ''    !! beginning of the keywords whose rows are read
     type(card_spec_t) :: specs(max_card)
   end type cursor_t
 
@@ -93,62 +92,52 @@ contains
     call read_line(deck, cursor, number, card)
   end subroutine next_card
 
-  !> The next line that is not blank, as card `number`; `found` is false at the end of the block.
-  subroutine next_row(deck, cursor, number, card, found)
+  !> Read the next line that is not blank as card `number`; false at the end of the block.
+  function next_row(deck, cursor, number, card) result(found)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
     integer, intent(in) :: number
     type(card_t), intent(inout) :: card
-    logical, intent(out) :: found
+    logical :: found
 
-    call row_comes(deck, cursor, found)
+    found = row_comes(deck, cursor)
     if (found) call read_line(deck, cursor, number, card)
-  end subroutine next_row
+  end function next_row
 
-  !> Start at the first row of the first keyword that begins so; `next_of` goes on from keyword to
-  !> keyword.
-  pure subroutine rows_of(head, cursor)
-    character(*), intent(in) :: head
-    type(cursor_t), intent(out) :: cursor
-
-    cursor%head = head
-  end subroutine rows_of
-
-  !> The next row that is not blank, as card 1; `found` is false behind the last keyword.
-  subroutine next_of(deck, cursor, card, found)
+  !> Read the next row that is not blank, as card 1, of the keywords that begin with `head`, from
+  !> the first of them on where the cursor is at none yet; false behind the last row of the last.
+  function next_of(deck, head, cursor, card) result(found)
     type(deck_t), intent(inout) :: deck
+    character(*), intent(in) :: head
     type(cursor_t), intent(inout) :: cursor
     type(card_t), intent(inout) :: card
-    logical, intent(out) :: found
-    character(len(cursor%head)) :: head
+    logical :: found
     integer :: i
 
-    call next_row(deck, cursor, 1, card, found)
-    head = cursor%head
+    found = next_row(deck, cursor, 1, card)
     i = cursor%block
     do while (.not. found .and. i < deck%n_block)
       i = i + 1
       if (.not. deck%blocks(i)%is_honoured) cycle
-      if (index(deck%blocks(i)%name, trim(head)) /= 1) cycle
+      if (index(deck%blocks(i)%name, head) /= 1) cycle
       call open_cursor(deck, i, cursor)
-      cursor%head = head
       call skip_title(deck, cursor)
-      call next_row(deck, cursor, 1, card, found)
+      found = next_row(deck, cursor, 1, card)
     end do
-  end subroutine next_of
+  end function next_of
 
   !> Whether a line that is not blank is left; those before it are passed.
-  subroutine row_comes(deck, cursor, found)
+  function row_comes(deck, cursor) result(found)
     type(deck_t), intent(in) :: deck
     type(cursor_t), intent(inout) :: cursor
-    logical, intent(out) :: found
+    logical :: found
 
     do while (cursor%line <= cursor%last)
       if (iand(deck%flags(cursor%line), flag_blank) == 0) exit
       cursor%line = cursor%line + 1
     end do
     found = cursor%line <= cursor%last
-  end subroutine row_comes
+  end function row_comes
 
   !> The next line as plain text (titles and names are never cut).
   subroutine next_text(deck, cursor, text)
@@ -277,11 +266,10 @@ contains
   subroutine check_rest(deck, cursor)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
-    logical :: found
 
-    call row_comes(deck, cursor, found)
-    if (found) call line_warning(deck, cursor%line, 'rest'//to_text(cursor%line), &
-      'from here to the next keyword ignored: more lines than the keyword has cards')
+    if (row_comes(deck, cursor)) call line_warning(deck, cursor%line, 'rest' &
+      //to_text(cursor%line), 'from here to the next keyword ignored: more lines than the ' &
+      //'keyword has cards')
   end subroutine check_rest
 
   !> An error of the field of a name, of a card just read.

@@ -123,7 +123,7 @@ contains
     real(wp), allocatable, intent(out) :: rows(:, :)   !! (n_column, n_row)
     type(card_t) :: card
     real(wp) :: last
-    logical :: found, is_sound
+    logical :: is_sound
     integer :: i, n, columns(size(names))
 
     columns = [(find_field(cursor, 2, names(i)), i=1, size(names))]
@@ -131,9 +131,7 @@ contains
     n = 0
     last = -huge(1.0_wp)
     is_sound = .true.
-    do
-      call next_row(deck, cursor, 2, card, found)
-      if (.not. found) exit
+    do while (next_row(deck, cursor, 2, card))
       n = n + 1
       rows(:, n) = scale*(card%r(columns) + offset)
       is_sound = is_sound .and. .not. card%bad(columns(1))

@@ -8,7 +8,7 @@ module deck_mesh_m
   use model_m, only : model_t
   use deck_lines_m, only : deck_t, place_t, count_rows, line_error, line_warning
   use deck_fields_m, only : field_number, card_t
-  use deck_cards_m, only : cursor_t, next_of, rows_of, report_field, reject_field
+  use deck_cards_m, only : cursor_t, next_of, report_field, reject_field
   use deck_ids_m, only : a_node, an_element, a_part
   use deck_values_m, only : define, map_defined, lose, find_id
   implicit none
@@ -59,15 +59,12 @@ contains
     real(wp), allocatable :: coordinates(:, :)
     integer :: n, x, y, z, code
     real(wp) :: plane
-    logical :: found, is_flat
+    logical :: is_flat
 
     n = count_rows(deck, 'NODE')
     allocate (codes(n), coordinates(2, n))
     is_flat = .true.
-    call rows_of('NODE', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'NODE', cursor, card))
       if (deck%maps(a_node)%n == 0) then
         x = field_number(card%names, 'X')
         y = field_number(card%names, 'Y')
@@ -108,14 +105,10 @@ contains
     type(card_t) :: card
     integer, allocatable :: parts(:), nodes(:, :)
     integer :: n, k, part, first
-    logical :: found
 
     n = count_rows(deck, 'ELEMENT_SHELL')
     allocate (parts(n), nodes(4, n))
-    call rows_of('ELEMENT_SHELL', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'ELEMENT_SHELL', cursor, card))
       if (deck%maps(an_element)%n == 0) then
         part = field_number(card%names, 'PID')
         first = field_number(card%names, 'N1')

@@ -14,7 +14,7 @@ module deck_part_m
     line_warning, flag_blank
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
-    next_of, rows_of, row_comes, report_field, reject_field, find_field
+    next_of, row_comes, report_field, reject_field, find_field
   use deck_values_m, only : integer_of, real_of, is_blank, is_bad, define, map_defined, find_id
   use deck_material_m, only : take_equation
   implicit none
@@ -36,7 +36,6 @@ contains
     type(card_t) :: card
     integer, allocatable :: blocks(:), taken(:)
     integer :: i, k, n
-    logical :: found
 
     call read_hourglasses(deck, default, hourglasses)
     taken = spread(-1, 1, size(model%materials))
@@ -49,8 +48,7 @@ contains
         if (cursor%line > cursor%last) exit
         call next_text(deck, cursor, part%title)
         part%title = trim(adjustl(part%title))
-        call next_row(deck, cursor, 2, card, found)
-        if (.not. found) then
+        if (.not. next_row(deck, cursor, 2, card)) then
           call line_error(deck, cursor%line - 1, 'a heading without the card of its part after it')
           exit
         end if
@@ -116,7 +114,7 @@ contains
         call skip_title(deck, cursor)
         call next_card(deck, cursor, 1, card)
         call next_card(deck, cursor, 2, thickness)
-        call row_comes(deck, cursor, found)
+        found = row_comes(deck, cursor)
         call check_form(deck, card)
         section%id = integer_of(card, 'SECID')
         section%is_full = integer_of(card, 'NIP') == 4
@@ -161,13 +159,9 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     integer :: n
-    logical :: found
 
     allocate (hourglasses(count_rows(deck, 'HOURGLASS')))
-    call rows_of('HOURGLASS', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'HOURGLASS', cursor, card))
       call skip_title(deck, cursor)
       hourglass%id = integer_of(card, 'HGID')
       call hourglass_form(deck, card, 'IHQ', hourglass%form)

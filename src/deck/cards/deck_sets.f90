@@ -13,7 +13,7 @@ module deck_sets_m
   use deck_lines_m, only : deck_t, blocks_of, count_rows, line_error, line_warning
   use deck_fields_m, only : card_t, field_text
   use deck_cards_m, only : cursor_t, open_cursor, next_text, next_card, next_row, next_of, &
-    rows_of, report_field
+    report_field
   use deck_ids_m, only : ids_between, kind_names, a_node, an_element, a_part, a_node_set, &
     a_part_set, a_segment_set, a_shell_set
   use deck_values_m, only : integer_of, is_bad, map_defined, lose, find_id
@@ -123,7 +123,7 @@ contains
     type(set_t), intent(out) :: set           !! its id is 0 where it was refused
     type(cursor_t) :: cursor
     type(card_t) :: head, card
-    logical :: found, is_sound
+    logical :: is_sound
     integer :: k, kind
 
     call open_cursor(deck, i_block, cursor)
@@ -135,9 +135,7 @@ contains
     kind = a_part
     if (index(deck%blocks(i_block)%name, 'SET_NODE') == 1) kind = a_node
     if (index(deck%blocks(i_block)%name, 'SET_SHELL') == 1) kind = an_element
-    do
-      call next_row(deck, cursor, 2, card, found)
-      if (.not. found) exit
+    do while (next_row(deck, cursor, 2, card))
       select case (deck%blocks(i_block)%name)
       case ('SET_NODE_LIST', 'SET_PART_LIST', 'SET_SHELL_LIST', 'SET_2D_SEGMENT')
         call take_members(deck, card, kind, set)
@@ -333,13 +331,9 @@ contains
     type(card_t) :: card
     integer, allocatable :: kept(:)
     integer :: i
-    logical :: found
 
     allocate (edges(0), unset%members(64))
-    call rows_of('ELEMENT_BEAM', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'ELEMENT_BEAM', cursor, card))
       if (any(card%bad)) call lose(deck, [a_node_set, a_segment_set])
       if (any(card%bad)) cycle
       call line_warning(deck, card%line, 'beams', 'beams are no elements of a plane mesh: the ' &
@@ -393,13 +387,9 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     integer :: k
-    logical :: found
 
     allocate (chosen(1)%members(64), chosen(2)%members(64))
-    call rows_of(head, cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, head, cursor, card))
       k = merge(2, 1, deck%blocks(cursor%block)%name == head//'_SET')
       call take_members(deck, card, kinds(k), chosen(k))
     end do
@@ -415,16 +405,13 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     integer :: set, n
-    logical :: found, is_taken(size(model%node_sets))
+    logical :: is_taken(size(model%node_sets))
 
     allocate (groups(count_rows(deck, 'DATABASE_NODAL_FORCE_GROUP')))
     if (size(groups) == 0) return
     is_taken = .false.
     n = 0
-    call rows_of('DATABASE_NODAL_FORCE_GROUP', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'DATABASE_NODAL_FORCE_GROUP', cursor, card))
       call find_id(deck, a_node_set, card, 'NSID', set)
       if (set == 0) cycle
       if (is_taken(set)) call report_field(deck, card, 'NSID', &
