@@ -5,13 +5,13 @@
 module cut_forces_m
   use block_state_m, only : block_state_t, stays
   use element_chunk_m, only : element_chunk_t
-  use element_dispatch_m, only : advance_chunk
+  use element_dispatch_m, only : take_values, put_values
   use eroding_tiles_m, only : add_eroding_tile_forces, take_nodes
   use packed_buffer_m, only : packed_buffer_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size, tile_t
   use model_m, only : model_t
-  use tile_forces_m, only : take_values, put_values
+  use quad_m, only : advance_chunk
   implicit none
   private
   public :: find_cut_forces, keep_cut_chunks

@@ -5,7 +5,6 @@ module eroding_tiles_m
   use block_state_m, only : block_state_t, stays, has_left
   use element_chunk_m, only : element_chunk_t, reference_inverse, reference_sum, &
     scatter_forces
-  use element_dispatch_m, only : advance_chunk
   use element_state_m, only : smallest_ratio, initial_volume
   use eos_pressure_m, only : look_for_failed
   use erosion_m, only : erosion_t, asks_for_strain, asks_for_stress
@@ -14,6 +13,7 @@ module eroding_tiles_m
   use material_dispatch_m, only : history_size
   use model_m, only : model_t
   use parts_m, only : material_t, has_memory_of_heat
+  use quad_m, only : advance_chunk
   use quad_points_m, only : n_point
   use element_steps_m, only : step_of_element
   implicit none

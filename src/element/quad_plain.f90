@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> The frequent case of `quad_one_point` in three loops: an elastic material, or J2 plasticity
-!> without back stress, under viscous hourglass control and with nothing else. The equations are
-!> those of `quad_kinematics`, `material_j2`, `volumetric`, `hourglass` and `stable_step`; it saves
+!> The frequent case of a one-point quad (`quad`) in three loops: an elastic material, or J2
+!> plasticity without back stress, under viscous hourglass control and with nothing else. The
+!> equations are those of `quad_kinematics`, `material_j2`, `volumetric`, `hourglass` and `stable_step`; it saves
 !> a tenth of the instructions of a whole run (doc/theory/elements.md).
 !> One loop would be too long for a processor to look ahead into the next elements while divisions
 !> and roots are under way: for x86-64-v3 it takes a sixth less instructions than theirs and a
