@@ -31,31 +31,40 @@ contains
                                                        !! stays of elements in other chunks
     type(packed_buffer_t), intent(inout), optional :: before(:) !! of `keep_cut_chunks`
     type(packed_buffer_t) :: present_values
-    real(wp), allocatable :: of_slots(:, :, :) !! of the chunks with cut elements
+    real(wp), allocatable :: of_slots(:, :, :) !! (8, chunk_size, n_chunk) where elements are cut
     real(wp), allocatable :: of_tile(:, :)
-    integer, allocatable :: list(:), place(:)
-    integer :: i, k
+    integer, allocatable :: list(:)
+    integer :: i, k, n, slot
 
-    call list_chunks(model, list, place)
+    list = cut_chunks(model)
     if (model%erodes) allocate (of_tile(2, model%layout%n_local))
-    allocate (of_slots(8, chunk_size, size(list)))
+    allocate (of_slots(8, chunk_size, model%layout%n_chunk))
     do i = 1, size(list)
       if (list(i) < chunks(1) .or. list(i) > chunks(2)) cycle
       call take_values(tile_of(list(i)), elements, present_values)
       if (present(before)) call put_values(before(i), elements)
-      call step_chunk(model, list(i), motion, times(2), elements, of_slots(:, :, i))
+      call step_chunk(model, list(i), motion, times(2), elements, &
+        of_slots(:, :, list(i)))
       call put_values(present_values, elements)
       if (model%erodes) then
         ! Elements that have left the mesh, or leave it in this step, do not push.
         call add_eroding_tile_forces(model, tile_of(list(i)), motion, times, elements, of_tile)
         do k = 1, chunk_size
           if (elements%erosion%status((list(i) - 1)*chunk_size + k) /= stays) &
-            of_slots(:, k, i) = 0.0_wp
+            of_slots(:, k, list(i)) = 0.0_wp
         end do
         call put_values(present_values, elements)
       end if
     end do
-    call take_slots(model, chunks, place, of_slots, force)
+    n = 0
+    do i = 1, size(model%controls%output%cross_sections)
+      do k = 1, size(model%controls%output%cross_sections(i)%elements)
+        n = n + 1
+        slot = model%layout%element_slot(model%controls%output%cross_sections(i)%elements(k)) - 1
+        if (slot/chunk_size + 1 < chunks(1) .or. slot/chunk_size + 1 > chunks(2)) cycle
+        force(:, n) = of_slots(:, mod(slot, chunk_size) + 1, slot/chunk_size + 1)
+      end do
+    end do
   end subroutine find_cut_forces
 
   !> Copy the chunks that have elements of cross sections, before a step.
@@ -63,10 +72,10 @@ contains
     type(model_t), intent(in) :: model
     type(block_state_t), intent(inout) :: elements     !! stay as they are
     type(packed_buffer_t), allocatable, intent(inout) :: kept(:)
-    integer, allocatable :: list(:), place(:)
+    integer, allocatable :: list(:)
     integer :: i
 
-    call list_chunks(model, list, place)
+    list = cut_chunks(model)
     if (.not. allocated(kept)) allocate (kept(size(list)))
     do i = 1, size(list)
       call take_values(tile_of(list(i)), elements, kept(i))
@@ -111,58 +120,19 @@ contains
   end function tile_of
 
   !> Chunks with elements of cross sections, each once, rising.
-  pure subroutine list_chunks(model, list, place)
+  pure function cut_chunks(model) result(list)
     type(model_t), intent(in) :: model
-    integer, allocatable, intent(out) :: list(:)
-    integer, allocatable, intent(out) :: place(:) !! (n_chunk) in the list, 0 = it has none
-    integer :: i, k, n
+    integer, allocatable :: list(:)
+    logical :: is_cut(model%layout%n_chunk)
+    integer :: i
 
-    allocate (place(model%layout%n_chunk), source=0)
-    associate (sections => model%controls%output%cross_sections)
-      do i = 1, size(sections)
-        do k = 1, size(sections(i)%elements)
-          place(chunk_of(model, sections(i)%elements(k))) = 1
-        end do
-      end do
-    end associate
-    allocate (list(sum(place)))
-    n = 0
-    do i = 1, size(place)
-      if (place(i) == 0) cycle
-      n = n + 1
-      place(i) = n
-      list(n) = i
-    end do
-  end subroutine list_chunks
-
-  !> The chunk that an element is in.
-  pure integer function chunk_of(model, element)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: element
-
-    chunk_of = (model%layout%element_slot(element) - 1)/chunk_size + 1
-  end function chunk_of
-
-  !> Forces of the elements of all sections, one section behind the other.
-  pure subroutine take_slots(model, chunks, place, of_slots, force)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: chunks(2), place(:)
-    real(wp), intent(in) :: of_slots(:, :, :)
-    real(wp), intent(inout) :: force(:, :)
-    integer :: i, k, n, i_chunk
-
-    n = 0
+    is_cut = .false.
     do i = 1, size(model%controls%output%cross_sections)
       associate (elements => model%controls%output%cross_sections(i)%elements)
-        do k = 1, size(elements)
-          n = n + 1
-          i_chunk = chunk_of(model, elements(k))
-          if (i_chunk < chunks(1) .or. i_chunk > chunks(2)) cycle
-          force(:, n) = of_slots(:, model%layout%element_slot(elements(k)) &
-            - (i_chunk - 1)*chunk_size, place(i_chunk))
-        end do
+        is_cut((model%layout%element_slot(elements) - 1)/chunk_size + 1) = .true.
       end associate
     end do
-  end subroutine take_slots
+    list = pack([(i, i=1, size(is_cut))], is_cut)
+  end function cut_chunks
 
 end module cut_forces_m

@@ -57,18 +57,6 @@ contains
     call steps_at_moduli(model, elements, i_chunk, now, motion, dt, steps)
   end subroutine chunk_steps
 
-  !> Step under damping by stiffness, whose forces are those of v(n-1/2): with zeta = beta omega/2
-  !> and omega = 2/step it is 2 (sqrt(1 + zeta^2) - zeta)/omega.
-  pure elemental function damped_step(step, retardation) result(limit)
-    real(wp), intent(in) :: step         !! without damping, s
-    real(wp), intent(in) :: retardation  !! beta, s
-    real(wp) :: limit
-
-    limit = step
-    if (retardation > 0.0_wp) &
-      limit = step/(retardation/step + sqrt(1.0_wp + (retardation/step)**2))
-  end function damped_step
-
   !> Steps of the elements of a chunk at these moduli, with the hourglass control that has a share
   !> in them.
   subroutine steps_at_moduli(model, elements, i_chunk, now, motion, dt, steps)
@@ -82,7 +70,7 @@ contains
     type(element_chunk_t) :: chunk, point
     type(stress_chunk_t) :: unused
     type(sums_t) :: sums
-    real(wp) :: same(chunk_size), limits(2)
+    real(wp) :: same(chunk_size), limits(2), zeta
     integer :: first, i
 
     first = (i_chunk - 1)*chunk_size + 1
@@ -105,10 +93,13 @@ contains
         if (material%viscosity > 0.0_wp) &
           call finish_limits(material, now, same, steps(i), limits(2))
         steps(i) = min(steps(i), exposed_step(model, elements, first + i - 1, motion))
+        if (.not. allocated(elements%retardation)) cycle
+        ! Damping by stiffness, whose forces are those of v(n-1/2): with zeta = beta omega/2 and
+        ! omega = 2/step the step is 2 (sqrt(1 + zeta^2) - zeta)/omega.
+        zeta = elements%retardation(first + i - 1)/steps(i)
+        if (zeta > 0.0_wp) steps(i) = steps(i)/(zeta + sqrt(1.0_wp + zeta**2))
       end do
     end associate
-    if (allocated(elements%retardation)) steps = damped_step(steps, &
-      elements%retardation(first:first + chunk_size - 1))
   end subroutine steps_at_moduli
 
   !> The `n` elements of the smallest stable steps, or all where there are fewer, rising. They lie

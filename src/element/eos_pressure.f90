@@ -19,7 +19,7 @@ module eos_pressure_m
   implicit none
   private
   public :: n_eos_value, n_law_value, load_point_state, start_point_values, add_point_values, &
-    form_element_pressure, form_shared_pressure, present_moduli, finish_limits, &
+    add_law_values, form_shared_pressure, present_moduli, finish_limits, &
     look_for_failed
 
   !> Values of each element: energy, pressure, V/V0 - 1, bulk viscosity, speed of sound squared.
@@ -106,24 +106,6 @@ contains
     chunk%law_bulk = max(chunk%law_bulk, stress%bulk)
     chunk%law_shear = max(chunk%law_shear, stress%shear)
   end subroutine add_law_values
-
-  !> Pressure and energy of a one-point element, whether of its equation of state or of its law.
-  pure subroutine form_element_pressure(i_chunk, material, viscosity, inverse_start, stress, &
-    elements, chunk, now)
-    integer, intent(in) :: i_chunk
-    type(material_t), intent(in) :: material
-    type(hourglass_t), intent(in) :: viscosity
-    real(wp), intent(in) :: inverse_start(chunk_size) !! 1/V0
-    type(stress_chunk_t), intent(in) :: stress
-    type(block_state_t), intent(inout) :: elements
-    type(element_chunk_t), intent(inout) :: chunk     !! pressure out (tension positive)
-    type(moduli_t), intent(inout) :: now
-
-    call start_point_values(material, chunk)
-    chunk%heat = stress%work*chunk%mid_area
-    if (gives_pressure(material)) call add_law_values(material, 1.0_wp/inverse_start, stress, chunk)
-    call form_shared_pressure(i_chunk, material, viscosity, inverse_start, elements, chunk, now)
-  end subroutine form_element_pressure
 
   !> Pressure and energy that the points of an element share, once all of them have been summed.
   pure subroutine form_shared_pressure(i_chunk, material, viscosity, inverse_start, elements, &

@@ -43,7 +43,7 @@ contains
     real(wp), intent(inout) :: force(2, model%layout%n_local) !! set here
     type(element_chunk_t) :: chunk
     type(leaving_t) :: leaving
-    integer :: nodes(4, chunk_size), i_chunk, first
+    integer :: nodes(4, chunk_size), i_chunk, first, i
 
     force = 0.0_wp
     do i_chunk = tile%first_chunk, tile%last_chunk
@@ -62,8 +62,15 @@ contains
         if (any(leaving%flags)) call take_out(model, i_chunk, motion, times(2), leaving, elements, &
           chunk)
       end if
-      if (elements%erosion%n_gone(i_chunk) > 0) call clear_forces(elements%erosion%status(first: &
-        first + chunk_size - 1) /= stays, chunk)
+      if (elements%erosion%n_gone(i_chunk) > 0) then
+        do i = 1, chunk_size
+          if (elements%erosion%status(first + i - 1) == stays) cycle
+          chunk%force3(:, i) = 0.0_wp
+          chunk%force4(:, i) = 0.0_wp
+          chunk%swing(:, i) = 0.0_wp
+          if (chunk%is_round) chunk%hoop(i) = 0.0_wp
+        end do
+      end if
       call scatter_forces(model%layout%chunk_elements(i_chunk), model%layout%slot_local(1, first), &
         chunk, force)
     end do
@@ -161,8 +168,16 @@ contains
           elements%point_deviator(elements%point_start(i_chunk) + k*chunk_size + i - 1) = 0.0_wp
         end do
       end if
-      if (elements%history_start(i_chunk) > 0) call keep_told(material, n, &
-        elements%history(elements%history_start(i_chunk) + i - 1:))
+      ! Plastic strain, temperature and damage are told on as they were; back stress would pull.
+      n = merge(n, 0, elements%history_start(i_chunk) > 0)*history_size(material)
+      do k = 0, n - 1
+        associate (value => elements%history(elements%history_start(i_chunk) + k*chunk_size + i &
+          - 1))
+          if (mod(k, history_size(material)) > 0 .and. .not. has_memory_of_heat(material)) &
+            value = 0.0_wp
+          if (.not. abs(value) <= huge(1.0_wp)) value = 0.0_wp
+        end associate
+      end do
       first = elements%hourglass_start(i_chunk) + i - 1
       if (first >= i) elements%hourglass_strain([first, first + chunk_size]) = 0.0_wp
       first = elements%eos_start(i_chunk) + i - 1
@@ -170,37 +185,6 @@ contains
       elements%eos_state(first + 4*chunk_size) = material%sound_speed**2
     end associate
   end subroutine make_padding
-
-  !> Plastic strain, temperature and damage are told on as they were; back stress would pull.
-  pure subroutine keep_told(material, n, history)
-    type(material_t), intent(in) :: material
-    integer, intent(in) :: n                 !! points
-    real(wp), intent(inout) :: history(:)    !! from the slot on
-    integer :: k, column
-
-    do k = 0, n*history_size(material) - 1
-      column = mod(k, history_size(material)) + 1
-      associate (value => history(k*chunk_size + 1))
-        if (column > 1 .and. .not. has_memory_of_heat(material)) value = 0.0_wp
-        if (.not. abs(value) <= huge(1.0_wp)) value = 0.0_wp
-      end associate
-    end do
-  end subroutine keep_told
-
-  !> Elements that have left do not push.
-  pure subroutine clear_forces(is_gone, chunk)
-    logical, intent(in) :: is_gone(chunk_size)
-    type(element_chunk_t), intent(inout) :: chunk
-    integer :: i
-
-    do i = 1, chunk_size
-      if (.not. is_gone(i)) cycle
-      chunk%force3(:, i) = 0.0_wp
-      chunk%force4(:, i) = 0.0_wp
-      chunk%swing(:, i) = 0.0_wp
-      if (chunk%is_round) chunk%hoop(i) = 0.0_wp
-    end do
-  end subroutine clear_forces
 
   !> Elements that leave, by the state at the end of the step. `nodes` are those of the chunk, all
   !> one where an element has gone.
@@ -255,8 +239,15 @@ contains
       end if
       if (asks_for_strain(erosion)) call count_strains(erosion, i_chunk, nodes, motion, elements, &
         common)
-      if (erosion%impulse < huge(1.0_wp)) call add_impulses(erosion, i_chunk, pressure, times(2), &
-        elements, common)
+      if (erosion%impulse < huge(1.0_wp)) then
+        call form_stresses(i_chunk, 0, pressure, elements, principal, mises)
+        first = (i_chunk - 1)*chunk_size + 1
+        associate (impulse => elements%erosion%impulse(first:first + chunk_size - 1))
+          ! Of the square of what the largest principal stress has above its threshold.
+          impulse = impulse + times(2)*max(0.0_wp, principal - erosion%threshold)**2
+          common = common + count_of(impulse >= erosion%impulse)
+        end associate
+      end if
       n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
       points = 0
       do k = 1, n
@@ -304,24 +295,6 @@ contains
     principal = max(0.5_wp*(xx + yy) + sqrt(0.25_wp*(xx - yy)**2 + xy**2), -(xx + yy)) - pressure
     mises = sqrt(3.0_wp*(xx**2 + yy**2 + xx*yy + xy**2))
   end subroutine form_stresses
-
-  !> Integral of the square of what the largest principal stress has above its threshold.
-  pure subroutine add_impulses(erosion, i_chunk, pressure, dt, elements, met)
-    type(erosion_t), intent(in) :: erosion
-    integer, intent(in) :: i_chunk
-    real(wp), intent(in) :: pressure(chunk_size), dt
-    type(block_state_t), intent(inout) :: elements
-    integer, intent(inout) :: met(chunk_size)
-    real(wp), dimension(chunk_size) :: principal, mises
-    integer :: first
-
-    call form_stresses(i_chunk, 0, pressure, elements, principal, mises)
-    first = (i_chunk - 1)*chunk_size + 1
-    associate (impulse => elements%erosion%impulse(first:first + chunk_size - 1))
-      impulse = impulse + dt*max(0.0_wp, principal - erosion%threshold)**2
-      met = met + count_of(impulse >= erosion%impulse)
-    end associate
-  end subroutine add_impulses
 
   !> Logarithmic principal strains at the centre, where the diagonals give the deformation.
   pure subroutine count_strains(erosion, i_chunk, nodes, motion, elements, met)

@@ -9,18 +9,17 @@ module quad_m
   use block_state_m, only : block_state_t
   use element_chunk_m, only : element_chunk_t, gather_motion, reference_mass
   use eos_pressure_m, only : finish_limits, load_point_state, start_point_values, &
-    add_point_values, form_element_pressure, form_shared_pressure
+    add_point_values, add_law_values, form_shared_pressure
   use hourglass_m, only : resist
   use layout_m, only : chunk_size
   use material_dispatch_m, only : update_stress, history_size, has_mean_dilatation
   use model_m, only : model_t
-  use parts_m, only : hourglass_t, material_t
+  use parts_m, only : hourglass_t, material_t, gives_pressure
   use quad_plain_m, only : is_plain, advance_plain
   use quad_kinematics_m, only : form_shape, form_increments, form_forces, form_round_forces, &
     form_rubber_forces, add_pressure_forces, inverse_start
   use quad_points_m, only : n_point, round_point_t, step_sums_t, form_point, form_radii, &
-    add_hoop_strain, add_hoop_force, add_point_force, start_sums, add_point_sums, &
-    form_row_sums
+    add_hoop_strain, add_hoop_force, add_point_force, add_point_sums, form_row_sums
   use stable_step_m, only : moduli_t, moduli_of, stable_step, axisymmetric_step, full_step, &
     axisymmetric_full_step
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
@@ -97,8 +96,12 @@ contains
     call advance_stress(i_chunk, 1, material, chunk, chunk, elements, stress)
     if (allocated(material%eos)) then
       ! What else an element does heats it.
-      call form_element_pressure(i_chunk, material, hourglass, inverse_start(chunk), stress, &
-        elements, chunk, now)
+      call start_point_values(material, chunk)
+      chunk%heat = stress%work*chunk%mid_area
+      if (gives_pressure(material)) call add_law_values(material, 1.0_wp/inverse_start(chunk), &
+        stress, chunk)
+      call form_shared_pressure(i_chunk, material, hourglass, inverse_start(chunk), elements, &
+        chunk, now)
     else
       call volumetric_stress(material%bulk, chunk%stretch, chunk%pressure)
       call add_viscosity(i_chunk, material, hourglass, dt, elements, chunk)
@@ -230,7 +233,9 @@ contains
     point%hv = 0.0_wp
     point%qx = 0.0_wp
     point%qy = 0.0_wp
-    if (.not. is_round) call start_sums(sums%step)
+    if (is_round) return
+    sums%step%h = 0.0_wp
+    sums%step%volume = huge(1.0_wp)
   end subroutine start_points
 
   !> Advance point `k` of a chunk and add its forces.

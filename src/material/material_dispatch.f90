@@ -8,7 +8,7 @@ module material_dispatch_m
     law_crushable_foam
   use stress_chunk_m, only : stress_chunk_t, stress_point_t
   use material_crushable_foam_m, only : update_crushable_foam
-  use material_elastic_m, only : update_elastic, tangent_elastic, update_null
+  use material_elastic_m, only : update_elastic, update_null
   use material_j2_m, only : update_j2_isotropic, update_j2_mixed, tangent_of_return
   use material_johnson_cook_m, only : update_johnson_cook, update_hot_johnson_cook
   use material_piecewise_m, only : update_piecewise, tangent_piecewise
@@ -183,7 +183,8 @@ contains
 
     select case (material%law)
     case (law_elastic)
-      call tangent_elastic(material%shear, point)
+      ! No stress reaches this surface.
+      call tangent_of_return(material%shear, huge(1.0_wp), 0.0_wp, point)
     case (law_plastic)
       call tangent_of_return(material%shear, material%yield + material%beta*material%hardening &
         *point%plastic_strain, material%hardening, point)

@@ -78,10 +78,21 @@ contains
       call find_growth(flow, shear, whole(i), plastic_strain(i), factor, ratio, growth(i))
       stress = whole(i:i + n_lane - 1) - 3.0_wp*shear*growth(i:i + n_lane - 1)
       call add_damage(flow, stress, chunk%mean(i), growth(i), hot, ratio, damage(i))
-      call add_heat(flow%heat, stress, growth(i), chunk%ratio(i), rise(i))
+      ! The work of the flow stress at the end of the step heats.
+      associate (piece => rise(i:i + n_lane - 1))
+        piece = piece + flow%heat*chunk%ratio(i:i + n_lane - 1)*stress*growth(i:i + n_lane - 1)
+      end associate
     end do
     call return_to_surface(shear, mises, growth, chunk, plastic_strain)
-    if (any(damage >= 1.0_wp)) call drop_stress(damage, chunk)
+    ! Points that are broken carry no stress, and the end of the step has no share in the work.
+    do i = 1, chunk_size
+      if (damage(i) < 1.0_wp) cycle
+      chunk%work(i) = chunk%work(i) - 0.5_wp*(chunk%sxx(i)*chunk%dxx(i) &
+        + chunk%syy(i)*chunk%dyy(i) + 2.0_wp*chunk%sxy(i)*chunk%dxy(i))
+      chunk%sxx(i) = 0.0_wp
+      chunk%syy(i) = 0.0_wp
+      chunk%sxy(i) = 0.0_wp
+    end do
   end subroutine update_hot_johnson_cook
 
   !> Whether nothing yields: neither hardening nor rates lower the flow stress, so that below A
@@ -141,19 +152,6 @@ contains
     end do
   end subroutine soften
 
-  !> The work of the flow stress at the end of the step heats.
-  pure subroutine add_heat(heat, stress, growth, ratio, rise)
-    real(wp), intent(in) :: heat
-    real(wp), intent(in), dimension(n_lane) :: stress, growth, ratio !! the last: V/V0
-    real(wp), intent(inout) :: rise(n_lane)
-    integer :: i
-
-    !$omp simd
-    do i = 1, n_lane
-      rise(i) = rise(i) + heat*ratio(i)*stress(i)*growth(i)
-    end do
-  end subroutine add_heat
-
   !> Damage grows by that of the plastic strain over the strain at fracture
   !> (D1 + D2 exp(D3 sigma_m/sigma)) (1 + D4 ln r) (1 + D5 T*), not below its bound.
   pure subroutine add_damage(flow, stress, mean, growth, hot, ratio, damage)
@@ -183,23 +181,6 @@ contains
     end do
   end subroutine add_damage
 
-  !> Points that are broken carry no stress.
-  pure subroutine drop_stress(damage, chunk)
-    real(wp), intent(in) :: damage(chunk_size)
-    type(stress_chunk_t), intent(inout) :: chunk
-    integer :: i
-
-    do i = 1, chunk_size
-      if (damage(i) < 1.0_wp) cycle
-      ! The end of the step has no share in the work then.
-      chunk%work(i) = chunk%work(i) - 0.5_wp*(chunk%sxx(i)*chunk%dxx(i) &
-        + chunk%syy(i)*chunk%dyy(i) + 2.0_wp*chunk%sxy(i)*chunk%dxy(i))
-      chunk%sxx(i) = 0.0_wp
-      chunk%syy(i) = 0.0_wp
-      chunk%sxy(i) = 0.0_wp
-    end do
-  end subroutine drop_stress
-
   !> Growth g of the plastic strain p in a step by the flow stress at its end, 3G g + sigma(p + g) =
   !> q, of some points side by side, so that the compiler forms vectors of them. What a point gets
   !> does not depend on those beside it. The left side rises with g, so that the root lies between 0
@@ -213,15 +194,23 @@ contains
     real(wp), intent(in) :: ratio(n_lane) !! r, not below 1; of the viscoplastic form r/g
     real(wp), intent(out) :: growth(n_lane)
     type(search_t) :: search
-    real(wp), dimension(n_lane) :: known, stress, slope
+    real(wp), dimension(n_lane) :: known, logarithm, stress, slope
     real(wp) :: near
     integer :: i_round
 
     known = factor
-    if (.not. flow%is_viscoplastic) call scale_by_rate(flow%c, ratio, known)
+    if (flow%c > 0.0_wp .and. .not. flow%is_viscoplastic) then
+      call form_logarithms(n_lane, ratio, logarithm)
+      known = factor*(1.0_wp + flow%c*logarithm)
+    end if
     growth = 0.0_wp
     call form_flow(flow, strain, growth, ratio, known, stress, slope)
-    call open_search(shear, mises, stress, slope, search)
+    ! Bounds where the trial stress is above the flow stress at the start, and what the slope there
+    ! makes of it.
+    search%low = 0.0_wp
+    search%high = max(0.0_wp, mises - stress)/(3.0_wp*shear)
+    search%growth = max(0.0_wp, mises - stress)/(3.0_wp*shear + slope)
+    search%is_open = merge(1.0_wp, 0.0_wp, mises > stress)
     if (.not. any(search%is_open > 0.0_wp)) return
     call bound_by_power(flow, mises, strain, known, search)
     ! Where the flow stress has corners, the last step of Newton's method may cross one.
@@ -235,35 +224,6 @@ contains
     end do
     growth = search%growth
   end subroutine find_growth
-
-  !> Bounds where the trial stress is above the flow stress at the start, and what the slope there
-  !> makes of it.
-  pure subroutine open_search(shear, mises, stress, slope, search)
-    real(wp), intent(in) :: shear
-    real(wp), intent(in), dimension(n_lane) :: mises, stress, slope !! at the start
-    type(search_t), intent(inout) :: search
-    integer :: i
-
-    !$omp simd
-    do i = 1, n_lane
-      search%low(i) = 0.0_wp
-      search%high(i) = max(0.0_wp, mises(i) - stress(i))/(3.0_wp*shear)
-      search%growth(i) = max(0.0_wp, mises(i) - stress(i))/(3.0_wp*shear + slope(i))
-      search%is_open(i) = merge(1.0_wp, 0.0_wp, mises(i) > stress(i))
-    end do
-  end subroutine open_search
-
-  !> Factor times 1 + C ln r.
-  pure subroutine scale_by_rate(c, ratio, factor)
-    real(wp), intent(in) :: c
-    real(wp), intent(in) :: ratio(n_lane) !! not below 1
-    real(wp), intent(inout) :: factor(n_lane)
-    real(wp) :: logarithm(n_lane)
-
-    if (.not. c > 0.0_wp) return
-    call form_logarithms(n_lane, ratio, logarithm)
-    factor = factor*(1.0_wp + c*logarithm)
-  end subroutine scale_by_rate
 
   !> Flow stress at the end of the step, and its slope over the growth.
   pure subroutine form_flow(flow, strain, growth, ratio, factor, stress, slope)
