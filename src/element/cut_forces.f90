@@ -4,12 +4,12 @@
 !> were.
 module cut_forces_m
   use block_state_m, only : block_state_t, stays
-  use element_chunk_m, only : element_chunk_t
+  use element_chunk_m, only : element_chunk_t, scatter_forces
   use element_dispatch_m, only : take_values, put_values
   use eroding_tiles_m, only : add_eroding_tile_forces, take_nodes
   use packed_buffer_m, only : packed_buffer_t
   use kinds_m, only : wp
-  use layout_m, only : chunk_size, tile_t
+  use layout_m, only : chunk_size, local_kind, tile_t
   use model_m, only : model_t
   use quad_m, only : advance_chunk
   implicit none
@@ -91,23 +91,19 @@ contains
     real(wp), intent(in) :: dt
     type(block_state_t), intent(inout) :: elements
     real(wp), intent(inout) :: of_slots(8, chunk_size)
+    integer :: i
     type(element_chunk_t) :: chunk
-    real(wp) :: hoop(2)
-    integer :: i, first, nodes(4, chunk_size)
+    integer(local_kind), parameter :: own(4*chunk_size) = [(int(i, local_kind), i=1, 4*chunk_size)]
+    integer :: first, nodes(4, chunk_size)
 
-    hoop = 0.0_wp
     first = (i_chunk - 1)*chunk_size + 1
     nodes = model%layout%slot_nodes(:, first:first + chunk_size - 1)
     if (model%erodes) call take_nodes(model%layout%slot_nodes(:, first:first + chunk_size - 1), &
       elements%erosion%status(first:first + chunk_size - 1), nodes)
     call advance_chunk(model, i_chunk, nodes, motion, dt, elements, chunk)
-    do i = 1, model%layout%chunk_elements(i_chunk)
-      if (chunk%is_round) hoop(1) = chunk%hoop(i)
-      associate (f3 => chunk%force3(:, i), f4 => chunk%force4(:, i), swing => chunk%swing(:, i))
-        of_slots(:, i) = [f3 - swing - hoop, f4 + swing - hoop, -f3 - swing - hoop, &
-          -f4 + swing - hoop]
-      end associate
-    end do
+    of_slots = 0.0_wp
+    call scatter_forces(model%layout%chunk_elements(i_chunk), own, chunk, of_slots)
+    of_slots = -of_slots
   end subroutine step_chunk
 
   !> A chunk alone.

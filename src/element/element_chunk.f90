@@ -8,7 +8,7 @@ module element_chunk_m
   implicit none
   private
   public :: element_chunk_t, n_round_reference, reference_sum, reference_inverse, reference_mass, &
-    gather_motion, scatter_forces, scatter_chunk, scatter_round
+    gather_motion, scatter_forces
 
   !> Streams of the reference shape of round quads: those of plane ones, the sum of the radii, the
   !> inverse of the volume, and per node density over mass.
@@ -98,85 +98,61 @@ contains
     end do
   end subroutine gather_motion
 
-  !> Add the nodal forces of a chunk to the tile's own nodes.
+  !> Add the nodal forces of a chunk to the tile's own nodes, x and y of a node at a time (told to
+  !> the compiler in so many words: left alone it takes them one by one, half as fast again); of
+  !> axisymmetric quads the force of the hoop stress to all four. Padding is left out: all of it has
+  !> one node, where each sum would wait for the one before.
   pure subroutine scatter_forces(n_element, local, chunk, force)
     integer, intent(in) :: n_element             !! elements, in the first slots
     integer(local_kind), intent(in) :: local(4, chunk_size) !! local numbers in the tile
     type(element_chunk_t), intent(in) :: chunk
     real(wp), intent(inout) :: force(2, *)       !! internal force of the local nodes
-
-    if (chunk%is_round) then
-      call scatter_round(n_element, local, chunk, force)
-    else
-      call scatter_chunk(n_element, local, chunk, force)
-    end if
-  end subroutine scatter_forces
-
-  !> Add the nodal forces of a chunk to the tile's own nodes, x and y of a node at a time (told to
-  !> the compiler in so many words: left alone it takes them one by one, half as fast again).
-  !> Padding is left out: all of it has one node, where each sum would wait for the one before.
-  pure subroutine scatter_chunk(n_element, local, chunk, force)
-    integer, intent(in) :: n_element             !! elements, in the first slots
-    integer(local_kind), intent(in) :: local(4, chunk_size) !! local numbers in the tile
-    type(element_chunk_t), intent(in) :: chunk
-    real(wp), intent(inout) :: force(2, *)       !! internal force of the local nodes
-    integer :: i, k, n(4)
-
-    do i = 1, n_element
-      n = local(:, i)
-      !$omp simd simdlen(2)
-      do k = 1, 2
-        force(k, n(1)) = force(k, n(1)) + (chunk%swing(k, i) - chunk%force3(k, i))
-      end do
-      !$omp simd simdlen(2)
-      do k = 1, 2
-        force(k, n(2)) = force(k, n(2)) - (chunk%swing(k, i) + chunk%force4(k, i))
-      end do
-      !$omp simd simdlen(2)
-      do k = 1, 2
-        force(k, n(3)) = force(k, n(3)) + (chunk%swing(k, i) + chunk%force3(k, i))
-      end do
-      !$omp simd simdlen(2)
-      do k = 1, 2
-        force(k, n(4)) = force(k, n(4)) - (chunk%swing(k, i) - chunk%force4(k, i))
-      end do
-    end do
-  end subroutine scatter_chunk
-
-  !> The same with the force of the hoop stress on all four.
-  pure subroutine scatter_round(n_element, local, chunk, force)
-    integer, intent(in) :: n_element
-    integer(local_kind), intent(in) :: local(4, chunk_size)
-    type(element_chunk_t), intent(in) :: chunk
-    real(wp), intent(inout) :: force(2, *)
     real(wp), parameter :: to_r(2) = [1.0_wp, 0.0_wp]
     real(wp) :: hoop
     integer :: i, k, n(4)
 
+    if (.not. chunk%is_round) then
+      do i = 1, n_element
+        n = local(:, i)
+        !$omp simd simdlen(2)
+        do k = 1, 2
+          force(k, n(1)) = force(k, n(1)) + (chunk%swing(k, i) - chunk%force3(k, i))
+        end do
+        !$omp simd simdlen(2)
+        do k = 1, 2
+          force(k, n(2)) = force(k, n(2)) - (chunk%swing(k, i) + chunk%force4(k, i))
+        end do
+        !$omp simd simdlen(2)
+        do k = 1, 2
+          force(k, n(3)) = force(k, n(3)) + (chunk%swing(k, i) + chunk%force3(k, i))
+        end do
+        !$omp simd simdlen(2)
+        do k = 1, 2
+          force(k, n(4)) = force(k, n(4)) - (chunk%swing(k, i) - chunk%force4(k, i))
+        end do
+      end do
+      return
+    end if
     do i = 1, n_element
       n = local(:, i)
       hoop = chunk%hoop(i)
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(1)) = force(k, n(1)) + ((to_r(k)*hoop + chunk%swing(k, i)) &
-          - chunk%force3(k, i))
+        force(k, n(1)) = force(k, n(1)) + ((to_r(k)*hoop + chunk%swing(k, i)) - chunk%force3(k, i))
       end do
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(2)) = force(k, n(2)) + ((to_r(k)*hoop - chunk%swing(k, i)) &
-          - chunk%force4(k, i))
+        force(k, n(2)) = force(k, n(2)) + ((to_r(k)*hoop - chunk%swing(k, i)) - chunk%force4(k, i))
       end do
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(3)) = force(k, n(3)) + ((to_r(k)*hoop + chunk%swing(k, i)) &
-          + chunk%force3(k, i))
+        force(k, n(3)) = force(k, n(3)) + ((to_r(k)*hoop + chunk%swing(k, i)) + chunk%force3(k, i))
       end do
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(4)) = force(k, n(4)) + ((to_r(k)*hoop - chunk%swing(k, i)) &
-          + chunk%force4(k, i))
+        force(k, n(4)) = force(k, n(4)) + ((to_r(k)*hoop - chunk%swing(k, i)) + chunk%force4(k, i))
       end do
     end do
-  end subroutine scatter_round
+  end subroutine scatter_forces
 
 end module element_chunk_m

@@ -17,7 +17,7 @@ module element_steps_m
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: chunk_steps, scaled_step, is_damped, find_smallest_steps, step_of_element, &
+  public :: chunk_steps, scaled_step, is_damped, find_smallest_steps, own_steps, &
     has_exposed, exposed_step, start_retardation
 
   !> Gradients of the shape functions and what the step takes of the element besides.
@@ -54,7 +54,7 @@ contains
         end do
       end if
     end associate
-    call steps_at_moduli(model, elements, i_chunk, now, motion, dt, steps)
+    call steps_at_moduli(model, elements, i_chunk, [now], motion, dt, steps)
   end subroutine chunk_steps
 
   !> Steps of the elements of a chunk at these moduli, with the hourglass control that has a share
@@ -63,44 +63,93 @@ contains
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: i_chunk
-    type(moduli_t), intent(in) :: now
+    type(moduli_t), intent(in) :: now(:)             !! of each element, or one for all
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
     real(wp), intent(in) :: dt                       !! step that led here; 0: no rates
     real(wp), intent(out) :: steps(chunk_size)       !! s
     type(element_chunk_t) :: chunk, point
     type(stress_chunk_t) :: unused
     type(sums_t) :: sums
-    real(wp) :: same(chunk_size), limits(2), zeta
+    real(wp) :: at_moduli(chunk_size)
     integer :: first, i
 
     first = (i_chunk - 1)*chunk_size + 1
     call gather_motion(model%is_round, model%layout%slot_nodes(1, first), motion, chunk)
     call form_shape(elements%reference(first, 1), size(elements%reference, 1), chunk)
     call form_increments(dt, chunk, unused)
-    associate (part => model%parts(model%layout%chunk_part(i_chunk)), &
-      material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
-      if (elements%point_start(i_chunk) > 0) then
-        call start_points(chunk%is_round, point, sums)
-        do i = 1, n_point
-          call move_point(i_chunk, i, dt, elements, chunk, point, unused, sums)
-        end do
-      else if (chunk%is_round) then
-        call form_resistance(material, part%hourglass, chunk)
-      end if
-      call limit_chunk(model, i_chunk, now, elements, chunk, sums, limits, steps)
+    if (elements%point_start(i_chunk) > 0) then
+      call start_points(chunk%is_round, point, sums)
+      do i = 1, n_point
+        call move_point(i_chunk, i, dt, elements, chunk, point, unused, sums)
+      end do
+    else if (chunk%is_round) then
+      associate (part => model%parts(model%layout%chunk_part(i_chunk)))
+        call form_resistance(model%materials(part%material), part%hourglass, chunk)
+      end associate
+    end if
+    call limit_elements(model, i_chunk, now(1), elements, chunk, sums, steps)
+    do i = 2, size(now)
+      call limit_elements(model, i_chunk, now(i), elements, chunk, sums, at_moduli)
+      steps(i) = at_moduli(i)
+    end do
+    do i = 1, chunk_size
+      if (allocated(elements%mass_shares)) steps(i) = min(steps(i), exposed_step(model, elements, &
+        first + i - 1, motion))
+      if (.not. allocated(elements%retardation)) cycle
+      ! Damping by stiffness, whose forces are those of v(n-1/2): with zeta = beta omega/2 and
+      ! omega = 2/step the step is 2 (sqrt(1 + zeta^2) - zeta)/omega.
+      associate (zeta => elements%retardation(first + i - 1)/steps(i))
+        if (zeta > 0.0_wp) steps(i) = steps(i)/(zeta + sqrt(1.0_wp + zeta**2))
+      end associate
+    end do
+  end subroutine steps_at_moduli
+
+  !> The same of a chunk whose shape and points are there, which stay.
+  subroutine limit_elements(model, i_chunk, now, elements, shape, sums, steps)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_chunk
+    type(moduli_t), intent(in) :: now
+    type(block_state_t), intent(in) :: elements
+    type(element_chunk_t), intent(in) :: shape
+    type(sums_t), intent(inout) :: sums
+    real(wp), intent(out) :: steps(chunk_size)
+    type(element_chunk_t) :: chunk
+    real(wp) :: limits(2), same(chunk_size)
+    integer :: i
+
+    chunk = shape
+    call limit_chunk(model, i_chunk, now, elements, chunk, sums, limits, steps)
+    associate (material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
+      if (.not. material%viscosity > 0.0_wp) return
       do i = 1, chunk_size
         same = chunk%stretch(i)
-        if (material%viscosity > 0.0_wp) &
-          call finish_limits(material, now, same, steps(i), limits(2))
-        steps(i) = min(steps(i), exposed_step(model, elements, first + i - 1, motion))
-        if (.not. allocated(elements%retardation)) cycle
-        ! Damping by stiffness, whose forces are those of v(n-1/2): with zeta = beta omega/2 and
-        ! omega = 2/step the step is 2 (sqrt(1 + zeta^2) - zeta)/omega.
-        zeta = elements%retardation(first + i - 1)/steps(i)
-        if (zeta > 0.0_wp) steps(i) = steps(i)/(zeta + sqrt(1.0_wp + zeta**2))
+        call finish_limits(material, now, same, steps(i), limits(2))
       end do
     end associate
-  end subroutine steps_at_moduli
+  end subroutine limit_elements
+
+  !> Steps of the elements of a chunk, each with the moduli and the mass that it has now.
+  subroutine own_steps(model, elements, i_chunk, motion, steps)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: i_chunk
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
+    real(wp), intent(out) :: steps(chunk_size)       !! s
+    type(moduli_t) :: now(chunk_size)
+    integer :: first, i, n
+
+    first = (i_chunk - 1)*chunk_size + 1
+    associate (material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
+      n = merge(model%layout%chunk_elements(i_chunk), 1, allocated(material%eos))
+      do i = 1, n
+        now(i) = present_moduli(material, elements, first + i - 1)
+      end do
+    end associate
+    call steps_at_moduli(model, elements, i_chunk, now(:n), motion, 0.0_wp, steps)
+    do i = 1, model%layout%chunk_elements(i_chunk)
+      steps(i) = scaled_step(model, first + i - 1, steps(i), elements)
+    end do
+  end subroutine own_steps
 
   !> The `n` elements of the smallest stable steps, or all where there are fewer, rising. They lie
   !> in the chunks of the `n` smallest limits, which the last forces have left.
@@ -112,55 +161,29 @@ contains
     integer, allocatable, intent(out) :: found(:)     !! element indices
     real(wp), allocatable, intent(out) :: steps(:)    !! s
     logical, allocatable :: seen(:)
-    real(wp) :: of_slots(chunk_size), step
+    real(wp) :: of_slots(chunk_size)
     integer :: i, k, i_chunk, i_slot, place
-    logical :: has_own_moduli
 
     allocate (found(0), steps(0))
     allocate (seen(size(elements%time_limit)), source=.false.)
     do i = 1, min(n, size(seen))
       i_chunk = minloc(elements%time_limit, dim=1, mask=.not. seen)
       seen(i_chunk) = .true.
-      associate (material => &
-        model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
-        has_own_moduli = allocated(material%eos)
-      end associate
-      if (.not. has_own_moduli) call chunk_steps(model, elements, i_chunk, motion, 0.0_wp, of_slots)
+      call own_steps(model, elements, i_chunk, motion, of_slots)
       do k = 1, model%layout%chunk_elements(i_chunk)
         i_slot = (i_chunk - 1)*chunk_size + k
         if (allocated(elements%erosion)) then
           if (elements%erosion%status(i_slot) /= stays) cycle
         end if
-        if (has_own_moduli) then
-          step = step_of_element(model, elements, i_slot, motion)
-        else
-          step = scaled_step(model, i_slot, of_slots(k), elements)
-        end if
-        place = count(steps <= step)
+        place = count(steps <= of_slots(k))
         if (place >= n) cycle
         found = [found(:place), model%layout%slot_element(i_slot), found(place + 1:)]
-        steps = [steps(:place), step, steps(place + 1:)]
+        steps = [steps(:place), of_slots(k), steps(place + 1:)]
       end do
     end do
     found = found(:min(n, size(found)))
     steps = steps(:size(found))
   end subroutine find_smallest_steps
-
-  !> Stable step of the element in one slot, as its memory has it.
-  function step_of_element(model, elements, i_slot, motion) result(step)
-    type(model_t), intent(in) :: model
-    type(block_state_t), intent(in) :: elements
-    integer, intent(in) :: i_slot
-    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
-    real(wp) :: step
-    real(wp) :: steps(chunk_size)
-
-    associate (material => model%materials(model%parts(slot_part(model%layout, i_slot))%material))
-      call steps_at_moduli(model, elements, (i_slot - 1)/chunk_size + 1, &
-        present_moduli(material, elements, i_slot), motion, 0.0_wp, steps)
-    end associate
-    step = scaled_step(model, i_slot, steps(1 + mod(i_slot - 1, chunk_size)), elements)
-  end function step_of_element
 
   !> Stable step of the element in a slot with its mass.
   pure function scaled_step(model, slot, step, elements) result(scaled)

@@ -9,7 +9,7 @@ module eos_pressure_m
   use eos_dispatch_m, only : eos_chunk_t, form_eos, advance_energy, find_stiffness
   use kinds_m, only : wp
   use layout_m, only : chunk_size
-  use material_dispatch_m, only : find_failed, break_points, history_size
+  use material_dispatch_m, only : find_failed, column_damage, history_size
   use parts_m, only : hourglass_t, material_t, gives_pressure, may_fail, spall_pressure, &
     spall_stress
   use quad_kinematics_m, only : form_gradient
@@ -287,8 +287,11 @@ contains
     broken = largest - elements%eos_state(first:first + chunk_size - 1) > -material%cutoff
     if (.not. any(broken)) return
     do k = 1, merge(n_point, 1, elements%point_start(i_chunk) > 0)
-      call break_points(broken, elements%history(elements%history_start(i_chunk) &
-        + (k - 1)*chunk_size*history_size(material)))
+      first = elements%history_start(i_chunk) + chunk_size*((k - 1)*history_size(material) &
+        + column_damage - 1)
+      associate (damage => elements%history(first:first + chunk_size - 1))
+        where (broken) damage = max(1.0_wp, damage)
+      end associate
     end do
   end subroutine look_for_spall
 

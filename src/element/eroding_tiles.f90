@@ -15,7 +15,7 @@ module eroding_tiles_m
   use parts_m, only : material_t, has_memory_of_heat
   use quad_m, only : advance_chunk
   use quad_points_m, only : n_point
-  use element_steps_m, only : step_of_element
+  use element_steps_m, only : own_steps
   implicit none
   private
   public :: add_eroding_tile_forces, take_nodes
@@ -97,11 +97,12 @@ contains
     type(leaving_t), intent(in) :: leaving
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(in) :: chunk
-    real(wp) :: limit, volume, share
+    real(wp) :: steps(chunk_size), limit, volume, share
     integer :: i, slot, i_eos
 
     limit = huge(1.0_wp)
     volume = huge(1.0_wp)
+    call own_steps(model, elements, i_chunk, motion, steps)
     elements%hourglass_work(i_chunk) = leaving%work
     i_eos = elements%eos_start(i_chunk)
     do i = 1, model%layout%chunk_elements(i_chunk)
@@ -110,7 +111,7 @@ contains
       if (.not. leaving%flags(i)) then
         elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) &
           + (elements%erosion%hourglass(slot) - leaving%hourglass(i))
-        limit = min(limit, step_of_element(model, elements, slot, motion))
+        limit = min(limit, steps(i))
         volume = min(volume, smallest_ratio(model, motion, elements, slot))
         cycle
       end if
@@ -228,13 +229,13 @@ contains
     first = elements%eos_start(i_chunk)
     pressure = elements%eos_state(first + chunk_size:first + 2*chunk_size - 1)
     associate (erosion => material%erosion)
-      common = count_of(pressure >= erosion%most_pressure) &
-        + count_of(pressure <= erosion%least_pressure)
+      common = merge(1, 0, pressure >= erosion%most_pressure) &
+        + merge(1, 0, pressure <= erosion%least_pressure)
       if (times(1) >= erosion%time) common = common + 1
       if (min(erosion%most_volume, -erosion%least_volume) < huge(1.0_wp)) then
         volumetric = log(max(tiny(1.0_wp), 1.0_wp + elements%eos_state(first + 2*chunk_size: &
           first + 3*chunk_size - 1)))
-        common = common + count_of(volumetric >= erosion%most_volume .or. &
+        common = common + merge(1, 0, volumetric >= erosion%most_volume .or. &
           volumetric <= erosion%least_volume)
       end if
       if (asks_for_strain(erosion)) call count_strains(erosion, i_chunk, nodes, motion, elements, &
@@ -245,7 +246,7 @@ contains
         associate (impulse => elements%erosion%impulse(first:first + chunk_size - 1))
           ! Of the square of what the largest principal stress has above its threshold.
           impulse = impulse + times(2)*max(0.0_wp, principal - erosion%threshold)**2
-          common = common + count_of(impulse >= erosion%impulse)
+          common = common + merge(1, 0, impulse >= erosion%impulse)
         end associate
       end if
       n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
@@ -254,22 +255,14 @@ contains
         met = common
         if (asks_for_stress(erosion)) then
           call form_stresses(i_chunk, k, pressure, elements, principal, mises)
-          met = met + count_of(principal >= erosion%principal_stress) &
-            + count_of(mises >= erosion%mises)
+          met = met + merge(1, 0, principal >= erosion%principal_stress) &
+            + merge(1, 0, mises >= erosion%mises)
         end if
-        points = points + count_of(met >= erosion%n_criteria)
+        points = points + merge(1, 0, met >= erosion%n_criteria)
       end do
       leaves = leaves .or. points >= min(n, erosion%n_point)
     end associate
   end subroutine find_by_criteria
-
-  !> 1 where something holds, else 0.
-  elemental function count_of(holds) result(n)
-    logical, intent(in) :: holds
-    integer :: n
-
-    n = merge(1, 0, holds)
-  end function count_of
 
   !> Largest principal stress and von Mises stress of a point, tension positive.
   pure subroutine form_stresses(i_chunk, k, pressure, elements, principal, mises)
@@ -316,10 +309,10 @@ contains
       if (size(elements%reference, 2) > 6) strain(3) = log(max(tiny(1.0_wp), 1.0_wp &
         + sum(u(1, :))/elements%reference(slot, reference_sum)))
       mean = sum(strain)/3.0_wp
-      met(i) = met(i) + count_of(maxval(strain) >= erosion%most_strain) &
-        + count_of(minval(strain) <= erosion%least_strain) &
-        + count_of(0.5_wp*(maxval(strain) - minval(strain)) >= erosion%shear_strain) &
-        + count_of(sqrt(2.0_wp/3.0_wp*sum((strain - mean)**2)) >= erosion%effective_strain)
+      met(i) = met(i) + merge(1, 0, maxval(strain) >= erosion%most_strain) &
+        + merge(1, 0, minval(strain) <= erosion%least_strain) &
+        + merge(1, 0, 0.5_wp*(maxval(strain) - minval(strain)) >= erosion%shear_strain) &
+        + merge(1, 0, sqrt(2.0_wp/3.0_wp*sum((strain - mean)**2)) >= erosion%effective_strain)
     end do
   end subroutine count_strains
 
@@ -348,7 +341,7 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :)
     type(block_state_t), intent(inout) :: elements !! the limit of the chunk
     logical, intent(inout) :: leaves(chunk_size)
-    real(wp) :: least, step, limit
+    real(wp) :: steps(chunk_size), least, limit
     integer :: i, slot
     logical :: inverts
 
@@ -356,6 +349,7 @@ contains
     if (erosion%by_step) least = max(least, elements%erosion%least_step)
     inverts = erosion%by_step .and. .not. elements%volume_limit(i_chunk) > 0.0_wp
     if (elements%time_limit(i_chunk) >= least .and. .not. inverts) return
+    call own_steps(model, elements, i_chunk, motion, steps)
     limit = huge(1.0_wp)
     do i = 1, chunk_size
       slot = (i_chunk - 1)*chunk_size + i
@@ -363,9 +357,8 @@ contains
       if (inverts) leaves(i) = leaves(i) .or. &
         .not. elements%eos_state(elements%eos_start(i_chunk) + 2*chunk_size + i - 1) > -1.0_wp
       if (leaves(i)) cycle
-      step = step_of_element(model, elements, slot, motion)
-      leaves(i) = .not. step >= least
-      if (.not. leaves(i)) limit = min(limit, step)
+      leaves(i) = .not. steps(i) >= least
+      if (.not. leaves(i)) limit = min(limit, steps(i))
     end do
     elements%time_limit(i_chunk) = limit
   end subroutine find_by_step

@@ -15,7 +15,7 @@ module material_dispatch_m
   use material_rubber_m, only : update_mooney_rivlin, update_blatz_ko
   implicit none
   private
-  public :: update_stress, form_tangent, history_size, find_failed, break_points, &
+  public :: update_stress, form_tangent, history_size, find_failed, &
     column_temperature, column_damage, has_plastic_strain, &
     is_elastic, returns_radially, law_name, has_mean_dilatation
 
@@ -167,14 +167,6 @@ contains
       failed = history(:, 1) >= material%failure_strain
     end if
   end subroutine find_failed
-
-  !> Points that the cut-off of the pressure has broken: damage is full.
-  pure subroutine break_points(broken, history)
-    logical, intent(in) :: broken(chunk_size)
-    real(wp), intent(inout) :: history(chunk_size, *)
-
-    where (broken) history(:, column_damage) = max(1.0_wp, history(:, column_damage))
-  end subroutine break_points
 
   !> Deviator at the end of a step and its derivative, at one point.
   pure subroutine form_tangent(material, point)
