@@ -3,10 +3,10 @@
 !> them: where a history wants them their chunks are stepped a second time, and then are what they
 !> were.
 module cut_forces_m
-  use block_state_m, only : block_state_t, stays
+  use block_state_m, only : block_state_t
   use element_chunk_m, only : element_chunk_t, scatter_forces
   use element_dispatch_m, only : take_values, put_values
-  use eroding_tiles_m, only : add_eroding_tile_forces, take_nodes
+  use eroding_tiles_m, only : advance_eroding_chunk
   use packed_buffer_m, only : packed_buffer_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size, local_kind, tile_t
@@ -32,29 +32,29 @@ contains
     type(packed_buffer_t), intent(inout), optional :: before(:) !! of `keep_cut_chunks`
     type(packed_buffer_t) :: present_values
     real(wp), allocatable :: of_slots(:, :, :) !! (8, chunk_size, n_chunk) where elements are cut
-    real(wp), allocatable :: of_tile(:, :)
+    type(element_chunk_t) :: chunk
     integer, allocatable :: list(:)
     integer :: i, k, n, slot
+    integer(local_kind), parameter :: own(4*chunk_size) = [(int(i, local_kind), i=1, 4*chunk_size)]
 
     list = cut_chunks(model)
-    if (model%erodes) allocate (of_tile(2, model%layout%n_local))
     allocate (of_slots(8, chunk_size, model%layout%n_chunk))
     do i = 1, size(list)
       if (list(i) < chunks(1) .or. list(i) > chunks(2)) cycle
       call take_values(tile_of(list(i)), elements, present_values)
       if (present(before)) call put_values(before(i), elements)
-      call step_chunk(model, list(i), motion, times(2), elements, &
-        of_slots(:, :, list(i)))
-      call put_values(present_values, elements)
       if (model%erodes) then
-        ! Elements that have left the mesh, or leave it in this step, do not push.
-        call add_eroding_tile_forces(model, tile_of(list(i)), motion, times, elements, of_tile)
-        do k = 1, chunk_size
-          if (elements%erosion%status((list(i) - 1)*chunk_size + k) /= stays) &
-            of_slots(:, k, list(i)) = 0.0_wp
-        end do
-        call put_values(present_values, elements)
+        call advance_eroding_chunk(model, list(i), motion, times, elements, chunk)
+      else
+        call advance_chunk(model, list(i), model%layout%slot_nodes(1, (list(i) - 1)*chunk_size &
+          + 1), motion, times(2), elements, chunk)
       end if
+      call put_values(present_values, elements)
+      ! Minus the internal force; the third corner of a triangle is its fourth as well.
+      of_slots(:, :, list(i)) = 0.0_wp
+      call scatter_forces(model%layout%chunk_elements(list(i)), own, chunk, &
+        of_slots(1, 1, list(i)))
+      of_slots(:, :, list(i)) = -of_slots(:, :, list(i))
     end do
     n = 0
     do i = 1, size(model%controls%output%cross_sections)
@@ -81,30 +81,6 @@ contains
       call take_values(tile_of(list(i)), elements, kept(i))
     end do
   end subroutine keep_cut_chunks
-
-  !> What each element of a chunk puts on its four corners, x and y of each: minus its internal
-  !> force. The third of a triangle is its fourth as well.
-  subroutine step_chunk(model, i_chunk, motion, dt, elements, of_slots)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i_chunk
-    real(wp), intent(in), contiguous :: motion(:, :)
-    real(wp), intent(in) :: dt
-    type(block_state_t), intent(inout) :: elements
-    real(wp), intent(inout) :: of_slots(8, chunk_size)
-    integer :: i
-    type(element_chunk_t) :: chunk
-    integer(local_kind), parameter :: own(4*chunk_size) = [(int(i, local_kind), i=1, 4*chunk_size)]
-    integer :: first, nodes(4, chunk_size)
-
-    first = (i_chunk - 1)*chunk_size + 1
-    nodes = model%layout%slot_nodes(:, first:first + chunk_size - 1)
-    if (model%erodes) call take_nodes(model%layout%slot_nodes(:, first:first + chunk_size - 1), &
-      elements%erosion%status(first:first + chunk_size - 1), nodes)
-    call advance_chunk(model, i_chunk, nodes, motion, dt, elements, chunk)
-    of_slots = 0.0_wp
-    call scatter_forces(model%layout%chunk_elements(i_chunk), own, chunk, of_slots)
-    of_slots = -of_slots
-  end subroutine step_chunk
 
   !> A chunk alone.
   pure function tile_of(i_chunk) result(tile)

@@ -20,9 +20,12 @@ module element_stiffness_m
   private
   public :: add_stiffness
 
-  !> Of the nodes a = d31, b = d42 and h (`element_tangent`).
-  integer, parameter :: of_nodes(4, 3) = reshape([-1, 0, 1, 0, 0, -1, 0, 1, 1, -1, 1, -1], [4, 3])
-
+  !> The patterns a = d31, b = d42 and h in x and y, and s (`element_tangent`), of the unknowns
+  !> x1 y1 x2 y2 ...
+  real(wp), parameter :: of_nodes(n_pattern, 8) = real(reshape([ &
+    -1, 0, 0, 0, 1, 0, 1, 0, -1, 0, 0, 0, 1, 0, 0, 0, -1, 0, -1, 0, 1, 0, 0, 0, -1, 0, -1, 0, &
+    1, 0, 0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 1, 0, 0, 0, 1, 0, -1, 0], &
+    [n_pattern, 8]), wp)
   real(wp), parameter :: part = 1.0_wp/24.0_wp
 
   !> Integrals over a quad of r d/dr, of r d/dz and of 1, pattern by pattern (`form_round_shape`).
@@ -110,8 +113,8 @@ contains
     type(element_t), intent(inout) :: element
     real(wp), intent(out) :: block(8, 8)
     type(dual_t) :: force(n_pattern)
-    real(wp) :: small(n_pattern, n_pattern), across(n_pattern, 8)
-    integer :: a, k
+    real(wp) :: small(n_pattern, n_pattern)
+    integer :: k
 
     if (is_full) then
       call form_full_force(material, element, force)
@@ -121,19 +124,7 @@ contains
     do k = 1, n_pattern
       small(k, :) = force(k)%slope(:n_pattern)
     end do
-    ! From the patterns to the nodes, first the columns.
-    do a = 1, 4
-      across(:, 2*a - 1) = of_nodes(a, 1)*small(:, 1) + of_nodes(a, 2)*small(:, 3) &
-        + of_nodes(a, 3)*small(:, 5) + small(:, 7)
-      across(:, 2*a) = of_nodes(a, 1)*small(:, 2) + of_nodes(a, 2)*small(:, 4) &
-        + of_nodes(a, 3)*small(:, 6)
-    end do
-    do a = 1, 4
-      block(2*a - 1, :) = of_nodes(a, 1)*across(1, :) + of_nodes(a, 2)*across(3, :) &
-        + of_nodes(a, 3)*across(5, :) + across(7, :)
-      block(2*a, :) = of_nodes(a, 1)*across(2, :) + of_nodes(a, 2)*across(4, :) &
-        + of_nodes(a, 3)*across(6, :)
-    end do
+    block = matmul(transpose(of_nodes), matmul(small, of_nodes))
   end subroutine form_block
 
   !> Forces of a one-point quad on the patterns.

@@ -18,7 +18,7 @@ module eroding_tiles_m
   use element_steps_m, only : own_steps
   implicit none
   private
-  public :: add_eroding_tile_forces, take_nodes
+  public :: add_eroding_tile_forces, advance_eroding_chunk
 
   !> How much larger the shape of an element is that has left.
   real(wp), parameter :: much = 1.0e6_wp
@@ -42,51 +42,54 @@ contains
     type(block_state_t), intent(inout) :: elements     !! only this tile's slots are touched
     real(wp), intent(inout) :: force(2, model%layout%n_local) !! set here
     type(element_chunk_t) :: chunk
-    type(leaving_t) :: leaving
-    integer :: nodes(4, chunk_size), i_chunk, first, i
+    integer :: i_chunk
 
     force = 0.0_wp
     do i_chunk = tile%first_chunk, tile%last_chunk
-      first = (i_chunk - 1)*chunk_size + 1
-      call take_nodes(model%layout%slot_nodes(:, first:first + chunk_size - 1), &
-        elements%erosion%status(first:first + chunk_size - 1), nodes)
-      leaving%energy = 0.0_wp
-      associate (i_eos => elements%eos_start(i_chunk))
-        if (i_eos > 0) leaving%energy = elements%eos_state(i_eos:i_eos + chunk_size - 1)
-      end associate
-      leaving%hourglass = elements%erosion%hourglass(first:first + chunk_size - 1)
-      leaving%work = elements%hourglass_work(i_chunk)
-      call advance_chunk(model, i_chunk, nodes, motion, times(2), elements, chunk)
-      if (times(2) > 0.0_wp) then
-        call find_leaving(model, i_chunk, nodes, motion, times, elements, leaving%flags)
-        if (any(leaving%flags)) call take_out(model, i_chunk, motion, times(2), leaving, elements, &
-          chunk)
-      end if
-      if (elements%erosion%n_gone(i_chunk) > 0) then
-        do i = 1, chunk_size
-          if (elements%erosion%status(first + i - 1) == stays) cycle
-          chunk%force3(:, i) = 0.0_wp
-          chunk%force4(:, i) = 0.0_wp
-          chunk%swing(:, i) = 0.0_wp
-          if (chunk%is_round) chunk%hoop(i) = 0.0_wp
-        end do
-      end if
-      call scatter_forces(model%layout%chunk_elements(i_chunk), model%layout%slot_local(1, first), &
-        chunk, force)
+      call advance_eroding_chunk(model, i_chunk, motion, times, elements, chunk)
+      call scatter_forces(model%layout%chunk_elements(i_chunk), model%layout%slot_local(1, &
+        (i_chunk - 1)*chunk_size + 1), chunk, force)
     end do
   end subroutine add_eroding_tile_forces
 
-  !> Nodes of a chunk; those of an element that has left are all its first one.
-  pure subroutine take_nodes(slot_nodes, status, nodes)
-    integer, intent(in) :: slot_nodes(4, chunk_size), status(chunk_size)
-    integer, intent(out) :: nodes(4, chunk_size)
-    integer :: i
+  !> As `advance_chunk`, where elements may leave in the step.
+  subroutine advance_eroding_chunk(model, i_chunk, motion, times, elements, chunk)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_chunk
+    real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node)
+    real(wp), intent(in) :: times(2)                   !! of the motion, and the step that led there
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk      !! forces out
+    type(leaving_t) :: leaving
+    integer :: nodes(4, chunk_size), first, i
 
-    nodes = slot_nodes
+    first = (i_chunk - 1)*chunk_size + 1
+    ! Those of an element that has left are all its first one.
+    nodes = model%layout%slot_nodes(:, first:first + chunk_size - 1)
     do i = 1, chunk_size
-      if (status(i) /= stays) nodes(:, i) = nodes(1, i)
+      if (elements%erosion%status(first + i - 1) /= stays) nodes(:, i) = nodes(1, i)
     end do
-  end subroutine take_nodes
+    leaving%energy = 0.0_wp
+    associate (i_eos => elements%eos_start(i_chunk))
+      if (i_eos > 0) leaving%energy = elements%eos_state(i_eos:i_eos + chunk_size - 1)
+    end associate
+    leaving%hourglass = elements%erosion%hourglass(first:first + chunk_size - 1)
+    leaving%work = elements%hourglass_work(i_chunk)
+    call advance_chunk(model, i_chunk, nodes, motion, times(2), elements, chunk)
+    if (times(2) > 0.0_wp) then
+      call find_leaving(model, i_chunk, nodes, motion, times, elements, leaving%flags)
+      if (any(leaving%flags)) call take_out(model, i_chunk, motion, times(2), leaving, elements, &
+        chunk)
+    end if
+    if (elements%erosion%n_gone(i_chunk) == 0) return
+    do i = 1, chunk_size
+      if (elements%erosion%status(first + i - 1) == stays) cycle
+      chunk%force3(:, i) = 0.0_wp
+      chunk%force4(:, i) = 0.0_wp
+      chunk%swing(:, i) = 0.0_wp
+      if (chunk%is_round) chunk%hoop(i) = 0.0_wp
+    end do
+  end subroutine advance_eroding_chunk
 
   !> Elements that leave take their energies along; the limits of the chunk are those of the rest.
   subroutine take_out(model, i_chunk, motion, dt, leaving, elements, chunk)
@@ -297,14 +300,22 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :)
     type(block_state_t), intent(in) :: elements
     integer, intent(inout) :: met(chunk_size)
-    real(wp) :: start(4), strain(3), mean, u(2, 4)
+    real(wp) :: a(2), b(2), f(2, 2), c(3), strain(3), mean, radius, inverse, u(2, 4)
     integer :: i, slot
 
     do i = 1, chunk_size
       slot = (i_chunk - 1)*chunk_size + i
       u = motion(1:2, nodes(:, i))
-      start = elements%reference(slot, 1:4)
-      strain(1:2) = plane_strains(start, u(:, 3) - u(:, 1), u(:, 4) - u(:, 2))
+      ! In the plane half the logarithms of the eigenvalues of F^T F.
+      a = elements%reference(slot, 1:2)
+      b = elements%reference(slot, 3:4)
+      inverse = 1.0_wp/(a(1)*b(2) - b(1)*a(2))
+      f(:, 1) = ((a + (u(:, 3) - u(:, 1)))*b(2) - (b + (u(:, 4) - u(:, 2)))*a(2))*inverse
+      f(:, 2) = ((b + (u(:, 4) - u(:, 2)))*a(1) - (a + (u(:, 3) - u(:, 1)))*b(1))*inverse
+      c = [sum(f(:, 1)**2), sum(f(:, 2)**2), sum(f(:, 1)*f(:, 2))]
+      mean = 0.5_wp*(c(1) + c(2))
+      radius = sqrt(0.25_wp*(c(1) - c(2))**2 + c(3)**2)
+      strain(1:2) = 0.5_wp*log(max(tiny(1.0_wp), [mean + radius, mean - radius]))
       strain(3) = 0.0_wp
       if (size(elements%reference, 2) > 6) strain(3) = log(max(tiny(1.0_wp), 1.0_wp &
         + sum(u(1, :))/elements%reference(slot, reference_sum)))
@@ -315,22 +326,6 @@ contains
         + merge(1, 0, sqrt(2.0_wp/3.0_wp*sum((strain - mean)**2)) >= erosion%effective_strain)
     end do
   end subroutine count_strains
-
-  !> Both in the plane: half the logarithms of the eigenvalues of F^T F.
-  pure function plane_strains(start, d31, d42) result(strains)
-    real(wp), intent(in) :: start(4)         !! X31, Y31, X42, Y42
-    real(wp), intent(in) :: d31(2), d42(2)   !! what they have grown by
-    real(wp) :: strains(2)
-    real(wp) :: f(2, 2), c(3), mean, radius, inverse
-
-    inverse = 1.0_wp/(start(1)*start(4) - start(3)*start(2))
-    f(:, 1) = ((start(1:2) + d31)*start(4) - (start(3:4) + d42)*start(2))*inverse
-    f(:, 2) = ((start(3:4) + d42)*start(1) - (start(1:2) + d31)*start(3))*inverse
-    c = [sum(f(:, 1)**2), sum(f(:, 2)**2), sum(f(:, 1)*f(:, 2))]
-    mean = 0.5_wp*(c(1) + c(2))
-    radius = sqrt(0.25_wp*(c(1) - c(2))**2 + c(3)**2)
-    strains = 0.5_wp*log(max(tiny(1.0_wp), [mean + radius, mean - radius]))
-  end function plane_strains
 
   !> Elements whose own stable step, or volume, has become too small. The limit of a chunk is that
   !> of its shortest element with the fastest waves of any: it may lie below all of theirs.

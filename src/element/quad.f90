@@ -24,7 +24,7 @@ module quad_m
     axisymmetric_full_step
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
   use volumetric_m, only : volumetric_stress, largest_size, add_bulk_viscosity, viscous_start, &
-    add_viscous_deviator, add_viscous_pressure, trace_of
+    add_viscous_deviator, add_viscous_pressure
   implicit none
   private
   public :: advance_chunk, limit_chunk, start_points, move_point, sums_t
@@ -130,6 +130,7 @@ contains
     type(sums_t), intent(inout) :: sums
     type(moduli_t), intent(inout) :: now          !! with an equation of state its present ones
     type(element_chunk_t) :: point
+    real(wp) :: inverse(chunk_size)
     integer :: first, j, k
 
     call form_mean_pressure(i_chunk, material, hourglass, dt, elements, chunk)
@@ -144,13 +145,10 @@ contains
     end do
     ! The mean deviator, for output.
     first = (i_chunk - 1)*chunk_size + 1
+    inverse = chunk%inverse_area
+    if (chunk%is_round) inverse = chunk%inverse_volume
     do j = 1, 3
-      if (chunk%is_round) then
-        elements%deviator(first:first + chunk_size - 1, j) = sums%deviator(:, j) &
-          *chunk%inverse_volume
-      else
-        elements%deviator(first:first + chunk_size - 1, j) = sums%deviator(:, j)*chunk%inverse_area
-      end if
+      elements%deviator(first:first + chunk_size - 1, j) = sums%deviator(:, j)*inverse
     end do
     if (.not. allocated(material%eos)) return
     ! What the points have done heats the pressure that all of them share.
@@ -288,7 +286,8 @@ contains
     if (chunk%is_round) then
       call form_radii(k, elements%reference(first, 1), stride, chunk, point, sums%places(k))
       call add_hoop_strain(dt, sums%places(k), point, stress)
-      point%trace = trace_of(stress)
+      point%trace = 0.0_wp
+      if (dt > 0.0_wp) point%trace = (stress%dxx + stress%dyy)/dt + 3.0_wp*stress%hoop/dt
     else
       point%volume = 0.25_wp*point%area
       call add_point_sums(k, point, sums%step)

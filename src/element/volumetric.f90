@@ -12,7 +12,7 @@ module volumetric_m
   implicit none
   private
   public :: volumetric_stress, volumetric_energy, log_ratio, atanh_series, largest_size, &
-    add_bulk_viscosity, viscous_start, add_viscous_deviator, add_viscous_pressure, trace_of
+    add_bulk_viscosity, viscous_start, add_viscous_deviator, add_viscous_pressure
 
 contains
 
@@ -198,16 +198,5 @@ contains
     end do
     work = work + 0.5_wp*dt*sum
   end subroutine add_viscous_pressure
-
-  !> Rate of the volume from the increments of a step; 0 where there was none.
-  pure function trace_of(stress) result(trace)
-    type(stress_chunk_t), intent(in) :: stress
-    real(wp) :: trace(chunk_size)
-
-    trace = 0.0_wp
-    if (.not. stress%dt > 0.0_wp) return
-    trace = (stress%dxx + stress%dyy)/stress%dt
-    if (stress%has_hoop) trace = trace + 3.0_wp*stress%hoop/stress%dt
-  end function trace_of
 
 end module volumetric_m

@@ -10,7 +10,7 @@ module material_dispatch_m
   use material_crushable_foam_m, only : update_crushable_foam
   use material_elastic_m, only : update_elastic, update_null
   use material_j2_m, only : update_j2_isotropic, update_j2_mixed, tangent_of_return
-  use material_johnson_cook_m, only : update_johnson_cook, update_hot_johnson_cook
+  use material_johnson_cook_m, only : update_johnson_cook
   use material_piecewise_m, only : update_piecewise, tangent_piecewise
   use material_rubber_m, only : update_mooney_rivlin, update_blatz_ko
   implicit none
@@ -117,7 +117,7 @@ contains
     case (law_johnson_cook)
       call update_johnson_cook(material%shear, material%flow, chunk, history(:, 1))
     case (law_hot_johnson_cook)
-      call update_hot_johnson_cook(material%shear, material%flow, chunk, history(:, 1), &
+      call update_johnson_cook(material%shear, material%flow, chunk, history(:, 1), &
         history(:, column_temperature), history(:, column_damage))
     case (law_null)
       call update_null(material%viscosity, chunk)
