@@ -10,7 +10,8 @@ module explicit_m
   use contact_account_m, only : report_contact_energies
   use contact_check_m, only : report_contact_end
   use contact_pressing_m, only : press_contacts
-  use element_dispatch_m, only : add_tile_forces
+  use element_dispatch_m, only : add_tile_forces, share_tile_forces, keep_tile_forces, &
+    sum_special_forces
   use eroding_tiles_m, only : add_eroding_tile_forces
   use element_losses_m, only : report_erosion, report_failures
   use errors_m, only : error_t
@@ -29,7 +30,6 @@ module explicit_m
   use resting_tiles_m, only : awake, flying, remember_tile, judge_tile, look_at_tile, report_rest
   use held_nodes_m, only : hold_skew_nodes, hold_nodes
   use state_m, only : state_t
-  use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
   implicit none
   private
   public :: advance_explicit

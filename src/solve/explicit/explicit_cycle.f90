@@ -4,6 +4,7 @@
 module explicit_cycle_m
   use archive_m, only : archive_t
   use behind_ties_m, only : hear_tie, settle_with_tie
+  use element_dispatch_m, only : sum_special_forces
   use prescribed_motion_m, only : find_prescribed_velocities, impose_prescribed, count_motions, &
     count_body_motions, count_boundary_loads, count_groups
   use clock_m, only : lap, share_contact, phase_nodes
@@ -42,7 +43,6 @@ module explicit_cycle_m
   use rigid_motion_m, only : solve_rigids, move_rigids
   use held_nodes_m, only : move_common, count_walls
   use state_m, only : state_t
-  use tile_forces_m, only : sum_special_forces
   use time_step_m, only : step_plan_t, volume_step, next_step, obey_approach, &
     is_last, follow_springs, cycles_in, has_springs
   use visitor_m, only : visited_t, visitor_t

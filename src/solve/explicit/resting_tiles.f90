@@ -6,6 +6,7 @@
 !> bring about, and is stepped from then on. Tiles that rest at velocity zero amid others that do
 !> are not even looked at.
 module resting_tiles_m
+  use element_dispatch_m, only : take_values, same_bits
   use packed_buffer_m, only : packed_buffer_t
   use kinds_m, only : wp, long
   use layout_m, only : layout_t, tile_t
@@ -15,7 +16,6 @@ module resting_tiles_m
   use ranks_m, only : ranks_t, bring_reals
   use renumber_m, only : mark_moved_nodes
   use state_m, only : state_t
-  use tile_forces_m, only : take_values, same_bits
   implicit none
   private
   public :: rest_t, awake, flying, plan_rest, remember_tile, judge_tile, look_at_tile, &

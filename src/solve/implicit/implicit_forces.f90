@@ -11,13 +11,13 @@ module implicit_forces_m
     phase_contact_force, phase_nodes
   use contact_state_m, only : contact_state_t
   use cut_forces_m, only : find_cut_forces
-  use element_dispatch_m, only : add_tile_forces
+  use element_dispatch_m, only : add_tile_forces, share_tile_forces, keep_tile_forces, &
+    sum_special_forces
   use element_mass_m, only : mass_times
   use external_force_m, only : form_external_force, body_acceleration, damping_rates
   use packed_buffer_m, only : packed_buffer_t
   use model_m, only : model_t
   use state_m, only : state_t
-  use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
