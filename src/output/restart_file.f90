@@ -25,7 +25,7 @@ module restart_file_m
   use text_files_m, only : overwrite_start
   implicit none
   private
-  public :: create_restart, finish_restart, open_restart, close_restart, file_checksum
+  public :: create_restart, finish_restart, open_restart, close_restart
 
   !> Layout of the file. To be raised when a component of the state comes, goes or changes its
   !> meaning, and when nodes or elements get another order: arrays lie in that order.
@@ -100,7 +100,7 @@ contains
     integer(long) :: length, n_byte
     integer :: unit, status
 
-    call file_checksum(path, head_size, length, checksum, reason)
+    call file_checksum(path, length, checksum, reason)
     if (.not. allocated(reason)) then
       head = head_text(length, checksum)
       call overwrite_start(path, head, error)
@@ -128,10 +128,9 @@ contains
     head = mark//to_text(format_version)//n//'length '//trim(digits)//n//'checksum '//checksum//n
   end function head_text
 
-  !> Checksum of a file behind its first bytes; `reason` is set when it can not be read.
-  subroutine file_checksum(path, n_skipped, length, checksum, reason)
+  !> Checksum of a file behind its head; `reason` is set when it can not be read.
+  subroutine file_checksum(path, length, checksum, reason)
     character(*), intent(in) :: path
-    integer, intent(in) :: n_skipped
     integer(long), intent(out) :: length    !! bytes that count
     character(:), allocatable, intent(out) :: checksum
     character(:), allocatable, intent(out) :: reason
@@ -143,10 +142,10 @@ contains
     length = 0
     call open_bytes(path, unit, n_byte, reason)
     if (allocated(reason)) return
-    length = max(n_byte - n_skipped, 0_long)
+    length = max(n_byte - head_size, 0_long)
     allocate (block)
     sum_of_bytes = 0
-    start = n_skipped
+    start = head_size
     status = 0
     do while (start < n_byte .and. status == 0)
       n = int(min(int(block_size, long), n_byte - start))
@@ -237,7 +236,7 @@ contains
         'a newer ', version < format_version))//' version; this program reads format ' &
         //to_text(format_version)
     else
-      call file_checksum(path, head_size, length, checksum, reason)
+      call file_checksum(path, length, checksum, reason)
       if (.not. allocated(reason)) call compare_heads(head, length, checksum, reason)
     end if
   end subroutine judge_file

@@ -95,7 +95,7 @@ contains
     case ('STOP')
       asked%stop = .true.
     case ('SWA')
-      if (.not. allocated(error)) call flush_histories(monitor%histories, error)
+      if (.not. allocated(error)) call flush_histories(monitor%histories, .true., error)
     case default
       call warn(monitor%log, 'd3kil holds none of sw1, sw2, sw3, sw4, swa, stop')
     end select

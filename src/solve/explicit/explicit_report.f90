@@ -19,11 +19,10 @@ module explicit_report_m
   use log_m, only : write_log, to_text
   use model_log_m, only : log_smallest_steps, judge_damping
   use model_m, only : model_t
-  use monitor_m, only : monitor_t, write_due
+  use monitor_m, only : monitor_t, write_due, note_energies, write_instant
   use load_work_m, only : count_sums
   use rank_exchange_m, only : judge_elements
   use ranks_m, only : share_error, spread_values
-  use reporting_m, only : note_energies, write_instant
   use rigid_motion_m, only : solve_rigids, start_rigid_motions, fill_rigids, fill_bodies
   use held_nodes_m, only : hold_skew_nodes, hold_nodes, count_walls, fill_walls
   use element_steps_m, only : find_smallest_steps

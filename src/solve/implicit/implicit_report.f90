@@ -21,9 +21,8 @@ module implicit_report_m
   use implicit_tangent_m, only : step_t
   use kinds_m, only : wp
   use model_m, only : model_t
-  use monitor_m, only : monitor_t, due_t, find_due, any_due
+  use monitor_m, only : monitor_t, due_t, find_due, any_due, note_energies, write_instant
   use output_schedule_m, only : output_reach
-  use reporting_m, only : note_energies, write_instant
   use snapshot_filling_m, only : fill_energies, fill_parts
   use state_m, only : state_t
   implicit none
