@@ -71,16 +71,15 @@ contains
   end subroutine bring_reals
 
   !> The same for integers, which go as reals.
-  subroutine bring_integers(ranks, starts, width, to_all, values)
+  subroutine bring_integers(ranks, starts, to_all, values)
     type(ranks_t), intent(inout) :: ranks
     integer, intent(in) :: starts(0:)     !! (0:n) item at which each piece starts, then one beyond
-    integer, intent(in) :: width          !! values of an item
     logical, intent(in) :: to_all
     integer, intent(inout) :: values(*)
     real(wp), allocatable :: copies(:)
 
-    copies = real(values(:width*(starts(ranks%n) - 1)), wp)
-    call bring_reals(ranks, starts, width, to_all, copies)
+    copies = real(values(:starts(ranks%n) - 1), wp)
+    call bring_reals(ranks, starts, 1, to_all, copies)
     values(:size(copies)) = nint(copies)
   end subroutine bring_integers
 

@@ -41,10 +41,9 @@ contains
   end subroutine bring_reals
 
   !> The same for integers.
-  subroutine bring_integers(ranks, starts, width, to_all, values)
+  subroutine bring_integers(ranks, starts, to_all, values)
     type(ranks_t), intent(inout) :: ranks
     integer, intent(in) :: starts(0:)     !! (0:n) item at which each piece starts, then one beyond
-    integer, intent(in) :: width          !! values of an item
     logical, intent(in) :: to_all
     integer, intent(inout) :: values(*)
   end subroutine bring_integers

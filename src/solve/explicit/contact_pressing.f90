@@ -89,19 +89,13 @@ contains
     integer, intent(in) :: nodes(:)
     type(pressing_t), intent(inout) :: step
     integer :: local(model%mesh%n_node) !! number in the interface, 0: not of it
-    integer :: led(2, size(model%conditions%motions)), riders(3, size(nodes)), i, k, n
+    integer :: led(size(model%conditions%motions)), riders(3, size(nodes)), i, k, n
 
     local = 0
-    do i = 1, size(nodes)
-      local(nodes(i)) = i
-    end do
-    n = 0
-    do i = 1, size(led, 2)
-      if (local(model%conditions%motions(i)%node) == 0) cycle
-      n = n + 1
-      led(:, n) = [i, local(model%conditions%motions(i)%node)]
-    end do
-    step%led = led(:, :n)
+    local(nodes) = [(i, i=1, size(nodes))]
+    led = local(model%conditions%motions%node)
+    n = count(led > 0)
+    step%led = transpose(reshape([pack([(i, i=1, size(led))], led > 0), pack(led, led > 0)], [n, 2]))
     n = 0
     do i = 1, size(model%rigids)
       do k = 1, size(model%rigids(i)%nodes)
@@ -133,7 +127,14 @@ contains
       if (step%riders(1, i) /= body) then
         if (body > 0) step%n_mode = step%n_mode + count(is_free)
         body = step%riders(1, i)
-        is_free = are_free(model, body, state%time)
+        ! Which of x, y and the turn of the body are neither held nor led.
+        is_free = .not. model%rigids(body)%is_fixed
+        do k = 1, size(model%conditions%rigid_motions)
+          associate (motion => model%conditions%rigid_motions(k))
+            if (motion%node == body .and. is_active(motion, state%time)) &
+              is_free(motion%direction) = .false.
+          end associate
+        end do
         rate = damping_of(state%rigids(body), damping + part_damping_rate(model, &
           model%rigids(body)%part, state%time))
         do k = 1, count(is_free)
@@ -157,21 +158,5 @@ contains
     end do
     if (body > 0) step%n_mode = step%n_mode + count(is_free)
   end subroutine ride
-
-  !> Which of x, y and the turn of a body are neither held nor led.
-  pure function are_free(model, body, time) result(is_free)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: body
-    real(wp), intent(in) :: time !! s
-    logical :: is_free(3)
-    integer :: i
-
-    is_free = .not. model%rigids(body)%is_fixed
-    do i = 1, size(model%conditions%rigid_motions)
-      associate (motion => model%conditions%rigid_motions(i))
-        if (motion%node == body .and. is_active(motion, time)) is_free(motion%direction) = .false.
-      end associate
-    end do
-  end function are_free
 
 end module contact_pressing_m

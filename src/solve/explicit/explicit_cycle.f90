@@ -21,6 +21,7 @@ module explicit_cycle_m
   use history_tables_m, only : table_secforc
   use interface_m, only : apply_contact
   use kinds_m, only : wp
+  use layout_m, only : chunk_size
   use mass_scaling_m, only : needs_refinement, grow_masses
   use model_log_m, only : check_added_mass
   use model_m, only : model_t
@@ -29,9 +30,8 @@ module explicit_cycle_m
   use outlines_m, only : follow_outlines
   use packed_buffer_m, only : stream_starts
   use progress_m, only : follow_progress
-  use rank_exchange_m, only : parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, &
-    exchange_erosion, gather_motion, gather_state, judge_elements, &
-    hear_requests, cut_sections
+  use rank_exchange_m, only : parcel_t, plan_parcel, exchange_parcel, exchange_checks, loses, &
+    fails, errs, gather_motion, gather_state, judge_elements, hear_requests, cut_sections
   use rank_shares_m, only : shares_t, share_out, borders_t, plan_borders
   use ranks_m, only : ranks_t, bring_integers, bring_reals, share_error
   use requests_m, only : requests_t, take_requests, echoes_t
@@ -222,23 +222,30 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    type(record_t) :: record
+    logical :: tells(7)
 
     associate (ranks => monitor%ranks, shares => cycle%shares, elements => state%elements)
       call hear_requests(state, cycle%ratio, monitor, cycle%echoes, cycle%asked, cycle%error)
-      record%asked = cycle%asked
-      record%has_error = allocated(cycle%error)
+      associate (asked => cycle%asked)
+        tells = [.false., .false., allocated(cycle%error), asked%dump, asked%plot, asked%stop, &
+          asked%signalled]
+      end associate
       call exchange_parcel(shares, cycle%borders, ranks, cycle%parcel, state, cycle%sums)
-      call exchange_record(shares, cycle%checks, elements, ranks, cycle%parcel, record)
-      cycle%asked = record%asked
-      cycle%checks(cycle%first_check) = tile_check_t(time_limit=record%time_limit, &
-        has_volume=record%is_sound, volume_change=record%volume_change)
-      if (record%has_error) call share_error(ranks, cycle%error)
-      if (record%loses) call exchange_erosion(ranks, shares, elements)
+      call exchange_checks(shares, elements, ranks, cycle%parcel, cycle%checks, tells)
+      cycle%asked = requests_t(tells(4), tells(5), tells(6), tells(7))
+      if (tells(errs)) call share_error(ranks, cycle%error)
+      if (tells(loses)) then
+        associate (erosion => elements%erosion, slots => (shares%chunks - 1)*chunk_size + 1)
+          call bring_integers(ranks, shares%chunks, .true., erosion%n_gone)
+          call bring_integers(ranks, slots, .true., erosion%status)
+          call bring_reals(ranks, slots, 1, .true., erosion%hourglass)
+          call bring_reals(ranks, slots, 1, .true., erosion%internal)
+        end associate
+      end if
       if (state%cycle == 0) call bring_reals(ranks, shares%chunks, 1, .true., &
         elements%time_limit)
-      if (record%fails) then
-        call bring_integers(ranks, shares%chunks, 1, .true., elements%n_failed)
+      if (tells(fails)) then
+        call bring_integers(ranks, shares%chunks, .true., elements%n_failed)
         ! The log names the first one.
         if (cycle%failures%told == 0 .and. any(elements%n_failed > 0)) &
           call bring_reals(ranks, stream_starts(shares%chunks, elements%history_start, &

@@ -42,6 +42,7 @@ contains
     real(wp), intent(inout) :: damping(2) !! D per direction: that before in, that of now out
     type(motion_sums_t), intent(inout) :: sums
     real(wp) :: half, body(2), former(2)
+    integer :: i
 
     half = 0.5_wp*state%dt_before
     if (allocated(state%external)) then
@@ -50,7 +51,18 @@ contains
       state%external_work = state%external_work + half*power(state%external, state%motion)
       state%force_special = state%external
     else
-      call clear_forces(model, state)
+      ! No force yet on the nodes of interfaces and walls. On the others there never is one: to write
+      ! zeros there would only take them out of the caches of other threads.
+      do i = 1, size(state%contacts)
+        state%force_special(:, state%contacts(i)%nodes) = 0.0_wp
+      end do
+      if (allocated(model%conditions%skew_supports)) &
+        state%force_special(:, model%conditions%skew_supports%node) = 0.0_wp
+      if (allocated(state%walls)) then
+        do i = 1, size(model%walls)
+          state%force_special(:, model%walls(i)%nodes) = 0.0_wp
+        end do
+      end if
     end if
     if (allocated(model%conditions%rigid_loads)) call apply_rigid_loads(model, half, state)
     if (size(model%conditions%body_loads) > 0) then
@@ -92,24 +104,6 @@ contains
       end associate
     end do
   end subroutine apply_rigid_loads
-
-  !> No force yet on the nodes of interfaces and walls. On the others there never is one: to write
-  !> zeros there would only take them out of the caches of other threads.
-  subroutine clear_forces(model, state)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    integer :: i
-
-    do i = 1, size(state%contacts)
-      state%force_special(:, state%contacts(i)%nodes) = 0.0_wp
-    end do
-    if (allocated(model%conditions%skew_supports)) &
-      state%force_special(:, model%conditions%skew_supports%node) = 0.0_wp
-    if (.not. allocated(state%walls)) return
-    do i = 1, size(model%walls)
-      state%force_special(:, model%walls(i)%nodes) = 0.0_wp
-    end do
-  end subroutine clear_forces
 
   !> Power of forces on the first nodes.
   pure function power(force, motion)
@@ -156,20 +150,30 @@ contains
   end function blocks_of
 
   !> Sums over the nodes first .. last; those of damping where the state keeps former velocities,
-  !> which become the present ones.
+  !> which become the present ones. Where each node has its own damping the sums hold it.
   subroutine sum_motion(first, last, state, sums)
     integer, intent(in) :: first, last
     type(state_t), intent(inout) :: state
     real(wp), intent(out) :: sums(4) !! m v_x, m v_y, and those of `sum_drag`
+    real(wp) :: v(2)
+    integer :: i
 
     sums(1:2) = sum_momentum(first, last, state%mass, state%motion)
     sums(3:4) = 0.0_wp
     if (allocated(state%former_damping)) then
-      call sum_own_drag(first, last, state, sums(3:4))
-      return
+      do i = first, last
+        v = state%motion(3:4, i)
+        associate (former => state%former_velocity(:, i))
+          sums(3:4) = sums(3:4) + 0.25_wp*state%mass(i)*state%former_damping(:, i)*((former + v) &
+            *(state%former_dt*former + state%dt_before*v))
+        end associate
+        state%former_velocity(:, i) = v
+        state%former_damping(:, i) = state%node_damping(:, i)
+      end do
+    else if (allocated(state%former_velocity)) then
+      call sum_drag(first, last, state%mass, state%motion, [state%former_dt, state%dt_before], &
+        state%former_velocity, sums(3:4))
     end if
-    if (allocated(state%former_velocity)) call sum_drag(first, last, state%mass, state%motion, &
-      [state%former_dt, state%dt_before], state%former_velocity, sums(3:4))
   end subroutine sum_motion
 
   !> Momentum of the nodes first .. last. Two by two, so that an addition need
@@ -212,26 +216,6 @@ contains
       former(:, i) = v
     end do
   end subroutine sum_drag
-
-  !> The same where each node has its own damping, which the sums then hold.
-  pure subroutine sum_own_drag(first, last, state, sums)
-    integer, intent(in) :: first, last
-    type(state_t), intent(inout) :: state
-    real(wp), intent(out) :: sums(2)        !! J/m, along x and y
-    real(wp) :: v(2)
-    integer :: i
-
-    sums = 0.0_wp
-    do i = first, last
-      v = state%motion(3:4, i)
-      associate (former => state%former_velocity(:, i))
-        sums = sums + 0.25_wp*state%mass(i)*state%former_damping(:, i)*((former + v) &
-          *(state%former_dt*former + state%dt_before*v))
-      end associate
-      state%former_velocity(:, i) = v
-      state%former_damping(:, i) = state%node_damping(:, i)
-    end do
-  end subroutine sum_own_drag
 
   !> The blocks, shared by the team, which does not wait: nothing moves these
   !> nodes while tiles advance.

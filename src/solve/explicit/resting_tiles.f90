@@ -241,46 +241,36 @@ contains
   end subroutine list_tiles
 
   !> Which tiles have nodes that feel more than their elements, and which have special nodes in
-  !> common: counted, then listed.
+  !> common.
   subroutine find_neighbours(model, rest)
     type(model_t), intent(in) :: model
     type(rest_t), intent(inout) :: rest
     logical, allocatable :: is_moved(:)
-    integer, allocatable :: tile_of(:), last_met(:)
-    integer :: pass, i, k, m, n
+    logical :: is_near(size(model%layout%tiles))
+    integer :: tile_of(size(model%layout%special_node)), i, k
 
     call mark_moved_nodes(model, is_moved)
     associate (layout => model%layout, tiles => model%layout%tiles)
-      allocate (tile_of(size(layout%special_node)), last_met(size(tiles)), &
-        rest%first(size(tiles) + 1), rest%is_touched(size(tiles)))
+      allocate (rest%is_touched(size(tiles)), rest%first(size(tiles) + 1), rest%near(0))
       do i = 1, size(tiles)
         tile_of(tiles(i)%first_special:tiles(i)%last_special) = i
-        rest%is_touched(i) = any(is_moved(layout%special_node(tiles(i)%first_special: &
-          tiles(i)%last_special)))
       end do
+      do i = 1, size(tiles)
+        associate (nodes => layout%special_node(tiles(i)%first_special:tiles(i)%last_special))
+          rest%is_touched(i) = any(is_moved(nodes))
+          is_near = .false.
+          do k = 1, size(nodes)
+            is_near(tile_of(layout%slot_list(layout%node_slots(nodes(k)): &
+              layout%node_slots(nodes(k) + 1) - 1))) = .true.
+          end do
+        end associate
+        is_near(i) = .false.
+        rest%first(i) = size(rest%near) + 1
+        rest%near = [rest%near, pack([(k, k=1, size(tiles))], is_near)]
+      end do
+      rest%first(size(tiles) + 1) = size(rest%near) + 1
       ! The last one has the nodes without element, too.
       rest%is_touched(size(tiles)) = .true.
-      do pass = 1, 2
-        last_met = 0
-        n = 0
-        do i = 1, size(tiles)
-          rest%first(i) = n + 1
-          last_met(i) = i
-          do k = tiles(i)%first_special, tiles(i)%last_special
-            do m = layout%node_slots(layout%special_node(k)), &
-              layout%node_slots(layout%special_node(k) + 1) - 1
-              associate (other => tile_of(layout%slot_list(m)))
-                if (last_met(other) == i) cycle
-                last_met(other) = i
-                n = n + 1
-                if (pass == 2) rest%near(n) = other
-              end associate
-            end do
-          end do
-        end do
-        rest%first(size(tiles) + 1) = n + 1
-        if (pass == 1) allocate (rest%near(n))
-      end do
     end associate
   end subroutine find_neighbours
 

@@ -21,13 +21,22 @@ contains
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: damping(2)     !! D per direction
     type(state_t), intent(inout) :: state
-    real(wp) :: mean, rate(3), free(3)
-    integer :: i
+    real(wp) :: mean, rate(3), free(3), total(3), force(2), turn(2), arm(2)
+    integer :: i, k
 
     mean = 0.5_wp*(state%dt_before + state%dt)
     do i = 1, size(state%rigids)
       associate (body => model%rigids(i), rigid => state%rigids(i))
-        call sum_forces(body%nodes, model%layout%n_special, state, rigid)
+        ! Resultants; nodes that no force reaches come after the special ones.
+        total = 0.0_wp
+        turn = turn_of(rigid%place(3))
+        do k = 1, size(body%nodes)
+          if (body%nodes(k) > model%layout%n_special) exit
+          force = state%force_special(:, body%nodes(k)) - state%internal_force(:, body%nodes(k))
+          arm = rigid%arms(:, k) + shift_by_turn(turn, rigid%arms(:, k))
+          total = total + [force, arm(1)*force(2) - arm(2)*force(1)]
+        end do
+        rigid%force = total + rigid%load
         rate = damping_of(rigid, damping + part_damping_rate(model, body%part, state%time))
         free = rigid%force/rigid%inertia + [state%body_acceleration, 0.0_wp]
         rigid%acceleration = (free - rate*rigid%velocity)/(1.0_wp + 0.5_wp*rate*state%dt_before)
@@ -41,39 +50,15 @@ contains
     end do
     do i = 1, size(model%conditions%rigid_motions)
       associate (motion => model%conditions%rigid_motions(i))
-        associate (rigid => state%rigids(motion%node), k => motion%direction)
+        associate (rigid => state%rigids(motion%node), along => motion%direction)
           if (.not. is_active(motion, state%time)) cycle
-          rigid%next_velocity(k) = next_velocity(model, motion, state%time, state%dt, &
-            state%dt_before, rigid%place(k), rigid%velocity(k))
-          rigid%acceleration(k) = (rigid%next_velocity(k) - rigid%velocity(k))/mean
+          rigid%next_velocity(along) = next_velocity(model, motion, state%time, state%dt, &
+            state%dt_before, rigid%place(along), rigid%velocity(along))
+          rigid%acceleration(along) = (rigid%next_velocity(along) - rigid%velocity(along))/mean
         end associate
       end associate
     end do
   end subroutine solve_rigids
-
-  !> Resultants of the forces on a body's nodes; those that no force reaches come after `n_special`.
-  subroutine sum_forces(nodes, n_special, state, rigid)
-    integer, intent(in) :: nodes(:)
-    integer, intent(in) :: n_special
-    type(state_t), intent(in) :: state
-    type(rigid_state_t), intent(inout) :: rigid
-    real(wp) :: turn(2), arm(2), fx, fy, total(3)
-    integer :: k, node
-
-    total = 0.0_wp
-    turn = turn_of(rigid%place(3))
-    do k = 1, size(nodes)
-      node = nodes(k)
-      if (node > n_special) exit
-      fx = state%force_special(1, node) - state%internal_force(1, node)
-      fy = state%force_special(2, node) - state%internal_force(2, node)
-      arm = rigid%arms(:, k) + shift_by_turn(turn, rigid%arms(:, k))
-      total(1) = total(1) + fx
-      total(2) = total(2) + fy
-      total(3) = total(3) + (arm(1)*fy - arm(2)*fx)
-    end do
-    rigid%force = total + rigid%load
-  end subroutine sum_forces
 
   !> D of each degree of freedom: the turn is damped by the forces -D m v on
   !> the nodes as they now lie.

@@ -27,7 +27,8 @@ contains
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: time
     type(equations_t), intent(out) :: equations
-    integer :: i, k, n
+    logical :: is_free(2, model%mesh%n_node)
+    integer :: i
 
     allocate (equations%number(2, model%mesh%n_node), source=0)
     do i = 1, model%mesh%n_node
@@ -42,25 +43,14 @@ contains
           prescribed%node) /= 0) equations%number(prescribed%direction, prescribed%node) = -i
       end associate
     end do
-    n = 0
-    do i = 1, model%mesh%n_node
-      do k = 1, 2
-        if (equations%number(k, i) <= 0) cycle
-        n = n + 1
-        equations%number(k, i) = n
-      end do
-    end do
-    equations%n_free = n
-    allocate (equations%motion_of(count(equations%number < 0)))
-    do i = 1, model%mesh%n_node
-      do k = 1, 2
-        if (equations%number(k, i) >= 0) cycle
-        n = n + 1
-        equations%motion_of(n - equations%n_free) = -equations%number(k, i)
-        equations%number(k, i) = n
-      end do
-    end do
-    equations%n = n
+    is_free = equations%number > 0
+    equations%motion_of = -pack(equations%number, equations%number < 0)
+    equations%n_free = count(is_free)
+    equations%n = equations%n_free + size(equations%motion_of)
+    associate (number => equations%number, n_free => equations%n_free, n => equations%n)
+      number = unpack([(i, i=n_free + 1, n)], number < 0, number)
+      number = unpack([(i, i=1, n_free)], is_free, number)
+    end associate
   end subroutine number_equations
 
   !> Node and direction of an equation.
@@ -106,14 +96,8 @@ contains
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: field(:, :) !! (2, n_node)
     real(wp) :: vector(equations%n_free)
-    integer :: i, k
 
-    do i = 1, size(field, 2)
-      do k = 1, 2
-        if (equations%number(k, i) > 0 .and. equations%number(k, i) <= equations%n_free) &
-          vector(equations%number(k, i)) = field(k, i)
-      end do
-    end do
+    vector = pack(field, equations%number > 0 .and. equations%number <= equations%n_free)
   end function take_free
 
   !> Give the prescribed entries of a nodal field their values.
@@ -121,14 +105,8 @@ contains
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: values(:)       !! (n - n_free)
     real(wp), intent(inout) :: field(:, :)  !! (2, n_node)
-    integer :: i, k
 
-    do i = 1, size(field, 2)
-      do k = 1, 2
-        if (equations%number(k, i) > equations%n_free) &
-          field(k, i) = values(equations%number(k, i) - equations%n_free)
-      end do
-    end do
+    field = unpack(values, equations%number > equations%n_free, field)
   end subroutine put_prescribed
 
 end module equations_m

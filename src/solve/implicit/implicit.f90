@@ -235,15 +235,13 @@ contains
         state%damping_work = state%damping_work + 0.5_wp*sum((trial%damping + attempt%damping) &
           *attempt%motion(3:4, :))
       end if
-      state%external_work = state%external_work + reactions_work(model, step%equations, trial, &
-        attempt, reshape([state%motion(3:4, :), velocity], [2, size(velocity, 2), 2]))
-      call count_step_boundaries(model, trial, attempt, step%time, velocity, state)
+    end if
+    state%external_work = state%external_work + reactions_work(model, step%equations, trial, &
+      attempt, state, velocity)
+    call count_step_boundaries(model, trial, attempt, step%time, velocity, state)
+    if (step%is_dynamic) then
       state%motion(3:4, :) = velocity
       state%acceleration = acceleration
-    else
-      state%external_work = state%external_work + reactions_work(model, step%equations, trial, &
-        attempt)
-      call count_step_boundaries(model, trial, attempt, step%time, velocity, state)
     end if
     trial = attempt
     ! What the forces of cross sections are formed of if anyone asks for them.

@@ -127,21 +127,20 @@ contains
   !> Work of the forces that hold prescribed degrees of freedom to their curves: of inertia, change
   !> of momentum times mean velocity, which is the kinetic energy that they gain, also in a blow; of
   !> the others by the trapezoidal rule.
-  function reactions_work(model, equations, before, after, velocities) result(work)
+  function reactions_work(model, equations, before, after, state, velocity) result(work)
     type(model_t), intent(in) :: model
     type(equations_t), intent(in) :: equations
     type(trial_t), intent(in) :: before, after
-    real(wp), intent(in), optional :: velocities(:, :, :) !! (2, n_node, 2) v(n) and v(n+1); absent:
-                                                          !! static
+    type(state_t), intent(in) :: state                  !! as the step has found it
+    real(wp), allocatable, intent(in) :: velocity(:, :) !! (2, n_node) v(n+1); not there in statics
     real(wp) :: work
 
     work = 0.0_wp
     if (equations%n == equations%n_free) return
     work = 0.5_wp*sum((net_force(before) + net_force(after))*after%motion(3:4, :), &
       equations%number > equations%n_free)
-    if (.not. present(velocities)) return
-    work = work + 0.5_wp*sum(mass_times(model, velocities(:, :, 2) - velocities(:, :, 1)) &
-      *(velocities(:, :, 1) + velocities(:, :, 2)), equations%number > equations%n_free)
+    if (allocated(velocity)) work = work + 0.5_wp*sum(mass_times(model, velocity &
+      - state%motion(3:4, :))*(state%motion(3:4, :) + velocity), equations%number > equations%n_free)
   end function reactions_work
 
   !> Work of a step, of which the state has not heard yet: loads and reactions by the trapezoidal

@@ -241,7 +241,6 @@ contains
     type(sparse_t) :: matrix
     type(report_t) :: report
     real(wp), allocatable :: x(:)
-    integer :: i, k
 
     call number_equations(model, state, 0.0_wp, equations)
     call start_matrix(matrix, equations%n)
@@ -258,12 +257,8 @@ contains
     end if
     call write_log(monitor%log, '  equations: '//to_text(equations%n_free)//' free, ' &
       //to_text(equations%n - equations%n_free)//' prescribed; mass solved by '//report%method)
-    do i = 1, model%mesh%n_node
-      do k = 1, 2
-        if (equations%number(k, i) > 0 .and. equations%number(k, i) <= equations%n_free) &
-          state%acceleration(k, i) = x(equations%number(k, i))
-      end do
-    end do
+    state%acceleration = unpack(x, equations%number > 0 .and. equations%number <= &
+      equations%n_free, state%acceleration)
   end subroutine find_first_acceleration
 
 end module implicit_start_m

@@ -122,7 +122,11 @@ contains
       now%factor = way%factor
       call measure_residual(model, state, step, trial, matrix, now)
       if (iteration == 1) first = now
-      call write_log(log, iteration_line(step, iteration, first, now, report))
+      call write_log(log, 'step to '//to_text(step%time)//' iteration '//to_text(iteration) &
+        //': energy ratio '//to_text(now%energy/max(first%energy, tiny(1.0_wp)))//', |R| ' &
+        //to_text(now%residual)//' (round-off '//to_text(now%floor)//'), |dU| ' &
+        //to_text(now%step)//', factor '//to_text(now%factor)//', '//report%method &
+        //', residual of the solution '//to_text(report%residual))
       outcome%converged = is_converged(model%controls%implicit, first, now, &
         norm2(trial%motion(3:4, :)))
       if (outcome%converged) return
@@ -230,21 +234,6 @@ contains
       <= implicit%residual_tolerance*first%start
   end function is_converged
 
-  !> One line of the account.
-  function iteration_line(step, iteration, first, now, report) result(line)
-    type(step_t), intent(in) :: step
-    integer, intent(in) :: iteration
-    type(measure_t), intent(in) :: first, now
-    type(report_t), intent(in) :: report
-    character(:), allocatable :: line
-
-    line = 'step to '//to_text(step%time)//' iteration '//to_text(iteration)//': energy ratio ' &
-      //to_text(now%energy/max(first%energy, tiny(1.0_wp)))//', |R| '//to_text(now%residual) &
-      //' (round-off '//to_text(now%floor)//'), |dU| '//to_text(now%step)//', factor ' &
-      //to_text(now%factor)//', '//report%method//', residual of the solution ' &
-      //to_text(report%residual)
-  end function iteration_line
-
   !> Move the trial by `way%x`, shortened where elements would turn inside out or where the residual
   !> along x would not fall. The first iteration of a step, which moves prescribed degrees of
   !> freedom, is gone to its end.
@@ -273,18 +262,12 @@ contains
 
     !> The trial at `way%factor`, and whether it is sound.
     subroutine go_part()
-      integer :: j, k, n
+      real(wp), allocatable :: steps(:) !! by the numbers of the equations from 0 on
+      integer :: j
 
+      steps = [0.0_wp, way%factor*way%x, way%moved]
       do j = 1, size(start, 2)
-        do k = 1, 2
-          n = step%equations%number(k, j)
-          if (n == 0) cycle
-          if (n <= step%equations%n_free) then
-            trial%motion(k, j) = start(k, j) + way%factor*way%x(n)
-          else
-            trial%motion(k, j) = start(k, j) + way%moved(n - step%equations%n_free)
-          end if
-        end do
+        trial%motion(1:2, j) = start(:, j) + steps(step%equations%number(:, j) + 1)
       end do
       call assemble_forces(model, state, step%time, .false., clock, trial)
       way%trouble = trouble_of(trial)

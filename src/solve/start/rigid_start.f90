@@ -80,14 +80,18 @@ contains
 
   !> The mass of a body is shared among its nodes that contact can touch, in proportion to their
   !> lumped masses and so that no motion of the body gives these nodes more kinetic energy than the
-  !> body has: limits of the step found with these masses hold for the body
-  !> (doc/theory/rigid_bodies.md, section 4).
+  !> body has, as the largest eigenvalue of their inertia over the body's tells: limits of the step
+  !> found with these masses hold for the body (doc/theory/rigid_bodies.md, section 4). A body held in
+  !> one direction counts as free in both.
   subroutine share_contact_mass(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     real(wp), parameter :: as_good_as_none = 1.0e-30_wp
     logical, allocatable :: touched(:)
     integer, allocatable :: list(:)
+    real(wp), allocatable :: mass(:), arms(:, :) !! of the nodes that can be touched
+    real(wp) :: shift, turn, mixed, share
+    logical :: held(3)
     integer :: i, k, n
 
     allocate (touched(model%layout%n_special), source=.false.)
@@ -100,9 +104,17 @@ contains
         n = count(nodes <= size(touched)) ! they rise
         list = pack([(k, k=1, n)], touched(nodes(:n)))
         if (size(list) == 0) cycle
-        state%contact_mass(nodes(list)) = state%mass(nodes(list))/max(as_good_as_none, &
-          largest_share(state%rigids(i), state%mass(nodes(list)), state%rigids(i)%arms(:, list), &
-          is_held(model, i)))
+        held = is_held(model, i)
+        mass = state%mass(nodes(list))
+        arms = state%rigids(i)%arms(:, list)
+      end associate
+      associate (inertia => state%rigids(i)%inertia)
+        shift = merge(0.0_wp, sum(mass)/inertia(1), all(held(1:2)))
+        turn = merge(0.0_wp, sum(mass*(arms(1, :)**2 + arms(2, :)**2))/inertia(3), held(3))
+        mixed = norm2([sum(mass*arms(1, :)), sum(mass*arms(2, :))])/sqrt(inertia(1)*inertia(3))
+        if (all(held(1:2)) .or. held(3)) mixed = 0.0_wp
+        share = 0.5_wp*(shift + turn + sqrt((shift - turn)**2 + 4.0_wp*mixed**2))
+        state%contact_mass(model%rigids(i)%nodes(list)) = mass/max(as_good_as_none, share)
       end associate
     end do
   end subroutine share_contact_mass
@@ -122,25 +134,6 @@ contains
       end associate
     end do
   end function is_held
-
-  !> Largest part of the body's kinetic energy that some of its nodes can have: the
-  !> largest eigenvalue of their inertia over the body's. A body held in one
-  !> direction counts as free in both.
-  pure function largest_share(rigid, mass, arms, held) result(share)
-    type(rigid_state_t), intent(in) :: rigid
-    real(wp), intent(in) :: mass(:)    !! (n) of those nodes
-    real(wp), intent(in) :: arms(:, :) !! (2, n)
-    logical, intent(in) :: held(3)
-    real(wp) :: share
-    real(wp) :: shift, turn, mixed
-
-    shift = merge(0.0_wp, sum(mass)/rigid%inertia(1), all(held(1:2)))
-    turn = merge(0.0_wp, sum(mass*(arms(1, :)**2 + arms(2, :)**2))/rigid%inertia(3), held(3))
-    mixed = norm2([sum(mass*arms(1, :)), sum(mass*arms(2, :))]) &
-      /sqrt(rigid%inertia(1)*rigid%inertia(3))
-    if (all(held(1:2)) .or. held(3)) mixed = 0.0_wp
-    share = 0.5_wp*(shift + turn + sqrt((shift - turn)**2 + 4.0_wp*mixed**2))
-  end function largest_share
 
   !> Nodes that move alike: their mean over the masses, so that momentum stays.
   subroutine start_common(model, state)
