@@ -45,9 +45,9 @@ module banded_lu_m
 
 contains
 
-  !> Factorise; `factored` is false where memory does not suffice. Entry (i, j) of the ordered matrix
-  !> goes to row 2 width + 1 + i - j of column j. A pivot below `least_pivot` (a singular matrix) is
-  !> set to that, so that one can solve in any case.
+  !> Factorise; `factored` is false where memory does not suffice. Entry (i, j) of the ordered
+  !> matrix goes to row 2 width + 1 + i - j of column j. A pivot below `least_pivot` (a singular
+  !> matrix) is set to that, so that one can solve in any case.
   subroutine factor_banded(matrix, least_pivot, factor, factored)
     type(sparse_t), intent(in) :: matrix
     real(wp), intent(in) :: least_pivot

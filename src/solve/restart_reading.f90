@@ -12,7 +12,7 @@ module restart_reading_m
   use model_m, only : model_t
   use history_file_m, only : plan_histories
   use monitor_m, only : monitor_t, start_schedules
-  use outlines_m, only : resume_outlines
+  use element_losses_m, only : resume_outlines
   use output_schedule_m, only : output_reach
   use progress_m, only : show_note
   use restart_bounds_m, only : check_state

@@ -7,9 +7,8 @@
 !> written belongs to one instant.
 module explicit_m
   use clock_m, only : lap, phase_elements, phase_nodes, phase_output
-  use contact_account_m, only : report_contact_energies
+  use explicit_contact_m, only : report_contact_energies, press_contacts
   use contact_check_m, only : report_contact_end
-  use contact_pressing_m, only : press_contacts
   use element_dispatch_m, only : add_tile_forces
   use eroding_tiles_m, only : add_eroding_tile_forces
   use element_losses_m, only : report_erosion, report_failures

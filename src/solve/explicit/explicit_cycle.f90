@@ -8,14 +8,14 @@ module explicit_cycle_m
     count_body_motions, count_boundary_loads, count_groups
   use clock_m, only : lap, share_contact, phase_nodes
   use common_motion_m, only : common_velocity
-  use constraints_m, only : fix_nodes, update_activity, is_active
-  use contact_account_m, only : plan_looks, follow_contact
+  use loads_m, only : fix_nodes, update_activity, is_active
+  use explicit_contact_m, only : plan_looks, follow_contact, pressing_t
   use rigid_start_m, only : weigh_contacts
-  use contact_pressing_m, only : pressing_t
   use contacts_m, only : told_as, penalty_implicit
   use load_work_m, only : apply_loads, motion_sums_t, plan_sums, count_sums
   use early_end_m, only : find_early_end
-  use element_losses_m, only : settle_elements, release_nodes, failure_watch_t, follow_failures
+  use element_losses_m, only : settle_elements, release_nodes, failure_watch_t, follow_failures, &
+    follow_outlines
   use errors_m, only : error_t
   use health_m, only : tile_check_t, are_sound, check_step, name_collapsed, check_cycle
   use history_tables_m, only : table_secforc
@@ -27,7 +27,6 @@ module explicit_cycle_m
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due
   use node_motion_m, only : follow_damping, leap_t, make_leap
-  use outlines_m, only : follow_outlines
   use packed_buffer_m, only : stream_starts
   use progress_m, only : follow_progress
   use rank_exchange_m, only : parcel_t, plan_parcel, exchange_parcel, exchange_checks, loses, &

@@ -6,7 +6,7 @@
 !> Partial sums are added in their order, so that the bits do not depend on the number of threads.
 module load_work_m
   use curves_m, only : curve_value
-  use external_force_m, only : form_external_force, body_acceleration, damping_rate
+  use loads_m, only : form_external_force, body_acceleration, damping_rate
   use kinds_m, only : wp
   use layout_m, only : layout_t
   use model_m, only : model_t
@@ -51,8 +51,8 @@ contains
       state%external_work = state%external_work + half*power(state%external, state%motion)
       state%force_special = state%external
     else
-      ! No force yet on the nodes of interfaces and walls. On the others there never is one: to write
-      ! zeros there would only take them out of the caches of other threads.
+      ! No force yet on the nodes of interfaces and walls. On the others there never is one: to
+      ! write zeros there would only take them out of the caches of other threads.
       do i = 1, size(state%contacts)
         state%force_special(:, state%contacts(i)%nodes) = 0.0_wp
       end do

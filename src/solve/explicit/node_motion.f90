@@ -10,7 +10,7 @@ module node_motion_m
   use kinds_m, only : wp
   use layout_m, only : slot_part
   use model_m, only : model_t
-  use external_force_m, only : damping_rates
+  use loads_m, only : damping_rates
   use state_m, only : state_t
   implicit none
   private

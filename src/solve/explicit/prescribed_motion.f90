@@ -5,12 +5,11 @@
 !> but for those of body loads, rigid walls and interference.
 module prescribed_motion_m
   use conditions_m, only : motion_displacement, motion_velocity, prescribed_motion_t
-  use constraints_m, only : is_active, next_velocity
+  use loads_m, only : is_active, next_velocity, part_damping_rate
   use controls_m, only : boundary_load, boundary_body_load, boundary_pressure, group_nodes
   use history_filling_m, only : form_loads
   use kinds_m, only : wp
   use model_m, only : model_t
-  use external_force_m, only : part_damping_rate
   use rigid_motion_m, only : damping_of
   use snapshot_filling_m, only : damping_at
   use state_m, only : state_t

@@ -27,8 +27,8 @@ module rank_exchange_m
 
   !> Values of the sums over the nodes of a tile.
   integer, parameter :: n_sum = 4
-  !> Places of what a process tells all others: its elements have left, its points have failed, it has
-  !> an error; what someone asks of it stands behind them.
+  !> Places of what a process tells all others: its elements have left, its points have failed, it
+  !> has an error; what someone asks of it stands behind them.
   integer, parameter :: loses = 1, fails = 2, errs = 3
   !> Chunks of a piece at most.
   integer, parameter :: most_chunks = 128

@@ -4,9 +4,8 @@
 module rigid_motion_m
   use kinds_m, only : wp
   use conditions_m, only : motion_displacement
-  use constraints_m, only : is_active, next_velocity
+  use loads_m, only : is_active, next_velocity, part_damping_rate
   use model_m, only : model_t
-  use external_force_m, only : part_damping_rate
   use rigid_state_m, only : rigid_state_t, turn_of, shift_by_turn, velocity_of
   use snapshot_m, only : snapshot_t
   use state_m, only : state_t

@@ -6,7 +6,7 @@
 !> the step of the next, so that a cycle need not wait for its own elements.
 module time_step_m
   use block_state_m, only : block_state_t
-  use constraints_m, only : is_active
+  use loads_m, only : is_active
   use contact_penalty_m, only : has_default_penalty
   use contact_state_m, only : contact_state_t
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, approach_step, &

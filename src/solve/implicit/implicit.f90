@@ -10,16 +10,16 @@ module implicit_m
   use contact_work_m, only : count_step
   use cut_forces_m, only : keep_cut_chunks
   use early_end_m, only : find_early_end
-  use equations_m, only : number_equations, find_equation
+  use equations_m, only : number_equations, find_equation, prescribe_step
   use errors_m, only : error_t, raise, status_run
   use friction_m, only : has_slipped
   use health_m, only : check_static_step, what_would_do
   use implicit_report_m, only : count_step_boundaries, reactions_work, report_step, held_energy, &
     spent_energy
-  use implicit_forces_m, only : trial_t, start_trial, damping_force, net_force
-  use implicit_start_m, only : implicit_memory_t, write_files, begin_steps, plan_next, has_ended
-  use implicit_prescribed_m, only : prescribe_step
-  use implicit_tangent_m, only : step_t, new_acceleration, new_velocity
+  use implicit_forces_m, only : trial_t, start_trial, damping_force, net_force, step_t, &
+    new_acceleration, new_velocity
+  use implicit_start_m, only : implicit_memory_t, write_files, begin_steps, plan_next, has_ended, &
+    step_control_t, plan_step, grow_step, cut_step
   use log_m, only : write_log, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t
@@ -30,7 +30,6 @@ module implicit_m
   use state_m, only : state_t
   use law_state_m, only : tie_memory_t
   use tied_interface_m, only : break_at_end
-  use step_control_m, only : step_control_t, plan_step, grow_step, cut_step
   implicit none
   private
   public :: advance_implicit

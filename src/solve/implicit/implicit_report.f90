@@ -4,7 +4,7 @@
 !> ask for them (bndout, nodfor).
 module implicit_report_m
   use clock_m, only : lap, phase_output
-  use constraints_m, only : is_active
+  use loads_m, only : is_active
   use controls_m, only : boundary_motion, group_nodes
   use element_mass_m, only : mass_times, sum_part_motion
   use element_state_m, only : add_part_energies
@@ -16,9 +16,8 @@ module implicit_report_m
   use history_filling_m, only : fill_reactions, form_loads
   use history_tables_m, only : table_matsum, table_spcforc, table_bndout, table_nodfor, &
     table_secforc
-  use implicit_forces_m, only : trial_t, net_force, cut_sections
+  use implicit_forces_m, only : trial_t, net_force, cut_sections, step_t
   use implicit_start_m, only : implicit_memory_t
-  use implicit_tangent_m, only : step_t
   use kinds_m, only : wp
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due
@@ -140,7 +139,8 @@ contains
     work = 0.5_wp*sum((net_force(before) + net_force(after))*after%motion(3:4, :), &
       equations%number > equations%n_free)
     if (allocated(velocity)) work = work + 0.5_wp*sum(mass_times(model, velocity &
-      - state%motion(3:4, :))*(state%motion(3:4, :) + velocity), equations%number > equations%n_free)
+      - state%motion(3:4, :))*(state%motion(3:4, :) + velocity), &
+      equations%number > equations%n_free)
   end function reactions_work
 
   !> Work of a step, of which the state has not heard yet: loads and reactions by the trapezoidal

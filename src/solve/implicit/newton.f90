@@ -11,8 +11,8 @@ module newton_m
   use controls_m, only : implicit_t
   use equations_m, only : take_free, move_prescribed, find_equation
   use friction_m, only : let_stick
-  use implicit_forces_m, only : trial_t, assemble_forces, trouble_of
-  use implicit_tangent_m, only : step_t, assemble_tangent, assemble_residual
+  use implicit_forces_m, only : trial_t, assemble_forces, trouble_of, step_t, assemble_tangent, &
+    assemble_residual
   use kinds_m, only : wp
   use law_state_m, only : slips
   use linear_solver_m, only : report_t, solve_linear

@@ -5,7 +5,7 @@
 !> 6.1).
 module rigid_start_m
   use conditions_m, only : motion_velocity
-  use constraints_m, only : is_active
+  use loads_m, only : is_active
   use curves_m, only : curve_value
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, to_text
@@ -80,9 +80,9 @@ contains
 
   !> The mass of a body is shared among its nodes that contact can touch, in proportion to their
   !> lumped masses and so that no motion of the body gives these nodes more kinetic energy than the
-  !> body has, as the largest eigenvalue of their inertia over the body's tells: limits of the step
-  !> found with these masses hold for the body (doc/theory/rigid_bodies.md, section 4). A body held in
-  !> one direction counts as free in both.
+  !> body has, by the largest eigenvalue of their inertia over the body's: limits of the step found
+  !> with these masses hold for the body (doc/theory/rigid_bodies.md, section 4). A body held in one
+  !> direction counts as free in both.
   subroutine share_contact_mass(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state

@@ -6,7 +6,7 @@ module start_m
   use behind_ties_m, only : hear_tie
   use automatic_penalty_m, only : set_automatic_penalties
   use rigid_start_m, only : start_common, weigh_contacts, start_rigids
-  use constraints_m, only : start_motion, fix_nodes, update_activity
+  use loads_m, only : start_motion, fix_nodes, update_activity
   use element_log_m, only : log_elements
   use element_mass_m, only : lump_mass
   use element_start_m, only : start_elements
