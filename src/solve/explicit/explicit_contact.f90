@@ -32,6 +32,9 @@ module explicit_contact_m
   !> Share of the largest energy so far that all interfaces together may lend to springs that were
   !> caught loaded.
   real(wp), parameter :: lent_share = 0.005_wp
+  !> What to look at.
+  character(*), parameter :: hint = '; look at corners there, at the penalty and at the time step', &
+    not_lost = ' (damping and friction are no part of it)'
   !> Limited cycles raise `recent` by 20, others with force lower it by 1: told from here on, that
   !> is after 50 limited cycles in a row, or more where others lie between; never where no more than
   !> one cycle of 21 is limited.
@@ -74,7 +77,7 @@ contains
         limit%warned = .true.
         call warn(log, 'interface '//to_text(model%contacts(i)%id)//': at cycle ' &
           //to_text(state%cycle)//', time '//to_text(state%time)//', again and again' &
-          //limit_text(limit)//hint(has_made))
+          //limit_text(limit)//hint)
       end if
     end associate
     associate (contact => state%contacts(i), watch => state%contacts(i)%watch)
@@ -104,7 +107,8 @@ contains
       watch%changes(sign_of)%warned = .true.
       call warn(log, 'interface '//to_text(model%contacts(i)%id)//': at cycle ' &
         //to_text(state%cycle)//', time '//to_text(state%time)//', the contact springs have ' &
-        //amount_text(model, i, sign_of, state)//hint(sign_of))
+        //amount_text(model, i, sign_of, state)//hint//trim(merge(not_lost, repeat(' ', &
+        len(not_lost)), sign_of == has_lost)))
     end associate
   end subroutine follow_contact
 
@@ -173,15 +177,6 @@ contains
         //to_text(largest%place(2))//') up to time '//to_text(largest%time)
     end associate
   end function amount_text
-
-  !> What to look at.
-  pure function hint(sign_of)
-    integer, intent(in) :: sign_of
-    character(:), allocatable :: hint
-
-    hint = '; look at corners there, at the penalty and at the time step'
-    if (sign_of == has_lost) hint = hint//' (damping and friction are no part of it)'
-  end function hint
 
   !> Pressures and forces of all such interfaces. One thread: what an interface is given by another
   !> has to be known.

@@ -30,9 +30,9 @@ module explicit_cycle_m
   use packed_buffer_m, only : stream_starts
   use progress_m, only : follow_progress
   use rank_exchange_m, only : parcel_t, plan_parcel, exchange_parcel, exchange_checks, loses, &
-    fails, errs, gather_motion, gather_state, judge_elements, hear_requests, cut_sections
+    fails, errs, bring_integers, gather_motion, gather_state, judge_elements, hear_requests, cut_sections
   use rank_shares_m, only : shares_t, share_out, borders_t, plan_borders
-  use ranks_m, only : ranks_t, bring_integers, bring_reals, share_error
+  use ranks_m, only : ranks_t, bring_reals, share_error
   use requests_m, only : requests_t, take_requests, echoes_t
   use restart_file_m, only : close_restart
   use restart_m, only : write_restarts
@@ -235,8 +235,8 @@ contains
       if (tells(errs)) call share_error(ranks, cycle%error)
       if (tells(loses)) then
         associate (erosion => elements%erosion, slots => (shares%chunks - 1)*chunk_size + 1)
-          call bring_integers(ranks, shares%chunks, .true., erosion%n_gone)
-          call bring_integers(ranks, slots, .true., erosion%status)
+          call bring_integers(ranks, shares%chunks, erosion%n_gone)
+          call bring_integers(ranks, slots, erosion%status)
           call bring_reals(ranks, slots, 1, .true., erosion%hourglass)
           call bring_reals(ranks, slots, 1, .true., erosion%internal)
         end associate
@@ -244,7 +244,7 @@ contains
       if (state%cycle == 0) call bring_reals(ranks, shares%chunks, 1, .true., &
         elements%time_limit)
       if (tells(fails)) then
-        call bring_integers(ranks, shares%chunks, .true., elements%n_failed)
+        call bring_integers(ranks, shares%chunks, elements%n_failed)
         ! The log names the first one.
         if (cycle%failures%told == 0 .and. any(elements%n_failed > 0)) &
           call bring_reals(ranks, stream_starts(shares%chunks, elements%history_start, &

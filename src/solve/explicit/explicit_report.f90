@@ -22,11 +22,11 @@ module explicit_report_m
   use model_log_m, only : log_smallest_steps, judge_damping
   use model_m, only : model_t
   use monitor_m, only : monitor_t, write_due
-  use prescribed_motion_m, only : count_motions, count_body_motions, count_groups, start_prescribed
+  use prescribed_motion_m, only : count_motions, count_body_motions, count_groups
   use rank_exchange_m, only : judge_elements
   use ranks_m, only : share_error, spread_values
   use reporting_m, only : note_energies, write_instant
-  use rigid_motion_m, only : solve_rigids, start_rigid_motions, fill_rigids, fill_bodies
+  use rigid_motion_m, only : solve_rigids, fill_rigids, fill_bodies
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, find_motion, damping_at
   use snapshot_m, only : energy_ratio, snapshot_t
   use state_m, only : state_t
@@ -71,7 +71,6 @@ contains
       if (model%erodes) state%elements%erosion%least_step = model%controls%dt_floor &
         *cycle%steps%first_dt/model%controls%dt_scale
       call prepare_leap(model, state, cycle)
-      call start_prescribed(model, cycle%velocity, state)
       if (cycle%presses .and. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
         cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
       call report_contact_start(model, state, monitor%log)
@@ -80,7 +79,6 @@ contains
     end if
     if (size(state%rigids) > 0) then
       call solve_rigids(model, cycle%damping, state)
-      if (state%cycle == 0) call start_rigid_motions(model, state)
       call count_body_motions(model, cycle%damping, due, state)
     end if
     if (allocated(state%walls)) then

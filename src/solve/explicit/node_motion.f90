@@ -142,30 +142,21 @@ contains
     type(leap_t), intent(in) :: leap
     integer, intent(in) :: first, last
     type(state_t), intent(inout) :: state
-
-    call move_each(leap, first, last, state%force_special, state%internal_force, &
-      state%inverse_mass, state%motion)
-  end subroutine move_special_nodes
-
-  !> The same for arrays of known shape.
-  subroutine move_each(leap, first, last, special, internal, inverse_mass, motion)
-    type(leap_t), intent(in) :: leap
-    integer, intent(in) :: first, last
-    real(wp), intent(in) :: special(2, *), internal(2, *) !! forces
-    real(wp), intent(in) :: inverse_mass(2, *)
-    real(wp), intent(inout) :: motion(4, *)
     integer :: i, k
 
-    do i = first, last
-      !$omp simd simdlen(2)
-      do k = 1, 2
-        motion(2 + k, i) = leap%keep(k)*motion(2 + k, i) + leap%half(k) &
-          *(merge(leap%body(k), 0.0_wp, inverse_mass(k, i) > 0.0_wp) &
-          + (special(k, i) - internal(k, i))*inverse_mass(k, i))
-        motion(k, i) = motion(k, i) + leap%dt*motion(2 + k, i)
+    associate (special => state%force_special, internal => state%internal_force, &
+      inverse_mass => state%inverse_mass, motion => state%motion)
+      do i = first, last
+        !$omp simd simdlen(2)
+        do k = 1, 2
+          motion(2 + k, i) = leap%keep(k)*motion(2 + k, i) + leap%half(k) &
+            *(merge(leap%body(k), 0.0_wp, inverse_mass(k, i) > 0.0_wp) &
+            + (special(k, i) - internal(k, i))*inverse_mass(k, i))
+          motion(k, i) = motion(k, i) + leap%dt*motion(2 + k, i)
+        end do
       end do
-    end do
-  end subroutine move_each
+    end associate
+  end subroutine move_special_nodes
 
   !> Form the rates of the nodes anew where those of parts have changed since, or `rates` is not
   !> there.

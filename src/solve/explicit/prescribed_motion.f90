@@ -15,16 +15,18 @@ module prescribed_motion_m
   use state_m, only : state_t
   implicit none
   private
-  public :: find_prescribed_velocities, start_prescribed, impose_prescribed, count_motions, &
-    count_body_motions, count_boundary_loads, count_groups
+  public :: find_prescribed_velocities, impose_prescribed, count_motions, count_body_motions, &
+    count_boundary_loads, count_groups
 
 contains
 
   !> v(n+1/2) of all prescribed degrees of freedom, from u(n) and v(n-1/2). Nodes of one set follow
-  !> one curve, looked up once: for each node it took 11 % of the sliding scene.
+  !> one curve, looked up once: for each node it took 11 % of the sliding scene. A node on a
+  !> displacement curve starts with the velocity of its first step: from rest the start would be a
+  !> blow of half its kinetic energy that no curve asks for.
   subroutine find_prescribed_velocities(model, state, velocity)
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
+    type(state_t), intent(inout) :: state
     real(wp), intent(inout) :: velocity(:) !! (n_motion)
     integer :: i, before
 
@@ -42,16 +44,7 @@ contains
         end if
       end associate
     end do
-  end subroutine find_prescribed_velocities
-
-  !> A node on a displacement curve starts with the velocity of its first step: from rest the start
-  !> would be a blow of half its kinetic energy that no curve asks for.
-  subroutine start_prescribed(model, velocity, state)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: velocity(:) !! (n_motion) v(1/2)
-    type(state_t), intent(inout) :: state
-    integer :: i
-
+    if (state%dt_before > 0.0_wp) return
     do i = 1, size(model%conditions%motions)
       associate (prescribed => model%conditions%motions(i))
         if (prescribed%kind /= motion_displacement .or. .not. is_active(prescribed, state%time)) &
@@ -62,7 +55,7 @@ contains
           state%former_velocity(prescribed%direction, prescribed%node) = velocity(i)
       end associate
     end do
-  end subroutine start_prescribed
+  end subroutine find_prescribed_velocities
 
   !> Reactions of the prescribed motions of nodes, R = m a + f_int - f_special - m g + D m v(n), and
   !> their work.

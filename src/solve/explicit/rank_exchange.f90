@@ -23,7 +23,8 @@ module rank_exchange_m
   implicit none
   private
   public :: parcel_t, plan_parcel, exchange_parcel, exchange_checks, loses, fails, errs, &
-    gather_motion, gather_state, judge_elements, hear_requests, report_exchange, cut_sections
+    bring_integers, gather_motion, gather_state, judge_elements, hear_requests, report_exchange, &
+    cut_sections
 
   !> Values of the sums over the nodes of a tile.
   integer, parameter :: n_sum = 4
@@ -173,6 +174,18 @@ contains
     parcel%sent = parcel%sent + ranks%sent
     parcel%joined = parcel%joined + ranks%joined
   end subroutine exchange_checks
+
+  !> Pieces of an array of integers, one a process, to all of them, as reals.
+  subroutine bring_integers(ranks, starts, values)
+    type(ranks_t), intent(inout) :: ranks
+    integer, intent(in) :: starts(0:)     !! (0:n) item at which each piece starts, then one beyond
+    integer, intent(inout) :: values(:)
+    real(wp), allocatable :: copies(:)
+
+    copies = real(values, wp)
+    call bring_reals(ranks, starts, 1, .true., copies)
+    values = nint(copies)
+  end subroutine bring_integers
 
   !> Motion of all nodes that only some processes move, with the velocities that damped runs keep.
   subroutine gather_motion(shares, borders, to_all, ranks, state)

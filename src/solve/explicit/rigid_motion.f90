@@ -11,7 +11,7 @@ module rigid_motion_m
   use state_m, only : state_t
   implicit none
   private
-  public :: solve_rigids, damping_of, start_rigid_motions, move_rigids, fill_rigids, fill_bodies
+  public :: solve_rigids, damping_of, move_rigids, fill_rigids, fill_bodies
 
 contains
 
@@ -53,6 +53,9 @@ contains
           if (.not. is_active(motion, state%time)) cycle
           rigid%next_velocity(along) = next_velocity(model, motion, state%time, state%dt, &
             state%dt_before, rigid%place(along), rigid%velocity(along))
+          ! On a displacement curve it starts with the velocity of its first step, as a node does.
+          if (motion%kind == motion_displacement .and. .not. state%dt_before > 0.0_wp) &
+            rigid%velocity(along) = rigid%next_velocity(along)
           rigid%acceleration(along) = (rigid%next_velocity(along) - rigid%velocity(along))/mean
         end associate
       end associate
@@ -74,23 +77,6 @@ contains
       - sin(2.0_wp*rigid%place(3))*rigid%second(3)
     rate(3) = (damping(2)*along_x + damping(1)*(rigid%inertia(3) - along_x))/rigid%inertia(3)
   end function damping_of
-
-  !> A body on a displacement curve starts with the velocity of its first step, as a node does.
-  subroutine start_rigid_motions(model, state)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    integer :: i
-
-    do i = 1, size(model%conditions%rigid_motions)
-      associate (motion => model%conditions%rigid_motions(i))
-        if (motion%kind /= motion_displacement .or. .not. is_active(motion, state%time)) cycle
-        associate (rigid => state%rigids(motion%node), k => motion%direction)
-          rigid%velocity(k) = rigid%next_velocity(k)
-          rigid%acceleration(k) = 0.0_wp
-        end associate
-      end associate
-    end do
-  end subroutine start_rigid_motions
 
   !> All bodies to u(n+1), and those of their nodes that anything asks for in the next cycle.
   !> The velocity of a node is its displacement over the step, as for all nodes: work is
