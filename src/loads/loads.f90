@@ -1,19 +1,20 @@
 ! SPDX-License-Identifier: MIT
-!> Loads from outside: nodal forces, pressure on edges, base acceleration; rates of damping by mass
-!> (*DAMPING_GLOBAL and *DAMPING_PART_MASS). Fixed and prescribed degrees of freedom, and the motion
-!> at time zero: both have no inverse mass, so that forces do not move them; prescribed ones are
-!> then set from their curves.
+!> What curves ask for at an instant. Loads from outside: nodal forces, pressure on edges, base
+!> acceleration; rates of damping by mass (*DAMPING_GLOBAL and *DAMPING_PART_MASS). Fixed and
+!> prescribed degrees of freedom, and the motion at time zero: both have no inverse mass, so that
+!> forces do not move them; prescribed ones are then set from their curves. The step that the deck
+!> makes of a stable one.
 module loads_m
   use conditions_m, only : conditions_t, prescribed_motion_t, motion_velocity, &
     motion_acceleration, motion_displacement
-  use curves_m, only : curve_t, curve_value
+  use curves_m, only : curve_t, curve_value, curve_is_constant
   use kinds_m, only : wp
   use model_m, only : model_t
   implicit none
   private
   public :: form_external_force, add_nodal_loads, add_pressures, body_acceleration, damping_rate, &
     part_damping_rate, damping_rates, start_motion, fix_nodes, update_activity, next_velocity, &
-    is_active
+    is_active, scaled_step
 
 contains
 
@@ -251,5 +252,22 @@ contains
       end select
     end associate
   end function next_velocity
+
+  !> TSSFAC times the limit, or the curve that caps it: s, at `time`. A curve above the limit has
+  !> no say; a constant one below it takes the place of TSSFAC.
+  pure function scaled_step(model, limit, time) result(dt)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: limit, time
+    real(wp) :: dt, cap
+
+    dt = model%controls%dt_scale*limit
+    if (model%controls%dt_curve == 0) return
+    associate (curve => model%curves(model%controls%dt_curve))
+      cap = curve_value(curve, time)
+      if (cap > limit) return
+      if (.not. curve_is_constant(curve)) cap = min(cap, dt)
+      dt = cap
+    end associate
+  end function scaled_step
 
 end module loads_m

@@ -15,7 +15,7 @@ module element_losses_m
   use model_m, only : model_t
   use node_motion_m, only : leap_t, find_factors
   use renewal_m, only : renew_contact, close_contact, reshape_contact
-  use rigid_start_m, only : weigh_contacts
+  use start_m, only : weigh_contacts
   use state_m, only : state_t
   use surface_outline_m, only : surface_left
   use surfaces_m, only : surface_t

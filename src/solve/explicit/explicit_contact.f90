@@ -13,9 +13,8 @@ module explicit_contact_m
   use law_state_m, only : has_made, has_lost, energy_limit_t
   use log_m, only : log_t, warn, write_log, to_text, percent
   use model_m, only : model_t
-  use node_motion_m, only : leap_t, look_ahead
+  use node_motion_m, only : leap_t, look_ahead, solve_rigids, damping_of
   use pressing_m, only : pressing_t, start_pressing
-  use rigid_motion_m, only : solve_rigids, damping_of
   use rigid_state_m, only : turn_of, shift_by_turn, velocity_of
   use state_m, only : state_t
   use units_m, only : per_depth
@@ -33,8 +32,9 @@ module explicit_contact_m
   !> caught loaded.
   real(wp), parameter :: lent_share = 0.005_wp
   !> What to look at.
-  character(*), parameter :: hint = '; look at corners there, at the penalty and at the time step', &
-    not_lost = ' (damping and friction are no part of it)'
+  character(*), parameter :: hint &
+    = '; look at corners there, at the penalty and at the time step', not_lost &
+    = ' (damping and friction are no part of it)'
   !> Limited cycles raise `recent` by 20, others with force lower it by 1: told from here on, that
   !> is after 50 limited cycles in a row, or more where others lie between; never where no more than
   !> one cycle of 21 is limited.

@@ -10,14 +10,15 @@ module explicit_cycle_m
   use common_motion_m, only : common_velocity
   use loads_m, only : fix_nodes, update_activity, is_active
   use explicit_contact_m, only : plan_looks, follow_contact, pressing_t
-  use rigid_start_m, only : weigh_contacts
+  use start_m, only : weigh_contacts
   use contacts_m, only : told_as, penalty_implicit
   use load_work_m, only : apply_loads, motion_sums_t, plan_sums, count_sums
   use early_end_m, only : find_early_end
   use element_losses_m, only : settle_elements, release_nodes, failure_watch_t, follow_failures, &
     follow_outlines
   use errors_m, only : error_t
-  use health_m, only : tile_check_t, are_sound, check_step, name_collapsed, check_cycle
+  use health_m, only : tile_check_t, check_elements, are_sound, check_step, name_collapsed, &
+    check_cycle
   use history_tables_m, only : table_secforc
   use interface_m, only : apply_contact
   use kinds_m, only : wp
@@ -26,11 +27,11 @@ module explicit_cycle_m
   use model_log_m, only : check_added_mass
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due
-  use node_motion_m, only : follow_damping, leap_t, make_leap
+  use node_motion_m, only : follow_damping, leap_t, make_leap, solve_rigids, move_rigids
   use packed_buffer_m, only : stream_starts
   use progress_m, only : follow_progress
   use rank_exchange_m, only : parcel_t, plan_parcel, exchange_parcel, exchange_checks, loses, &
-    fails, errs, bring_integers, gather_motion, gather_state, judge_elements, hear_requests, cut_sections
+    fails, errs, bring_integers, gather_motion, gather_state, hear_requests, cut_sections
   use rank_shares_m, only : shares_t, share_out, borders_t, plan_borders
   use ranks_m, only : ranks_t, bring_reals, share_error
   use requests_m, only : requests_t, take_requests, echoes_t
@@ -38,7 +39,6 @@ module explicit_cycle_m
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use resting_tiles_m, only : rest_t, plan_rest, follow_rest
-  use rigid_motion_m, only : solve_rigids, move_rigids
   use held_nodes_m, only : move_common, count_walls
   use state_m, only : state_t
   use tile_forces_m, only : sum_special_forces
@@ -275,7 +275,8 @@ contains
       if (.not. are_sound(cycle%checks(cycle%first_check:), state%contacts)) then
         if (monitor%ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .false., &
           monitor%ranks, state)
-        call judge_elements(monitor%ranks, model, state, cycle%error)
+        if (monitor%ranks%mine == 0) call check_elements(model, state, cycle%error)
+        call share_error(monitor%ranks, cycle%error)
       end if
     end if
     if (size(cycle%velocity) > 0) then

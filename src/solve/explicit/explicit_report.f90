@@ -11,7 +11,8 @@ module explicit_report_m
   use element_losses_m, only : settle_elements
   use element_steps_m, only : find_smallest_steps
   use explicit_cycle_m, only : explicit_cycle_t, prepare_leap
-  use health_m, only : check_energy, check_ratio, check_radii, made_by_springs, unaccounted
+  use health_m, only : check_elements, check_energy, check_ratio, check_radii, made_by_springs, &
+    unaccounted
   use held_nodes_m, only : hold_skew_nodes, hold_nodes, count_walls, fill_walls
   use history_filling_m, only : fill_explicit_reactions
   use history_tables_m, only : table_glstat, table_matsum, table_rwforc, table_spcforc, table_rbdout
@@ -23,10 +24,9 @@ module explicit_report_m
   use model_m, only : model_t
   use monitor_m, only : monitor_t, write_due
   use prescribed_motion_m, only : count_motions, count_body_motions, count_groups
-  use rank_exchange_m, only : judge_elements
   use ranks_m, only : share_error, spread_values
   use reporting_m, only : note_energies, write_instant
-  use rigid_motion_m, only : solve_rigids, fill_rigids, fill_bodies
+  use node_motion_m, only : solve_rigids, fill_rigids, fill_bodies
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, find_motion, damping_at
   use snapshot_m, only : energy_ratio, snapshot_t
   use state_m, only : state_t
@@ -50,11 +50,14 @@ contains
     type(explicit_cycle_t), intent(inout) :: cycle
     real(wp), allocatable :: held(:, :)              !! (2, n_skew) forces of skew supports
     integer, allocatable :: held_nodes(:)
+    real(wp) :: energy(1)
     logical, parameter :: due(2) = [.true., .false.] !! works of the half step before the instant
 
     call count_sums(cycle%sums, state%external_work, state%damping_work)
     if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
-    call judge_elements(monitor%ranks, model, state, cycle%error)
+    ! The first process has gathered the state of all elements.
+    if (monitor%ranks%mine == 0) call check_elements(model, state, cycle%error)
+    call share_error(monitor%ranks, cycle%error)
     if (state%cycle == 0) then
       call obey_defaults(model, state)
       call follow_springs(model, state, cycle%steps%springs)
@@ -93,8 +96,16 @@ contains
     end if
     call count_motions(model, cycle%velocity, cycle%damping, due, state)
     if (allocated(state%group_work)) call count_groups(model, due, state)
-    if (monitor%ranks%mine == 0) call write_report(model, held, state, monitor, cycle)
-    if (monitor%ranks%n > 1) call hear_report(model, state, monitor, cycle)
+    if (monitor%ranks%mine == 0) then
+      call write_report(model, held, state, monitor, cycle)
+    else
+      monitor%snapshot%time = state%time
+      call write_due(model, cycle%due, state%dt, monitor, cycle%error)
+    end if
+    energy = state%initial_energy
+    if (state%cycle == 0) call spread_values(monitor%ranks, energy)
+    state%initial_energy = energy(1)
+    call share_error(monitor%ranks, cycle%error)
     cycle%finished = cycle%last .or. allocated(cycle%error)
   end subroutine report_cycle
 
@@ -176,24 +187,6 @@ contains
     call check_radii(model, state, monitor%told_radii, monitor%log)
   end subroutine write_report
 
-  !> What a process that writes nothing has to know of the report, and what came of it.
-  subroutine hear_report(model, state, monitor, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(explicit_cycle_t), intent(inout) :: cycle
-    real(wp) :: energy(1)
-
-    if (monitor%ranks%mine > 0) then
-      monitor%snapshot%time = state%time
-      call write_due(model, cycle%due, state%dt, monitor, cycle%error)
-    end if
-    energy = state%initial_energy
-    if (state%cycle == 0) call spread_values(monitor%ranks, energy)
-    state%initial_energy = energy(1)
-    call share_error(monitor%ranks, cycle%error)
-  end subroutine hear_report
-
   !> Ids of the element with the smallest stable step, and of its part; 0 where the curve rules. And
   !> whether that step is the one of DT2MS.
   subroutine find_slowest(model, state, snapshot)
@@ -235,12 +228,8 @@ contains
     dt = merge(state%dt_before, state%dt, state%dt_before > 0.0_wp)
     mean = 0.5_wp*(state%dt + state%dt_before)
     led = 0.0_wp
-    do i = 1, size(velocity_next)
-      associate (prescribed => model%conditions%motions(i))
-        if (is_active(prescribed, state%time) .and. state%dt > 0.0_wp) led = led &
-          + state%mass(prescribed%node)*((velocity_next(i) - state%prescribed_velocity(i))/mean)**2
-      end associate
-    end do
+    if (state%dt > 0.0_wp) led = sum(state%mass(model%conditions%motions%node)*((velocity_next &
+      - state%prescribed_velocity)/mean)**2, is_active(model%conditions%motions, state%time))
     inertia = free_inertia(model, state, damping) + led
     led = 0.0_wp
     do i = 1, size(state%rigids)

@@ -10,7 +10,7 @@ module prescribed_motion_m
   use history_filling_m, only : form_loads
   use kinds_m, only : wp
   use model_m, only : model_t
-  use rigid_motion_m, only : damping_of
+  use node_motion_m, only : damping_of
   use snapshot_filling_m, only : damping_at
   use state_m, only : state_t
   implicit none

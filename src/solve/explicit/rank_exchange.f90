@@ -8,7 +8,7 @@ module rank_exchange_m
   use block_state_m, only : block_state_t
   use cut_forces_m, only : find_cut_forces
   use errors_m, only : error_t
-  use health_m, only : tile_check_t, check_elements, most_work
+  use health_m, only : tile_check_t, most_work
   use kinds_m, only : wp, long
   use layout_m, only : chunk_size
   use log_m, only : log_t, write_log, to_text
@@ -17,13 +17,13 @@ module rank_exchange_m
   use load_work_m, only : motion_sums_t
   use packed_buffer_m, only : packed_buffer_t, start_loading, start_unloading, choose_slots
   use rank_shares_m, only : shares_t, borders_t
-  use ranks_m, only : ranks_t, bring_reals, swap_reals, find_least, share_error
+  use ranks_m, only : ranks_t, bring_reals, swap_reals, find_least
   use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
   use state_m, only : state_t
   implicit none
   private
   public :: parcel_t, plan_parcel, exchange_parcel, exchange_checks, loses, fails, errs, &
-    bring_integers, gather_motion, gather_state, judge_elements, hear_requests, report_exchange, &
+    bring_integers, gather_motion, gather_state, hear_requests, report_exchange, &
     cut_sections
 
   !> Values of the sums over the nodes of a tile.
@@ -250,17 +250,6 @@ contains
       end do
     end do
   end subroutine gather_elements
-
-  !> The first process looks at all elements, whose state it has gathered, and tells the others.
-  subroutine judge_elements(ranks, model, state, error)
-    type(ranks_t), intent(inout) :: ranks
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(error_t), allocatable, intent(inout) :: error
-
-    if (ranks%mine == 0) call check_elements(model, state, error)
-    if (ranks%n > 1) call share_error(ranks, error)
-  end subroutine judge_elements
 
   !> What someone asks of this process, for all of them.
   subroutine hear_requests(state, ratio, monitor, echoes, asked, error)

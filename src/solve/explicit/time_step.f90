@@ -6,7 +6,7 @@
 !> the step of the next, so that a cycle need not wait for its own elements.
 module time_step_m
   use block_state_m, only : block_state_t
-  use loads_m, only : is_active
+  use loads_m, only : is_active, scaled_step
   use contact_penalty_m, only : has_default_penalty
   use contact_state_m, only : contact_state_t
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, approach_step, &
@@ -23,7 +23,6 @@ module time_step_m
   use node_motion_m, only : leap_t
   use rank_shares_m, only : shares_t
   use ranks_m, only : ranks_t, find_least
-  use scaled_step_m, only : scaled_step
   use state_m, only : state_t
   use visitor_m, only : visited_t, visitor_t
   implicit none
