@@ -200,7 +200,7 @@ contains
 
     !$omp do schedule(static)
     do i = 1, size(cycle%rest%summed)
-      associate (run => cycle%borders%runs(:, cycle%rest%summed(i)))
+      associate (run => cycle%shares%runs(:, cycle%rest%summed(i)))
         call sum_special_forces(model%layout, state%force_slots, run(1), run(2), &
           state%internal_force)
       end associate
@@ -225,8 +225,8 @@ contains
 
     !$omp do schedule(static)
     do i = 1, size(cycle%rest%summed)
-      associate (first => cycle%borders%runs(1, cycle%rest%summed(i)), &
-        last => cycle%borders%runs(2, cycle%rest%summed(i)))
+      associate (first => cycle%shares%runs(1, cycle%rest%summed(i)), &
+        last => cycle%shares%runs(2, cycle%rest%summed(i)))
         if (.not. cycle%presses) call sum_special_forces(model%layout, state%force_slots, first, &
           last, state%internal_force)
         if (.not. cycle%writes) then
@@ -276,7 +276,7 @@ contains
     !$omp end do
     !$omp do schedule(static)
     do i = 1, size(cycle%rest%summed)
-      associate (run => cycle%borders%runs(:, cycle%rest%summed(i)))
+      associate (run => cycle%shares%runs(:, cycle%rest%summed(i)))
         call move_run(model, cycle%leap, run(1), run(2), state)
       end associate
     end do

@@ -18,12 +18,11 @@ module explicit_report_m
   use history_tables_m, only : table_glstat, table_matsum, table_rwforc, table_spcforc, table_rbdout
   use kinds_m, only : wp
   use layout_m, only : slot_part
-  use load_work_m, only : count_sums
+  use load_work_m, only : count_sums, count_motions, count_body_motions, count_groups
   use log_m, only : write_log, to_text
   use model_log_m, only : log_smallest_steps, judge_damping
   use model_m, only : model_t
   use monitor_m, only : monitor_t, write_due
-  use prescribed_motion_m, only : count_motions, count_body_motions, count_groups
   use ranks_m, only : share_error, spread_values
   use reporting_m, only : note_energies, write_instant
   use node_motion_m, only : solve_rigids, fill_rigids, fill_bodies

@@ -16,7 +16,7 @@ module rank_exchange_m
   use monitor_m, only : monitor_t
   use load_work_m, only : motion_sums_t
   use packed_buffer_m, only : packed_buffer_t, start_loading, start_unloading, choose_slots
-  use rank_shares_m, only : shares_t, borders_t
+  use rank_shares_m, only : shares_t
   use ranks_m, only : ranks_t, bring_reals, swap_reals, find_least
   use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
   use state_m, only : state_t
@@ -48,20 +48,19 @@ module rank_exchange_m
 contains
 
   !> Room for what is exchanged in each cycle.
-  pure subroutine plan_parcel(borders, shares, mine, elements, sums, parcel)
-    type(borders_t), intent(in) :: borders
+  pure subroutine plan_parcel(shares, mine, elements, sums, parcel)
     type(shares_t), intent(in) :: shares
     integer, intent(in) :: mine !! number of this process
     type(block_state_t), intent(in) :: elements
     type(motion_sums_t), intent(in) :: sums
     type(parcel_t), intent(out) :: parcel
 
-    parcel%starts = 2*(borders%common_starts - 1) + 1
+    parcel%starts = 2*(shares%common_starts - 1) + 1
     if (allocated(sums%parts)) parcel%starts = parcel%starts + n_sum*(shares%tiles - 1 &
       + sums%starts - 1)
     allocate (parcel%values(parcel%starts(size(parcel%starts)) - 1), source=0.0_wp)
-    allocate (parcel%outgoing(2, size(borders%out_slots)), source=0.0_wp)
-    allocate (parcel%incoming(2, size(borders%in_slots)), source=0.0_wp)
+    allocate (parcel%outgoing(2, size(shares%out_slots)), source=0.0_wp)
+    allocate (parcel%incoming(2, size(shares%in_slots)), source=0.0_wp)
     associate (first => shares%chunks(mine), last => shares%chunks(mine + 1) - 1)
       if (allocated(elements%erosion)) parcel%n_gone = sum(elements%erosion%n_gone(first:last))
       if (allocated(elements%n_failed)) parcel%n_failed = elements%n_failed(first:last)
@@ -70,9 +69,8 @@ contains
 
   !> Forces of tiles on special nodes and, where they are formed, sums over nodes; `exchange_checks`
   !> follows.
-  subroutine exchange_parcel(shares, borders, ranks, parcel, state, sums)
+  subroutine exchange_parcel(shares, ranks, parcel, state, sums)
     type(shares_t), intent(in) :: shares
-    type(borders_t), intent(in) :: borders
     type(ranks_t), intent(inout) :: ranks
     type(parcel_t), intent(inout) :: parcel
     type(state_t), intent(inout) :: state
@@ -82,10 +80,10 @@ contains
     parcel%sent = parcel%sent - ranks%sent
     parcel%joined = parcel%joined - ranks%joined
     parcel%n_cycle = parcel%n_cycle + 1
-    call copy_columns(.true., borders%out_slots, 2, state%force_slots, parcel%outgoing)
-    call swap_reals(ranks, borders%peers, 2*borders%out_starts - 1, parcel%outgoing, &
-      2*borders%in_starts - 1, parcel%incoming)
-    call copy_columns(.false., borders%in_slots, 2, state%force_slots, parcel%incoming)
+    call copy_columns(.true., shares%out_slots, 2, state%force_slots, parcel%outgoing)
+    call swap_reals(ranks, shares%peers, 2*shares%out_starts - 1, parcel%outgoing, &
+      2*shares%in_starts - 1, parcel%incoming)
+    call copy_columns(.false., shares%in_slots, 2, state%force_slots, parcel%incoming)
     if (size(parcel%values) == 0) return
     call fill_piece(ranks%mine, .true.)
     call bring_reals(ranks, parcel%starts, 1, .true., parcel%values)
@@ -102,9 +100,9 @@ contains
       integer :: at, i
 
       at = parcel%starts(rank + 1)
-      associate (first => borders%common_starts(rank + 1), &
-        last => borders%common_starts(rank + 2) - 1)
-        if (last >= first) call copy_columns(puts, borders%common(first:last), 2, &
+      associate (first => shares%common_starts(rank + 1), &
+        last => shares%common_starts(rank + 2) - 1)
+        if (last >= first) call copy_columns(puts, shares%common(first:last), 2, &
           state%force_slots, parcel%values(at))
         at = at + 2*(last - first + 1)
       end associate
@@ -188,9 +186,8 @@ contains
   end subroutine bring_integers
 
   !> Motion of all nodes that only some processes move, with the velocities that damped runs keep.
-  subroutine gather_motion(shares, borders, to_all, ranks, state)
+  subroutine gather_motion(shares, to_all, ranks, state)
     type(shares_t), intent(in) :: shares
-    type(borders_t), intent(in) :: borders
     logical, intent(in) :: to_all
     type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state
@@ -199,24 +196,23 @@ contains
     call bring_reals(ranks, shares%special, 4, to_all, state%motion)
     if (.not. allocated(state%former_velocity)) return
     call bring_reals(ranks, shares%nodes, 2, to_all, state%former_velocity)
-    call bring_reals(ranks, borders%block_nodes, 2, to_all, state%former_velocity)
+    call bring_reals(ranks, shares%block_nodes, 2, to_all, state%former_velocity)
   end subroutine gather_motion
 
   !> The whole state for the first process, or for all.
-  subroutine gather_state(shares, borders, to_all, ranks, state)
+  subroutine gather_state(shares, to_all, ranks, state)
     type(shares_t), intent(in) :: shares
-    type(borders_t), intent(in) :: borders
     logical, intent(in) :: to_all
     type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state
 
-    call gather_motion(shares, borders, to_all, ranks, state)
+    call gather_motion(shares, to_all, ranks, state)
     call bring_reals(ranks, shares%nodes, 2, to_all, state%internal_force)
     call bring_reals(ranks, shares%special, 2, to_all, state%internal_force)
     call bring_reals(ranks, shares%force_slots, 2, to_all, state%force_slots)
     if (allocated(state%former_damping)) then
       call bring_reals(ranks, shares%nodes, 2, to_all, state%former_damping)
-      call bring_reals(ranks, borders%block_nodes, 2, to_all, state%former_damping)
+      call bring_reals(ranks, shares%block_nodes, 2, to_all, state%former_damping)
     end if
     call gather_elements(shares, to_all, ranks, state%elements)
   end subroutine gather_state

@@ -22,19 +22,16 @@ module rank_shares_m
   use visitor_m, only : visited_t, visitor_t, of_elements, of_nodes, of_slots
   implicit none
   private
-  public :: shares_t, share_out, forget_others, borders_t, plan_borders, hand_model, hand_others
+  public :: shares_t, share_out, forget_others, plan_borders, hand_model, hand_others
 
-  !> All arrays (0:n): where the range of each process starts, then one beyond the last.
+  !> The first arrays (0:n): where the range of each process starts, then one beyond the last.
   type :: shares_t
     integer, allocatable :: tiles(:), chunks(:)
     integer, allocatable :: nodes(:)       !! interior
     integer, allocatable :: special(:)     !! special nodes that its tiles own
     integer, allocatable :: force_slots(:)
     integer :: first_tile = 1, last_tile = 0 !! of this process
-  end type shares_t
-
-  !> Force slots that are exchanged, and who moves which nodes.
-  type :: borders_t
+    ! Borders: force slots that are exchanged, and who moves which nodes.
     integer, allocatable :: runs(:, :)       !! (2, n) special nodes that this process sums and
                                              !! moves: first and last of each run
     integer, allocatable :: run_tiles(:)     !! (n) the tile that owns those of each run
@@ -46,7 +43,7 @@ module rank_shares_m
     integer, allocatable :: in_slots(:)      !! those of each peer that it needs
     integer, allocatable :: block_nodes(:)   !! (n + 1) special nodes whose sums each forms: where
                                              !! they start
-  end type borders_t
+  end type shares_t
 
   !> Items of a piece at most.
   integer, parameter :: most_items = 65536
@@ -146,12 +143,11 @@ contains
 
   !> The borders of process `mine`; the sums learn which blocks are its own. One process alone has
   !> none, and moves all special nodes.
-  subroutine plan_borders(model, shares, mine, sums, borders)
+  subroutine plan_borders(model, mine, sums, shares)
     type(model_t), intent(in) :: model
-    type(shares_t), intent(in) :: shares
     integer, intent(in) :: mine
     type(motion_sums_t), intent(inout) :: sums
-    type(borders_t), intent(out) :: borders
+    type(shares_t), intent(inout) :: shares
     logical, dimension(model%layout%n_special) :: is_common, is_known, knows
     logical, allocatable :: is_moved(:)
     integer, allocatable :: slots(:)
@@ -164,70 +160,68 @@ contains
       associate (n => model%layout%n_special, starts => model%layout%node_slots)
         is_common = is_moved .or. starts(2:n + 1) == starts(:n)
       end associate
-      call share_blocks(shares, mine, sums, borders%block_nodes)
-      is_known = known_nodes(model, shares, sums, borders, mine)
-      allocate (borders%common(0), borders%peers(0), borders%out_slots(0), borders%in_slots(0))
-      borders%common_starts = [1]
-      borders%out_starts = [1]
-      borders%in_starts = [1]
+      call share_blocks(mine, sums, shares)
+      is_known = known_nodes(model, shares, sums, mine)
+      allocate (shares%common(0), shares%peers(0), shares%out_slots(0), shares%in_slots(0))
+      shares%common_starts = [1]
+      shares%out_starts = [1]
+      shares%in_starts = [1]
       do rank = 0, size(shares%tiles) - 2
         slots = [(i, i=shares%force_slots(rank), shares%force_slots(rank + 1) - 1)]
         associate (nodes => model%layout%special_node(slots))
-          borders%common = [borders%common, pack(slots, is_common(nodes))]
-          borders%common_starts = [borders%common_starts, size(borders%common) + 1]
+          shares%common = [shares%common, pack(slots, is_common(nodes))]
+          shares%common_starts = [shares%common_starts, size(shares%common) + 1]
           if (rank == mine) cycle
-          borders%in_slots = [borders%in_slots, pack(slots, is_known(nodes) &
+          shares%in_slots = [shares%in_slots, pack(slots, is_known(nodes) &
             .and. .not. is_common(nodes))]
         end associate
-        knows = known_nodes(model, shares, sums, borders, rank) .and. .not. is_common
+        knows = known_nodes(model, shares, sums, rank) .and. .not. is_common
         slots = [(i, i=shares%force_slots(mine), shares%force_slots(mine + 1) - 1)]
-        borders%out_slots = [borders%out_slots, pack(slots, &
+        shares%out_slots = [shares%out_slots, pack(slots, &
           knows(model%layout%special_node(slots)))]
-        associate (n_out => size(borders%out_slots) + 1, n_in => size(borders%in_slots) + 1, &
-          n => size(borders%peers) + 1)
-          if (n_out == borders%out_starts(n) .and. n_in == borders%in_starts(n)) cycle
-          borders%peers = [borders%peers, rank]
-          borders%out_starts = [borders%out_starts, n_out]
-          borders%in_starts = [borders%in_starts, n_in]
+        associate (n_out => size(shares%out_slots) + 1, n_in => size(shares%in_slots) + 1, &
+          n => size(shares%peers) + 1)
+          if (n_out == shares%out_starts(n) .and. n_in == shares%in_starts(n)) cycle
+          shares%peers = [shares%peers, rank]
+          shares%out_starts = [shares%out_starts, n_out]
+          shares%in_starts = [shares%in_starts, n_in]
         end associate
       end do
       is_known = is_known .or. is_common
     end if
-    call list_runs(model, is_known, borders)
+    call list_runs(model, is_known, shares)
   end subroutine plan_borders
 
   !> Special nodes that the tiles of a process touch or that are in blocks that it sums.
-  pure function known_nodes(model, shares, sums, borders, rank) result(is_known)
+  pure function known_nodes(model, shares, sums, rank) result(is_known)
     type(model_t), intent(in) :: model
     type(shares_t), intent(in) :: shares
     type(motion_sums_t), intent(in) :: sums
-    type(borders_t), intent(in) :: borders
     integer, intent(in) :: rank
     logical :: is_known(model%layout%n_special)
 
     is_known = .false.
     is_known(model%layout%special_node(shares%force_slots(rank):shares%force_slots(rank + 1) - 1)) &
       = .true.
-    if (allocated(sums%blocks)) is_known(borders%block_nodes(rank + 1): &
-      borders%block_nodes(rank + 2) - 1) = .true.
+    if (allocated(sums%blocks)) is_known(shares%block_nodes(rank + 1): &
+      shares%block_nodes(rank + 2) - 1) = .true.
   end function known_nodes
 
   !> A block of special nodes is summed by the process that owns its first node, which has to know
   !> all of it: the sums are those of one process.
-  pure subroutine share_blocks(shares, mine, sums, block_nodes)
-    type(shares_t), intent(in) :: shares
+  pure subroutine share_blocks(mine, sums, shares)
     integer, intent(in) :: mine
     type(motion_sums_t), intent(inout) :: sums
-    integer, allocatable, intent(out) :: block_nodes(:)
+    type(shares_t), intent(inout) :: shares
     integer :: starts(size(shares%special)), i
 
-    allocate (block_nodes(size(starts)), source=1)
+    allocate (shares%block_nodes(size(starts)), source=1)
     if (.not. allocated(sums%blocks)) return
     associate (first => sums%blocks(1, :sums%n_special))
       do i = 1, size(starts)
         starts(i) = 1 + count(first < shares%special(i - 1))
-        block_nodes(i) = shares%special(size(starts) - 1)
-        if (starts(i) <= size(first)) block_nodes(i) = first(starts(i))
+        shares%block_nodes(i) = shares%special(size(starts) - 1)
+        if (starts(i) <= size(first)) shares%block_nodes(i) = first(starts(i))
       end do
     end associate
     sums%starts = starts
@@ -236,10 +230,10 @@ contains
   end subroutine share_blocks
 
   !> Runs of known nodes, none beyond those of one tile.
-  pure subroutine list_runs(model, is_known, borders)
+  pure subroutine list_runs(model, is_known, shares)
     type(model_t), intent(in) :: model
     logical, intent(in) :: is_known(:)
-    type(borders_t), intent(inout) :: borders
+    type(shares_t), intent(inout) :: shares
     integer :: owner(0:size(is_known) + 1) !! tile of each known node, else 0
     integer :: i, n
 
@@ -251,10 +245,10 @@ contains
         owner(first:last) = merge(i, 0, is_known(first:last))
       end associate
     end do
-    borders%run_tiles = pack(owner(1:n), owner(1:n) > 0 .and. owner(1:n) /= owner(:n - 1))
-    allocate (borders%runs(2, size(borders%run_tiles)))
-    borders%runs(1, :) = pack([(i, i=1, n)], owner(1:n) > 0 .and. owner(1:n) /= owner(:n - 1))
-    borders%runs(2, :) = pack([(i, i=1, n)], owner(1:n) > 0 .and. owner(1:n) /= owner(2:))
+    shares%run_tiles = pack(owner(1:n), owner(1:n) > 0 .and. owner(1:n) /= owner(:n - 1))
+    allocate (shares%runs(2, size(shares%run_tiles)))
+    shares%runs(1, :) = pack([(i, i=1, n)], owner(1:n) > 0 .and. owner(1:n) /= owner(:n - 1))
+    shares%runs(2, :) = pack([(i, i=1, n)], owner(1:n) > 0 .and. owner(1:n) /= owner(2:))
   end subroutine list_runs
 
   !> Its components.

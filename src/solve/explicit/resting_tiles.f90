@@ -31,10 +31,8 @@ module resting_tiles_m
   !> Which tiles rest, and which are still looked at.
   type :: rest_t
     integer, allocatable :: status(:)    !! (tiles)
-    integer :: first_tile = 1, last_tile = 0 !! of this process
     integer, allocatable :: stepped(:)   !! tiles to step, of this process
     integer, allocatable :: watched(:)   !! resting ones that may wake, or whose nodes move
-    integer, allocatable :: run_tiles(:) !! the tile that owns each run of special nodes
     integer, allocatable :: summed(:)    !! runs that are summed and moved
     logical :: watches_all = .false.     !! tiles that rest are all looked at
     real(wp), allocatable :: no_force(:, :) !! (2, n_local) this and the next three only once tiles
@@ -53,10 +51,9 @@ module resting_tiles_m
 contains
 
   !> All tiles are awake, and may come to rest if the model lets them.
-  subroutine plan_rest(model, shares, run_tiles, watches_all, rest)
+  subroutine plan_rest(model, shares, watches_all, rest)
     type(model_t), intent(in) :: model
     type(shares_t), intent(in) :: shares
-    integer, intent(in) :: run_tiles(:)  !! of the runs of special nodes that this process moves
     logical, intent(in) :: watches_all   !! resting tiles have to be looked at in each cycle
     type(rest_t), intent(out) :: rest
     logical :: may_rest
@@ -77,11 +74,8 @@ contains
         model%layout%tiles(first:last)%last_chunk >= model%layout%tiles(first:last)%first_chunk)
       allocate (rest%stepped(last - first + 1), source=[(i, i = first, last)])
       allocate (rest%watched(0))
-      allocate (rest%run_tiles, source=run_tiles)
-      allocate (rest%summed(size(run_tiles)), source=[(i, i = 1, size(run_tiles))])
+      rest%summed = [(i, i=1, size(shares%run_tiles))]
     end associate
-    rest%first_tile = shares%first_tile
-    rest%last_tile = shares%last_tile
     rest%watches_all = watches_all
   end subroutine plan_rest
 
@@ -196,8 +190,9 @@ contains
   end function moves_as_one
 
   !> At the end of a cycle: steps that were not taken, and the tiles of the next one.
-  subroutine follow_rest(model, rest)
+  subroutine follow_rest(model, shares, rest)
     type(model_t), intent(in) :: model
+    type(shares_t), intent(in) :: shares
     type(rest_t), intent(inout) :: rest
 
     rest%n_cycle = rest%n_cycle + 1
@@ -206,16 +201,17 @@ contains
     rest%n_resting = rest%n_resting - rest%n_woken + rest%n_fallen
     rest%n_woken = 0
     rest%n_fallen = 0
-    call list_tiles(model, rest)
+    call list_tiles(model, shares, rest)
   end subroutine follow_rest
 
   !> The tiles of the next cycle. A resting one is looked at if it may wake, for its nodes may have
   !> moved, or a neighbour may, which would then push its nodes. Those of other processes count as
   !> awake: what becomes of them is not known here.
-  subroutine list_tiles(model, rest)
+  subroutine list_tiles(model, shares, rest)
     type(model_t), intent(in) :: model
+    type(shares_t), intent(in) :: shares
     type(rest_t), intent(inout) :: rest
-    logical, dimension(size(rest%status)) :: may_wake, is_watched, is_stepped
+    logical, dimension(size(rest%status)) :: may_wake, is_watched
     integer :: i
 
     if (.not. allocated(rest%no_force)) then
@@ -230,14 +226,12 @@ contains
       is_watched(i) = rest%status(i) < awake .and. (may_wake(i) .or. rest%status(i) == flying &
         .or. any(may_wake(rest%near(rest%first(i):rest%first(i + 1) - 1))))
     end do
-    is_stepped = .false.
-    is_stepped(rest%first_tile:rest%last_tile) = &
-      rest%status(rest%first_tile:rest%last_tile) >= awake
-    rest%stepped = pack([(i, i=1, size(rest%status))], is_stepped)
+    rest%stepped = pack([(i, i=shares%first_tile, shares%last_tile)], &
+      rest%status(shares%first_tile:shares%last_tile) >= awake)
     rest%watched = pack([(i, i=1, size(rest%status))], is_watched)
     if (rest%watches_all) return ! all runs are listed
     is_watched = is_watched .or. rest%status >= awake
-    rest%summed = pack([(i, i=1, size(rest%run_tiles))], is_watched(rest%run_tiles))
+    rest%summed = pack([(i, i=1, size(shares%run_tiles))], is_watched(shares%run_tiles))
   end subroutine list_tiles
 
   !> Which tiles have nodes that feel more than their elements, and which have special nodes in

@@ -22,13 +22,13 @@ module implicit_m
   use history_filling_m, only : fill_reactions, form_loads
   use history_tables_m, only : table_matsum, table_spcforc, table_bndout, table_nodfor, &
     table_secforc
-  use implicit_forces_m, only : trial_t, start_trial, damping_force, net_force, step_t, &
+  use implicit_forces_m, only : trial_t, start_trial, net_force, step_t, &
     new_acceleration, new_velocity, cut_sections
   use implicit_start_m, only : implicit_memory_t, write_files, begin_steps, plan_next, has_ended, &
     step_control_t, plan_step, grow_step, cut_step
   use kinds_m, only : wp
   use law_state_m, only : tie_memory_t
-  use loads_m, only : is_active
+  use loads_m, only : damping_rates, is_active
   use log_m, only : write_log, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due, any_due
@@ -243,7 +243,7 @@ contains
       acceleration = new_acceleration(state, step, attempt)
       velocity = new_velocity(state, step, acceleration)
       if (allocated(attempt%damping)) then
-        attempt%damping = damping_force(model, step%time, velocity)
+        attempt%damping = mass_times(model, velocity, damping_rates(model, step%time))
         state%damping_work = state%damping_work + 0.5_wp*sum((trial%damping + attempt%damping) &
           *attempt%motion(3:4, :))
       end if

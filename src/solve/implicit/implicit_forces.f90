@@ -27,7 +27,7 @@ module implicit_forces_m
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: trial_t, start_trial, assemble_forces, damping_force, net_force, trouble_of, &
+  public :: trial_t, start_trial, assemble_forces, net_force, trouble_of, &
     cut_sections, step_t, assemble_residual, assemble_tangent, new_acceleration, new_velocity
 
   !> Step of the kernels: motion holds increments in place of velocities.
@@ -139,16 +139,6 @@ contains
     deallocate (trial%before)
   end subroutine cut_sections
 
-  !> What damping by mass takes, D M v with the consistent mass of each part.
-  pure function damping_force(model, time, velocity) result(force)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: time
-    real(wp), intent(in) :: velocity(:, :) !! (2, n_node) at `time`
-    real(wp) :: force(2, size(velocity, 2))
-
-    force = mass_times(model, velocity, damping_rates(model, time))
-  end function damping_force
-
   !> Internal minus contact and external forces, and damping.
   pure function net_force(trial) result(force)
     type(trial_t), intent(in) :: trial
@@ -200,8 +190,8 @@ contains
     residual = trial%internal - trial%contact - trial%external
     if (.not. step%is_dynamic) return
     acceleration = new_acceleration(state, step, trial)
-    if (allocated(trial%damping)) residual = residual + damping_force(model, step%time, &
-      new_velocity(state, step, acceleration))
+    if (allocated(trial%damping)) residual = residual + mass_times(model, &
+      new_velocity(state, step, acceleration), damping_rates(model, step%time))
     acceleration = (1.0_wp - step%alpha_m)*acceleration + step%alpha_m*state%acceleration
     call put_prescribed(step%equations, step%prescribed%mean, acceleration)
     residual = (1.0_wp - step%alpha_f)*residual + step%alpha_f*step%old_force &

@@ -18,10 +18,11 @@ module implicit_start_m
   use equations_m, only : equations_t, number_equations, take_free, prescribe_start, list_changes
   use errors_m, only : error_t, raise, status_run
   use implicit_forces_m, only : trial_t, start_trial, net_force, cut_sections, assemble_forces, &
-    damping_force, step_t
+    step_t
   use kinds_m, only : wp
   use law_friction_m, only : has_decay
   use linear_solver_m, only : report_t, solve_linear
+  use loads_m, only : damping_rates
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t
@@ -334,8 +335,8 @@ contains
       call measure_springs(state%contacts(i))
       state%contacts(i)%energy = state%contacts(i)%watch%stored
     end do
-    if (allocated(memory%trial%damping)) memory%trial%damping = damping_force(model, 0.0_wp, &
-      state%motion(3:4, :))
+    if (allocated(memory%trial%damping)) memory%trial%damping = mass_times(model, &
+      state%motion(3:4, :), damping_rates(model, 0.0_wp))
     memory%step%old_force = net_force(memory%trial)
     if (memory%step%is_dynamic) call find_first_acceleration(model, monitor, memory%step, state, &
       error)
