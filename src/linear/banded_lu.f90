@@ -103,9 +103,18 @@ contains
     integer :: order(matrix%n)
     type(sparse_t) :: pattern
     integer :: level(matrix%n) !! 0: not reached yet
-    integer :: root, start, n_done, n_found
+    integer, allocatable :: rows(:)
+    integer :: root, start, n_done, n_found, i, k
 
-    pattern = symmetric_pattern(matrix)
+    ! The matrix and its transpose together, values zero: contact fills some entries on one side of
+    ! the diagonal alone, and a walk along rows would pass by such neighbours.
+    rows = [((i, k=matrix%first(i), matrix%first(i + 1) - 1), i=1, matrix%n)]
+    pattern%n = matrix%n
+    pattern%n_entry = 2*size(rows)
+    pattern%rows = [rows, matrix%column]
+    pattern%columns = [matrix%column, rows]
+    allocate (pattern%values(pattern%n_entry), source=0.0_wp)
+    call compress_matrix(pattern)
     level = 0
     n_done = 0
     do root = 1, matrix%n
@@ -116,23 +125,6 @@ contains
     end do
     order = order(matrix%n:1:-1)
   end function reverse_cuthill_mckee
-
-  !> The pattern of the matrix and its transpose together, values zero. Contact fills some entries
-  !> on one side of the diagonal alone; a walk along rows would pass by such neighbours.
-  pure function symmetric_pattern(matrix) result(pattern)
-    type(sparse_t), intent(in) :: matrix
-    type(sparse_t) :: pattern
-    integer, allocatable :: rows(:)
-    integer :: i, k
-
-    rows = [((i, k=matrix%first(i), matrix%first(i + 1) - 1), i=1, matrix%n)]
-    pattern%n = matrix%n
-    pattern%n_entry = 2*size(rows)
-    pattern%rows = [rows, matrix%column]
-    pattern%columns = [matrix%column, rows]
-    allocate (pattern%values(pattern%n_entry), source=0.0_wp)
-    call compress_matrix(pattern)
-  end function symmetric_pattern
 
   !> An equation at one end of the connected part that holds `root`: from there the walk has the
   !> most, and so the narrowest, levels.

@@ -22,7 +22,7 @@ module load_work_m
   use state_m, only : state_t
   implicit none
   private
-  public :: apply_loads, motion_sums_t, plan_sums, sum_motion, sum_blocks, count_sums, &
+  public :: apply_loads, motion_sums_t, plan_sums, sum_motion, count_sums, &
     find_prescribed_velocities, impose_prescribed, count_motions, count_body_motions, &
     count_boundary_loads, count_groups
 
@@ -228,23 +228,6 @@ contains
     end do
   end subroutine sum_drag
 
-  !> The blocks, shared by the team, which does not wait: nothing moves these
-  !> nodes while tiles advance.
-  subroutine sum_blocks(layout, state, sums)
-    type(layout_t), intent(in) :: layout
-    type(state_t), intent(inout) :: state
-    type(motion_sums_t), intent(inout) :: sums
-    integer :: i
-
-    !$omp do schedule(static)
-    do i = sums%first, size(sums%blocks, 2)
-      if (i > sums%last .and. i <= sums%n_special) cycle
-      call sum_motion(sums%blocks(1, i), sums%blocks(2, i), state, &
-        sums%parts(:, size(layout%tiles) + i))
-    end do
-    !$omp end do nowait
-  end subroutine sum_blocks
-
   !> Work since the last instant, once the sums are complete.
   pure subroutine count_sums(sums, external_work, damping_work)
     type(motion_sums_t), intent(in) :: sums
@@ -363,7 +346,8 @@ contains
     end do
     state%external_work = state%external_work + work
     if (.not. allocated(state%boundary_work)) return
-    if (due(1)) halves(1) = half_behind(state)
+    ! Works of boundaries may begin in this instant.
+    if (state%cycle == state%boundary_since) halves(1) = 0.0_wp
     do i = 1, size(motions)
       state%boundary_force(motions(i)%direction, rows(i)) = 0.0_wp
     end do
@@ -400,9 +384,10 @@ contains
   subroutine count_boundary_loads(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    real(wp) :: former(3, size(state%boundary_work)), velocity(3)
+    real(wp) :: former(3, size(state%boundary_work)), velocity(3), half
     integer :: i
 
+    half = merge(0.0_wp, 0.5_wp*state%dt_before, state%cycle == state%boundary_since)
     former = state%boundary_force
     call form_loads(model, state%motion, state%time, state%boundary_force)
     associate (rows => model%controls%output%boundaries)
@@ -417,18 +402,10 @@ contains
           cycle
         end select
         state%boundary_work(i) = state%boundary_work(i) &
-          + half_behind(state)*sum((former(:, i) + state%boundary_force(:, i))*velocity)
+          + half*sum((former(:, i) + state%boundary_force(:, i))*velocity)
       end do
     end associate
   end subroutine count_boundary_loads
-
-  !> Half of the step behind this instant: 0 where works begin in it.
-  pure function half_behind(state) result(length)
-    type(state_t), intent(in) :: state
-    real(wp) :: length
-
-    length = merge(0.0_wp, 0.5_wp*state%dt_before, state%cycle == state%boundary_since)
-  end function half_behind
 
   !> Internal forces of groups of nodes, and their work up to the instant, and from it on once the
   !> nodes have moved.

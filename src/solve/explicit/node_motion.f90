@@ -109,7 +109,15 @@ contains
     integer :: i, k
 
     if (all(leap%body == 0.0_wp .and. leap%keep == 1.0_wp)) then
-      call move_free_nodes(leap%half(1), leap%dt, first, last, force, inverse_mass, motion)
+      associate (mean => leap%half(1), dt => leap%dt)
+        do i = first, last
+          !$omp simd simdlen(2)
+          do k = 1, 2
+            motion(2 + k, i) = motion(2 + k, i) - mean*(force(k, i)*inverse_mass(k, i))
+            motion(k, i) = motion(k, i) + dt*motion(2 + k, i)
+          end do
+        end do
+      end associate
       return
     end if
     do i = first, last
@@ -122,25 +130,6 @@ contains
       end do
     end do
   end subroutine move_tile_nodes
-
-  !> The same with neither damping nor body acceleration.
-  subroutine move_free_nodes(mean, dt, first, last, force, inverse_mass, motion)
-    real(wp), intent(in) :: mean             !! of the steps before and after
-    real(wp), intent(in) :: dt
-    integer, intent(in) :: first, last
-    real(wp), intent(in) :: force(2, first:*)
-    real(wp), intent(in) :: inverse_mass(2, *)
-    real(wp), intent(inout) :: motion(4, *)
-    integer :: i, k
-
-    do i = first, last
-      !$omp simd simdlen(2)
-      do k = 1, 2
-        motion(2 + k, i) = motion(2 + k, i) - mean*(force(k, i)*inverse_mass(k, i))
-        motion(k, i) = motion(k, i) + dt*motion(2 + k, i)
-      end do
-    end do
-  end subroutine move_free_nodes
 
   !> Move the special nodes first .. last; their internal forces stand in state%internal_force.
   subroutine move_special_nodes(leap, first, last, state)

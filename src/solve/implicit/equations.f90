@@ -14,9 +14,8 @@ module equations_m
   use state_m, only : state_t
   implicit none
   private
-  public :: equations_t, number_equations, find_equation, move_prescribed, take_free, &
-    put_prescribed, prescribed_step_t, prescribe_step, prescribe_start, list_changes, mean_slope, &
-    curve_moment
+  public :: equations_t, number_equations, move_prescribed, take_free, prescribed_step_t, &
+    prescribe_step, prescribe_start, list_changes, mean_slope, curve_moment
 
   !> Numbering for one step.
   type :: equations_t
@@ -77,18 +76,6 @@ contains
     end associate
   end subroutine number_equations
 
-  !> Node and direction of an equation.
-  pure subroutine find_equation(equations, number, node, direction)
-    type(equations_t), intent(in) :: equations
-    integer, intent(in) :: number
-    integer, intent(out) :: node, direction !! 0 when there is none
-    integer :: place(2)
-
-    place = findloc(equations%number, number)
-    direction = place(1)
-    node = place(2)
-  end subroutine find_equation
-
   !> Move prescribed columns of the collected matrix to the right-hand side: b(free) -= K(free,
   !> prescribed) * increments. What is left in the matrix are the free rows and columns.
   pure subroutine move_prescribed(n_free, increments, matrix, b)
@@ -123,15 +110,6 @@ contains
 
     vector = pack(field, equations%number > 0 .and. equations%number <= equations%n_free)
   end function take_free
-
-  !> Give the prescribed entries of a nodal field their values.
-  pure subroutine put_prescribed(equations, values, field)
-    type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: values(:)       !! (n - n_free)
-    real(wp), intent(inout) :: field(:, :)  !! (2, n_node)
-
-    field = unpack(values, equations%number > equations%n_free, field)
-  end subroutine put_prescribed
 
   !> What the curves ask for from `state` to `time`. No motion is born or dies inside the step.
   pure subroutine prescribe_step(model, state, time, equations, prescribed)

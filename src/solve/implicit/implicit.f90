@@ -14,7 +14,7 @@ module implicit_m
   use early_end_m, only : find_early_end
   use element_mass_m, only : mass_times, sum_part_motion
   use element_state_m, only : add_part_energies
-  use equations_m, only : number_equations, find_equation, prescribe_step, equations_t
+  use equations_m, only : number_equations, prescribe_step, equations_t
   use errors_m, only : error_t, raise, status_run
   use friction_m, only : has_slipped
   use health_m, only : check_static_step, what_would_do, check_energy, check_ratio, check_radii, &
@@ -274,13 +274,13 @@ contains
     type(step_t), intent(in) :: step
     type(outcome_t), intent(in) :: outcome
     type(error_t), allocatable, intent(out) :: error
-    integer :: node, direction
+    integer :: place(2) !! direction and node
 
     if (outcome%singular_equation > 0) then
-      call find_equation(step%equations, outcome%singular_equation, node, direction)
+      place = findloc(step%equations%number, outcome%singular_equation)
       call raise(error, 'the stiffness is singular at time '//to_text(state%time)//': node ' &
-        //to_text(model%mesh%node_id(node))//' moves freely in ' &
-        //merge('x', 'y', direction == 1)//'; the model needs constraints, contact or inertia ' &
+        //to_text(model%mesh%node_id(place(2)))//' moves freely in ' &
+        //merge('x', 'y', place(1) == 1)//'; the model needs constraints, contact or inertia ' &
         //'(IMASS = 1) that hold it', status_run)
     else
       call raise(error, 'no equilibrium at time '//to_text(step%time)//' with the step ' &

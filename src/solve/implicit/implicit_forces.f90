@@ -15,7 +15,7 @@ module implicit_forces_m
   use element_dispatch_m, only : add_tile_forces
   use element_mass_m, only : mass_times, add_mass
   use element_stiffness_m, only : add_stiffness
-  use equations_m, only : equations_t, put_prescribed, prescribed_step_t
+  use equations_m, only : equations_t, prescribed_step_t
   use loads_m, only : form_external_force, body_acceleration, damping_rates
   use interface_m, only : evaluate_contact
   use kinds_m, only : wp
@@ -118,7 +118,6 @@ contains
       call lap(clock, phase_contact_force)
       call share_contact(clock, k)
     end do
-    trial%external = 0.0_wp
     call form_external_force(model, trial%motion, time, trial%external)
     if (size(model%conditions%body_loads) > 0) then
       body = body_acceleration(model%conditions, model%curves, time)
@@ -193,7 +192,8 @@ contains
     if (allocated(trial%damping)) residual = residual + mass_times(model, &
       new_velocity(state, step, acceleration), damping_rates(model, step%time))
     acceleration = (1.0_wp - step%alpha_m)*acceleration + step%alpha_m*state%acceleration
-    call put_prescribed(step%equations, step%prescribed%mean, acceleration)
+    acceleration = unpack(step%prescribed%mean, step%equations%number &
+      > step%equations%n_free, acceleration)
     residual = (1.0_wp - step%alpha_f)*residual + step%alpha_f*step%old_force &
       + mass_times(model, acceleration)
   end function assemble_residual
@@ -207,7 +207,8 @@ contains
 
     acceleration = (trial%motion(3:4, :) - step%dt*state%motion(3:4, :))/(step%beta*step%dt**2) &
       - (0.5_wp/step%beta - 1.0_wp)*state%acceleration
-    call put_prescribed(step%equations, step%prescribed%acceleration, acceleration)
+    acceleration = unpack(step%prescribed%acceleration, step%equations%number &
+      > step%equations%n_free, acceleration)
   end function new_acceleration
 
   !> v(n+1) likewise.
@@ -219,7 +220,8 @@ contains
 
     velocity = state%motion(3:4, :) + step%dt*((1.0_wp - step%gamma)*state%acceleration &
       + step%gamma*acceleration)
-    call put_prescribed(step%equations, step%prescribed%velocity, velocity)
+    velocity = unpack(step%prescribed%velocity, step%equations%number > step%equations%n_free, &
+      velocity)
   end function new_velocity
 
   !> dR/du(n+1), collected. Inertia and damping of prescribed degrees of freedom do not depend on u,

@@ -4,7 +4,6 @@
 !> with the iterations that they take; where the equations change (birth or death of a prescribed
 !> motion) a step is divided.
 module implicit_start_m
-  use archive_m, only : archive_t
   use clock_m, only : lap, phase_solver
   use contact_check_m, only : report_contact_start
   use contact_spring_ratios_m, only : spring_ratios
@@ -35,7 +34,7 @@ module implicit_start_m
   implicit none
   private
   public :: step_control_t, start_step_control, plan_step, grow_step, cut_step, round_off, &
-    implicit_memory_t, read_memory, write_files, begin_steps, plan_next, has_ended
+    implicit_memory_t, write_files, begin_steps, plan_next, has_ended
 
   !> What a step that took few iterations grows by, and what one that failed shrinks to.
   real(wp), parameter :: growth = 1.5_wp, cut = 0.5_wp
@@ -187,17 +186,6 @@ contains
     call write_restarts(wanted, state, monitor, error, memory)
   end subroutine write_files
 
-  !> Read it from a restart file; the first thing that is wrong is an error of the archive.
-  subroutine read_memory(model, state, source, memory)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(archive_t), intent(inout) :: source
-    type(implicit_memory_t), intent(inout) :: memory
-
-    call start_trial(model, state, memory%trial)
-    call source%part('driver', memory)
-  end subroutine read_memory
-
   !> What is remembered up to the first report, and the plan of the first step.
   subroutine begin_steps(model, state, monitor, memory, last, error)
     type(model_t), intent(in) :: model
@@ -222,7 +210,8 @@ contains
     if (memory%step%is_dynamic) call set_lags(model, state)
     last = .false.
     if (monitor%restarts%goes_on) then
-      call read_memory(model, state, monitor%restarts%source, memory)
+      call start_trial(model, state, memory%trial)
+      call monitor%restarts%source%part('driver', memory)
       call close_restart(monitor%restarts%source, error)
       if (allocated(error)) return
       memory%step%old_force = net_force(memory%trial)

@@ -9,7 +9,7 @@ module newton_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : told_as
   use controls_m, only : implicit_t
-  use equations_m, only : take_free, move_prescribed, find_equation
+  use equations_m, only : take_free, move_prescribed
   use friction_m, only : let_stick
   use implicit_forces_m, only : trial_t, assemble_forces, trouble_of, step_t, assemble_tangent, &
     assemble_residual
@@ -96,7 +96,7 @@ contains
     type(way_t) :: way
     type(report_t) :: report
     type(slip_cycle_t) :: slip_cycle
-    integer :: iteration, node, direction
+    integer :: iteration, place(2) !! direction and node
 
     trial%motion(1:2, :) = state%motion(1:2, :)
     call assemble_forces(model, state, step%time, .true., clock, trial)
@@ -133,13 +133,13 @@ contains
       call watch_slips(trial%contacts, now%residual, slip_cycle)
       if (slip_cycle%is_found) exit
     end do
-    call find_equation(step%equations, now%worst, node, direction)
+    place = max(1, findloc(step%equations%number, now%worst))
     outcome%reason = 'no equilibrium after '//to_text(outcome%iterations)//' iterations'
     if (slip_cycle%is_found) outcome%reason = outcome%reason &
       //', the last of which cycle between the same states of stick and slip'
     outcome%reason = outcome%reason//', most force out of balance at node ' &
-      //to_text(model%mesh%node_id(max(node, 1)))//' in '//merge('x', 'y', direction == 1) &
-      //contacts_of(model, max(node, 1))
+      //to_text(model%mesh%node_id(place(2)))//' in '//merge('x', 'y', place(1) == 1) &
+      //contacts_of(model, place(2))
   end subroutine find_equilibrium
 
   !> The interfaces that a node belongs to, in words; empty where there are none.

@@ -22,7 +22,7 @@ module start_m
   use loads_m, only : start_motion, fix_nodes, update_activity, is_active
   use log_m, only : log_t, to_text, write_log
   use mass_scaling_m, only : scales_masses, start_mass_scaling
-  use model_log_m, only : log_added_mass, log_masses
+  use model_log_m, only : check_added_mass, log_masses
   use model_m, only : model_t
   use others_memory_m, only : answers_t, others_t, known_nodes, known_slots
   use rigid_state_m, only : rigid_state_t, velocity_of
@@ -58,7 +58,7 @@ contains
       call start_retardation(model, state%motion, state%elements)
     if (scales_masses(model)) then
       call start_mass_scaling(model, state%motion, state%elements, state%mass)
-      call log_added_mass(model, state%elements, log, error)
+      call check_added_mass(model, state%elements, error, log)
       if (allocated(error)) return
     end if
     call start_common(model, state)
