@@ -27,8 +27,7 @@ module run_m
   use model_m, only : model_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use progress_m, only : show_end, write_status
-  use rank_model_m, only : hand_model, hand_others
-  use rank_shares_m, only : forget_others
+  use rank_shares_m, only : hand_model, hand_others, forget_others
   use ranks_m, only : ranks_t, share_error
   use relaxation_m, only : relax, switch_loads
   use renumber_m, only : renumber_model, forget_start

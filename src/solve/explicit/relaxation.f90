@@ -22,7 +22,7 @@ module relaxation_m
   use requests_m, only : requests_t, echoes_t
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
-  use scaled_step_m, only : scaled_step
+  use loads_m, only : scaled_step
   use held_nodes_m, only : hold_skew_nodes
   use time_step_m, only : volume_step
   implicit none
