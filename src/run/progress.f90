@@ -5,11 +5,10 @@
 module progress_m
   use clock_m, only : clock_t, look_at_clock, elapsed_seconds, total_seconds, phase_seconds, &
     lap_seconds, phase_names, n_phase, phase_input, phase_output
-  use endings_m, only : normal_ending, error_ending
   use kinds_m, only : wp, long
   use log_m, only : log_t, write_log, to_text
-  use screen_m, only : show, show_part
-  use signals_m, only : output_is_terminal
+  use screen_m, only : show, show_part, normal_ending, error_ending
+  use system_m, only : output_is_terminal
   use status_file_m, only : status_t, keep_status, write_status, done_share, &
     seconds_to_go, duration
   implicit none

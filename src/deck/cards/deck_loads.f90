@@ -4,7 +4,7 @@ module deck_loads_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use boundary_m, only : boundary_t, find_edge
-  use conditions_m, only : nodal_load_t, pressure_load_t, body_load_t, lumped_mass_t
+  use conditions_m, only : nodal_load_t, pressure_load_t, lumped_mass_t
   use model_m, only : model_t
   use rigids_m, only : mark_rigid_nodes
   use deck_cards_m, only : cursor_t, next_of, rows_of, open_cursor, next_row, check_rest, &
@@ -239,7 +239,7 @@ contains
     type(model_t), intent(inout) :: model
     type(cursor_t) :: cursor
     type(card_t) :: card
-    type(body_load_t) :: load
+    type(nodal_load_t) :: load
     integer, allocatable :: blocks(:)
     integer :: i
     logical :: found

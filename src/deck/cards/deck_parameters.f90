@@ -5,8 +5,7 @@
 !> the command line.
 module deck_parameters_m
   use kinds_m, only : wp
-  use number_text_m, only : shortest
-  use text_m, only : upper_case, read_real, number_good
+  use text_m, only : upper_case, read_real, shortest, number_good
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, parameters_t, again_error, line_text, line_error, parameter_t, &
     line_warning, block_of_line

@@ -9,7 +9,7 @@ module outlines_m
   use model_m, only : model_t
   use renewal_m, only : renew_contact, close_contact, reshape_contact
   use state_m, only : state_t
-  use surface_outline_m, only : surface_left
+  use surface_building_m, only : surface_left
   use surfaces_m, only : surface_t
   implicit none
   private
