@@ -19,7 +19,6 @@ module run_m
   use files_m, only : make_directory, remove_file, join_path, unfinished
   use history_file_m, only : close_histories
   use text_files_m, only : write_whole
-  use heap_m, only : give_back_memory
   use others_memory_m, only : answers_t, others_t
   use kinds_m, only : long
   use log_m, only : log_t, open_log, close_log, write_log, warn, to_text
@@ -39,7 +38,7 @@ module run_m
   use result_names_m, only : check_names
   use results_file_m, only : run_info_t
   use requests_m, only : switch_path
-  use signals_m, only : catch_stops, limit_processor
+  use system_m, only : catch_stops, give_back_memory, limit_processor
   use source_version_m, only : source_version
   use start_m, only : start_state
   use state_m, only : state_t

@@ -7,12 +7,11 @@ module eroding_tiles_m
     scatter_forces
   use element_state_m, only : smallest_ratio, initial_volume
   use eos_pressure_m, only : look_for_failed
-  use erosion_m, only : erosion_t, asks_for_strain, asks_for_stress
   use kinds_m, only : wp
   use layout_m, only : chunk_size, tile_t
   use material_dispatch_m, only : history_size
   use model_m, only : model_t
-  use parts_m, only : material_t, has_memory_of_heat
+  use parts_m, only : material_t, has_memory_of_heat, erosion_t, asks_for_strain, asks_for_stress
   use quad_m, only : advance_chunk
   use quad_points_m, only : n_point
   use element_steps_m, only : own_steps

@@ -3,10 +3,11 @@
 !> in the order of reverse Cuthill-McKee (Cuthill & McKee 1969, George 1971) from a pseudo-
 !> peripheral equation (George & Liu 1979).
 module banded_lu_m
+  use, intrinsic :: iso_c_binding, only : c_bool
   use kinds_m, only : long, wp
   use memory_m, only : available_bytes
-  use refused_memory_m, only : expect_refusal
   use sparse_m, only : compress_matrix, sparse_t
+  use system_m, only : expect_refusal
   implicit none
   private
   public :: banded_lu_t, factor_banded, solve_banded, reverse_cuthill_mckee, bandwidth
@@ -58,9 +59,9 @@ contains
     factored = .false.
     if (factor%bytes > available_bytes()) return
     w = factor%width
-    call expect_refusal(.true.)
+    call expect_refusal(.true._c_bool)
     allocate (factor%band(3*w + 1, matrix%n), factor%exchange(matrix%n), stat=status)
-    call expect_refusal(.false.)
+    call expect_refusal(.false._c_bool)
     if (status /= 0) return
     place(factor%order) = [(i, i=1, matrix%n)]
     factor%band = 0.0_wp

@@ -6,7 +6,7 @@
 !> temperature (all plastic work heats) and damage (Johnson & Cook 1985).
 !> A chunk goes by in pieces of `n_lane` points; a piece in which nothing can yield is left out.
 module material_johnson_cook_m
-  use johnson_cook_m, only : johnson_cook_t
+  use parts_m, only : johnson_cook_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use material_piecewise_m, only : form_trial, return_to_surface

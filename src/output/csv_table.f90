@@ -7,7 +7,7 @@ module csv_table_m
   use errors_m, only : error_t
   use history_tables_m, only : history_tables
   use kinds_m, only : wp
-  use number_text_m, only : real_size, put_real, put_integer
+  use text_m, only : real_size, put_real, put_integer
   use text_files_m, only : line_file_t, open_lines, put_lines, keep_up, flush_lines
   use visitor_m, only : visitor_t, any_length
   implicit none

@@ -212,7 +212,7 @@ contains
     type(model_t), intent(inout) :: model
     type(cursor_t) :: cursor
     type(card_t) :: card
-    type(body_load_t) :: load
+    type(nodal_load_t) :: load
     integer, allocatable :: blocks(:)
     integer :: i
     logical :: found

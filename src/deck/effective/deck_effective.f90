@@ -3,7 +3,7 @@
 !> model to the last bit. Lines that nothing changed are copied as they were written.
 module deck_effective_m
   use deck_lines_m, only : deck_t, layout_marks
-  use heap_m, only : give_back_memory
+  use system_m, only : give_back_memory
   implicit none
   private
   public :: write_effective

@@ -17,7 +17,7 @@ module element_losses_m
   use renewal_m, only : renew_contact, close_contact, reshape_contact
   use start_m, only : weigh_contacts
   use state_m, only : state_t
-  use surface_outline_m, only : surface_left
+  use surface_building_m, only : surface_left
   use surfaces_m, only : surface_t
   implicit none
   private

@@ -296,7 +296,7 @@ contains
     call visitor%expect('first_dt', self%first_dt > 0.0_wp, 'a step that is not positive')
     call visitor%visit('constant', self%constant, 0.0_wp, 'a step below zero')
     call visitor%visit('start_time', self%start_time)
-    call visitor%visit('start_cycle', self%start_cycle, 0, what='a cycle below zero')
+    call visitor%visit('start_cycle', self%start_cycle, 0, huge(1), 'a cycle below zero')
     call visitor%visit('n_cycle', self%n_cycle)
     call visitor%visit('end_cycle', self%end_cycle)
     call visitor%visit('end_time', self%end_time)
