@@ -12,14 +12,13 @@ module run_m
   use contact_dispatch_m, only : contact_kinds
   use deck_m, only : deck_request_t, read_deck
   use deck_restart_m, only : merge_decks, is_whole_deck, deck_identity
-  use deck_source_m, only : read_file
+  use deck_reader_m, only : read_file
   use errors_m, only : error_t, raise, status_input, status_stopped
   use explicit_m, only : advance_explicit
   use implicit_m, only : advance_implicit
   use files_m, only : make_directory, remove_file, join_path, unfinished
   use history_file_m, only : close_histories
   use text_files_m, only : write_whole
-  use heap_m, only : give_back_memory
   use others_memory_m, only : answers_t, others_t
   use kinds_m, only : long
   use log_m, only : log_t, open_log, close_log, write_log, warn, to_text
@@ -27,8 +26,7 @@ module run_m
   use model_m, only : model_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use progress_m, only : show_end, write_status, timing_text
-  use rank_model_m, only : hand_model, hand_others
-  use rank_shares_m, only : forget_others
+  use rank_shares_m, only : hand_model, hand_others, forget_others
   use ranks_m, only : ranks_t, share_error
   use relaxation_m, only : relax, switch_loads
   use renumber_m, only : renumber_model, forget_start
@@ -38,7 +36,7 @@ module run_m
   use restart_reading_m, only : take_up_file, take_up_state, take_up_results, check_rest, &
     take_up_outputs
   use results_file_m, only : run_info_t
-  use signals_m, only : catch_stops, limit_processor
+  use system_m, only : catch_stops, give_back_memory, limit_processor
   use source_version_m, only : source_version
   use start_m, only : start_state
   use state_m, only : state_t

@@ -13,14 +13,12 @@ module deck_m
   use parts_m, only : hourglass_t
   use deck_contact_sides_m, only : outline_t
   use deck_contacts_m, only : read_contacts
-  use deck_control_m, only : read_controls, read_outputs, read_relaxation
+  use deck_control_m, only : read_controls, read_outputs, read_relaxation, read_ends
   use deck_curves_m, only : table_t, read_curves, read_systems
-  use deck_damping_m, only : read_damping
-  use deck_ends_m, only : read_ends
   use deck_erosion_m, only : read_erosions
   use deck_implicit_m, only : read_implicit, check_implicit
   use deck_loads_m, only : read_nodal_loads, read_rigid_loads, read_body_loads, read_pressures, &
-    read_masses, warn_of_bores
+    read_masses, read_global_damping, read_mass_damping, read_stiffness_damping, warn_of_bores
   use deck_material_m, only : read_materials, read_equations, settle_pressures
   use deck_mesh_m, only : read_mesh
   use deck_part_m, only : read_parts, read_sections, make_rigids
@@ -40,7 +38,7 @@ module deck_m
   use deck_parameters_m, only : read_parameters
   use deck_overrides_m, only : read_words, edit_controls
   use deck_cards_m, only : cursor_t, open_cursor
-  use deck_effective_m, only : forget_places, write_effective
+  use deck_effective_m, only : write_effective
   use deck_echo_m, only : echo_model
   use text_m, only : upper_case
   use deck_values_m, only : lose
@@ -62,9 +60,6 @@ module deck_m
   character(*), parameter :: instead_of_cases = ' not available in slideline: run the deck once ' &
     //'for each, in a shell loop or by tools/batch/sweep.sh, with ctype=, p:NAME=VALUE of a ' &
     //'*PARAMETER and the like, and *INCLUDE what several decks share'
-
-  !> All kinds of sets.
-  integer, parameter :: sets(4) = [a_node_set, a_part_set, a_segment_set, a_shell_set]
 
 contains
 
@@ -132,7 +127,6 @@ contains
       //'default, as in LS-DYNA: '//deck%default_zeros)
     if (allocated(deck%kept_zeros)) call write_log(log, 'a 0 in these fields is kept, where ' &
       //'LS-DYNA takes the default: '//deck%kept_zeros)
-    call forget_places(deck)
     call write_effective(deck, effective)
   end subroutine interpret_deck
 
@@ -176,7 +170,9 @@ contains
     call read_pressures(deck, model, places)
     call read_masses(deck, model)
     call read_common_motions(deck, model)
-    call read_damping(deck, model)
+    call read_global_damping(deck, model)
+    call read_mass_damping(deck, model)
+    call read_stiffness_damping(deck, model)
     call read_velocities(deck, model)
     call read_walls(deck, model)
     call warn_of_bores(deck, model)
@@ -293,7 +289,8 @@ contains
       if (index(name, 'MAT') == 1) call lose(deck, [a_material])
       if (index(name, 'EOS') == 1) call lose(deck, [an_eos])
       if (index(name, 'DEFINE') == 1) call lose(deck, [a_curve, a_system])
-      if (index(name, 'SET') == 1) call lose(deck, sets)
+      if (index(name, 'SET') == 1) call lose(deck, [a_node_set, a_part_set, a_segment_set, &
+        a_shell_set])
       is_ended = is_ended .or. name == 'CONTROL_TERMINATION'
       name = trim(nearest_keyword(deck%blocks(i_block)%given))
     end do

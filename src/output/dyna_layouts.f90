@@ -9,7 +9,7 @@ module dyna_layouts_m
     table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout, table_bndout, &
     table_nodfor, table_secforc
   use kinds_m, only : wp
-  use number_text_m, only : es, integer_size, put_integer
+  use text_m, only : es, integer_size, put_integer
   use text_files_m, only : line_file_t, put_lines
   implicit none
   private

@@ -21,7 +21,7 @@ module hdf5_writing_m
     h5tget_strpad_f, h5tis_variable_str_f
   use kinds_m, only : long
   use errors_m, only : error_t, raise, status_files
-  use refused_memory_m, only : need_memory
+  use system_m, only : need_memory
   use visitor_m, only : as_real, as_integer, as_index, as_bytes
   implicit none
   private

@@ -16,9 +16,8 @@ module history_file_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use model_m, only : model_t
-  use number_text_m, only : real_size, put_real, put_integer
   use text_files_m, only : line_file_t, open_lines, put_lines, keep_up, flush_lines, close_lines
-  use text_m, only : text_of
+  use text_m, only : text_of, real_size, put_real, put_integer
   use visitor_m, only : visited_t, visitor_t, any_length, length
   implicit none
   private

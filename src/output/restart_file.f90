@@ -16,9 +16,8 @@ module restart_file_m
   use archive_m, only : archive_t
   use checksum_m, only : add_bytes, checksum_text
   use errors_m, only : error_t, raise, status_files, status_input
-  use file_facts_m, only : what_hinders
-  use files_m, only : rename_file, remove_file, force_to_disk, is_endless, folder_of, &
-    unfinished
+  use files_m, only : what_hinders, rename_file, remove_file, force_to_disk, is_endless, &
+    folder_of, unfinished
   use hdf5_writing_m, only : open_library
   use kinds_m, only : long
   use log_m, only : to_text

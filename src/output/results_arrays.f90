@@ -17,8 +17,7 @@ module results_arrays_m
     h5acreate_by_name_f, h5awrite_f
   use kinds_m, only : wp, long
   use errors_m, only : error_t, raise, status_files
-  use file_facts_m, only : file_facts_t, what_hinders
-  use files_m, only : remove_file, unfinished
+  use files_m, only : file_facts_t, what_hinders, remove_file, unfinished
   use mesh_m, only : mesh_t
   use controls_m, only : controls_t
   use hdf5_writing_m, only : open_library, growing_t, as_real, as_index, create_growing, &

@@ -16,8 +16,8 @@ module results_file_m
   use kinds_m, only : wp, long
   use contacts_m, only : has_shear
   use errors_m, only : error_t, raise, status_files, status_input
-  use file_facts_m, only : file_facts_t, facts_of_name, is_same_file
-  use files_m, only : file_exists, lengthen_file, remove_file, rename_file, unfinished
+  use files_m, only : file_facts_t, facts_of_name, is_same_file, file_exists, lengthen_file, &
+    remove_file, rename_file, unfinished
   use model_m, only : model_t
   use parts_m, only : has_memory_of_heat
   use snapshot_m, only : snapshot_t

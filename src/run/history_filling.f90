@@ -5,7 +5,7 @@
 module history_filling_m
   use controls_m, only : cross_section_t, boundary_load, boundary_pressure
   use element_state_m, only : stress_of_slot, plastic_strain_of_slot, is_gone
-  use external_force_m, only : add_nodal_loads, add_pressures
+  use loads_m, only : add_nodal_loads, add_pressures
   use kinds_m, only : wp
   use model_m, only : model_t
   use rows_behind_m, only : place_of

@@ -7,13 +7,12 @@ module progress_m
   use clock_m, only : clock_t, look_at_clock, elapsed_seconds, total_seconds, phase_seconds, &
     lap_seconds, phase_names, n_phase, n_contact_phase, phase_contact_search, phase_input, &
     phase_output
-  use endings_m, only : normal_ending, error_ending
   use errors_m, only : error_t
   use files_m, only : rename_file, unfinished
   use kinds_m, only : wp, long
   use log_m, only : log_t, write_log, to_text
-  use screen_m, only : show, show_part
-  use signals_m, only : output_is_terminal
+  use screen_m, only : show, show_part, normal_ending, error_ending
+  use system_m, only : output_is_terminal
   use text_files_m, only : write_whole
   implicit none
   private

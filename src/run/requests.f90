@@ -16,8 +16,8 @@ module requests_m
   use monitor_m, only : monitor_t
   use progress_m, only : show_progress
   use restart_plan_m, only : wants_look, switch_path
-  use signals_m, only : stop_requested, take_signals
   use state_m, only : state_t
+  use system_m, only : stop_requested, is_requested, request_dump, request_plot
   use text_m, only : upper_case
   implicit none
   private
@@ -47,7 +47,8 @@ contains
   subroutine hear_signals(asked)
     type(requests_t), intent(out) :: asked
 
-    call take_signals(asked%dump, asked%plot)
+    asked%dump = is_requested(request_dump)
+    asked%plot = is_requested(request_plot)
     asked%signalled = stop_requested()
     asked%stop = asked%signalled
   end subroutine hear_signals

@@ -4,8 +4,8 @@
 module restart_plan_m
   use archive_m, only : archive_t
   use errors_m, only : error_t, raise, status_files
-  use file_facts_m, only : file_facts_t, facts_of_name, facts_of_target, is_same_file, what_hinders
-  use files_m, only : join_path, unfinished
+  use files_m, only : file_facts_t, facts_of_name, facts_of_target, is_same_file, what_hinders, &
+    join_path, unfinished
   use history_tables_m, only : history_tables
   use kinds_m, only : wp, long
   use log_m, only : to_text

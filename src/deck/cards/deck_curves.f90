@@ -24,13 +24,16 @@ module deck_curves_m
 
 contains
 
-  !> All curves and tables.
+  !> All curves and tables: points, then scale factors and offsets applied, x = SFA*(x + OFFA).
   subroutine read_curves(deck, model, tables)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
     type(table_t), allocatable, intent(out) :: tables(:)
     type(curve_t), allocatable :: curves(:)
-    type(curve_t) :: curve
+    type(cursor_t) :: cursor
+    type(card_t) :: head
+    real(wp), allocatable :: points(:, :)
+    real(wp) :: scale(2)
     integer, allocatable :: blocks(:)
     integer :: of_block(deck%n_block), i, n
 
@@ -38,39 +41,25 @@ contains
     allocate (curves(size(blocks)))
     of_block = 0
     do i = 1, size(blocks)
-      call read_curve(deck, blocks(i), curve, n)
+      call first_card(deck, blocks(i), cursor, head)
+      call define(deck, a_curve, head, n)
       of_block(blocks(i)) = n
-      if (n > 0) curves(n) = curve
+      scale = reals_of(head, 'SFA', 'SFO')
+      scale(1) = abs(scale(1)) ! a negative one has been refused
+      call read_rows(deck, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
+        'is not beyond the point before it: abscissas must increase', cursor, points)
+      if (size(points, 2) == 0) call line_error(deck, head%line, 'the curve has no points')
+      if (size(points, 2) == 0) points = reshape([0.0_wp, 0.0_wp], [2, 1])
+      if (n == 0) cycle
+      curves(n)%phase = integer_of(head, 'SIDR')
+      curves(n)%id = integer_of(head, 'LCID')
+      curves(n)%abscissa = points(1, :)
+      curves(n)%ordinate = points(2, :)
     end do
     model%curves = curves(:deck%maps(a_curve)%n)
     call map_defined(deck, a_curve, 'LCID')
     call read_tables(deck, of_block, tables)
   end subroutine read_curves
-
-  !> *DEFINE_CURVE: points, then scale factors and offsets applied, x = SFA*(x + OFFA).
-  subroutine read_curve(deck, i_block, curve, n)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    type(curve_t), intent(out) :: curve
-    integer, intent(out) :: n             !! its index, 0 where it was refused
-    type(cursor_t) :: cursor
-    type(card_t) :: head
-    real(wp), allocatable :: points(:, :)
-    real(wp) :: scale(2)
-
-    call first_card(deck, i_block, cursor, head)
-    call define(deck, a_curve, head, n)
-    scale = reals_of(head, 'SFA', 'SFO')
-    scale(1) = abs(scale(1)) ! a negative one has been refused
-    curve%phase = integer_of(head, 'SIDR')
-    call read_rows(deck, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
-      'is not beyond the point before it: abscissas must increase', cursor, points)
-    if (size(points, 2) == 0) call line_error(deck, head%line, 'the curve has no points')
-    if (size(points, 2) == 0) points = reshape([0.0_wp, 0.0_wp], [2, 1])
-    curve%id = integer_of(head, 'LCID')
-    curve%abscissa = points(1, :)
-    curve%ordinate = points(2, :)
-  end subroutine read_curve
 
   !> *DEFINE_TABLE: a number, and a value for each of the curves that come next.
   subroutine read_tables(deck, of_block, tables)
@@ -134,7 +123,7 @@ contains
     real(wp), allocatable, intent(out) :: rows(:, :)   !! (n_column, n_row)
     type(card_t) :: card
     real(wp) :: last
-    logical :: found, is_sound
+    logical :: is_sound
     integer :: i, n, columns(size(names))
 
     columns = [(find_field(cursor, 2, names(i)), i=1, size(names))]
@@ -142,9 +131,7 @@ contains
     n = 0
     last = -huge(1.0_wp)
     is_sound = .true.
-    do
-      call next_row(deck, cursor, 2, card, found)
-      if (.not. found) exit
+    do while (next_row(deck, cursor, 2, card))
       n = n + 1
       rows(:, n) = scale*(card%r(columns) + offset)
       is_sound = is_sound .and. .not. card%bad(columns(1))

@@ -8,7 +8,7 @@ module deck_overrides_m
   use deck_fields_m, only : largest_value, smallest_value
   use deck_lines_m, only : deck_t, word_t, line_error, line_warning
   use deck_edits_m, only : given_number, set_field, append_block
-  use deck_parameters_m, only : override_parameter
+  use deck_parameter_table_m, only : parameter_t, add_parameter
   implicit none
   private
   public :: is_override, override_mistake, read_words, edit_controls, edit_contact, find_word, &
@@ -54,6 +54,7 @@ contains
     character(*), intent(in) :: texts(:)
     type(deck_t), intent(inout) :: deck
     type(word_t) :: word
+    type(parameter_t) :: item
     character(:), allocatable :: mistake
     integer :: i
 
@@ -62,7 +63,10 @@ contains
       if (len(mistake) > 0) then
         call line_error(deck, 0, word%phrase//mistake)
       else if (index(word%name, 'P:') == 1) then
-        call override_parameter(deck%parameters, word%name(3:), word%text)
+        ! A value from the command line wins over the deck.
+        item = parameter_t(name=word%name(3:), kind='?', fixed=.true.)
+        item%text = word%text
+        call add_parameter(deck%parameters, item)
       else
         deck%words = [deck%words, word]
       end if

@@ -26,7 +26,7 @@ contains
     type(cursor_t) :: cursor
     integer, allocatable :: blocks(:), ids(:), lines(:)
     integer :: i, n, n_row
-    logical :: found, is_sound
+    logical :: is_sound
 
     blocks = blocks_of(deck, 'DATABASE_CROSS_SECTION_SET')
     if (size(blocks) == 0) return
@@ -36,8 +36,7 @@ contains
     n_row = 0
     do i = 1, size(blocks)
       call open_cursor(deck, blocks(i), cursor)
-      call row_comes(deck, cursor, found)
-      do while (found)
+      do while (row_comes(deck, cursor))
         section%id = 0
         section%title = ''
         if (deck%blocks(blocks(i))%titled) call next_heading(deck, cursor, section%id, &
@@ -49,7 +48,6 @@ contains
         call take_section(deck, cursor, model, section, is_sound)
         if (is_sound) n = n + 1
         if (is_sound) sections(n) = section
-        call row_comes(deck, cursor, found)
       end do
     end do
     call refuse_again(deck, ids(:n_row), lines(:n_row), 'number ', 'cross section ' &

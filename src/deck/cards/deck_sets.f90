@@ -13,10 +13,10 @@ module deck_sets_m
   use deck_lines_m, only : deck_t, blocks_of, count_rows, line_error, line_warning
   use deck_fields_m, only : card_t, field_text
   use deck_cards_m, only : cursor_t, open_cursor, next_text, next_card, next_row, next_of, &
-    rows_of, report_field
+    report_field
   use deck_ids_m, only : ids_between, kind_names, a_node, an_element, a_part, a_node_set, &
     a_part_set, a_segment_set, a_shell_set
-  use deck_values_m, only : integer_of, is_bad, map_kind, lose, find_id
+  use deck_values_m, only : integer_of, is_bad, map_defined, lose, find_id
   implicit none
   private
   public :: read_sets, read_histories, keep_first, check_edge
@@ -109,7 +109,10 @@ contains
         sets = sets(order)
       end if
     end if
-    call map_kind(deck, kind, [sets%id], [sets%line], 'SID', [sets%of_beams])
+    deck%maps(kind)%n = size(sets)
+    deck%maps(kind)%ids = [sets%id]
+    deck%maps(kind)%lines = [sets%line]
+    call map_defined(deck, kind, 'SID', [sets%of_beams])
   end subroutine read_kind
 
   !> A set of nodes, parts, elements or segments: its number, then its members.
@@ -120,8 +123,8 @@ contains
     type(set_t), intent(out) :: set           !! its id is 0 where it was refused
     type(cursor_t) :: cursor
     type(card_t) :: head, card
-    logical :: found, is_sound
-    integer :: k
+    logical :: is_sound
+    integer :: k, kind
 
     call open_cursor(deck, i_block, cursor)
     if (deck%blocks(i_block)%titled) call next_text(deck, cursor, set%title)
@@ -129,24 +132,19 @@ contains
     set%line = head%line
     allocate (set%members(64))
     is_sound = .true.
-    do
-      call next_row(deck, cursor, 2, card, found)
-      if (.not. found) exit
+    kind = a_part
+    if (index(deck%blocks(i_block)%name, 'SET_NODE') == 1) kind = a_node
+    if (index(deck%blocks(i_block)%name, 'SET_SHELL') == 1) kind = an_element
+    do while (next_row(deck, cursor, 2, card))
       select case (deck%blocks(i_block)%name)
-      case ('SET_NODE_LIST')
-        call take_members(deck, card, a_node, set)
-      case ('SET_PART_LIST', 'SET_2D_SEGMENT')
-        call take_members(deck, card, a_part, set)
-      case ('SET_SHELL_LIST')
-        call take_members(deck, card, an_element, set)
-      case ('SET_NODE_LIST_GENERATE')
-        call take_blocks(deck, card, a_node, set)
-      case ('SET_PART_LIST_GENERATE')
-        call take_blocks(deck, card, a_part, set)
-      case ('SET_SHELL_LIST_GENERATE')
-        call take_blocks(deck, card, an_element, set)
+      case ('SET_NODE_LIST', 'SET_PART_LIST', 'SET_SHELL_LIST', 'SET_2D_SEGMENT')
+        call take_members(deck, card, kind, set)
+      case ('SET_NODE_LIST_GENERATE', 'SET_PART_LIST_GENERATE', 'SET_SHELL_LIST_GENERATE')
+        call take_blocks(deck, card, kind, set)
       case ('SET_2D_SEGMENT_SET')
-        call take_part_set(deck, card, model, set)
+        call find_id(deck, a_part_set, card, 'PSID', k)
+        set%n_named = set%n_named + 1
+        if (k > 0) call append(set, model%part_sets(k)%parts)
       case ('SET_SEGMENT')
         call check_edge(deck, card)
         if (.not. any(card%bad)) call take_edge(deck, card, set)
@@ -167,16 +165,19 @@ contains
     if (.not. is_bad(head, 'SID')) set%id = integer_of(head, 'SID')
   end subroutine read_set
 
-  !> One more member; 0 is none.
-  subroutine append(set, member)
+  !> More members; 0 is none.
+  subroutine append(set, members)
     type(set_t), intent(inout) :: set
-    integer, intent(in) :: member
+    integer, intent(in) :: members(:)
+    integer :: i
 
-    set%n_named = set%n_named + 1
-    if (member == 0) return
-    if (set%n == size(set%members)) set%members = [set%members, set%members]
-    set%n = set%n + 1
-    set%members(set%n) = member
+    do i = 1, size(members)
+      set%n_named = set%n_named + 1
+      if (members(i) == 0) cycle
+      if (set%n == size(set%members)) set%members = [set%members, set%members]
+      set%n = set%n + 1
+      set%members(set%n) = members(i)
+    end do
   end subroutine append
 
   !> The ids of a row, one in each of its fields; zeros are padding.
@@ -191,7 +192,7 @@ contains
       if (card%i(k) < 0) call report_field(deck, card, k, 'is not a number of 1 or more')
       if (card%i(k) < 1) cycle
       call find_id(deck, kind, card, k, found)
-      call append(set, found)
+      call append(set, [found])
     end do
   end subroutine take_members
 
@@ -202,7 +203,7 @@ contains
     integer, intent(in) :: kind
     type(set_t), intent(inout) :: set
     integer, allocatable :: block(:)
-    integer :: k, i
+    integer :: k
 
     do k = 1, count(card%kinds == 'i') - 1, 2
       if (all(card%i(k:k + 1) == 0)) cycle
@@ -215,27 +216,9 @@ contains
         report_field(deck, card, k, 'to "'//to_text(card%i(k + 1))//'": there is no ' &
         //trim(kind_names(kind))//' in this block')
       set%n_named = set%n_named + 1
-      do i = 1, size(block)
-        call append(set, block(i))
-      end do
+      call append(set, block)
     end do
   end subroutine take_blocks
-
-  !> The parts of a part set.
-  subroutine take_part_set(deck, card, model, set)
-    type(deck_t), intent(inout) :: deck
-    type(card_t), intent(inout) :: card
-    type(model_t), intent(in) :: model
-    type(set_t), intent(inout) :: set
-    integer :: found, i
-
-    call find_id(deck, a_part_set, card, 'PSID', found)
-    set%n_named = set%n_named + 1
-    if (found == 0) return
-    do i = 1, size(model%part_sets(found)%parts)
-      call append(set, model%part_sets(found)%parts(i))
-    end do
-  end subroutine take_part_set
 
   !> Two nodes from N1 on.
   subroutine take_edge(deck, card, set)
@@ -246,8 +229,7 @@ contains
 
     call find_id(deck, a_node, card, 'N1', ends(1))
     call find_id(deck, a_node, card, 'N2', ends(2))
-    call append(set, ends(1))
-    call append(set, ends(2))
+    call append(set, ends)
   end subroutine take_edge
 
   !> A row of a general set: what it adds or takes out. Each node stands in the set once, where it
@@ -294,7 +276,7 @@ contains
         if (action(1:1) == 'D') then
           set%place(nodes(j)) = 0
         else if (set%place(nodes(j)) == 0) then
-          call append(set, nodes(j))
+          call append(set, nodes(j:j))
           set%place(nodes(j)) = set%n
         end if
       end do
@@ -349,13 +331,9 @@ contains
     type(card_t) :: card
     integer, allocatable :: kept(:)
     integer :: i
-    logical :: found
 
     allocate (edges(0), unset%members(64))
-    call rows_of('ELEMENT_BEAM', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'ELEMENT_BEAM', cursor, card))
       if (any(card%bad)) call lose(deck, [a_node_set, a_segment_set])
       if (any(card%bad)) cycle
       call line_warning(deck, card%line, 'beams', 'beams are no elements of a plane mesh: the ' &
@@ -409,13 +387,9 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     integer :: k
-    logical :: found
 
     allocate (chosen(1)%members(64), chosen(2)%members(64))
-    call rows_of(head, cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, head, cursor, card))
       k = merge(2, 1, deck%blocks(cursor%block)%name == head//'_SET')
       call take_members(deck, card, kinds(k), chosen(k))
     end do
@@ -431,16 +405,13 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     integer :: set, n
-    logical :: found, is_taken(size(model%node_sets))
+    logical :: is_taken(size(model%node_sets))
 
     allocate (groups(count_rows(deck, 'DATABASE_NODAL_FORCE_GROUP')))
     if (size(groups) == 0) return
     is_taken = .false.
     n = 0
-    call rows_of('DATABASE_NODAL_FORCE_GROUP', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'DATABASE_NODAL_FORCE_GROUP', cursor, card))
       call find_id(deck, a_node_set, card, 'NSID', set)
       if (set == 0) cycle
       if (is_taken(set)) call report_field(deck, card, 'NSID', &

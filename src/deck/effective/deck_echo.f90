@@ -212,30 +212,20 @@ contains
   subroutine echo_walls(model, log)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
+    character(:), allocatable :: sliding
     integer :: i
 
     do i = 1, size(model%walls)
       associate (wall => model%walls(i))
+        sliding = 'without sliding'
+        if (wall%friction < friction_sticks) sliding = 'with friction '//to_text(wall%friction)
+        if (.not. wall%friction > 0.0_wp) sliding = 'without friction'
         call write_log(log, 'wall '//to_text(wall%id)//': through ('//to_text(wall%foot(1))//', ' &
           //to_text(wall%foot(2))//'), normal ('//to_text(wall%normal(1))//', ' &
           //to_text(wall%normal(2))//'), seen by '//to_text(size(wall%nodes))//' nodes, plastic ' &
-          //'impact '//friction_text(wall%friction))
+          //'impact '//sliding)
       end associate
     end do
   end subroutine echo_walls
-
-  !> Friction of a wall.
-  pure function friction_text(friction) result(text)
-    real(wp), intent(in) :: friction
-    character(:), allocatable :: text
-
-    if (.not. friction > 0.0_wp) then
-      text = 'without friction'
-    else if (friction < friction_sticks) then
-      text = 'with friction '//to_text(friction)
-    else
-      text = 'without sliding'
-    end if
-  end function friction_text
 
 end module deck_echo_m

@@ -3,94 +3,60 @@
 !> model to the last bit. Lines that nothing changed are copied as they were written.
 module deck_effective_m
   use deck_lines_m, only : deck_t, layout_marks
-  use heap_m, only : give_back_memory
+  use system_m, only : give_back_memory
   implicit none
   private
-  public :: forget_places, write_effective
-
-  !> A text that is first counted, then written.
-  type :: buffer_t
-    character(:), allocatable :: text
-    integer :: n = 0                   !! characters so far
-  end type buffer_t
+  public :: write_effective
 
 contains
 
-  !> Give up what only messages need, before a second text of the deck takes room.
-  subroutine forget_places(deck)
-    type(deck_t), intent(inout) :: deck
-
-    if (allocated(deck%number)) deallocate (deck%number)
-    if (allocated(deck%flags)) deallocate (deck%flags)
-    call give_back_memory()
-  end subroutine forget_places
-
-  !> The text of the effective deck. The files that it is made of are given up on the way.
+  !> The text of the effective deck: its characters are counted, then written. What only messages
+  !> need is given up before, the files that it is made of are on the way.
   subroutine write_effective(deck, effective)
     type(deck_t), intent(inout) :: deck
     character(:), allocatable, intent(out) :: effective
-    type(buffer_t) :: buffer
+    integer :: i, k, line, source, n, last_block(deck%n_source)
 
-    call compose(deck, buffer)
-    allocate (character(buffer%n) :: buffer%text)
-    buffer%n = 0
-    call compose(deck, buffer)
-    call move_alloc(buffer%text, effective)
-  end subroutine write_effective
-
-  !> Put the deck together; only counted while the buffer has no text.
-  subroutine compose(deck, buffer)
-    type(deck_t), intent(inout) :: deck !! loses its text when it is written
-    type(buffer_t), intent(inout) :: buffer
-    integer :: i, line, source, last_block(deck%n_source)
-
+    if (allocated(deck%number)) deallocate (deck%number, deck%flags)
+    call give_back_memory()
     do i = 1, deck%n_block
       last_block(deck%blocks(i)%source) = i
     end do
-    call put(buffer, '$ The deck as run: includes, parameters and command line resolved.')
-    do i = 1, deck%parameters%n
-      associate (item => deck%parameters%items(i))
-        if (item%found) call put(buffer, '$ parameter '//trim(item%name)//' = '//item%text)
-      end associate
-    end do
-    call put(buffer, '*KEYWORD')
-    do i = 1, deck%n_block
-      if (i > 1 .and. allocated(buffer%text)) then
-        ! The text of a file goes behind its last block.
-        associate (last => deck%blocks(i - 1)%source)
-          if (last_block(last) == i - 1) deallocate (deck%sources(last)%text)
+    do k = 1, 2
+      if (k == 2) allocate (character(n) :: effective)
+      n = 0
+      call put('$ The deck as run: includes, parameters and command line resolved.')
+      do i = 1, deck%parameters%n
+        associate (item => deck%parameters%items(i))
+          if (item%found) call put('$ parameter '//trim(item%name)//' = '//item%text)
         end associate
-      end if
-      if (deck%blocks(i)%dropped) cycle
-      call put(buffer, '*'//deck%blocks(i)%given//trim(layout_marks(deck%blocks(i)%layout)))
-      source = deck%blocks(i)%source
-      do line = deck%blocks(i)%first, deck%blocks(i)%last
-        if (deck%first(line) < 0) then
-          call put(buffer, deck%patch(-deck%first(line):deck%last(line)))
-        else
-          call put(buffer, deck%sources(source)%text(deck%first(line):deck%last(line)))
-        end if
       end do
+      call put('*KEYWORD')
+      do i = 1, deck%n_block
+        source = deck%blocks(i)%source
+        if (.not. deck%blocks(i)%dropped) then
+          call put('*'//deck%blocks(i)%given//trim(layout_marks(deck%blocks(i)%layout)))
+          do line = deck%blocks(i)%first, deck%blocks(i)%last
+            call put(deck%sources(merge(0, source, deck%first(line) < 0))%text( &
+              abs(deck%first(line)):deck%last(line)))
+          end do
+        end if
+        ! The text of a file goes behind its last block.
+        if (k == 2 .and. last_block(source) == i) deallocate (deck%sources(source)%text)
+      end do
+      call put('*END')
     end do
-    call put(buffer, '*END')
-  end subroutine compose
 
-  !> Append a line.
-  subroutine put(buffer, line)
-    type(buffer_t), intent(inout) :: buffer
-    character(*), intent(in) :: line
+  contains
 
-    call put_text(buffer, line)
-    call put_text(buffer, new_line('a'))
-  end subroutine put
+    !> Append a line.
+    subroutine put(text)
+      character(*), intent(in) :: text
 
-  !> Append characters.
-  subroutine put_text(buffer, text)
-    type(buffer_t), intent(inout) :: buffer
-    character(*), intent(in) :: text
+      if (k == 2) effective(n + 1:n + len(text) + 1) = text//new_line('a')
+      n = n + len(text) + 1
+    end subroutine put
 
-    if (allocated(buffer%text)) buffer%text(buffer%n + 1:buffer%n + len(text)) = text
-    buffer%n = buffer%n + len(text)
-  end subroutine put_text
+  end subroutine write_effective
 
 end module deck_effective_m

@@ -17,37 +17,27 @@ contains
     character(:), allocatable, intent(out) :: findings
 
     findings = ''
-    if (allocated(report%errors)) &
-      call list_notes(report%errors(:report%n_kept), 'error', findings)
-    call add_rest('error', report%n_error - report%n_kept, findings)
-    if (allocated(report%warnings)) &
-      call list_notes(report%warnings(:report%n_warning), 'warning', findings)
-    call add_rest('warning', report%n_dropped, findings)
+    call list_notes(report%errors, report%n_kept, report%n_error - report%n_kept, 'error', findings)
+    call list_notes(report%warnings, report%n_warning, report%n_dropped, 'warning', findings)
   end subroutine list_findings
 
-  !> How many messages of one kind there are beyond those that are kept.
-  pure subroutine add_rest(severity, n_more, findings)
+  !> Messages of one kind, and how many there are beyond those that are kept.
+  pure subroutine list_notes(notes, n, n_more, severity, findings)
+    type(note_t), intent(in), optional :: notes(:) !! absent: there are none
+    integer, intent(in) :: n, n_more
     character(*), intent(in) :: severity
-    integer, intent(in) :: n_more
     character(:), allocatable, intent(inout) :: findings
+    integer :: order(n), i
     type(spot_t) :: spot
 
+    if (.not. present(notes)) return
+    order = deck_order(notes(:n))
+    do i = 1, n
+      call add_finding(severity, notes(order(i))%spot, findings)
+    end do
     if (n_more < 1) return
     spot%message = 'and '//to_text(n_more)//' more '//severity//'s'
     call add_finding(severity, spot, findings)
-  end subroutine add_rest
-
-  !> Messages of one kind.
-  pure subroutine list_notes(notes, severity, findings)
-    type(note_t), intent(in) :: notes(:)
-    character(*), intent(in) :: severity
-    character(:), allocatable, intent(inout) :: findings
-    integer :: order(size(notes)), i
-
-    order = deck_order(notes)
-    do i = 1, size(notes)
-      call add_finding(severity, notes(order(i))%spot, findings)
-    end do
   end subroutine list_notes
 
   !> One more object; what is not known of its place is left out.

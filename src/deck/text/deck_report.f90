@@ -7,7 +7,7 @@ module deck_report_m
   use log_m, only : log_t, warn, to_text
   implicit none
   private
-  public :: report_t, note_t, spot_t, add_error, count_only, has_error, add_warning, &
+  public :: report_t, note_t, spot_t, add_error, count_only, add_warning, &
     emit_warnings, emit_errors, deck_order
 
   !> Errors kept, and warnings; what comes later is counted. Of a kind of errors that comes later
@@ -61,7 +61,8 @@ module deck_report_m
 
 contains
 
-  !> One more error, `line` giving its place in the order.
+  !> One more error, `line` giving its place in the order; the same one of the deck as a whole (line
+  !> 0) is told once.
   subroutine add_error(report, line, text, spot)
     type(report_t), intent(inout) :: report
     integer, intent(in) :: line
@@ -72,6 +73,9 @@ contains
 
     if (.not. allocated(report%errors)) &
       allocate (report%errors(max_kept + first_kept*max_kinds), report%kinds(max_kinds))
+    do k = 1, merge(report%n_kept, 0, line < 1)
+      if (report%errors(k)%line < 1 .and. report%errors(k)%text == text) return
+    end do
     report%n_error = report%n_error + 1
     if (allocated(spot%keyword)) then
       call find_kind(report, key_of(spot%keyword, spot%name, spot%message), k)
@@ -150,21 +154,6 @@ contains
     key = keyword//' '//text(:n)
   end function key_of
 
-  !> Whether an error of this text, which belongs to no line, is kept.
-  pure function has_error(report, text) result(found)
-    type(report_t), intent(in) :: report
-    character(*), intent(in) :: text
-    logical :: found
-    integer :: i
-
-    found = .false.
-    do i = 1, report%n_kept
-      if (report%errors(i)%line > 0) cycle
-      found = report%errors(i)%text == text
-      if (found) return
-    end do
-  end function has_error
-
   !> One more warning; warnings of the same key are given once.
   subroutine add_warning(report, line, key, text, spot)
     type(report_t), intent(inout) :: report
@@ -172,33 +161,24 @@ contains
     character(*), intent(in) :: key
     character(*), intent(in) :: text
     type(spot_t), intent(in) :: spot
+    integer :: i
 
     if (.not. allocated(report%warnings)) allocate (report%warnings(max_kept))
-    if (has_warning(report, key)) return
+    do i = report%n_warning, 1, -1
+      if (report%warnings(i)%key == key) return
+    end do
     if (report%n_warning == max_kept) then
       report%n_dropped = report%n_dropped + 1
       return
     end if
     report%n_warning = report%n_warning + 1
-    report%warnings(report%n_warning)%line = line
-    report%warnings(report%n_warning)%key = key
-    report%warnings(report%n_warning)%text = text
-    report%warnings(report%n_warning)%spot = spot
+    associate (note => report%warnings(report%n_warning))
+      note%line = line
+      note%key = key
+      note%text = text
+      note%spot = spot
+    end associate
   end subroutine add_warning
-
-  !> Whether a warning of this key has been given.
-  pure function has_warning(report, key) result(found)
-    type(report_t), intent(in) :: report
-    character(*), intent(in) :: key
-    logical :: found
-    integer :: i
-
-    found = .false.
-    do i = report%n_warning, 1, -1
-      found = report%warnings(i)%key == key
-      if (found) return
-    end do
-  end function has_warning
 
   !> Give all warnings to the log in deck order.
   subroutine emit_warnings(report, log)
