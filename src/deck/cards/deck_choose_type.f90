@@ -79,7 +79,7 @@ contains
       else if (has_friction(contact)) then
         scene = scene_friction
       else if (any(abs(along(given%motions%direction)) > aside) &
-        .or. any(abs(along(pack(given%rigid_motions%direction, &
+        .or. any(abs(along(pack([given%rigid_motions%direction], &
         given%rigid_motions%direction <= 2))) > aside)) then
         ! A prescribed motion, of nodes or rigid bodies, leads along the faces.
         scene = scene_led
