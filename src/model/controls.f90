@@ -258,7 +258,7 @@ contains
     logical, allocatable :: is_in(:)
     integer :: i, k, n, a, b
 
-    allocate (is_in(maxval(element_nodes)), source=.false.)
+    allocate (is_in(max(maxval(element_nodes), maxval(section%nodes))), source=.false.)
     is_in(section%nodes) = .true.
     allocate (edges(2, 4*size(section%elements)))
     n = 0

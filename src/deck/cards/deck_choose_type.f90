@@ -12,7 +12,6 @@ module deck_choose_type_m
   use log_m, only : to_text
   use model_m, only : model_t
   use text_m, only : shortest
-  use surfaces_m, only : surface_t
   use type_charts_m, only : scene_bound, scene_matching, scene_general, scene_led, &
     scene_friction, scene_names, estimates, cheapest_type
   implicit none
@@ -72,14 +71,19 @@ contains
     integer :: scene
     real(wp) :: along(2)
 
-    along = chord(model, contact%slave)
+    ! Unit vector from the first to the last node of a surface that is one open chain; else none.
+    along = 0.0_wp
+    associate (x => model%mesh%coordinates, nodes => contact%slave%nodes)
+      if (count(contact%slave%previous == 0) == 1) along = x(:, nodes(size(nodes))) - x(:, nodes(1))
+    end associate
+    if (norm2(along) > 0.0_wp) along = along/norm2(along)
     associate (given => model%conditions)
       if (contact%penalty_unit == penalty_implicit .or. contact%strict .or. is_tied(contact)) then
         scene = scene_bound
       else if (has_friction(contact)) then
         scene = scene_friction
       else if (any(abs(along(given%motions%direction)) > aside) &
-        .or. any(abs(along(pack(given%rigid_motions%direction, &
+        .or. any(abs(along(pack([given%rigid_motions%direction], &
         given%rigid_motions%direction <= 2))) > aside)) then
         ! A prescribed motion, of nodes or rigid bodies, leads along the faces.
         scene = scene_led
@@ -138,20 +142,6 @@ contains
       end if
     end associate
   end subroutine decide_by_charts
-
-  !> Unit vector from the first to the last node of a surface that is one open chain; else none.
-  pure function chord(model, surface) result(along)
-    type(model_t), intent(in) :: model
-    type(surface_t), intent(in) :: surface
-    real(wp) :: along(2)
-
-    along = 0.0_wp
-    if (count(surface%previous == 0) /= 1) return
-    associate (x => model%mesh%coordinates, nodes => surface%nodes)
-      along = x(:, nodes(size(nodes))) - x(:, nodes(1))
-    end associate
-    if (norm2(along) > 0.0_wp) along = along/norm2(along)
-  end function chord
 
   !> Whether nothing starts or pulls one face along the other: initial velocities, loads on nodes,
   !> edges and bodies, base acceleration.

@@ -18,7 +18,7 @@ module deck_contacts_m
   use deck_contact_sides_m, only : outline_t, find_side, set_nodes, mark_surface, find_surface, &
     check_overlap
   use deck_control_m, only : control_cards, warn_of_explicit
-  use deck_friction_m, only : default_friction_t, take_default_friction, warn_of_unused
+  use deck_friction_m, only : default_friction_t, take_rule, warn_of_unused
   use deck_loads_m, only : settle_pressures
   use deck_overrides_m, only : check_words
   use deck_values_m, only : integer_of, real_of, has_field, place_of, refuse_again
@@ -89,7 +89,8 @@ contains
       model%controls%penalty_scale = real_of(cards(1), 'SLSFAC')
       model%controls%contact_step = integer_of(cards(2), 'ECDT')
       if (model%controls%implicit%is_on) call warn_of_explicit(deck, cards(2), 'ECDT')
-      call take_default_friction(cards(3), default)
+      call take_rule(cards(3), cards(3), ['SFRIC', 'DFRIC', 'EDC  ', 'VFC  '], default%rule, &
+        default%place)
     end do
     blocks = blocks_of(deck, 'CONTACT_')
     measures = deck%blocks(blocks)%name == transducer
@@ -342,10 +343,12 @@ contains
     integer, parameter :: most = 4 !! owners of a node that are known
     integer, allocatable :: owners(:, :), told(:), nodes(:), others(:)
     character(:), allocatable :: name
-    integer :: i, k, n, free
+    integer :: i, k, n, free, n_contact, n_wall
 
-    n = size(contacts) + 1
-    if (allocated(model%walls)) n = n + size(model%walls)
+    n_contact = size(contacts)
+    n_wall = 0
+    if (allocated(model%walls)) n_wall = size(model%walls)
+    n = n_contact + n_wall + 1
     if (allocated(model%conditions%common_motions)) n = n + size(model%conditions%common_motions)
     allocate (owners(most, model%mesh%n_node), source=0)
     do i = 1, n
@@ -379,25 +382,16 @@ contains
       integer, intent(in) :: owner
       integer, allocatable, intent(out) :: nodes(:)
       character(:), allocatable, intent(out) :: name
-      integer :: k
 
       allocate (nodes(0))
-      k = owner - size(contacts)
-      if (k <= 0) then
+      if (owner <= n_contact) then
         nodes = [contacts(owner)%contact%slave%nodes, contacts(owner)%contact%master%nodes]
         name = 'interface '//to_text(contacts(owner)%contact%id)
-        return
-      end if
-      if (allocated(model%walls)) then
-        if (k <= size(model%walls)) then
-          nodes = model%walls(k)%nodes
-          name = 'rigid wall '//to_text(model%walls(k)%id)
-          return
-        end if
-        k = k - size(model%walls)
-      end if
-      if (owner < n) then
-        nodes = model%conditions%common_motions(k)%nodes
+      else if (owner <= n_contact + n_wall) then
+        nodes = model%walls(owner - n_contact)%nodes
+        name = 'rigid wall '//to_text(model%walls(owner - n_contact)%id)
+      else if (owner < n) then
+        nodes = model%conditions%common_motions(owner - n_contact - n_wall)%nodes
         name = 'a set of nodes that move alike'
       else
         if (allocated(model%conditions%skew_supports)) nodes = model%conditions%skew_supports%node

@@ -68,7 +68,7 @@ contains
     end do
     model%conditions%nodal_loads = loads(:n)
     is_axis = mark_axis(model)
-    call warn_of_nodes(deck, first_radial, 'radial load', model, pack(loads(:n)%node, &
+    call warn_of_nodes(deck, first_radial, 'radial load', model, pack([loads(:n)%node], &
       is_axis(loads(:n)%node) .and. loads(:n)%direction == 1), ' load(s) in r act on nodes on ' &
       //'the axis (x = 0), which do not move in r: they do nothing; the first is on node ', '')
   end subroutine read_nodal_loads

@@ -109,9 +109,8 @@ contains
     allocate (fixed(2, model%mesh%n_node), source=.false.)
     do i = 1, model%mesh%n_node
       if (codes(i) >= 0 .and. codes(i) <= 7) fixed(:, i) = along_axes(:2, codes(i))
-      if (owner(i) > 0 .and. any(fixed(:, i))) call reject_field(deck, &
-        place_t(deck%maps(a_node)%lines(i), 1, 'TC'), ': node '//follows(model, i, owner(i)) &
-        //'CON1 and CON2 of *MAT_RIGID hold the body')
+      if (any(fixed(:, i))) call refuse_rigid(deck, place_t(deck%maps(a_node)%lines(i), 1, 'TC'), &
+        [i], owner, model, 'CON1 and CON2 of *MAT_RIGID hold the body')
       if (is_free(i)) fixed(:, i) = .true.
     end do
     nodes = pack([(i, i=1, size(is_free))], is_free .and. model%mesh%n_element > 0 &
@@ -122,7 +121,7 @@ contains
       if (any(card%bad)) cycle
       call card_nodes(deck, card, model, nodes)
       along = [integer_of(card, 'DOFX'), integer_of(card, 'DOFY')] == 1
-      if (any(along)) call refuse_rigid(deck, card, nodes, owner, model, &
+      if (any(along)) call refuse_rigid(deck, place_t(card%line, 1, field=1), nodes, owner, model, &
         'CON1 and CON2 of *MAT_RIGID hold the body')
       if (integer_of(card, 'CID') /= 0) then
         call fix_along_axes(deck, card, along, nodes, model, fixed)
@@ -187,28 +186,19 @@ contains
   !> Nodes of a rigid body follow the body: nothing else may hold or move them. (LS-DYNA passes over
   !> such constraints or turns them into some of the body, according to its version.) One error for
   !> each card.
-  subroutine refuse_rigid(deck, card, nodes, owner, model, advice)
+  subroutine refuse_rigid(deck, place, nodes, owner, model, advice)
     type(deck_t), intent(inout) :: deck
-    type(card_t), intent(inout) :: card
+    type(place_t), intent(in) :: place
     integer, intent(in) :: nodes(:), owner(:)
     type(model_t), intent(in) :: model
     character(*), intent(in) :: advice
     integer :: i
 
     i = findloc(owner(nodes) > 0, .true., dim=1)
-    if (i > 0) call report_field(deck, card, 1, ': node '//follows(model, nodes(i), &
-      owner(nodes(i)))//advice)
+    if (i > 0) call reject_field(deck, place, ': node '//to_text(model%mesh%node_id(nodes(i))) &
+      //' belongs to rigid part '//to_text(model%parts(model%rigids(owner(nodes(i)))%part)%id) &
+      //' and follows it; '//advice)
   end subroutine refuse_rigid
-
-  !> Node and body of a message.
-  pure function follows(model, node, body) result(text)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: node, body
-    character(:), allocatable :: text
-
-    text = to_text(model%mesh%node_id(node))//' belongs to rigid part ' &
-      //to_text(model%parts(model%rigids(body)%part)%id)//' and follows it; '
-  end function follows
 
   !> *BOUNDARY_PRESCRIBED_MOTION_: of nodes and of rigid bodies.
   subroutine read_motions(deck, owner, fixed, model)
@@ -239,7 +229,7 @@ contains
         cycle
       end if
       call card_nodes(deck, card, model, nodes)
-      call refuse_rigid(deck, card, nodes, owner, model, &
+      call refuse_rigid(deck, place_t(card%line, 1, field=1), nodes, owner, model, &
         '*BOUNDARY_PRESCRIBED_MOTION_RIGID moves the body')
       if (motion%kind == motion_acceleration .and. is_static) call report_field(deck, card, 'VAD', &
         'is an acceleration, which has no meaning in statics ' &

@@ -21,6 +21,8 @@ contains
   subroutine read_velocities(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
+    type(cursor_t) :: cursor
+    type(card_t) :: card
     real(wp), allocatable :: velocity(:, :)
     integer, allocatable :: blocks(:), held(:)
     integer :: i, node, turn, lines(2)
@@ -33,15 +35,21 @@ contains
       do i = 1, size(blocks)
         is_generation = deck%blocks(blocks(i))%name == 'INITIAL_VELOCITY_GENERATION'
         if (is_generation .neqv. turn == 2) cycle
+        call open_cursor(deck, blocks(i), cursor)
         select case (deck%blocks(blocks(i))%name)
         case ('INITIAL_VELOCITY_RIGID_BODY')
-          call read_rigid_velocities(deck, blocks(i), model)
+          call read_rigid_velocities(deck, cursor, model)
         case ('INITIAL_VELOCITY_NODE')
-          call read_node_velocities(deck, blocks(i), lines(1), velocity)
+          do while (next_row(deck, cursor, 1, card))
+            if (any(card%bad)) cycle
+            if (lines(1) == 0) lines(1) = card%line
+            call find_id(deck, a_node, card, 'NID', node)
+            if (node > 0) velocity(:, node) = reals_of(card, 'VX', 'VY')
+          end do
         case ('INITIAL_VELOCITY')
-          call read_velocity(deck, blocks(i), model, lines(2), velocity)
+          call read_velocity(deck, cursor, model, lines(2), velocity)
         case default
-          call read_generation(deck, blocks(i), model, lines(2), velocity)
+          call read_generation(deck, cursor, model, lines(2), velocity)
         end select
       end do
     end do
@@ -60,39 +68,18 @@ contains
     call move_alloc(velocity, model%conditions%initial_velocity)
   end subroutine read_velocities
 
-  !> *INITIAL_VELOCITY_NODE.
-  subroutine read_node_velocities(deck, i_block, first_line, velocity)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    integer, intent(inout) :: first_line    !! of all such cards, 0: none yet
-    real(wp), intent(inout) :: velocity(:, :)
-    type(cursor_t) :: cursor
-    type(card_t) :: card
-    integer :: node
-
-    call open_cursor(deck, i_block, cursor)
-    do while (next_row(deck, cursor, 1, card))
-      if (any(card%bad)) cycle
-      if (first_line == 0) first_line = card%line
-      call find_id(deck, a_node, card, 'NID', node)
-      if (node > 0) velocity(:, node) = reals_of(card, 'VX', 'VY')
-    end do
-  end subroutine read_node_velocities
-
   !> *INITIAL_VELOCITY: a set or all nodes, less those of a second set, which have a velocity of
   !> their own.
-  subroutine read_velocity(deck, i_block, model, first_line, velocity)
+  subroutine read_velocity(deck, cursor, model, first_line, velocity)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
+    type(cursor_t), intent(inout) :: cursor
     type(model_t), intent(in) :: model
     integer, intent(inout) :: first_line
     real(wp), intent(inout) :: velocity(:, :)
-    type(cursor_t) :: cursor
     type(card_t) :: cards(3)
     logical :: is_chosen(model%mesh%n_node)
     integer :: set, others, i
 
-    call open_cursor(deck, i_block, cursor)
     call next_card(deck, cursor, 1, cards(1))
     call next_card(deck, cursor, 2, cards(2))
     if (integer_of(cards(1), 'NSIDEX') /= 0) call next_card(deck, cursor, 3, cards(3))
@@ -119,21 +106,19 @@ contains
   end subroutine read_velocity
 
   !> *INITIAL_VELOCITY_GENERATION: translation and spin about an axis along z.
-  subroutine read_generation(deck, i_block, model, first_line, velocity)
+  subroutine read_generation(deck, cursor, model, first_line, velocity)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
+    type(cursor_t), intent(inout) :: cursor
     type(model_t), intent(in) :: model
     integer, intent(inout) :: first_line
     real(wp), intent(inout) :: velocity(:, :)
     character(*), parameter :: turned = &
       'turns the axis out of z; in the plane bodies spin about z'
-    type(cursor_t) :: cursor
     type(card_t) :: card, axis
     logical :: is_chosen(model%mesh%n_node)
     real(wp) :: spin, centre(2), ahead(2)
     integer :: i
 
-    call open_cursor(deck, i_block, cursor)
     call next_card(deck, cursor, 1, card)
     call next_card(deck, cursor, 2, axis)
     call check_rest(deck, cursor)
@@ -186,15 +171,13 @@ contains
   end subroutine choose_nodes
 
   !> *INITIAL_VELOCITY_RIGID_BODY: it comes before what nodes of the body are given.
-  subroutine read_rigid_velocities(deck, i_block, model)
+  subroutine read_rigid_velocities(deck, cursor, model)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
+    type(cursor_t), intent(inout) :: cursor
     type(model_t), intent(inout) :: model
-    type(cursor_t) :: cursor
     type(card_t) :: card
     integer :: body
 
-    call open_cursor(deck, i_block, cursor)
     do while (next_row(deck, cursor, 1, card))
       if (any(card%bad)) cycle
       call find_body(deck, card, model, &
