@@ -41,7 +41,7 @@ contains
     allocate (of_slots(8, chunk_size, model%layout%n_chunk))
     do i = 1, size(list)
       if (list(i) < chunks(1) .or. list(i) > chunks(2)) cycle
-      call take_values(tile_of(list(i)), elements, present_values)
+      call take_values(tile_t(list(i), list(i)), elements, present_values)
       if (present(before)) call put_values(before(i), elements)
       if (model%erodes) then
         call advance_eroding_chunk(model, list(i), motion, times, elements, chunk)
@@ -78,18 +78,9 @@ contains
     list = cut_chunks(model)
     if (.not. allocated(kept)) allocate (kept(size(list)))
     do i = 1, size(list)
-      call take_values(tile_of(list(i)), elements, kept(i))
+      call take_values(tile_t(list(i), list(i)), elements, kept(i))
     end do
   end subroutine keep_cut_chunks
-
-  !> A chunk alone.
-  pure function tile_of(i_chunk) result(tile)
-    integer, intent(in) :: i_chunk
-    type(tile_t) :: tile
-
-    tile%first_chunk = i_chunk
-    tile%last_chunk = i_chunk
-  end function tile_of
 
   !> Chunks with elements of cross sections, each once, rising.
   pure function cut_chunks(model) result(list)

@@ -30,7 +30,6 @@ contains
 
     weights = 1.0_wp
     if (present(rates)) weights = rates
-
     do i = 1, model%mesh%n_element
       mass = factor*element_mass(model, i)
       associate (nodes => model%mesh%element_nodes(:, i))

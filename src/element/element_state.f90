@@ -14,9 +14,8 @@ module element_state_m
   use volumetric_m, only : log_ratio, volumetric_energy
   implicit none
   private
-  public :: start_erosion, element_stresses, element_plastic_strains, &
-    element_heats, add_part_energies, smallest_ratio, settle_erosion, element_erosion, is_gone, &
-    stress_of_slot, plastic_strain_of_slot, initial_volume, hoop_strains, &
+  public :: start_erosion, settle_erosion, is_gone, stress_of_slot, plastic_strain_of_slot, &
+    find_heat, hoop_strain_of_slot, initial_volume, smallest_ratio, add_part_energies, &
     count_points, first_failed
 
 contains
@@ -36,22 +35,15 @@ contains
         erosion%impulse(layout%n_slot), source=0.0_wp)
       do i_slot = 1, layout%n_slot
         if (layout%slot_element(i_slot) == 0) cycle
-        do k = 1, corners_of(layout%slot_nodes(:, i_slot))
-          associate (node => layout%slot_nodes(k, i_slot))
-            erosion%n_element(node) = erosion%n_element(node) + 1
-          end associate
-        end do
+        associate (nodes => layout%slot_nodes(:, i_slot))
+          ! A triangle repeats its third node.
+          do k = 1, merge(3, 4, nodes(4) == nodes(3))
+            erosion%n_element(nodes(k)) = erosion%n_element(nodes(k)) + 1
+          end do
+        end associate
       end do
     end associate
   end subroutine start_erosion
-
-  !> Corners of an element: a triangle repeats its third node.
-  pure function corners_of(nodes) result(n)
-    integer, intent(in) :: nodes(4)
-    integer :: n
-
-    n = merge(3, 4, nodes(4) == nodes(3))
-  end function corners_of
 
   !> Elements that have left the mesh in this cycle: their energies leave the account, and their
   !> nodes have one element less. Slot by slot, so that sums do not depend on threads.
@@ -73,25 +65,13 @@ contains
       erosion%took(3) = erosion%took(3) + erosion%hourglass(slot)
       associate (part => slot_part(model%layout, slot), nodes => model%layout%slot_nodes(:, slot))
         erosion%n_eroded(part) = erosion%n_eroded(part) + 1
-        do k = 1, corners_of(nodes)
+        do k = 1, merge(3, 4, nodes(4) == nodes(3))
           erosion%n_element(nodes(k)) = erosion%n_element(nodes(k)) - 1
           if (erosion%n_element(nodes(k)) == 0) freed = [freed, nodes(k)]
         end do
       end associate
     end do
   end subroutine settle_erosion
-
-  !> Which elements have left the mesh, in deck order.
-  subroutine element_erosion(model, elements, eroded)
-    type(model_t), intent(in) :: model
-    type(block_state_t), intent(in) :: elements
-    real(wp), intent(inout) :: eroded(:) !! (n_element) 1 or 0
-    integer :: i
-
-    do i = 1, size(eroded)
-      eroded(i) = merge(1.0_wp, 0.0_wp, is_gone(elements, model%layout%element_slot(i)))
-    end do
-  end subroutine element_erosion
 
   !> Whether the element in a slot has left the mesh.
   pure function is_gone(elements, slot) result(gone)
@@ -103,28 +83,8 @@ contains
     if (gone) gone = elements%erosion%status(slot) /= stays
   end function is_gone
 
-  !> Cauchy stress of all elements in deck order: xx yy zz xy; yz and xz stay zero. The slots are
-  !> walked, whose streams and nodes lie side by side.
-  subroutine element_stresses(model, motion, elements, stress)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: motion(:, :)
-    type(block_state_t), intent(in) :: elements
-    real(wp), intent(inout) :: stress(:, :) !! (6, n_element)
-    integer :: i, slot
-
-    do slot = 1, model%layout%n_slot
-      i = model%layout%slot_element(slot)
-      if (i == 0) cycle
-      if (is_gone(elements, slot)) then
-        stress(:, i) = 0.0_wp
-      else
-        stress(1:4, i) = stress_of_slot(model, motion, elements, slot)
-      end if
-    end do
-  end subroutine element_stresses
-
-  !> That of the element in a slot: xx yy zz xy, in round bodies rr, zz, hoop and rz; the mean over
-  !> the present volume where an element has several points.
+  !> Cauchy stress of the element in a slot: xx yy zz xy, in axisymmetric bodies rr, zz, hoop and
+  !> rz; the mean over the present volume where an element has several points.
   pure function stress_of_slot(model, motion, elements, slot) result(stress)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)
@@ -145,20 +105,7 @@ contains
     stress = [s(1) + volumetric, s(2) + volumetric, volumetric - (s(1) + s(2)), s(3)]
   end function stress_of_slot
 
-  !> Effective plastic strain of all elements in deck order.
-  subroutine element_plastic_strains(model, elements, plastic_strain)
-    type(model_t), intent(in) :: model
-    type(block_state_t), intent(in) :: elements
-    real(wp), intent(inout) :: plastic_strain(:) !! (n_element)
-    integer :: slot
-
-    do slot = 1, model%layout%n_slot
-      if (model%layout%slot_element(slot) > 0) plastic_strain(model%layout%slot_element(slot)) = &
-        plastic_strain_of_slot(model, elements, slot)
-    end do
-  end subroutine element_plastic_strains
-
-  !> That of the element in a slot, 0 in elastic parts.
+  !> Effective plastic strain of the element in a slot, 0 in elastic parts.
   function plastic_strain_of_slot(model, elements, slot) result(plastic_strain)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -170,26 +117,21 @@ contains
       plastic_strain = history_of_slot(model, elements, slot, 1)
   end function plastic_strain_of_slot
 
-  !> Temperature and damage of all elements in deck order, 0 in parts that keep none.
-  subroutine element_heats(model, elements, temperature, damage)
+  !> Temperature and damage of the element in a slot, 0 in parts that keep none.
+  subroutine find_heat(model, elements, slot, temperature, damage)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
-    real(wp), intent(inout) :: temperature(:), damage(:) !! (n_element)
-    integer :: slot
+    integer, intent(in) :: slot
+    real(wp), intent(out) :: temperature, damage
 
     temperature = 0.0_wp
     damage = 0.0_wp
-    do slot = 1, model%layout%n_slot
-      if (model%layout%slot_element(slot) == 0) cycle
-      associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material), &
-        i => model%layout%slot_element(slot))
-        if (.not. has_memory_of_heat(material)) cycle
-        temperature(i) = material%flow%room + history_of_slot(model, elements, slot, &
-          column_temperature)
-        damage(i) = history_of_slot(model, elements, slot, column_damage)
-      end associate
-    end do
-  end subroutine element_heats
+    associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material))
+      if (.not. has_memory_of_heat(material)) return
+      temperature = material%flow%room + history_of_slot(model, elements, slot, column_temperature)
+      damage = history_of_slot(model, elements, slot, column_damage)
+    end associate
+  end subroutine find_heat
 
   !> One value of the history of the element in a slot, the mean over the initial volume where it
   !> has several points.
@@ -271,25 +213,21 @@ contains
     end if
   end function initial_volume
 
-  !> Logarithmic hoop strain of all elements in deck order: ln of the mean radius, over the initial
-  !> area, that the motion gives, over that of the start.
-  subroutine hoop_strains(model, motion, strain)
+  !> Logarithmic hoop strain of the element in a slot: ln of the mean radius, over the initial area,
+  !> that the motion gives, over that of the start.
+  pure function hoop_strain_of_slot(model, motion, slot) result(strain)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)     !! (4, n_node)
-    real(wp), intent(inout) :: strain(:)     !! (n_element)
+    integer, intent(in) :: slot
+    real(wp) :: strain
     real(wp) :: x(2, 4), u(2, 4), areas(n_point)
-    integer :: i, slot
 
-    do slot = 1, model%layout%n_slot
-      i = model%layout%slot_element(slot)
-      if (i == 0) cycle
-      x = model%mesh%coordinates(:, model%layout%slot_nodes(:, slot))
-      u = motion(1:2, model%layout%slot_nodes(:, slot))
-      areas = point_areas(x)
-      strain(i) = log_ratio(sum(areas*matmul(u(1, :), shape_at_points)) &
-        /sum(areas*matmul(x(1, :), shape_at_points)))
-    end do
-  end subroutine hoop_strains
+    x = model%mesh%coordinates(:, model%layout%slot_nodes(:, slot))
+    u = motion(1:2, model%layout%slot_nodes(:, slot))
+    areas = point_areas(x)
+    strain = log_ratio(sum(areas*matmul(u(1, :), shape_at_points)) &
+      /sum(areas*matmul(x(1, :), shape_at_points)))
+  end function hoop_strain_of_slot
 
   !> J - 1 at the points of the element in a slot, and the initial area or volume of each.
   pure subroutine ratios_of_points(elements, slot, u, stretch, start)
@@ -384,14 +322,12 @@ contains
 
     i_chunk = findloc(elements%n_failed > 0, .true., dim=1)
     failed = .false.
-    associate (part => model%parts(model%layout%chunk_part(i_chunk)))
-      associate (material => model%materials(part%material))
-        do k = 1, point_count(model%sections(part%section))
-          call find_failed(material, elements%history(elements%history_start(i_chunk) &
-            + (k - 1)*chunk_size*history_size(material)), one, ignored)
-          failed = failed .or. one
-        end do
-      end associate
+    associate (material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
+      do k = 1, merge(n_point, 1, elements%point_start(i_chunk) > 0)
+        call find_failed(material, elements%history(elements%history_start(i_chunk) &
+          + (k - 1)*chunk_size*history_size(material)), one, ignored)
+        failed = failed .or. one
+      end do
     end associate
     slot = (i_chunk - 1)*chunk_size + findloc(failed, .true., dim=1)
   end function first_failed

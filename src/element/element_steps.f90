@@ -18,7 +18,7 @@ module element_steps_m
   implicit none
   private
   public :: chunk_steps, scaled_step, is_damped, find_smallest_steps, own_steps, &
-    has_exposed, exposed_step, start_retardation
+    exposed_step, start_retardation
 
   !> Gradients of the shape functions and what the step takes of the element besides.
   type :: gradients_t
@@ -217,17 +217,6 @@ contains
     end associate
   end function is_damped
 
-  !> Whether elements of a chunk are exposed.
-  pure function has_exposed(elements, i_chunk) result(has)
-    type(block_state_t), intent(in) :: elements
-    integer, intent(in) :: i_chunk
-    logical :: has
-
-    has = .false.
-    if (allocated(elements%mass_shares)) has = any(elements%mass_shares(:, (i_chunk &
-      - 1)*chunk_size + 1:i_chunk*chunk_size) > 0.0_wp)
-  end function has_exposed
-
   !> Stable step, s, of a plane one-point quad in a slot whose nodes carry hardly any mass but their
   !> own, with the mass of its density; huge where it is not exposed. A node moves as if the rest of
   !> its mass belonged to mirror images of the element: one component of its acceleration is that of
@@ -247,7 +236,6 @@ contains
     real(wp), parameter :: one(4) = 1.0_wp
 
     step = huge(step)
-    if (.not. allocated(elements%mass_shares)) return
     associate (part => model%parts(model%layout%chunk_part((slot - 1)/chunk_size + 1)), &
       shares => elements%mass_shares(:, slot))
       if (.not. any(shares > 0.0_wp)) return

@@ -5,7 +5,7 @@
 module element_stiffness_m
   use block_state_m, only : block_state_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
-  use element_tangent_m, only : element_t, shape_t, n_pattern, new_element, form_shapes, &
+  use element_tangent_m, only : element_t, shape_t, n_pattern, new_element, take_values, &
     form_full_force, form_gradient, find_stress, pressure_of, start_volumes, twice_area, products, &
     cross
   use hourglass_m, only : form_moduli
@@ -46,7 +46,7 @@ contains
     integer, intent(in) :: equation(:, :)            !! (2, n_node) equation numbers, 0 = none
     type(sparse_t), intent(inout) :: matrix          !! started, not compressed
     type(element_t) :: element
-    real(wp) :: block(8, 8), u(2, 4), du(2, 4)
+    real(wp) :: block(8, 8), du(2, 4)
     integer :: equations(8), i_chunk, slot
 
     element = new_element(model%is_round)
@@ -59,9 +59,11 @@ contains
             equations = reshape(equation(:, nodes), [8])
             if (all(equations == 0)) cycle
             element%x = model%mesh%coordinates(:, nodes)
-            u = motion(1:2, nodes)
+            element%u = motion(1:2, nodes)
             du = dt*motion(3:4, nodes)
-            call form_shapes(u, du, element)
+            call take_values(element%x + element%u, element%now)
+            call take_values(element%x + element%u - 0.5_wp*du, element%middle)
+            call take_values(du, element%change)
             call load_points(i_chunk, mod(slot - 1, chunk_size), history_size(material), &
               committed, element)
             call form_block(material, part%hourglass, committed%point_start(i_chunk) > 0, element, &

@@ -6,7 +6,6 @@
 module eos_pressure_m
   use block_state_m, only : block_state_t
   use element_chunk_m, only : element_chunk_t
-  use eos_dispatch_m, only : eos_chunk_t, form_eos, advance_energy, find_stiffness
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use material_dispatch_m, only : find_failed, column_damage, history_size
@@ -16,6 +15,7 @@ module eos_pressure_m
   use quad_points_m, only : n_point
   use stable_step_m, only : moduli_t, moduli_of
   use stress_chunk_m, only : stress_chunk_t
+  use volumetric_m, only : eos_chunk_t, form_eos, advance_energy, find_stiffness
   implicit none
   private
   public :: n_eos_value, n_law_value, load_point_state, start_point_values, add_point_values, &

@@ -99,7 +99,7 @@ contains
     type(leaving_t), intent(in) :: leaving
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(in) :: chunk
-    real(wp) :: steps(chunk_size), limit, volume, share
+    real(wp) :: steps(chunk_size), limit, volume, share, v(2, 4)
     integer :: i, slot, i_eos
 
     limit = huge(1.0_wp)
@@ -118,7 +118,11 @@ contains
         cycle
       end if
       ! Its force at the end of the step does no work any more: half of that of the step is undone.
-      share = 0.5_wp*dt*power_of(model, slot, i, motion, chunk)
+      v = motion(3:4, model%layout%slot_nodes(:, slot))
+      share = dot_product(chunk%force3(:, i), v(:, 3) - v(:, 1)) + dot_product(chunk%force4(:, i), &
+        v(:, 4) - v(:, 2)) + dot_product(chunk%swing(:, i), v(:, 1) - v(:, 2) + v(:, 3) - v(:, 4))
+      if (chunk%is_round) share = share + chunk%hoop(i)*sum(v(1, :))
+      share = 0.5_wp*dt*share
       if (elements%eos_state(i_eos + 2*chunk_size + i - 1) > -1.0_wp .and. abs(share) &
         <= huge(1.0_wp)) then
         elements%erosion%internal(slot) = elements%eos_state(i_eos + i - 1) &
@@ -136,21 +140,6 @@ contains
     elements%volume_limit(i_chunk) = volume
   end subroutine take_out
 
-  !> Power of the forces of an element on the motion of its nodes in the step behind.
-  pure function power_of(model, slot, i, motion, chunk) result(power)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: slot, i
-    real(wp), intent(in), contiguous :: motion(:, :)
-    type(element_chunk_t), intent(in) :: chunk
-    real(wp) :: power
-    real(wp) :: v(2, 4)
-
-    v = motion(3:4, model%layout%slot_nodes(:, slot))
-    power = dot_product(chunk%force3(:, i), v(:, 3) - v(:, 1)) + dot_product(chunk%force4(:, i), &
-      v(:, 4) - v(:, 2)) + dot_product(chunk%swing(:, i), v(:, 1) - v(:, 2) + v(:, 3) - v(:, 4))
-    if (chunk%is_round) power = power + chunk%hoop(i)*sum(v(1, :))
-  end function power_of
-
   !> From now on the slot is padding.
   pure subroutine make_padding(model, i_chunk, i, elements)
     type(model_t), intent(in) :: model
@@ -166,11 +155,9 @@ contains
       if (size(reference, 2) > n) reference(slot, n + 1:) = reference(slot, n + 1:)/much**3
       elements%deviator(slot, :) = 0.0_wp
       n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
-      if (n > 1) then
-        do k = 0, 3*n - 1
-          elements%point_deviator(elements%point_start(i_chunk) + k*chunk_size + i - 1) = 0.0_wp
-        end do
-      end if
+      do k = 0, merge(3*n, 0, n > 1) - 1
+        elements%point_deviator(elements%point_start(i_chunk) + k*chunk_size + i - 1) = 0.0_wp
+      end do
       ! Plastic strain, temperature and damage are told on as they were; back stress would pull.
       n = merge(n, 0, elements%history_start(i_chunk) > 0)*history_size(material)
       do k = 0, n - 1

@@ -23,7 +23,7 @@ module quad_m
   use stable_step_m, only : moduli_t, moduli_of, stable_step, axisymmetric_step, full_step, &
     axisymmetric_full_step
   use stress_chunk_m, only : stress_chunk_t, load_deviator, store_deviator, work_of_deviator
-  use volumetric_m, only : volumetric_stress, largest_size, add_bulk_viscosity, viscous_start, &
+  use volumetric_m, only : volumetric_stress, largest_size, add_bulk_viscosity, &
     add_viscous_deviator, add_viscous_pressure
   implicit none
   private
@@ -216,7 +216,7 @@ contains
     call add_viscosity(i_chunk, material, hourglass, dt, elements, chunk)
     if (is_damped) call add_viscous_pressure(material%bulk, elements%retardation((i_chunk &
       - 1)*chunk_size + 1), chunk%trace, chunk%mid_area, dt, chunk%pressure, &
-      elements%damping_stress(viscous_start(i_chunk, 1) + 3*chunk_size), &
+      elements%damping_stress(chunk_size*(16*(i_chunk - 1) + 3) + 1), &
       elements%damping_work(i_chunk))
   end subroutine form_mean_pressure
 
@@ -365,7 +365,8 @@ contains
     type(element_chunk_t), intent(inout) :: point
     type(stress_chunk_t), intent(inout) :: stress
 
-    associate (n => viscous_start(i_chunk, k), first => (i_chunk - 1)*chunk_size + 1)
+    associate (n => 4*chunk_size*(4*(i_chunk - 1) + (k - 1)) + 1, &
+      first => (i_chunk - 1)*chunk_size + 1)
       call add_viscous_deviator(material%shear, elements%retardation(first), point%mid_area, &
         stress, elements%damping_stress(n), elements%damping_work(i_chunk))
       if (has_pressure) call add_viscous_pressure(material%bulk, elements%retardation(first), &
