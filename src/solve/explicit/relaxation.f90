@@ -63,6 +63,8 @@ contains
     end if
     allocate (force(2, model%layout%n_local))
     share = 1.0_wp
+    ! The first step follows from the elements at time zero: a cycle that moves nothing.
+    if (.not. state%dt > 0.0_wp) call relax_once(relaxing, force, state)
     associate (rules => model%controls%relaxation)
       do n = state%relaxation%n + 1, most_cycles
         call relax_once(relaxing, force, state)
@@ -129,31 +131,26 @@ contains
     state%time = 0.0_wp
   end subroutine heed_requests
 
-  !> One cycle of relaxation: v(n+1/2) = DRFCTR v(n-1/2) + h a.
+  !> One cycle of relaxation, v(n+1/2) = DRFCTR v(n-1/2) + h a, and the step of the next one.
   subroutine relax_once(model, force, state)
     type(model_t), intent(in) :: model
     real(wp), intent(inout), contiguous :: force(:, :) !! work array of a tile
     type(state_t), intent(inout) :: state
     type(motion_sums_t) :: unused
     type(leap_t) :: leap
-    real(wp) :: global(2)
+    real(wp) :: global(2), limit, wanted
     real(wp), parameter :: none(2) = 0.0_wp
     integer :: i
 
     global = none
     call apply_loads(model, state, global, unused)
-    ! The first step follows from the elements at time zero, which the forces below leave.
-    if (.not. state%dt > 0.0_wp) then
-      do i = 1, size(model%layout%tiles)
-        call advance_tile(model, i, state, force)
-      end do
-      call choose_step(model, state)
-    end if
     leap = make_leap(state%dt_before, state%dt, none, state%body_acceleration)
     leap%keep = model%controls%relaxation%factor
     do i = 1, size(model%layout%tiles)
-      call advance_tile(model, i, state, force)
       associate (tile => model%layout%tiles(i))
+        call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
+        if (needs_refinement(state%elements)) &
+          call refine_limits(model, tile, state%motion, state%dt_before, state%elements)
         call share_tile_forces(tile, force, state%force_slots)
         call move_tile_nodes(leap, tile%first_node, tile%last_node, force, state%inverse_mass, &
           state%motion)
@@ -166,36 +163,14 @@ contains
     end associate
     state%time = state%time + state%dt
     state%dt_before = state%dt
-    call choose_step(model, state)
-  end subroutine relax_once
-
-  !> Forces of one tile, and its limits.
-  subroutine advance_tile(model, i, state, force)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i
-    type(state_t), intent(inout) :: state
-    real(wp), intent(inout), contiguous :: force(:, :)
-
-    associate (tile => model%layout%tiles(i))
-      call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
-      if (needs_refinement(state%elements)) &
-        call refine_limits(model, tile, state%motion, state%dt_before, state%elements)
-    end associate
-  end subroutine advance_tile
-
-  !> TSSFDR, or what the run takes, times the limit; held while that rises by little.
-  pure subroutine choose_step(model, state)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    real(wp) :: limit, wanted
-
-    limit = min(minval(state%elements%time_limit), volume_step(state%dt_before, &
-      state%dt_before, maxval(state%elements%volume_change)))
+    ! TSSFDR, or what the run takes, times the limit; held while that rises by little.
+    limit = min(minval(state%elements%time_limit), volume_step(state%dt, state%dt, &
+      maxval(state%elements%volume_change)))
     wanted = scaled_step(model, limit, 0.0_wp)
     if (model%controls%relaxation%step_scale > 0.0_wp) &
       wanted = model%controls%relaxation%step_scale*limit
     if (wanted < state%dt .or. wanted > (1.0_wp + least_rise)*state%dt) state%dt = wanted
-  end subroutine choose_step
+  end subroutine relax_once
 
   !> Kinetic energy beyond that of the mean velocity.
   pure function own_energy(state) result(energy)
