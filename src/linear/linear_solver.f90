@@ -6,12 +6,11 @@
 !> small, else sparse. Theory: doc/theory/implicit.md, "Linear systems".
 module linear_solver_m
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-  use banded_lu_m, only : banded_lu_t, bandwidth, factor_banded, reverse_cuthill_mckee, &
-    solve_banded
+  use sparse_m, only : banded_lu_t, bandwidth, factor_banded, reverse_cuthill_mckee, solve_banded, &
+    multiply, sparse_t
   use kinds_m, only : long, wp
   use log_m, only : to_text
   use memory_m, only : available_bytes
-  use sparse_m, only : multiply, sparse_t
   use umfpack_m, only : has_umfpack, factor_umfpack, free_umfpack, solve_umfpack, umfpack_t
   implicit none
   private

@@ -51,7 +51,8 @@ contains
     type(echoes_t) :: echoes
     real(wp), allocatable :: force(:, :)
     real(wp) :: share !! of the largest kinetic energy
-    integer :: n
+    real(wp) :: momentum(2), mass
+    integer :: n, i
 
     allocate (relaxing, source=model)
     call switch_loads(relaxing, 0)
@@ -71,7 +72,16 @@ contains
         if (mod(n, 100) == 0 .or. mod(n, rules%check_cycles) == 0) &
           call check_elements(relaxing, state, error)
         if (allocated(error)) return
-        share = own_energy(state)
+        ! Kinetic energy beyond that of the mean velocity.
+        share = 0.0_wp
+        momentum = 0.0_wp
+        mass = 0.0_wp
+        do i = 1, size(state%mass)
+          share = share + 0.5_wp*state%mass(i)*(state%motion(3, i)**2 + state%motion(4, i)**2)
+          momentum = momentum + state%mass(i)*state%motion(3:4, i)
+          mass = mass + state%mass(i)
+        end do
+        share = max(0.0_wp, share - 0.5_wp*sum(momentum**2)/mass)
         state%relaxation%most = max(state%relaxation%most, share)
         if (state%relaxation%most > 0.0_wp) share = share/state%relaxation%most
         if (mod(n, rules%check_cycles) == 0 .and. share < rules%tolerance) exit
@@ -171,24 +181,6 @@ contains
       wanted = model%controls%relaxation%step_scale*limit
     if (wanted < state%dt .or. wanted > (1.0_wp + least_rise)*state%dt) state%dt = wanted
   end subroutine relax_once
-
-  !> Kinetic energy beyond that of the mean velocity.
-  pure function own_energy(state) result(energy)
-    type(state_t), intent(in) :: state
-    real(wp) :: energy
-    real(wp) :: momentum(2), mass
-    integer :: i
-
-    energy = 0.0_wp
-    momentum = 0.0_wp
-    mass = 0.0_wp
-    do i = 1, size(state%mass)
-      energy = energy + 0.5_wp*state%mass(i)*(state%motion(3, i)**2 + state%motion(4, i)**2)
-      momentum = momentum + state%mass(i)*state%motion(3:4, i)
-      mass = mass + state%mass(i)
-    end do
-    energy = max(0.0_wp, energy - 0.5_wp*sum(momentum**2)/mass)
-  end function own_energy
 
   !> The clock and the account of the run begin; velocities are those that the deck gives.
   subroutine begin_at_zero(model, velocity, state)

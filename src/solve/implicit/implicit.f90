@@ -24,7 +24,7 @@ module implicit_m
     table_secforc
   use implicit_forces_m, only : trial_t, start_trial, net_force, step_t, &
     new_acceleration, new_velocity, cut_sections
-  use implicit_start_m, only : implicit_memory_t, write_files, begin_steps, plan_next, has_ended, &
+  use implicit_start_m, only : implicit_memory_t, begin_steps, plan_next, has_ended, &
     step_control_t, plan_step, grow_step, cut_step
   use kinds_m, only : wp
   use law_state_m, only : tie_memory_t
@@ -37,6 +37,7 @@ module implicit_m
   use progress_m, only : follow_progress
   use reporting_m, only : note_energies, write_instant
   use requests_m, only : requests_t, take_requests
+  use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use snapshot_filling_m, only : fill_energies, fill_parts
   use snapshot_m, only : energy_ratio
@@ -101,7 +102,7 @@ contains
     character(:), allocatable, intent(inout) :: reason !! of the end
     type(error_t), allocatable, intent(inout) :: error
     type(step_control_t) :: planned
-    logical :: ends
+    logical :: ends, wanted(2) !! numbered_file, running_file
 
     last = .false.
     call take_requests(state, memory%ratio, .true., monitor, asked, error)
@@ -113,8 +114,9 @@ contains
     last = last .or. asked%stop
     planned = memory%control
     call plan_next(model, last, state, planned, ends)
-    call write_files(model, wanted_files(monitor%restarts, state%cycle, asked%dump, ends, &
-      asked%signalled), state, monitor, memory, error)
+    wanted = wanted_files(monitor%restarts, state%cycle, asked%dump, ends, asked%signalled)
+    if (any(wanted)) call cut_sections(model, memory%trial, state)
+    call write_restarts(wanted, state, monitor, error, memory)
     last = last .and. .not. allocated(error)
     memory%control = planned
   end subroutine heed_requests
