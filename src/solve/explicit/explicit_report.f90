@@ -13,7 +13,7 @@ module explicit_report_m
   use explicit_cycle_m, only : explicit_cycle_t, prepare_leap
   use health_m, only : check_elements, check_energy, check_ratio, check_radii, made_by_springs, &
     unaccounted
-  use held_nodes_m, only : hold_skew_nodes, hold_nodes, count_walls, fill_walls
+  use held_nodes_m, only : hold_skew_nodes, hold_nodes, count_walls
   use history_filling_m, only : fill_explicit_reactions
   use history_tables_m, only : table_glstat, table_matsum, table_rwforc, table_spcforc, table_rbdout
   use kinds_m, only : wp
@@ -162,8 +162,20 @@ contains
 
     call fill_motion(model, state, cycle%damping, cycle%velocity, monitor%snapshot)
     call fill_rigids(model, state, monitor%snapshot)
-    if (cycle%due%tables(table_rwforc) .and. allocated(state%walls)) &
-      call fill_walls(model, state, monitor%snapshot%walls)
+    if (cycle%due%tables(table_rwforc) .and. allocated(state%walls)) then
+      do i = 1, size(state%walls)
+        associate (result => monitor%snapshot%walls(i), wall => state%walls(i))
+          result%normal_force = sum(wall%force)
+          result%tangential_force = sum(wall%friction)
+          result%force = result%normal_force*model%walls(i)%normal
+          result%force = result%force + result%tangential_force*wall_tangent(model%walls(i))
+          result%impulse = wall%impulse
+          result%work = wall%work
+          result%dissipated = wall%dissipated
+          result%n_active = count(wall%force > 0.0_wp)
+        end associate
+      end do
+    end if
     follows = any(cycle%due%tables([table_glstat, table_matsum])) &
       .or. (cycle%due%plot .and. size(model%contacts) > 0)
     if (follows) call fill_energies(model, state, cycle%damping, monitor%snapshot)

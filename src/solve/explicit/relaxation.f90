@@ -117,14 +117,12 @@ contains
 
     call lap(monitor%clock, phase_input)
     call hear_requests(state, 1.0_wp, monitor, echoes, asked, error)
-    if (monitor%ranks%n > 1) then
-      ! What one process is asked for is done by all.
-      none = merge(0.0_wp, 1.0_wp, [asked%dump, asked%stop, asked%signalled])
-      call find_least(monitor%ranks, none)
-      asked%dump = none(1) < 1.0_wp
-      asked%stop = none(2) < 1.0_wp
-      asked%signalled = none(3) < 1.0_wp
-    end if
+    ! What one process is asked for is done by all.
+    none = merge(0.0_wp, 1.0_wp, [asked%dump, asked%stop, asked%signalled])
+    call find_least(monitor%ranks, none)
+    asked%dump = none(1) < 1.0_wp
+    asked%stop = none(2) < 1.0_wp
+    asked%signalled = none(3) < 1.0_wp
     wanted = wanted_files(monitor%restarts, 0, asked%dump, .false., asked%signalled)
     if (any(wanted)) then
       ! In restart files the run stands at time zero.

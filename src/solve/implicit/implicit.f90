@@ -133,7 +133,7 @@ contains
     type(outcome_t) :: outcome
     type(trial_t) :: attempt
     type(tie_memory_t), allocatable :: ties(:) !! as the step finds them
-    real(wp) :: held, work !! before the step, J/m
+    real(wp) :: held, work(2) !! before the step, and work behind it, J/m
     logical :: may_retry
 
     if (any(breaks(model%contacts))) ties = state%contacts%ties
@@ -153,10 +153,12 @@ contains
       call plan_step(control, state%time)
     end do
     held = held_energy(model, state)
-    work = work_done(state)
+    ! Of all that acts from outside.
+    work(1) = state%external_work + sum(state%contacts%interference%work)
     call commit(model, state, step, attempt, trial)
-    if (.not. step%is_dynamic) call check_static_step([work, work_done(state)], [held, &
-      held_energy(model, state)], spent_energy(state, step), state%cycle, state%time, monitor%log)
+    work(2) = state%external_work + sum(state%contacts%interference%work)
+    if (.not. step%is_dynamic) call check_static_step(work, [held, held_energy(model, state)], &
+      spent_energy(state, step), state%cycle, state%time, monitor%log)
     ! The first negative pivot in the stiffness of an equilibrium, that which the step set out from.
     if (outcome%began_negative .and. .not. (step%is_dynamic .or. step%began_negative)) &
       call warn(monitor%log, 'the stiffness at the end of step '//to_text(state%cycle - 1) &
@@ -167,14 +169,6 @@ contains
     call grow_step(control, step%dt, outcome%iterations)
     call lap(monitor%clock, phase_nodes)
   end subroutine take_step
-
-  !> Work of all that acts from outside, J/m.
-  pure function work_done(state) result(work)
-    type(state_t), intent(in) :: state
-    real(wp) :: work
-
-    work = state%external_work + sum(state%contacts%interference%work)
-  end function work_done
 
   !> A step to `time`. What slipped in the step before slips on in its first iteration; if that
   !> finds no equilibrium, or leaves a body free, all sticks first: full iterations or searched
