@@ -147,11 +147,12 @@ contains
       slot = first_failed(model, state%elements)
       watch%first = 'in element '//to_text(model%mesh%element_id(model%layout%slot_element(slot))) &
         //' of part '//to_text(model%parts(slot_part(model%layout, slot))%id)//' at ' &
-        //present_text(state)
+        //'cycle '//to_text(state%cycle)//', time '//to_text(state%time)
       call write_log(log, 'points fail: the first '//watch%first)
     else if (watch%told > 0 .and. n/10 >= watch%told) then
       call write_log(log, 'points fail: '//to_text(n)//' of ' &
-        //to_text(count_points(model, state%elements))//' by '//present_text(state))
+        //to_text(count_points(model, state%elements))//' by cycle '//to_text(state%cycle) &
+        //', time '//to_text(state%time))
       watch%told = n
     end if
   end subroutine follow_failures
@@ -171,14 +172,6 @@ contains
       call write_log(log, 'failed points: none')
     end if
   end subroutine report_failures
-
-  !> Cycle and time.
-  pure function present_text(state) result(text)
-    type(state_t), intent(in) :: state
-    character(:), allocatable :: text
-
-    text = 'cycle '//to_text(state%cycle)//', time '//to_text(state%time)
-  end function present_text
 
   !> After elements have left: interfaces whose surfaces have lost some, or came to light, go on
   !> with what is left, in the order of the deck. Their springs that are not there any more are

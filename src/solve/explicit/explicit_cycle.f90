@@ -12,7 +12,7 @@ module explicit_cycle_m
   use common_motion_m, only : common_velocity
   use loads_m, only : fix_nodes, update_activity, is_active
   use explicit_contact_m, only : plan_looks, follow_contact, pressing_t
-  use start_m, only : weigh_contacts
+  use start_m, only : check_added_mass, weigh_contacts
   use contacts_m, only : told_as, penalty_implicit
   use element_losses_m, only : settle_elements, release_nodes, failure_watch_t, follow_failures, &
     follow_outlines
@@ -24,7 +24,6 @@ module explicit_cycle_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use mass_scaling_m, only : needs_refinement, grow_masses
-  use model_log_m, only : check_added_mass
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t, find_due
   use node_motion_m, only : follow_damping, leap_t, make_leap, solve_rigids, move_rigids

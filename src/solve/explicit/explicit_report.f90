@@ -13,18 +13,17 @@ module explicit_report_m
   use explicit_cycle_m, only : explicit_cycle_t, prepare_leap
   use health_m, only : check_elements, check_energy, check_ratio, check_radii, made_by_springs, &
     unaccounted
-  use held_nodes_m, only : hold_skew_nodes, hold_nodes, count_walls, fill_walls
+  use held_nodes_m, only : hold_skew_nodes, hold_nodes, count_walls
   use history_filling_m, only : fill_explicit_reactions
   use history_tables_m, only : table_glstat, table_matsum, table_rwforc, table_spcforc, table_rbdout
   use kinds_m, only : wp
   use layout_m, only : slot_part
   use load_work_m, only : count_sums, count_motions, count_body_motions, count_groups
-  use log_m, only : write_log, to_text
-  use model_log_m, only : log_smallest_steps, judge_damping
+  use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, write_due, note_energies, write_instant
   use ranks_m, only : share_error, spread_values
-  use node_motion_m, only : solve_rigids, fill_rigids, fill_bodies
+  use node_motion_m, only : solve_rigids, fill_rigids
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, find_motion, damping_at
   use snapshot_m, only : energy_ratio, snapshot_t
   use state_m, only : state_t
@@ -35,6 +34,8 @@ module explicit_report_m
   private
   public :: report_cycle, complete_balance
 
+  !> Elements of the list of smallest steps.
+  integer, parameter :: n_listed = 10
   !> Part of DT2MS by which a step that mass scaling has set may differ from it.
   real(wp), parameter :: round_off = 1.0e-9_wp
 
@@ -156,11 +157,24 @@ contains
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
     logical :: follows !! springs beside the bodies, of which energies are known
+    integer :: i
 
     call fill_motion(model, state, cycle%damping, cycle%velocity, monitor%snapshot)
     call fill_rigids(model, state, monitor%snapshot)
-    if (cycle%due%tables(table_rwforc) .and. allocated(state%walls)) &
-      call fill_walls(model, state, monitor%snapshot%walls)
+    if (cycle%due%tables(table_rwforc) .and. allocated(state%walls)) then
+      do i = 1, size(state%walls)
+        associate (result => monitor%snapshot%walls(i), wall => state%walls(i))
+          result%normal_force = sum(wall%force)
+          result%tangential_force = sum(wall%friction)
+          result%force = result%normal_force*model%walls(i)%normal
+          result%force = result%force + result%tangential_force*wall_tangent(model%walls(i))
+          result%impulse = wall%impulse
+          result%work = wall%work
+          result%dissipated = wall%dissipated
+          result%n_active = count(wall%force > 0.0_wp)
+        end associate
+      end do
+    end if
     follows = any(cycle%due%tables([table_glstat, table_matsum])) &
       .or. (cycle%due%plot .and. size(model%contacts) > 0)
     if (follows) call fill_energies(model, state, cycle%damping, monitor%snapshot)
@@ -175,7 +189,16 @@ contains
     end if
     if (cycle%due%tables(table_spcforc)) &
       call fill_explicit_reactions(model, state, monitor%snapshot, held)
-    if (cycle%due%tables(table_rbdout)) call fill_bodies(state, monitor%snapshot)
+    if (cycle%due%tables(table_rbdout) .and. allocated(monitor%snapshot%bodies)) then
+      do i = 1, size(monitor%snapshot%bodies)
+        associate (rigid => state%rigids(i), body => monitor%snapshot%bodies(i))
+          body%displacement = rigid%place
+          body%place = rigid%centre + rigid%place(1:2)
+          body%velocity = rigid%velocity + 0.5_wp*state%dt_before*rigid%acceleration
+          body%acceleration = rigid%acceleration
+        end associate
+      end do
+    end if
     call write_instant(model, cycle%due, state%dt, cycle%ratio, state, monitor, cycle%error)
     if (.not. allocated(cycle%error) .and. cycle%due%tables(table_glstat)) then
       call check_energy(model%controls, monitor%snapshot%energies, made_by_springs, cycle%error)
@@ -326,5 +349,60 @@ contains
       end do
     end do
   end function wall_power
+
+  !> The elements that rule the time step.
+  subroutine log_smallest_steps(model, state, log)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(log_t), intent(inout) :: log
+    integer, allocatable :: found(:)
+    real(wp), allocatable :: steps(:)
+    character(60) :: line
+    integer :: i
+
+    call find_smallest_steps(model, state%elements, state%motion, n_listed, found, steps)
+    if (size(found) == 0) return
+    call write_log(log, 'smallest stable steps of elements (TSSFAC not applied):')
+    call write_log(log, '   element      part   stable step')
+    do i = 1, size(found)
+      write (line, '(ss,2i10,es14.6)') model%mesh%element_id(found(i)), &
+        model%parts(slot_part(model%layout, model%layout%element_slot(found(i))))%id, steps(i)
+      call write_log(log, trim(line))
+    end do
+  end subroutine log_smallest_steps
+
+  !> A warning where a step is too long for the global damping. A free node keeps
+  !> (2 - D dt)/(2 + D dt) of its velocity in a step (node_motion): that never grows, but is no
+  !> longer exp(-D dt) where D dt passes 1, and is below 0 where it passes 2.
+  subroutine judge_damping(model, dt, log)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: dt          !! first step, s
+    type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
+    real(wp) :: largest, share
+
+    if (.not. allocated(model%conditions%damping)) return
+    associate (damping => model%conditions%damping)
+      text = 'VALDMP'
+      largest = damping%coefficient
+      if (damping%curve > 0) then
+        associate (curve => model%curves(damping%curve), end_time => model%controls%end_time)
+          text = 'the largest ordinate of curve '//to_text(curve%id)
+          largest = max(curve_value(curve, 0.0_wp), curve_value(curve, end_time), &
+            maxval(curve%ordinate, curve%abscissa >= 0.0_wp .and. curve%abscissa <= end_time))
+        end associate
+      end if
+      share = largest*maxval(damping%factor)*dt
+      if (.not. share > 1.0_wp) return
+      text = '*DAMPING_GLOBAL acts on all parts with D = ' &
+        //to_text(largest*maxval(damping%factor))//' ('//text &
+        //', times STX or STY); times the step '//to_text(dt)//' that is ' &
+        //to_text(share)//', above 1: a step leaves '//to_text((2.0_wp - share)/(2.0_wp + share)) &
+        //' of a velocity where exp(-D dt) = '//to_text(exp(-share))//' is meant'
+    end associate
+    if (share > 2.0_wp) text = text//', and above 2 velocities change sign in every step'
+    call warn(log, text//'; nothing grows, but a smaller D or a smaller step is needed ' &
+      //'to follow it')
+  end subroutine judge_damping
 
 end module explicit_report_m

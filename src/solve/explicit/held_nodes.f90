@@ -9,13 +9,11 @@ module held_nodes_m
   use kinds_m, only : wp
   use model_m, only : model_t
   use node_motion_m, only : leap_t, look_ahead
-  use snapshot_m, only : wall_result_t
   use state_m, only : state_t
   use walls_m, only : wall_t, wall_distance, wall_tangent, friction_sticks
   implicit none
   private
-  public :: hold_skew_nodes, move_common, hold_nodes, count_walls, fill_walls, &
-    wall_work_ahead
+  public :: hold_skew_nodes, move_common, hold_nodes, count_walls, wall_work_ahead
 
   !> Rounds over the walls that one node meets (two in a corner settle at once where
   !> they are at right angles).
@@ -248,25 +246,5 @@ contains
 
     way = 0.25_wp*(state%dt_before + state%dt)*(speed + next) - 0.5_wp*state%dt_before*speed
   end function way_ahead
-
-  !> What the output says of the walls.
-  subroutine fill_walls(model, state, results)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(wall_result_t), intent(inout) :: results(:)
-    integer :: i
-
-    do i = 1, size(state%walls)
-      results(i)%normal_force = sum(state%walls(i)%force)
-      results(i)%force = results(i)%normal_force*model%walls(i)%normal
-      results(i)%impulse = state%walls(i)%impulse
-      results(i)%work = state%walls(i)%work
-      results(i)%n_active = count(state%walls(i)%force > 0.0_wp)
-      results(i)%tangential_force = sum(state%walls(i)%friction)
-      results(i)%force = results(i)%force + results(i)%tangential_force &
-        *wall_tangent(model%walls(i))
-      results(i)%dissipated = state%walls(i)%dissipated
-    end do
-  end subroutine fill_walls
 
 end module held_nodes_m

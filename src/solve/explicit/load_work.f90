@@ -52,7 +52,7 @@ contains
     type(state_t), intent(inout) :: state
     real(wp), intent(inout) :: damping(2) !! D per direction: that before in, that of now out
     type(motion_sums_t), intent(inout) :: sums
-    real(wp) :: half, body(2), former(2)
+    real(wp) :: half, body(2)
     integer :: i
 
     half = 0.5_wp*state%dt_before
@@ -82,9 +82,8 @@ contains
       state%body_acceleration = body
     end if
     if (allocated(model%conditions%damping)) then
-      former = damping
+      sums%share(3:4) = damping ! the sums belong to the cycle before
       damping = damping_rate(model%conditions, model%curves, state%time)
-      sums%share(3:4) = former ! the sums belong to the cycle before
     end if
     if (allocated(state%node_damping)) sums%share(3:4) = 1.0_wp ! they hold the rates
   end subroutine apply_loads

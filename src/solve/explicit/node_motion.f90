@@ -19,8 +19,7 @@ module node_motion_m
   implicit none
   private
   public :: leap_t, make_leap, find_factors, look_ahead, move_tile_nodes, move_special_nodes, &
-    move_damped_nodes, follow_damping, solve_rigids, damping_of, move_rigids, fill_rigids, &
-    fill_bodies
+    move_damped_nodes, follow_damping, solve_rigids, damping_of, move_rigids, fill_rigids
 
   !> Factors of one leap, the same for all nodes.
   type :: leap_t
@@ -314,22 +313,5 @@ contains
       end associate
     end do
   end subroutine fill_rigids
-
-  !> Bodies of the histories (rbdout) at the present instant.
-  subroutine fill_bodies(state, snapshot)
-    type(state_t), intent(in) :: state
-    type(snapshot_t), intent(inout) :: snapshot
-    integer :: i
-
-    if (.not. allocated(snapshot%bodies)) return
-    do i = 1, size(snapshot%bodies)
-      associate (rigid => state%rigids(i), body => snapshot%bodies(i))
-        body%displacement = rigid%place
-        body%place = rigid%centre + rigid%place(1:2)
-        body%velocity = rigid%velocity + 0.5_wp*state%dt_before*rigid%acceleration
-        body%acceleration = rigid%acceleration
-      end associate
-    end do
-  end subroutine fill_bodies
 
 end module node_motion_m

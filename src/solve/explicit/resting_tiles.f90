@@ -99,11 +99,11 @@ contains
     if (model%is_round) goes_on = goes_on .and. same_bits(one(1:3:2), [0.0_wp, 0.0_wp])
     if (allocated(state%node_damping)) &
       goes_on = goes_on .and. same_bits(one(3:4), [0.0_wp, 0.0_wp])
-    if (.not. goes_on) rest%status(i_tile) = awake
     do i = model%layout%tiles(i_tile)%first_node, model%layout%tiles(i_tile)%last_node
-      if (rest%status(i_tile) == awake) exit
-      if (.not. same_bits(state%motion(:, i), one)) rest%status(i_tile) = awake
+      if (.not. goes_on) exit
+      goes_on = same_bits(state%motion(:, i), one)
     end do
+    if (.not. goes_on) rest%status(i_tile) = awake
     if (rest%status(i_tile) == awake .or. .not. state%dt_before > 0.0_wp) return
     call take_values(model%layout%tiles(i_tile), state%elements, buffer)
     call move_alloc(buffer%values, before)

@@ -69,7 +69,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: limit
 
-    limit = stable_limit(minval(elements%time_limit), steps)
+    limit = minval(elements%time_limit)
+    if (allocated(steps%springs)) limit = minval([limit, stable_step(limit, steps%springs)])
     dt = choose_step(model, limit, steps%start_time, log, steps)
     if (model%controls%dt_initial > 0.0_wp .and. model%controls%dt_curve == 0) &
       dt = min(dt, model%controls%dt_initial)
@@ -149,16 +150,6 @@ contains
     if (time < 0.5_wp*huge(n)*dt) n = max(1, nint(time/dt))
   end function cycles_in
 
-  !> Smallest L/c of the elements, or below it what contact springs leave of it.
-  pure function stable_limit(element_limit, steps) result(limit)
-    real(wp), intent(in) :: element_limit !! smallest L/c
-    type(step_plan_t), intent(in) :: steps
-    real(wp) :: limit
-
-    limit = element_limit
-    if (allocated(steps%springs)) limit = minval([limit, stable_step(limit, steps%springs)])
-  end function stable_limit
-
   !> Step at `time` from the elements' limit; warns once when the cap is above the stable step.
   function choose_step(model, limit, time, log, steps) result(dt)
     type(model_t), intent(in) :: model
@@ -190,7 +181,7 @@ contains
     type(step_plan_t), intent(inout) :: steps
     real(wp), intent(inout) :: time           !! in: old, out: new
     real(wp), intent(inout) :: dt             !! in: step that led here, out: next one
-    real(wp) :: wanted, before
+    real(wp) :: limit, wanted, before
     logical :: changes
 
     before = time
@@ -199,7 +190,9 @@ contains
     else
       time = time + dt
     end if
-    wanted = choose_step(model, stable_limit(element_limit, steps), time, log, steps)
+    limit = element_limit
+    if (allocated(steps%springs)) limit = minval([limit, stable_step(limit, steps%springs)])
+    wanted = choose_step(model, limit, time, log, steps)
     ! Leap-frog keeps energy without a trend only while its step is constant; the limits of elements
     ! and springs beat with the vibrations of a body, and a step that follows them feeds those
     ! (doc/theory/time_integration.md). So a step that a limit has set is held, whatever curve lies

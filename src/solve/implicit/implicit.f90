@@ -23,7 +23,7 @@ module implicit_m
     table_secforc
   use implicit_forces_m, only : trial_t, start_trial, net_force, step_t, &
     new_acceleration, new_velocity, cut_sections
-  use implicit_start_m, only : implicit_memory_t, write_files, begin_steps, plan_next, has_ended, &
+  use implicit_start_m, only : implicit_memory_t, begin_steps, plan_next, has_ended, &
     step_control_t, plan_step, grow_step, cut_step
   use kinds_m, only : wp
   use law_state_m, only : tie_memory_t
@@ -34,6 +34,7 @@ module implicit_m
   use newton_m, only : outcome_t, find_equilibrium
   use progress_m, only : follow_progress
   use requests_m, only : find_early_end, requests_t, take_requests
+  use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use snapshot_filling_m, only : fill_energies, fill_parts
   use snapshot_m, only : energy_ratio
@@ -98,7 +99,7 @@ contains
     character(:), allocatable, intent(inout) :: reason !! of the end
     type(error_t), allocatable, intent(inout) :: error
     type(step_control_t) :: planned
-    logical :: ends
+    logical :: ends, wanted(2) !! numbered_file, running_file
 
     last = .false.
     call take_requests(state, memory%ratio, .true., monitor, asked, error)
@@ -110,8 +111,9 @@ contains
     last = last .or. asked%stop
     planned = memory%control
     call plan_next(model, last, state, planned, ends)
-    call write_files(model, wanted_files(monitor%restarts, state%cycle, asked%dump, ends, &
-      asked%signalled), state, monitor, memory, error)
+    wanted = wanted_files(monitor%restarts, state%cycle, asked%dump, ends, asked%signalled)
+    if (any(wanted)) call cut_sections(model, memory%trial, state)
+    call write_restarts(wanted, state, monitor, error, memory)
     last = last .and. .not. allocated(error)
     memory%control = planned
   end subroutine heed_requests
@@ -128,7 +130,7 @@ contains
     type(outcome_t) :: outcome
     type(trial_t) :: attempt
     type(tie_memory_t), allocatable :: ties(:) !! as the step finds them
-    real(wp) :: held, work !! before the step, J/m
+    real(wp) :: held, work(2) !! before the step, and work behind it, J/m
     logical :: may_retry
 
     if (any(breaks(model%contacts))) ties = state%contacts%ties
@@ -148,10 +150,12 @@ contains
       call plan_step(control, state%time)
     end do
     held = held_energy(model, state)
-    work = work_done(state)
+    ! Of all that acts from outside.
+    work(1) = state%external_work + sum(state%contacts%interference%work)
     call commit(model, state, step, attempt, trial)
-    if (.not. step%is_dynamic) call check_static_step([work, work_done(state)], [held, &
-      held_energy(model, state)], spent_energy(state, step), state%cycle, state%time, monitor%log)
+    work(2) = state%external_work + sum(state%contacts%interference%work)
+    if (.not. step%is_dynamic) call check_static_step(work, [held, held_energy(model, state)], &
+      spent_energy(state, step), state%cycle, state%time, monitor%log)
     ! The first negative pivot in the stiffness of an equilibrium, that which the step set out from.
     if (outcome%began_negative .and. .not. (step%is_dynamic .or. step%began_negative)) &
       call warn(monitor%log, 'the stiffness at the end of step '//to_text(state%cycle - 1) &
@@ -162,14 +166,6 @@ contains
     call grow_step(control, step%dt, outcome%iterations)
     call lap(monitor%clock, phase_nodes)
   end subroutine take_step
-
-  !> Work of all that acts from outside, J/m.
-  pure function work_done(state) result(work)
-    type(state_t), intent(in) :: state
-    real(wp) :: work
-
-    work = state%external_work + sum(state%contacts%interference%work)
-  end function work_done
 
   !> A step to `time`. What slipped in the step before slips on in its first iteration; if that
   !> finds no equilibrium, or leaves a body free, all sticks first: full iterations or searched

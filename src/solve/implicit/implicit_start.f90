@@ -34,7 +34,7 @@ module implicit_start_m
   implicit none
   private
   public :: step_control_t, start_step_control, plan_step, grow_step, cut_step, round_off, &
-    implicit_memory_t, write_files, begin_steps, plan_next, has_ended
+    implicit_memory_t, begin_steps, plan_next, has_ended
 
   !> What a step that took few iterations grows by, and what one that failed shrinks to.
   real(wp), parameter :: growth = 1.5_wp, cut = 0.5_wp
@@ -172,20 +172,6 @@ contains
     call visitor%visit('ratio', self%ratio)
   end subroutine visit_memory
 
-  !> Write restart files after a step. The memory is that of the state, its
-  !> next step not planned yet.
-  subroutine write_files(model, wanted, state, monitor, memory, error)
-    type(model_t), intent(in) :: model
-    logical, intent(in) :: wanted(:)   !! numbered_file, running_file
-    type(state_t), intent(inout) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(implicit_memory_t), intent(inout) :: memory
-    type(error_t), allocatable, intent(out) :: error
-
-    if (any(wanted)) call cut_sections(model, memory%trial, state)
-    call write_restarts(wanted, state, monitor, error, memory)
-  end subroutine write_files
-
   !> What is remembered up to the first report, and the plan of the first step.
   subroutine begin_steps(model, state, monitor, memory, last, error)
     type(model_t), intent(in) :: model
@@ -196,7 +182,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(step_control_t) :: planned
     real(wp), allocatable :: changes(:)
-    logical :: ends
+    logical :: ends, wanted(2) !! numbered_file, running_file
 
     call list_changes(model, changes)
     memory%control = start_step_control(model%controls, changes)
@@ -219,15 +205,26 @@ contains
       memory%control%target = min(memory%control%target, memory%control%end_time)
       last = has_ended(model, state, memory%control)
     else
-      call log_method(model, memory%control, monitor%log)
+      associate (implicit => model%controls%implicit)
+        if (abs(memory%control%dt - implicit%dt) > 0.0_wp) call warn(monitor%log, &
+          'the first step '//to_text(implicit%dt)//' does not lie between DTMIN and DTMAX of ' &
+          //'*CONTROL_IMPLICIT_AUTO; it is '//to_text(memory%control%dt))
+        call write_log(monitor%log, 'implicit method: '//trim(merge('dynamic', 'static ', &
+          implicit%is_dynamic))//', first step '//to_text(implicit%dt))
+        if (implicit%is_dynamic) call write_log(monitor%log, '  '//implicit%scheme//': alpha_m ' &
+          //to_text(implicit%alpha_m)//', alpha_f '//to_text(implicit%alpha_f)//', gamma ' &
+          //to_text(implicit%gamma)//', beta '//to_text(implicit%beta))
+      end associate
     end if
     planned = memory%control
     call plan_next(model, last, state, planned, ends)
     if (.not. monitor%restarts%goes_on) then
       call start_implicit(model, planned%next, state, monitor, memory, error)
       if (.not. allocated(error)) call report_contact_start(model, state, monitor%log)
-      if (.not. allocated(error)) call write_files(model, wanted_files(monitor%restarts, &
-        state%cycle, .false., ends, .false.), state, monitor, memory, error)
+      if (allocated(error)) return
+      wanted = wanted_files(monitor%restarts, state%cycle, .false., ends, .false.)
+      if (any(wanted)) call cut_sections(model, memory%trial, state)
+      call write_restarts(wanted, state, monitor, error, memory)
     end if
     memory%control = planned
   end subroutine begin_steps
@@ -279,24 +276,6 @@ contains
       end associate
     end do
   end subroutine set_lags
-
-  !> Tell the log of the method.
-  subroutine log_method(model, control, log)
-    type(model_t), intent(in) :: model
-    type(step_control_t), intent(in) :: control
-    type(log_t), intent(inout) :: log
-
-    associate (implicit => model%controls%implicit)
-      if (abs(control%dt - implicit%dt) > 0.0_wp) call warn(log, 'the first step ' &
-        //to_text(implicit%dt)//' does not lie between DTMIN and DTMAX of ' &
-        //'*CONTROL_IMPLICIT_AUTO; it is '//to_text(control%dt))
-      call write_log(log, 'implicit method: '//trim(merge('dynamic', 'static ', &
-        implicit%is_dynamic))//', first step '//to_text(implicit%dt))
-      if (implicit%is_dynamic) call write_log(log, '  '//implicit%scheme//': alpha_m ' &
-        //to_text(implicit%alpha_m)//', alpha_f '//to_text(implicit%alpha_f)//', gamma ' &
-        //to_text(implicit%gamma)//', beta '//to_text(implicit%beta))
-    end associate
-  end subroutine log_method
 
   !> Forces and acceleration at time zero.
   subroutine start_implicit(model, dt, state, monitor, memory, error)

@@ -2,35 +2,34 @@
 !> From a model to its state at time zero. Rigid bodies and nodes that move alike
 !> (*CONSTRAINED_NODE_SET): mass, centre and inertia from the lumped masses of their nodes, velocity
 !> from the momentum of these; the mass that contact feels, and the inverse masses that its energy
-!> law sees (doc/theory/contact.md, section 6.1).
+!> law sees (doc/theory/contact.md, section 6.1). The log tells of masses what d3hsp does.
 module start_m
   use automatic_penalty_m, only : set_automatic_penalties
   use behind_ties_m, only : hear_tie
+  use block_state_m, only : block_state_t
   use conditions_m, only : motion_velocity
   use contact_log_m, only : log_softness
   use contacts_m, only : is_tied, n_told, told_as
   use controls_m, only : is_asked, group_nodes, n_cut
   use curves_m, only : curve_value
   use element_log_m, only : log_elements
-  use element_mass_m, only : lump_mass
+  use element_mass_m, only : element_volume, lump_mass
   use element_start_m, only : start_elements
   use element_steps_m, only : start_retardation
-  use errors_m, only : error_t, raise, status_input
+  use errors_m, only : error_t, raise, status_input, status_run
   use history_tables_m, only : table_nodfor
   use interface_m, only : start_contact, resume_contact
   use kinds_m, only : wp
   use loads_m, only : start_motion, fix_nodes, update_activity, is_active
   use log_m, only : log_t, to_text, write_log
-  use mass_scaling_m, only : scales_masses, start_mass_scaling
-  use model_log_m, only : check_added_mass, log_masses
+  use mass_scaling_m, only : added_masses, scales_masses, start_mass_scaling
   use model_m, only : model_t
   use others_memory_m, only : answers_t, others_t, known_nodes, known_slots
   use rigid_state_m, only : rigid_state_t, velocity_of
   use state_m, only : state_t
   implicit none
   private
-  public :: start_state, resume_contacts, start_rigids, weigh_body, is_held, start_common, &
-    weigh_contacts
+  public :: start_state, resume_contacts, start_rigids, weigh_body, weigh_contacts, check_added_mass
 
 contains
 
@@ -375,5 +374,88 @@ contains
       end associate
     end do
   end subroutine weigh_contacts
+
+  !> Elements, mass and centre of mass of each part and of the whole, per unit depth or per radian.
+  subroutine log_masses(model, log)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    real(wp), allocatable :: sums(:, :) !! (3, n_part) mass and its first moments
+    integer, allocatable :: counts(:)
+    real(wp) :: share
+    integer :: i, k
+
+    allocate (sums(3, size(model%parts)), source=0.0_wp)
+    allocate (counts(size(model%parts)), source=0)
+    do i = 1, model%mesh%n_element
+      k = model%mesh%element_part(i)
+      counts(k) = counts(k) + 1
+      associate (nodes => model%mesh%element_nodes(:, i))
+        associate (x => model%mesh%coordinates(:, nodes), &
+          corners => merge(3, 4, nodes(4) == nodes(3)))
+          if (model%is_round) then
+            sums(:, k) = sums(:, k) + model%materials(model%parts(k)%material)%density &
+              *element_volume(model%mesh, i)
+            cycle
+          end if
+          share = 0.5_wp*model%materials(model%parts(k)%material)%density*((x(1, 3) - x(1, 1)) &
+            *(x(2, 4) - x(2, 2)) - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+          sums(:, k) = sums(:, k) + share*[1.0_wp, sum(x(1, :corners))/corners, &
+            sum(x(2, :corners))/corners]
+        end associate
+      end associate
+    end do
+    do k = 1, size(model%parts)
+      call write_log(log, 'part '//to_text(model%parts(k)%id)//': ' &
+        //mass_text(counts(k), sums(:, k)))
+    end do
+    call write_log(log, 'all parts: '//mass_text(sum(counts), sum(sums, 2))//'; ' &
+      //to_text(count(model%mesh%element_nodes(4, :) == model%mesh%element_nodes(3, :))) &
+      //' of the elements are triangles')
+  end subroutine log_masses
+
+  !> Elements, mass and centre in words.
+  pure function mass_text(n, sums) result(text)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: sums(3)
+    character(:), allocatable :: text
+
+    text = to_text(n)//' elements, mass '//to_text(sums(1))
+    if (sums(1) > 0.0_wp) text = text//', centre of mass '//to_text(sums(2)/sums(1))//', ' &
+      //to_text(sums(3)/sums(1))
+  end function mass_text
+
+  !> An error where the added mass is more than ENDMAS allows; the log, if given, is told of it.
+  subroutine check_added_mass(model, elements, error, log)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    type(error_t), allocatable, intent(out) :: error
+    type(log_t), intent(inout), optional :: log
+    real(wp) :: added(size(model%parts)), own(size(model%parts))
+    integer :: i
+
+    if (.not. (present(log) .or. model%controls%most_added > 0.0_wp)) return
+    call added_masses(model, elements, added, own)
+    if (present(log)) then
+      call write_log(log, 'mass scaling (DT2MS '//to_text(model%controls%mass_step) &
+        //'): added mass '//share_text(sum(added), sum(own)))
+      do i = 1, size(added)
+        if (abs(added(i)) > 0.0_wp) call write_log(log, 'part '//to_text(model%parts(i)%id) &
+          //': added mass '//share_text(added(i), own(i)))
+      end do
+      if (.not. model%controls%most_added > 0.0_wp) return
+    end if
+    if (100.0_wp*sum(added) > model%controls%most_added*sum(own)) call raise(error, 'mass ' &
+      //'scaling has added '//share_text(sum(added), sum(own))//', more than the ' &
+      //to_text(model%controls%most_added)//' per cent of ENDMAS', status_run)
+  end subroutine check_added_mass
+
+  !> An amount and its share in words.
+  pure function share_text(added, own) result(text)
+    real(wp), intent(in) :: added, own
+    character(:), allocatable :: text
+
+    text = to_text(added)
+    if (own > 0.0_wp) text = text//' ('//to_text(100.0_wp*added/own)//' per cent)'
+  end function share_text
 
 end module start_m
