@@ -7,7 +7,7 @@ module progress_m
     lap_seconds, phase_names, n_phase, phase_input, phase_output
   use kinds_m, only : wp, long
   use log_m, only : log_t, write_log, to_text
-  use screen_m, only : show, show_part, normal_ending, error_ending
+  use text_files_m, only : show, show_part, normal_ending, error_ending
   use system_m, only : output_is_terminal
   use status_file_m, only : status_t, keep_status, write_status, done_share, &
     seconds_to_go, duration
