@@ -21,7 +21,7 @@ module check_m
   use monitor_m, only : monitor_t
   use renumber_m, only : renumber_model
   use results_file_m, only : open_results, append_state, finish_results, publish, run_info_t
-  use screen_m, only : show
+  use text_files_m, only : show
   use snapshot_filling_m, only : start_snapshot
   use start_m, only : start_state
   use state_m, only : state_t

@@ -8,7 +8,7 @@ program slideline
   use errors_m, only : error_t, status_run
   use ranks_m, only : ranks_t, join_ranks, leave_ranks
   use run_m, only : run_deck
-  use screen_m, only : show, complain, error_ending
+  use text_files_m, only : show, complain, error_ending
   use source_version_m, only : source_version
   use system_m, only : catch_requests, watch_end, announce_end, exit_with, fill_standard_streams
   implicit none

@@ -15,9 +15,6 @@ module files_m
   !> Behind the name of a file that is not complete: it is written aside and renamed when it is.
   character(*), parameter :: unfinished = '.part'
 
-  !> Permissions of a new directory, before the user's mask: rwx for all.
-  integer(c_int), parameter :: directory_mode = 511_c_int
-
   !> What is known of a file.
   type, bind(c) :: file_facts_t
     logical(c_bool) :: is_there = .false._c_bool
@@ -30,26 +27,25 @@ module files_m
   end type file_facts_t
 
   ! Paths end with a null; a status of 0 is success.
-  interface
-    function c_mkdir(path, mode) bind(c, name='mkdir') result(status)
+  abstract interface
+    function call_by_path(path) bind(c) result(status)
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: path(*)
-      integer(c_int), value :: mode                 !! permissions
       integer(c_int) :: status
-    end function c_mkdir
+    end function call_by_path
+  end interface
 
+  !> Make a directory; remove a file, but no directory; bring either onto the disk (system.cpp).
+  procedure(call_by_path), bind(c, name='make_folder') :: c_mkdir
+  procedure(call_by_path), bind(c, name='unlink') :: c_unlink
+  procedure(call_by_path), bind(c, name='force_path') :: c_force
+
+  interface
     function c_rename(old, new) bind(c, name='rename') result(status)
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: old(*), new(*)
       integer(c_int) :: status
     end function c_rename
-
-    !> Unlike `remove` it takes no directories.
-    function c_unlink(path) bind(c, name='unlink') result(status)
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int) :: status
-    end function c_unlink
 
     !> The type of the length, off_t, has the width of size_t.
     function c_truncate(path, length) bind(c, name='truncate') result(status)
@@ -58,13 +54,6 @@ module files_m
       integer(c_size_t), value :: length            !! bytes
       integer(c_int) :: status
     end function c_truncate
-
-    !> Bring a file onto the disk (system.cpp).
-    function c_force(path) bind(c, name='force_path') result(status)
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: path(*)
-      integer(c_int) :: status
-    end function c_force
 
     !> Facts of an open file, or of the one of this name (system.cpp).
     subroutine c_facts(descriptor, path, follows, facts) bind(c, name='find_facts')
@@ -163,7 +152,7 @@ contains
     if (is_directory(path)) return
     call make_directory(parent_path(path), error)
     if (allocated(error)) return
-    status = c_mkdir(path//c_null_char, directory_mode)
+    status = c_mkdir(path//c_null_char)
     reason = system_reason()
     if (is_directory(path)) return
     if (file_exists(path)) then

@@ -6,8 +6,7 @@
 module log_m
   use errors_m, only : error_t
   use kinds_m, only : wp
-  use screen_m, only : complain
-  use text_files_m, only : text_file_t, continue_text_file, append_text, close_text_file
+  use text_files_m, only : text_file_t, continue_text_file, append_text, close_text_file, complain
   implicit none
   private
   public :: log_t, open_log, write_log, warn, close_log, forget_waiting, to_text, percent, &

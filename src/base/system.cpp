@@ -176,6 +176,8 @@ extern "C" std::size_t write_bytes(int file, const char *bytes, std::size_t n) {
   return n_written;
 }
 
+extern "C" int make_folder(const char *path) { return mkdir(path, 0777); }
+
 // A directory opens for reading alone.
 extern "C" int force_path(const char *path) {
   const int file = open(path, O_RDONLY);

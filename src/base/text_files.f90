@@ -1,5 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Text files that are written in whole buffers, line ends included.
+!> Text files that are written in whole buffers, line ends included; so are standard output and
+!> standard error: through Fortran's units they could fail unnoticed, and GFORTRAN_STDOUT_UNIT or
+!> GFORTRAN_DEFAULT_RECL in the environment would send them to a file or cut them.
 module text_files_m
   use, intrinsic :: iso_c_binding, only : c_bool, c_char, c_int, c_null_char, c_size_t
   use errors_m, only : error_t, raise, status_files
@@ -10,7 +12,11 @@ module text_files_m
   private
   public :: text_file_t, create_text_file, continue_text_file, append_text, close_text_file, &
     read_whole, write_whole, overwrite_start, line_file_t, open_lines, put_lines, keep_up, &
-    flush_lines, close_lines
+    flush_lines, close_lines, show, show_part, complain, normal_ending, error_ending
+
+  !> How a run says that it ended.
+  character(*), parameter :: normal_ending = ' N o r m a l    t e r m i n a t i o n', &
+    error_ending = ' E r r o r    t e r m i n a t i o n'
 
   !> Bytes of lines that wait, at most.
   integer, parameter :: buffer_size = 65536
@@ -314,5 +320,35 @@ contains
     lines%is_open = .false.
     if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
   end subroutine close_lines
+
+  !> A line (or several, separated by new_line) on standard output.
+  subroutine show(text, error)
+    character(*), intent(in) :: text
+    type(error_t), allocatable, intent(out), optional :: error !! absent: a failure is no matter
+
+    call show_part(text//new_line('a'), error)
+  end subroutine show
+
+  !> Text on standard output, without a line end.
+  subroutine show_part(text, error)
+    character(*), intent(in) :: text
+    type(error_t), allocatable, intent(out), optional :: error !! absent: a failure is no matter
+    type(error_t), allocatable :: failure
+    type(text_file_t) :: screen
+
+    screen = text_file_t('standard output', 1)
+    call append_text(screen, text, failure)
+    if (present(error) .and. allocated(failure)) call move_alloc(failure, error)
+  end subroutine show_part
+
+  !> A line (or several) on standard error.
+  subroutine complain(text)
+    character(*), intent(in) :: text
+    type(error_t), allocatable :: ignored
+    type(text_file_t) :: screen
+
+    screen = text_file_t('standard error', 2)
+    call append_text(screen, text//new_line('a'), ignored)
+  end subroutine complain
 
 end module text_files_m

@@ -20,7 +20,8 @@ module model_m
   use controls_m, only : controls_t
   implicit none
   private
-  public :: model_t, node_set_t, segment_set_t, part_set_t, shell_set_t
+  public :: model_t, mark_meshed_nodes, mark_supports, node_set_t, segment_set_t, part_set_t, &
+    shell_set_t
 
   !> *SET_NODE: members in the order of the deck (walking order where a surface is meant).
   type :: node_set_t
@@ -105,5 +106,29 @@ contains
     call visitor%visit('erodes', self%erodes)
     call visitor%visit('is_round', self%is_round)
   end subroutine visit_model
+
+  !> (n_node) nodes that some element has, so that they have mass.
+  pure function mark_meshed_nodes(model) result(is_meshed)
+    type(model_t), intent(in) :: model
+    logical :: is_meshed(model%mesh%n_node)
+
+    is_meshed = .false.
+    is_meshed(pack(model%mesh%element_nodes, model%mesh%element_nodes > 0)) = .true.
+  end function mark_meshed_nodes
+
+  !> (n_node) nodes with mass and a fixed degree of freedom, or held along an axis that is neither x
+  !> nor y.
+  pure function mark_supports(model) result(is_support)
+    type(model_t), intent(in) :: model
+    logical :: is_support(model%mesh%n_node)
+
+    is_support = .false.
+    associate (conditions => model%conditions)
+      if (allocated(conditions%fixed_nodes)) is_support(conditions%fixed_nodes) = .true.
+      if (allocated(conditions%skew_supports)) &
+        is_support(conditions%skew_supports%node) = .true.
+    end associate
+    if (any(is_support)) is_support = is_support .and. mark_meshed_nodes(model)
+  end function mark_supports
 
 end module model_m

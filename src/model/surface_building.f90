@@ -224,27 +224,20 @@ contains
     logical, intent(in) :: is_left(:)
     type(surface_t), intent(in) :: former
     type(surface_t), intent(out) :: surface
-    integer :: place(former%n_node), s, n, k
+    integer, allocatable :: segments(:), nodes(:)
+    integer :: place(former%n_node), s
 
-    n = count(is_left(former%segment_element))
-    allocate (surface%segments(2, n), surface%segment_element(n))
+    segments = pack([(s, s=1, former%n_segment)], is_left(former%segment_element))
+    surface%segment_element = former%segment_element(segments)
+    surface%segments = former%segments(:, segments)
     place = 0
-    n = 0
-    do s = 1, former%n_segment
-      if (.not. is_left(former%segment_element(s))) cycle
-      n = n + 1
-      surface%segments(:, n) = former%segments(:, s)
-      surface%segment_element(n) = former%segment_element(s)
-      place(former%segments(:, s)) = 1
+    do s = 1, size(segments)
+      place(surface%segments(:, s)) = 1
     end do
-    n = 0
-    do k = 1, former%n_node
-      if (place(k) == 0) cycle
-      n = n + 1
-      place(k) = n
-    end do
-    surface%nodes = pack(former%nodes, place > 0)
-    do s = 1, size(surface%segments, 2)
+    nodes = pack([(s, s=1, former%n_node)], place > 0)
+    place(nodes) = [(s, s=1, size(nodes))]
+    surface%nodes = former%nodes(nodes)
+    do s = 1, size(segments)
       surface%segments(:, s) = place(surface%segments(:, s))
     end do
     call link_segments(surface)

@@ -11,7 +11,7 @@ module progress_m
   use files_m, only : rename_file, unfinished
   use kinds_m, only : wp, long
   use log_m, only : log_t, write_log, to_text
-  use screen_m, only : show, show_part, normal_ending, error_ending
+  use text_files_m, only : show, show_part, normal_ending, error_ending
   use system_m, only : output_is_terminal
   use text_files_m, only : write_whole
   implicit none

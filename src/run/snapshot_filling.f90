@@ -15,12 +15,11 @@ module snapshot_filling_m
   use history_tables_m, only : table_elout, table_matsum, table_rbdout, table_spcforc
   use layout_m, only : slot_part
   use mass_scaling_m, only : scales_masses, added_masses
-  use model_m, only : model_t
+  use model_m, only : model_t, mark_supports
   use parts_m, only : has_memory_of_heat
   use snapshot_m, only : snapshot_t, interface_result_t, slave_result_t
   use sorting_m, only : sorted_order
   use state_m, only : state_t
-  use supports_m, only : mark_supports
   implicit none
   private
   public :: start_snapshot, fill_motion, find_motion, damping_at, fill_energies, fill_parts, &

@@ -3,8 +3,8 @@
 !> studies (doc/choose.md): the type as such, or the cheapest that keeps a target. The effective
 !> deck has the type chosen and the target, so that runs from it and restarts go on in the same way.
 module deck_choose_type_m
-  use contact_types_m, only : type_nts_ar, type_nts_mar, type_segmented_mortar, type_chosen
-  use contacts_m, only : contact_t, has_friction, is_tied, penalty_factor, penalty_share, &
+  use contacts_m, only : type_nts_ar, type_nts_mar, type_segmented_mortar, type_chosen, &
+    contact_t, has_friction, is_tied, penalty_factor, penalty_share, &
     penalty_implicit, tie_factor
   use deck_edits_m, only : set_field
   use deck_lines_m, only : deck_t

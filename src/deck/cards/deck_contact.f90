@@ -8,11 +8,10 @@ module deck_contact_m
   use log_m, only : to_text
   use units_m, only : in_units
   use model_m, only : model_t
-  use contact_types_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_nts_mar, &
-    type_segmented_mortar, type_missing, type_chosen
-  use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, kind_text, is_tied, breaks, &
-    penalty_per_node, penalty_distributed, penalty_factor, penalty_share, penalty_implicit, &
-    implicit_factor, tie_none, tie_always, tie_breaks, tie_factor
+  use contacts_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_nts_mar, &
+    type_segmented_mortar, type_missing, type_chosen, contact_t, contact_kind_t, friction_rule_t, &
+    kind_text, is_tied, breaks, penalty_per_node, penalty_distributed, penalty_factor, &
+    penalty_share, penalty_implicit, implicit_factor, tie_none, tie_always, tie_breaks, tie_factor
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning, given_by
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &

@@ -6,9 +6,8 @@ module deck_supports_m
   use log_m, only : to_text
   use conditions_m, only : prescribed_motion_t, skew_support_t, common_motion_t, &
     motion_acceleration
-  use model_m, only : model_t
+  use model_m, only : model_t, mark_meshed_nodes
   use rigids_m, only : mark_rigid_nodes
-  use supports_m, only : mark_meshed_nodes
   use deck_cards_m, only : cursor_t, next_of, report_field, reject_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, an_element, a_part, a_curve, a_node_set, a_system

@@ -10,7 +10,7 @@ module start_m
   use conditions_m, only : motion_velocity
   use contact_log_m, only : log_softness
   use contacts_m, only : is_tied, n_told, told_as
-  use controls_m, only : is_asked, group_nodes, n_cut
+  use controls_m, only : is_asked, group_nodes
   use curves_m, only : curve_value
   use element_log_m, only : log_elements
   use element_mass_m, only : element_volume, lump_mass
@@ -167,8 +167,9 @@ contains
         n = size(output%boundaries%where)
         allocate (state%boundary_force(3, n), state%boundary_work(n), source=0.0_wp)
       end if
-      if (allocated(output%cross_sections)) &
-        allocate (state%cut_force(8, n_cut(output%cross_sections)), source=0.0_wp)
+      if (allocated(output%cross_sections)) allocate (state%cut_force(8, &
+        sum([(size(output%cross_sections(i)%elements), i=1, size(output%cross_sections))])), &
+        source=0.0_wp)
       if (.not. allocated(output%force_groups)) return
       if (.not. is_asked(output%histories(table_nodfor))) return
       n = size(group_nodes(output%force_groups))
