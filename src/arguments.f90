@@ -6,7 +6,7 @@
 module arguments_m
   use deck_lines_m, only : shown_text
   use deck_overrides_m, only : is_override, override_mistake, contact_names, run_names
-  use deck_spelling_m, only : first_too_far, keep_nearer
+  use deck_schema_m, only : first_too_far, keep_nearer
   use errors_m, only : error_t, raise, status_input
   use files_m, only : folder_of
   use log_m, only : to_text

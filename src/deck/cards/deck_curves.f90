@@ -7,9 +7,9 @@ module deck_curves_m
   use model_m, only : model_t
   use deck_ids_m, only : a_curve, a_table, a_system, index_of
   use deck_lines_m, only : deck_t, blocks_of, line_error
-  use deck_fields_m, only : card_t
-  use deck_cards_m, only : cursor_t, first_card, next_row, report_field, find_field, &
-    next_card, check_rest
+  use deck_fields_m, only : field_number, card_t
+  use deck_cards_m, only : cursor_t, first_card, next_row, report_field, next_card, &
+    check_rest
   use deck_values_m, only : integer_of, real_of, reals_of, define, map_defined
   implicit none
   private
@@ -126,7 +126,7 @@ contains
     logical :: is_sound
     integer :: i, n, columns(size(names))
 
-    columns = [(find_field(cursor, 2, names(i)), i=1, size(names))]
+    columns = [(field_number(cursor%specs(2)%names, names(i)), i=1, size(names))]
     allocate (rows(size(scale), max(cursor%last - cursor%line + 1, 0)))
     n = 0
     last = -huge(1.0_wp)
