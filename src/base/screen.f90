@@ -7,7 +7,11 @@ module screen_m
   use text_files_m, only : text_file_t, append_text
   implicit none
   private
-  public :: show, show_part, complain
+  public :: show, show_part, complain, normal_ending, error_ending
+
+  !> How a run says that it ended.
+  character(*), parameter :: normal_ending = ' N o r m a l    t e r m i n a t i o n', &
+    error_ending = ' E r r o r    t e r m i n a t i o n'
 
 contains
 

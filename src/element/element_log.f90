@@ -15,6 +15,9 @@ module element_log_m
   real(wp), parameter :: ruling_coefficient = 0.5_wp
   !> The same of assumed strain, at nu = 0.
   real(wp), parameter :: ruling_assumed = 3.0_wp
+  !> Hourglass control by its number.
+  character(14), parameter :: forms(3) = [character(14) :: 'viscous', 'stiffness', &
+    'assumed strain']
 
 contains
 
@@ -35,7 +38,7 @@ contains
         if (point_count(model%sections(part%section)) == 1) then
           text = trim(merge('round, volume weighted one-point quads', &
             'one-point quads                       ', &
-            model%is_round))//', '//form_name(part%hourglass%form)//' hourglass control ' &
+            model%is_round))//', '//trim(forms(part%hourglass%form))//' hourglass control ' &
             //to_text(part%hourglass%coefficient)
         else
           text = trim(merge('round fully integrated quads', 'fully integrated quads      ', &
@@ -92,20 +95,5 @@ contains
       //to_text(part%hourglass%coefficient)//' lowers the stable step, that of squares to ' &
       //to_text(share)//' of L/c; QM up to '//to_text(ruling)//' would not')
   end subroutine warn_of_hourglass
-
-  !> The form of hourglass control in words.
-  pure function form_name(form) result(name)
-    integer, intent(in) :: form !! one of the `hourglass_` constants
-    character(:), allocatable :: name
-
-    select case (form)
-    case (hourglass_stiffness)
-      name = 'stiffness'
-    case (hourglass_assumed)
-      name = 'assumed strain'
-    case default
-      name = 'viscous'
-    end select
-  end function form_name
 
 end module element_log_m

@@ -4,12 +4,13 @@ module element_state_m
   use element_dispatch_m, only : point_count
   use kinds_m, only : wp
   use block_state_m, only : block_state_t, erosion_state_t, stays, has_left, has_gone
+  use element_chunk_m, only : reference_sum
   use layout_m, only : chunk_size, slot_part
   use material_dispatch_m, only : find_failed, history_size, column_temperature, column_damage, &
     has_plastic_strain, has_mean_dilatation
   use model_m, only : model_t
   use parts_m, only : has_memory_of_heat, may_fail
-  use quad_points_m, only : n_point, point_ratios, round_point_ratios, signed_area
+  use quad_points_m, only : n_point, point_areas, point_ratios, shape_at_points
   use volumetric_m, only : log_ratio, volumetric_energy
   implicit none
   private
@@ -207,7 +208,7 @@ contains
       value = elements%history(first)
       return
     end if
-    call ratios_of_points(model, elements, slot, none, stretch, start)
+    call ratios_of_points(elements, slot, none, stretch, start)
     associate (part => model%parts(model%layout%chunk_part(i_chunk)))
       stride = chunk_size*history_size(model%materials(part%material))
     end associate
@@ -223,26 +224,27 @@ contains
     integer, intent(in) :: slot
     integer, intent(out) :: n                                !! how many
     real(wp), intent(out) :: stretch(n_point), start(n_point)
-    integer :: i_chunk
-    real(wp) :: r(6), u(2, 4), d31(2), d42(2)
+    real(wp) :: u(2, 4), d31(2), d42(2)
 
-    i_chunk = (slot - 1)/chunk_size + 1
-    r = elements%reference(slot, :6)
     stretch = 0.0_wp
     start = 0.0_wp
-    associate (nodes => model%layout%slot_nodes(:, slot), &
-      material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
-      n = 1
-      if (elements%point_start(i_chunk) > 0 .and. .not. has_mean_dilatation(material)) n = n_point
-      if (n > 1) then
-        u = motion(1:2, nodes)
-        call ratios_of_points(model, elements, slot, u, stretch, start)
-      else if (model%is_round) then
-        u = motion(1:2, nodes)
-        call round_ratios(model, slot, u, stretch(1), start(1))
+    n = 1
+    associate (nodes => model%layout%slot_nodes(:, slot), r => elements%reference(slot, :4), &
+      i_chunk => (slot - 1)/chunk_size + 1)
+      if (elements%point_start(i_chunk) > 0) then
+        if (.not. has_mean_dilatation(model%materials(model%parts(model%layout%chunk_part( &
+          i_chunk))%material))) n = n_point
+      end if
+      u = motion(1:2, nodes)
+      if (n > 1 .or. model%is_round) then
+        call ratios_of_points(elements, slot, u, stretch, start)
+        if (n > 1) return
+        ! 2x2 points integrate the volume of the element without error.
+        stretch(1) = sum(start*stretch)/sum(start)
+        start(1) = sum(start)
       else
-        d31 = motion(1:2, nodes(3)) - motion(1:2, nodes(1))
-        d42 = motion(1:2, nodes(4)) - motion(1:2, nodes(2))
+        d31 = u(:, 3) - u(:, 1)
+        d42 = u(:, 4) - u(:, 2)
         start(1) = 0.5_wp*(r(1)*r(4) - r(3)*r(2))
         stretch(1) = 0.5_wp*((r(1)*d42(2) + d31(1)*(r(4) + d42(2))) &
           - (r(3)*d31(2) + d42(1)*(r(2) + d31(2))))/start(1)
@@ -250,37 +252,18 @@ contains
     end associate
   end subroutine volume_ratios
 
-  !> V/V0 - 1 and V0 of the element in a slot, to the digits of the displacement.
-  pure subroutine round_ratios(model, slot, u, stretch, start)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: slot
-    real(wp), intent(in) :: u(2, 4)            !! displacement of the nodes
-    real(wp), intent(out) :: stretch, start    !! start per radian
-    real(wp), dimension(2) :: a, b, h, da, db, dh
-    real(wp) :: x(2, 4), s, ds
-
-    x = model%mesh%coordinates(:, model%layout%slot_nodes(:, slot))
-    call patterns(x, a, b, h, s)
-    call patterns(u, da, db, dh, ds)
-    start = 0.25_wp*s*signed_area(a, b) + (h(1)*cross(a, b) - 2.0_wp*a(1)*b(1)*h(2))/24.0_wp
-    stretch = 0.25_wp*(s*(signed_area(a, db) + signed_area(da, b + db)) &
-      + ds*signed_area(a + da, b + db)) &
-      + (h(1)*(cross(a, db) + cross(da, b + db)) + dh(1)*cross(a + da, b + db) &
-      - 2.0_wp*(a(1)*b(1)*dh(2) + (a(1)*db(1) + da(1)*(b(1) + db(1)))*(h(2) + dh(2))))/24.0_wp
-    stretch = stretch/start
-  end subroutine round_ratios
-
   !> Initial area, or volume per radian, of the element in a slot.
   pure function initial_volume(model, elements, slot) result(volume)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: slot
     real(wp) :: volume
-    real(wp) :: stretch
+    real(wp) :: stretch(n_point), start(n_point)
     real(wp), parameter :: none(2, 4) = 0.0_wp
 
     if (model%is_round) then
-      call round_ratios(model, slot, none, stretch, volume)
+      call ratios_of_points(elements, slot, none, stretch, start)
+      volume = sum(start)
     else
       associate (r => elements%reference(slot, :4))
         volume = 0.5_wp*(r(1)*r(4) - r(3)*r(2))
@@ -294,7 +277,7 @@ contains
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)     !! (4, n_node)
     real(wp), intent(inout) :: strain(:)     !! (n_element)
-    real(wp) :: x(2, 4), u(2, 4)
+    real(wp) :: x(2, 4), u(2, 4), areas(n_point)
     integer :: i, slot
 
     do slot = 1, model%layout%n_slot
@@ -302,57 +285,24 @@ contains
       if (i == 0) cycle
       x = model%mesh%coordinates(:, model%layout%slot_nodes(:, slot))
       u = motion(1:2, model%layout%slot_nodes(:, slot))
-      strain(i) = log_ratio(area_integral(x, u)/area_integral(x, x))
+      areas = point_areas(x)
+      strain(i) = log_ratio(sum(areas*matmul(u(1, :), shape_at_points)) &
+        /sum(areas*matmul(x(1, :), shape_at_points)))
     end do
   end subroutine hoop_strains
 
-  !> Integral over a quad of the bilinear field through the first components of `values`: the sum
-  !> of M_a times them.
-  pure real(wp) function area_integral(x, values)
-    real(wp), intent(in) :: x(2, 4)      !! corners
-    real(wp), intent(in) :: values(2, 4)
-    real(wp) :: a(2), b(2), h(2), da(2), db(2), dh(2), s, ds
-
-    call patterns(x, a, b, h, s)
-    call patterns(values, da, db, dh, ds)
-    area_integral = 0.25_wp*ds*signed_area(a, b) + (da(1)*(h(1)*b(2) - h(2)*b(1)) &
-      + db(1)*(h(1)*a(2) - h(2)*a(1)))/24.0_wp
-  end function area_integral
-
-  !> Diagonals, h and the sum of the first components.
-  pure subroutine patterns(x, a, b, h, s)
-    real(wp), intent(in) :: x(2, 4)
-    real(wp), intent(out) :: a(2), b(2), h(2), s
-
-    a = x(:, 3) - x(:, 1)
-    b = x(:, 4) - x(:, 2)
-    h = (x(:, 1) - x(:, 2)) + (x(:, 3) - x(:, 4))
-    s = sum(x(1, :))
-  end subroutine patterns
-
-  !> a_r b_z + b_r a_z.
-  pure real(wp) function cross(a, b)
-    real(wp), intent(in) :: a(2), b(2)
-
-    cross = a(1)*b(2) + b(1)*a(2)
-  end function cross
-
   !> J - 1 at the points of the element in a slot, and the initial area or volume of each.
-  pure subroutine ratios_of_points(model, elements, slot, u, stretch, start)
-    type(model_t), intent(in) :: model
+  pure subroutine ratios_of_points(elements, slot, u, stretch, start)
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: slot
     real(wp), intent(in) :: u(2, 4)            !! displacement of the nodes
     real(wp), intent(out) :: stretch(n_point), start(n_point)
-    real(wp) :: reference(6), x(2, 4)
+    real(wp) :: reference(reference_sum)
 
-    if (model%is_round) then
-      x = model%mesh%coordinates(:, model%layout%slot_nodes(:, slot))
-      call round_point_ratios(x, u, stretch, start)
-    else
-      reference = elements%reference(slot, :6)
-      call point_ratios(reference, u, stretch, start)
-    end if
+    reference(:6) = elements%reference(slot, :6)
+    if (size(elements%reference, 2) > 6) reference(reference_sum) = elements%reference(slot, &
+      reference_sum)
+    call point_ratios(size(elements%reference, 2) > 6, reference, u, stretch, start)
   end subroutine ratios_of_points
 
   !> Smallest J of the element in a slot: of the element, and of its points where it has several.
@@ -369,7 +319,7 @@ contains
     if (elements%point_start((slot - 1)/chunk_size + 1) > 0) then
       n = n_point
       u = motion(1:2, model%layout%slot_nodes(:, slot))
-      call ratios_of_points(model, elements, slot, u, stretch, start)
+      call ratios_of_points(elements, slot, u, stretch, start)
     end if
     smallest = 1.0_wp + minval(stretch(:n))
   end function smallest_ratio

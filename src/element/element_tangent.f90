@@ -8,9 +8,8 @@ module element_tangent_m
     operator(/)
   use kinds_m, only : wp
   use material_dispatch_m, only : form_tangent, has_mean_dilatation
-  use parts_m, only : material_t
+  use parts_m, only : material_t, rubber_t
   use quad_points_m, only : n_point, point_areas, shape_at_points, shift, along_a, along_b, along_h
-  use rubbers_m, only : rubber_t
   use stress_chunk_m, only : stress_point_t
   use volumetric_m, only : log_ratio
   implicit none

@@ -3,14 +3,14 @@
 !> in the order of reverse Cuthill-McKee (Cuthill & McKee 1969, George 1971) from a pseudo-
 !> peripheral equation (George & Liu 1979).
 module banded_lu_m
+  use, intrinsic :: iso_c_binding, only : c_bool
   use kinds_m, only : long, wp
   use memory_m, only : available_bytes
-  use refused_memory_m, only : expect_refusal
-  use sparse_m, only : sparse_t
+  use sparse_m, only : compress_matrix, sparse_t
+  use system_m, only : expect_refusal
   implicit none
   private
-  public :: banded_lu_t, order_equations, factor_banded, solve_banded, reverse_cuthill_mckee, &
-    bandwidth
+  public :: banded_lu_t, factor_banded, solve_banded, reverse_cuthill_mckee, bandwidth
 
   !> A factorised matrix.
   type :: banded_lu_t
@@ -18,7 +18,7 @@ module banded_lu_m
     integer, allocatable :: order(:)    !! (n) the equation that comes k-th
     integer, allocatable :: exchange(:) !! (n) row exchanges
     real(wp), allocatable :: band(:, :) !! (3 width + 1, n) the factors, as dgbtrf leaves them
-    integer(long) :: bytes = 0          !! memory of the band
+    integer(long) :: bytes = 0          !! memory that the band needs
     logical :: is_negative = .false.    !! the determinant
   end type banded_lu_t
 
@@ -46,33 +46,31 @@ module banded_lu_m
 
 contains
 
-  !> Order the equations; afterwards the bandwidth and the memory that the factors need are known.
-  pure subroutine order_equations(matrix, factor)
-    type(sparse_t), intent(in) :: matrix
-    type(banded_lu_t), intent(out) :: factor
-
-    factor%order = reverse_cuthill_mckee(matrix)
-    factor%width = bandwidth(matrix, factor%order)
-    factor%bytes = 8_long*(3_long*factor%width + 1)*matrix%n
-  end subroutine order_equations
-
-  !> Factorise; `factored` is false where memory does not suffice. A pivot below `least_pivot` (a
-  !> singular matrix) is set to that, so that one can solve in any case.
+  !> Factorise; `factored` is false where memory does not suffice. Entry (i, j) of the ordered
+  !> matrix goes to row 2 width + 1 + i - j of column j. A pivot below `least_pivot` (a singular
+  !> matrix) is set to that, so that one can solve in any case.
   subroutine factor_banded(matrix, least_pivot, factor, factored)
     type(sparse_t), intent(in) :: matrix
     real(wp), intent(in) :: least_pivot
-    type(banded_lu_t), intent(inout) :: factor !! equations ordered
+    type(banded_lu_t), intent(inout) :: factor !! order, width and bytes are known
     logical, intent(out) :: factored
-    integer :: i, status, w
+    integer :: place(matrix%n), i, j, k, status, w
 
     factored = .false.
     if (factor%bytes > available_bytes()) return
     w = factor%width
-    call expect_refusal(.true.)
+    call expect_refusal(.true._c_bool)
     allocate (factor%band(3*w + 1, matrix%n), factor%exchange(matrix%n), stat=status)
-    call expect_refusal(.false.)
+    call expect_refusal(.false._c_bool)
     if (status /= 0) return
-    call fill_band(matrix, factor)
+    place(factor%order) = [(i, i=1, matrix%n)]
+    factor%band = 0.0_wp
+    do i = 1, matrix%n
+      do k = matrix%first(i), matrix%first(i + 1) - 1
+        j = place(matrix%column(k))
+        factor%band(2*w + 1 + place(i) - j, j) = matrix%value(k)
+      end do
+    end do
     call dgbtrf(matrix%n, matrix%n, w, w, factor%band, 3*w + 1, factor%exchange, status)
     do i = 1, matrix%n
       if (abs(factor%band(2*w + 1, i)) < least_pivot) &
@@ -82,24 +80,6 @@ contains
       + count(factor%exchange /= [(i, i=1, matrix%n)]), 2) == 1
     factored = .true.
   end subroutine factor_banded
-
-  !> Entry (i, j) of the ordered matrix to row 2 width + 1 + i - j of column j.
-  pure subroutine fill_band(matrix, factor)
-    type(sparse_t), intent(in) :: matrix
-    type(banded_lu_t), intent(inout) :: factor
-    integer :: place(matrix%n), i, j, k
-
-    do i = 1, matrix%n
-      place(factor%order(i)) = i
-    end do
-    factor%band = 0.0_wp
-    do i = 1, matrix%n
-      do k = matrix%first(i), matrix%first(i + 1) - 1
-        j = place(matrix%column(k))
-        factor%band(2*factor%width + 1 + place(i) - j, j) = matrix%value(k)
-      end do
-    end do
-  end subroutine fill_band
 
   !> x := A^-1 b, or A^-T b.
   subroutine solve_banded(factor, transposed, b, x)
@@ -124,9 +104,18 @@ contains
     integer :: order(matrix%n)
     type(sparse_t) :: pattern
     integer :: level(matrix%n) !! 0: not reached yet
-    integer :: root, start, n_done, n_found
+    integer, allocatable :: rows(:)
+    integer :: root, start, n_done, n_found, i, k
 
-    pattern = symmetric_pattern(matrix)
+    ! The matrix and its transpose together, values zero: contact fills some entries on one side of
+    ! the diagonal alone, and a walk along rows would pass by such neighbours.
+    rows = [((i, k=matrix%first(i), matrix%first(i + 1) - 1), i=1, matrix%n)]
+    pattern%n = matrix%n
+    pattern%n_entry = 2*size(rows)
+    pattern%rows = [rows, matrix%column]
+    pattern%columns = [matrix%column, rows]
+    allocate (pattern%values(pattern%n_entry), source=0.0_wp)
+    call compress_matrix(pattern)
     level = 0
     n_done = 0
     do root = 1, matrix%n
@@ -137,62 +126,6 @@ contains
     end do
     order = order(matrix%n:1:-1)
   end function reverse_cuthill_mckee
-
-  !> The pattern of the matrix and its transpose together, without values. Contact fills some
-  !> entries on one side of the diagonal alone; a walk along rows would pass by such neighbours.
-  pure function symmetric_pattern(matrix) result(pattern)
-    type(sparse_t), intent(in) :: matrix
-    type(sparse_t) :: pattern
-    integer, allocatable :: first(:), row(:)
-    integer :: i, n, a, b, next_a, next_b, least
-
-    call transpose_pattern(matrix, first, row)
-    pattern%n = matrix%n
-    allocate (pattern%first(matrix%n + 1), pattern%column(2*size(matrix%column)))
-    n = 0
-    do i = 1, matrix%n
-      pattern%first(i) = n + 1
-      a = matrix%first(i)
-      b = first(i)
-      do while (a < matrix%first(i + 1) .or. b < first(i + 1))
-        next_a = huge(1)
-        next_b = huge(1)
-        if (a < matrix%first(i + 1)) next_a = matrix%column(a)
-        if (b < first(i + 1)) next_b = row(b)
-        least = min(next_a, next_b)
-        if (next_a == least) a = a + 1
-        if (next_b == least) b = b + 1
-        n = n + 1
-        pattern%column(n) = least
-      end do
-    end do
-    pattern%first(matrix%n + 1) = n + 1
-  end function symmetric_pattern
-
-  !> Rows of the entries of each column, rising.
-  pure subroutine transpose_pattern(matrix, first, row)
-    type(sparse_t), intent(in) :: matrix
-    integer, allocatable, intent(out) :: first(:) !! (n + 1) where each column starts ...
-    integer, allocatable, intent(out) :: row(:)   !! ... in these
-    integer, allocatable :: next(:)
-    integer :: i, k
-
-    allocate (first(matrix%n + 1), row(size(matrix%column)), source=0)
-    do k = 1, size(matrix%column)
-      first(matrix%column(k) + 1) = first(matrix%column(k) + 1) + 1
-    end do
-    first(1) = 1
-    do i = 1, matrix%n
-      first(i + 1) = first(i + 1) + first(i)
-    end do
-    next = first
-    do i = 1, matrix%n
-      do k = matrix%first(i), matrix%first(i + 1) - 1
-        row(next(matrix%column(k))) = i
-        next(matrix%column(k)) = next(matrix%column(k)) + 1
-      end do
-    end do
-  end subroutine transpose_pattern
 
   !> An equation at one end of the connected part that holds `root`: from there the walk has the
   !> most, and so the narrowest, levels.
@@ -250,25 +183,20 @@ contains
   pure subroutine sort_by_degree(matrix, equations)
     type(sparse_t), intent(in) :: matrix
     integer, intent(inout) :: equations(:)
-    integer :: i, j, moved
+    integer :: degrees(size(equations)), i, j, moved(2)
 
+    degrees = matrix%first(equations + 1) - matrix%first(equations)
     do i = 2, size(equations)
-      moved = equations(i)
+      moved = [equations(i), degrees(i)]
       do j = i - 1, 1, -1
-        if (degree(matrix, equations(j)) <= degree(matrix, moved)) exit
+        if (degrees(j) <= moved(2)) exit
         equations(j + 1) = equations(j)
+        degrees(j + 1) = degrees(j)
       end do
-      equations(j + 1) = moved
+      equations(j + 1) = moved(1)
+      degrees(j + 1) = moved(2)
     end do
   end subroutine sort_by_degree
-
-  !> Entries of a row.
-  pure integer function degree(matrix, row)
-    type(sparse_t), intent(in) :: matrix
-    integer, intent(in) :: row
-
-    degree = matrix%first(row + 1) - matrix%first(row)
-  end function degree
 
   !> Largest distance of an entry from the diagonal when the equations are ordered so.
   pure function bandwidth(matrix, order) result(width)
@@ -277,9 +205,7 @@ contains
     integer :: width
     integer :: place(matrix%n), i, k
 
-    do i = 1, matrix%n
-      place(order(i)) = i
-    end do
+    place(order) = [(i, i=1, matrix%n)]
     width = 0
     do i = 1, matrix%n
       do k = matrix%first(i), matrix%first(i + 1) - 1

@@ -6,7 +6,8 @@
 !> small, else sparse. Theory: doc/theory/implicit.md, "Linear systems".
 module linear_solver_m
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-  use banded_lu_m, only : banded_lu_t, factor_banded, order_equations, solve_banded
+  use banded_lu_m, only : banded_lu_t, bandwidth, factor_banded, reverse_cuthill_mckee, &
+    solve_banded
   use kinds_m, only : long, wp
   use log_m, only : to_text
   use memory_m, only : available_bytes
@@ -114,7 +115,18 @@ contains
       report%bytes = factor%sparse%bytes
     end if
     if (.not. factored) then
-      call report_memory(matrix%n, factor, report)
+      ! How much is needed, and what helps.
+      report%out_of_memory = .true.
+      report%message = 'the factors of '//to_text(matrix%n)//' equations ('//report%method &
+        //', bandwidth '//to_text(report%bandwidth)//') need ' &
+        //to_text(nint(1.0e-6_wp*report%bytes))//' MB, but ' &
+        //to_text(nint(1.0e-6_wp*available_bytes()))//' MB are free'
+      if (factor%method == method_sparse .and. .not. has_umfpack) then
+        report%message = 'this program was built without UMFPACK'
+      else if (.not. has_umfpack) then
+        report%message = report%message//'; a program built with UMFPACK (libsuitesparse-dev on ' &
+          //'Debian and Ubuntu) needs far less'
+      end if
     else
       magnitudes = scaled
       magnitudes%value = abs(magnitudes%value)
@@ -151,24 +163,6 @@ contains
     report%is_singular = report%equation > 0
     if (report%is_singular) report%message = 'the matrix is singular: a row or column of it is zero'
   end subroutine check_entries
-
-  !> The factors do not fit: how much is needed, and what helps.
-  subroutine report_memory(n, factor, report)
-    integer, intent(in) :: n
-    type(factor_t), intent(in) :: factor
-    type(report_t), intent(inout) :: report
-
-    report%out_of_memory = .true.
-    report%message = 'the factors of '//to_text(n)//' equations ('//report%method//', bandwidth ' &
-      //to_text(report%bandwidth)//') need '//to_text(nint(1.0e-6_wp*report%bytes))//' MB, but ' &
-      //to_text(nint(1.0e-6_wp*available_bytes()))//' MB are free'
-    if (factor%method == method_sparse .and. .not. has_umfpack) then
-      report%message = 'this program was built without UMFPACK'
-    else if (.not. has_umfpack) then
-      report%message = report%message//'; a program built with UMFPACK (libsuitesparse-dev on '// &
-        'Debian and Ubuntu) needs far less'
-    end if
-  end subroutine report_memory
 
   !> The motion z that meets least stiffness: one step of inverse iteration for the least singular
   !> value, z = A^-1 A^-T s. For a singular matrix both solves grow without bound along the motion
@@ -267,7 +261,9 @@ contains
     type(sparse_t) :: shifted
     integer :: i, k
 
-    call order_equations(matrix, factor%banded)
+    factor%banded%order = reverse_cuthill_mckee(matrix)
+    factor%banded%width = bandwidth(matrix, factor%banded%order)
+    factor%banded%bytes = 8_long*(3_long*factor%banded%width + 1)*matrix%n
     factor%method = method
     if (method == method_best) factor%method = merge(method_sparse, method_banded, &
       has_umfpack .and. factor%banded%width > widest_band)
@@ -297,12 +293,11 @@ contains
     real(wp), intent(in) :: b(:)      !! (n)
     real(wp), intent(out) :: x(:)     !! (n)
 
-    select case (factor%method)
-    case (method_sparse)
+    if (factor%method == method_sparse) then
       call solve_umfpack(factor%sparse, transposed, b, x)
-    case default
+    else
       call solve_banded(factor%banded, transposed, b, x)
-    end select
+    end if
   end subroutine solve_factored
 
   !> scaled(i, j) = row_scale(i)*matrix(i, j)*column_scale(j), with the largest entries from

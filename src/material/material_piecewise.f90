@@ -146,20 +146,17 @@ contains
   pure subroutine total_rate(chunk, rate)
     type(stress_chunk_t), intent(in) :: chunk
     real(wp), intent(out) :: rate(chunk_size)
-    real(wp) :: frequency
+    real(wp) :: frequency, hoop(chunk_size)
     integer :: i
 
     frequency = 0.0_wp
     if (chunk%dt > 0.0_wp) frequency = 1.0_wp/chunk%dt
+    hoop = 0.0_wp
+    if (chunk%has_hoop) hoop = chunk%hoop
     !$omp simd
     do i = 1, chunk_size
-      rate(i) = frequency*sqrt(chunk%dxx(i)**2 + chunk%dyy(i)**2 + 2.0_wp*chunk%dxy(i)**2)
-    end do
-    if (.not. chunk%has_hoop) return
-    !$omp simd
-    do i = 1, chunk_size
-      rate(i) = frequency*sqrt((chunk%dxx(i) + chunk%hoop(i))**2 + (chunk%dyy(i) &
-        + chunk%hoop(i))**2 + chunk%hoop(i)**2 + 2.0_wp*chunk%dxy(i)**2)
+      rate(i) = frequency*sqrt((chunk%dxx(i) + hoop(i))**2 + (chunk%dyy(i) + hoop(i))**2 &
+        + hoop(i)**2 + 2.0_wp*chunk%dxy(i)**2)
     end do
   end subroutine total_rate
 

@@ -12,7 +12,6 @@ module model_m
   use parts_m, only : part_t, section_t, material_t
   use mesh_m, only : mesh_t
   use layout_m, only : layout_t
-  use sets_m, only : node_set_t, segment_set_t, part_set_t, shell_set_t
   use conditions_m, only : conditions_t
   use contacts_m, only : contact_t, transducer_t
   use rigids_m, only : rigid_t
@@ -21,7 +20,34 @@ module model_m
   use controls_m, only : controls_t
   implicit none
   private
-  public :: model_t
+  public :: model_t, node_set_t, segment_set_t, part_set_t, shell_set_t
+
+  !> *SET_NODE: members in the order of the deck (walking order where a surface is meant).
+  type :: node_set_t
+    integer :: id = 0
+    character(:), allocatable :: title !! only where the deck gives one
+    integer, allocatable :: nodes(:) !! node indices
+  end type node_set_t
+
+  !> *SET_SEGMENT, *SET_2D_SEGMENT: edges by their two nodes.
+  type :: segment_set_t
+    integer :: id = 0
+    integer, allocatable :: nodes(:, :) !! (2, n) node indices
+    integer, allocatable :: parts(:)    !! indices of the parts whose boundary they are, where they
+                                        !! are one
+  end type segment_set_t
+
+  !> *SET_PART.
+  type :: part_set_t
+    integer :: id = 0
+    integer, allocatable :: parts(:) !! indices into model%parts
+  end type part_set_t
+
+  !> *SET_SHELL.
+  type :: shell_set_t
+    integer :: id = 0
+    integer, allocatable :: elements(:) !! element indices
+  end type shell_set_t
 
   !> A whole problem.
   type, extends(visited_t) :: model_t

@@ -7,13 +7,13 @@ module csv_table_m
   use errors_m, only : error_t
   use history_tables_m, only : history_tables
   use kinds_m, only : wp
-  use number_text_m, only : real_size, put_real, put_integer
-  use text_files_m, only : line_file_t, open_lines, put_lines, keep_up, flush_lines, close_lines
+  use text_m, only : real_size, put_real, put_integer
+  use text_files_m, only : line_file_t, open_lines, put_lines, keep_up, flush_lines
   use visitor_m, only : visitor_t, any_length
   implicit none
   private
-  public :: csv_table_t, plan_table, open_table, add_row, flush_table, close_table, &
-    row_text, visit_rows, kind_real, kind_integer, kind_side
+  public :: csv_table_t, plan_table, open_table, add_row, row_text, visit_rows, kind_real, &
+    kind_integer, kind_side
 
   !> Kinds of columns: a real, an integer, a side of an interface (1 = slave, 2 = master).
   integer, parameter :: kind_real = 1, kind_integer = 2, kind_side = 3
@@ -126,28 +126,6 @@ contains
     end do
     text = buffer(:n - 1)//new_line('a')
   end function row_text
-
-  !> Bring all rows into the files.
-  subroutine flush_table(table, error)
-    type(csv_table_t), intent(inout) :: table
-    type(error_t), allocatable, intent(out) :: error
-    type(error_t), allocatable :: other
-
-    call flush_lines(table%text%file, other)
-    call flush_lines(table%file, error)
-    if (allocated(other) .and. .not. allocated(error)) call move_alloc(other, error)
-  end subroutine flush_table
-
-  !> Bring all rows into the files and close them; the values stay.
-  subroutine close_table(table, error)
-    type(csv_table_t), intent(inout) :: table
-    type(error_t), allocatable, intent(out) :: error
-    type(error_t), allocatable :: other
-
-    call close_lines(table%file, error)
-    call close_lines(table%text%file, other)
-    if (allocated(other) .and. .not. allocated(error)) call move_alloc(other, error)
-  end subroutine close_table
 
   !> Rows as a restart file has them. Those of a table that the run no longer writes are left out.
   subroutine visit_rows(table, name, visitor)

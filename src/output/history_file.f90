@@ -6,19 +6,18 @@ module history_file_m
   use errors_m, only : error_t
   use model_m, only : model_t
   use controls_m, only : is_asked
-  use csv_table_m, only : csv_table_t, plan_table, open_table, flush_table, close_table, &
-    visit_rows
+  use csv_table_m, only : csv_table_t, plan_table, open_table, visit_rows
   use dyna_text_m, only : open_dyna_text
   use kinds_m, only : wp
   use log_m, only : to_text
   use history_tables_m, only : history_tables, n_table, asked_alone, asked_by_states, each_run, &
     each_contact, each_history_node, each_part, each_wall, each_support, each_history_element, &
     each_body, each_boundary, each_group_node, each_section, text_none, text_rows
+  use text_files_m, only : line_file_t, flush_lines, close_lines
   use visitor_m, only : visited_t, visitor_t, length
   implicit none
   private
-  public :: histories_t, plan_histories, open_histories, check_histories, flush_histories, &
-    close_histories, has_rows
+  public :: histories_t, plan_histories, open_histories, flush_histories, close_histories, has_rows
 
   !> All tables of a run.
   type, extends(visited_t) :: histories_t
@@ -111,31 +110,23 @@ contains
     end associate
   end function n_each
 
-  !> The first failure that any table or its text file has had so far.
-  pure subroutine check_histories(histories, error)
-    type(histories_t), intent(in) :: histories
+  !> Bring all rows into the files, or look only whether all that came so far could be written;
+  !> reports the first failure of any table.
+  subroutine flush_histories(histories, is_asked, error)
+    type(histories_t), intent(inout) :: histories
+    logical, intent(in) :: is_asked
     type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: ignored
     integer :: k
 
     do k = 1, n_table
       associate (table => histories%tables(k))
+        if (is_asked) call flush_lines(table%text%file, ignored)
+        if (is_asked) call flush_lines(table%file, ignored)
+        if (allocated(error)) cycle
         if (allocated(table%text%file%trouble)) error = table%text%file%trouble
         if (allocated(table%file%trouble)) error = table%file%trouble
       end associate
-      if (allocated(error)) return
-    end do
-  end subroutine check_histories
-
-  !> Bring all rows into the files; reports the first failure of any table.
-  subroutine flush_histories(histories, error)
-    type(histories_t), intent(inout) :: histories
-    type(error_t), allocatable, intent(out) :: error
-    type(error_t), allocatable :: trouble
-    integer :: i_table
-
-    do i_table = 1, n_table
-      call flush_table(histories%tables(i_table), trouble)
-      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
     end do
   end subroutine flush_histories
 
@@ -143,13 +134,24 @@ contains
   subroutine close_histories(histories, error)
     type(histories_t), intent(inout) :: histories
     type(error_t), allocatable, intent(out) :: error
-    type(error_t), allocatable :: trouble
-    integer :: i_table
+    integer :: k
 
-    do i_table = 1, n_table
-      call close_table(histories%tables(i_table), trouble)
-      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+    do k = 1, n_table
+      call finish(histories%tables(k)%file)
+      call finish(histories%tables(k)%text%file)
     end do
+
+  contains
+
+    !> One file; the first failure stays.
+    subroutine finish(file)
+      type(line_file_t), intent(inout) :: file
+      type(error_t), allocatable :: trouble
+
+      call close_lines(file, trouble)
+      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+    end subroutine finish
+
   end subroutine close_histories
 
   !> Its components. Tables are kept whole: the run that goes on writes them again from the first

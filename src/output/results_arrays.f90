@@ -8,51 +8,55 @@
 !> not split as long as no more states come than the deck plans.
 module results_arrays_m
   use, intrinsic :: iso_c_binding, only : c_loc
+  use archive_m, only : archive_t
   use hdf5, only : hid_t, hsize_t, size_t, H5P_FILE_CREATE_F, H5P_FILE_ACCESS_F, H5F_ACC_TRUNC_F, &
-    H5S_SCALAR_F, H5T_STD_I64LE, H5_INTEGER_KIND, h5kind_to_type, h5pcreate_f, h5pclose_f, &
-    h5pset_sym_k_f, h5pset_cache_f, h5pset_alignment_f, &
-    h5pset_meta_block_size_f, h5fcreate_f, h5gopen_f, h5gclose_f, h5screate_f, h5sclose_f, &
-    h5acreate_f, h5awrite_f
+    H5S_SCALAR_F, H5T_STD_I64LE, h5pcreate_f, h5pclose_f, h5pset_sym_k_f, h5pset_cache_f, &
+    h5pset_alignment_f, h5pset_meta_block_size_f, h5fcreate_f, h5screate_f, h5sclose_f, &
+    h5acreate_by_name_f, h5awrite_f
   use kinds_m, only : wp, long
   use errors_m, only : error_t, raise, status_files
-  use file_facts_m, only : file_facts_t, what_hinders
-  use files_m, only : remove_file, unfinished
+  use files_m, only : file_facts_t, what_hinders, remove_file, unfinished
   use mesh_m, only : mesh_t
   use controls_m, only : controls_t
   use hdf5_writing_m, only : open_library, growing_t, as_real, as_index, create_growing, &
-    link_growing, make_group, check_status
+    link_growing, check_status, memory_type
   implicit none
   private
   public :: results_file_t, create_file, create_steps, create_fields, planned_states, &
     states_per_chunk, block_rows, fields, n_step_array, step_values, step_points, step_ones
+
+  !> What a model has where a field is in its file: anything; friction or ties that shear; a round
+  !> body; a material with a memory of heat; elements that may leave the mesh.
+  integer, parameter :: of_all = 1, of_shear = 2, of_round = 3, of_heat = 4, of_erosion = 5
 
   !> A field of points or cells.
   type :: field_t
     character(26) :: name     !! below /VTKHDF
     integer :: n_column       !! 0: one number
     logical :: of_cells
+    integer :: needs          !! one of the above
   end type field_t
 
   !> Fields, in the order in which a state writes them.
   integer, parameter :: n_field = 17
   type(field_t), parameter :: fields(n_field) = [ &
-    field_t('Points', 3, .false.), &
-    field_t('PointData/displacement', 3, .false.), &
-    field_t('PointData/velocity', 3, .false.), &
-    field_t('PointData/contact_force', 3, .false.), &
-    field_t('PointData/contact_pressure', 0, .false.), &
-    field_t('PointData/gap', 0, .false.), &
-    field_t('PointData/contact_traction', 0, .false.), &
-    field_t('PointData/contact_slip', 0, .false.), &
-    field_t('PointData/contact_state', 0, .false.), &
-    field_t('CellData/stress', 6, .true.), &
-    field_t('CellData/plastic_strain', 0, .true.), &
-    field_t('CellData/pressure', 0, .true.), &
-    field_t('CellData/mises', 0, .true.), &
-    field_t('CellData/hoop_strain', 0, .true.), &
-    field_t('CellData/temperature', 0, .true.), &
-    field_t('CellData/damage', 0, .true.), &
-    field_t('CellData/eroded', 0, .true.)]
+    field_t('Points', 3, .false., of_all), &
+    field_t('PointData/displacement', 3, .false., of_all), &
+    field_t('PointData/velocity', 3, .false., of_all), &
+    field_t('PointData/contact_force', 3, .false., of_all), &
+    field_t('PointData/contact_pressure', 0, .false., of_all), &
+    field_t('PointData/gap', 0, .false., of_all), &
+    field_t('PointData/contact_traction', 0, .false., of_shear), &
+    field_t('PointData/contact_slip', 0, .false., of_shear), &
+    field_t('PointData/contact_state', 0, .false., of_shear), &
+    field_t('CellData/stress', 6, .true., of_all), &
+    field_t('CellData/plastic_strain', 0, .true., of_all), &
+    field_t('CellData/pressure', 0, .true., of_all), &
+    field_t('CellData/mises', 0, .true., of_all), &
+    field_t('CellData/hoop_strain', 0, .true., of_round), &
+    field_t('CellData/temperature', 0, .true., of_heat), &
+    field_t('CellData/damage', 0, .true., of_heat), &
+    field_t('CellData/eroded', 0, .true., of_erosion)]
   !> Arrays below Steps: times, first point of a state, first cell, zeros and ones.
   integer, parameter :: n_step_array = 5, step_values = 1, step_points = 2, step_cells = 3, &
     step_zeros = 4, step_ones = 5
@@ -122,13 +126,18 @@ contains
   subroutine create_file(file, error)
     type(results_file_t), intent(inout) :: file
     type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable :: path
     integer(hid_t) :: creation, access
-    integer :: status(8)
+    integer :: status(8), i
 
-    call refuse_name(file%path, error)
-    if (.not. allocated(error)) call refuse_name(file%path//unfinished, error)
-    if (allocated(error)) return
-    call remove_file(file%path//unfinished, error)
+    do i = 1, 2
+      path = file%path//repeat(unfinished, i - 1)
+      if (len(what_hinders(path)) > 0) then
+        call raise(error, 'cannot write '//path//': '//what_hinders(path), status_files)
+        return
+      end if
+    end do
+    call remove_file(path, error)
     if (allocated(error)) return
     call open_library(status(1))
     call h5pcreate_f(H5P_FILE_CREATE_F, creation, status(2))
@@ -137,7 +146,7 @@ contains
     call h5pset_cache_f(access, 0, 0_size_t, 0_size_t, 0.0, status(5))
     call h5pset_alignment_f(access, table_size, page_size, status(6))
     call h5pset_meta_block_size_f(access, 4*page_size, status(7))
-    call h5fcreate_f(file%path//unfinished, H5F_ACC_TRUNC_F, file%id, status(8), creation, access)
+    call h5fcreate_f(path, H5F_ACC_TRUNC_F, file%id, status(8), creation, access)
     if (minval(status) < 0) then
       file%id = -1
       call raise(error, 'cannot write '//file%path//' (no directory, no permission or no space)', &
@@ -147,34 +156,26 @@ contains
     call h5pclose_f(access, status(2))
   end subroutine create_file
 
-  !> Refuse a name under which something else than a file stands.
-  subroutine refuse_name(path, error)
-    character(*), intent(in) :: path
-    type(error_t), allocatable, intent(out) :: error
-
-    if (len(what_hinders(path)) > 0) call raise(error, 'cannot write '//path//': ' &
-      //what_hinders(path), status_files)
-  end subroutine refuse_name
-
   !> Make the arrays of points and fields.
-  subroutine create_fields(file, group, mesh, n_planned, error)
+  subroutine create_fields(file, tree, mesh, n_planned)
     type(results_file_t), intent(inout) :: file
-    integer(hid_t), intent(in) :: group                !! the open group /VTKHDF
+    type(archive_t), intent(inout) :: tree             !! the file in the group /VTKHDF
     type(mesh_t), intent(in) :: mesh
     integer, intent(in) :: n_planned                   !! states
-    type(error_t), allocatable, intent(inout) :: error
     integer :: k, i, chunk_rows
 
-    call make_group(group, 'PointData', error)
-    call make_group(group, 'CellData', error)
+    call tree%enter('PointData')
+    call tree%leave()
+    call tree%enter('CellData')
+    call tree%leave()
     do k = 1, size(file%which)
       i = file%which(k)
       chunk_rows = mesh%n_node*states_per_chunk(mesh%n_node, n_planned)
       if (fields(i)%of_cells) &
         chunk_rows = mesh%n_element*states_per_chunk(2*mesh%n_element, n_planned)
       call create_growing(file%id, trim(fields(i)%name), as_real, fields(i)%n_column, chunk_rows, &
-        file%fields(i), error)
-      call link_growing(file%fields(i), group, trim(fields(i)%name), error)
+        file%fields(i), tree%error)
+      call link_growing(file%fields(i), file%id, tree%folder//trim(fields(i)%name), tree%error)
     end do
   end subroutine create_fields
 
@@ -182,49 +183,49 @@ contains
   !> equal content are one dataset with many names. The five headers and the attribute are made in
   !> one go before anything is linked: so they lie side by side within the first page of the file
   !> and HDF5 brings them out with one write, which is what makes the appearance of a state atomic.
-  subroutine create_steps(file, group, n_planned, error)
+  subroutine create_steps(file, tree, n_planned)
     type(results_file_t), intent(inout) :: file
-    integer(hid_t), intent(in) :: group                !! the open group /VTKHDF
+    type(archive_t), intent(inout) :: tree             !! the file in the group /VTKHDF
     integer, intent(in) :: n_planned                   !! states
-    type(error_t), allocatable, intent(inout) :: error
+    character(26), parameter :: names(9) = [character(26) :: 'Values', 'NumberOfParts', &
+      'PartOffsets', 'CellOffsets', 'ConnectivityIdOffsets', 'PointDataOffsets/node_id', &
+      'CellDataOffsets/element_id', 'CellDataOffsets/part_id', 'PointOffsets']
+    integer, parameter :: arrays(9) = [step_values, step_ones, step_zeros, step_zeros, &
+      step_zeros, step_zeros, step_zeros, step_zeros, step_points]
     character(len(fields%name)) :: name
-    integer(hid_t) :: steps, space
+    integer(hid_t) :: space
     integer(long), target :: zero
-    integer :: status(6), i, content
+    integer :: status(4), i, content
 
-    call make_group(group, 'Steps', error)
+    call tree%enter('Steps')
     do i = 1, n_step_array
       content = merge(as_real, as_index, i == step_values)
       call create_growing(file%id, 'Steps', content, 0, max(least_step_rows, 2*n_planned), &
-        file%steps(i), error)
+        file%steps(i), tree%error)
     end do
-    if (.not. allocated(error)) then
+    if (.not. allocated(tree%error)) then
       zero = 0
-      call h5gopen_f(group, 'Steps', steps, status(1))
-      call h5screate_f(H5S_SCALAR_F, space, status(2))
-      call h5acreate_f(steps, 'NSteps', H5T_STD_I64LE, space, file%n_steps, status(3))
-      call h5awrite_f(file%n_steps, h5kind_to_type(long, H5_INTEGER_KIND), c_loc(zero), status(4))
-      call h5sclose_f(space, status(5))
-      call h5gclose_f(steps, status(6))
-      call check_status(minval(status), 'Steps', error)
+      call h5screate_f(H5S_SCALAR_F, space, status(1))
+      call h5acreate_by_name_f(file%id, 'VTKHDF/Steps', 'NSteps', H5T_STD_I64LE, space, &
+        file%n_steps, status(2))
+      call h5awrite_f(file%n_steps, memory_type(as_index), c_loc(zero), status(3))
+      call h5sclose_f(space, status(4))
+      call check_status(minval(status), 'Steps', tree%error)
     end if
-    call make_group(group, 'Steps/PointDataOffsets', error)
-    call make_group(group, 'Steps/CellDataOffsets', error)
-    call link_growing(file%steps(step_values), group, 'Steps/Values', error)
-    call link_growing(file%steps(step_ones), group, 'Steps/NumberOfParts', error)
-    call link_growing(file%steps(step_zeros), group, 'Steps/PartOffsets', error)
-    call link_growing(file%steps(step_zeros), group, 'Steps/CellOffsets', error)
-    call link_growing(file%steps(step_zeros), group, 'Steps/ConnectivityIdOffsets', error)
-    call link_growing(file%steps(step_zeros), group, 'Steps/PointDataOffsets/node_id', error)
-    call link_growing(file%steps(step_zeros), group, 'Steps/CellDataOffsets/element_id', error)
-    call link_growing(file%steps(step_zeros), group, 'Steps/CellDataOffsets/part_id', error)
-    call link_growing(file%steps(step_points), group, 'Steps/PointOffsets', error)
+    call tree%enter('PointDataOffsets')
+    call tree%leave()
+    call tree%enter('CellDataOffsets')
+    call tree%leave()
+    do i = 1, size(names)
+      call link_growing(file%steps(arrays(i)), file%id, tree%folder//trim(names(i)), tree%error)
+    end do
     do i = 2, size(file%which)
       name = fields(file%which(i))%name
       content = merge(step_cells, step_points, fields(file%which(i))%of_cells)
-      call link_growing(file%steps(content), group, 'Steps/'//name(:index(name, '/') - 1) &
-        //'Offsets'//trim(name(index(name, '/'):)), error)
+      call link_growing(file%steps(content), file%id, tree%folder//name(:index(name, '/') - 1) &
+        //'Offsets'//trim(name(index(name, '/'):)), tree%error)
     end do
+    call tree%leave()
   end subroutine create_steps
 
 end module results_arrays_m

@@ -9,13 +9,14 @@
 !> the states before (see results_arrays_m).
 module results_file_m
   use, intrinsic :: iso_c_binding, only : c_loc
-  use hdf5, only : hid_t, H5F_SCOPE_LOCAL_F, H5_INTEGER_KIND, h5kind_to_type, h5gopen_f, &
-    h5gclose_f, h5awrite_f, h5aclose_f, h5fflush_f, h5fclose_f, h5close_f
+  use archive_m, only : archive_t
+  use hdf5, only : hid_t, hsize_t, H5F_SCOPE_LOCAL_F, H5T_STD_I64LE, h5awrite_f, h5aclose_f, &
+    h5fflush_f, h5fclose_f, h5close_f, h5screate_simple_f
   use kinds_m, only : wp, long
   use contacts_m, only : has_shear
   use errors_m, only : error_t, raise, status_files
-  use file_facts_m, only : file_facts_t, facts_of_name, is_same_file
-  use files_m, only : lengthen_file, remove_file, rename_file, unfinished
+  use files_m, only : file_facts_t, facts_of_name, is_same_file, lengthen_file, remove_file, &
+    rename_file, unfinished
   use model_m, only : model_t
   use parts_m, only : has_memory_of_heat
   use snapshot_m, only : snapshot_t
@@ -24,8 +25,8 @@ module results_file_m
   use results_mesh_m, only : write_mesh, deck_nodes
   use results_arrays_m, only : results_file_t, create_file, create_steps, create_fields, &
     planned_states, block_rows, fields, n_step_array, step_values, step_points, step_ones
-  use hdf5_writing_m, only : end_of_file, append_rows, close_growing, make_group, &
-    write_string_attribute, write_index_attribute, check_status
+  use hdf5_writing_m, only : as_index, end_of_file, append_rows, close_growing, text_attribute, &
+    write_attribute, check_status, memory_type
   implicit none
   private
   public :: results_file_t, run_info_t, open_results, append_state, append_instant, publish, &
@@ -43,53 +44,41 @@ contains
     type(run_info_t), intent(in) :: run_info
     logical, intent(in) :: goes_on      !! a restart: what stands under the name stays for now
     type(error_t), allocatable, intent(out) :: error
-    integer(hid_t) :: group
+    type(archive_t) :: tree
+    integer(long), target :: version(2)
+    integer(hid_t) :: space
     integer :: status, n_planned, i
+    logical :: has(5)
 
-    group = -1
     n_planned = planned_states(model%controls)
     file%path = path
     if (.not. goes_on) call remove_file(path, error)
     if (allocated(error)) return
     allocate (file%times(n_planned))
-    file%which = pack([(i, i=1, size(fields))], [(has_field(fields(i)%name, model), i=1, &
-      size(fields))])
+    has = [.true., any(has_shear(model%contacts)), model%is_round, &
+      any(has_memory_of_heat(model%materials)), model%erodes] ! by the needs of fields
+    file%which = pack([(i, i=1, size(fields))], has(fields%needs))
     call create_file(file, error)
     if (allocated(error)) return
-    call make_group(file%id, 'VTKHDF', error)
-    if (.not. allocated(error)) call h5gopen_f(file%id, 'VTKHDF', group, status)
-    call create_steps(file, group, n_planned, error)
-    call create_fields(file, group, model%mesh, n_planned, error)
-    call write_string_attribute(group, 'Type', 'UnstructuredGrid', .true., error)
-    call write_index_attribute(group, 'Version', [2_long, 0_long], error)
-    call write_mesh(group, model, error)
-    call write_run(file%id, run_info, error)
-    call make_group(file%id, 'history', error)
+    tree%id = file%id
+    tree%folder = ''
+    call tree%enter('VTKHDF')
+    call create_steps(file, tree, n_planned)
+    call create_fields(file, tree, model%mesh, n_planned)
+    call text_attribute(file%id, 'VTKHDF', 'Type', 'UnstructuredGrid', .true., tree%error)
+    version = [2, 0]
+    call h5screate_simple_f(1, [2_hsize_t], space, status)
+    call write_attribute(file%id, 'VTKHDF', 'Version', [memory_type(as_index), H5T_STD_I64LE], &
+      space, c_loc(version), tree%error)
+    call write_mesh(tree, model)
+    call tree%leave()
+    call write_run(tree, run_info)
+    call tree%enter('history')
+    call move_alloc(tree%error, error)
     call publish(file, error)
-    call h5gclose_f(group, status)
     allocate (file%rows(3*min(max(model%mesh%n_node, model%mesh%n_element), block_rows)))
     call note_failure(file, error)
   end subroutine open_results
-
-  !> Whether the file of a run has a field.
-  pure function has_field(name, model) result(has)
-    character(*), intent(in) :: name
-    type(model_t), intent(in) :: model
-    logical :: has
-
-    select case (name)
-    case ('PointData/contact_traction', 'PointData/contact_slip', 'PointData/contact_state')
-      has = any(has_shear(model%contacts))
-    case ('CellData/hoop_strain')
-      has = model%is_round
-    case ('CellData/temperature', 'CellData/damage')
-      has = any(has_memory_of_heat(model%materials))
-    case ('CellData/eroded')
-      has = model%erodes
-    case default
-      has = .true.
-    end select
-  end function has_field
 
   !> Append one state and bring it into the file whole.
   subroutine append_state(file, model, snapshot, error)
@@ -147,7 +136,7 @@ contains
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(in), target :: snapshot
     type(error_t), allocatable, intent(inout) :: error
-    integer :: i, k, first, n, n_row
+    integer :: i, k, m, first, n, n_row
 
     do k = 1, size(file%which)
       i = file%which(k)
@@ -160,9 +149,10 @@ contains
       do first = 1, n_row, block_rows
         n = min(block_rows, n_row - first + 1)
         if (fields(i)%of_cells) then
-          call gather_cells(fields(i)%name, first, n, snapshot, file%rows)
+          call gather_rows(fields(i)%name, [(m, m=first, first + n - 1)], model, snapshot, &
+            file%rows)
         else
-          call gather_points(fields(i)%name, deck_nodes(model%mesh, first, n), model, snapshot, &
+          call gather_rows(fields(i)%name, deck_nodes(model%mesh, first, n), model, snapshot, &
             file%rows)
         end if
         call append_rows(file%fields(i), n, c_loc(file%rows), error)
@@ -170,102 +160,62 @@ contains
     end do
   end subroutine append_fields
 
-  !> Rows of a field of some nodes.
-  pure subroutine gather_points(name, nodes, model, snapshot, rows)
+  !> Rows of a field at some nodes or elements. Mises stress is sqrt(3/2 s:s).
+  pure subroutine gather_rows(name, places, model, shot, rows)
     character(*), intent(in) :: name
-    integer, intent(in), contiguous :: nodes(:)
+    integer, intent(in), contiguous :: places(:)
     type(model_t), intent(in) :: model
-    type(snapshot_t), intent(in) :: snapshot
+    type(snapshot_t), intent(in) :: shot
     real(wp), intent(inout), contiguous :: rows(:)
+    integer :: i
 
     select case (name)
     case ('Points')
-      call gather_vectors(nodes, snapshot%displacement, rows, model%mesh%coordinates)
-    case ('PointData/displacement')
-      call gather_vectors(nodes, snapshot%displacement, rows)
-    case ('PointData/velocity')
-      call gather_vectors(nodes, snapshot%velocity, rows)
-    case ('PointData/contact_force')
-      call gather_vectors(nodes, snapshot%contact_force, rows)
-    case ('PointData/contact_pressure')
-      call gather_scalars(nodes, snapshot%contact_pressure, rows)
-    case ('PointData/gap')
-      call gather_scalars(nodes, snapshot%gap, rows)
-    case ('PointData/contact_traction')
-      call gather_scalars(nodes, snapshot%contact_traction, rows)
-    case ('PointData/contact_slip')
-      call gather_scalars(nodes, snapshot%contact_slip, rows)
-    case ('PointData/contact_state')
-      call gather_scalars(nodes, snapshot%contact_state, rows)
+      do i = 1, size(places)
+        rows(3*i - 2:3*i - 1) = model%mesh%coordinates(:, places(i)) &
+          + shot%displacement(:, places(i))
+      end do
+    case ('PointData/displacement'); call gather(places, 2, 3, rows, shot%displacement)
+    case ('PointData/velocity'); call gather(places, 2, 3, rows, shot%velocity)
+    case ('PointData/contact_force'); call gather(places, 2, 3, rows, shot%contact_force)
+    case ('PointData/contact_pressure'); call gather(places, 1, 1, rows, shot%contact_pressure)
+    case ('PointData/gap'); call gather(places, 1, 1, rows, shot%gap)
+    case ('PointData/contact_traction'); call gather(places, 1, 1, rows, shot%contact_traction)
+    case ('PointData/contact_slip'); call gather(places, 1, 1, rows, shot%contact_slip)
+    case ('PointData/contact_state'); call gather(places, 1, 1, rows, shot%contact_state)
+    case ('CellData/plastic_strain'); call gather(places, 1, 1, rows, shot%plastic_strain)
+    case ('CellData/hoop_strain'); call gather(places, 1, 1, rows, shot%hoop_strain)
+    case ('CellData/temperature'); call gather(places, 1, 1, rows, shot%temperature)
+    case ('CellData/damage'); call gather(places, 1, 1, rows, shot%damage)
+    case ('CellData/eroded'); call gather(places, 1, 1, rows, shot%eroded)
+    case ('CellData/pressure')
+      do i = 1, size(places)
+        rows(i) = -sum(shot%stress(:3, places(i)))/3.0_wp
+      end do
+    case ('CellData/mises')
+      do i = 1, size(places)
+        associate (s => shot%stress(:, places(i)))
+          rows(i) = sqrt(0.5_wp*((s(1) - s(2))**2 + (s(2) - s(3))**2 + (s(3) - s(1))**2) &
+            + 3.0_wp*s(4)**2)
+        end associate
+      end do
     end select
-  end subroutine gather_points
+  end subroutine gather_rows
 
-  !> Rows (x, y, 0) of some nodes; the third component stays as it is, and all of them
-  !> where there are no vectors.
-  pure subroutine gather_vectors(nodes, vectors, rows, origins)
-    integer, intent(in), contiguous :: nodes(:)
-    real(wp), intent(in), allocatable :: vectors(:, :)       !! (2, n_node)
-    real(wp), intent(inout) :: rows(3, *)
-    real(wp), intent(in), contiguous, optional :: origins(:, :) !! (2, n_node) to be added
+  !> Rows of values at some places; columns beyond the components stay as they are, and all where
+  !> there are no values.
+  pure subroutine gather(places, n_component, n_column, rows, values)
+    integer, intent(in), contiguous :: places(:)
+    integer, intent(in) :: n_component, n_column
+    real(wp), intent(inout) :: rows(n_column, *)
+    real(wp), intent(in), optional :: values(n_component, *)
     integer :: i
 
-    if (.not. allocated(vectors)) return
-    if (present(origins)) then
-      do i = 1, size(nodes)
-        rows(1:2, i) = origins(:, nodes(i)) + vectors(:, nodes(i))
-      end do
-    else
-      do i = 1, size(nodes)
-        rows(1:2, i) = vectors(:, nodes(i))
-      end do
-    end if
-  end subroutine gather_vectors
-
-  !> Values of some nodes; they stay as they are where there are none.
-  pure subroutine gather_scalars(nodes, values, rows)
-    integer, intent(in), contiguous :: nodes(:)
-    real(wp), intent(in), allocatable :: values(:) !! (n_node)
-    real(wp), intent(inout) :: rows(*)
-
-    if (allocated(values)) rows(:size(nodes)) = values(nodes)
-  end subroutine gather_scalars
-
-  !> Rows of a field of `n` elements from the element `first` on.
-  pure subroutine gather_cells(name, first, n, snapshot, rows)
-    character(*), intent(in) :: name
-    integer, intent(in) :: first, n
-    type(snapshot_t), intent(in) :: snapshot
-    real(wp), intent(inout), contiguous :: rows(:)
-    integer :: last
-
-    last = first + n - 1
-    associate (stress => snapshot%stress(:, first:last))
-      select case (name)
-      case ('CellData/plastic_strain')
-        if (allocated(snapshot%plastic_strain)) rows(:n) = snapshot%plastic_strain(first:last)
-      case ('CellData/pressure')
-        rows(:n) = -sum(stress(:3, :), 1)/3.0_wp
-      case ('CellData/mises')
-        rows(:n) = mises_stress(stress(1, :), stress(2, :), stress(3, :), stress(4, :))
-      case ('CellData/hoop_strain')
-        rows(:n) = snapshot%hoop_strain(first:last)
-      case ('CellData/temperature')
-        rows(:n) = snapshot%temperature(first:last)
-      case ('CellData/damage')
-        rows(:n) = snapshot%damage(first:last)
-      case ('CellData/eroded')
-        rows(:n) = snapshot%eroded(first:last)
-      end select
-    end associate
-  end subroutine gather_cells
-
-  !> Von Mises stress of a plane-strain state: sqrt(3/2 s:s).
-  elemental function mises_stress(xx, yy, zz, xy) result(mises)
-    real(wp), intent(in) :: xx, yy, zz, xy   !! Pa
-    real(wp) :: mises
-
-    mises = sqrt(0.5_wp*((xx - yy)**2 + (yy - zz)**2 + (zz - xx)**2) + 3.0_wp*xy**2)
-  end function mises_stress
+    if (.not. present(values)) return
+    do i = 1, size(places)
+      rows(:n_component, i) = values(:, places(i))
+    end do
+  end subroutine gather
 
   !> Say how many states the file has, and bring that into the file.
   subroutine publish(file, error)
@@ -276,7 +226,7 @@ contains
 
     if (allocated(error)) return
     number = file%n_state
-    call h5awrite_f(file%n_steps, h5kind_to_type(long, H5_INTEGER_KIND), c_loc(number), status)
+    call h5awrite_f(file%n_steps, memory_type(as_index), c_loc(number), status)
     call check_status(status, 'NSteps', error)
     call flush_file(file, error)
   end subroutine publish
@@ -338,11 +288,14 @@ contains
     type(results_file_t), intent(inout) :: file
     type(histories_t), intent(in) :: histories
     type(error_t), allocatable, intent(out) :: error
+    type(archive_t) :: tree
     integer :: i, status
 
     if (file%id < 0 .or. file%is_broken) return
-    call check_untouched(file, error)
-    call write_histories(file%id, histories, error)
+    call check_untouched(file, tree%error)
+    tree%id = file%id
+    call write_histories(tree, histories)
+    call move_alloc(tree%error, error)
     call flush_file(file, error)
     if (.not. allocated(error)) then
       call h5aclose_f(file%n_steps, status)

@@ -2,59 +2,60 @@
 !> The part of the results file that is written once: mesh and ids, in deck order.
 module results_mesh_m
   use, intrinsic :: iso_c_binding, only : c_loc
-  use hdf5, only : hid_t, H5T_STD_U8LE
+  use, intrinsic :: iso_fortran_env, only : int8
+  use archive_m, only : archive_t
   use kinds_m, only : long
-  use errors_m, only : error_t
   use model_m, only : model_t
   use mesh_m, only : mesh_t
-  use hdf5_writing_m, only : as_integer, as_index, write_rows
+  use visitor_m, only : as_bytes, item_t
   implicit none
   private
   public :: write_mesh, deck_order, deck_nodes, cell_nodes, cell_starts
 
   !> VTK's numbers of the cell types.
-  integer, parameter :: vtk_triangle = 5, vtk_quad = 9
+  integer(int8), parameter :: vtk_triangle = 5, vtk_quad = 9
 
 contains
 
   !> Write counts, connectivity, cell types and the ids of nodes, elements and parts.
-  subroutine write_mesh(group, model, error)
-    integer(hid_t), intent(in) :: group                !! the open group /VTKHDF
+  subroutine write_mesh(file, model)
+    type(archive_t), intent(inout) :: file             !! in the group /VTKHDF
     type(model_t), intent(in) :: model
-    type(error_t), allocatable, intent(inout) :: error !! nothing is written when there is one
-    integer, allocatable, target :: starts(:), nodes(:), kinds(:), ids(:)
+    integer, allocatable :: starts(:), nodes(:), ids(:)
+    integer(int8), allocatable, target :: kinds(:)
     integer :: n_cell
 
     n_cell = model%mesh%n_element
-    allocate (starts(n_cell + 1), kinds(n_cell), ids(max(n_cell, model%mesh%n_node)))
     starts = cell_starts(model%mesh%element_nodes)
-    allocate (nodes, source=cell_nodes(model%mesh))
+    nodes = cell_nodes(model%mesh)
+    allocate (kinds(n_cell))
     kinds = merge(vtk_triangle, vtk_quad, starts(2:) - starts(:n_cell) == 3)
-    call write_count(group, 'NumberOfPoints', model%mesh%n_node, error)
-    call write_count(group, 'NumberOfCells', n_cell, error)
-    call write_count(group, 'NumberOfConnectivityIds', size(nodes), error)
-    call write_rows(group, 'Connectivity', as_integer, size(nodes), c_loc(nodes), error)
-    call write_rows(group, 'Offsets', as_integer, size(starts), c_loc(starts), error)
-    call write_rows(group, 'Types', as_integer, n_cell, c_loc(kinds), error, H5T_STD_U8LE)
-    ids(:model%mesh%n_node) = model%mesh%node_id(deck_order(model%mesh))
-    call write_rows(group, 'PointData/node_id', as_integer, model%mesh%n_node, c_loc(ids), error)
-    ids(:n_cell) = model%mesh%element_id
-    call write_rows(group, 'CellData/element_id', as_integer, n_cell, c_loc(ids), error)
-    ids(:n_cell) = model%parts(model%mesh%element_part)%id
-    call write_rows(group, 'CellData/part_id', as_integer, n_cell, c_loc(ids), error)
+    call write_count('NumberOfPoints', model%mesh%n_node)
+    call write_count('NumberOfCells', n_cell)
+    call write_count('NumberOfConnectivityIds', size(nodes))
+    call file%visit('Connectivity', nodes)
+    call file%visit('Offsets', starts)
+    call file%pass(item_t('Types', as_bytes, 1, [n_cell, 1]), c_loc(kinds))
+    ids = model%mesh%node_id(deck_order(model%mesh))
+    call file%visit('PointData/node_id', ids)
+    ids = model%mesh%element_id
+    call file%visit('CellData/element_id', ids)
+    ids = model%parts(model%mesh%element_part)%id
+    call file%visit('CellData/part_id', ids)
+
+  contains
+
+    !> Write a dataset of one number.
+    subroutine write_count(name, count)
+      character(*), intent(in) :: name
+      integer, intent(in) :: count
+      integer(long) :: number
+
+      number = count
+      call file%visit(name, number, 0_long, '')
+    end subroutine write_count
+
   end subroutine write_mesh
-
-  !> Write a dataset of one number.
-  subroutine write_count(group, name, count, error)
-    integer(hid_t), intent(in) :: group
-    character(*), intent(in) :: name
-    integer, intent(in) :: count
-    type(error_t), allocatable, intent(inout) :: error
-    integer(long), target :: number(1)
-
-    number = count
-    call write_rows(group, name, as_index, 1, c_loc(number), error)
-  end subroutine write_count
 
   !> Index of the node that came k-th in the deck; the order of the mesh when it was not renumbered.
   pure function deck_order(mesh) result(order)

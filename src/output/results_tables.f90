@@ -1,15 +1,12 @@
 ! SPDX-License-Identifier: MIT
 !> The parts of the results file that are our own: what is known of the run, and the histories.
 module results_tables_m
-  use, intrinsic :: iso_c_binding, only : c_loc
-  use hdf5, only : hid_t, h5gopen_f, h5gclose_f
+  use archive_m, only : archive_t
   use kinds_m, only : wp
-  use errors_m, only : error_t
   use history_file_m, only : histories_t
   use history_tables_m, only : history_tables, n_table
   use csv_table_m, only : kind_real
-  use hdf5_writing_m, only : as_real, as_integer, make_group, write_rows, &
-    write_string_attribute, write_text
+  use hdf5_writing_m, only : text_attribute, write_text
   use text_m, only : text_of
   implicit none
   private
@@ -31,38 +28,34 @@ module results_tables_m
 contains
 
   !> Write the group /run.
-  subroutine write_run(id, run_info, error)
-    integer(hid_t), intent(in) :: id                   !! open file
+  subroutine write_run(file, run_info)
+    type(archive_t), intent(inout) :: file             !! open, at its root
     type(run_info_t), intent(in) :: run_info
-    type(error_t), allocatable, intent(inout) :: error
-    integer(hid_t) :: group
-    integer :: status
 
-    call make_group(id, 'run', error)
-    if (allocated(error)) return
-    call h5gopen_f(id, 'run', group, status)
-    call write_known(group, 'deck', run_info%deck, error)
-    call write_known(group, 'title', run_info%title, error)
-    call write_known(group, 'version', run_info%version, error)
-    call write_known(group, 'build', run_info%build, error)
-    call write_known(group, 'options', run_info%options, error)
-    call write_known(group, 'source', run_info%source, error)
-    call write_known(group, 'machine', run_info%machine, error)
-    call write_known(group, 'effective_deck_crc32', run_info%checksum, error)
+    call file%enter('run')
+    call write_known('deck', run_info%deck)
+    call write_known('title', run_info%title)
+    call write_known('version', run_info%version)
+    call write_known('build', run_info%build)
+    call write_known('options', run_info%options)
+    call write_known('source', run_info%source)
+    call write_known('machine', run_info%machine)
+    call write_known('effective_deck_crc32', run_info%checksum)
     if (allocated(run_info%effective_deck)) &
-      call write_text(group, 'effective_deck', run_info%effective_deck, error)
-    call h5gclose_f(group, status)
+      call write_text(file%id, 'run/effective_deck', run_info%effective_deck, file%error)
+    call file%leave()
+
+  contains
+
+    !> Write a text that may be missing as an attribute.
+    subroutine write_known(name, text)
+      character(*), intent(in) :: name
+      character(:), allocatable, intent(in) :: text
+
+      call text_attribute(file%id, 'run', name, utf8_text(text_of(text)), .false., file%error)
+    end subroutine write_known
+
   end subroutine write_run
-
-  !> Write a text that may be missing as an attribute.
-  subroutine write_known(group, name, text, error)
-    integer(hid_t), intent(in) :: group                !! open group
-    character(*), intent(in) :: name
-    character(:), allocatable, intent(in) :: text
-    type(error_t), allocatable, intent(inout) :: error
-
-    call write_string_attribute(group, name, utf8_text(text_of(text)), .false., error)
-  end subroutine write_known
 
   !> The text in UTF-8: as it is, or taken for Latin-1 where it is not UTF-8 (decks are either).
   pure function utf8_text(text) result(utf8)
@@ -108,33 +101,32 @@ contains
 
   !> Write all tables below /history, which is there, one dataset a column; nothing of one that was
   !> never planned. Columns that no CSV file has go below /dyna.
-  subroutine write_histories(id, histories, error)
-    integer(hid_t), intent(in) :: id                   !! open file
+  subroutine write_histories(file, histories)
+    type(archive_t), intent(inout) :: file             !! open, at its root
     type(histories_t), intent(in) :: histories
-    type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable, target :: reals(:)
-    integer, allocatable, target :: integers(:)
-    character(:), allocatable :: folder
+    real(wp), allocatable :: reals(:)
+    integer, allocatable :: integers(:)
+    character(:), allocatable :: name
     integer :: k, i
 
-    call make_group(id, 'dyna', error)
+    call file%enter('dyna')
     do k = 1, n_table
       associate (table => histories%tables(k))
         if (.not. allocated(table%names)) cycle
-        folder = 'history/'//trim(history_tables(k)%name)
-        call make_group(id, folder, error)
-        if (size(table%names) > table%n_csv) &
-          call make_group(id, 'dyna/'//trim(history_tables(k)%name), error)
+        file%folder = 'history/'
+        call file%enter(trim(history_tables(k)%name))
         do i = 1, size(table%names)
-          if (i > table%n_csv) folder = 'dyna/'//trim(history_tables(k)%name)
+          if (i == table%n_csv + 1) then
+            file%folder = 'dyna/'
+            call file%enter(trim(history_tables(k)%name))
+          end if
+          name = trim(table%names(i))
           reals = table%values(i, :table%n_row)
           if (table%kinds(i) == kind_real) then
-            call write_rows(id, folder//'/'//trim(table%names(i)), as_real, size(reals), &
-              c_loc(reals), error)
+            call file%visit(name, reals)
           else
             integers = nint(reals)
-            call write_rows(id, folder//'/'//trim(table%names(i)), as_integer, size(integers), &
-              c_loc(integers), error)
+            call file%visit(name, integers)
           end if
         end do
       end associate

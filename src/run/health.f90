@@ -6,7 +6,6 @@ module health_m
   use controls_m, only : controls_t
   use snapshot_m, only : energies_t, energy_ratio, total_energy
   use element_state_m, only : smallest_ratio, is_gone
-  use eos_pressure_m, only : is_too_dense
   use errors_m, only : error_t, raise, status_run
   use kinds_m, only : wp
   use layout_m, only : chunk_size, slot_part, tile_t
@@ -187,7 +186,8 @@ contains
       if (first == 0) return
       ratio = state%elements%eos_state(first + 2*chunk_size + mod(slot - 1, chunk_size))
       associate (eos => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material)%eos)
-        if (is_too_dense(eos, ratio)) what = 'V/V0 '//to_text(1.0_wp + ratio)//', near which the ' &
+        if (1.0_wp + ratio < eos%least_ratio) what = 'V/V0 '//to_text(1.0_wp + ratio) &
+          //', near which the ' &
           //'pressure of equation of state '//to_text(eos%id)//' has no bound (1 - (S1 - 1) mu - ' &
           //'S2 mu^2/(1 + mu) - S3 mu^3/(1 + mu)^2 comes to 0),'
       end associate

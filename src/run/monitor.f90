@@ -1,28 +1,33 @@
 ! SPDX-License-Identifier: MIT
-!> Watches a run for the files: what is due, and writing it.
+!> Watches a run for the files: what is due, and writing it: the part of that which both drivers do.
 module monitor_m
   use clock_m, only : clock_t
+  use contact_judging_m, only : judge_contacts, follow_softness
   use controls_m, only : interval_t, is_asked
   use errors_m, only : error_t
-  use history_file_m, only : histories_t, plan_histories, open_histories, check_histories, &
-    flush_histories, close_histories, has_rows
+  use history_file_m, only : histories_t, plan_histories, open_histories, flush_histories, &
+    close_histories, has_rows
+  use history_filling_m, only : fill_boundaries, fill_history_elements, fill_sections
   use history_rows_m, only : append_rows
-  use history_tables_m, only : history_tables, n_table, asked_or_states, asked_by_states
+  use history_tables_m, only : history_tables, n_table, asked_or_states, asked_by_states, &
+    table_rcforc, table_sleout, table_contact, table_elout, table_bndout, table_nodfor, &
+    table_secforc
   use kinds_m, only : wp
   use log_m, only : log_t, write_log
   use model_m, only : model_t
   use output_schedule_m, only : schedule_t, start_schedule, is_due, mark_written
-  use progress_m, only : progress_t, start_progress
+  use progress_m, only : progress_t, start_progress, show_progress
   use ranks_m, only : ranks_t
   use restart_plan_m, only : restarts_t
   use results_file_m, only : results_file_t, run_info_t, open_results, append_state, finish_results
   use rows_behind_m, only : face_rows_t
-  use snapshot_m, only : snapshot_t
-  use snapshot_filling_m, only : start_snapshot
+  use snapshot_m, only : snapshot_t, total_energy
+  use snapshot_filling_m, only : start_snapshot, fill_interfaces, fill_plot
+  use state_m, only : state_t
   implicit none
   private
   public :: monitor_t, open_files, start_monitor, start_schedules, find_due, any_due, write_due, &
-    finish_monitor, due_t
+    note_energies, write_instant, finish_monitor, due_t
 
   !> What is due in one cycle.
   type :: due_t
@@ -167,16 +172,55 @@ contains
       if (due%plot .and. monitor%ranks%mine == 0) then
         call append_state(monitor%results, model, shot, error)
         if (allocated(error)) return
-        call flush_histories(histories, error)
-      else
-        call check_histories(histories, error)
       end if
+      call flush_histories(histories, due%plot .and. monitor%ranks%mine == 0, error)
       do k = 1, n_table
         if (due%tables(k)) call mark_written(monitor%tables(k), shot%time, dt)
       end do
       if (due%plot) call mark_written(monitor%plot, shot%time, dt)
     end associate
   end subroutine write_due
+
+  !> Energies of the snapshot are known: those at time zero are the initial ones; contact springs
+  !> beside the bodies.
+  subroutine note_energies(model, knows_parts, state, monitor)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: knows_parts !! internal energies of parts too
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+
+    if (state%cycle == 0) then
+      state%initial_energy = total_energy(monitor%snapshot%energies)
+      monitor%snapshot%energies%initial = state%initial_energy
+    end if
+    if (knows_parts) call follow_softness(model, monitor%snapshot%parts, monitor%bodies, state)
+  end subroutine note_energies
+
+  !> Fill the rest of a snapshot, of which the driver has filled what it has its own way with, and
+  !> write what is due of it.
+  subroutine write_instant(model, due, dt, ratio, state, monitor, error)
+    type(model_t), intent(in) :: model
+    type(due_t), intent(in) :: due
+    real(wp), intent(in) :: dt    !! reach of the outputs, s
+    real(wp), intent(in) :: ratio !! last energy ratio known
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(inout) :: error
+
+    associate (shot => monitor%snapshot)
+      if (any(due%tables([table_rcforc, table_sleout, table_contact]))) &
+        call fill_interfaces(model, state, shot)
+      if (due%tables(table_elout)) call fill_history_elements(model, state, shot)
+      if (any(due%tables([table_bndout, table_nodfor]))) call fill_boundaries(state, shot)
+      if (due%tables(table_secforc)) call fill_sections(model, state, shot)
+      if (due%plot) call fill_plot(model, state, shot)
+      if (any(due%tables([table_sleout, table_contact]))) &
+        call judge_contacts(model, state, due%plot, monitor%rows, shot)
+    end associate
+    call write_due(model, due, dt, monitor, error)
+    if (due%plot .and. .not. allocated(error)) call show_progress(monitor%progress, monitor%clock, &
+      state%cycle, state%time, state%dt, ratio, 'write vtkhdf state')
+  end subroutine write_instant
 
   !> Close the files.
   subroutine finish_monitor(monitor, error)

@@ -11,8 +11,8 @@ module requests_m
   use monitor_m, only : monitor_t
   use progress_m, only : show_progress
   use restart_plan_m, only : wants_look
-  use signals_m, only : stop_requested, take_signals
   use state_m, only : state_t
+  use system_m, only : stop_requested, is_requested, request_dump, request_plot
   use text_m, only : upper_case
   implicit none
   private
@@ -42,7 +42,8 @@ contains
   subroutine hear_signals(asked)
     type(requests_t), intent(out) :: asked
 
-    call take_signals(asked%dump, asked%plot)
+    asked%dump = is_requested(request_dump)
+    asked%plot = is_requested(request_plot)
     asked%signalled = stop_requested()
     asked%stop = asked%signalled
   end subroutine hear_signals
@@ -95,7 +96,7 @@ contains
     case ('STOP')
       asked%stop = .true.
     case ('SWA')
-      if (.not. allocated(error)) call flush_histories(monitor%histories, error)
+      if (.not. allocated(error)) call flush_histories(monitor%histories, .true., error)
     case default
       call warn(monitor%log, 'd3kil holds none of sw1, sw2, sw3, sw4, swa, stop')
     end select

@@ -6,6 +6,7 @@
 !> bits as one that was not interrupted.
 module restart_m
   use archive_m, only : archive_t
+  use checksum_m, only : add_bytes, checksum_text
   use clock_m, only : lap, phase_nodes, phase_output
   use errors_m, only : error_t, status_files
   use files_m, only : file_exists, remove_file, unfinished
@@ -15,7 +16,7 @@ module restart_m
   use monitor_m, only : monitor_t
   use output_schedule_m, only : schedule_t, go_on_with
   use progress_m, only : show_note
-  use restart_file_m, only : create_restart, finish_restart, file_checksum
+  use restart_file_m, only : create_restart, finish_restart
   use restart_plan_m, only : restarts_t, dump_path, running_path, place_text, numbered_file
   use state_m, only : state_t
   use text_files_m, only : read_whole
@@ -69,19 +70,20 @@ contains
     type(restarts_t), intent(in) :: restarts
     type(archive_t), intent(inout) :: archive
     character(:), allocatable, intent(out) :: text
-    character(:), allocatable :: path, checksum, reason
-    integer(long) :: length
+    character(:), allocatable :: path, reason
+    integer(long) :: checksum
     logical :: is_read
 
     if (allocated(archive%error)) return
     path = restarts%prefix//'.effective.k'
-    call file_checksum(path, 0, length, checksum, reason)
-    if (.not. allocated(reason)) then
-      if (checksum /= restarts%effective_deck_checksum) reason = 'it has been changed'
-    end if
-    if (.not. allocated(reason)) then
-      call read_whole(path, text, is_read)
-      if (.not. is_read) reason = 'it can not be read'
+    call read_whole(path, text, is_read)
+    if (is_read) then
+      checksum = 0
+      call add_bytes(checksum, text)
+      if (checksum_text(checksum) /= restarts%effective_deck_checksum) &
+        reason = 'it has been changed'
+    else
+      reason = 'it can not be read'
     end if
     if (allocated(reason)) call archive%fail('no restart file can be written, since it ' &
       //'would hold the deck as run, '//path//': '//reason, status_files)

@@ -57,22 +57,17 @@ contains
     integer :: n_segments(2), n_spot
 
     call check_points(memory, folder//'points/', archive)
-    if (allocated(archive%error)) return
     if (allocated(memory%ties%side)) call check_ties(memory, folder//'ties/', archive)
-    if (allocated(archive%error)) return
     n_segments = [contact%slave%n_segment, contact%master%n_segment]
-    n_spot = memory%n_slave
-    if (allocated(memory%spot_xi)) n_spot = size(memory%spot_xi)*n_segments(1)
     if (memory%facing%is_used) then
       call check_side(memory%facing%slave, n_segments(1), folder//'facing/slave/', archive)
       call check_side(memory%facing%master, n_segments(2), folder//'facing/master/', archive)
-      if (allocated(archive%error)) return
       n_segments = [memory%facing%slave%n, memory%facing%master%n]
-      if (allocated(memory%spot_xi)) n_spot = size(memory%spot_xi)*n_segments(1)
     end if
+    n_spot = memory%n_slave
+    if (allocated(memory%spot_xi)) n_spot = size(memory%spot_xi)*n_segments(1)
     call check_tracking(memory%slave_tracking, n_spot, n_segments(2), &
       folder//'slave_tracking/', archive)
-    if (allocated(archive%error)) return
     call check_tracking(memory%master_tracking, memory%n_master, n_segments(1), &
       folder//'master_tracking/', archive)
   end subroutine check_contact
@@ -156,6 +151,7 @@ contains
     integer, intent(in) :: n_segment    !! of the chain
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
+    logical, allocatable :: is_listed(:)
     integer :: n
 
     n = tracking%n
@@ -168,43 +164,21 @@ contains
     call archive%expect(folder//'n', n == n_spot, 'another number of spots than there are')
     call archive%expect(folder//'chord', all(tracking%chord >= 1 &
       .and. tracking%chord <= max(1, n)), 'numbers that no spot has')
-    if (allocated(archive%error)) return
-    call archive%expect(folder//'n_touching', tracking%n_touching >= 0 &
-      .and. tracking%n_touching <= n, 'more than there are spots')
     call archive%expect(folder//'segment', all(tracking%segment >= 0 &
       .and. tracking%segment <= n_segment), 'numbers that no segment has')
     call archive%expect(folder//'status', all(tracking%status == is_free &
       .or. tracking%segment > 0), 'spots that stand before no segment')
-    if (allocated(archive%error)) return
-    call archive%expect(folder//'touching', is_list(tracking%touching(:tracking%n_touching), n), &
-      'spots that stand on its list twice')
-    if (allocated(archive%error)) return
-    call archive%expect(folder//'touching', all(tracking%status( &
-      tracking%touching(:tracking%n_touching)) == is_touching), 'spots that do not touch')
     call archive%expect(folder//'n_touching', count(tracking%status == is_touching) &
       == tracking%n_touching, 'another number than there are spots in contact')
+    if (allocated(archive%error)) return
+    allocate (is_listed(0:n), source=.false.)
+    is_listed(tracking%touching(:tracking%n_touching)) = .true.
+    call archive%expect(folder//'touching', all(is_listed(1:) .eqv. tracking%status &
+      == is_touching), 'spots that are not those in contact, each once')
     call archive%expect(folder//'reach', tracking%reach >= 0.0_wp .and. tracking%reach &
       <= most_cells*tracking%grid%least_cell, 'a distance that does not fit its cells')
     call check_grid(tracking%grid, n_segment, folder//'grid/', archive)
   end subroutine check_tracking
-
-  !> Whether numbers are from 1 to n, each at most once.
-  pure function is_list(numbers, n)
-    integer, intent(in) :: numbers(:)
-    integer, intent(in) :: n
-    logical :: is_list
-    logical, allocatable :: is_used(:)
-    integer :: i
-
-    allocate (is_used(n), source=.false.)
-    is_list = .false.
-    do i = 1, size(numbers)
-      if (numbers(i) < 1 .or. numbers(i) > n) return
-      if (is_used(numbers(i))) return
-      is_used(numbers(i)) = .true.
-    end do
-    is_list = .true.
-  end function is_list
 
   !> Segments in cells: each bucket ends where the next one starts.
   subroutine check_grid(grid, n_segment, folder, archive)

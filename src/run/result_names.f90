@@ -3,8 +3,8 @@
 !> touched.
 module result_names_m
   use errors_m, only : error_t, raise, status_files
-  use file_facts_m, only : file_facts_t, facts_of_name, facts_of_target, is_same_file, what_hinders
-  use files_m, only : join_path, unfinished
+  use files_m, only : file_facts_t, facts_of_name, facts_of_target, is_same_file, what_hinders, &
+    join_path, unfinished
   use history_tables_m, only : history_tables
   use requests_m, only : switch_path
   use restart_plan_m, only : restarts_t, dump_path, running_path

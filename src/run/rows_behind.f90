@@ -11,7 +11,8 @@ module rows_behind_m
   use state_m, only : state_t
   implicit none
   private
-  public :: face_rows_t, find_rows, face_pressure, face_inertia, elastic_energy, has_stress
+  public :: face_rows_t, find_rows, face_pressure, face_inertia, elastic_energy, has_stress, &
+    place_of
 
   !> Corners, and edges, of an element; a triangle repeats its third node.
   integer, parameter :: n_corner = 4

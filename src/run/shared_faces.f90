@@ -15,6 +15,7 @@ module shared_faces_m
   !> Pressure of other interfaces on the faces at the nodes of one side of an interface, Pa.
   type :: others_t
     real(wp), allocatable :: pressure(:)
+    real(wp), allocatable :: area(:) !! of them, half of each face, m or m^2 per radian
   end type others_t
 
   !> A face of a side; sides are the slave and the master of each interface.
@@ -83,11 +84,13 @@ contains
     allocate (first(model%mesh%n_node), source=0)
     k = 0
     do i = 1, size(others)
-      allocate (others(i)%pressure(surfaces(i)%n_node), source=0.0_wp)
+      allocate (others(i)%pressure(surfaces(i)%n_node), others(i)%area(surfaces(i)%n_node), &
+        source=0.0_wp)
       do s = 1, surfaces(i)%n_segment
         k = k + 1
         associate (ends => surfaces(i)%segments(:, s))
           faces(k) = face_t(i, surfaces(i)%segment_element(s), ends, surfaces(i)%nodes(ends))
+          others(i)%area(ends) = others(i)%area(ends) + face_share(model, state, faces(k)%nodes)
         end associate
         next(k) = first(faces(k)%nodes(1))
         first(faces(k)%nodes(1)) = k
@@ -110,27 +113,9 @@ contains
       end do
     end do
     do i = 1, size(others)
-      call divide_by_areas(model, state, surfaces(i), others(i)%pressure)
+      where (others(i)%area > 0.0_wp) others(i)%pressure = others(i)%pressure/others(i)%area
     end do
   end subroutine find_others
-
-  !> Forces of nodes to pressures.
-  subroutine divide_by_areas(model, state, surface, pressure)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(inout) :: pressure(:)
-    real(wp) :: area(surface%n_node)
-    integer :: s
-
-    area = 0.0_wp
-    do s = 1, surface%n_segment
-      associate (ends => surface%segments(:, s))
-        area(ends) = area(ends) + face_share(model, state, surface%nodes(ends))
-      end associate
-    end do
-    where (area > 0.0_wp) pressure = pressure/area
-  end subroutine divide_by_areas
 
   !> The area of a face that each of its ends has, m or m^2 per radian.
   pure function face_share(model, state, nodes) result(share)

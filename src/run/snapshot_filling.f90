@@ -5,7 +5,7 @@ module snapshot_filling_m
   use kinds_m, only : wp, long
   use block_state_m, only : block_state_t
   use common_motion_m, only : fill_common
-  use constraints_m, only : is_active
+  use loads_m, only : is_active
   use contact_results_m, only : interface_resultants, slave_rows, join_rows
   use element_mass_m, only : element_shares
   use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains, &

@@ -67,7 +67,7 @@ LIES = {
     "state/elements/hourglass_start": (lambda old: old * 0 + 10**8, "follow from the deck"),
     "state/motion": (lambda old: old * np.nan, "finite"),
     "state/mass": (lambda old: old[:-1], "in all"),
-    "state/time": (lambda old: np.float64(old[0]), "a single one"),
+    "state/time": (lambda old: np.float64(old[0]), "in all"),
     "driver/steps/first_dt": (lambda old: old * 0, "not positive"),
     "run/n_dump": (lambda old: old * 0 - 1, "no run reaches"),
     "state/contacts/1/watch/node": (lambda old: old * 0 + 99999, "no node"),

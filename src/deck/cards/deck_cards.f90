@@ -9,7 +9,8 @@ module deck_cards_m
     flag_parameter, block_of_line, given_by, format_long, max_field
   use deck_fields_m, only : card_spec_t, make_spec, field_number, card_t, begin_card, cut_card, &
     read_numbers, field_text, field_error
-  use deck_schema_m, only : table, keyword_cards, refusal_reason, expected, max_card
+  use deck_schema_m, only : table, keyword_cards, refusal_reason, expectations, &
+    text_of_field, max_card
   use deck_parameter_table_m, only : look_up
   implicit none
   private
@@ -238,7 +239,7 @@ contains
     if (spec%treatments(k) == 'r') then
       call field_error(deck, card, k, refusal_reason(trim(spec%names(k))))
     else
-      effect = expected(name, trim(spec%names(k)))
+      effect = text_of_field(expectations, name, trim(spec%names(k)))
       if (index(effect, ':') /= 1) effect = ''
       call line_warning(deck, card%line, 'field '//name//' '//spec%names(k)//to_text(spec%number), &
         'card '//to_text(spec%number)//' field '//to_text(k)//' ('//trim(spec%names(k))//'): "' &

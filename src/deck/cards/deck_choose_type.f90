@@ -11,7 +11,7 @@ module deck_choose_type_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use model_m, only : model_t
-  use number_text_m, only : shortest
+  use text_m, only : shortest
   use surfaces_m, only : surface_t
   use type_charts_m, only : scene_bound, scene_matching, scene_general, scene_led, &
     scene_friction, scene_names, estimates, cheapest_type

@@ -4,7 +4,7 @@
 !> that leaves the type to the program, is written as our own card first.
 module deck_contact_m
   use kinds_m, only : wp
-  use number_text_m, only : shortest
+  use text_m, only : shortest
   use log_m, only : to_text
   use units_m, only : in_units
   use model_m, only : model_t

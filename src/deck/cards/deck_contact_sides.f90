@@ -6,11 +6,10 @@ module deck_contact_sides_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use surfaces_m, only : surface_t, has_closed_chain
-  use model_m, only : model_t
+  use model_m, only : model_t, segment_set_t
   use units_m, only : in_units
   use element_finder_m, only : body_view_t, view_body
   use initial_overlap_m, only : overlap_t, find_crossing, find_overlap
-  use sets_m, only : segment_set_t
   use boundary_m, only : boundary_t, find_boundary, find_edge
   use surface_building_m, only : boundary_surface, chain_surface, chain_turned, chain_ordered, &
     chain_broken, chain_repeated, chain_short
@@ -183,9 +182,8 @@ contains
     type(boundary_t), intent(in) :: outside
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
-    type(boundary_t) :: chosen
     logical, allocatable :: is_chosen(:)
-    integer :: i, node, n, edge, crossing
+    integer :: i, edge, crossing
 
     allocate (is_chosen(outside%n_edge), source=.false.)
     do i = 1, size(set%nodes, 2)
@@ -199,17 +197,7 @@ contains
       end if
       is_chosen(edge) = .true.
     end do
-    allocate (chosen%start(size(outside%start)))
-    n = 0
-    do node = 1, size(outside%start) - 1
-      chosen%start(node) = n + 1
-      n = n + count(is_chosen(outside%start(node):outside%start(node + 1) - 1))
-    end do
-    chosen%start(size(outside%start)) = n + 1
-    chosen%n_edge = n
-    chosen%elements = pack(outside%elements, is_chosen)
-    chosen%nodes = reshape(pack(outside%nodes, spread(is_chosen, 1, 2)), [2, n])
-    call boundary_surface(chosen, surface, crossing)
+    call boundary_surface(outside, is_chosen, surface, crossing)
     if (crossing > 0) call reject_field(deck, place, 'is a set whose edges touch each other at ' &
       //'node '//to_text(model%mesh%node_id(crossing))//'; give the surface as a node set')
   end subroutine surface_of_segments
@@ -247,7 +235,7 @@ contains
     end do
     call find_boundary(element_nodes, spread(.true., 1, size(elements)), &
       spread(.true., 1, size(nodes)), boundary)
-    call boundary_surface(boundary, surface, crossing)
+    call boundary_surface(boundary, spread(.true., 1, boundary%n_edge), surface, crossing)
     if (crossing > 0) then
       call reject_field(deck, place, 'has a boundary that touches itself at node ' &
         //to_text(model%mesh%node_id(nodes(crossing)))//'; give the surface as a node set')

@@ -2,11 +2,10 @@
 !> *MAT_ADD_EROSION, and which materials may leave the mesh.
 module deck_erosion_m
   use kinds_m, only : wp
-  use erosion_m, only : erosion_t
   use log_m, only : to_text
   use model_m, only : model_t
   use parts_m, only : law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
-    law_hot_johnson_cook, law_null, hourglass_assumed
+    law_hot_johnson_cook, law_null, hourglass_assumed, erosion_t
   use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, first_card, next_card, check_rest, report_field

@@ -8,14 +8,13 @@ module deck_hardening_m
   use log_m, only : to_text
   use model_m, only : model_t
   use parts_m, only : material_t, law_piecewise, law_johnson_cook, law_hot_johnson_cook, &
-    spall_pressure, spall_stress
+    spall_pressure, spall_stress, johnson_cook_t
   use deck_lines_m, only : deck_t, line_error, line_warning
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, next_card, report_field, warn_of_field
   use deck_curves_m, only : table_t
   use deck_ids_m, only : a_curve, a_table, index_of
   use deck_values_m, only : integer_of, real_of, is_bad, find_id, reals_of, place_of
-  use johnson_cook_m, only : johnson_cook_t
   implicit none
   private
   public :: take_piecewise, take_hydro, take_tangent_modulus, take_johnson_cook, &

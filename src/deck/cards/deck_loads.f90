@@ -6,7 +6,7 @@ module deck_loads_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use boundary_m, only : boundary_t, find_edge
-  use conditions_m, only : nodal_load_t, pressure_load_t, body_load_t, lumped_mass_t, &
+  use conditions_m, only : nodal_load_t, pressure_load_t, lumped_mass_t, &
     damping_t, part_damping_t
   use model_m, only : model_t
   use parts_m, only : gives_pressure
@@ -212,7 +212,7 @@ contains
     type(model_t), intent(inout) :: model
     type(cursor_t) :: cursor
     type(card_t) :: card
-    type(body_load_t) :: load
+    type(nodal_load_t) :: load
     integer, allocatable :: blocks(:)
     integer :: i
     logical :: found

@@ -5,7 +5,7 @@ module deck_material_m
   use kinds_m, only : wp
   use model_m, only : model_t
   use parts_m, only : material_t, law_elastic, law_plastic, law_null, law_crushable_foam, &
-    law_mooney_rivlin, law_blatz_ko
+    law_mooney_rivlin, law_blatz_ko, mooney_rivlin, blatz_ko, blatz_ko_poisson
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
   use deck_fields_m, only : card_t
@@ -18,7 +18,6 @@ module deck_material_m
     reals_of, along_axes
   use eos_m, only : eos_t, eos_by_law, initial_stiffness, initial_pressure, asymptote, &
     eos_gruneisen, eos_linear_polynomial, eos_logarithmic
-  use rubbers_m, only : mooney_rivlin, blatz_ko, blatz_ko_poisson
   implicit none
   private
   public :: read_materials, read_equations, take_equation, settle_pressures

@@ -4,8 +4,7 @@
 !> that defines it.
 module deck_parameters_m
   use kinds_m, only : wp
-  use number_text_m, only : shortest
-  use text_m, only : upper_case, read_real, number_good
+  use text_m, only : upper_case, read_real, shortest, number_good
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, line_text, line_error, line_warning, block_of_line
   use deck_schema_m, only : first_too_far, keep_nearer

@@ -361,12 +361,17 @@ contains
     end do
   end subroutine read_beams
 
-  !> Nodes and elements of *DATABASE_HISTORY_, each once, in deck order; force groups.
+  !> Nodes and elements of *DATABASE_HISTORY_, each once, in deck order; force groups of
+  !> *DATABASE_NODAL_FORCE_GROUP, none of their node sets twice.
   subroutine read_histories(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
+    type(force_group_t), allocatable :: groups(:)
+    type(cursor_t) :: cursor
+    type(card_t) :: card
     integer, allocatable :: members(:), sets(:)
-    integer :: i
+    logical :: is_taken(size(model%node_sets))
+    integer :: i, n, set
 
     call read_chosen(deck, 'DATABASE_HISTORY_NODE', [a_node, a_node_set], members, sets)
     members = [members, (model%node_sets(sets(i))%nodes, i=1, size(sets))]
@@ -374,7 +379,22 @@ contains
     call read_chosen(deck, 'DATABASE_HISTORY_SHELL', [an_element, a_shell_set], members, sets)
     members = [members, (model%shell_sets(sets(i))%elements, i=1, size(sets))]
     call keep_first(members, model%mesh%n_element, model%controls%output%history_elements)
-    call read_groups(deck, model)
+    n = count_rows(deck, 'DATABASE_NODAL_FORCE_GROUP')
+    if (n == 0) return
+    allocate (groups(n))
+    is_taken = .false.
+    n = 0
+    do while (next_of(deck, 'DATABASE_NODAL_FORCE_GROUP', cursor, card))
+      call find_id(deck, a_node_set, card, 'NSID', set)
+      if (set == 0) cycle
+      if (is_taken(set)) call report_field(deck, card, 'NSID', &
+        'is the node set of another force group')
+      is_taken(set) = .true.
+      n = n + 1
+      groups(n)%id = integer_of(card, 'NSID')
+      call keep_first(model%node_sets(set)%nodes, model%mesh%n_node, groups(n)%nodes)
+    end do
+    model%controls%output%force_groups = groups(:n)
   end subroutine read_histories
 
   !> What the keywords that begin so name: members, and by those that end so sets.
@@ -396,33 +416,6 @@ contains
     members = chosen(1)%members(:chosen(1)%n)
     sets = chosen(2)%members(:chosen(2)%n)
   end subroutine read_chosen
-
-  !> *DATABASE_NODAL_FORCE_GROUP: node sets, none of them twice.
-  subroutine read_groups(deck, model)
-    type(deck_t), intent(inout) :: deck
-    type(model_t), intent(inout) :: model
-    type(force_group_t), allocatable :: groups(:)
-    type(cursor_t) :: cursor
-    type(card_t) :: card
-    integer :: set, n
-    logical :: is_taken(size(model%node_sets))
-
-    allocate (groups(count_rows(deck, 'DATABASE_NODAL_FORCE_GROUP')))
-    if (size(groups) == 0) return
-    is_taken = .false.
-    n = 0
-    do while (next_of(deck, 'DATABASE_NODAL_FORCE_GROUP', cursor, card))
-      call find_id(deck, a_node_set, card, 'NSID', set)
-      if (set == 0) cycle
-      if (is_taken(set)) call report_field(deck, card, 'NSID', &
-        'is the node set of another force group')
-      is_taken(set) = .true.
-      n = n + 1
-      groups(n)%id = integer_of(card, 'NSID')
-      call keep_first(model%node_sets(set)%nodes, model%mesh%n_node, groups(n)%nodes)
-    end do
-    model%controls%output%force_groups = groups(:n)
-  end subroutine read_groups
 
   !> Members of a list, each where it comes first.
   pure subroutine keep_first(members, n_all, kept)

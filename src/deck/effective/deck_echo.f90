@@ -8,11 +8,11 @@ module deck_echo_m
   use controls_m, only : interval_t
   use curves_m, only : curve_is_constant
   use deck_lines_m, only : deck_t, layout_marks
-  use heap_m, only : give_back_memory
   use hardenings_m, only : hardening_t
   use history_tables_m, only : history_tables, n_table
   use model_m, only : model_t
   use parts_m, only : material_t
+  use system_m, only : give_back_memory
   use walls_m, only : friction_sticks
   implicit none
   private

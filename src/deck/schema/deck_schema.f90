@@ -16,8 +16,9 @@ module deck_schema_m
     table_database
   implicit none
   private
-  public :: table, keyword_cards, find_keyword, nearest_keyword, expected, refusal_reason, &
-    first_too_far, keep_nearer, max_card, known_honoured, known_ignored, known_refused, known_not
+  public :: table, keyword_cards, find_keyword, nearest_keyword, expectations, &
+    refusal_reason, text_of_field, first_too_far, keep_nearer, max_card, known_honoured, &
+    known_ignored, known_refused, known_not
 
   !> All keywords that are honoured, and their cards.
   character(131), parameter :: table(*) = [character(131) :: table_control, table_mesh, &
@@ -329,14 +330,6 @@ contains
     row = 0
   end subroutine find_other
 
-  !> What a field is expected to be, where its range alone says too little; blank for the others.
-  pure function expected(keyword, field) result(text)
-    character(*), intent(in) :: keyword, field
-    character(:), allocatable :: text
-
-    text = text_of_field(expectations, keyword, field)
-  end function expected
-
   !> Why a field with treatment r may not be used.
   pure function refusal_reason(field) result(text)
     character(*), intent(in) :: field
@@ -350,7 +343,8 @@ contains
     end if
   end function refusal_reason
 
-  !> The text of the first row that names a field, or the beginning of its keyword and the field.
+  !> The text of the first row that names a field, or the beginning of its keyword and the field;
+  !> empty where there is none.
   pure function text_of_field(rows, keyword, field) result(text)
     character(*), intent(in) :: rows(:), keyword, field
     character(:), allocatable :: text

@@ -6,7 +6,7 @@ module deck_fields_m
   use, intrinsic :: iso_fortran_env, only : error_unit
   use text_m, only : read_real, read_integer, number_good, number_range, number_fraction
   use log_m, only : to_text
-  use deck_schema_m, only : expected
+  use deck_schema_m, only : expectations, text_of_field
   use deck_report_m, only : spot_t, add_error, count_only
   use deck_lines_m, only : deck_t, line_text, where_text, line_warning, line_spot, line_error, &
     given_by, words_of, order_line, block_of_line, written_text, shown_text, marked_line, &
@@ -315,7 +315,8 @@ contains
     character(:), allocatable :: words, range
 
     if (card%bad(k) .or. is_listed(spec%ranges(k), card%r(k))) return
-    words = expected(deck%blocks(block_of_line(deck, card%line))%given, trim(spec%names(k)))
+    words = text_of_field(expectations, deck%blocks(block_of_line(deck, card%line))%given, &
+      trim(spec%names(k)))
     range = range_text(spec%ranges(k))
     if (len(words) == 0 .and. spec%ranges(k)(:3) == '>=0' .and. card%r(k) < 0.0_wp) then
       call field_error(deck, card, k, 'is negative')

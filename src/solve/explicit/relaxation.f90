@@ -5,7 +5,7 @@
 module relaxation_m
   use clock_m, only : lap, phase_input
   use load_work_m, only : apply_loads, motion_sums_t
-  use element_dispatch_m, only : add_tile_forces
+  use element_dispatch_m, only : add_tile_forces, share_tile_forces, sum_special_forces
   use errors_m, only : error_t, raise, status_run, status_stopped
   use health_m, only : check_elements
   use kinds_m, only : wp
@@ -22,9 +22,8 @@ module relaxation_m
   use requests_m, only : requests_t, echoes_t
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
-  use scaled_step_m, only : scaled_step
+  use loads_m, only : scaled_step
   use held_nodes_m, only : hold_skew_nodes
-  use tile_forces_m, only : share_tile_forces, sum_special_forces
   use time_step_m, only : volume_step
   implicit none
   private
