@@ -45,6 +45,9 @@ contains
     logical, allocatable, intent(out) :: is_whole(:) !! of each node set: all nodes that its cards
                                                      !! name exist
     type(set_t), allocatable :: sets(:), beams(:, :)
+    type(boundary_t) :: boundary
+    logical, allocatable :: is_chosen(:), all_nodes(:)
+    logical :: is_of_part(0:size(model%parts))
     integer :: i
 
     call read_kind(deck, 'SET_PART', a_part_set, model, sets)
@@ -70,11 +73,19 @@ contains
     is_whole = sets%is_whole
     call read_kind(deck, 'SEGMENT', a_segment_set, model, sets, beams(:, 2))
     allocate (model%segment_sets(size(sets)))
+    allocate (all_nodes(model%mesh%n_node), source=.true.)
     do i = 1, size(sets)
       model%segment_sets(i)%id = sets(i)%id
       if (sets(i)%is_boundary) then
         call move_alloc(sets(i)%members, model%segment_sets(i)%parts)
-        call bound_parts(model, model%segment_sets(i)%parts, model%segment_sets(i)%nodes)
+        allocate (model%segment_sets(i)%nodes(2, 0))
+        ! Of a mesh with mistakes only these are told.
+        if (any(model%mesh%element_nodes < 1)) cycle
+        is_of_part = .false.
+        is_of_part(model%segment_sets(i)%parts) = .true.
+        is_chosen = is_of_part(model%mesh%element_part)
+        call find_boundary(model%mesh%element_nodes, is_chosen, all_nodes, boundary)
+        model%segment_sets(i)%nodes = boundary%nodes
       else
         if (.not. sets(i)%is_whole) sets(i)%n = 0
         model%segment_sets(i)%nodes = reshape(sets(i)%members(:sets(i)%n), [2, sets(i)%n/2])
@@ -299,26 +310,6 @@ contains
         'is a further node; an edge in the plane has two (repeat N2 or leave it 0)')
     end do
   end subroutine check_edge
-
-  !> The boundary of some parts.
-  subroutine bound_parts(model, parts, nodes)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: parts(:)
-    integer, allocatable, intent(out) :: nodes(:, :) !! (2, n) nodes of its edges
-    type(boundary_t) :: boundary
-    logical, allocatable :: is_chosen(:), all_nodes(:)
-    logical :: is_of_part(0:size(model%parts))
-
-    allocate (nodes(2, 0))
-    ! Of a mesh with mistakes only these are told.
-    if (any(model%mesh%element_nodes < 1)) return
-    is_of_part = .false.
-    is_of_part(parts) = .true.
-    is_chosen = is_of_part(model%mesh%element_part)
-    allocate (all_nodes(model%mesh%n_node), source=.true.)
-    call find_boundary(model%mesh%element_nodes, is_chosen, all_nodes, boundary)
-    nodes = boundary%nodes
-  end subroutine bound_parts
 
   !> *ELEMENT_BEAM: the node set and the segment set of the number of each part.
   subroutine read_beams(deck, model, sets)
