@@ -6,7 +6,7 @@
 module arguments_m
   use deck_lines_m, only : shown_text
   use deck_overrides_m, only : is_override, override_mistake, contact_names, run_names
-  use deck_spelling_m, only : first_too_far, keep_nearer
+  use deck_schema_m, only : first_too_far, keep_nearer
   use errors_m, only : error_t, raise, status_input
   use files_m, only : folder_of
   use log_m, only : to_text
@@ -20,6 +20,7 @@ module arguments_m
 
   !> What is timed: phases, contact phases of each interface too, or the run as a whole.
   integer, parameter :: timing_by_phase = 0, timing_by_interface = 1, timing_off = 2
+  character(9), parameter :: timings(3) = ['phase    ', 'interface', 'off      ']
 
   !> Words of more than a letter that are this program's own, for what is misspelt.
   character(9), parameter :: own_words(9) = [character(9) :: 'NCPU', 'PERTHREAD', 'JOBID', &
@@ -193,16 +194,9 @@ contains
     case ('perthread')
       call read_count(name, value, 1000000000, arguments%thread_share, mistakes)
     case ('timing')
-      select case (lower_case(value))
-      case ('phase')
-        arguments%timing = timing_by_phase
-      case ('interface')
-        arguments%timing = timing_by_interface
-      case ('off')
-        arguments%timing = timing_off
-      case default
-        call note('timing="'//value//'": expected phase, interface or off', mistakes)
-      end select
+      i = findloc(timings == lower_case(value), .true., 1)
+      if (i > 0) arguments%timing = i - 1
+      if (i == 0) call note('timing="'//value//'": expected phase, interface or off', mistakes)
     case ('memory', 'memory2')
       continue ! memory is taken as it is needed
     case ('o', 'g', 's', 'f', 'a', 'x', 'para')

@@ -5,7 +5,7 @@
 !> into the model when its turn comes. All mistakes on the way are collected and come back as one
 !> error, in deck order.
 module deck_m
-  use errors_m, only : error_t
+  use errors_m, only : error_t, raise, status_input
   use log_m, only : log_t, write_log
   use contacts_m, only : contact_kind_t
   use model_m, only : model_t
@@ -27,19 +27,17 @@ module deck_m
   use deck_supports_m, only : read_supports, read_motions, read_common_motions
   use deck_velocity_m, only : read_velocities
   use deck_wall_m, only : read_walls
-  use deck_findings_m, only : list_findings
-  use deck_report_m, only : emit_warnings, emit_errors
+  use deck_report_m, only : emit_warnings, emit_errors, list_findings
   use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, a_curve, &
     a_system, a_node_set, a_part_set, a_segment_set, a_shell_set
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning, file_paths, flag_blank
-  use deck_reader_m, only : read_blocks, cut_deck
+  use deck_reader_m, only : read_file, cut_deck
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
   use deck_parameters_m, only : read_parameters
   use deck_overrides_m, only : read_words, edit_controls
   use deck_cards_m, only : cursor_t, open_cursor
-  use deck_effective_m, only : write_effective
-  use deck_echo_m, only : echo_model
+  use deck_echo_m, only : echo_model, write_effective
   use text_m, only : upper_case
   use deck_values_m, only : lose
   implicit none
@@ -74,16 +72,19 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(:), allocatable, intent(out), optional :: findings !! all messages, see list_findings
     type(deck_t) :: deck
-    character(:), allocatable :: text
+    character(:), allocatable :: text, reason
 
+    if (present(findings)) findings = ''
     if (allocated(request%text)) then
       text = request%text
-      call cut_deck(request%path, text, deck)
     else
-      call read_blocks(request%path, deck, error)
-      if (present(findings)) findings = ''
-      if (allocated(error)) return
+      call read_file(request%path, text, reason)
+      if (allocated(reason)) then
+        call raise(error, 'cannot read the deck '//request%path//': '//reason, status_input)
+        return
+      end if
     end if
+    call cut_deck(request%path, text, deck)
     if (.not. allocated(request%text)) request%files = file_paths(deck)
     call interpret_deck(deck, request, kinds, log, model, effective, error)
     if (present(findings)) call list_findings(deck%report, findings)

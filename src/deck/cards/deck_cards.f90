@@ -9,13 +9,13 @@ module deck_cards_m
     flag_parameter, block_of_line, given_by, format_long, max_field
   use deck_fields_m, only : card_spec_t, make_spec, field_number, card_t, begin_card, cut_card, &
     read_numbers, field_text, field_error
-  use deck_schema_m, only : table, keyword_cards, refusal_reason, expected, max_card
+  use deck_schema_m, only : table, keyword_cards, refusal_reason, expectations, &
+    text_of_field, max_card
   use deck_parameter_table_m, only : look_up
   implicit none
   private
   public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_of, &
-    next_text, next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field, &
-    find_field
+    next_text, next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field
 
   !> A place in a block.
   type :: cursor_t
@@ -64,18 +64,6 @@ contains
     call skip_title(deck, cursor)
     call next_card(deck, cursor, 1, card)
   end subroutine first_card
-
-  !> Position of a field of card `number`, for rows that are many: looked up once.
-  function find_field(cursor, number, name) result(k)
-    type(cursor_t), intent(in) :: cursor
-    integer, intent(in) :: number
-    character(*), intent(in) :: name
-    integer :: k
-
-    associate (spec => cursor%specs(number))
-      k = field_number(spec%names(:spec%n), name)
-    end associate
-  end function find_field
 
   !> Card number `number`: the next line, blank or not; all defaults when the block has ended.
   subroutine next_card(deck, cursor, number, card)
@@ -219,10 +207,7 @@ contains
     character(:), allocatable :: field, value
     integer :: k, last
 
-    last = 0
-    do k = 1, spec%n
-      if (.not. card%blank(k)) last = k
-    end do
+    last = findloc(card%blank(:spec%n), .false., 1, back=.true.)
     text = ''
     do k = 1, last
       field = field_text(deck, card, k)
@@ -254,7 +239,7 @@ contains
     if (spec%treatments(k) == 'r') then
       call field_error(deck, card, k, refusal_reason(trim(spec%names(k))))
     else
-      effect = expected(name, trim(spec%names(k)))
+      effect = text_of_field(expectations, name, trim(spec%names(k)))
       if (index(effect, ':') /= 1) effect = ''
       call line_warning(deck, card%line, 'field '//name//' '//spec%names(k)//to_text(spec%number), &
         'card '//to_text(spec%number)//' field '//to_text(k)//' ('//trim(spec%names(k))//'): "' &

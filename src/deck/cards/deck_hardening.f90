@@ -17,7 +17,7 @@ module deck_hardening_m
   use deck_values_m, only : integer_of, real_of, is_bad, find_id, reals_of, place_of
   implicit none
   private
-  public :: take_piecewise, take_hydro, check_tangent_modulus, plastic_modulus, take_johnson_cook, &
+  public :: take_piecewise, take_hydro, take_tangent_modulus, take_johnson_cook, &
     take_simplified_johnson_cook, take_failure, take_cutoff
 
   !> A strain at failure from here on means never.
@@ -53,8 +53,8 @@ contains
     else if (.not. is_bad(rate, 'LCSS')) then
       if (.not. real_of(card, 'SIGY') > 0.0_wp) call report_field(deck, card, 'SIGY', &
         'is not a yield stress (more than 0), and there is neither LCSS nor EPS and ES')
-      call check_tangent_modulus(deck, card)
-      if (.not. any(card%bad)) call take_line(deck, card, plastic_modulus(card), material)
+      call take_tangent_modulus(deck, card, material%hardening)
+      if (.not. any(card%bad)) call take_line(deck, card, material%hardening, material)
     end if
     call take_rates(deck, rate, model, material)
   end subroutine take_piecewise
@@ -86,31 +86,24 @@ contains
     end if
   end subroutine take_hydro
 
-  !> ETAN beside E.
-  subroutine check_tangent_modulus(deck, card)
+  !> Slope of the yield stress over plastic strain from that of the uniaxial curve, ETAN beside E.
+  subroutine take_tangent_modulus(deck, card, modulus)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
-
-    if (real_of(card, 'ETAN') >= real_of(card, 'E') .and. .not. is_bad(card, 'E')) call &
-      report_field(deck, card, 'ETAN', 'is not below E: the tangent modulus of the uniaxial ' &
-      //'stress-strain curve must be')
-  end subroutine check_tangent_modulus
-
-  !> Slope of the yield stress over plastic strain from that of the uniaxial curve, ETAN beside E.
-  function plastic_modulus(card) result(modulus)
-    type(card_t), intent(in) :: card
-    real(wp) :: modulus
+    real(wp), intent(inout) :: modulus   !! as it was where the card has mistakes
 
     associate (young => real_of(card, 'E'), tangent => real_of(card, 'ETAN'))
-      modulus = young*tangent/(young - tangent)
+      if (tangent >= young .and. .not. is_bad(card, 'E')) call report_field(deck, card, 'ETAN', &
+        'is not below E: the tangent modulus of the uniaxial stress-strain curve must be')
+      if (.not. any(card%bad)) modulus = young*tangent/(young - tangent)
     end associate
-  end function plastic_modulus
+  end subroutine take_tangent_modulus
 
   !> SIGY, and a slope behind it.
   subroutine take_line(deck, card, modulus, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
-    real(wp), intent(in) :: modulus
+    real(wp), value :: modulus
     type(material_t), intent(inout) :: material
     type(curve_t) :: points(1)
 

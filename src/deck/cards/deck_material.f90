@@ -11,7 +11,7 @@ module deck_material_m
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, first_card, next_card, check_rest, report_field
   use deck_curves_m, only : table_t
-  use deck_hardening_m, only : take_piecewise, take_hydro, check_tangent_modulus, plastic_modulus, &
+  use deck_hardening_m, only : take_piecewise, take_hydro, take_tangent_modulus, &
     take_johnson_cook, take_simplified_johnson_cook, take_failure, take_cutoff
   use deck_ids_m, only : a_material, a_curve, an_eos
   use deck_values_m, only : integer_of, real_of, is_bad, has_field, define, map_defined, find_id, &
@@ -48,10 +48,9 @@ contains
         material%law = law_elastic
       case ('MAT_PLASTIC_KINEMATIC')
         material%law = law_plastic
-        call check_tangent_modulus(deck, card)
+        call take_tangent_modulus(deck, card, material%hardening)
         material%yield = real_of(card, 'SIGY')
         material%beta = real_of(card, 'BETA')
-        if (.not. any(card%bad)) material%hardening = plastic_modulus(card)
         call next_card(deck, cursor, 2, more)
         call take_failure(more, 'FS', material)
       case ('MAT_PIECEWISE_LINEAR_PLASTICITY')

@@ -29,17 +29,14 @@ contains
     logical, allocatable, intent(out) :: is_sound(:) !! (n_element) of each whether its edges are
                                                      !! those that were meant
     logical, intent(out) :: sound
-    integer :: n_before, i
+    integer :: n_before
     logical :: has_place
 
     n_before = deck%report%n_error
     call read_nodes(deck, model%mesh, codes)
     has_place = deck%report%n_error == n_before
     call read_elements(deck, model%mesh)
-    allocate (is_sound(model%mesh%n_element))
-    do i = 1, model%mesh%n_element
-      is_sound(i) = all(model%mesh%element_nodes(:, i) > 0)
-    end do
+    is_sound = all(model%mesh%element_nodes > 0, dim=1)
     if (has_place) call check_shapes(deck, model%mesh, is_sound)
     ! A part or node that was lost with its own mistake is not told again where it is named.
     if (.not. has_place .or. deck%maps(a_node)%lost .or. deck%maps(an_element)%lost) &

@@ -33,9 +33,9 @@ contains
     integer :: dot
 
     upper = upper_case(name)
-    dot = index(name, '.')
-    known = any(contact_names == upper) .or. any(run_names == upper) .or. index(upper, 'P:') == 1
-    if (dot > 1 .and. dot < len(name)) known = known .or. (any(contact_names == upper(:dot - 1)) &
+    dot = index(name//'.', '.')
+    known = any(run_names == upper) .or. index(upper, 'P:') == 1
+    if (dot /= len(name)) known = known .or. (any(contact_names == upper(:dot - 1)) &
       .and. verify(name(dot + 1:), '0123456789') == 0)
   end function is_override
 
@@ -205,18 +205,12 @@ contains
     character(:), allocatable :: number
     integer, parameter :: high = 90000001
     integer :: i, k
-    logical :: is_used
 
     do k = high, huge(k) - 1
       number = to_text(k)
-      is_used = .false.
-      do i = 1, deck%n_source
-        is_used = is_used .or. index(deck%sources(i)%text, number) > 0
-      end do
-      do i = 1, deck%parameters%n
-        is_used = is_used .or. index(deck%parameters%items(i)%text, number) > 0
-      end do
-      if (.not. is_used) return
+      if (any([(index(deck%sources(i)%text, number) > 0, i=1, deck%n_source)])) cycle
+      if (any([(index(deck%parameters%items(i)%text, number) > 0, i=1, deck%parameters%n)])) cycle
+      return
     end do
   end function unused_number
 

@@ -7,7 +7,7 @@ module deck_parameters_m
   use text_m, only : upper_case, read_real, shortest, number_good
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, line_text, line_error, line_warning, block_of_line
-  use deck_spelling_m, only : first_too_far, keep_nearer
+  use deck_schema_m, only : first_too_far, keep_nearer
   use deck_expression_m, only : evaluate
   use deck_parameter_table_m, only : parameter_t, parameters_t, add_parameter, find_given, look_up
   use deck_cards_m, only : cursor_t, open_cursor, next_card

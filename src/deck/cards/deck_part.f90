@@ -12,9 +12,9 @@ module deck_part_m
   use deck_ids_m, only : a_part, a_section, a_material, an_hourglass, an_element
   use deck_lines_m, only : deck_t, place_t, blocks_of, count_rows, line_text, line_error, &
     line_warning, flag_blank
-  use deck_fields_m, only : card_t
+  use deck_fields_m, only : field_number, card_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
-    next_of, row_comes, report_field, reject_field, find_field
+    next_of, row_comes, report_field, reject_field
   use deck_values_m, only : integer_of, real_of, is_blank, is_bad, define, map_defined, find_id
   use deck_material_m, only : take_equation
   implicit none
@@ -80,7 +80,7 @@ contains
     character(:), allocatable :: text
     integer :: number, status, width
 
-    width = cursor%specs(2)%widths(find_field(cursor, 2, 'PID'))
+    width = cursor%specs(2)%widths(field_number(cursor%specs(2)%names, 'PID'))
     do while (cursor%line <= cursor%last)
       if (iand(deck%flags(cursor%line), flag_blank) == 0) return
       if (cursor%line < cursor%last) then
@@ -134,20 +134,22 @@ contains
   subroutine check_form(deck, card)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
+    character(:), allocatable :: message
 
     select case (integer_of(card, 'ELFORM'))
     case (13, 15)
-      continue
+      return
     case (12)
-      call report_field(deck, card, 'ELFORM', 'is plane stress, which this version does not ' &
-        //'have; 13 (plane strain) and 15 (axisymmetric) are what it has')
+      message = 'is plane stress, which this version does not have; 13 (plane strain) and 15 ' &
+        //'(axisymmetric) are what it has'
     case (14)
-      call report_field(deck, card, 'ELFORM', 'is axisymmetric and area weighted, which this ' &
-        //'version does not have; 15 (axisymmetric, volume weighted) is what it has')
+      message = 'is axisymmetric and area weighted, which this version does not have; 15 ' &
+        //'(axisymmetric, volume weighted) is what it has'
     case default
-      call report_field(deck, card, 'ELFORM', 'is not an element form for the plane; 13 (plane ' &
-        //'strain) and 15 (axisymmetric) are what this version has')
+      message = 'is not an element form for the plane; 13 (plane strain) and 15 (axisymmetric) ' &
+        //'are what this version has'
     end select
+    call report_field(deck, card, 'ELFORM', message)
   end subroutine check_form
 
   !> *HOURGLASS: one card each.

@@ -87,7 +87,7 @@ contains
     type(model_t), intent(in) :: model
     type(cross_section_t), intent(in) :: section
     logical, allocatable :: is_held(:)
-    integer :: i, material
+    integer :: i, part, material
 
     allocate (is_held(model%mesh%n_node), source=.false.)
     do i = 1, size(section%elements)
@@ -101,7 +101,9 @@ contains
       exit
     end do
     do i = 1, size(section%elements)
-      material = model%parts(model%mesh%element_part(section%elements(i)))%material
+      part = model%mesh%element_part(section%elements(i))
+      if (part < 1) cycle
+      material = model%parts(part)%material
       if (material < 1) cycle
       if (.not. model%materials(material)%is_rigid) cycle
       call report_field(deck, card, 'SSID', 'has element ' &

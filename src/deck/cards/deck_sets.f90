@@ -45,6 +45,9 @@ contains
     logical, allocatable, intent(out) :: is_whole(:) !! of each node set: all nodes that its cards
                                                      !! name exist
     type(set_t), allocatable :: sets(:), beams(:, :)
+    type(boundary_t) :: boundary
+    logical, allocatable :: is_chosen(:), all_nodes(:)
+    logical :: is_of_part(0:size(model%parts))
     integer :: i
 
     call read_kind(deck, 'SET_PART', a_part_set, model, sets)
@@ -70,11 +73,19 @@ contains
     is_whole = sets%is_whole
     call read_kind(deck, 'SEGMENT', a_segment_set, model, sets, beams(:, 2))
     allocate (model%segment_sets(size(sets)))
+    allocate (all_nodes(model%mesh%n_node), source=.true.)
     do i = 1, size(sets)
       model%segment_sets(i)%id = sets(i)%id
       if (sets(i)%is_boundary) then
         call move_alloc(sets(i)%members, model%segment_sets(i)%parts)
-        call bound_parts(model, model%segment_sets(i)%parts, model%segment_sets(i)%nodes)
+        allocate (model%segment_sets(i)%nodes(2, 0))
+        ! Of a mesh with mistakes only these are told.
+        if (any(model%mesh%element_nodes < 1)) cycle
+        is_of_part = .false.
+        is_of_part(model%segment_sets(i)%parts) = .true.
+        is_chosen = is_of_part(model%mesh%element_part)
+        call find_boundary(model%mesh%element_nodes, is_chosen, all_nodes, boundary)
+        model%segment_sets(i)%nodes = boundary%nodes
       else
         if (.not. sets(i)%is_whole) sets(i)%n = 0
         model%segment_sets(i)%nodes = reshape(sets(i)%members(:sets(i)%n), [2, sets(i)%n/2])
@@ -300,26 +311,6 @@ contains
     end do
   end subroutine check_edge
 
-  !> The boundary of some parts.
-  subroutine bound_parts(model, parts, nodes)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: parts(:)
-    integer, allocatable, intent(out) :: nodes(:, :) !! (2, n) nodes of its edges
-    type(boundary_t) :: boundary
-    logical, allocatable :: is_chosen(:), all_nodes(:)
-    logical :: is_of_part(0:size(model%parts))
-
-    allocate (nodes(2, 0))
-    ! Of a mesh with mistakes only these are told.
-    if (any(model%mesh%element_nodes < 1)) return
-    is_of_part = .false.
-    is_of_part(parts) = .true.
-    is_chosen = is_of_part(model%mesh%element_part)
-    allocate (all_nodes(model%mesh%n_node), source=.true.)
-    call find_boundary(model%mesh%element_nodes, is_chosen, all_nodes, boundary)
-    nodes = boundary%nodes
-  end subroutine bound_parts
-
   !> *ELEMENT_BEAM: the node set and the segment set of the number of each part.
   subroutine read_beams(deck, model, sets)
     type(deck_t), intent(inout) :: deck
@@ -361,12 +352,17 @@ contains
     end do
   end subroutine read_beams
 
-  !> Nodes and elements of *DATABASE_HISTORY_, each once, in deck order; force groups.
+  !> Nodes and elements of *DATABASE_HISTORY_, each once, in deck order; force groups of
+  !> *DATABASE_NODAL_FORCE_GROUP, none of their node sets twice.
   subroutine read_histories(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
+    type(force_group_t), allocatable :: groups(:)
+    type(cursor_t) :: cursor
+    type(card_t) :: card
     integer, allocatable :: members(:), sets(:)
-    integer :: i
+    logical :: is_taken(size(model%node_sets))
+    integer :: i, n, set
 
     call read_chosen(deck, 'DATABASE_HISTORY_NODE', [a_node, a_node_set], members, sets)
     members = [members, (model%node_sets(sets(i))%nodes, i=1, size(sets))]
@@ -374,7 +370,22 @@ contains
     call read_chosen(deck, 'DATABASE_HISTORY_SHELL', [an_element, a_shell_set], members, sets)
     members = [members, (model%shell_sets(sets(i))%elements, i=1, size(sets))]
     call keep_first(members, model%mesh%n_element, model%controls%output%history_elements)
-    call read_groups(deck, model)
+    n = count_rows(deck, 'DATABASE_NODAL_FORCE_GROUP')
+    if (n == 0) return
+    allocate (groups(n))
+    is_taken = .false.
+    n = 0
+    do while (next_of(deck, 'DATABASE_NODAL_FORCE_GROUP', cursor, card))
+      call find_id(deck, a_node_set, card, 'NSID', set)
+      if (set == 0) cycle
+      if (is_taken(set)) call report_field(deck, card, 'NSID', &
+        'is the node set of another force group')
+      is_taken(set) = .true.
+      n = n + 1
+      groups(n)%id = integer_of(card, 'NSID')
+      call keep_first(model%node_sets(set)%nodes, model%mesh%n_node, groups(n)%nodes)
+    end do
+    model%controls%output%force_groups = groups(:n)
   end subroutine read_histories
 
   !> What the keywords that begin so name: members, and by those that end so sets.
@@ -396,33 +407,6 @@ contains
     members = chosen(1)%members(:chosen(1)%n)
     sets = chosen(2)%members(:chosen(2)%n)
   end subroutine read_chosen
-
-  !> *DATABASE_NODAL_FORCE_GROUP: node sets, none of them twice.
-  subroutine read_groups(deck, model)
-    type(deck_t), intent(inout) :: deck
-    type(model_t), intent(inout) :: model
-    type(force_group_t), allocatable :: groups(:)
-    type(cursor_t) :: cursor
-    type(card_t) :: card
-    integer :: set, n
-    logical :: is_taken(size(model%node_sets))
-
-    allocate (groups(count_rows(deck, 'DATABASE_NODAL_FORCE_GROUP')))
-    if (size(groups) == 0) return
-    is_taken = .false.
-    n = 0
-    do while (next_of(deck, 'DATABASE_NODAL_FORCE_GROUP', cursor, card))
-      call find_id(deck, a_node_set, card, 'NSID', set)
-      if (set == 0) cycle
-      if (is_taken(set)) call report_field(deck, card, 'NSID', &
-        'is the node set of another force group')
-      is_taken(set) = .true.
-      n = n + 1
-      groups(n)%id = integer_of(card, 'NSID')
-      call keep_first(model%node_sets(set)%nodes, model%mesh%n_node, groups(n)%nodes)
-    end do
-    model%controls%output%force_groups = groups(:n)
-  end subroutine read_groups
 
   !> Members of a list, each where it comes first.
   pure subroutine keep_first(members, n_all, kept)

@@ -12,13 +12,13 @@
 !> Widths are 10 unless said. A field asks for something when it is neither 0 nor its default.
 module deck_schema_m
   use deck_schema_others_m, only : table_others
-  use deck_spelling_m, only : keep_nearer
   use deck_schema_tables_m, only : table_control, table_mesh, table_conditions, table_contact, &
     table_database
   implicit none
   private
-  public :: table, keyword_cards, find_keyword, nearest_keyword, expected, refusal_reason, &
-    max_card, known_honoured, known_ignored, known_refused, known_not
+  public :: table, keyword_cards, find_keyword, nearest_keyword, expectations, &
+    refusal_reason, text_of_field, first_too_far, keep_nearer, max_card, known_honoured, &
+    known_ignored, known_refused, known_not
 
   !> All keywords that are honoured, and their cards.
   character(131), parameter :: table(*) = [character(131) :: table_control, table_mesh, &
@@ -330,14 +330,6 @@ contains
     row = 0
   end subroutine find_other
 
-  !> What a field is expected to be, where its range alone says too little; blank for the others.
-  pure function expected(keyword, field) result(text)
-    character(*), intent(in) :: keyword, field
-    character(:), allocatable :: text
-
-    text = text_of_field(expectations, keyword, field)
-  end function expected
-
   !> Why a field with treatment r may not be used.
   pure function refusal_reason(field) result(text)
     character(*), intent(in) :: field
@@ -351,7 +343,8 @@ contains
     end if
   end function refusal_reason
 
-  !> The text of the first row that names a field, or the beginning of its keyword and the field.
+  !> The text of the first row that names a field, or the beginning of its keyword and the field;
+  !> empty where there is none.
   pure function text_of_field(rows, keyword, field) result(text)
     character(*), intent(in) :: rows(:), keyword, field
     character(:), allocatable :: text
@@ -372,5 +365,49 @@ contains
     end do
     text = ''
   end function text_of_field
+
+  !> Letters by which no name differs from one that it is meant for: three, fewer of a short one.
+  pure function first_too_far(name) result(letters)
+    character(*), intent(in) :: name
+    integer :: letters
+
+    letters = min(3, (len(name) + 2)/2)
+  end function first_too_far
+
+  !> Take a name in place of the nearest so far where it is nearer to the one given.
+  pure subroutine keep_nearer(name, given, least, nearest)
+    character(*), intent(in) :: name, given      !! without blanks behind
+    integer, intent(inout) :: least              !! distance of the nearest so far
+    character(*), intent(inout) :: nearest
+    integer :: distance
+
+    if (abs(len(name) - len(given)) >= least) return
+    distance = edit_distance(name, given)
+    if (distance >= min(least, first_too_far(name))) return
+    least = distance
+    nearest = name
+  end subroutine keep_nearer
+
+  !> Letters to insert, to leave out or to change, or neighbours to swap, that make one name of
+  !> another (optimal string alignment).
+  pure function edit_distance(a, b) result(distance)
+    character(*), intent(in) :: a, b    !! without blanks behind
+    integer :: distance
+    integer :: cost(0:len(a), 0:len(b)), i, k
+
+    cost = 0
+    cost(:, 0) = [(i, i=0, len(a))]
+    cost(0, :) = [(k, k=0, len(b))]
+    do k = 1, len(b)
+      do i = 1, len(a)
+        cost(i, k) = min(cost(i - 1, k) + 1, cost(i, k - 1) + 1, &
+          cost(i - 1, k - 1) + merge(0, 1, a(i:i) == b(k:k)))
+        if (i == 1 .or. k == 1) cycle
+        if (a(i:i) == b(k - 1:k - 1) .and. a(i - 1:i - 1) == b(k:k)) &
+          cost(i, k) = min(cost(i, k), cost(i - 2, k - 2) + 1)
+      end do
+    end do
+    distance = cost(len(a), len(b))
+  end function edit_distance
 
 end module deck_schema_m

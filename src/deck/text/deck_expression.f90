@@ -260,11 +260,9 @@ contains
     character(*), intent(in) :: word
     real(wp), intent(in) :: a(:)
     real(wp), intent(out) :: value
-    logical :: is_defined
 
     call ieee_set_halting_mode(ieee_all, .false.)
     value = 0.0_wp
-    is_defined = .true.
     select case (word)
     case ('SIN'); value = sin(a(1))
     case ('COS'); value = cos(a(1))
@@ -273,8 +271,8 @@ contains
     case ('ACOS'); value = acos(a(1))
     case ('ATAN'); value = atan(a(1))
     case ('ATAN2')
-      is_defined = maxval(abs(a(:2))) > 0.0_wp
-      if (is_defined) value = atan2(a(1), a(2))
+      value = atan2(a(1), a(2))
+      if (.not. maxval(abs(a(:2))) > 0.0_wp) call complain(scanner, 'ATAN2 is not defined there')
     case ('SQRT'); value = sqrt(a(1))
     case ('EXP'); value = exp(a(1))
     case ('LOG'); value = log(a(1))
@@ -282,17 +280,14 @@ contains
     case ('ABS'); value = abs(a(1))
     case ('INT'); value = aint(a(1))
     case ('NINT'); value = anint(a(1))
-    case ('MOD')
-      is_defined = abs(a(2)) > 0.0_wp
-      if (is_defined) value = mod(a(1), a(2))
+    case ('MOD'); value = mod(a(1), a(2))
     case ('SIGN'); value = sign(a(1), a(2))
     case ('MIN'); value = minval(a)
     case ('MAX'); value = maxval(a)
     case default
       call complain(scanner, 'there is no function '//word)
     end select
-    if (.not. (is_defined .and. ieee_is_finite(value))) &
-      call complain(scanner, word//' is not defined there')
+    if (.not. ieee_is_finite(value)) call complain(scanner, word//' is not defined there')
   end subroutine apply_function
 
 end module deck_expression_m

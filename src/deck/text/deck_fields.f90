@@ -6,10 +6,10 @@ module deck_fields_m
   use, intrinsic :: iso_fortran_env, only : error_unit
   use text_m, only : read_real, read_integer, number_good, number_range, number_fraction
   use log_m, only : to_text
-  use deck_schema_m, only : expected
+  use deck_schema_m, only : expectations, text_of_field
   use deck_report_m, only : spot_t, add_error, count_only
   use deck_lines_m, only : deck_t, line_text, where_text, line_warning, line_spot, line_error, &
-    given_by, words_of, order_line, keyword_of_line, written_text, shown_text, marked_line, &
+    given_by, words_of, order_line, block_of_line, written_text, shown_text, marked_line, &
     flag_comma, format_long, format_i10, max_field
   implicit none
   private
@@ -285,7 +285,16 @@ contains
       call set_default(spec, card, k)
       if (spec%kinds(k) == 'x' .or. spec%kinds(k) == 'a') cycle
       if (.not. card%blank(k)) then
-        call read_field(deck%sources(from)%text(before + card%first(k):before + card%last(k)))
+        associate (text => deck%sources(from)%text(before + card%first(k):before + card%last(k)))
+          if (spec%kinds(k) == 'i') then
+            call read_integer(text, card%i(k), status)
+            card%r(k) = real(card%i(k), wp)
+          else
+            call read_real(text, card%r(k), status)
+            if (abs(card%r(k)) > largest_value) status = number_range
+            if (abs(card%r(k)) < smallest_value) card%r(k) = 0.0_wp
+          end if
+        end associate
         if (status /= number_good) then
           call number_error(deck, spec, card, k, status)
           cycle
@@ -295,23 +304,6 @@ contains
       if (card%r(k) < spec%least(k) .or. card%r(k) > spec%most(k)) &
         call check_range(deck, spec, card, k)
     end do
-
-  contains
-
-    !> Read field `k`.
-    subroutine read_field(text)
-      character(*), intent(in) :: text
-
-      if (spec%kinds(k) == 'i') then
-        call read_integer(text, card%i(k), status)
-        card%r(k) = real(card%i(k), wp)
-      else
-        call read_real(text, card%r(k), status)
-        if (abs(card%r(k)) > largest_value) status = number_range
-        if (abs(card%r(k)) < smallest_value) card%r(k) = 0.0_wp
-      end if
-    end subroutine read_field
-
   end subroutine read_numbers
 
   !> An error of a number outside the bounds of its field, unless it is one of a list.
@@ -323,7 +315,8 @@ contains
     character(:), allocatable :: words, range
 
     if (card%bad(k) .or. is_listed(spec%ranges(k), card%r(k))) return
-    words = expected(keyword_of_line(deck, card%line), trim(spec%names(k)))
+    words = text_of_field(expectations, deck%blocks(block_of_line(deck, card%line))%given, &
+      trim(spec%names(k)))
     range = range_text(spec%ranges(k))
     if (len(words) == 0 .and. spec%ranges(k)(:3) == '>=0' .and. card%r(k) < 0.0_wp) then
       call field_error(deck, card, k, 'is negative')
@@ -351,7 +344,8 @@ contains
     name = to_text(spec%defaults(k))
     if (abs(spec%defaults(k)) < 1.0e6_wp .and. .not. abs(spec%defaults(k) &
       - anint(spec%defaults(k))) > 0.0_wp) name = to_text(nint(spec%defaults(k)))
-    name = trim(spec%names(k))//' = '//name//' of *'//keyword_of_line(deck, card%line)
+    name = trim(spec%names(k))//' = '//name//' of *' &
+      //deck%blocks(block_of_line(deck, card%line))%given
     place = where_text(deck, card%line)
     place = ' ('//place(:index(place, ': *', back=.true.) - 1)//')'
     if (spec%zeros(k) == '~') then
@@ -435,7 +429,8 @@ contains
       call line_error(deck, 0, given_by(deck, card%line, k)//' '//message)
       return
     end if
-    call count_only(deck%report, keyword_of_line(deck, card%line), card%names(k), message, is_done)
+    call count_only(deck%report, deck%blocks(block_of_line(deck, card%line))%given, card%names(k), &
+      message, is_done)
     if (is_done) return
     text = where_text(deck, card%line)//' card '//to_text(card%number)//' field '//to_text(k) &
       //' ('//trim(card%names(k))//'): '

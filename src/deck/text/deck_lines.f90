@@ -15,7 +15,7 @@ module deck_lines_m
   private
   public :: deck_t, blocks_of, count_rows, source_t, block_t, place_t, file_paths, &
     line_text, order_line, block_of_line, where_text, line_error, &
-    line_warning, replace_line, written_text, line_spot, keyword_of_line, shown_text, marked_line, &
+    line_warning, replace_line, written_text, line_spot, shown_text, marked_line, &
     layout_marks, word_t, made_line_t, given_by, words_of, format_standard, format_long, &
     format_i10, flag_comma, flag_parameter, flag_blank, max_source, max_field
 
@@ -120,19 +120,12 @@ contains
     type(deck_t), intent(in) :: deck
     integer, intent(in) :: line
     character(:), allocatable :: text
-
-    text = deck%sources(source_of_line(deck, line))%text(abs(deck%first(line)):deck%last(line))
-  end function line_text
-
-  !> The source that has the text of a line.
-  pure function source_of_line(deck, line) result(source)
-    type(deck_t), intent(in) :: deck
-    integer, intent(in) :: line
     integer :: source
 
     source = 0
     if (deck%first(line) > 0) source = deck%blocks(block_of_line(deck, line))%source
-  end function source_of_line
+    text = deck%sources(source)%text(abs(deck%first(line)):deck%last(line))
+  end function line_text
 
   !> Blocks whose cards are read and whose keyword begins so, in the order of the deck.
   pure function blocks_of(deck, head) result(blocks)
@@ -280,19 +273,6 @@ contains
     spot%line = deck%number(line)
     spot%keyword = deck%blocks(i_block)%given
   end function line_spot
-
-  !> The keyword that a line belongs to, blank for none.
-  pure function keyword_of_line(deck, line) result(keyword)
-    type(deck_t), intent(in) :: deck
-    integer, intent(in) :: line
-    character(:), allocatable :: keyword
-    integer :: i_block
-
-    keyword = ''
-    if (line < 1) return
-    i_block = block_of_line(deck, line)
-    if (i_block > 0) keyword = deck%blocks(i_block)%given
-  end function keyword_of_line
 
   !> Give a line a new text (free format).
   subroutine replace_line(deck, line, text)

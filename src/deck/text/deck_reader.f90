@@ -7,12 +7,11 @@ module deck_reader_m
   use files_m, only : is_directory, is_endless
   use log_m, only : to_text
   use text_m, only : upper_case
-  use errors_m, only : error_t, raise, status_input
   use deck_lines_m, only : deck_t, block_t, line_text, line_error, shown_text, max_source, &
     flag_comma, flag_parameter, flag_blank, format_standard, format_long, format_i10
   implicit none
   private
-  public :: read_blocks, read_file, cut_deck, scan_line, open_block, add_line, file_options
+  public :: read_file, cut_deck, scan_line, open_block, add_line, file_options
 
   !> Includes inside includes.
   integer, parameter :: max_depth = 32
@@ -20,22 +19,6 @@ module deck_reader_m
   integer, parameter :: max_character = 2000000000
 
 contains
-
-  !> Read a deck and all that it includes. `error` is set when the deck itself cannot be read;
-  !> everything else goes to the deck's report.
-  subroutine read_blocks(path, deck, error)
-    character(*), intent(in) :: path
-    type(deck_t), intent(inout) :: deck
-    type(error_t), allocatable, intent(out) :: error
-    character(:), allocatable :: reason, text
-
-    call read_file(path, text, reason)
-    if (allocated(reason)) then
-      call raise(error, 'cannot read the deck '//path//': '//reason, status_input)
-      return
-    end if
-    call cut_deck(path, text, deck)
-  end subroutine read_blocks
 
   !> Cut the text of a deck into blocks, its includes in their place.
   subroutine cut_deck(path, text, deck)
