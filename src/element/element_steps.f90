@@ -87,11 +87,11 @@ contains
         call form_resistance(model%materials(part%material), part%hourglass, chunk)
       end associate
     end if
-    steps = huge(1.0_wp)
-    if (size(now) == 1) call limit_elements(model, i_chunk, now(1), elements, chunk, sums, steps)
-    do i = 1, merge(size(now), 0, size(now) > 1)
-      shape = chunk ! the limits of axisymmetric triangles change it
-      call limit_elements(model, i_chunk, now(i), elements, shape, sums, at_moduli)
+    if (size(now) > 1 .and. chunk%is_round) shape = chunk
+    call limit_elements(model, i_chunk, now(1), elements, chunk, sums, steps)
+    do i = 2, size(now)
+      if (chunk%is_round) chunk = shape ! the limits of triangles change it
+      call limit_elements(model, i_chunk, now(i), elements, chunk, sums, at_moduli)
       steps(i) = at_moduli(i)
     end do
     do i = 1, chunk_size
