@@ -67,7 +67,7 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
     real(wp), intent(in) :: dt                       !! step that led here; 0: no rates
     real(wp), intent(out) :: steps(chunk_size)       !! s
-    type(element_chunk_t) :: chunk, point
+    type(element_chunk_t) :: chunk, shape, point
     type(stress_chunk_t) :: unused
     type(sums_t) :: sums
     real(wp) :: at_moduli(chunk_size)
@@ -87,8 +87,10 @@ contains
         call form_resistance(model%materials(part%material), part%hourglass, chunk)
       end associate
     end if
+    if (size(now) > 1 .and. chunk%is_round) shape = chunk
     call limit_elements(model, i_chunk, now(1), elements, chunk, sums, steps)
     do i = 2, size(now)
+      if (chunk%is_round) chunk = shape ! the limits of triangles change it
       call limit_elements(model, i_chunk, now(i), elements, chunk, sums, at_moduli)
       steps(i) = at_moduli(i)
     end do
@@ -104,20 +106,18 @@ contains
     end do
   end subroutine steps_at_moduli
 
-  !> The same of a chunk whose shape and points are there, which stay.
-  subroutine limit_elements(model, i_chunk, now, elements, shape, sums, steps)
+  !> The same of a chunk whose shape and points are there.
+  subroutine limit_elements(model, i_chunk, now, elements, chunk, sums, steps)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_chunk
     type(moduli_t), intent(in) :: now
     type(block_state_t), intent(in) :: elements
-    type(element_chunk_t), intent(in) :: shape
+    type(element_chunk_t), intent(inout) :: chunk
     type(sums_t), intent(inout) :: sums
     real(wp), intent(out) :: steps(chunk_size)
-    type(element_chunk_t) :: chunk
     real(wp) :: limits(2), same(chunk_size)
     integer :: i
 
-    chunk = shape
     call limit_chunk(model, i_chunk, now, elements, chunk, sums, limits, steps)
     associate (material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
       if (.not. material%viscosity > 0.0_wp) return
