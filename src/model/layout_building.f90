@@ -86,7 +86,7 @@ contains
     type(mesh_t), intent(in) :: mesh
     type(layout_t), intent(inout) :: layout
     integer, allocatable :: marks(:), local(:), special(:)
-    integer :: i_tile, slot, n_special_slots
+    integer :: i_tile, slot, n_special_slots, i
 
     allocate (layout%slot_nodes(4, layout%n_slot), layout%slot_local(4, layout%n_slot))
     allocate (marks(mesh%n_node), local(layout%n_special), source=0)
@@ -105,7 +105,15 @@ contains
       end if
     end do
     layout%special_node = special(:n_special_slots)
-    call list_node_slots(layout)
+    ! For each special node the force slots that hold its parts, in rising order.
+    layout%slot_list = sorted_order(int(layout%special_node, long))
+    allocate (layout%node_slots(layout%n_special + 1), source=1)
+    do i = 1, size(layout%slot_list)
+      layout%node_slots(layout%special_node(layout%slot_list(i)) + 1) = i + 1
+    end do
+    do i = 1, layout%n_special ! some have none
+      layout%node_slots(i + 1) = max(layout%node_slots(i), layout%node_slots(i + 1))
+    end do
   end subroutine build_local_numbers
 
   !> Local numbers of one tile; its special nodes get the next force slots, by number: those that
@@ -153,21 +161,6 @@ contains
       layout%n_local = max(layout%n_local, n_interior + n_special_slots - first_special + 1)
     end associate
   end subroutine number_tile
-
-  !> For each special node the force slots that hold its parts, in rising order.
-  subroutine list_node_slots(layout)
-    type(layout_t), intent(inout) :: layout
-    integer :: i, node
-
-    layout%slot_list = sorted_order(int(layout%special_node, long))
-    allocate (layout%node_slots(layout%n_special + 1), source=1)
-    do i = 1, size(layout%slot_list)
-      layout%node_slots(layout%special_node(layout%slot_list(i)) + 1) = i + 1
-    end do
-    do node = 1, layout%n_special ! some have none
-      layout%node_slots(node + 1) = max(layout%node_slots(node), layout%node_slots(node + 1))
-    end do
-  end subroutine list_node_slots
 
   !> Position of each element's centre along a Hilbert curve over the bounding box.
   pure function hilbert_keys(mesh) result(keys)

@@ -99,8 +99,13 @@ contains
       ! Their forces are asked for in every cycle.
       if (allocated(output%force_groups)) is_special(group_nodes(output%force_groups)) = .true.
     end associate
-    if (allocated(model%controls%ends)) is_special(pack(model%controls%ends%where, &
-      model%controls%ends%kind == end_node_place)) = .true.
+    if (allocated(model%controls%ends)) then
+      do i = 1, size(model%controls%ends)
+        associate (ending => model%controls%ends(i))
+          if (ending%kind == end_node_place) is_special(ending%where) = .true.
+        end associate
+      end do
+    end if
     if (allocated(model%walls)) &
       is_special([(model%walls(i)%nodes, i=1, size(model%walls))]) = .true.
   end subroutine mark_touched_nodes

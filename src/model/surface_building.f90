@@ -18,7 +18,6 @@ module surface_building_m
 
   !> Elements at the nodes where the boundary touches itself.
   type :: corners_t
-    integer :: n = 0
     integer, allocatable :: node(:), element(:)
   end type corners_t
 
@@ -295,7 +294,6 @@ contains
         corners%element = [corners%element, spread(i, 1, count(is_crossing(nodes)))]
       end associate
     end do
-    corners%n = size(corners%node)
   end subroutine find_corners
 
   !> The edge that follows another along its elements.
@@ -311,16 +309,16 @@ contains
     next = boundary%start(node)
     if (boundary%start(node + 1) - next == 1) return
     element = boundary%elements(edge)
-    do step = 1, corners%n
+    do step = 1, size(corners%node)
       far = node_behind(mesh%element_nodes(:, element), node)
       do next = boundary%start(node), boundary%start(node + 1) - 1
         if (boundary%nodes(2, next) == far .and. boundary%elements(next) == element) return
       end do
-      do i = 1, corners%n
+      do i = 1, size(corners%node)
         if (corners%node(i) /= node) cycle
         if (node_behind(mesh%element_nodes(:, corners%element(i)), far) == node) exit
       end do
-      if (i > corners%n) exit
+      if (i > size(corners%node)) exit
       element = corners%element(i)
     end do
     next = boundary%start(node)
