@@ -248,10 +248,10 @@ contains
     integer :: k
 
     associate (block => deck%blocks(i_block))
-      if (block%dropped) return
+      if (block%dropped .or. &
+        any(iand(deck%flags(block%first:block%last), flag_blank) == 0)) return
       call open_cursor(deck, i_block, cursor)
       if (index(cursor%options, 'o') > 0) return
-      if (any(iand(deck%flags(block%first:block%last), flag_blank) == 0)) return
       if (block%last >= block%first .and. index(cursor%options, 'r') == 0) return
       fields = ''
       do k = 1, cursor%specs(1)%n

@@ -107,7 +107,7 @@ contains
     do while (.not. found .and. i < deck%n_block)
       i = i + 1
       if (.not. deck%blocks(i)%is_honoured) cycle
-      if (index(deck%blocks(i)%name, head) /= 1) cycle
+      if (deck%blocks(i)%name(:len(head)) /= head) cycle
       call open_cursor(deck, i, cursor)
       call skip_title(deck, cursor)
       found = next_row(deck, cursor, 1, card)

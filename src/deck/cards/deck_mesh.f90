@@ -36,7 +36,8 @@ contains
     call read_nodes(deck, model%mesh, codes)
     has_place = deck%report%n_error == n_before
     call read_elements(deck, model%mesh)
-    is_sound = all(model%mesh%element_nodes > 0, dim=1)
+    allocate (is_sound(model%mesh%n_element))
+    if (size(is_sound) > 0) is_sound = all(model%mesh%element_nodes > 0, dim=1)
     if (has_place) call check_shapes(deck, model%mesh, is_sound)
     ! A part or node that was lost with its own mistake is not told again where it is named.
     if (.not. has_place .or. deck%maps(a_node)%lost .or. deck%maps(an_element)%lost) &

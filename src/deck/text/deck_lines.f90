@@ -135,7 +135,7 @@ contains
     integer :: i
 
     blocks = pack([(i, i=1, deck%n_block)], [(deck%blocks(i)%is_honoured &
-      .and. index(deck%blocks(i)%name, head) == 1, i=1, deck%n_block)])
+      .and. deck%blocks(i)%name(:len(head)) == head, i=1, deck%n_block)])
   end function blocks_of
 
   !> Rows that the keywords that begin so may have.
