@@ -6,13 +6,13 @@
 module arguments_m
   use deck_lines_m, only : shown_text
   use deck_overrides_m, only : is_override, override_mistake, contact_names, run_names
-  use deck_spelling_m, only : first_too_far, keep_nearer
+  use deck_schema_m, only : first_too_far, keep_nearer
   use errors_m, only : error_t, raise, status_input
   use files_m, only : folder_of
   use log_m, only : to_text
   implicit none
   private
-  public :: arguments_t, read_arguments, help_text, file_stem, only_end_time, timing_by_interface, &
+  public :: arguments_t, read_arguments, help, file_stem, only_end_time, timing_by_interface, &
     timing_off
 
   !> Longest single argument.
@@ -20,10 +20,52 @@ module arguments_m
 
   !> What is timed: phases, contact phases of each interface too, or the run as a whole.
   integer, parameter :: timing_by_phase = 0, timing_by_interface = 1, timing_off = 2
+  character(9), parameter :: timings(3) = ['phase    ', 'interface', 'off      ']
 
   !> Words of more than a letter that are this program's own, for what is misspelt.
-  character(10), parameter :: own_words(9) = [character(10) :: 'ncpu=', 'perthread=', 'jobid=', &
-    'quiet=', 'timing=', 'memory=', '--help', '--version', '--json']
+  character(9), parameter :: own_words(9) = [character(9) :: 'NCPU', 'PERTHREAD', 'JOBID', &
+    'QUIET', 'TIMING', 'MEMORY', '--help', '--version', '--json']
+
+  !> What --help prints.
+  character(91), parameter :: help(*) = [character(91) :: &
+    'slideline: 2D explicit contact dynamics', &
+    '', &
+    'usage: slideline i=DECK [d=DIR] [jobid=NAME] [ncpu=N] [timing=...] [OVERRIDES]', &
+    '       slideline r=FILE [i=CHANGES] [d=DIR] [ncpu=N] [endtim=T]   go on from a restart file', &
+    '       slideline DECK ...     the same', &
+    '       slideline check DECK [--json] [d=DIR] [OVERRIDES]   all errors and warnings, without', &
+    '                     a run; d= writes the state at time zero', &
+    '', &
+    '  i=DECK        LS-DYNA style keyword deck', &
+    '  r=FILE        restart file (JOB.dump01.h5, JOB.runrsf.h5): the run goes on from there, in', &
+    '                its folder unless d= says otherwise; i= then names a small deck of changes', &
+    '  d=DIR         folder of the results, made with its parents (default: .)', &
+    '  jobid=NAME    stem of the result files (default: the deck''s)', &
+    '  ncpu=N        threads at most (default 1); the results have the same bits at any number', &
+    '  perthread=N   elements for each of several threads, at least (default 300)', &
+    '  timing=HOW    phase: wall clock by phase (default); interface: contact phases of each', &
+    '                interface too; off: the total alone', &
+    '  quiet=1       one line on the screen: how the run has ended', &
+    '  c=SECONDS     processor time after which the run stops as by a signal', &
+    '  d=nodump      no numbered restart files, whatever the deck asks for', &
+    '  memory=...    and memory2=...: accepted and ignored; so are, with a warning, LS-DYNA''s', &
+    '                o= g= s= f= a= x= and para=', &
+    '', &
+    'overrides, for sweeps:', &
+    '  ctype=T ngauss=N pen=P      contact of every interface; ctype.2=T of interface 2', &
+    '  punit=U pent=P vdc=D        unit of the penalty, that of the master pass, damping', &
+    '  fs=M fd=M dc=C vc=T tfac=R  friction: coefficients, decay, largest stress, spring', &
+    '  target=E                    with ctype=0: the largest estimate of the error', &
+    '  endtim=T dt=DT tssfac=F     end time, constant step, safety factor', &
+    '  p:NAME=VALUE                a *PARAMETER of the deck', &
+    '', &
+    'results: JOB.vtkhdf (ParaView), JOB.*.csv, JOB.log, JOB.effective.k (the deck as run)', &
+    'while it runs: status.out (JOB.status.out with jobid=) says how far it is and how long it', &
+    'may take; a file DIR/d3kil with sw1 (restart file, stop), sw2 (status line), sw3 (restart', &
+    'file), sw4 (plot state), swa (histories up to date) or stop; signals TERM, INT, HUP and', &
+    'XCPU (stop), USR1 (sw3), USR2 (sw4)', &
+    'exit status: 0 normal, 1 refused input, 2 error in the run, 3 files, 4 stopped on request', &
+    '--version prints the version, compiler and options']
 
   !> What the command line asks for.
   type :: arguments_t
@@ -101,31 +143,33 @@ contains
     character(*), intent(in) :: word
     type(arguments_t), intent(inout) :: arguments
     character(:), allocatable, intent(inout) :: mistakes
-    character(:), allocatable :: name, value, mistake
-    integer :: equals
+    character(:), allocatable :: name, value
+    integer :: i, equals
 
-    mistake = control_mistake(word)
-    call note(mistake, mistakes)
-    if (len(mistake) > 0) return
+    do i = 1, len(word)
+      ! They would make lines of their own in logs and status.out, or act on terminals.
+      if (iachar(word(i:i)) >= 32 .and. iachar(word(i:i)) /= 127) cycle
+      call note('"'//trim(shown_text(word))//'" has a control character (line feed, escape or ' &
+        //'the like) where ? stands: expected none', mistakes)
+      return
+    end do
     equals = index(word, '=')
     ! No name before a value holds a slash: this is a path.
     if (equals > 0 .and. index(word(:equals), '/') > 0) equals = 0
-    if (word == '--help' .or. word == '-h') then
-      arguments%help = .true.
-      return
-    else if (word == '--version') then
-      arguments%version = .true.
-      return
-    else if (word == '--json') then
-      arguments%json = .true.
-      return
-    else if (equals == 0 .and. word(1:min(1, len(word))) /= '-') then
+    if (equals == 0 .and. index(word, '-') /= 1) then
       call take(arguments%deck, word, 'deck', mistakes)
       return
     end if
     name = lower_case(word(:equals - 1))
     value = word(equals + 1:)
+    if (equals == 0 .or. index(word, '-') == 1) name = word
     select case (name)
+    case ('--help', '-h')
+      arguments%help = .true.
+    case ('--version')
+      arguments%version = .true.
+    case ('--json')
+      arguments%json = .true.
     case ('i')
       call take(arguments%deck, value, 'deck', mistakes)
     case ('r')
@@ -150,16 +194,9 @@ contains
     case ('perthread')
       call read_count(name, value, 1000000000, arguments%thread_share, mistakes)
     case ('timing')
-      select case (lower_case(value))
-      case ('phase')
-        arguments%timing = timing_by_phase
-      case ('interface')
-        arguments%timing = timing_by_interface
-      case ('off')
-        arguments%timing = timing_off
-      case default
-        call note('timing="'//value//'": expected phase, interface or off', mistakes)
-      end select
+      i = findloc(timings == lower_case(value), .true., 1)
+      if (i > 0) arguments%timing = i - 1
+      if (i == 0) call note('timing="'//value//'": expected phase, interface or off', mistakes)
     case ('memory', 'memory2')
       continue ! memory is taken as it is needed
     case ('o', 'g', 's', 'f', 'a', 'x', 'para')
@@ -178,7 +215,8 @@ contains
   pure function meant_word(word) result(text)
     character(*), intent(in) :: word !! that is not known
     character(:), allocatable :: text
-    character(:), allocatable :: given
+    character(*), parameter :: words(*) = [character(9) :: run_names, contact_names, own_words]
+    character(:), allocatable :: given, known
     character(20) :: nearest
     integer :: i, least
 
@@ -186,34 +224,14 @@ contains
     if (len(given) < len(word)) given = given//'='
     nearest = ''
     least = first_too_far(given)
-    do i = 1, size(run_names)
-      call keep_nearer(lower_case(trim(run_names(i)))//'=', given, least, nearest)
-    end do
-    do i = 1, size(contact_names)
-      call keep_nearer(lower_case(trim(contact_names(i)))//'=', given, least, nearest)
-    end do
-    do i = 1, size(own_words)
-      call keep_nearer(trim(own_words(i)), given, least, nearest)
+    do i = 1, size(words)
+      known = lower_case(trim(words(i)))
+      if (index(known, '--') /= 1) known = known//'='
+      call keep_nearer(known, given, least, nearest)
     end do
     text = ''
     if (len_trim(nearest) > 0) text = '; did you mean '//trim(nearest)//'?'
   end function meant_word
-
-  !> What is wrong with a word that has control characters, which would make lines of their own in
-  !> logs and status.out, or act on terminals; empty where nothing is.
-  pure function control_mistake(word) result(mistake)
-    character(*), intent(in) :: word
-    character(:), allocatable :: mistake
-    integer :: i
-
-    mistake = ''
-    do i = 1, len(word)
-      if (iachar(word(i:i)) >= 32 .and. iachar(word(i:i)) /= 127) cycle
-      mistake = '"'//trim(shown_text(word))//'" has a control character (line feed, escape or ' &
-        //'the like) where ? stands: expected none'
-      return
-    end do
-  end function control_mistake
 
   !> Keep what is wrong with one word.
   pure subroutine note(mistake, mistakes)
@@ -292,57 +310,5 @@ contains
     dot = index(stem, '.', back=.true.)
     if (dot > 1) stem = stem(:dot - 1)
   end function file_stem
-
-  !> What --help prints.
-  function help_text() result(text)
-    character(:), allocatable :: text
-    character(1), parameter :: n = new_line('a')
-
-    text = 'slideline: 2D explicit contact dynamics'//n//n// &
-      'usage: slideline i=DECK [d=DIR] [jobid=NAME] [ncpu=N] [timing=...] [OVERRIDES]'//n// &
-      '       slideline r=FILE [i=CHANGES] [d=DIR] [ncpu=N] [endtim=T]   go on from a '// &
-        'restart file'//n// &
-      '       slideline DECK ...     the same'//n// &
-      '       slideline check DECK [--json] [d=DIR] [OVERRIDES]   all errors and warnings, '// &
-        'without a run;'//n// &
-      '                     d= writes the state at time zero'//n//n// &
-      '  i=DECK        LS-DYNA style keyword deck'//n// &
-      '  r=FILE        restart file (JOB.dump01.h5, JOB.runrsf.h5): the run goes on from '// &
-        'there, in its'//n// &
-      '                folder unless d= says otherwise; i= then names a small deck of '// &
-        'changes'//n// &
-      '  d=DIR         folder of the results, made with its parents (default: .)'//n// &
-      '  jobid=NAME    stem of the result files (default: the deck''s)'//n// &
-      '  ncpu=N        threads at most (default 1); the results have the same bits at any '// &
-        'number'//n// &
-      '  perthread=N   elements for each of several threads, at least (default 300)'//n// &
-      '  timing=HOW    phase: wall clock by phase (default); interface: contact phases of '// &
-        'each'//n// &
-      '                interface too; off: the total alone'//n// &
-      '  quiet=1       one line on the screen: how the run has ended'//n// &
-      '  c=SECONDS     processor time after which the run stops as by a signal'//n// &
-      '  d=nodump      no numbered restart files, whatever the deck asks for'//n// &
-      '  memory=...    and memory2=...: accepted and ignored; so are, with a warning, '// &
-        'LS-DYNA''s o= g='//n// &
-      '                s= f= a= x= and para='//n//n// &
-      'overrides, for sweeps:'//n// &
-      '  ctype=T ngauss=N pen=P      contact of every interface; ctype.2=T of interface 2'//n// &
-      '  punit=U pent=P vdc=D        unit of the penalty, that of the master pass, damping'//n// &
-      '  fs=M fd=M dc=C vc=T tfac=R  friction: coefficients, decay, largest stress, spring'//n// &
-      '  target=E                    with ctype=0: the largest estimate of the error'//n// &
-      '  endtim=T dt=DT tssfac=F     end time, constant step, safety factor'//n// &
-      '  p:NAME=VALUE                a *PARAMETER of the deck'//n//n// &
-      'results: JOB.vtkhdf (ParaView), JOB.*.csv, JOB.log, JOB.effective.k (the deck as run)'//n// &
-      'while it runs: status.out (JOB.status.out with jobid=) says how far it is and how '// &
-        'long it may take;'//n// &
-      'a file DIR/d3kil with sw1 (restart file, stop), sw2 (status line), sw3 (restart '// &
-        'file), sw4 (plot'//n// &
-      'state), swa (histories up to date) or stop; signals TERM, INT, HUP and XCPU (stop), '// &
-        'USR1 (sw3),'//n// &
-      'USR2 (sw4)'//n// &
-      'exit status: 0 normal, 1 refused input, 2 error in the run, 3 files, 4 stopped on '// &
-        'request'//n// &
-      '--version prints the version, compiler and options'
-  end function help_text
 
 end module arguments_m

@@ -8,9 +8,8 @@ module check_m
   use contact_dispatch_m, only : contact_kinds
   use contacts_m, only : n_told
   use controls_m, only : is_asked
-  use deck_findings_m, only : add_finding, json_text
   use deck_m, only : deck_request_t, read_deck
-  use deck_report_m, only : spot_t
+  use deck_report_m, only : spot_t, add_finding, json_text
   use errors_m, only : error_t, raise, status_files
   use explicit_m, only : advance_explicit
   use files_m, only : join_path, make_directory
@@ -21,7 +20,7 @@ module check_m
   use monitor_m, only : monitor_t
   use renumber_m, only : renumber_model
   use results_file_m, only : open_results, append_state, finish_results, publish, run_info_t
-  use screen_m, only : show
+  use text_files_m, only : show
   use snapshot_filling_m, only : start_snapshot
   use start_m, only : start_state
   use state_m, only : state_t

@@ -3,26 +3,23 @@
 !> the group /model, one dataset a column, all by user ids and in deck order. What has no rows has
 !> no table; columns of texts are one text with a line for each row.
 module model_tables_m
-  use, intrinsic :: iso_c_binding, only : c_loc
+  use archive_m, only : archive_t
   use conditions_m, only : prescribed_motion_t, nodal_load_t
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contacts_m, only : kind_text, n_told
   use errors_m, only : error_t
-  use hdf5_writing_m, only : hid_t, as_real, as_integer, make_group, write_rows, write_text
+  use hdf5_writing_m, only : hid_t, make_group, write_text
   use kinds_m, only : wp
   use material_dispatch_m, only : law_name
   use model_m, only : model_t
-  use results_tables_m, only : utf8_text
+  use results_arrays_m, only : utf8_text
   use text_m, only : text_of
   implicit none
   private
   public :: write_model
 
   !> A table that is being written.
-  type :: table_t
-    integer(hid_t) :: file = -1            !! open
-    character(:), allocatable :: path      !! of its group
-    type(error_t), allocatable :: error    !! first failure, which ends the writing
+  type, extends(archive_t) :: table_t
   contains
     procedure :: open => open_table
     procedure :: put_integers, put_reals, put_text
@@ -41,7 +38,7 @@ contains
     type(table_t) :: table
 
     if (allocated(error)) return
-    table%file = id
+    table%id = id
     call make_group(id, 'model', table%error)
     call write_parts(table, model)
     call write_supports(table, model)
@@ -56,8 +53,8 @@ contains
     character(*), intent(in) :: name
     integer, intent(in) :: n_row
 
-    table%path = 'model/'//name//'/'
-    if (n_row > 0) call make_group(table%file, 'model/'//name, table%error)
+    table%folder = 'model/'//name//'/'
+    if (n_row > 0) call make_group(table%id, 'model/'//name, table%error)
   end subroutine open_table
 
   !> A column of whole numbers. What comes from arrays of types stands in brackets where it is
@@ -66,11 +63,10 @@ contains
     class(table_t), intent(inout) :: table
     character(*), intent(in) :: name
     integer, intent(in) :: values(:)
-    integer, target :: copy(size(values))
+    integer, allocatable :: copy(:)
 
-    copy = values
-    if (size(copy) > 0) call write_rows(table%file, table%path//name, as_integer, size(copy), &
-      c_loc(copy), table%error)
+    allocate (copy, source=values)
+    if (size(copy) > 0) call table%visit(name, copy)
   end subroutine put_integers
 
   !> A column of reals.
@@ -78,11 +74,10 @@ contains
     class(table_t), intent(inout) :: table
     character(*), intent(in) :: name
     real(wp), intent(in) :: values(:)
-    real(wp), target :: copy(size(values))
+    real(wp), allocatable :: copy(:)
 
-    copy = values
-    if (size(copy) > 0) call write_rows(table%file, table%path//name, as_real, size(copy), &
-      c_loc(copy), table%error)
+    allocate (copy, source=values)
+    if (size(copy) > 0) call table%visit(name, copy)
   end subroutine put_reals
 
   !> A column of texts, each with its line end.
@@ -90,7 +85,7 @@ contains
     class(table_t), intent(inout) :: table
     character(*), intent(in) :: name, lines
 
-    call write_text(table%file, table%path//name, utf8_text(lines), table%error)
+    call write_text(table%id, table%folder//name, utf8_text(lines), table%error)
   end subroutine put_text
 
   !> Title and form of the model, its parts, node sets and curves.

@@ -4,47 +4,42 @@ module run_m
   use, intrinsic :: iso_fortran_env, only : output_unit
   use contacts_m, only : n_told
   use controls_m, only : is_asked
-  use arguments_m, only : arguments_t, file_stem, timing_by_interface, timing_off
+  use arguments_m, only : arguments_t, file_stem, only_end_time, timing_by_interface, timing_off
   use build_info_m, only : version, build_type, compiler, flags
   use checksum_m, only : add_bytes, checksum_text
   use clock_m, only : lap, start_clock, look_at_clock, split_contact, elapsed_seconds, &
     phase_input, phase_output
   use contact_dispatch_m, only : contact_kinds
   use deck_m, only : deck_request_t, read_deck
+  use deck_restart_m, only : merge_decks, is_whole_deck, deck_identity
+  use deck_reader_m, only : read_file
   use errors_m, only : error_t, raise, status_input, status_stopped
   use explicit_m, only : advance_explicit
   use implicit_m, only : advance_implicit
   use files_m, only : make_directory, remove_file, join_path, unfinished
   use history_file_m, only : close_histories
   use text_files_m, only : write_whole
-  use go_on_m, only : take_up_deck
-  use heap_m, only : give_back_memory
   use others_memory_m, only : answers_t, others_t
   use kinds_m, only : long
-  use log_m, only : open_log, close_log, write_log, warn, to_text
+  use log_m, only : log_t, open_log, close_log, write_log, warn, to_text
   use memory_m, only : processor_name
   use model_m, only : model_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
-  use progress_m, only : show_end
-  use rank_model_m, only : hand_model, hand_others
-  use rank_shares_m, only : forget_others
+  use progress_m, only : show_end, write_status, timing_text
+  use rank_shares_m, only : hand_model, hand_others, forget_others
   use ranks_m, only : ranks_t, share_error
   use relaxation_m, only : relax, switch_loads
   use renumber_m, only : renumber_model, forget_start
   use restart_file_m, only : open_restart
   use restart_m, only : forget_files
-  use restart_plan_m, only : restarts_t
-  use restart_reading_m, only : take_up_state, take_up_results, check_rest, &
+  use restart_plan_m, only : restarts_t, check_names, switch_path
+  use restart_reading_m, only : take_up_file, take_up_state, take_up_results, check_rest, &
     take_up_outputs
-  use result_names_m, only : check_names
   use results_file_m, only : run_info_t
-  use requests_m, only : switch_path
-  use signals_m, only : catch_stops, limit_processor
+  use system_m, only : catch_stops, give_back_memory, limit_processor
   use source_version_m, only : source_version
   use start_m, only : start_state
   use state_m, only : state_t
-  use status_file_m, only : write_status
-  use timing_file_m, only : timing_text
   implicit none
   private
   public :: run_deck
@@ -61,7 +56,6 @@ contains
     type(state_t) :: state
     type(monitor_t) :: monitor
     type(run_info_t) :: info
-    character(:), allocatable :: prefix
     logical :: has_all   !! each process has all of the model
 
     has_ended = .false.
@@ -88,22 +82,32 @@ contains
     call hand_model(monitor%ranks, model, has_all)
     if (arguments%timing == timing_by_interface) &
       call split_contact(monitor%clock, n_told(model%contacts))
-    prefix = ''
-    if (ranks%mine == 0) prefix = join_path(arguments%directory, arguments%job)
+    monitor%restarts%prefix = ''
+    if (ranks%mine == 0) then
+      monitor%restarts%directory = arguments%directory
+      monitor%restarts%job = arguments%job
+      monitor%restarts%prefix = join_path(arguments%directory, arguments%job)
+    end if
     if (monitor%restarts%goes_on) then
-      call make_state(has_all, prefix, model, state, monitor, error)
+      call make_state(has_all, model, state, monitor, error)
       if (allocated(error)) return
     end if
-    if (ranks%mine == 0) call claim_folder(arguments, prefix, &
-      model%controls%output%dump_cycles >= 0, monitor, error)
+    ! The folder of the results and the log in it, which no other run may have.
+    if (ranks%mine == 0) then
+      call make_directory(arguments%directory, error)
+      if (.not. allocated(error)) call check_names(monitor%restarts, &
+        model%controls%output%dump_cycles >= 0, .false., error)
+      if (.not. allocated(error)) call open_log(monitor%log, monitor%restarts%prefix//'.log', &
+        monitor%restarts%goes_on, error)
+    end if
     call share_error(ranks, error)
     if (allocated(error)) return
-    call begin_run(arguments, prefix, has_all, model, info, state, monitor, error)
+    call begin_run(arguments, has_all, model, info, state, monitor, error)
     call lap(monitor%clock, phase_input)
     if (allocated(error)) then
-      if (ranks%mine == 0) call give_up(model, prefix, state, monitor, error)
+      if (ranks%mine == 0) call give_up(model, state, monitor, error)
     else
-      call drive(arguments, model, prefix, state, monitor, error)
+      call drive(arguments, model, state, monitor, error)
     end if
     has_ended = .true.
     call close_log(monitor%log)
@@ -123,7 +127,7 @@ contains
 
     request%overrides = arguments%overrides
     if (allocated(arguments%restart)) then
-      call take_up_deck(arguments, program_text(), monitor, request, error)
+      call take_up_deck(arguments, monitor, request, error)
       if (allocated(error)) return
     else
       request%path = arguments%deck
@@ -143,29 +147,80 @@ contains
     call renumber_model(model)
   end subroutine read_model
 
-  !> The folder of the results and the log in it, which no other run may have.
-  subroutine claim_folder(arguments, prefix, keeps_files, monitor, error)
-    type(arguments_t), intent(in) :: arguments
-    character(*), intent(in) :: prefix
-    logical, intent(in) :: keeps_files !! the deck asks for numbered restart files
+  !> The deck of a run that goes on from a restart file: that of the file, with what the command
+  !> line and a small deck change.
+  subroutine take_up_deck(arguments, monitor, request, error)
+    type(arguments_t), intent(inout) :: arguments  !! gets the job name of the file
     type(monitor_t), intent(inout) :: monitor
+    type(deck_request_t), intent(inout) :: request
     type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable :: deck, changes, reason
 
-    call make_directory(arguments%directory, error)
-    monitor%restarts%directory = arguments%directory
-    monitor%restarts%job = arguments%job
-    monitor%restarts%prefix = prefix
-    if (.not. allocated(error)) &
-      call check_names(monitor%restarts, keeps_files, .false., error)
-    if (.not. allocated(error)) &
-      call open_log(monitor%log, prefix//'.log', monitor%restarts%goes_on, error)
-  end subroutine claim_folder
+    call take_up_file(arguments%restart, monitor%restarts, deck, error)
+    if (allocated(error)) return
+    call write_log(monitor%log, 'goes on from the restart file '//arguments%restart)
+    if (monitor%restarts%program /= program_text()) call write_log(monitor%log, 'the restart ' &
+      //'file was written by another build ('//monitor%restarts%program//'): the last bits may ' &
+      //'differ')
+    if (.not. allocated(arguments%job)) arguments%job = monitor%restarts%job
+    request%path = arguments%restart
+    if (allocated(arguments%deck)) then
+      allocate (character(len(arguments%deck)) :: request%files(1))
+      request%files = arguments%deck
+      call read_file(arguments%deck, changes, reason)
+      if (allocated(reason)) then
+        call raise(error, 'cannot read the deck '//arguments%deck//': '//reason, status_input)
+        return
+      end if
+      if (is_whole_deck(changes)) then
+        call take_whole_deck(arguments, deck, monitor%restarts%is_implicit, request, error)
+        return
+      end if
+      call merge_decks(deck, changes, arguments%deck, request%text, error)
+      if (allocated(error)) return
+    else
+      allocate (character(1) :: request%files(0))
+      call move_alloc(deck, request%text)
+    end if
+    if (.not. only_end_time(arguments)) call raise(error, &
+      'when a run goes on the command line may change its end time alone (endtim=)', &
+      status_input)
+  end subroutine take_up_deck
+
+  !> A whole deck beside the restart file must be that of the file but for what may change.
+  subroutine take_whole_deck(arguments, deck, is_implicit, request, error)
+    type(arguments_t), intent(in) :: arguments
+    character(*), intent(in) :: deck               !! that of the file
+    logical, intent(in) :: is_implicit             !! method of the run that wrote it
+    type(deck_request_t), intent(inout) :: request
+    type(error_t), allocatable, intent(out) :: error
+    type(deck_request_t) :: whole
+    type(log_t) :: unused
+    type(model_t) :: model
+
+    whole%path = arguments%deck
+    whole%overrides = arguments%overrides
+    call read_deck(whole, contact_kinds, unused, model, request%text, error)
+    if (allocated(whole%files)) call move_alloc(whole%files, request%files)
+    if (allocated(error)) return
+    if (model%controls%implicit%is_on .neqv. is_implicit) then
+      call raise(error, 'the restart file '//arguments%restart//' is refused: it is of ' &
+        //trim(merge('an implicit run', 'an explicit run', is_implicit))//', and '//arguments%deck &
+        //' asks for the '//trim(merge('explicit', 'implicit', is_implicit))//' method', &
+        status_input)
+    else if (deck_identity(request%text) == deck_identity(deck)) then
+      deallocate (request%overrides) ! they are in the text
+    else
+      call raise(error, 'the restart file '//arguments%restart &
+        //' is refused: it belongs to another deck (checksum '//deck_identity(deck)//') than ' &
+        //arguments%deck//' ('//deck_identity(request%text)//')', status_input)
+    end if
+  end subroutine take_whole_deck
 
   !> The state from which the run begins. That of the first process comes first: the others, which
   !> have no elements but their own, need masses from it.
-  subroutine make_state(has_all, prefix, model, state, monitor, error)
+  subroutine make_state(has_all, model, state, monitor, error)
     logical, intent(in) :: has_all
-    character(*), intent(in) :: prefix     !! directory and job name
     type(model_t), intent(inout) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
@@ -175,38 +230,32 @@ contains
 
     if (monitor%ranks%mine == 0) then
       if (.not. has_all) allocate (answers)
-      call make_own_state(prefix, model, state, monitor, error, answers=answers)
+      call make_own_state()
     end if
     call share_error(monitor%ranks, error)
     if (allocated(error)) return
     if (.not. has_all) call hand_others(model, monitor%ranks, state, others, answers)
-    if (monitor%ranks%mine > 0) &
-      call make_own_state(prefix, model, state, monitor, error, others, answers)
+    if (monitor%ranks%mine > 0) call make_own_state()
     call share_error(monitor%ranks, error)
+
+  contains
+
+    !> That of time zero, or of the restart file if all that is read later can be; before any file
+    !> of an earlier run is touched.
+    subroutine make_own_state()
+      associate (restarts => monitor%restarts)
+        if (restarts%goes_on) then
+          call take_up_state(restarts%source, model, state, error, others, answers)
+          if (.not. allocated(error)) call check_rest(restarts%source, model, state, error)
+          if (.not. allocated(error) .and. monitor%ranks%mine == 0) &
+            call take_up_results(restarts, model, restarts%prefix//'.vtkhdf', error)
+        else
+          call start_state(model, monitor%log, state, error, others, answers)
+        end if
+      end associate
+    end subroutine make_own_state
+
   end subroutine make_state
-
-  !> That of time zero, or of the restart file if all that is read later can be; before any file of
-  !> an earlier run is touched.
-  subroutine make_own_state(prefix, model, state, monitor, error, others, answers)
-    character(*), intent(in) :: prefix
-    type(model_t), intent(inout) :: model
-    type(state_t), intent(inout) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(error_t), allocatable, intent(out) :: error
-    type(others_t), intent(inout), optional :: others
-    type(answers_t), intent(inout), optional :: answers
-
-    if (.not. monitor%restarts%goes_on) then
-      call start_state(model, monitor%log, state, error, others, answers)
-      return
-    end if
-    associate (restarts => monitor%restarts)
-      call take_up_state(restarts%source, model, state, error, others, answers)
-      if (.not. allocated(error)) call check_rest(restarts%source, model, state, error)
-      if (.not. allocated(error) .and. monitor%ranks%mine == 0) &
-        call take_up_results(restarts, model, prefix//'.vtkhdf', error)
-    end associate
-  end subroutine make_own_state
 
   !> Version and build of the program.
   pure function program_text() result(text)
@@ -215,27 +264,9 @@ contains
     text = version//', '//build_type//', '//compiler//', '//flags
   end function program_text
 
-  !> What the results file keeps about the run, beside the effective deck.
-  subroutine describe_run(arguments, model, restarts, info)
-    type(arguments_t), intent(in) :: arguments
-    type(model_t), intent(in) :: model
-    type(restarts_t), intent(in) :: restarts
-    type(run_info_t), intent(inout) :: info
-
-    if (allocated(model%controls%title)) info%title = model%controls%title
-    info%deck = restarts%deck
-    info%version = version
-    info%build = build_type//', '//compiler//', '//flags
-    info%options = arguments%line
-    info%source = source_version
-    if (is_asked(model%controls%output%plot)) info%machine = processor_name()
-    info%checksum = restarts%effective_deck_checksum
-  end subroutine describe_run
-
   !> Open the files and make the state from which the run begins.
-  subroutine begin_run(arguments, prefix, has_all, model, info, state, monitor, error)
+  subroutine begin_run(arguments, has_all, model, info, state, monitor, error)
     type(arguments_t), intent(in) :: arguments
-    character(*), intent(in) :: prefix
     logical, intent(in) :: has_all
     type(model_t), intent(inout) :: model
     type(run_info_t), intent(inout) :: info
@@ -244,17 +275,26 @@ contains
     type(error_t), allocatable, intent(out) :: error
     logical :: relaxes
 
-    if (monitor%ranks%mine == 0) &
-      call write_deck(arguments, prefix, info%effective_deck, monitor%restarts, error)
+    if (monitor%ranks%mine == 0) then
+      call write_deck(info%effective_deck, monitor%restarts, error)
+      ! What the results file keeps about the run besides.
+      if (allocated(model%controls%title)) info%title = model%controls%title
+      info%deck = monitor%restarts%deck
+      info%version = version
+      info%build = build_type//', '//compiler//', '//flags
+      info%options = arguments%line
+      info%source = source_version
+      if (is_asked(model%controls%output%plot)) info%machine = processor_name()
+      info%checksum = monitor%restarts%effective_deck_checksum
+    end if
     if (.not. allocated(error)) then
-      if (monitor%ranks%mine == 0) call describe_run(arguments, model, monitor%restarts, info)
-      call open_files(model, prefix, info, monitor, error)
+      call open_files(model, monitor%restarts%prefix, info, monitor, error)
     end if
     call share_error(monitor%ranks, error)
     if (allocated(error)) return
     if (allocated(info%effective_deck)) deallocate (info%effective_deck)
     if (.not. monitor%restarts%goes_on) &
-      call make_state(has_all, prefix, model, state, monitor, error)
+      call make_state(has_all, model, state, monitor, error)
     if (allocated(error)) return
     call start_monitor(model, size(state%elements%history) > 0, monitor)
     relaxes = model%controls%relaxation%is_on .and. .not. model%controls%check_only .and. &
@@ -265,7 +305,6 @@ contains
     if (any(model%curves%phase == 1)) call switch_loads(model, 1)
     call forget_start(model)
     call give_back_memory()
-    monitor%progress%first_cycle = state%cycle
     if (monitor%restarts%goes_on) call take_up_outputs(model, state, monitor, error)
     ! Behind relaxation a run begins at time zero, wherever it has come from.
     if (relaxes) monitor%restarts%goes_on = .false.
@@ -277,9 +316,8 @@ contains
 
   !> Make the effective deck, which restart files will hold; what an earlier run of this name has
   !> left of these is removed.
-  subroutine write_deck(arguments, prefix, effective, restarts, error)
-    type(arguments_t), intent(in) :: arguments
-    character(*), intent(in) :: prefix, effective
+  subroutine write_deck(effective, restarts, error)
+    character(*), intent(in) :: effective
     type(restarts_t), intent(inout) :: restarts
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: ignored
@@ -289,9 +327,10 @@ contains
     checksum = 0
     call add_bytes(checksum, effective)
     restarts%effective_deck_checksum = checksum_text(checksum)
-    call remove_file(switch_path(arguments%directory), ignored)
+    call remove_file(switch_path(restarts%directory), ignored)
     call forget_files(restarts, error)
-    if (.not. allocated(error)) call write_whole(prefix//'.effective.k', effective, error)
+    if (.not. allocated(error)) call write_whole(restarts%prefix//'.effective.k', &
+      effective, error)
   end subroutine write_deck
 
   !> The file status.out from where the run begins; <job>.status.out where the job has a name of its
@@ -301,7 +340,7 @@ contains
     type(state_t), intent(in) :: state
     type(monitor_t), intent(inout) :: monitor
 
-    associate (status => monitor%progress%status, restarts => monitor%restarts)
+    associate (status => monitor%progress, restarts => monitor%restarts)
       status%job = restarts%job
       status%path = join_path(restarts%directory, 'status.out')
       if (restarts%job /= file_stem(restarts%deck)) &
@@ -313,15 +352,14 @@ contains
       status%start_time = state%time
       status%end_time = model%controls%end_time
       status%start_seconds = elapsed_seconds(monitor%clock)
-      call write_status(status, monitor%clock, 'running')
     end associate
+    call write_status(monitor%progress, monitor%clock, 'running')
   end subroutine begin_status
 
   !> Advance to the end, close the files and say how it ended.
-  subroutine drive(arguments, model, prefix, state, monitor, error)
+  subroutine drive(arguments, model, state, monitor, error)
     type(arguments_t), intent(in) :: arguments
     type(model_t), intent(inout) :: model
-    character(*), intent(in) :: prefix
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
@@ -347,7 +385,7 @@ contains
       call finish_monitor(monitor, closing_error)
       if (.not. allocated(error) .and. allocated(closing_error)) &
         call move_alloc(closing_error, error)
-      call tell_end(model, prefix, state, reason, monitor, error)
+      call tell_end(model, state, reason, monitor, error)
     end if
     call share_error(monitor%ranks, error)
     if (stopped .and. .not. allocated(error)) call raise(error, &
@@ -357,9 +395,8 @@ contains
   !> The end of a run that could not begin, or was stopped before its first state. The results file
   !> has no state and does not take its name: that of a run before a restart keeps its states. Nor
   !> does status.out speak of a run before.
-  subroutine give_up(model, prefix, state, monitor, error)
+  subroutine give_up(model, state, monitor, error)
     type(model_t), intent(in) :: model
-    character(*), intent(in) :: prefix
     type(state_t), intent(in) :: state
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(inout) :: error
@@ -375,14 +412,14 @@ contains
       call move_alloc(error, stop)
       reason = stop%message//' (exit status '//to_text(status_stopped)//')'
     end if
-    call tell_end(model, prefix, state, reason, monitor, error)
+    call tell_end(model, state, reason, monitor, error)
     if (allocated(stop) .and. .not. allocated(error)) call move_alloc(stop, error)
   end subroutine give_up
 
   !> Write the timing file and say how the run ended: by `error` or else for `reason`.
-  subroutine tell_end(model, prefix, state, reason, monitor, error)
+  subroutine tell_end(model, state, reason, monitor, error)
     type(model_t), intent(in) :: model
-    character(*), intent(in) :: prefix, reason
+    character(*), intent(in) :: reason
     type(state_t), intent(in) :: state
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(inout) :: error
@@ -394,7 +431,8 @@ contains
     call look_at_clock(monitor%clock)
     allocate (interfaces(0))
     if (allocated(model%contacts)) interfaces = model%contacts(:n_told(model%contacts))%id
-    call write_whole(prefix//'.timing.csv', timing_text(monitor%clock, interfaces), problem)
+    call write_whole(monitor%restarts%prefix//'.timing.csv', &
+      timing_text(monitor%clock, interfaces), problem)
     if (.not. allocated(error) .and. allocated(problem)) call move_alloc(problem, error)
     if (.not. allocated(error) .and. allocated(monitor%log%trouble)) error = monitor%log%trouble
     told = reason

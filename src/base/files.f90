@@ -1,24 +1,76 @@
 ! SPDX-License-Identifier: MIT
-!> Files and directories by name: paths, whether they are there, making, removing and renaming them.
+!> Files and directories by name: paths, what stands under a name (kind, identity, length), making,
+!> removing and renaming. By the C library, which tells why something failed.
 module files_m
-  use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_null_char, c_ptr
-  use c_files_m, only : c_mkdir, c_rename, c_unlink, c_fopen, c_fileno, c_fclose, c_fsync, &
-    c_ftruncate, system_reason
+  use, intrinsic :: iso_c_binding, only : c_bool, c_char, c_int, c_int64_t, c_null_char, c_size_t
   use errors_m, only : error_t, raise, status_files
-  use file_facts_m, only : what_hinders
   use kinds_m, only : long
   implicit none
   private
   public :: join_path, parent_path, folder_of, file_exists, is_directory, make_directory, &
-    remove_file, &
-    rename_file, force_to_disk, lengthen_file, is_endless, fill_standard_streams, open_failure, &
-    unfinished
+    remove_file, rename_file, force_to_disk, lengthen_file, is_endless, open_failure, &
+    system_reason, unfinished, file_facts_t, facts_of_name, facts_of_target, &
+    facts_of_descriptor, what_hinders, is_same_file
 
   !> Behind the name of a file that is not complete: it is written aside and renamed when it is.
   character(*), parameter :: unfinished = '.part'
 
-  !> Permissions of a new directory, before the user's mask: rwx for all.
-  integer(c_int), parameter :: directory_mode = 511_c_int
+  !> What is known of a file.
+  type, bind(c) :: file_facts_t
+    logical(c_bool) :: is_there = .false._c_bool
+    logical(c_bool) :: is_regular = .false._c_bool
+    integer(c_int) :: kind = 0         !! what else it is, see `what_hinders`
+    integer(c_int64_t) :: device = 0   !! of the file system
+    integer(c_int64_t) :: identity = 0 !! inode, of its own within a device
+    integer(c_int64_t) :: n_name = 0   !! hard links; 0: removed while open
+    integer(c_int64_t) :: n_byte = 0   !! length
+  end type file_facts_t
+
+  ! Paths end with a null; a status of 0 is success.
+  abstract interface
+    function call_by_path(path) bind(c) result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int) :: status
+    end function call_by_path
+  end interface
+
+  !> Make a directory; remove a file, but no directory; bring either onto the disk (system.cpp).
+  procedure(call_by_path), bind(c, name='make_folder') :: c_mkdir
+  procedure(call_by_path), bind(c, name='unlink') :: c_unlink
+  procedure(call_by_path), bind(c, name='force_path') :: c_force
+
+  interface
+    function c_rename(old, new) bind(c, name='rename') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: old(*), new(*)
+      integer(c_int) :: status
+    end function c_rename
+
+    !> The type of the length, off_t, has the width of size_t.
+    function c_truncate(path, length) bind(c, name='truncate') result(status)
+      import :: c_char, c_int, c_size_t
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_size_t), value :: length            !! bytes
+      integer(c_int) :: status
+    end function c_truncate
+
+    !> Facts of an open file, or of the one of this name (system.cpp).
+    subroutine c_facts(descriptor, path, follows, facts) bind(c, name='find_facts')
+      import :: c_bool, c_char, c_int, file_facts_t
+      integer(c_int), value :: descriptor           !! below 0: by name
+      character(kind=c_char), intent(in) :: path(*)
+      logical(c_bool), value :: follows             !! symbolic links
+      type(file_facts_t), intent(out) :: facts
+    end subroutine c_facts
+
+    !> What the system says of its last failure (system.cpp).
+    subroutine c_reason(text, n) bind(c, name='reason_text')
+      import :: c_char, c_int
+      character(kind=c_char), intent(out) :: text(*)
+      integer(c_int), value :: n                    !! length of `text`, which blanks fill
+    end subroutine c_reason
+  end interface
 
 contains
 
@@ -100,7 +152,7 @@ contains
     if (is_directory(path)) return
     call make_directory(parent_path(path), error)
     if (allocated(error)) return
-    status = c_mkdir(path//c_null_char, directory_mode)
+    status = c_mkdir(path//c_null_char)
     reason = system_reason()
     if (is_directory(path)) return
     if (file_exists(path)) then
@@ -141,20 +193,9 @@ contains
   subroutine force_to_disk(path, error)
     character(*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
-    type(c_ptr) :: stream
-    integer(c_int) :: status, closing
-    character(:), allocatable :: reason
 
-    status = -1
-    ! A directory opens for reading alone.
-    stream = c_fopen(path//c_null_char, 'r'//c_null_char)
-    if (c_associated(stream)) status = c_fsync(c_fileno(stream))
-    reason = system_reason()
-    closing = 0
-    if (c_associated(stream)) closing = c_fclose(stream)
-    if (status == 0 .and. closing /= 0) reason = system_reason()
-    if (status /= 0 .or. closing /= 0) call raise(error, 'cannot bring '//path &
-      //' onto the disk: '//reason, status_files)
+    if (c_force(path//c_null_char) /= 0) call raise(error, 'cannot bring '//path &
+      //' onto the disk: '//system_reason(), status_files)
   end subroutine force_to_disk
 
   !> Bring a file to at least a length, with zeros behind what it has.
@@ -162,17 +203,11 @@ contains
     character(*), intent(in) :: path
     integer(long), intent(in) :: length !! bytes
     logical, intent(out) :: is_done
-    type(c_ptr) :: stream
     integer(long) :: n_byte
-    integer(c_int) :: ignored
 
     inquire (file=path, size=n_byte)
     is_done = n_byte >= length
-    if (is_done) return
-    stream = c_fopen(path//c_null_char, 'r+'//c_null_char)
-    if (.not. c_associated(stream)) return
-    is_done = c_ftruncate(c_fileno(stream), length) == 0
-    ignored = c_fclose(stream)
+    if (.not. is_done) is_done = c_truncate(path//c_null_char, length) == 0
   end subroutine lengthen_file
 
   !> Whether `path` is there and is not a file of known size with something in it: a pipe, a device,
@@ -186,22 +221,6 @@ contains
     endless = endless .and. n_byte <= 0
     if (endless) endless = .not. is_directory(path)
   end function is_endless
-
-  !> Open the null device in place of standard streams that the caller has closed: a result file
-  !> would take their number otherwise, and what is meant for the screen would go into it.
-  subroutine fill_standard_streams()
-    type(c_ptr) :: stream
-    integer(c_int) :: ignored
-
-    do
-      stream = c_fopen('/dev/null'//c_null_char, 'r+'//c_null_char)
-      if (.not. c_associated(stream)) exit
-      if (c_fileno(stream) > 2) then
-        ignored = c_fclose(stream)
-        exit
-      end if
-    end do
-  end subroutine fill_standard_streams
 
   !> Why a file cannot be made, in words; to be asked at once after the failure.
   function open_failure(path) result(reason)
@@ -217,5 +236,67 @@ contains
       reason = from_system
     end if
   end function open_failure
+
+  !> What the system says of its last failure.
+  function system_reason() result(reason)
+    character(:), allocatable :: reason
+    character(200) :: text
+
+    call c_reason(text, len(text))
+    reason = trim(text)
+  end function system_reason
+
+  !> Facts of what stands under a name; of a symbolic link they are the link's own.
+  function facts_of_name(path) result(facts)
+    character(*), intent(in) :: path
+    type(file_facts_t) :: facts
+
+    call c_facts(-1, path//c_null_char, .false._c_bool, facts)
+  end function facts_of_name
+
+  !> Facts of the file that a name leads to, over links too.
+  function facts_of_target(path) result(facts)
+    character(*), intent(in) :: path
+    type(file_facts_t) :: facts
+
+    call c_facts(-1, path//c_null_char, .true._c_bool, facts)
+  end function facts_of_target
+
+  !> Facts of an open file.
+  function facts_of_descriptor(descriptor) result(facts)
+    integer(c_int), intent(in) :: descriptor
+    type(file_facts_t) :: facts
+
+    call c_facts(descriptor, c_null_char, .false._c_bool, facts)
+  end function facts_of_descriptor
+
+  !> What under a name is in the way of a file to be written, in words; empty when nothing is: a
+  !> name that is free or that of a regular file.
+  function what_hinders(path) result(reason)
+    character(*), intent(in) :: path
+    character(:), allocatable :: reason
+    type(file_facts_t) :: facts
+
+    reason = ''
+    facts = facts_of_name(path)
+    if (.not. facts%is_there .or. facts%is_regular) return
+    select case (facts%kind)
+    case (1); reason = 'it is a directory'
+    case (2); reason = 'it is a symbolic link, and results are neither written through ' &
+      //'links nor put in their place'
+    case (3); reason = 'it is a pipe'
+    case (4); reason = 'it is a socket'
+    case default; reason = 'it is a device'
+    end select
+  end function what_hinders
+
+  !> Whether two facts are of one file.
+  pure function is_same_file(a, b) result(same)
+    type(file_facts_t), intent(in) :: a, b
+    logical :: same
+
+    same = a%is_there .and. b%is_there .and. a%identity == b%identity .and. &
+      a%device == b%device
+  end function is_same_file
 
 end module files_m

@@ -6,8 +6,7 @@
 module log_m
   use errors_m, only : error_t
   use kinds_m, only : wp
-  use screen_m, only : complain
-  use text_files_m, only : text_file_t, continue_text_file, append_text, close_text_file
+  use text_files_m, only : text_file_t, continue_text_file, append_text, close_text_file, complain
   implicit none
   private
   public :: log_t, open_log, write_log, warn, close_log, forget_waiting, to_text, percent, &
@@ -55,7 +54,6 @@ contains
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: text
     type(error_t), allocatable :: error
-    character(:), allocatable :: longer
     integer :: last
 
     if (log%is_mute) return
@@ -65,13 +63,9 @@ contains
       if (allocated(error)) call move_alloc(error, log%trouble)
       return
     end if
-    if (.not. allocated(log%waiting)) log%waiting = repeat(' ', 4096)
     last = log%n_waiting + len(text) + 1
-    if (last > len(log%waiting)) then
-      allocate (character(last + log%n_waiting) :: longer)
-      longer(:) = log%waiting(:log%n_waiting)
-      call move_alloc(longer, log%waiting)
-    end if
+    if (.not. allocated(log%waiting)) log%waiting = repeat(' ', last + 4096)
+    if (last > len(log%waiting)) log%waiting = log%waiting//repeat(' ', last)
     log%waiting(log%n_waiting + 1:last) = text//new_line('a')
     log%n_waiting = last
   end subroutine write_log

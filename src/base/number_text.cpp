@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cfenv>
 #include <charconv>
+#include <climits>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -14,20 +15,33 @@ static void end_at(char *text, char *end, int *n) {
   *n = static_cast<int>(end - text);
 }
 
-// The shortest decimal that reads back as the same double; at most 24 bytes.
-extern "C" void shortest_text(double value, char *text, int *n) {
-  end_at(text, std::to_chars(text, text + 24, value).ptr, n);
-}
-
-// One digit before the point and n_digit (at most 16) behind it; at most 24 bytes.
-extern "C" void scientific_text(double value, int n_digit, char *text, int *n) {
-  const auto form = std::chars_format::scientific;
-  end_at(text, std::to_chars(text, text + 24, value, form, n_digit).ptr, n);
+// The shortest decimal that reads back as the same double; at most 24 bytes. Zero of either sign
+// is 0.
+extern "C" void real_text(double value, char *text, int *n) {
+  if (std::isfinite(value)) return end_at(text, std::to_chars(text, text + 24, value + 0.0).ptr, n);
+  const std::string name = std::isnan(value) ? "NaN" : value > 0 ? "Infinity" : "-Infinity";
+  *n = static_cast<int>(name.copy(text, name.size()));
 }
 
 // At most 11 bytes.
 extern "C" void integer_text(int value, char *text, int *n) {
   end_at(text, std::to_chars(text, text + 11, value).ptr, n);
+}
+
+// As ESw.d with d at most 16. Exponents have two digits, which layouts of fixed width are made for:
+// beyond stand zero and the largest number.
+extern "C" void scientific_text(double value, int width, int n_digit, char *text) {
+  char digits[24];
+  int n = 3;
+  if (std::isnan(value)) {
+    std::memcpy(digits, "NaN", 3);
+  } else {
+    value = std::fabs(value) < 1e-99 ? 0.0 : std::clamp(value, -9.9e99, 9.9e99);
+    const auto form = std::chars_format::scientific;
+    end_at(digits, std::to_chars(digits, digits + 24, value, form, n_digit).ptr, &n);
+  }
+  std::memset(text, ' ', width - n);
+  std::memcpy(text + width - n, digits, n);
 }
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -47,14 +61,18 @@ static std::string plain_form(const char *text, const char *end) {
   return plain.append(text, end);
 }
 
+static void leave_blanks(const char *&text, const char *&end) {
+  while (end > text && end[-1] == ' ') --end;
+  while (text < end && *text == ' ') ++text;
+}
+
 // The number in n bytes, blanks around it allowed. Status 0; 1 where it is none; 2 where it is
 // 1e300 or larger.
 extern "C" void real_of_text(const char *text, int n, double *value, int *status) {
   const char *end = text + n;
   *value = 0.0;
   *status = 1;
-  while (end > text && end[-1] == ' ') --end;
-  while (text < end && *text == ' ') ++text;
+  leave_blanks(text, end);
   const bool negative = text < end && *text == '-';
   if (text < end && is_sign(*text)) ++text;
   if (text == end || !(is_digit(*text) || *text == '.')) return;
@@ -71,4 +89,19 @@ extern "C" void real_of_text(const char *text, int n, double *value, int *status
   }
   *status = std::fabs(found) >= 1e300 ? 2 : 0;
   if (*status == 0) *value = negative ? 0.0 - found : found;
+}
+
+// A whole number, which may be written as a real. Status as before; 2 beyond 2^31 - 1; 3 where it
+// is not whole.
+extern "C" void integer_of_text(const char *text, int n, int *value, int *status) {
+  const char *first = text, *end = text + n;
+  *value = *status = 0;
+  leave_blanks(first, end);
+  const auto result = std::from_chars(first, end, *value);
+  if (result.ptr == end && result.ec == std::errc() && *value > INT_MIN) return;
+  double number = 0.0;
+  real_of_text(text, n, &number, status);
+  if (*status == 0 && std::fabs(number) > INT_MAX) *status = 2;
+  if (*status == 0 && number != std::nearbyint(number)) *status = 3;
+  *value = *status == 0 ? static_cast<int>(number) : 0;
 }

@@ -7,9 +7,8 @@
 !> alone. A partial one takes ranges of these.
 module packed_buffer_m
   use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc, c_ptr, c_size_t
-  use c_files_m, only : c_memcpy
-  use heap_m, only : give_back_pages
   use kinds_m, only : wp
+  use system_m, only : give_back_pages
   use visitor_m, only : visitor_t, item_t, any_length, of_slots, of_columns, of_streams, &
     of_stresses, of_chunks, new_chunks, fixed_slots, fixed_columns, n_of, as_integer, as_bytes
   implicit none
@@ -37,6 +36,15 @@ module packed_buffer_m
   contains
     procedure :: carry => give_back
   end type forgetter_t
+
+  interface
+    function c_memcpy(to, from, n_byte) bind(c, name='memcpy') result(same)
+      import :: c_ptr, c_size_t
+      type(c_ptr), value :: to, from
+      integer(c_size_t), value :: n_byte
+      type(c_ptr) :: same
+    end function c_memcpy
+  end interface
 
 contains
 

@@ -1,24 +1,64 @@
 ! SPDX-License-Identifier: MIT
-!> Text to numbers, and letter case.
+!> Numbers as text and text as numbers, by the C++ library (number_text.cpp), and letter case.
 module text_m
   use, intrinsic :: iso_c_binding, only : c_char, c_double, c_int
-  use kinds_m, only : wp, long
+  use kinds_m, only : wp
   implicit none
   private
-  public :: upper_case, read_real, read_integer, text_of, &
-    number_good, number_wrong, number_range, number_fraction
+  public :: upper_case, read_real, read_integer, text_of, utf8_length, &
+    number_good, number_wrong, number_range, number_fraction, &
+    real_size, integer_size, put_real, put_integer, shortest, es
 
   !> Outcome of reading a number: good, not a number, too large, not a whole number.
   integer, parameter :: number_good = 0, number_wrong = 1, number_range = 2, number_fraction = 3
 
+  !> Bytes of the longest real and of the longest integer.
+  integer, parameter :: real_size = 24, integer_size = 11
+
+  !> A number, or several side by side, as the edit descriptor ESw.d writes them; exponents of three
+  !> digits become zero and the largest number of two.
+  interface es
+    module procedure es_one
+    module procedure es_several
+  end interface es
+
   interface
+    !> The shortest decimal that reads back as the same number; zero of either sign is 0.
+    pure subroutine put_real(value, text, n) bind(c, name='real_text')
+      import :: c_char, c_double, c_int
+      real(c_double), value :: value
+      character(kind=c_char), intent(inout) :: text(*) !! `real_size` bytes or more
+      integer(c_int), intent(out) :: n                 !! bytes of it
+    end subroutine put_real
+
+    pure subroutine put_integer(value, text, n) bind(c, name='integer_text')
+      import :: c_char, c_int
+      integer(c_int), value :: value
+      character(kind=c_char), intent(inout) :: text(*) !! `integer_size` bytes or more
+      integer(c_int), intent(out) :: n                 !! bytes of it
+    end subroutine put_integer
+
+    pure subroutine c_scientific(value, width, n_digit, text) bind(c, name='scientific_text')
+      import :: c_char, c_double, c_int
+      real(c_double), value :: value
+      integer(c_int), value :: width, n_digit
+      character(kind=c_char), intent(inout) :: text(*) !! `width` bytes
+    end subroutine c_scientific
+
     pure subroutine c_read_real(text, n, value, status) bind(c, name='real_of_text')
       import :: c_char, c_double, c_int
       character(kind=c_char), intent(in) :: text(*)
       integer(c_int), value :: n
       real(c_double), intent(out) :: value
-      integer(c_int), intent(out) :: status   !! one of the first three
+      integer(c_int), intent(out) :: status
     end subroutine c_read_real
+
+    pure subroutine c_read_integer(text, n, value, status) bind(c, name='integer_of_text')
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: text(*)
+      integer(c_int), value :: n
+      integer(c_int), intent(out) :: value, status
+    end subroutine c_read_integer
   end interface
 
 contains
@@ -54,56 +94,41 @@ contains
     character(*), intent(in) :: text
     integer, intent(out) :: value
     integer, intent(out) :: status !! one of the `number_` constants
-    integer :: i, first, last, digit
-    integer(long) :: number
-    logical :: negative
 
-    last = len_trim(text)
-    first = verify(text(:last), ' ')
-    negative = .false.
-    number = 0
-    value = 0
-    status = number_wrong
-    if (first == 0) return
-    if (text(first:first) == '-' .or. text(first:first) == '+') then
-      negative = text(first:first) == '-'
-      first = first + 1
-    end if
-    if (first > last) return
-    do i = first, last
-      digit = iachar(text(i:i)) - iachar('0')
-      if (digit < 0 .or. digit > 9) then
-        call read_integral(text, value, status)
-        return
-      end if
-      number = min(10*number + digit, 10_long**12)
-    end do
-    if (number > huge(value)) then
-      status = number_range
-      return
-    end if
-    status = number_good
-    value = int(merge(-number, number, negative))
+    call c_read_integer(text, len(text), value, status)
   end subroutine read_integer
 
-  !> A whole number that is written as a real.
-  pure subroutine read_integral(text, value, status)
-    character(*), intent(in) :: text
-    integer, intent(out) :: value
-    integer, intent(out) :: status
-    real(wp) :: number
+  !> The shortest decimal that reads back as the same number.
+  pure function shortest(value) result(text)
+    real(wp), intent(in) :: value
+    character(:), allocatable :: text
+    character(real_size) :: buffer
+    integer :: n
 
-    value = 0
-    call read_real(text, number, status)
-    if (status /= number_good) return
-    if (abs(number) > real(huge(value), wp)) then
-      status = number_range
-    else if (abs(number - anint(number)) > 0.0_wp) then
-      status = number_fraction
-    else
-      value = nint(number)
-    end if
-  end subroutine read_integral
+    call put_real(value, buffer, n)
+    text = buffer(:n)
+  end function shortest
+
+  !> One number as ESw.d.
+  pure function es_one(value, width, n_digit) result(text)
+    real(wp), intent(in) :: value
+    integer, intent(in) :: width, n_digit   !! w and d
+    character(width) :: text
+
+    call c_scientific(value, width, n_digit, text)
+  end function es_one
+
+  !> Numbers side by side, each as ESw.d.
+  pure function es_several(values, width, n_digit) result(text)
+    real(wp), intent(in) :: values(:)
+    integer, intent(in) :: width, n_digit   !! w and d of each
+    character(width*size(values)) :: text
+    integer :: i
+
+    do i = 1, size(values)
+      text(width*(i - 1) + 1:width*i) = es_one(values(i), width, n_digit)
+    end do
+  end function es_several
 
   !> A text that may be missing.
   pure function text_of(text) result(known)
@@ -113,5 +138,39 @@ contains
     known = ''
     if (allocated(text)) known = text
   end function text_of
+
+  !> Bytes of the character of UTF-8 (RFC 3629) that a text begins with; 0 when it begins with none:
+  !> overlong forms, halves of surrogate pairs and codes beyond 10FFFF are none.
+  pure function utf8_length(text) result(n)
+    character(*), intent(in) :: text !! not empty
+    integer :: n
+    integer :: low, high, i
+
+    n = 1
+    low = 128
+    high = 191
+    select case (iachar(text(1:1)))
+    case (0:127); return
+    case (194:223); n = 2
+    case (224:239); n = 3
+    case (240:244); n = 4
+    case default; n = 0
+    end select
+    select case (iachar(text(1:1))) ! bounds of the second byte
+    case (224); low = 160
+    case (237); high = 159
+    case (240); low = 144
+    case (244); high = 143
+    end select
+    if (n > len(text)) n = 0
+    do i = 2, n
+      if (iachar(text(i:i)) < low .or. iachar(text(i:i)) > high) then
+        n = 0
+        return
+      end if
+      low = 128
+      high = 191
+    end do
+  end function utf8_length
 
 end module text_m

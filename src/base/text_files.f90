@@ -1,32 +1,30 @@
 ! SPDX-License-Identifier: MIT
-!> Text files that are written in whole buffers, line ends included.
+!> Text files that are written in whole buffers, line ends included; so are standard output and
+!> standard error: through Fortran's units they could fail unnoticed, and GFORTRAN_STDOUT_UNIT or
+!> GFORTRAN_DEFAULT_RECL in the environment would send them to a file or cut them.
 module text_files_m
-  use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_loc, c_null_char, c_null_ptr, &
-    c_ptr, c_size_t
-  use c_files_m, only : c_write, c_fopen, c_fileno, c_fclose, c_flock, system_reason, &
-    system_failure
+  use, intrinsic :: iso_c_binding, only : c_bool, c_char, c_int, c_null_char, c_size_t
   use errors_m, only : error_t, raise, status_files
-  use file_facts_m, only : file_facts_t, facts_of_name, facts_of_descriptor, what_hinders, &
-    is_same_file
-  use files_m, only : open_failure, remove_file, rename_file, unfinished
+  use files_m, only : file_facts_t, facts_of_name, facts_of_descriptor, what_hinders, &
+    is_same_file, open_failure, remove_file, rename_file, system_reason, unfinished
   use kinds_m, only : long
   implicit none
   private
   public :: text_file_t, create_text_file, continue_text_file, append_text, close_text_file, &
     read_whole, write_whole, overwrite_start, line_file_t, open_lines, put_lines, keep_up, &
-    flush_lines, close_lines
+    flush_lines, close_lines, show, show_part, complain, normal_ending, error_ending
+
+  !> How a run says that it ended.
+  character(*), parameter :: normal_ending = ' N o r m a l    t e r m i n a t i o n', &
+    error_ending = ' E r r o r    t e r m i n a t i o n'
 
   !> Bytes of lines that wait, at most.
   integer, parameter :: buffer_size = 65536
-
-  !> Of flock: for one alone, without waiting; the number of a refusal (EWOULDBLOCK of Linux).
-  integer(c_int), parameter :: lock_alone = 6, is_locked = 11
 
   !> An open text file.
   type :: text_file_t
     character(:), allocatable :: path   !! for messages
     integer(c_int) :: descriptor = -1   !! -1 while no file is open
-    type(c_ptr) :: stream = c_null_ptr  !! C stream that owns the descriptor, unless a standard one
     integer(long) :: n_byte = -1        !! length that this program knows of; -1: no matter
   end type text_file_t
 
@@ -40,6 +38,40 @@ module text_files_m
     integer(long) :: flushed = 0           !! clock tick of the last write
     type(error_t), allocatable :: trouble  !! first failure, which ends the writing
   end type line_file_t
+
+  ! By the C library, and not by a Fortran unit: gfortran's `flush` and `close` report success on a
+  ! full disk, and one `write` of whole lines leaves no half line behind when the process is killed.
+  interface
+    !> Open a file (system.cpp); -1 on failure.
+    function c_open(path, mode) bind(c, name='open_file') result(descriptor)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*) !! ends with a null
+      character(kind=c_char), intent(in) :: mode    !! w: empty; a: behind what it holds; r: neither
+      integer(c_int) :: descriptor
+    end function c_open
+
+    !> Take a file for this process alone, without waiting; whether another one has it (system.cpp).
+    function c_is_locked(descriptor) bind(c, name='is_locked_by_another') result(is_locked)
+      import :: c_bool, c_int
+      integer(c_int), value :: descriptor
+      logical(c_bool) :: is_locked
+    end function c_is_locked
+
+    !> Write; bytes that have been taken (system.cpp).
+    function c_write(descriptor, bytes, n_byte) bind(c, name='write_bytes') result(n_taken)
+      import :: c_char, c_int, c_size_t
+      integer(c_int), value :: descriptor
+      character(kind=c_char), intent(in) :: bytes(*)
+      integer(c_size_t), value :: n_byte
+      integer(c_size_t) :: n_taken
+    end function c_write
+
+    function c_close(descriptor) bind(c, name='close') result(status)
+      import :: c_int
+      integer(c_int), value :: descriptor
+      integer(c_int) :: status
+    end function c_close
+  end interface
 
 contains
 
@@ -56,20 +88,17 @@ contains
     file%n_byte = 0
   end subroutine create_text_file
 
-  !> Open a file in a mode of C.
+  !> Open a file in a mode of `c_open`.
   subroutine open_stream(file, path, mode, error)
     type(text_file_t), intent(out) :: file
-    character(*), intent(in) :: path, mode
+    character(*), intent(in) :: path
+    character, intent(in) :: mode
     type(error_t), allocatable, intent(out) :: error
 
     file%path = path
-    if (len(what_hinders(path)) == 0) &
-      file%stream = c_fopen(path//c_null_char, mode//c_null_char)
-    if (c_associated(file%stream)) then
-      file%descriptor = c_fileno(file%stream)
-    else
+    if (len(what_hinders(path)) == 0) file%descriptor = c_open(path//c_null_char, mode)
+    if (file%descriptor < 0) &
       call raise(error, 'cannot write '//path//': '//open_failure(path), status_files)
-    end if
   end subroutine open_stream
 
   !> Open a text file to write on behind what it holds, or from its start, for this process alone as
@@ -118,8 +147,7 @@ contains
 
     call open_stream(file, path, 'a', error)
     if (allocated(error)) return
-    is_taken = c_flock(file%descriptor, lock_alone) /= 0
-    if (is_taken) is_taken = system_failure() == is_locked
+    is_taken = c_is_locked(file%descriptor)
     facts = facts_of_descriptor(file%descriptor)
     if (facts%is_there) then
       file%n_byte = facts%n_byte
@@ -152,22 +180,15 @@ contains
   !> Fails too where the file is no longer what this program has written.
   subroutine append_text(file, text, error)
     type(text_file_t), intent(inout) :: file
-    character(*), intent(in), target :: text
+    character(*), intent(in) :: text
     type(error_t), allocatable, intent(out) :: error
-    integer(long) :: n_written, n_taken
+    integer(long) :: n_written
 
     call check_untouched(file, error)
     if (allocated(error)) return
-    n_written = 0
-    do while (n_written < len(text, long))
-      n_taken = int(c_write(file%descriptor, c_loc(text(n_written + 1:n_written + 1)), &
-        int(len(text, long) - n_written, c_size_t)), long)
-      if (n_taken <= 0) then
-        call raise(error, 'cannot write on to '//file%path//': '//system_reason(), status_files)
-        exit
-      end if
-      n_written = n_written + n_taken
-    end do
+    n_written = c_write(file%descriptor, text, len(text, c_size_t))
+    if (n_written < len(text, long)) call raise(error, 'cannot write on to '//file%path//': ' &
+      //system_reason(), status_files)
     if (file%n_byte >= 0) file%n_byte = file%n_byte + n_written
   end subroutine append_text
 
@@ -193,7 +214,7 @@ contains
     type(error_t), allocatable :: closing
     type(text_file_t) :: file
 
-    call open_stream(file, path, 'r+', error)
+    call open_stream(file, path, 'r', error)
     if (allocated(error)) return
     call append_text(file, text, error)
     call close_text_file(file, closing)
@@ -226,8 +247,7 @@ contains
 
     if (file%descriptor < 0) return
     call check_untouched(file, error)
-    status = c_fclose(file%stream)
-    file%stream = c_null_ptr
+    status = c_close(file%descriptor)
     file%descriptor = -1
     if (status /= 0 .and. .not. allocated(error)) call raise(error, 'cannot close '//file%path// &
       ': the file system refused the last bytes', status_files)
@@ -300,5 +320,35 @@ contains
     lines%is_open = .false.
     if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
   end subroutine close_lines
+
+  !> A line (or several, separated by new_line) on standard output.
+  subroutine show(text, error)
+    character(*), intent(in) :: text
+    type(error_t), allocatable, intent(out), optional :: error !! absent: a failure is no matter
+
+    call show_part(text//new_line('a'), error)
+  end subroutine show
+
+  !> Text on standard output, without a line end.
+  subroutine show_part(text, error)
+    character(*), intent(in) :: text
+    type(error_t), allocatable, intent(out), optional :: error !! absent: a failure is no matter
+    type(error_t), allocatable :: failure
+    type(text_file_t) :: screen
+
+    screen = text_file_t('standard output', 1)
+    call append_text(screen, text, failure)
+    if (present(error) .and. allocated(failure)) call move_alloc(failure, error)
+  end subroutine show_part
+
+  !> A line (or several) on standard error.
+  subroutine complain(text)
+    character(*), intent(in) :: text
+    type(error_t), allocatable :: ignored
+    type(text_file_t) :: screen
+
+    screen = text_file_t('standard error', 2)
+    call append_text(screen, text//new_line('a'), ignored)
+  end subroutine complain
 
 end module text_files_m

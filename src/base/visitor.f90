@@ -273,7 +273,6 @@ contains
     type(item_t) :: item
     type(c_ptr) :: place
 
-    if (visitor%is_partial .and. .not. (present(of) .and. allocated(values))) return
     item = item_t(name, as_integer, 1)
     if (present(of)) item%of = of
     if (allocated(values)) item%extents(:1) = shape(values)
@@ -283,22 +282,9 @@ contains
     place = c_null_ptr
     if (allocated(values)) place = c_loc(values)
     call visitor%pass(item, place)
-    if (.not. visitor%judges .or. .not. allocated(values)) return
-    if (present(what)) &
-      call judge_integers(visitor, name, size(values), values, lowest, highest, what)
+    if (.not. visitor%judges .or. .not. (allocated(values) .and. present(what))) return
+    call visitor%expect(name, all(values >= lowest .and. values <= highest), what)
   end subroutine visit_integers
-
-  !> Bounds of integers.
-  subroutine judge_integers(visitor, name, n, values, lowest, highest, what)
-    class(visitor_t), intent(inout) :: visitor
-    character(*), intent(in) :: name
-    integer, intent(in) :: n, values(n)
-    integer, intent(in), optional :: lowest, highest
-    character(*), intent(in) :: what
-
-    if (present(lowest)) call visitor%expect(name, all(values >= lowest), what)
-    if (present(highest)) call visitor%expect(name, all(values <= highest), what)
-  end subroutine judge_integers
 
   !> An array of reals.
   subroutine visit_reals(visitor, name, values, of, lowest, what)
@@ -311,7 +297,6 @@ contains
     type(item_t) :: item
     type(c_ptr) :: place
 
-    if (visitor%is_partial .and. .not. (present(of) .and. allocated(values))) return
     item = item_t(name, as_real, 1)
     if (present(of)) item%of = of
     if (allocated(values)) item%extents(:1) = shape(values)
@@ -340,16 +325,14 @@ contains
   end subroutine visit_logicals
 
   !> A table of integers.
-  subroutine visit_integer_table(visitor, name, values, of, lowest, highest, what)
+  subroutine visit_integer_table(visitor, name, values, of)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     integer, allocatable, intent(inout), target :: values(:, :)
-    integer, intent(in), optional :: of, lowest, highest
-    character(*), intent(in), optional :: what
+    integer, intent(in), optional :: of
     type(item_t) :: item
     type(c_ptr) :: place
 
-    if (visitor%is_partial .and. .not. (present(of) .and. allocated(values))) return
     item = item_t(name, as_integer, 2, [absent, absent])
     if (present(of)) item%of = of
     if (allocated(values)) item%extents = shape(values)
@@ -360,9 +343,6 @@ contains
     place = c_null_ptr
     if (allocated(values)) place = c_loc(values)
     call visitor%pass(item, place)
-    if (.not. visitor%judges .or. .not. allocated(values)) return
-    if (present(what)) &
-      call judge_integers(visitor, name, size(values), values, lowest, highest, what)
   end subroutine visit_integer_table
 
   !> A table of reals.
@@ -374,7 +354,6 @@ contains
     type(item_t) :: item
     type(c_ptr) :: place
 
-    if (visitor%is_partial .and. .not. (present(of) .and. allocated(values))) return
     item = item_t(name, as_real, 2, [absent, absent])
     if (present(of)) item%of = of
     if (allocated(values)) item%extents = shape(values)
@@ -427,7 +406,6 @@ contains
     integer, allocatable, intent(in) :: starts(:)  !! 0: none
     type(item_t) :: item
 
-    if (visitor%is_partial .and. size(values) == 0) return
     call visitor%same(name_of_starts, starts)
     item = item_t(name, as_real, 1, [size(values), 1], of_streams)
     call visitor%pass(item, c_loc(values), starts)

@@ -1,13 +1,12 @@
 ! SPDX-License-Identifier: MIT
 !> The one place that knows the contact types: their names, needs, placements and tangents. Adding
-!> one is a number in `contact_types_m`, a row of `formulations`, and a `use` and a `case` for
+!> one is a number in `contacts_m`, a row of `formulations`, and a `use` and a `case` for
 !> either (doc/add_a_formulation.md).
 module contact_dispatch_m
   use contact_law_m, only : law_penalty, pressed_at_points, pressed_at_slave_nodes
   use contact_state_m, only : contact_state_t
-  use contact_types_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_vts_ppt, &
-    type_nts_mar, type_mortar, type_segmented_mortar
-  use contacts_m, only : contact_t, contact_kind_t
+  use contacts_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_vts_ppt, &
+    type_nts_mar, type_mortar, type_segmented_mortar, contact_t, contact_kind_t
   use kinds_m, only : wp
   use place_mortar_m, only : place_mortar
   use place_nts_m, only : place_nts, place_nts_ar, place_two_pass_ar

@@ -5,7 +5,7 @@
 !> into the model when its turn comes. All mistakes on the way are collected and come back as one
 !> error, in deck order.
 module deck_m
-  use errors_m, only : error_t
+  use errors_m, only : error_t, raise, status_input
   use log_m, only : log_t, write_log
   use contacts_m, only : contact_kind_t
   use model_m, only : model_t
@@ -13,14 +13,12 @@ module deck_m
   use parts_m, only : hourglass_t
   use deck_contact_sides_m, only : outline_t
   use deck_contacts_m, only : read_contacts
-  use deck_control_m, only : read_controls, read_outputs, read_relaxation
+  use deck_control_m, only : read_controls, read_outputs, read_relaxation, read_ends
   use deck_curves_m, only : table_t, read_curves, read_systems
-  use deck_damping_m, only : read_damping
-  use deck_ends_m, only : read_ends
   use deck_erosion_m, only : read_erosions
   use deck_implicit_m, only : read_implicit, check_implicit
   use deck_loads_m, only : read_nodal_loads, read_rigid_loads, read_body_loads, read_pressures, &
-    read_masses, warn_of_bores
+    read_masses, read_global_damping, read_mass_damping, read_stiffness_damping, warn_of_bores
   use deck_material_m, only : read_materials, read_equations, settle_pressures
   use deck_mesh_m, only : read_mesh
   use deck_part_m, only : read_parts, read_sections, make_rigids
@@ -29,19 +27,17 @@ module deck_m
   use deck_supports_m, only : read_supports, read_motions, read_common_motions
   use deck_velocity_m, only : read_velocities
   use deck_wall_m, only : read_walls
-  use deck_findings_m, only : list_findings
-  use deck_report_m, only : emit_warnings, emit_errors
+  use deck_report_m, only : emit_warnings, emit_errors, list_findings
   use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, a_curve, &
     a_system, a_node_set, a_part_set, a_segment_set, a_shell_set
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning, file_paths, flag_blank
-  use deck_reader_m, only : read_blocks, cut_deck
+  use deck_reader_m, only : read_file, cut_deck
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
   use deck_parameters_m, only : read_parameters
   use deck_overrides_m, only : read_words, edit_controls
   use deck_cards_m, only : cursor_t, open_cursor
-  use deck_effective_m, only : forget_places, write_effective
-  use deck_echo_m, only : echo_model
+  use deck_echo_m, only : echo_model, write_effective
   use text_m, only : upper_case
   use deck_values_m, only : lose
   implicit none
@@ -63,9 +59,6 @@ module deck_m
     //'for each, in a shell loop or by tools/batch/sweep.sh, with ctype=, p:NAME=VALUE of a ' &
     //'*PARAMETER and the like, and *INCLUDE what several decks share'
 
-  !> All kinds of sets.
-  integer, parameter :: sets(4) = [a_node_set, a_part_set, a_segment_set, a_shell_set]
-
 contains
 
   !> Read a deck. `error` holds every mistake of it, one after the other; warnings and the echo of
@@ -79,16 +72,19 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(:), allocatable, intent(out), optional :: findings !! all messages, see list_findings
     type(deck_t) :: deck
-    character(:), allocatable :: text
+    character(:), allocatable :: text, reason
 
+    if (present(findings)) findings = ''
     if (allocated(request%text)) then
       text = request%text
-      call cut_deck(request%path, text, deck)
     else
-      call read_blocks(request%path, deck, error)
-      if (present(findings)) findings = ''
-      if (allocated(error)) return
+      call read_file(request%path, text, reason)
+      if (allocated(reason)) then
+        call raise(error, 'cannot read the deck '//request%path//': '//reason, status_input)
+        return
+      end if
     end if
+    call cut_deck(request%path, text, deck)
     if (.not. allocated(request%text)) request%files = file_paths(deck)
     call interpret_deck(deck, request, kinds, log, model, effective, error)
     if (present(findings)) call list_findings(deck%report, findings)
@@ -132,7 +128,6 @@ contains
       //'default, as in LS-DYNA: '//deck%default_zeros)
     if (allocated(deck%kept_zeros)) call write_log(log, 'a 0 in these fields is kept, where ' &
       //'LS-DYNA takes the default: '//deck%kept_zeros)
-    call forget_places(deck)
     call write_effective(deck, effective)
   end subroutine interpret_deck
 
@@ -176,7 +171,9 @@ contains
     call read_pressures(deck, model, places)
     call read_masses(deck, model)
     call read_common_motions(deck, model)
-    call read_damping(deck, model)
+    call read_global_damping(deck, model)
+    call read_mass_damping(deck, model)
+    call read_stiffness_damping(deck, model)
     call read_velocities(deck, model)
     call read_walls(deck, model)
     call warn_of_bores(deck, model)
@@ -251,10 +248,10 @@ contains
     integer :: k
 
     associate (block => deck%blocks(i_block))
-      if (block%dropped) return
+      if (block%dropped .or. &
+        any(iand(deck%flags(block%first:block%last), flag_blank) == 0)) return
       call open_cursor(deck, i_block, cursor)
       if (index(cursor%options, 'o') > 0) return
-      if (any(iand(deck%flags(block%first:block%last), flag_blank) == 0)) return
       if (block%last >= block%first .and. index(cursor%options, 'r') == 0) return
       fields = ''
       do k = 1, cursor%specs(1)%n
@@ -293,7 +290,8 @@ contains
       if (index(name, 'MAT') == 1) call lose(deck, [a_material])
       if (index(name, 'EOS') == 1) call lose(deck, [an_eos])
       if (index(name, 'DEFINE') == 1) call lose(deck, [a_curve, a_system])
-      if (index(name, 'SET') == 1) call lose(deck, sets)
+      if (index(name, 'SET') == 1) call lose(deck, [a_node_set, a_part_set, a_segment_set, &
+        a_shell_set])
       is_ended = is_ended .or. name == 'CONTROL_TERMINATION'
       name = trim(nearest_keyword(deck%blocks(i_block)%given))
     end do

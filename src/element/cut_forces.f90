@@ -3,15 +3,15 @@
 !> them: where a history wants them their chunks are stepped a second time, and then are what they
 !> were.
 module cut_forces_m
-  use block_state_m, only : block_state_t, stays
-  use element_chunk_m, only : element_chunk_t
-  use element_dispatch_m, only : advance_chunk
-  use eroding_tiles_m, only : add_eroding_tile_forces, take_nodes
+  use block_state_m, only : block_state_t
+  use element_chunk_m, only : element_chunk_t, scatter_forces
+  use element_dispatch_m, only : take_values, put_values
+  use eroding_tiles_m, only : advance_eroding_chunk
   use packed_buffer_m, only : packed_buffer_t
   use kinds_m, only : wp
-  use layout_m, only : chunk_size, tile_t
+  use layout_m, only : chunk_size, local_kind, tile_t
   use model_m, only : model_t
-  use tile_forces_m, only : take_values, put_values
+  use quad_m, only : advance_chunk
   implicit none
   private
   public :: find_cut_forces, keep_cut_chunks
@@ -31,31 +31,40 @@ contains
                                                        !! stays of elements in other chunks
     type(packed_buffer_t), intent(inout), optional :: before(:) !! of `keep_cut_chunks`
     type(packed_buffer_t) :: present_values
-    real(wp), allocatable :: of_slots(:, :, :) !! of the chunks with cut elements
-    real(wp), allocatable :: of_tile(:, :)
-    integer, allocatable :: list(:), place(:)
-    integer :: i, k
+    real(wp), allocatable :: of_slots(:, :, :) !! (8, chunk_size, n_chunk) where elements are cut
+    type(element_chunk_t) :: chunk
+    integer, allocatable :: list(:)
+    integer :: i, k, n, slot
+    integer(local_kind), parameter :: own(4*chunk_size) = [(int(i, local_kind), i=1, 4*chunk_size)]
 
-    call list_chunks(model, list, place)
-    if (model%erodes) allocate (of_tile(2, model%layout%n_local))
-    allocate (of_slots(8, chunk_size, size(list)))
+    list = cut_chunks(model)
+    allocate (of_slots(8, chunk_size, model%layout%n_chunk))
     do i = 1, size(list)
       if (list(i) < chunks(1) .or. list(i) > chunks(2)) cycle
-      call take_values(tile_of(list(i)), elements, present_values)
+      call take_values(tile_t(list(i), list(i)), elements, present_values)
       if (present(before)) call put_values(before(i), elements)
-      call step_chunk(model, list(i), motion, times(2), elements, of_slots(:, :, i))
-      call put_values(present_values, elements)
       if (model%erodes) then
-        ! Elements that have left the mesh, or leave it in this step, do not push.
-        call add_eroding_tile_forces(model, tile_of(list(i)), motion, times, elements, of_tile)
-        do k = 1, chunk_size
-          if (elements%erosion%status((list(i) - 1)*chunk_size + k) /= stays) &
-            of_slots(:, k, i) = 0.0_wp
-        end do
-        call put_values(present_values, elements)
+        call advance_eroding_chunk(model, list(i), motion, times, elements, chunk)
+      else
+        call advance_chunk(model, list(i), model%layout%slot_nodes(1, (list(i) - 1)*chunk_size &
+          + 1), motion, times(2), elements, chunk)
       end if
+      call put_values(present_values, elements)
+      ! Minus the internal force; the third corner of a triangle is its fourth as well.
+      of_slots(:, :, list(i)) = 0.0_wp
+      call scatter_forces(model%layout%chunk_elements(list(i)), own, chunk, &
+        of_slots(1, 1, list(i)))
+      of_slots(:, :, list(i)) = -of_slots(:, :, list(i))
     end do
-    call take_slots(model, chunks, place, of_slots, force)
+    n = 0
+    do i = 1, size(model%controls%output%cross_sections)
+      do k = 1, size(model%controls%output%cross_sections(i)%elements)
+        n = n + 1
+        slot = model%layout%element_slot(model%controls%output%cross_sections(i)%elements(k)) - 1
+        if (slot/chunk_size + 1 < chunks(1) .or. slot/chunk_size + 1 > chunks(2)) cycle
+        force(:, n) = of_slots(:, mod(slot, chunk_size) + 1, slot/chunk_size + 1)
+      end do
+    end do
   end subroutine find_cut_forces
 
   !> Copy the chunks that have elements of cross sections, before a step.
@@ -63,106 +72,30 @@ contains
     type(model_t), intent(in) :: model
     type(block_state_t), intent(inout) :: elements     !! stay as they are
     type(packed_buffer_t), allocatable, intent(inout) :: kept(:)
-    integer, allocatable :: list(:), place(:)
+    integer, allocatable :: list(:)
     integer :: i
 
-    call list_chunks(model, list, place)
+    list = cut_chunks(model)
     if (.not. allocated(kept)) allocate (kept(size(list)))
     do i = 1, size(list)
-      call take_values(tile_of(list(i)), elements, kept(i))
+      call take_values(tile_t(list(i), list(i)), elements, kept(i))
     end do
   end subroutine keep_cut_chunks
 
-  !> What each element of a chunk puts on its four corners, x and y of each: minus its internal
-  !> force. The third of a triangle is its fourth as well.
-  subroutine step_chunk(model, i_chunk, motion, dt, elements, of_slots)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i_chunk
-    real(wp), intent(in), contiguous :: motion(:, :)
-    real(wp), intent(in) :: dt
-    type(block_state_t), intent(inout) :: elements
-    real(wp), intent(inout) :: of_slots(8, chunk_size)
-    type(element_chunk_t) :: chunk
-    real(wp) :: hoop(2)
-    integer :: i, first, nodes(4, chunk_size)
-
-    hoop = 0.0_wp
-    first = (i_chunk - 1)*chunk_size + 1
-    nodes = model%layout%slot_nodes(:, first:first + chunk_size - 1)
-    if (model%erodes) call take_nodes(model%layout%slot_nodes(:, first:first + chunk_size - 1), &
-      elements%erosion%status(first:first + chunk_size - 1), nodes)
-    call advance_chunk(model, i_chunk, nodes, motion, dt, elements, chunk)
-    do i = 1, model%layout%chunk_elements(i_chunk)
-      if (chunk%is_round) hoop(1) = chunk%hoop(i)
-      associate (f3 => chunk%force3(:, i), f4 => chunk%force4(:, i), swing => chunk%swing(:, i))
-        of_slots(:, i) = [f3 - swing - hoop, f4 + swing - hoop, -f3 - swing - hoop, &
-          -f4 + swing - hoop]
-      end associate
-    end do
-  end subroutine step_chunk
-
-  !> A chunk alone.
-  pure function tile_of(i_chunk) result(tile)
-    integer, intent(in) :: i_chunk
-    type(tile_t) :: tile
-
-    tile%first_chunk = i_chunk
-    tile%last_chunk = i_chunk
-  end function tile_of
-
   !> Chunks with elements of cross sections, each once, rising.
-  pure subroutine list_chunks(model, list, place)
+  pure function cut_chunks(model) result(list)
     type(model_t), intent(in) :: model
-    integer, allocatable, intent(out) :: list(:)
-    integer, allocatable, intent(out) :: place(:) !! (n_chunk) in the list, 0 = it has none
-    integer :: i, k, n
+    integer, allocatable :: list(:)
+    logical :: is_cut(model%layout%n_chunk)
+    integer :: i
 
-    allocate (place(model%layout%n_chunk), source=0)
-    associate (sections => model%controls%output%cross_sections)
-      do i = 1, size(sections)
-        do k = 1, size(sections(i)%elements)
-          place(chunk_of(model, sections(i)%elements(k))) = 1
-        end do
-      end do
-    end associate
-    allocate (list(sum(place)))
-    n = 0
-    do i = 1, size(place)
-      if (place(i) == 0) cycle
-      n = n + 1
-      place(i) = n
-      list(n) = i
-    end do
-  end subroutine list_chunks
-
-  !> The chunk that an element is in.
-  pure integer function chunk_of(model, element)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: element
-
-    chunk_of = (model%layout%element_slot(element) - 1)/chunk_size + 1
-  end function chunk_of
-
-  !> Forces of the elements of all sections, one section behind the other.
-  pure subroutine take_slots(model, chunks, place, of_slots, force)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: chunks(2), place(:)
-    real(wp), intent(in) :: of_slots(:, :, :)
-    real(wp), intent(inout) :: force(:, :)
-    integer :: i, k, n, i_chunk
-
-    n = 0
+    is_cut = .false.
     do i = 1, size(model%controls%output%cross_sections)
       associate (elements => model%controls%output%cross_sections(i)%elements)
-        do k = 1, size(elements)
-          n = n + 1
-          i_chunk = chunk_of(model, elements(k))
-          if (i_chunk < chunks(1) .or. i_chunk > chunks(2)) cycle
-          force(:, n) = of_slots(:, model%layout%element_slot(elements(k)) &
-            - (i_chunk - 1)*chunk_size, place(i_chunk))
-        end do
+        is_cut((model%layout%element_slot(elements) - 1)/chunk_size + 1) = .true.
       end associate
     end do
-  end subroutine take_slots
+    list = pack([(i, i=1, size(is_cut))], is_cut)
+  end function cut_chunks
 
 end module cut_forces_m

@@ -8,7 +8,7 @@ module element_chunk_m
   implicit none
   private
   public :: element_chunk_t, n_round_reference, reference_sum, reference_inverse, reference_mass, &
-    gather_motion, gather_chunk, gather_round, scatter_forces, scatter_chunk, scatter_round
+    gather_motion, scatter_forces
 
   !> Streams of the reference shape of round quads: those of plane ones, the sum of the radii, the
   !> inverse of the volume, and per node density over mass.
@@ -53,82 +53,27 @@ module element_chunk_m
 
 contains
 
-  !> Differences of the nodal motion, of round quads its sums too.
+  !> Differences of the nodal motion, displacement and velocity apart: pairs are what the vectorised
+  !> loops read without a remainder. The loop over elements stays scalar: each node is one 32-byte
+  !> load, where a vectorised gather would be several times slower. Of axisymmetric quads the sums
+  !> of the radial motion too; all nodes of padding are one: it carries no strain.
   pure subroutine gather_motion(is_round, nodes, motion, chunk)
     logical, intent(in) :: is_round
     integer, intent(in) :: nodes(4, chunk_size)
     real(wp), intent(in) :: motion(4, *)             !! all nodes: u_x, u_y, v_x, v_y
     type(element_chunk_t), intent(inout) :: chunk
-
-    chunk%is_round = is_round
-    if (is_round) then
-      call gather_round(nodes, motion, chunk)
-    else
-      call gather_chunk(nodes, motion, chunk)
-    end if
-  end subroutine gather_motion
-
-  !> Add the nodal forces of a chunk to the tile's own nodes.
-  pure subroutine scatter_forces(n_element, local, chunk, force)
-    integer, intent(in) :: n_element             !! elements, in the first slots
-    integer(local_kind), intent(in) :: local(4, chunk_size) !! local numbers in the tile
-    type(element_chunk_t), intent(in) :: chunk
-    real(wp), intent(inout) :: force(2, *)       !! internal force of the local nodes
-
-    if (chunk%is_round) then
-      call scatter_round(n_element, local, chunk, force)
-    else
-      call scatter_chunk(n_element, local, chunk, force)
-    end if
-  end subroutine scatter_forces
-
-  !> Differences of the nodal motion, displacement and velocity apart: pairs are what the vectorised
-  !> loops read without a remainder. The loop over elements stays scalar: each node is one 32-byte
-  !> load, where a vectorised gather would be several times slower.
-  pure subroutine gather_chunk(nodes, motion, chunk)
-    integer, intent(in) :: nodes(4, chunk_size)      !! node indices
-    real(wp), intent(in) :: motion(4, *)           !! all nodes: u_x, u_y, v_x, v_y
-    type(element_chunk_t), intent(inout) :: chunk
-    real(wp) :: d31(4), d42(4), h(4)
-    integer :: i, k
-
-    !GCC$ NOVECTOR
-    do i = 1, chunk_size
-      !$omp simd simdlen(4)
-      do k = 1, 4
-        d31(k) = motion(k, nodes(3, i)) - motion(k, nodes(1, i))
-        d42(k) = motion(k, nodes(4, i)) - motion(k, nodes(2, i))
-        h(k) = (motion(k, nodes(1, i)) - motion(k, nodes(2, i))) &
-          + (motion(k, nodes(3, i)) - motion(k, nodes(4, i)))
-      end do
-      chunk%u31(:, i) = d31(1:2)
-      chunk%v31(:, i) = d31(3:4)
-      chunk%u42(:, i) = d42(1:2)
-      chunk%v42(:, i) = d42(3:4)
-      chunk%hu(:, i) = h(1:2)
-      chunk%hv(:, i) = h(3:4)
-    end do
-  end subroutine gather_chunk
-
-  !> The same with the sums of the radial motion. All nodes of padding are one: it carries no
-  !> strain.
-  pure subroutine gather_round(nodes, motion, chunk)
-    integer, intent(in) :: nodes(4, chunk_size)
-    real(wp), intent(in) :: motion(4, *)   !! all nodes: u_r, u_z, v_r, v_z
-    type(element_chunk_t), intent(inout) :: chunk
     real(wp) :: d31(4), d42(4), h(4), s(4)
     integer :: i, k
 
+    chunk%is_round = is_round
     !GCC$ NOVECTOR
     do i = 1, chunk_size
-      ! All four at a time, told in so many words: two of the sums are not asked for.
       !$omp simd simdlen(4)
       do k = 1, 4
         d31(k) = motion(k, nodes(3, i)) - motion(k, nodes(1, i))
         d42(k) = motion(k, nodes(4, i)) - motion(k, nodes(2, i))
         h(k) = (motion(k, nodes(1, i)) - motion(k, nodes(2, i))) &
           + (motion(k, nodes(3, i)) - motion(k, nodes(4, i)))
-        s(k) = h(k) + 2.0_wp*(motion(k, nodes(2, i)) + motion(k, nodes(4, i)))
       end do
       chunk%u31(:, i) = d31(1:2)
       chunk%v31(:, i) = d31(3:4)
@@ -136,81 +81,78 @@ contains
       chunk%v42(:, i) = d42(3:4)
       chunk%hu(:, i) = h(1:2)
       chunk%hv(:, i) = h(3:4)
+      if (.not. is_round) cycle
+      ! All four at a time, told in so many words: two of the sums are not asked for.
+      !$omp simd simdlen(4)
+      do k = 1, 4
+        s(k) = h(k) + 2.0_wp*(motion(k, nodes(2, i)) + motion(k, nodes(4, i)))
+      end do
       chunk%us(i) = s(1)
       chunk%vs(i) = s(3)
     end do
+    if (.not. is_round) return
     do i = chunk_size, 1, -1
       if (nodes(1, i) /= nodes(3, i)) exit
       chunk%us(i) = 0.0_wp
       chunk%vs(i) = 0.0_wp
     end do
-  end subroutine gather_round
+  end subroutine gather_motion
 
   !> Add the nodal forces of a chunk to the tile's own nodes, x and y of a node at a time (told to
-  !> the compiler in so many words: left alone it takes them one by one, half as fast again).
-  !> Padding is left out: all of it has one node, where each sum would wait for the one before.
-  pure subroutine scatter_chunk(n_element, local, chunk, force)
+  !> the compiler in so many words: left alone it takes them one by one, half as fast again); of
+  !> axisymmetric quads the force of the hoop stress to all four. Padding is left out: all of it has
+  !> one node, where each sum would wait for the one before.
+  pure subroutine scatter_forces(n_element, local, chunk, force)
     integer, intent(in) :: n_element             !! elements, in the first slots
     integer(local_kind), intent(in) :: local(4, chunk_size) !! local numbers in the tile
     type(element_chunk_t), intent(in) :: chunk
     real(wp), intent(inout) :: force(2, *)       !! internal force of the local nodes
-    integer :: i, k, n(4)
-
-    do i = 1, n_element
-      n = local(:, i)
-      !$omp simd simdlen(2)
-      do k = 1, 2
-        force(k, n(1)) = force(k, n(1)) + (chunk%swing(k, i) - chunk%force3(k, i))
-      end do
-      !$omp simd simdlen(2)
-      do k = 1, 2
-        force(k, n(2)) = force(k, n(2)) - (chunk%swing(k, i) + chunk%force4(k, i))
-      end do
-      !$omp simd simdlen(2)
-      do k = 1, 2
-        force(k, n(3)) = force(k, n(3)) + (chunk%swing(k, i) + chunk%force3(k, i))
-      end do
-      !$omp simd simdlen(2)
-      do k = 1, 2
-        force(k, n(4)) = force(k, n(4)) - (chunk%swing(k, i) - chunk%force4(k, i))
-      end do
-    end do
-  end subroutine scatter_chunk
-
-  !> The same with the force of the hoop stress on all four.
-  pure subroutine scatter_round(n_element, local, chunk, force)
-    integer, intent(in) :: n_element
-    integer(local_kind), intent(in) :: local(4, chunk_size)
-    type(element_chunk_t), intent(in) :: chunk
-    real(wp), intent(inout) :: force(2, *)
     real(wp), parameter :: to_r(2) = [1.0_wp, 0.0_wp]
     real(wp) :: hoop
     integer :: i, k, n(4)
 
+    if (.not. chunk%is_round) then
+      do i = 1, n_element
+        n = local(:, i)
+        !$omp simd simdlen(2)
+        do k = 1, 2
+          force(k, n(1)) = force(k, n(1)) + (chunk%swing(k, i) - chunk%force3(k, i))
+        end do
+        !$omp simd simdlen(2)
+        do k = 1, 2
+          force(k, n(2)) = force(k, n(2)) - (chunk%swing(k, i) + chunk%force4(k, i))
+        end do
+        !$omp simd simdlen(2)
+        do k = 1, 2
+          force(k, n(3)) = force(k, n(3)) + (chunk%swing(k, i) + chunk%force3(k, i))
+        end do
+        !$omp simd simdlen(2)
+        do k = 1, 2
+          force(k, n(4)) = force(k, n(4)) - (chunk%swing(k, i) - chunk%force4(k, i))
+        end do
+      end do
+      return
+    end if
     do i = 1, n_element
       n = local(:, i)
       hoop = chunk%hoop(i)
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(1)) = force(k, n(1)) + ((to_r(k)*hoop + chunk%swing(k, i)) &
-          - chunk%force3(k, i))
+        force(k, n(1)) = force(k, n(1)) + ((to_r(k)*hoop + chunk%swing(k, i)) - chunk%force3(k, i))
       end do
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(2)) = force(k, n(2)) + ((to_r(k)*hoop - chunk%swing(k, i)) &
-          - chunk%force4(k, i))
+        force(k, n(2)) = force(k, n(2)) + ((to_r(k)*hoop - chunk%swing(k, i)) - chunk%force4(k, i))
       end do
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(3)) = force(k, n(3)) + ((to_r(k)*hoop + chunk%swing(k, i)) &
-          + chunk%force3(k, i))
+        force(k, n(3)) = force(k, n(3)) + ((to_r(k)*hoop + chunk%swing(k, i)) + chunk%force3(k, i))
       end do
       !$omp simd simdlen(2)
       do k = 1, 2
-        force(k, n(4)) = force(k, n(4)) + ((to_r(k)*hoop - chunk%swing(k, i)) &
-          + chunk%force4(k, i))
+        force(k, n(4)) = force(k, n(4)) + ((to_r(k)*hoop - chunk%swing(k, i)) + chunk%force4(k, i))
       end do
     end do
-  end subroutine scatter_round
+  end subroutine scatter_forces
 
 end module element_chunk_m

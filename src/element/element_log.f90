@@ -6,7 +6,7 @@ module element_log_m
   use material_dispatch_m, only : history_size, has_mean_dilatation
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
-  use parts_m, only : part_t, hourglass_viscous, hourglass_stiffness, hourglass_assumed
+  use parts_m, only : hourglass_viscous, hourglass_stiffness, hourglass_assumed
   implicit none
   private
   public :: log_elements
@@ -15,6 +15,9 @@ module element_log_m
   real(wp), parameter :: ruling_coefficient = 0.5_wp
   !> The same of assumed strain, at nu = 0.
   real(wp), parameter :: ruling_assumed = 3.0_wp
+  !> Hourglass control by its number.
+  character(14), parameter :: forms(3) = [character(14) :: 'viscous', 'stiffness', &
+    'assumed strain']
 
 contains
 
@@ -23,6 +26,7 @@ contains
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
     character(:), allocatable :: text
+    real(wp) :: ruling, share !! of L/c
     integer :: i
 
     do i = 1, size(model%parts)
@@ -35,7 +39,7 @@ contains
         if (point_count(model%sections(part%section)) == 1) then
           text = trim(merge('round, volume weighted one-point quads', &
             'one-point quads                       ', &
-            model%is_round))//', '//form_name(part%hourglass%form)//' hourglass control ' &
+            model%is_round))//', '//trim(forms(part%hourglass%form))//' hourglass control ' &
             //to_text(part%hourglass%coefficient)
         else
           text = trim(merge('round fully integrated quads', 'fully integrated quads      ', &
@@ -45,7 +49,14 @@ contains
         call write_log(log, 'part '//to_text(part%id)//': '//text//', bulk viscosity Q1 ' &
           //to_text(part%hourglass%quadratic)//' Q2 '//to_text(part%hourglass%linear))
         if (point_count(model%sections(part%section)) > 1) cycle
-        if (.not. model%is_round) call warn_of_hourglass(part, log)
+        ! Where hourglass control makes the step of squares smaller than L/c (`hourglass_steps`).
+        ruling = merge(ruling_assumed, ruling_coefficient, part%hourglass%form == hourglass_assumed)
+        share = ruling/max(part%hourglass%coefficient, ruling)
+        if (part%hourglass%form /= hourglass_viscous) share = sqrt(share)
+        if (share < 1.0_wp .and. .not. model%is_round) call warn(log, 'part '//to_text(part%id) &
+          //': hourglass control of QM '//to_text(part%hourglass%coefficient)//' lowers the ' &
+          //'stable step, that of squares to '//to_text(share)//' of L/c; QM up to ' &
+          //to_text(ruling)//' would not')
         if (model%is_round .and. part%hourglass%form == hourglass_stiffness &
           .and. history_size(model%materials(part%material)) > 0) call warn(log, 'part ' &
           //to_text(part%id)//': stiffness hourglass control makes round bodies too stiff in ' &
@@ -74,38 +85,5 @@ contains
       end associate
     end do
   end subroutine tell_of_viscosity
-
-  !> Warn where hourglass control makes the stable step of squares smaller
-  !> than L/c (`hourglass_steps`).
-  subroutine warn_of_hourglass(part, log)
-    type(part_t), intent(in) :: part
-    type(log_t), intent(inout) :: log
-    real(wp) :: ruling
-    real(wp) :: share !! of L/c
-
-    ruling = ruling_coefficient
-    if (part%hourglass%form == hourglass_assumed) ruling = ruling_assumed
-    if (part%hourglass%coefficient <= ruling) return
-    share = ruling/part%hourglass%coefficient
-    if (part%hourglass%form /= hourglass_viscous) share = sqrt(share)
-    call warn(log, 'part '//to_text(part%id)//': hourglass control of QM ' &
-      //to_text(part%hourglass%coefficient)//' lowers the stable step, that of squares to ' &
-      //to_text(share)//' of L/c; QM up to '//to_text(ruling)//' would not')
-  end subroutine warn_of_hourglass
-
-  !> The form of hourglass control in words.
-  pure function form_name(form) result(name)
-    integer, intent(in) :: form !! one of the `hourglass_` constants
-    character(:), allocatable :: name
-
-    select case (form)
-    case (hourglass_stiffness)
-      name = 'stiffness'
-    case (hourglass_assumed)
-      name = 'assumed strain'
-    case default
-      name = 'viscous'
-    end select
-  end function form_name
 
 end module element_log_m

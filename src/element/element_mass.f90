@@ -30,7 +30,6 @@ contains
 
     weights = 1.0_wp
     if (present(rates)) weights = rates
-
     do i = 1, model%mesh%n_element
       mass = factor*element_mass(model, i)
       associate (nodes => model%mesh%element_nodes(:, i))
@@ -187,25 +186,8 @@ contains
     real(wp), intent(in) :: x(2, 4) !! corners, x(1, :) the radii
     logical, intent(in) :: is_triangle
     real(wp) :: volumes(4)
-    real(wp), parameter :: g = sqrt(1.0_wp/3.0_wp)
-    real(wp) :: shape(4), along(4), across(4), to_x(2), to_y(2), xi, eta
-    integer :: i, j
 
-    volumes = 0.0_wp
-    do i = -1, 1, 2
-      do j = -1, 1, 2
-        xi = i*g
-        eta = j*g
-        shape = 0.25_wp*[(1 - xi)*(1 - eta), (1 + xi)*(1 - eta), (1 + xi)*(1 + eta), &
-          (1 - xi)*(1 + eta)]
-        along = 0.25_wp*[-(1 - eta), 1 - eta, 1 + eta, -(1 + eta)]
-        across = 0.25_wp*[-(1 - xi), -(1 + xi), 1 + xi, 1 - xi]
-        to_x = matmul(x, along)
-        to_y = matmul(x, across)
-        volumes = volumes + shape*dot_product(shape, x(1, :)) &
-          *(to_x(1)*to_y(2) - to_x(2)*to_y(1))
-      end do
-    end do
+    volumes = matmul(shape_at_points, point_areas(x)*matmul(x(1, :), shape_at_points))
     if (.not. is_triangle) return
     volumes(3) = volumes(3) + volumes(4)
     volumes(4) = 0.0_wp

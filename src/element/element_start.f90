@@ -41,8 +41,16 @@ contains
       end if
     end if
     call reserve_memories(model, elements)
-    if (any([(has_viscous_pressure(model, k), k = 1, size(model%parts))])) &
-      allocate (elements%viscous_pressure(model%layout%n_slot))
+    do k = 1, size(model%parts)
+      associate (viscosity => model%parts(k)%hourglass, &
+        material => model%materials(model%parts(k)%material))
+        ! An equation of state has the bulk viscosity of the last step in its own memory.
+        if ((viscosity%quadratic > 0.0_wp .or. viscosity%linear > 0.0_wp) .and. &
+          .not. (allocated(material%eos) .or. material%is_rigid .or. &
+          allocated(elements%viscous_pressure))) &
+          allocate (elements%viscous_pressure(model%layout%n_slot))
+      end associate
+    end do
     do k = 1, size(known, 2)
       associate (first => known(1, k), last => known(2, k))
         elements%deviator(first:last, :) = 0.0_wp
@@ -53,20 +61,6 @@ contains
     end do
     if (model%erodes) call start_erosion(model, elements)
   end subroutine start_elements
-
-  !> Whether a part keeps the bulk viscosity of the last step by itself: an equation of state has
-  !> it in its own memory.
-  pure function has_viscous_pressure(model, i_part) result(yes)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i_part
-    logical :: yes
-
-    associate (part => model%parts(i_part), &
-      material => model%materials(model%parts(i_part)%material))
-      yes = (part%hourglass%quadratic > 0.0_wp .or. part%hourglass%linear > 0.0_wp) &
-        .and. .not. (allocated(material%eos) .or. material%is_rigid)
-    end associate
-  end function has_viscous_pressure
 
   !> Diagonals and h.X of slots; in axisymmetric bodies also the sum of the radii, 1/V and density
   !> over nodal mass. Padding is the first element of its chunk, much larger: it divides by no zero
@@ -153,29 +147,19 @@ contains
     type(model_t), intent(in) :: model
     integer, intent(in) :: first, last
     type(block_state_t), intent(inout) :: elements
-    integer :: i_chunk, n(4), i_eos
+    integer :: i_chunk, n(4), starts(4)
 
     do i_chunk = first, last
       n = memory_sizes(model, model%layout%chunk_part(i_chunk))
-      call clear(elements%point_start(i_chunk), n(1), elements%point_deviator)
-      call clear(elements%history_start(i_chunk), n(2), elements%history)
-      call clear(elements%eos_start(i_chunk), n(3), elements%eos_state)
-      call clear(elements%hourglass_start(i_chunk), n(4), elements%hourglass_strain)
-      i_eos = elements%eos_start(i_chunk)
-      if (i_eos > 0) elements%eos_state(i_eos:i_eos + chunk_size - 1) = &
+      starts = [elements%point_start(i_chunk), elements%history_start(i_chunk), &
+        elements%eos_start(i_chunk), elements%hourglass_start(i_chunk)]
+      if (n(1) > 0) elements%point_deviator(starts(1):starts(1) + n(1) - 1) = 0.0_wp
+      if (n(2) > 0) elements%history(starts(2):starts(2) + n(2) - 1) = 0.0_wp
+      if (n(3) > 0) elements%eos_state(starts(3):starts(3) + n(3) - 1) = 0.0_wp
+      if (n(4) > 0) elements%hourglass_strain(starts(4):starts(4) + n(4) - 1) = 0.0_wp
+      if (n(3) > 0) elements%eos_state(starts(3):starts(3) + chunk_size - 1) = &
         model%materials(model%parts(model%layout%chunk_part(i_chunk))%material)%eos%energy
     end do
-
-  contains
-
-    !> What one chunk has of a stream.
-    pure subroutine clear(start, n, values)
-      integer, intent(in) :: start, n
-      real(wp), intent(inout) :: values(:)
-
-      if (n > 0) values(start:start + n - 1) = 0.0_wp
-    end subroutine clear
-
   end subroutine clear_memories
 
 end module element_start_m

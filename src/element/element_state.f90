@@ -4,18 +4,18 @@ module element_state_m
   use element_dispatch_m, only : point_count
   use kinds_m, only : wp
   use block_state_m, only : block_state_t, erosion_state_t, stays, has_left, has_gone
+  use element_chunk_m, only : reference_sum
   use layout_m, only : chunk_size, slot_part
   use material_dispatch_m, only : find_failed, history_size, column_temperature, column_damage, &
     has_plastic_strain, has_mean_dilatation
   use model_m, only : model_t
   use parts_m, only : has_memory_of_heat, may_fail
-  use quad_points_m, only : n_point, point_ratios, round_point_ratios, signed_area
+  use quad_points_m, only : n_point, point_areas, point_ratios, shape_at_points
   use volumetric_m, only : log_ratio, volumetric_energy
   implicit none
   private
-  public :: start_erosion, element_stresses, element_plastic_strains, &
-    element_heats, add_part_energies, smallest_ratio, settle_erosion, element_erosion, is_gone, &
-    stress_of_slot, plastic_strain_of_slot, initial_volume, hoop_strains, &
+  public :: start_erosion, settle_erosion, is_gone, stress_of_slot, plastic_strain_of_slot, &
+    find_heat, hoop_strain_of_slot, initial_volume, smallest_ratio, add_part_energies, &
     count_points, first_failed
 
 contains
@@ -35,22 +35,15 @@ contains
         erosion%impulse(layout%n_slot), source=0.0_wp)
       do i_slot = 1, layout%n_slot
         if (layout%slot_element(i_slot) == 0) cycle
-        do k = 1, corners_of(layout%slot_nodes(:, i_slot))
-          associate (node => layout%slot_nodes(k, i_slot))
-            erosion%n_element(node) = erosion%n_element(node) + 1
-          end associate
-        end do
+        associate (nodes => layout%slot_nodes(:, i_slot))
+          ! A triangle repeats its third node.
+          do k = 1, merge(3, 4, nodes(4) == nodes(3))
+            erosion%n_element(nodes(k)) = erosion%n_element(nodes(k)) + 1
+          end do
+        end associate
       end do
     end associate
   end subroutine start_erosion
-
-  !> Corners of an element: a triangle repeats its third node.
-  pure function corners_of(nodes) result(n)
-    integer, intent(in) :: nodes(4)
-    integer :: n
-
-    n = merge(3, 4, nodes(4) == nodes(3))
-  end function corners_of
 
   !> Elements that have left the mesh in this cycle: their energies leave the account, and their
   !> nodes have one element less. Slot by slot, so that sums do not depend on threads.
@@ -72,25 +65,13 @@ contains
       erosion%took(3) = erosion%took(3) + erosion%hourglass(slot)
       associate (part => slot_part(model%layout, slot), nodes => model%layout%slot_nodes(:, slot))
         erosion%n_eroded(part) = erosion%n_eroded(part) + 1
-        do k = 1, corners_of(nodes)
+        do k = 1, merge(3, 4, nodes(4) == nodes(3))
           erosion%n_element(nodes(k)) = erosion%n_element(nodes(k)) - 1
           if (erosion%n_element(nodes(k)) == 0) freed = [freed, nodes(k)]
         end do
       end associate
     end do
   end subroutine settle_erosion
-
-  !> Which elements have left the mesh, in deck order.
-  subroutine element_erosion(model, elements, eroded)
-    type(model_t), intent(in) :: model
-    type(block_state_t), intent(in) :: elements
-    real(wp), intent(inout) :: eroded(:) !! (n_element) 1 or 0
-    integer :: i
-
-    do i = 1, size(eroded)
-      eroded(i) = merge(1.0_wp, 0.0_wp, is_gone(elements, model%layout%element_slot(i)))
-    end do
-  end subroutine element_erosion
 
   !> Whether the element in a slot has left the mesh.
   pure function is_gone(elements, slot) result(gone)
@@ -102,28 +83,8 @@ contains
     if (gone) gone = elements%erosion%status(slot) /= stays
   end function is_gone
 
-  !> Cauchy stress of all elements in deck order: xx yy zz xy; yz and xz stay zero. The slots are
-  !> walked, whose streams and nodes lie side by side.
-  subroutine element_stresses(model, motion, elements, stress)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: motion(:, :)
-    type(block_state_t), intent(in) :: elements
-    real(wp), intent(inout) :: stress(:, :) !! (6, n_element)
-    integer :: i, slot
-
-    do slot = 1, model%layout%n_slot
-      i = model%layout%slot_element(slot)
-      if (i == 0) cycle
-      if (is_gone(elements, slot)) then
-        stress(:, i) = 0.0_wp
-      else
-        stress(1:4, i) = stress_of_slot(model, motion, elements, slot)
-      end if
-    end do
-  end subroutine element_stresses
-
-  !> That of the element in a slot: xx yy zz xy, in round bodies rr, zz, hoop and rz; the mean over
-  !> the present volume where an element has several points.
+  !> Cauchy stress of the element in a slot: xx yy zz xy, in axisymmetric bodies rr, zz, hoop and
+  !> rz; the mean over the present volume where an element has several points.
   pure function stress_of_slot(model, motion, elements, slot) result(stress)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)
@@ -144,20 +105,7 @@ contains
     stress = [s(1) + volumetric, s(2) + volumetric, volumetric - (s(1) + s(2)), s(3)]
   end function stress_of_slot
 
-  !> Effective plastic strain of all elements in deck order.
-  subroutine element_plastic_strains(model, elements, plastic_strain)
-    type(model_t), intent(in) :: model
-    type(block_state_t), intent(in) :: elements
-    real(wp), intent(inout) :: plastic_strain(:) !! (n_element)
-    integer :: slot
-
-    do slot = 1, model%layout%n_slot
-      if (model%layout%slot_element(slot) > 0) plastic_strain(model%layout%slot_element(slot)) = &
-        plastic_strain_of_slot(model, elements, slot)
-    end do
-  end subroutine element_plastic_strains
-
-  !> That of the element in a slot, 0 in elastic parts.
+  !> Effective plastic strain of the element in a slot, 0 in elastic parts.
   function plastic_strain_of_slot(model, elements, slot) result(plastic_strain)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
@@ -169,26 +117,21 @@ contains
       plastic_strain = history_of_slot(model, elements, slot, 1)
   end function plastic_strain_of_slot
 
-  !> Temperature and damage of all elements in deck order, 0 in parts that keep none.
-  subroutine element_heats(model, elements, temperature, damage)
+  !> Temperature and damage of the element in a slot, 0 in parts that keep none.
+  subroutine find_heat(model, elements, slot, temperature, damage)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
-    real(wp), intent(inout) :: temperature(:), damage(:) !! (n_element)
-    integer :: slot
+    integer, intent(in) :: slot
+    real(wp), intent(out) :: temperature, damage
 
     temperature = 0.0_wp
     damage = 0.0_wp
-    do slot = 1, model%layout%n_slot
-      if (model%layout%slot_element(slot) == 0) cycle
-      associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material), &
-        i => model%layout%slot_element(slot))
-        if (.not. has_memory_of_heat(material)) cycle
-        temperature(i) = material%flow%room + history_of_slot(model, elements, slot, &
-          column_temperature)
-        damage(i) = history_of_slot(model, elements, slot, column_damage)
-      end associate
-    end do
-  end subroutine element_heats
+    associate (material => model%materials(model%parts(slot_part(model%layout, slot))%material))
+      if (.not. has_memory_of_heat(material)) return
+      temperature = material%flow%room + history_of_slot(model, elements, slot, column_temperature)
+      damage = history_of_slot(model, elements, slot, column_damage)
+    end associate
+  end subroutine find_heat
 
   !> One value of the history of the element in a slot, the mean over the initial volume where it
   !> has several points.
@@ -207,7 +150,7 @@ contains
       value = elements%history(first)
       return
     end if
-    call ratios_of_points(model, elements, slot, none, stretch, start)
+    call ratios_of_points(elements, slot, none, stretch, start)
     associate (part => model%parts(model%layout%chunk_part(i_chunk)))
       stride = chunk_size*history_size(model%materials(part%material))
     end associate
@@ -223,26 +166,27 @@ contains
     integer, intent(in) :: slot
     integer, intent(out) :: n                                !! how many
     real(wp), intent(out) :: stretch(n_point), start(n_point)
-    integer :: i_chunk
-    real(wp) :: r(6), u(2, 4), d31(2), d42(2)
+    real(wp) :: u(2, 4), d31(2), d42(2)
 
-    i_chunk = (slot - 1)/chunk_size + 1
-    r = elements%reference(slot, :6)
     stretch = 0.0_wp
     start = 0.0_wp
-    associate (nodes => model%layout%slot_nodes(:, slot), &
-      material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
-      n = 1
-      if (elements%point_start(i_chunk) > 0 .and. .not. has_mean_dilatation(material)) n = n_point
-      if (n > 1) then
-        u = motion(1:2, nodes)
-        call ratios_of_points(model, elements, slot, u, stretch, start)
-      else if (model%is_round) then
-        u = motion(1:2, nodes)
-        call round_ratios(model, slot, u, stretch(1), start(1))
+    n = 1
+    associate (nodes => model%layout%slot_nodes(:, slot), r => elements%reference(slot, :4), &
+      i_chunk => (slot - 1)/chunk_size + 1)
+      if (elements%point_start(i_chunk) > 0) then
+        if (.not. has_mean_dilatation(model%materials(model%parts(model%layout%chunk_part( &
+          i_chunk))%material))) n = n_point
+      end if
+      u = motion(1:2, nodes)
+      if (n > 1 .or. model%is_round) then
+        call ratios_of_points(elements, slot, u, stretch, start)
+        if (n > 1) return
+        ! 2x2 points integrate the volume of the element without error.
+        stretch(1) = sum(start*stretch)/sum(start)
+        start(1) = sum(start)
       else
-        d31 = motion(1:2, nodes(3)) - motion(1:2, nodes(1))
-        d42 = motion(1:2, nodes(4)) - motion(1:2, nodes(2))
+        d31 = u(:, 3) - u(:, 1)
+        d42 = u(:, 4) - u(:, 2)
         start(1) = 0.5_wp*(r(1)*r(4) - r(3)*r(2))
         stretch(1) = 0.5_wp*((r(1)*d42(2) + d31(1)*(r(4) + d42(2))) &
           - (r(3)*d31(2) + d42(1)*(r(2) + d31(2))))/start(1)
@@ -250,37 +194,18 @@ contains
     end associate
   end subroutine volume_ratios
 
-  !> V/V0 - 1 and V0 of the element in a slot, to the digits of the displacement.
-  pure subroutine round_ratios(model, slot, u, stretch, start)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: slot
-    real(wp), intent(in) :: u(2, 4)            !! displacement of the nodes
-    real(wp), intent(out) :: stretch, start    !! start per radian
-    real(wp), dimension(2) :: a, b, h, da, db, dh
-    real(wp) :: x(2, 4), s, ds
-
-    x = model%mesh%coordinates(:, model%layout%slot_nodes(:, slot))
-    call patterns(x, a, b, h, s)
-    call patterns(u, da, db, dh, ds)
-    start = 0.25_wp*s*signed_area(a, b) + (h(1)*cross(a, b) - 2.0_wp*a(1)*b(1)*h(2))/24.0_wp
-    stretch = 0.25_wp*(s*(signed_area(a, db) + signed_area(da, b + db)) &
-      + ds*signed_area(a + da, b + db)) &
-      + (h(1)*(cross(a, db) + cross(da, b + db)) + dh(1)*cross(a + da, b + db) &
-      - 2.0_wp*(a(1)*b(1)*dh(2) + (a(1)*db(1) + da(1)*(b(1) + db(1)))*(h(2) + dh(2))))/24.0_wp
-    stretch = stretch/start
-  end subroutine round_ratios
-
   !> Initial area, or volume per radian, of the element in a slot.
   pure function initial_volume(model, elements, slot) result(volume)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: slot
     real(wp) :: volume
-    real(wp) :: stretch
+    real(wp) :: stretch(n_point), start(n_point)
     real(wp), parameter :: none(2, 4) = 0.0_wp
 
     if (model%is_round) then
-      call round_ratios(model, slot, none, stretch, volume)
+      call ratios_of_points(elements, slot, none, stretch, start)
+      volume = sum(start)
     else
       associate (r => elements%reference(slot, :4))
         volume = 0.5_wp*(r(1)*r(4) - r(3)*r(2))
@@ -288,71 +213,34 @@ contains
     end if
   end function initial_volume
 
-  !> Logarithmic hoop strain of all elements in deck order: ln of the mean radius, over the initial
-  !> area, that the motion gives, over that of the start.
-  subroutine hoop_strains(model, motion, strain)
+  !> Logarithmic hoop strain of the element in a slot: ln of the mean radius, over the initial area,
+  !> that the motion gives, over that of the start.
+  pure function hoop_strain_of_slot(model, motion, slot) result(strain)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)     !! (4, n_node)
-    real(wp), intent(inout) :: strain(:)     !! (n_element)
-    real(wp) :: x(2, 4), u(2, 4)
-    integer :: i, slot
+    integer, intent(in) :: slot
+    real(wp) :: strain
+    real(wp) :: x(2, 4), u(2, 4), areas(n_point)
 
-    do slot = 1, model%layout%n_slot
-      i = model%layout%slot_element(slot)
-      if (i == 0) cycle
-      x = model%mesh%coordinates(:, model%layout%slot_nodes(:, slot))
-      u = motion(1:2, model%layout%slot_nodes(:, slot))
-      strain(i) = log_ratio(area_integral(x, u)/area_integral(x, x))
-    end do
-  end subroutine hoop_strains
-
-  !> Integral over a quad of the bilinear field through the first components of `values`: the sum
-  !> of M_a times them.
-  pure real(wp) function area_integral(x, values)
-    real(wp), intent(in) :: x(2, 4)      !! corners
-    real(wp), intent(in) :: values(2, 4)
-    real(wp) :: a(2), b(2), h(2), da(2), db(2), dh(2), s, ds
-
-    call patterns(x, a, b, h, s)
-    call patterns(values, da, db, dh, ds)
-    area_integral = 0.25_wp*ds*signed_area(a, b) + (da(1)*(h(1)*b(2) - h(2)*b(1)) &
-      + db(1)*(h(1)*a(2) - h(2)*a(1)))/24.0_wp
-  end function area_integral
-
-  !> Diagonals, h and the sum of the first components.
-  pure subroutine patterns(x, a, b, h, s)
-    real(wp), intent(in) :: x(2, 4)
-    real(wp), intent(out) :: a(2), b(2), h(2), s
-
-    a = x(:, 3) - x(:, 1)
-    b = x(:, 4) - x(:, 2)
-    h = (x(:, 1) - x(:, 2)) + (x(:, 3) - x(:, 4))
-    s = sum(x(1, :))
-  end subroutine patterns
-
-  !> a_r b_z + b_r a_z.
-  pure real(wp) function cross(a, b)
-    real(wp), intent(in) :: a(2), b(2)
-
-    cross = a(1)*b(2) + b(1)*a(2)
-  end function cross
+    x = model%mesh%coordinates(:, model%layout%slot_nodes(:, slot))
+    u = motion(1:2, model%layout%slot_nodes(:, slot))
+    areas = point_areas(x)
+    strain = log_ratio(sum(areas*matmul(u(1, :), shape_at_points)) &
+      /sum(areas*matmul(x(1, :), shape_at_points)))
+  end function hoop_strain_of_slot
 
   !> J - 1 at the points of the element in a slot, and the initial area or volume of each.
-  pure subroutine ratios_of_points(model, elements, slot, u, stretch, start)
-    type(model_t), intent(in) :: model
+  pure subroutine ratios_of_points(elements, slot, u, stretch, start)
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: slot
     real(wp), intent(in) :: u(2, 4)            !! displacement of the nodes
     real(wp), intent(out) :: stretch(n_point), start(n_point)
-    real(wp) :: reference(6), x(2, 4)
+    real(wp) :: reference(reference_sum)
 
-    if (model%is_round) then
-      x = model%mesh%coordinates(:, model%layout%slot_nodes(:, slot))
-      call round_point_ratios(x, u, stretch, start)
-    else
-      reference = elements%reference(slot, :6)
-      call point_ratios(reference, u, stretch, start)
-    end if
+    reference(:6) = elements%reference(slot, :6)
+    if (size(elements%reference, 2) > 6) reference(reference_sum) = elements%reference(slot, &
+      reference_sum)
+    call point_ratios(size(elements%reference, 2) > 6, reference, u, stretch, start)
   end subroutine ratios_of_points
 
   !> Smallest J of the element in a slot: of the element, and of its points where it has several.
@@ -369,7 +257,7 @@ contains
     if (elements%point_start((slot - 1)/chunk_size + 1) > 0) then
       n = n_point
       u = motion(1:2, model%layout%slot_nodes(:, slot))
-      call ratios_of_points(model, elements, slot, u, stretch, start)
+      call ratios_of_points(elements, slot, u, stretch, start)
     end if
     smallest = 1.0_wp + minval(stretch(:n))
   end function smallest_ratio
@@ -434,14 +322,12 @@ contains
 
     i_chunk = findloc(elements%n_failed > 0, .true., dim=1)
     failed = .false.
-    associate (part => model%parts(model%layout%chunk_part(i_chunk)))
-      associate (material => model%materials(part%material))
-        do k = 1, point_count(model%sections(part%section))
-          call find_failed(material, elements%history(elements%history_start(i_chunk) &
-            + (k - 1)*chunk_size*history_size(material)), one, ignored)
-          failed = failed .or. one
-        end do
-      end associate
+    associate (material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
+      do k = 1, merge(n_point, 1, elements%point_start(i_chunk) > 0)
+        call find_failed(material, elements%history(elements%history_start(i_chunk) &
+          + (k - 1)*chunk_size*history_size(material)), one, ignored)
+        failed = failed .or. one
+      end do
     end associate
     slot = (i_chunk - 1)*chunk_size + findloc(failed, .true., dim=1)
   end function first_failed

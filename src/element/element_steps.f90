@@ -4,22 +4,21 @@
 module element_steps_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t, stays
-  use element_chunk_m, only : element_chunk_t, gather_motion, reference_mass
-  use element_dispatch_m, only : point_count
-  use eos_pressure_m, only : finish_limits, take_now
+  use element_chunk_m, only : element_chunk_t, gather_motion
+  use eos_pressure_m, only : finish_limits, present_moduli
   use hourglass_m, only : form_resistance
   use layout_m, only : chunk_size, slot_part
   use model_m, only : model_t
-  use parts_m, only : hourglass_t, hourglass_viscous, material_t, part_t, gives_pressure
+  use parts_m, only : hourglass_t, hourglass_viscous, part_t
   use quad_kinematics_m, only : form_shape, form_increments
-  use quad_points_m, only : n_point, round_point_t, step_sums_t, form_point, form_radii, &
-    start_sums, add_point_sums, form_row_sums
-  use stable_step_m, only : stable_step, axisymmetric_step, full_step, axisymmetric_full_step
+  use quad_m, only : limit_chunk, start_points, move_point, sums_t
+  use quad_points_m, only : n_point
+  use stable_step_m, only : moduli_t
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: chunk_steps, scaled_step, is_damped, find_smallest_steps, step_of_element, &
-    has_exposed, exposed_step, start_retardation
+  public :: chunk_steps, scaled_step, is_damped, find_smallest_steps, own_steps, &
+    exposed_step, start_retardation
 
   !> Gradients of the shape functions and what the step takes of the element besides.
   type :: gradients_t
@@ -40,119 +39,117 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
     real(wp), intent(in) :: dt
     real(wp), intent(out) :: steps(chunk_size)
-    type(material_t) :: now, other
-    integer :: first, last, i
+    type(moduli_t) :: now, other
+    integer :: first, i
 
     first = (i_chunk - 1)*chunk_size + 1
-    last = first + chunk_size - 1
-    associate (part => model%parts(model%layout%chunk_part(i_chunk)))
-      call take_now(model%materials(part%material), elements, first, now)
-      if (allocated(model%materials(part%material)%eos) .or. &
-        gives_pressure(model%materials(part%material))) then
+    associate (material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
+      now = present_moduli(material, elements, first)
+      if (allocated(material%eos)) then
         do i = first + 1, first + model%layout%chunk_elements(i_chunk) - 1
-          call take_now(model%materials(part%material), elements, i, other)
+          other = present_moduli(material, elements, i)
           now%bulk = max(now%bulk, other%bulk)
           now%shear = max(now%shear, other%shear)
           now%sound_speed = max(now%sound_speed, other%sound_speed)
         end do
       end if
-      call shape_steps(model, part, now, model%layout%slot_nodes(:, first:last), &
-        elements%reference(first:last, :), motion, dt, steps)
     end associate
-    if (has_exposed(elements, i_chunk)) then
-      do i = 1, model%layout%chunk_elements(i_chunk)
-        steps(i) = min(steps(i), exposed_step(model, elements, first + i - 1, motion))
-      end do
-    end if
-    if (allocated(elements%retardation)) steps = damped_step(steps, &
-      elements%retardation(first:last))
+    call steps_at_moduli(model, elements, i_chunk, [now], motion, dt, steps)
   end subroutine chunk_steps
 
-  !> Step under damping by stiffness, whose forces are those of v(n-1/2): with zeta = beta omega/2
-  !> and omega = 2/step it is 2 (sqrt(1 + zeta^2) - zeta)/omega.
-  pure elemental function damped_step(step, retardation) result(limit)
-    real(wp), intent(in) :: step         !! without damping, s
-    real(wp), intent(in) :: retardation  !! beta, s
-    real(wp) :: limit
-
-    limit = step
-    if (retardation > 0.0_wp) &
-      limit = step/(retardation/step + sqrt(1.0_wp + (retardation/step)**2))
-  end function damped_step
-
-  !> Steps of elements of one part that have these nodes and shapes at time zero, with the hourglass
-  !> control that has a share in them.
-  subroutine shape_steps(model, part, material, nodes, shape, motion, dt, steps)
+  !> Steps of the elements of a chunk at these moduli, with the hourglass control that has a share
+  !> in them.
+  subroutine steps_at_moduli(model, elements, i_chunk, now, motion, dt, steps)
     type(model_t), intent(in) :: model
-    type(part_t), intent(in) :: part
-    type(material_t), intent(in) :: material         !! as it is now
-    integer, intent(in) :: nodes(4, chunk_size)
-    real(wp), intent(in) :: shape(:, :)              !! (chunk_size, 6 or n_round_reference)
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: i_chunk
+    type(moduli_t), intent(in) :: now(:)             !! of each element, or one for all
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
     real(wp), intent(in) :: dt                       !! step that led here; 0: no rates
     real(wp), intent(out) :: steps(chunk_size)       !! s
-    type(element_chunk_t) :: chunk
+    type(element_chunk_t) :: chunk, shape, point
     type(stress_chunk_t) :: unused
-    real(wp) :: start(chunk_size, size(shape, 2)), same(chunk_size), limit, volume
+    type(sums_t) :: sums
+    real(wp) :: at_moduli(chunk_size)
+    integer :: first, i
+
+    first = (i_chunk - 1)*chunk_size + 1
+    call gather_motion(model%is_round, model%layout%slot_nodes(1, first), motion, chunk)
+    call form_shape(elements%reference(first, 1), size(elements%reference, 1), chunk)
+    call form_increments(dt, chunk, unused)
+    if (elements%point_start(i_chunk) > 0) then
+      call start_points(chunk%is_round, point, sums)
+      do i = 1, n_point
+        call move_point(i_chunk, i, dt, elements, chunk, point, unused, sums)
+      end do
+    else if (chunk%is_round) then
+      associate (part => model%parts(model%layout%chunk_part(i_chunk)))
+        call form_resistance(model%materials(part%material), part%hourglass, chunk)
+      end associate
+    end if
+    if (size(now) > 1 .and. chunk%is_round) shape = chunk
+    call limit_elements(model, i_chunk, now(1), elements, chunk, sums, steps)
+    do i = 2, size(now)
+      if (chunk%is_round) chunk = shape ! the limits of triangles change it
+      call limit_elements(model, i_chunk, now(i), elements, chunk, sums, at_moduli)
+      steps(i) = at_moduli(i)
+    end do
+    do i = 1, chunk_size
+      if (allocated(elements%mass_shares)) steps(i) = min(steps(i), exposed_step(model, elements, &
+        first + i - 1, motion))
+      if (.not. allocated(elements%retardation)) cycle
+      ! Damping by stiffness, whose forces are those of v(n-1/2): with zeta = beta omega/2 and
+      ! omega = 2/step the step is 2 (sqrt(1 + zeta^2) - zeta)/omega.
+      associate (zeta => elements%retardation(first + i - 1)/steps(i))
+        if (zeta > 0.0_wp) steps(i) = steps(i)/(zeta + sqrt(1.0_wp + zeta**2))
+      end associate
+    end do
+  end subroutine steps_at_moduli
+
+  !> The same of a chunk whose shape and points are there.
+  subroutine limit_elements(model, i_chunk, now, elements, chunk, sums, steps)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_chunk
+    type(moduli_t), intent(in) :: now
+    type(block_state_t), intent(in) :: elements
+    type(element_chunk_t), intent(inout) :: chunk
+    type(sums_t), intent(inout) :: sums
+    real(wp), intent(out) :: steps(chunk_size)
+    real(wp) :: limits(2), same(chunk_size)
     integer :: i
 
-    start = shape
-    call gather_motion(model%is_round, nodes, motion, chunk)
-    call form_shape(start, chunk_size, chunk)
-    call form_increments(dt, chunk, unused)
-    if (point_count(model%sections(part%section)) > 1) then
-      call full_steps(material, part%hourglass, nodes, start, chunk, steps)
-    else if (model%is_round) then
-      call form_resistance(model%materials(part%material), part%hourglass, chunk)
-      call axisymmetric_step(material, part%hourglass, start(1, reference_mass), chunk_size, &
-        chunk, limit, volume, steps)
-    else
-      call stable_step(model%controls%length_rule, material%sound_speed, part%hourglass, nodes, &
-        chunk, limit, volume, steps)
-    end if
-    associate (fluid => model%materials(part%material))
-      if (.not. fluid%viscosity > 0.0_wp) return
+    call limit_chunk(model, i_chunk, now, elements, chunk, sums, limits, steps)
+    associate (material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
+      if (.not. material%viscosity > 0.0_wp) return
       do i = 1, chunk_size
         same = chunk%stretch(i)
-        call finish_limits(fluid, material, same, steps(i), volume)
+        call finish_limits(material, now, same, steps(i), limits(2))
       end do
     end associate
-  end subroutine shape_steps
+  end subroutine limit_elements
 
-  !> Steps of fully integrated quads.
-  pure subroutine full_steps(material, hourglass, nodes, shape, chunk, steps)
-    type(material_t), intent(in) :: material
-    type(hourglass_t), intent(in) :: hourglass
-    integer, intent(in) :: nodes(4, chunk_size)
-    real(wp), intent(in) :: shape(chunk_size, *) !! at time zero
-    type(element_chunk_t), intent(in) :: chunk
-    real(wp), intent(out) :: steps(chunk_size)
-    type(element_chunk_t) :: point
-    type(step_sums_t) :: sums
-    type(round_point_t) :: places(n_point)
-    real(wp) :: point_shape(chunk_size, 6), limit, volume
-    integer :: k
+  !> Steps of the elements of a chunk, each with the moduli and the mass that it has now.
+  subroutine own_steps(model, elements, i_chunk, motion, steps)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    integer, intent(in) :: i_chunk
+    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
+    real(wp), intent(out) :: steps(chunk_size)       !! s
+    type(moduli_t) :: now(chunk_size)
+    integer :: first, i, n
 
-    point%is_round = .false.
-    point%hu = 0.0_wp
-    point%hv = 0.0_wp
-    call start_sums(sums)
-    do k = 1, n_point
-      call form_point(k, chunk_size, shape, chunk, point_shape, point)
-      call form_shape(point_shape, chunk_size, point)
-      if (chunk%is_round) then
-        call form_radii(k, shape, chunk_size, chunk, point, places(k))
-      else
-        call add_point_sums(k, point, sums)
-      end if
+    first = (i_chunk - 1)*chunk_size + 1
+    associate (material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
+      n = merge(model%layout%chunk_elements(i_chunk), 1, allocated(material%eos))
+      do i = 1, n
+        now(i) = present_moduli(material, elements, first + i - 1)
+      end do
+    end associate
+    call steps_at_moduli(model, elements, i_chunk, now(:n), motion, 0.0_wp, steps)
+    do i = 1, model%layout%chunk_elements(i_chunk)
+      steps(i) = scaled_step(model, first + i - 1, steps(i), elements)
     end do
-    if (chunk%is_round) then
-      call form_row_sums(shape(1, reference_mass), chunk_size, places, sums)
-      call axisymmetric_full_step(material, hourglass, chunk, sums, limit, volume, steps)
-    else
-      call full_step(material, hourglass, nodes, chunk, sums, limit, volume, steps)
-    end if
-  end subroutine full_steps
+  end subroutine own_steps
 
   !> The `n` elements of the smallest stable steps, or all where there are fewer, rising. They lie
   !> in the chunks of the `n` smallest limits, which the last forces have left.
@@ -165,94 +162,28 @@ contains
     real(wp), allocatable, intent(out) :: steps(:)    !! s
     logical, allocatable :: seen(:)
     real(wp) :: of_slots(chunk_size)
-    integer :: i, k, i_chunk, i_slot
+    integer :: i, k, i_chunk, i_slot, place
 
     allocate (found(0), steps(0))
     allocate (seen(size(elements%time_limit)), source=.false.)
     do i = 1, min(n, size(seen))
       i_chunk = minloc(elements%time_limit, dim=1, mask=.not. seen)
       seen(i_chunk) = .true.
-      call find_steps(model, elements, i_chunk, motion, of_slots)
-      do k = 1, chunk_size
+      call own_steps(model, elements, i_chunk, motion, of_slots)
+      do k = 1, model%layout%chunk_elements(i_chunk)
         i_slot = (i_chunk - 1)*chunk_size + k
-        if (model%layout%slot_element(i_slot) == 0) cycle
         if (allocated(elements%erosion)) then
           if (elements%erosion%status(i_slot) /= stays) cycle
         end if
-        call insert(n, model%layout%slot_element(i_slot), of_slots(k), found, steps)
+        place = count(steps <= of_slots(k))
+        if (place >= n) cycle
+        found = [found(:place), model%layout%slot_element(i_slot), found(place + 1:)]
+        steps = [steps(:place), of_slots(k), steps(place + 1:)]
       end do
     end do
+    found = found(:min(n, size(found)))
+    steps = steps(:size(found))
   end subroutine find_smallest_steps
-
-  !> Stable steps of the elements of a chunk: one by one only where its law gives each a sound speed
-  !> of its own.
-  subroutine find_steps(model, elements, i_chunk, motion, steps)
-    type(model_t), intent(in) :: model
-    type(block_state_t), intent(in) :: elements
-    integer, intent(in) :: i_chunk
-    real(wp), intent(in), contiguous :: motion(:, :)  !! (4, n_node)
-    real(wp), intent(out) :: steps(chunk_size)        !! s
-    integer :: k, first
-
-    first = (i_chunk - 1)*chunk_size + 1
-    associate (material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
-      if (allocated(material%eos) .or. gives_pressure(material)) then
-        do k = 1, model%layout%chunk_elements(i_chunk)
-          steps(k) = step_of_element(model, elements, first + k - 1, motion)
-        end do
-        return
-      end if
-    end associate
-    call chunk_steps(model, elements, i_chunk, motion, 0.0_wp, steps)
-    do k = 1, model%layout%chunk_elements(i_chunk)
-      steps(k) = scaled_step(model, first + k - 1, steps(k), elements)
-    end do
-  end subroutine find_steps
-
-  !> Put one element into the rising list, which keeps `n` at most.
-  pure subroutine insert(n, element, step, found, steps)
-    integer, intent(in) :: n
-    integer, intent(in) :: element
-    real(wp), intent(in) :: step
-    integer, allocatable, intent(inout) :: found(:)
-    real(wp), allocatable, intent(inout) :: steps(:)
-    integer :: k
-
-    k = count(steps <= step)
-    if (k >= n) return
-    found = [found(:k), element, found(k + 1:)]
-    steps = [steps(:k), step, steps(k + 1:)]
-    if (size(found) <= n) return
-    found = found(:n)
-    steps = steps(:n)
-  end subroutine insert
-
-  !> Stable step of the element in one slot, as its memory has it: that of a chunk which holds
-  !> nothing else.
-  function step_of_element(model, elements, i_slot, motion) result(step)
-    type(model_t), intent(in) :: model
-    type(block_state_t), intent(in) :: elements
-    integer, intent(in) :: i_slot
-    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
-    real(wp) :: step
-    type(material_t) :: now
-    real(wp) :: steps(chunk_size), shape(chunk_size, size(elements%reference, 2))
-    integer :: nodes(4, chunk_size), k
-
-    do k = 1, chunk_size
-      nodes(:, k) = model%layout%slot_nodes(:, i_slot)
-    end do
-    do k = 1, size(shape, 2)
-      shape(:, k) = elements%reference(i_slot, k)
-    end do
-    associate (part => model%parts(model%layout%chunk_part((i_slot - 1)/chunk_size + 1)))
-      call take_now(model%materials(part%material), elements, i_slot, now)
-      call shape_steps(model, part, now, nodes, shape, motion, 0.0_wp, steps)
-    end associate
-    step = min(steps(1), exposed_step(model, elements, i_slot, motion))
-    if (allocated(elements%retardation)) step = damped_step(step, elements%retardation(i_slot))
-    step = scaled_step(model, i_slot, step, elements)
-  end function step_of_element
 
   !> Stable step of the element in a slot with its mass.
   pure function scaled_step(model, slot, step, elements) result(scaled)
@@ -286,17 +217,6 @@ contains
     end associate
   end function is_damped
 
-  !> Whether elements of a chunk are exposed.
-  pure function has_exposed(elements, i_chunk) result(has)
-    type(block_state_t), intent(in) :: elements
-    integer, intent(in) :: i_chunk
-    logical :: has
-
-    has = .false.
-    if (allocated(elements%mass_shares)) has = any(elements%mass_shares(:, (i_chunk &
-      - 1)*chunk_size + 1:i_chunk*chunk_size) > 0.0_wp)
-  end function has_exposed
-
   !> Stable step, s, of a plane one-point quad in a slot whose nodes carry hardly any mass but their
   !> own, with the mass of its density; huge where it is not exposed. A node moves as if the rest of
   !> its mass belonged to mirror images of the element: one component of its acceleration is that of
@@ -310,17 +230,16 @@ contains
     integer, intent(in) :: slot
     real(wp), intent(in), contiguous :: motion(:, :)    !! (4, n_node) u, v
     real(wp) :: step
-    type(material_t) :: now
+    type(moduli_t) :: now
     type(gradients_t) :: gradients
     real(wp) :: normal(2), shape(6), nodal(4, 4), weights(4)
     real(wp), parameter :: one(4) = 1.0_wp
 
     step = huge(step)
-    if (.not. allocated(elements%mass_shares)) return
     associate (part => model%parts(model%layout%chunk_part((slot - 1)/chunk_size + 1)), &
       shares => elements%mass_shares(:, slot))
       if (.not. any(shares > 0.0_wp)) return
-      call take_now(model%materials(part%material), elements, slot, now)
+      now = present_moduli(model%materials(part%material), elements, slot)
       shape = elements%reference(slot, :6)
       nodal = motion(:, model%layout%slot_nodes(:, slot))
       ! Mirror images lie beyond the side where the least of the mass is its own.
@@ -371,7 +290,7 @@ contains
   !> is that of v(n-1/2). It counts in expansion too: two steps later such an element is in
   !> compression.
   pure function mode_step(now, viscosity, gradients, weights_x, weights_y) result(step)
-    type(material_t), intent(in) :: now
+    type(moduli_t), intent(in) :: now
     type(hourglass_t), intent(in) :: viscosity         !! its Q1 and Q2
     type(gradients_t), intent(in) :: gradients
     real(wp), intent(in) :: weights_x(4), weights_y(4) !! 0 to 1

@@ -1,15 +1,18 @@
 ! SPDX-License-Identifier: MIT
-!> Derivative of the internal force of all elements, for implicit solutions.
+!> Derivative of the internal force of all elements, for implicit solutions, and in dual numbers the
+!> force of a one-point quad with hourglass control by assumed strain, as `element_tangent` has that
+!> of several points.
 module element_stiffness_m
   use block_state_m, only : block_state_t
-  use dual_m, only : dual_t
-  use element_tangent_m, only : element_t, n_pattern, new_element, form_shapes, &
-    form_full_force
+  use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
+  use element_tangent_m, only : element_t, shape_t, n_pattern, new_element, take_values, &
+    form_full_force, form_gradient, find_stress, pressure_of, start_volumes, twice_area, products, &
+    cross
+  use hourglass_m, only : form_moduli
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use material_dispatch_m, only : history_size
   use model_m, only : model_t
-  use one_point_tangent_m, only : form_one_point_force
   use parts_m, only : hourglass_t, material_t
   use quad_points_m, only : n_point
   use sparse_m, only : sparse_t, add_block
@@ -17,8 +20,18 @@ module element_stiffness_m
   private
   public :: add_stiffness
 
-  !> Of the nodes a = d31, b = d42 and h (`element_tangent`).
-  integer, parameter :: of_nodes(4, 3) = reshape([-1, 0, 1, 0, 0, -1, 0, 1, 1, -1, 1, -1], [4, 3])
+  !> The patterns a = d31, b = d42 and h in x and y, and s (`element_tangent`), of the unknowns
+  !> x1 y1 x2 y2 ...
+  real(wp), parameter :: of_nodes(n_pattern, 8) = real(reshape([ &
+    -1, 0, 0, 0, 1, 0, 1, 0, -1, 0, 0, 0, 1, 0, 0, 0, -1, 0, -1, 0, 1, 0, 0, 0, -1, 0, -1, 0, &
+    1, 0, 0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 1, 0, 0, 0, 1, 0, -1, 0], &
+    [n_pattern, 8]), wp)
+  real(wp), parameter :: part = 1.0_wp/24.0_wp
+
+  !> Integrals over a quad of r d/dr, of r d/dz and of 1, pattern by pattern (`form_round_shape`).
+  type :: integrals_t
+    type(dual_t) :: volume, rad(3), axi(3), mean(3)
+  end type integrals_t
 
 contains
 
@@ -33,7 +46,7 @@ contains
     integer, intent(in) :: equation(:, :)            !! (2, n_node) equation numbers, 0 = none
     type(sparse_t), intent(inout) :: matrix          !! started, not compressed
     type(element_t) :: element
-    real(wp) :: block(8, 8), u(2, 4), du(2, 4)
+    real(wp) :: block(8, 8), du(2, 4)
     integer :: equations(8), i_chunk, slot
 
     element = new_element(model%is_round)
@@ -46,9 +59,11 @@ contains
             equations = reshape(equation(:, nodes), [8])
             if (all(equations == 0)) cycle
             element%x = model%mesh%coordinates(:, nodes)
-            u = motion(1:2, nodes)
+            element%u = motion(1:2, nodes)
             du = dt*motion(3:4, nodes)
-            call form_shapes(u, du, element)
+            call take_values(element%x + element%u, element%now)
+            call take_values(element%x + element%u - 0.5_wp*du, element%middle)
+            call take_values(du, element%change)
             call load_points(i_chunk, mod(slot - 1, chunk_size), history_size(material), &
               committed, element)
             call form_block(material, part%hourglass, committed%point_start(i_chunk) > 0, element, &
@@ -67,6 +82,8 @@ contains
     integer, intent(in) :: n_history !! values at each point
     type(block_state_t), intent(in) :: elements
     type(element_t), intent(inout) :: element
+    integer, parameter :: columns(3) = [0, chunk_size, 2*chunk_size] !! xx yy xy
+    real(wp) :: s(3)
     integer :: first, k, n
 
     n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
@@ -75,32 +92,20 @@ contains
     do k = 1, n
       if (n > 1) then
         first = elements%point_start(i_chunk) + 3*(k - 1)*chunk_size + place
-        element%points(k)%old = plane_parts(elements%point_deviator, first)
+        s = elements%point_deviator(first + columns)
       else
-        associate (s => elements%deviator((i_chunk - 1)*chunk_size + place + 1, :))
-          element%points(k)%old = [0.5_wp*(s(1) + s(2)), 0.5_wp*(s(1) - s(2)), s(3)]
-        end associate
+        s = elements%deviator((i_chunk - 1)*chunk_size + place + 1, :)
       end if
+      element%points(k)%old = [0.5_wp*(s(1) + s(2)), 0.5_wp*(s(1) - s(2)), s(3)]
       if (n_history == 0) cycle
       first = elements%history_start(i_chunk) + n_history*(k - 1)*chunk_size + place
       element%points(k)%plastic_strain = elements%history(first)
       element%points(k)%back = 0.0_wp
-      if (n_history > 1) element%points(k)%back = plane_parts(elements%history, first + chunk_size)
+      if (n_history == 1) cycle
+      s = elements%history(first + chunk_size + columns)
+      element%points(k)%back = [0.5_wp*(s(1) + s(2)), 0.5_wp*(s(1) - s(2)), s(3)]
     end do
   end subroutine load_points
-
-  !> (mean, half difference, shear) of a tensor whose xx stands at `first` and whose yy and xy
-  !> follow a chunk further each.
-  pure function plane_parts(stream, first) result(parts)
-    real(wp), intent(in) :: stream(:)
-    integer, intent(in) :: first
-    real(wp) :: parts(3)
-
-    associate (xx => stream(first), yy => stream(first + chunk_size), &
-      xy => stream(first + 2*chunk_size))
-      parts = [0.5_wp*(xx + yy), 0.5_wp*(xx - yy), xy]
-    end associate
-  end function plane_parts
 
   !> Matrix of one element, unknowns x1 y1 x2 y2 ... (per metre of thickness, or per radian).
   pure subroutine form_block(material, hourglass, is_full, element, block)
@@ -110,8 +115,8 @@ contains
     type(element_t), intent(inout) :: element
     real(wp), intent(out) :: block(8, 8)
     type(dual_t) :: force(n_pattern)
-    real(wp) :: small(n_pattern, n_pattern), across(n_pattern, 8)
-    integer :: a, k
+    real(wp) :: small(n_pattern, n_pattern)
+    integer :: k
 
     if (is_full) then
       call form_full_force(material, element, force)
@@ -121,19 +126,148 @@ contains
     do k = 1, n_pattern
       small(k, :) = force(k)%slope(:n_pattern)
     end do
-    ! From the patterns to the nodes, first the columns.
-    do a = 1, 4
-      across(:, 2*a - 1) = of_nodes(a, 1)*small(:, 1) + of_nodes(a, 2)*small(:, 3) &
-        + of_nodes(a, 3)*small(:, 5) + small(:, 7)
-      across(:, 2*a) = of_nodes(a, 1)*small(:, 2) + of_nodes(a, 2)*small(:, 4) &
-        + of_nodes(a, 3)*small(:, 6)
-    end do
-    do a = 1, 4
-      block(2*a - 1, :) = of_nodes(a, 1)*across(1, :) + of_nodes(a, 2)*across(3, :) &
-        + of_nodes(a, 3)*across(5, :) + across(7, :)
-      block(2*a, :) = of_nodes(a, 1)*across(2, :) + of_nodes(a, 2)*across(4, :) &
-        + of_nodes(a, 3)*across(6, :)
-    end do
+    block = matmul(transpose(of_nodes), matmul(small, of_nodes))
   end subroutine form_block
+
+  !> Forces of a one-point quad on the patterns.
+  pure subroutine form_one_point_force(material, hourglass, element, force)
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: hourglass
+    type(element_t), intent(inout) :: element
+    type(dual_t), intent(out) :: force(n_pattern)
+    type(integrals_t) :: over
+    type(dual_t) :: gradient(2, 2), hoop, growth(2), stress(4), q(2), cosine, area, shares(2)
+    real(wp) :: change_a(2), change_b(2)
+    integer :: i, k
+
+    associate (now => element%now, middle => element%middle, change => element%change)
+      ! By name: components of an array are copied.
+      change_a = change%a%value
+      change_b = change%b%value
+      call form_gradient(now, change_a, change_b, gradient)
+      ! gamma.v, over the step.
+      do i = 1, 2
+        growth(i) = change%h(i) - products(gradient(i, 1), middle%h(1), gradient(i, 2), middle%h(2))
+      end do
+      hoop = constant(0.0_wp)
+      if (element%is_round) then
+        call form_integrals(.true., middle, over)
+        do i = 1, 2
+          gradient(i, 1) = (products(over%rad(1), change%a(i), over%rad(2), change%b(i)) &
+            + over%rad(3)*change%h(i))/over%volume
+          gradient(i, 2) = (products(over%axi(1), change%a(i), over%axi(2), change%b(i)) &
+            + over%axi(3)*change%h(i))/over%volume
+        end do
+        hoop = (products(over%mean(1), change%a(1), over%mean(2), change%b(1)) &
+          + over%mean(3)*change%s)/over%volume
+      end if
+      area = twice_area(now)
+      call form_integrals(element%is_round, now, over)
+      call find_stress(material, gradient, hoop, pressure_of(material%bulk, &
+        sum(start_volumes(element)), over%volume), element%points(1), stress, cosine)
+      call find_resistance(material, hourglass, element, growth, cosine, q)
+      ! The mean radius, and what h contributes to a and b in gamma.
+      if (element%is_round) then
+        hoop = 2.0_wp*over%volume/area
+        q(1) = hoop*q(1)
+        q(2) = hoop*q(2)
+      end if
+      shares(1) = cross(now%b(1), now%h(2), now%b(2), now%h(1))/area
+      shares(2) = cross(now%h(1), now%a(2), now%h(2), now%a(1))/area
+    end associate
+    do k = 1, 3
+      force(2*k - 1) = products(over%rad(k), stress(1), over%axi(k), stress(3))
+      force(2*k) = products(over%rad(k), stress(3), over%axi(k), stress(2))
+      if (k == 3) exit
+      force(2*k - 1) = force(2*k - 1) + products(shares(k), q(1), over%mean(k), stress(4))
+      force(2*k) = force(2*k) + shares(k)*q(2)
+    end do
+    force(5) = force(5) + q(1)
+    force(6) = force(6) + q(2)
+    force(7) = over%mean(3)*stress(4)
+  end subroutine form_one_point_force
+
+  !> Integrals over a quad; a plane one has unit depth.
+  pure subroutine form_integrals(is_round, shape, over)
+    logical, intent(in) :: is_round
+    type(shape_t), intent(in) :: shape
+    type(integrals_t), intent(out) :: over
+    type(dual_t) :: s, h(2)
+
+    associate (a => shape%a, b => shape%b)
+      if (.not. is_round) then
+        over%rad = [0.5_wp*b(2), (-0.5_wp)*a(2), constant(0.0_wp)]
+        over%axi = [(-0.5_wp)*b(1), 0.5_wp*a(1), constant(0.0_wp)]
+        over%mean = constant(0.0_wp)
+        over%volume = 0.5_wp*twice_area(shape)
+        return
+      end if
+      s = 0.125_wp*shape%s
+      h(1) = part*shape%h(1)
+      h(2) = part*shape%h(2)
+      over%rad(1) = cross(s, b(2), b(1), h(2))
+      over%rad(2) = -products(s, a(2), a(1), h(2))
+      over%rad(3) = part*products(a(1), b(2), b(1), a(2))
+      over%axi(1) = b(1)*(h(1) - s)
+      over%axi(2) = a(1)*(h(1) + s)
+      over%axi(3) = (-2.0_wp*part)*(a(1)*b(1))
+      over%mean(1) = cross(h(1), b(2), h(2), b(1))
+      over%mean(2) = cross(h(1), a(2), h(2), a(1))
+      over%mean(3) = 0.125_wp*twice_area(shape)
+      over%volume = shape%s*over%mean(3) + products(a(1), over%mean(1), b(1), over%mean(2))
+    end associate
+  end subroutine form_integrals
+
+  !> Hourglass force q_x, q_y per unit of depth (`resist_by_assumed_strain`).
+  pure subroutine find_resistance(material, hourglass, element, gamma, cosine, q)
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: hourglass
+    type(element_t), intent(in) :: element
+    type(dual_t), intent(in) :: gamma(2)    !! gamma.v, over the step
+    type(dual_t), intent(in) :: cosine      !! of the rotation in the step
+    type(dual_t), intent(out) :: q(2)
+    type(dual_t) :: growth(2), a(2), b(2), frame(2), weight, stress(2), mixed
+    real(wp) :: factor, lateral
+
+    call form_moduli(material, hourglass, factor, lateral)
+    frame = frame_of(element%middle)
+    weight = sqrt(0.5_wp*(cosine + 1.0_wp))
+    a = into(frame, element%middle%a)
+    b = into(frame, element%middle%b)
+    growth = into(frame, gamma)
+    growth(1) = weight*growth(1)
+    growth(2) = weight*growth(2)
+    weight = constant(4.0_wp*factor/3.0_wp)/twice_area(element%middle)
+    mixed = lateral*(weight*products(a(1), a(2), b(1), b(2)))
+    stress(1) = products(weight*products(a(2), a(2), b(2), b(2)), growth(1), mixed, growth(2)) &
+      + element%pattern_stress(1)
+    stress(2) = products(weight*products(a(1), a(1), b(1), b(1)), growth(2), mixed, growth(1)) &
+      + element%pattern_stress(2)
+    frame = frame_of(element%now)
+    q(1) = cross(frame(1), stress(1), frame(2), stress(2))
+    q(2) = products(frame(2), stress(1), frame(1), stress(2))
+  end subroutine find_resistance
+
+  !> First axis of the element's frame.
+  pure function frame_of(shape) result(frame)
+    type(shape_t), intent(in) :: shape
+    type(dual_t) :: frame(2)
+    type(dual_t) :: length
+
+    frame(1) = (shape%a(1) - shape%b(1)) + (shape%a(2) + shape%b(2))
+    frame(2) = (shape%a(2) - shape%b(2)) - (shape%a(1) + shape%b(1))
+    length = sqrt(products(frame(1), frame(1), frame(2), frame(2)))
+    frame(1) = frame(1)/length
+    frame(2) = frame(2)/length
+  end function frame_of
+
+  !> Components of a vector in a frame.
+  pure function into(frame, vector) result(found)
+    type(dual_t), intent(in) :: frame(2), vector(2)
+    type(dual_t) :: found(2)
+
+    found(1) = products(frame(1), vector(1), frame(2), vector(2))
+    found(2) = cross(frame(1), vector(2), frame(2), vector(1))
+  end function into
 
 end module element_stiffness_m

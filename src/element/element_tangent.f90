@@ -8,14 +8,13 @@ module element_tangent_m
     operator(/)
   use kinds_m, only : wp
   use material_dispatch_m, only : form_tangent, has_mean_dilatation
-  use parts_m, only : material_t
+  use parts_m, only : material_t, rubber_t
   use quad_points_m, only : n_point, point_areas, shape_at_points, shift, along_a, along_b, along_h
-  use rubbers_m, only : rubber_t
   use stress_chunk_m, only : stress_point_t
   use volumetric_m, only : log_ratio
   implicit none
   private
-  public :: element_t, shape_t, n_pattern, new_element, form_shapes, form_full_force, &
+  public :: element_t, shape_t, n_pattern, new_element, take_values, form_full_force, &
     form_gradient, find_stress, pressure_of, start_volumes, twice_area, products, cross
 
   !> Patterns: a and b and h in x and y, and s.
@@ -56,17 +55,6 @@ contains
       middle%s = 0.5_wp*now%s
     end associate
   end function new_element
-
-  !> Shapes of an element from its displacement and the increment of that in the step.
-  pure subroutine form_shapes(u, du, element)
-    real(wp), intent(in) :: u(2, 4), du(2, 4)
-    type(element_t), intent(inout) :: element
-
-    element%u = u
-    call take_values(element%x + u, element%now)
-    call take_values(element%x + u - 0.5_wp*du, element%middle)
-    call take_values(du, element%change)
-  end subroutine form_shapes
 
   !> Values of a nodal field in the patterns.
   pure subroutine take_values(field, shape)

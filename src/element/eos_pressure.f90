@@ -5,21 +5,21 @@
 !> the mean of theirs over the initial volume.
 module eos_pressure_m
   use block_state_m, only : block_state_t
-  use deformation_gradient_m, only : form_gradient, form_round_gradient
   use element_chunk_m, only : element_chunk_t
-  use eos_dispatch_m, only : eos_chunk_t, form_eos, advance_energy, find_stiffness
-  use eos_m, only : eos_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
-  use material_dispatch_m, only : find_failed, break_points, history_size
+  use material_dispatch_m, only : find_failed, column_damage, history_size
   use parts_m, only : hourglass_t, material_t, gives_pressure, may_fail, spall_pressure, &
     spall_stress
+  use quad_kinematics_m, only : form_gradient
   use quad_points_m, only : n_point
+  use stable_step_m, only : moduli_t, moduli_of
   use stress_chunk_m, only : stress_chunk_t
+  use volumetric_m, only : eos_chunk_t, form_eos, advance_energy, find_stiffness
   implicit none
   private
   public :: n_eos_value, n_law_value, load_point_state, start_point_values, add_point_values, &
-    form_element_pressure, form_shared_pressure, take_now, finish_limits, is_too_dense, &
+    add_law_values, form_shared_pressure, present_moduli, finish_limits, &
     look_for_failed
 
   !> Values of each element: energy, pressure, V/V0 - 1, bulk viscosity, speed of sound squared.
@@ -53,11 +53,7 @@ contains
     first = first + 2*chunk_size
     stress%former = elements%eos_state(first:first + chunk_size - 1)
     stress%stretch = chunk%stretch
-    if (point%is_round) then
-      call form_round_gradient(point, stress)
-    else
-      call form_gradient(point, stress)
-    end if
+    call form_gradient(point, stress)
   end subroutine load_point_state
 
   !> No point has been summed yet.
@@ -111,124 +107,97 @@ contains
     chunk%law_shear = max(chunk%law_shear, stress%shear)
   end subroutine add_law_values
 
-  !> Pressure and energy of a one-point element, whether of its equation of state or of its law.
-  pure subroutine form_element_pressure(i_chunk, material, viscosity, inverse_start, stress, &
-    elements, chunk, now)
-    integer, intent(in) :: i_chunk
-    type(material_t), intent(in) :: material
-    type(hourglass_t), intent(in) :: viscosity
-    real(wp), intent(in) :: inverse_start(chunk_size) !! 1/V0
-    type(stress_chunk_t), intent(in) :: stress
-    type(block_state_t), intent(inout) :: elements
-    type(element_chunk_t), intent(inout) :: chunk     !! pressure out (tension positive)
-    type(material_t), intent(out) :: now
-
-    call start_point_values(material, chunk)
-    chunk%heat = stress%work*chunk%mid_area
-    if (gives_pressure(material)) call add_law_values(material, 1.0_wp/inverse_start, stress, chunk)
-    call form_shared_pressure(i_chunk, material, viscosity, inverse_start, elements, chunk, now)
-  end subroutine form_element_pressure
-
-  !> The same where several points have been summed.
+  !> Pressure and energy that the points of an element share, once all of them have been summed.
   pure subroutine form_shared_pressure(i_chunk, material, viscosity, inverse_start, elements, &
     chunk, now)
-    integer, intent(in) :: i_chunk
-    type(material_t), intent(in) :: material
-    type(hourglass_t), intent(in) :: viscosity
-    real(wp), intent(in) :: inverse_start(chunk_size)
-    type(block_state_t), intent(inout) :: elements
-    type(element_chunk_t), intent(inout) :: chunk
-    type(material_t), intent(out) :: now
-
-    if (gives_pressure(material)) then
-      call form_law_pressure(i_chunk, material, viscosity, inverse_start, elements, chunk, now)
-    else
-      call form_eos_pressure(i_chunk, material, viscosity, inverse_start, elements, chunk, now)
-    end if
-  end subroutine form_shared_pressure
-
-  !> Pressure and energy at the end of the step, bulk viscosity apart from the energy. `now` has the
-  !> stiffest element's moduli.
-  pure subroutine form_law_pressure(i_chunk, material, viscosity, inverse_start, elements, chunk, &
-    now)
     integer, intent(in) :: i_chunk
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: viscosity        !! its Q1 and Q2 count
     real(wp), intent(in) :: inverse_start(chunk_size) !! 1/V0
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk     !! pressure out (tension positive)
-    type(material_t), intent(out) :: now
-    real(wp), dimension(chunk_size) :: pressure, growth, speed_squared, q
-    integer :: first
-
-    first = elements%eos_start(i_chunk)
-    pressure = -chunk%law_mean*inverse_start
-    associate (last => first + chunk_size - 1, values => elements%eos_state)
-      growth = chunk%stretch - values(first + 2*chunk_size:last + 2*chunk_size)
-      speed_squared = (max(material%bulk, values(first + 4*chunk_size:last + 4*chunk_size)) &
-        + 4.0_wp*max(material%shear, values(first + 5*chunk_size:last + 5*chunk_size))/3.0_wp) &
-        *(1.0_wp + chunk%stretch)/material%density
-      call form_viscous_pressure(viscosity, material%density, speed_squared, chunk, q)
-      ! The forces of viscosity are those of the two ends of the step; what they do is no strain.
-      elements%viscous_work(i_chunk) = elements%viscous_work(i_chunk) - sum(0.5_wp*growth*(q &
-        + values(first + 3*chunk_size:last + 3*chunk_size))/inverse_start)
-      if (allocated(material%rubber)) then
-        values(first:last) = chunk%law_energy*inverse_start
-      else
-        values(first:last) = values(first:last) + chunk%heat*inverse_start - 0.5_wp*growth &
-          *(pressure + values(first + chunk_size:last + chunk_size))
-      end if
-      values(first + chunk_size:last + chunk_size) = pressure
-      values(first + 2*chunk_size:last + 2*chunk_size) = chunk%stretch
-      values(first + 3*chunk_size:last + 3*chunk_size) = q
-      values(first + 4*chunk_size:last + 4*chunk_size) = chunk%law_bulk
-      values(first + 5*chunk_size:last + 5*chunk_size) = chunk%law_shear
-    end associate
-    chunk%pressure = -(pressure + q)
-    call stiffen_by_law(material, maxval(chunk%law_bulk), maxval(chunk%law_shear), &
-      maxval(chunk%stretch), now)
-  end subroutine form_law_pressure
-
-  !> The material with present moduli, as far as stable steps ask; never softer than at the start,
-  !> which hourglass control and the linear viscosity count with.
-  pure subroutine stiffen_by_law(material, bulk, shear, stretch, now)
-    type(material_t), intent(in) :: material
-    real(wp), intent(in) :: bulk, shear, stretch
-    type(material_t), intent(inout) :: now
-
-    now%density = material%density
-    now%poisson = 0.5_wp ! mean dilatation
-    now%shear = max(shear, material%shear)
-    now%bulk = max(bulk, material%bulk)
-    now%sound_speed = sqrt((now%bulk + 4.0_wp*now%shear/3.0_wp)*(1.0_wp + max(0.0_wp, stretch)) &
-      /material%density)
-  end subroutine stiffen_by_law
-
-  !> Energy and pressure at the end of the step, bulk viscosity included, whose work heats; points
-  !> that have failed have none. `now` has the stiffest element's moduli.
-  pure subroutine form_eos_pressure(i_chunk, material, viscosity, inverse_start, elements, chunk, &
-    now)
-    integer, intent(in) :: i_chunk
-    type(material_t), intent(in) :: material
-    type(hourglass_t), intent(in) :: viscosity            !! its Q1 and Q2 count
-    real(wp), intent(in) :: inverse_start(chunk_size)     !! 1/V0
-    type(block_state_t), intent(inout) :: elements
-    type(element_chunk_t), intent(inout) :: chunk         !! pressure out (tension positive)
-    type(material_t), intent(out) :: now
-    type(eos_chunk_t) :: state
-    real(wp), dimension(chunk_size) :: energy, pressure, growth, heat, least, most, q, &
-      stiffness
+    type(moduli_t), intent(inout) :: now              !! those of the stiffest element out
     logical :: failed(chunk_size), keeps_pressure
     integer :: first
 
     first = elements%eos_start(i_chunk)
-    energy = elements%eos_state(first:first + chunk_size - 1)
-    pressure = elements%eos_state(first + chunk_size:first + 2*chunk_size - 1)
-    growth = chunk%stretch - elements%eos_state(first + 2*chunk_size:first + 3*chunk_size - 1)
+    if (gives_pressure(material)) then
+      call form_law_pressure(material, viscosity, inverse_start, elements%eos_state(first), &
+        elements%viscous_work(i_chunk), chunk, now)
+    else
+      call look_for_failed(i_chunk, material, elements, failed, keeps_pressure)
+      call form_eos_pressure(material, viscosity, inverse_start, failed, keeps_pressure, &
+        elements%eos_state(first), chunk, now)
+      call look_for_spall(i_chunk, material, elements)
+    end if
+  end subroutine form_shared_pressure
+
+  !> Pressure and energy at the end of the step, bulk viscosity apart from the energy.
+  pure subroutine form_law_pressure(material, viscosity, inverse_start, values, viscous_work, &
+    chunk, now)
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: viscosity
+    real(wp), intent(in) :: inverse_start(chunk_size) !! 1/V0
+    real(wp), intent(inout) :: values(chunk_size, n_law_value)
+    real(wp), intent(inout) :: viscous_work
+    type(element_chunk_t), intent(inout) :: chunk
+    type(moduli_t), intent(inout) :: now
+    real(wp), dimension(chunk_size) :: pressure, growth, speed_squared, q
+
+    pressure = -chunk%law_mean*inverse_start
+    growth = chunk%stretch - values(:, 3)
+    speed_squared = (max(material%bulk, values(:, 5)) + 4.0_wp*max(material%shear, values(:, 6)) &
+      /3.0_wp)*(1.0_wp + chunk%stretch)/material%density
+    call form_viscous_pressure(viscosity, material%density, speed_squared, chunk, q)
+    ! The forces of viscosity are those of the two ends of the step; what they do is no strain.
+    viscous_work = viscous_work - sum(0.5_wp*growth*(q + values(:, 4))/inverse_start)
+    if (allocated(material%rubber)) then
+      values(:, 1) = chunk%law_energy*inverse_start
+    else
+      values(:, 1) = values(:, 1) + chunk%heat*inverse_start - 0.5_wp*growth &
+        *(pressure + values(:, 2))
+    end if
+    values(:, 2) = pressure
+    values(:, 3) = chunk%stretch
+    values(:, 4) = q
+    values(:, 5) = chunk%law_bulk
+    values(:, 6) = chunk%law_shear
+    chunk%pressure = -(pressure + q)
+    now = moduli_by_law(material, maxval(chunk%law_bulk), maxval(chunk%law_shear), &
+      maxval(chunk%stretch))
+  end subroutine form_law_pressure
+
+  !> Present moduli; never softer than at the start, which hourglass control and the linear
+  !> viscosity count with.
+  pure function moduli_by_law(material, bulk, shear, stretch) result(now)
+    type(material_t), intent(in) :: material
+    real(wp), intent(in) :: bulk, shear, stretch
+    type(moduli_t) :: now
+
+    now = moduli_t(material%density, max(bulk, material%bulk), max(shear, material%shear), 0.0_wp, &
+      .true.)
+    now%sound_speed = sqrt((now%bulk + 4.0_wp*now%shear/3.0_wp)*(1.0_wp + max(0.0_wp, stretch)) &
+      /material%density)
+  end function moduli_by_law
+
+  !> Energy and pressure at the end of the step, bulk viscosity included, whose work heats; points
+  !> that have failed have none.
+  pure subroutine form_eos_pressure(material, viscosity, inverse_start, failed, keeps_pressure, &
+    values, chunk, now)
+    type(material_t), intent(in) :: material
+    type(hourglass_t), intent(in) :: viscosity
+    real(wp), intent(in) :: inverse_start(chunk_size)     !! 1/V0
+    logical, intent(in) :: failed(chunk_size)             !! all points of an element
+    logical, intent(in) :: keeps_pressure                 !! in compression
+    real(wp), intent(inout) :: values(chunk_size, n_eos_value)
+    type(element_chunk_t), intent(inout) :: chunk
+    type(moduli_t), intent(inout) :: now
+    type(eos_chunk_t) :: state
+    real(wp), dimension(chunk_size) :: growth, heat, least, most, q, stiffness
+
+    growth = chunk%stretch - values(:, 3)
     call form_eos(material%eos, chunk%stretch, state)
-    call form_viscous_pressure(viscosity, material%density, elements%eos_state(first &
-      + 4*chunk_size), chunk, q)
-    call look_for_failed(i_chunk, material, elements, failed, keeps_pressure)
+    call form_viscous_pressure(viscosity, material%density, values(:, 5), chunk, q)
     least = -huge(1.0_wp)
     most = huge(1.0_wp)
     if (material%spall == spall_pressure) least = material%cutoff
@@ -240,22 +209,18 @@ contains
       end where
     end if
     ! The work of the forces of viscosity, which are those of the two ends of the step.
-    heat = chunk%heat*inverse_start - 0.5_wp*growth*(q + elements%eos_state(first + 3*chunk_size: &
-      first + 4*chunk_size - 1))
-    call advance_energy(state, growth, heat, least, most, energy, pressure)
-    call look_for_spall(i_chunk, material, pressure, elements)
-    call find_stiffness(state, chunk%stretch, energy, pressure, stiffness)
-    call stiffen(material, stiffness, 1.0_wp + chunk%stretch, now)
-    chunk%pressure = -(pressure + q)
-    elements%eos_state(first:first + chunk_size - 1) = energy
-    elements%eos_state(first + chunk_size:first + 2*chunk_size - 1) = pressure
-    elements%eos_state(first + 2*chunk_size:first + 3*chunk_size - 1) = chunk%stretch
-    elements%eos_state(first + 3*chunk_size:first + 4*chunk_size - 1) = q
-    elements%eos_state(first + 4*chunk_size:first + 5*chunk_size - 1) = (stiffness &
-      + 4.0_wp*material%shear/3.0_wp)*(1.0_wp + chunk%stretch)/material%density
+    heat = chunk%heat*inverse_start - 0.5_wp*growth*(q + values(:, 4))
+    call advance_energy(state, growth, heat, least, most, values(:, 1), values(:, 2))
+    call find_stiffness(state, chunk%stretch, values(:, 1), values(:, 2), stiffness)
+    now = moduli_by_eos(material, stiffness, 1.0_wp + chunk%stretch)
+    chunk%pressure = -(values(:, 2) + q)
+    values(:, 3) = chunk%stretch
+    values(:, 4) = q
+    values(:, 5) = (stiffness + 4.0_wp*material%shear/3.0_wp)*(1.0_wp + chunk%stretch) &
+      /material%density
   end subroutine form_eos_pressure
 
-  !> Bulk viscosity (see `viscous_stress`) with the speed of sound that each element had before.
+  !> Bulk viscosity (see `add_bulk_viscosity`) with the speed of sound that each element had before.
   pure subroutine form_viscous_pressure(viscosity, initial_density, speed_squared, chunk, q)
     type(hourglass_t), intent(in) :: viscosity
     real(wp), intent(in) :: initial_density
@@ -284,15 +249,14 @@ contains
     type(block_state_t), intent(inout) :: elements
     logical, intent(out) :: failed(chunk_size), keeps_pressure
     logical :: one(chunk_size)
-    integer :: k, n, n_failed
+    integer :: k, n_failed
 
     failed = .false.
     keeps_pressure = .false.
     if (.not. may_fail(material)) return
-    n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
     failed = .true.
     n_failed = 0
-    do k = 1, n
+    do k = 1, merge(n_point, 1, elements%point_start(i_chunk) > 0)
       call find_failed(material, elements%history(elements%history_start(i_chunk) &
         + (k - 1)*chunk_size*history_size(material)), one, keeps_pressure)
       failed = failed .and. one
@@ -302,14 +266,13 @@ contains
   end subroutine look_for_failed
 
   !> Elements that break by tension: all their points, from the next step on.
-  pure subroutine look_for_spall(i_chunk, material, pressure, elements)
+  pure subroutine look_for_spall(i_chunk, material, elements)
     integer, intent(in) :: i_chunk
     type(material_t), intent(in) :: material
-    real(wp), intent(in) :: pressure(chunk_size)
     type(block_state_t), intent(inout) :: elements
     real(wp) :: largest(chunk_size)
     logical :: broken(chunk_size)
-    integer :: k, n, first
+    integer :: k, first
 
     if (material%spall == spall_pressure) return
     largest = 0.0_wp
@@ -320,69 +283,60 @@ contains
           + s(:, 3)**2), -(s(:, 1) + s(:, 2)))
       end associate
     end if
-    broken = largest - pressure > -material%cutoff
+    first = elements%eos_start(i_chunk) + chunk_size
+    broken = largest - elements%eos_state(first:first + chunk_size - 1) > -material%cutoff
     if (.not. any(broken)) return
-    n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
-    do k = 1, n
-      call break_points(broken, elements%history(elements%history_start(i_chunk) &
-        + (k - 1)*chunk_size*history_size(material)))
+    do k = 1, merge(n_point, 1, elements%point_start(i_chunk) > 0)
+      first = elements%history_start(i_chunk) + chunk_size*((k - 1)*history_size(material) &
+        + column_damage - 1)
+      associate (damage => elements%history(first:first + chunk_size - 1))
+        where (broken) damage = max(1.0_wp, damage)
+      end associate
     end do
   end subroutine look_for_spall
 
-  !> The material with the moduli of the stiffest of some elements, as far as stable steps ask.
-  pure subroutine stiffen(material, stiffness, ratio, now)
+  !> Moduli of the stiffest of some elements.
+  pure function moduli_by_eos(material, stiffness, ratio) result(now)
     type(material_t), intent(in) :: material
     real(wp), intent(in) :: stiffness(chunk_size), ratio(chunk_size) !! adiabatic bulk modulus, V/V0
-    type(material_t), intent(inout) :: now
+    type(moduli_t) :: now
 
-    now%density = material%density
-    now%shear = material%shear
-    now%poisson = 0.5_wp ! mean dilatation
-    now%bulk = max(maxval(stiffness), least_share**2*material%bulk)
-    now%sound_speed = max(sqrt(maxval((stiffness + 4.0_wp*material%shear/3.0_wp)*ratio) &
-      /material%density), least_share*material%sound_speed)
-  end subroutine stiffen
+    now = moduli_t(material%density, max(maxval(stiffness), least_share**2*material%bulk), &
+      material%shear, max(sqrt(maxval((stiffness + 4.0_wp*material%shear/3.0_wp)*ratio) &
+      /material%density), least_share*material%sound_speed), .true.)
+  end function moduli_by_eos
 
-  !> The material with the moduli that the element in a slot has now; the material itself where its
-  !> moduli do not change.
-  pure subroutine take_now(material, elements, i_slot, now)
+  !> Moduli that the element in a slot has now.
+  pure function present_moduli(material, elements, i_slot) result(now)
     type(material_t), intent(in) :: material
     type(block_state_t), intent(in) :: elements
     integer, intent(in) :: i_slot
-    type(material_t), intent(out) :: now
+    type(moduli_t) :: now
     type(eos_chunk_t) :: state
     real(wp), dimension(chunk_size) :: energy, pressure, stretch, stiffness
     integer :: first
 
-    now%law = material%law
-    now%viscosity = material%viscosity
-    if (.not. allocated(material%eos)) then
-      now%density = material%density
-      now%bulk = material%bulk
-      now%shear = material%shear
-      now%poisson = material%poisson
-      now%sound_speed = material%sound_speed
-      return
-    end if
+    now = moduli_of(material)
+    if (.not. allocated(material%eos)) return
     first = elements%eos_start((i_slot - 1)/chunk_size + 1) + mod(i_slot - 1, chunk_size)
     energy = elements%eos_state(first)
     pressure = elements%eos_state(first + chunk_size)
     stretch = elements%eos_state(first + 2*chunk_size)
     if (gives_pressure(material)) then
-      call stiffen_by_law(material, elements%eos_state(first + 4*chunk_size), &
-        elements%eos_state(first + 5*chunk_size), stretch(1), now)
-      return
+      now = moduli_by_law(material, elements%eos_state(first + 4*chunk_size), &
+        elements%eos_state(first + 5*chunk_size), stretch(1))
+    else
+      call form_eos(material%eos, stretch, state)
+      call find_stiffness(state, stretch, energy, pressure, stiffness)
+      now = moduli_by_eos(material, stiffness, 1.0_wp + stretch)
     end if
-    call form_eos(material%eos, stretch, state)
-    call find_stiffness(state, stretch, energy, pressure, stiffness)
-    call stiffen(material, stiffness, 1.0_wp + stretch, now)
-  end subroutine take_now
+  end function present_moduli
 
   !> Limits of a chunk whose pressure has a memory: the step that a viscous fluid allows, and no
   !> volume where the pressure of some element has no bound.
   pure subroutine finish_limits(material, now, stretch, step, volume)
     type(material_t), intent(in) :: material
-    type(material_t), intent(in) :: now
+    type(moduli_t), intent(in) :: now
     real(wp), intent(in) :: stretch(chunk_size) !! V/V0 - 1
     real(wp), intent(inout) :: step, volume     !! smallest of the chunk
     real(wp) :: damping
@@ -394,16 +348,7 @@ contains
         /(3.0_wp*material%density*now%sound_speed**2*step)
       step = step/(damping + sqrt(damping**2 + 1.0_wp))
     end if
-    if (any(is_too_dense(material%eos, stretch))) volume = 0.0_wp
+    if (any(1.0_wp + stretch < material%eos%least_ratio)) volume = 0.0_wp
   end subroutine finish_limits
-
-  !> Whether the pressure of an equation of state has next to no bound at v = 1 + stretch.
-  pure elemental function is_too_dense(eos, stretch) result(yes)
-    type(eos_t), intent(in) :: eos
-    real(wp), intent(in) :: stretch
-    logical :: yes
-
-    yes = 1.0_wp + stretch < eos%least_ratio
-  end function is_too_dense
 
 end module eos_pressure_m

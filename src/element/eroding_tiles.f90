@@ -5,20 +5,19 @@ module eroding_tiles_m
   use block_state_m, only : block_state_t, stays, has_left
   use element_chunk_m, only : element_chunk_t, reference_inverse, reference_sum, &
     scatter_forces
-  use element_dispatch_m, only : advance_chunk
   use element_state_m, only : smallest_ratio, initial_volume
   use eos_pressure_m, only : look_for_failed
-  use erosion_m, only : erosion_t, asks_for_strain, asks_for_stress
   use kinds_m, only : wp
   use layout_m, only : chunk_size, tile_t
   use material_dispatch_m, only : history_size
   use model_m, only : model_t
-  use parts_m, only : material_t, has_memory_of_heat
+  use parts_m, only : material_t, has_memory_of_heat, erosion_t, asks_for_strain, asks_for_stress
+  use quad_m, only : advance_chunk
   use quad_points_m, only : n_point
-  use element_steps_m, only : step_of_element
+  use element_steps_m, only : own_steps
   implicit none
   private
-  public :: add_eroding_tile_forces, take_nodes
+  public :: add_eroding_tile_forces, advance_eroding_chunk
 
   !> How much larger the shape of an element is that has left.
   real(wp), parameter :: much = 1.0e6_wp
@@ -42,44 +41,54 @@ contains
     type(block_state_t), intent(inout) :: elements     !! only this tile's slots are touched
     real(wp), intent(inout) :: force(2, model%layout%n_local) !! set here
     type(element_chunk_t) :: chunk
-    type(leaving_t) :: leaving
-    integer :: nodes(4, chunk_size), i_chunk, first
+    integer :: i_chunk
 
     force = 0.0_wp
     do i_chunk = tile%first_chunk, tile%last_chunk
-      first = (i_chunk - 1)*chunk_size + 1
-      call take_nodes(model%layout%slot_nodes(:, first:first + chunk_size - 1), &
-        elements%erosion%status(first:first + chunk_size - 1), nodes)
-      leaving%energy = 0.0_wp
-      associate (i_eos => elements%eos_start(i_chunk))
-        if (i_eos > 0) leaving%energy = elements%eos_state(i_eos:i_eos + chunk_size - 1)
-      end associate
-      leaving%hourglass = elements%erosion%hourglass(first:first + chunk_size - 1)
-      leaving%work = elements%hourglass_work(i_chunk)
-      call advance_chunk(model, i_chunk, nodes, motion, times(2), elements, chunk)
-      if (times(2) > 0.0_wp) then
-        call find_leaving(model, i_chunk, nodes, motion, times, elements, leaving%flags)
-        if (any(leaving%flags)) call take_out(model, i_chunk, motion, times(2), leaving, elements, &
-          chunk)
-      end if
-      if (elements%erosion%n_gone(i_chunk) > 0) call clear_forces(elements%erosion%status(first: &
-        first + chunk_size - 1) /= stays, chunk)
-      call scatter_forces(model%layout%chunk_elements(i_chunk), model%layout%slot_local(1, first), &
-        chunk, force)
+      call advance_eroding_chunk(model, i_chunk, motion, times, elements, chunk)
+      call scatter_forces(model%layout%chunk_elements(i_chunk), model%layout%slot_local(1, &
+        (i_chunk - 1)*chunk_size + 1), chunk, force)
     end do
   end subroutine add_eroding_tile_forces
 
-  !> Nodes of a chunk; those of an element that has left are all its first one.
-  pure subroutine take_nodes(slot_nodes, status, nodes)
-    integer, intent(in) :: slot_nodes(4, chunk_size), status(chunk_size)
-    integer, intent(out) :: nodes(4, chunk_size)
-    integer :: i
+  !> As `advance_chunk`, where elements may leave in the step.
+  subroutine advance_eroding_chunk(model, i_chunk, motion, times, elements, chunk)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_chunk
+    real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node)
+    real(wp), intent(in) :: times(2)                   !! of the motion, and the step that led there
+    type(block_state_t), intent(inout) :: elements
+    type(element_chunk_t), intent(inout) :: chunk      !! forces out
+    type(leaving_t) :: leaving
+    integer :: nodes(4, chunk_size), first, i
 
-    nodes = slot_nodes
+    first = (i_chunk - 1)*chunk_size + 1
+    ! Those of an element that has left are all its first one.
+    nodes = model%layout%slot_nodes(:, first:first + chunk_size - 1)
     do i = 1, chunk_size
-      if (status(i) /= stays) nodes(:, i) = nodes(1, i)
+      if (elements%erosion%status(first + i - 1) /= stays) nodes(:, i) = nodes(1, i)
     end do
-  end subroutine take_nodes
+    leaving%energy = 0.0_wp
+    associate (i_eos => elements%eos_start(i_chunk))
+      if (i_eos > 0) leaving%energy = elements%eos_state(i_eos:i_eos + chunk_size - 1)
+    end associate
+    leaving%hourglass = elements%erosion%hourglass(first:first + chunk_size - 1)
+    leaving%work = elements%hourglass_work(i_chunk)
+    call advance_chunk(model, i_chunk, nodes, motion, times(2), elements, chunk)
+    if (times(2) > 0.0_wp) then
+      call find_leaving(model, i_chunk, nodes, motion, times, elements, leaving%flags)
+      if (any(leaving%flags)) call take_out(model, i_chunk, motion, times(2), leaving, elements, &
+        chunk)
+    end if
+    if (elements%erosion%n_gone(i_chunk) == 0) return
+    do i = 1, chunk_size
+      if (elements%erosion%status(first + i - 1) == stays) cycle
+      chunk%force3(:, i) = 0.0_wp
+      chunk%force4(:, i) = 0.0_wp
+      chunk%swing(:, i) = 0.0_wp
+      if (chunk%is_round) chunk%hoop(i) = 0.0_wp
+    end do
+  end subroutine advance_eroding_chunk
 
   !> Elements that leave take their energies along; the limits of the chunk are those of the rest.
   subroutine take_out(model, i_chunk, motion, dt, leaving, elements, chunk)
@@ -90,11 +99,12 @@ contains
     type(leaving_t), intent(in) :: leaving
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(in) :: chunk
-    real(wp) :: limit, volume, share
+    real(wp) :: steps(chunk_size), limit, volume, share, v(2, 4)
     integer :: i, slot, i_eos
 
     limit = huge(1.0_wp)
     volume = huge(1.0_wp)
+    call own_steps(model, elements, i_chunk, motion, steps)
     elements%hourglass_work(i_chunk) = leaving%work
     i_eos = elements%eos_start(i_chunk)
     do i = 1, model%layout%chunk_elements(i_chunk)
@@ -103,12 +113,16 @@ contains
       if (.not. leaving%flags(i)) then
         elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) &
           + (elements%erosion%hourglass(slot) - leaving%hourglass(i))
-        limit = min(limit, step_of_element(model, elements, slot, motion))
+        limit = min(limit, steps(i))
         volume = min(volume, smallest_ratio(model, motion, elements, slot))
         cycle
       end if
       ! Its force at the end of the step does no work any more: half of that of the step is undone.
-      share = 0.5_wp*dt*power_of(model, slot, i, motion, chunk)
+      v = motion(3:4, model%layout%slot_nodes(:, slot))
+      share = dot_product(chunk%force3(:, i), v(:, 3) - v(:, 1)) + dot_product(chunk%force4(:, i), &
+        v(:, 4) - v(:, 2)) + dot_product(chunk%swing(:, i), v(:, 1) - v(:, 2) + v(:, 3) - v(:, 4))
+      if (chunk%is_round) share = share + chunk%hoop(i)*sum(v(1, :))
+      share = 0.5_wp*dt*share
       if (elements%eos_state(i_eos + 2*chunk_size + i - 1) > -1.0_wp .and. abs(share) &
         <= huge(1.0_wp)) then
         elements%erosion%internal(slot) = elements%eos_state(i_eos + i - 1) &
@@ -126,21 +140,6 @@ contains
     elements%volume_limit(i_chunk) = volume
   end subroutine take_out
 
-  !> Power of the forces of an element on the motion of its nodes in the step behind.
-  pure function power_of(model, slot, i, motion, chunk) result(power)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: slot, i
-    real(wp), intent(in), contiguous :: motion(:, :)
-    type(element_chunk_t), intent(in) :: chunk
-    real(wp) :: power
-    real(wp) :: v(2, 4)
-
-    v = motion(3:4, model%layout%slot_nodes(:, slot))
-    power = dot_product(chunk%force3(:, i), v(:, 3) - v(:, 1)) + dot_product(chunk%force4(:, i), &
-      v(:, 4) - v(:, 2)) + dot_product(chunk%swing(:, i), v(:, 1) - v(:, 2) + v(:, 3) - v(:, 4))
-    if (chunk%is_round) power = power + chunk%hoop(i)*sum(v(1, :))
-  end function power_of
-
   !> From now on the slot is padding.
   pure subroutine make_padding(model, i_chunk, i, elements)
     type(model_t), intent(in) :: model
@@ -156,13 +155,19 @@ contains
       if (size(reference, 2) > n) reference(slot, n + 1:) = reference(slot, n + 1:)/much**3
       elements%deviator(slot, :) = 0.0_wp
       n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
-      if (n > 1) then
-        do k = 0, 3*n - 1
-          elements%point_deviator(elements%point_start(i_chunk) + k*chunk_size + i - 1) = 0.0_wp
-        end do
-      end if
-      if (elements%history_start(i_chunk) > 0) call keep_told(material, n, &
-        elements%history(elements%history_start(i_chunk) + i - 1:))
+      do k = 0, merge(3*n, 0, n > 1) - 1
+        elements%point_deviator(elements%point_start(i_chunk) + k*chunk_size + i - 1) = 0.0_wp
+      end do
+      ! Plastic strain, temperature and damage are told on as they were; back stress would pull.
+      n = merge(n, 0, elements%history_start(i_chunk) > 0)*history_size(material)
+      do k = 0, n - 1
+        associate (value => elements%history(elements%history_start(i_chunk) + k*chunk_size + i &
+          - 1))
+          if (mod(k, history_size(material)) > 0 .and. .not. has_memory_of_heat(material)) &
+            value = 0.0_wp
+          if (.not. abs(value) <= huge(1.0_wp)) value = 0.0_wp
+        end associate
+      end do
       first = elements%hourglass_start(i_chunk) + i - 1
       if (first >= i) elements%hourglass_strain([first, first + chunk_size]) = 0.0_wp
       first = elements%eos_start(i_chunk) + i - 1
@@ -170,37 +175,6 @@ contains
       elements%eos_state(first + 4*chunk_size) = material%sound_speed**2
     end associate
   end subroutine make_padding
-
-  !> Plastic strain, temperature and damage are told on as they were; back stress would pull.
-  pure subroutine keep_told(material, n, history)
-    type(material_t), intent(in) :: material
-    integer, intent(in) :: n                 !! points
-    real(wp), intent(inout) :: history(:)    !! from the slot on
-    integer :: k, column
-
-    do k = 0, n*history_size(material) - 1
-      column = mod(k, history_size(material)) + 1
-      associate (value => history(k*chunk_size + 1))
-        if (column > 1 .and. .not. has_memory_of_heat(material)) value = 0.0_wp
-        if (.not. abs(value) <= huge(1.0_wp)) value = 0.0_wp
-      end associate
-    end do
-  end subroutine keep_told
-
-  !> Elements that have left do not push.
-  pure subroutine clear_forces(is_gone, chunk)
-    logical, intent(in) :: is_gone(chunk_size)
-    type(element_chunk_t), intent(inout) :: chunk
-    integer :: i
-
-    do i = 1, chunk_size
-      if (.not. is_gone(i)) cycle
-      chunk%force3(:, i) = 0.0_wp
-      chunk%force4(:, i) = 0.0_wp
-      chunk%swing(:, i) = 0.0_wp
-      if (chunk%is_round) chunk%hoop(i) = 0.0_wp
-    end do
-  end subroutine clear_forces
 
   !> Elements that leave, by the state at the end of the step. `nodes` are those of the chunk, all
   !> one where an element has gone.
@@ -244,41 +218,40 @@ contains
     first = elements%eos_start(i_chunk)
     pressure = elements%eos_state(first + chunk_size:first + 2*chunk_size - 1)
     associate (erosion => material%erosion)
-      common = count_of(pressure >= erosion%most_pressure) &
-        + count_of(pressure <= erosion%least_pressure)
+      common = merge(1, 0, pressure >= erosion%most_pressure) &
+        + merge(1, 0, pressure <= erosion%least_pressure)
       if (times(1) >= erosion%time) common = common + 1
       if (min(erosion%most_volume, -erosion%least_volume) < huge(1.0_wp)) then
         volumetric = log(max(tiny(1.0_wp), 1.0_wp + elements%eos_state(first + 2*chunk_size: &
           first + 3*chunk_size - 1)))
-        common = common + count_of(volumetric >= erosion%most_volume .or. &
+        common = common + merge(1, 0, volumetric >= erosion%most_volume .or. &
           volumetric <= erosion%least_volume)
       end if
       if (asks_for_strain(erosion)) call count_strains(erosion, i_chunk, nodes, motion, elements, &
         common)
-      if (erosion%impulse < huge(1.0_wp)) call add_impulses(erosion, i_chunk, pressure, times(2), &
-        elements, common)
+      if (erosion%impulse < huge(1.0_wp)) then
+        call form_stresses(i_chunk, 0, pressure, elements, principal, mises)
+        first = (i_chunk - 1)*chunk_size + 1
+        associate (impulse => elements%erosion%impulse(first:first + chunk_size - 1))
+          ! Of the square of what the largest principal stress has above its threshold.
+          impulse = impulse + times(2)*max(0.0_wp, principal - erosion%threshold)**2
+          common = common + merge(1, 0, impulse >= erosion%impulse)
+        end associate
+      end if
       n = merge(n_point, 1, elements%point_start(i_chunk) > 0)
       points = 0
       do k = 1, n
         met = common
         if (asks_for_stress(erosion)) then
           call form_stresses(i_chunk, k, pressure, elements, principal, mises)
-          met = met + count_of(principal >= erosion%principal_stress) &
-            + count_of(mises >= erosion%mises)
+          met = met + merge(1, 0, principal >= erosion%principal_stress) &
+            + merge(1, 0, mises >= erosion%mises)
         end if
-        points = points + count_of(met >= erosion%n_criteria)
+        points = points + merge(1, 0, met >= erosion%n_criteria)
       end do
       leaves = leaves .or. points >= min(n, erosion%n_point)
     end associate
   end subroutine find_by_criteria
-
-  !> 1 where something holds, else 0.
-  elemental function count_of(holds) result(n)
-    logical, intent(in) :: holds
-    integer :: n
-
-    n = merge(1, 0, holds)
-  end function count_of
 
   !> Largest principal stress and von Mises stress of a point, tension positive.
   pure subroutine form_stresses(i_chunk, k, pressure, elements, principal, mises)
@@ -305,24 +278,6 @@ contains
     mises = sqrt(3.0_wp*(xx**2 + yy**2 + xx*yy + xy**2))
   end subroutine form_stresses
 
-  !> Integral of the square of what the largest principal stress has above its threshold.
-  pure subroutine add_impulses(erosion, i_chunk, pressure, dt, elements, met)
-    type(erosion_t), intent(in) :: erosion
-    integer, intent(in) :: i_chunk
-    real(wp), intent(in) :: pressure(chunk_size), dt
-    type(block_state_t), intent(inout) :: elements
-    integer, intent(inout) :: met(chunk_size)
-    real(wp), dimension(chunk_size) :: principal, mises
-    integer :: first
-
-    call form_stresses(i_chunk, 0, pressure, elements, principal, mises)
-    first = (i_chunk - 1)*chunk_size + 1
-    associate (impulse => elements%erosion%impulse(first:first + chunk_size - 1))
-      impulse = impulse + dt*max(0.0_wp, principal - erosion%threshold)**2
-      met = met + count_of(impulse >= erosion%impulse)
-    end associate
-  end subroutine add_impulses
-
   !> Logarithmic principal strains at the centre, where the diagonals give the deformation.
   pure subroutine count_strains(erosion, i_chunk, nodes, motion, elements, met)
     type(erosion_t), intent(in) :: erosion
@@ -331,40 +286,32 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :)
     type(block_state_t), intent(in) :: elements
     integer, intent(inout) :: met(chunk_size)
-    real(wp) :: start(4), strain(3), mean, u(2, 4)
+    real(wp) :: a(2), b(2), f(2, 2), c(3), strain(3), mean, radius, inverse, u(2, 4)
     integer :: i, slot
 
     do i = 1, chunk_size
       slot = (i_chunk - 1)*chunk_size + i
       u = motion(1:2, nodes(:, i))
-      start = elements%reference(slot, 1:4)
-      strain(1:2) = plane_strains(start, u(:, 3) - u(:, 1), u(:, 4) - u(:, 2))
+      ! In the plane half the logarithms of the eigenvalues of F^T F.
+      a = elements%reference(slot, 1:2)
+      b = elements%reference(slot, 3:4)
+      inverse = 1.0_wp/(a(1)*b(2) - b(1)*a(2))
+      f(:, 1) = ((a + (u(:, 3) - u(:, 1)))*b(2) - (b + (u(:, 4) - u(:, 2)))*a(2))*inverse
+      f(:, 2) = ((b + (u(:, 4) - u(:, 2)))*a(1) - (a + (u(:, 3) - u(:, 1)))*b(1))*inverse
+      c = [sum(f(:, 1)**2), sum(f(:, 2)**2), sum(f(:, 1)*f(:, 2))]
+      mean = 0.5_wp*(c(1) + c(2))
+      radius = sqrt(0.25_wp*(c(1) - c(2))**2 + c(3)**2)
+      strain(1:2) = 0.5_wp*log(max(tiny(1.0_wp), [mean + radius, mean - radius]))
       strain(3) = 0.0_wp
       if (size(elements%reference, 2) > 6) strain(3) = log(max(tiny(1.0_wp), 1.0_wp &
         + sum(u(1, :))/elements%reference(slot, reference_sum)))
       mean = sum(strain)/3.0_wp
-      met(i) = met(i) + count_of(maxval(strain) >= erosion%most_strain) &
-        + count_of(minval(strain) <= erosion%least_strain) &
-        + count_of(0.5_wp*(maxval(strain) - minval(strain)) >= erosion%shear_strain) &
-        + count_of(sqrt(2.0_wp/3.0_wp*sum((strain - mean)**2)) >= erosion%effective_strain)
+      met(i) = met(i) + merge(1, 0, maxval(strain) >= erosion%most_strain) &
+        + merge(1, 0, minval(strain) <= erosion%least_strain) &
+        + merge(1, 0, 0.5_wp*(maxval(strain) - minval(strain)) >= erosion%shear_strain) &
+        + merge(1, 0, sqrt(2.0_wp/3.0_wp*sum((strain - mean)**2)) >= erosion%effective_strain)
     end do
   end subroutine count_strains
-
-  !> Both in the plane: half the logarithms of the eigenvalues of F^T F.
-  pure function plane_strains(start, d31, d42) result(strains)
-    real(wp), intent(in) :: start(4)         !! X31, Y31, X42, Y42
-    real(wp), intent(in) :: d31(2), d42(2)   !! what they have grown by
-    real(wp) :: strains(2)
-    real(wp) :: f(2, 2), c(3), mean, radius, inverse
-
-    inverse = 1.0_wp/(start(1)*start(4) - start(3)*start(2))
-    f(:, 1) = ((start(1:2) + d31)*start(4) - (start(3:4) + d42)*start(2))*inverse
-    f(:, 2) = ((start(3:4) + d42)*start(1) - (start(1:2) + d31)*start(3))*inverse
-    c = [sum(f(:, 1)**2), sum(f(:, 2)**2), sum(f(:, 1)*f(:, 2))]
-    mean = 0.5_wp*(c(1) + c(2))
-    radius = sqrt(0.25_wp*(c(1) - c(2))**2 + c(3)**2)
-    strains = 0.5_wp*log(max(tiny(1.0_wp), [mean + radius, mean - radius]))
-  end function plane_strains
 
   !> Elements whose own stable step, or volume, has become too small. The limit of a chunk is that
   !> of its shortest element with the fastest waves of any: it may lie below all of theirs.
@@ -375,7 +322,7 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :)
     type(block_state_t), intent(inout) :: elements !! the limit of the chunk
     logical, intent(inout) :: leaves(chunk_size)
-    real(wp) :: least, step, limit
+    real(wp) :: steps(chunk_size), least, limit
     integer :: i, slot
     logical :: inverts
 
@@ -383,6 +330,7 @@ contains
     if (erosion%by_step) least = max(least, elements%erosion%least_step)
     inverts = erosion%by_step .and. .not. elements%volume_limit(i_chunk) > 0.0_wp
     if (elements%time_limit(i_chunk) >= least .and. .not. inverts) return
+    call own_steps(model, elements, i_chunk, motion, steps)
     limit = huge(1.0_wp)
     do i = 1, chunk_size
       slot = (i_chunk - 1)*chunk_size + i
@@ -390,9 +338,8 @@ contains
       if (inverts) leaves(i) = leaves(i) .or. &
         .not. elements%eos_state(elements%eos_start(i_chunk) + 2*chunk_size + i - 1) > -1.0_wp
       if (leaves(i)) cycle
-      step = step_of_element(model, elements, slot, motion)
-      leaves(i) = .not. step >= least
-      if (.not. leaves(i)) limit = min(limit, step)
+      leaves(i) = .not. steps(i) >= least
+      if (.not. leaves(i)) limit = min(limit, steps(i))
     end do
     elements%time_limit(i_chunk) = limit
   end subroutine find_by_step

@@ -25,12 +25,25 @@ contains
     type(block_state_t), intent(inout) :: elements
     type(element_chunk_t), intent(inout) :: chunk !! q_x, q_y out
     real(wp) :: work
-    integer :: x, y
+    integer :: i, x, y
+    logical :: has_failed, failed(chunk_size), ignored
 
-    if (allocated(elements%n_failed)) call stop_failed(i_chunk, material, elements, chunk)
     x = elements%hourglass_start(i_chunk)
     y = x + chunk_size
+    has_failed = .false.
+    if (allocated(elements%n_failed)) has_failed = elements%n_failed(i_chunk) > 0
     associate (memory => elements%hourglass_strain)
+      if (has_failed) then
+        ! No hourglass velocity of elements whose force is gone. In the step in which an element
+        ! fails the force before it still does work.
+        call find_failed(material, elements%history(elements%history_start(i_chunk)), failed, &
+          ignored)
+        where (failed .and. .not. abs(memory(x:x + chunk_size - 1)) &
+          + abs(memory(y:y + chunk_size - 1)) > 0.0_wp)
+          chunk%gx = 0.0_wp
+          chunk%gy = 0.0_wp
+        end where
+      end if
       if (hourglass%form == hourglass_assumed) then
         if (chunk%is_round) call form_resistance(material, hourglass, chunk)
         call resist_by_assumed_strain(material, hourglass, stress, memory(x), memory(y), chunk, &
@@ -43,9 +56,19 @@ contains
           call resist_elastically(stress%dt, stress, memory(x), memory(y), chunk, work)
         end if
       end if
+      if (has_failed) then
+        ! At the end of the step in which an element fails its force does no work any more.
+        do i = 1, chunk_size
+          if (.not. failed(i)) cycle
+          chunk%hourglass_work(i) = chunk%hourglass_work(i) - 0.5_wp*stress%dt*(chunk%qx(i) &
+            *chunk%gx(i) + chunk%qy(i)*chunk%gy(i))
+          chunk%qx(i) = 0.0_wp
+          chunk%qy(i) = 0.0_wp
+          memory([x + i - 1, y + i - 1]) = 0.0_wp
+        end do
+        work = sum(chunk%hourglass_work)
+      end if
     end associate
-    if (allocated(elements%n_failed)) call drop_failed(i_chunk, material, stress%dt, elements, &
-      chunk, work)
     elements%hourglass_work(i_chunk) = elements%hourglass_work(i_chunk) + work
     if (allocated(elements%erosion)) then
       ! Element by element, where these may leave.
@@ -263,52 +286,5 @@ contains
     xy = x31*y31 + x42*y42
     spread = 0.5_wp*((xx + yy) + sqrt((xx - yy)**2 + 4.0_wp*xy*xy))
   end function largest_spread
-
-  !> No hourglass velocity of elements that have failed and whose force is gone: before hourglass
-  !> control is formed. In the step in which an element fails the force before it still does work.
-  pure subroutine stop_failed(i_chunk, material, elements, chunk)
-    integer, intent(in) :: i_chunk
-    type(material_t), intent(in) :: material
-    type(block_state_t), intent(in) :: elements
-    type(element_chunk_t), intent(inout) :: chunk !! gamma.v
-    logical :: failed(chunk_size), ignored
-
-    if (elements%n_failed(i_chunk) == 0) return
-    call find_failed(material, elements%history(elements%history_start(i_chunk)), failed, ignored)
-    associate (x => elements%hourglass_start(i_chunk), y => elements%hourglass_start(i_chunk) &
-      + chunk_size, memory => elements%hourglass_strain)
-      where (failed .and. .not. abs(memory(x:x + chunk_size - 1)) &
-        + abs(memory(y:y + chunk_size - 1)) > 0.0_wp)
-        chunk%gx = 0.0_wp
-        chunk%gy = 0.0_wp
-      end where
-    end associate
-  end subroutine stop_failed
-
-  !> Elements that have failed have no hourglass force, nor a memory of it; at the end of the step
-  !> in which they fail it does no work.
-  pure subroutine drop_failed(i_chunk, material, dt, elements, chunk, work)
-    integer, intent(in) :: i_chunk
-    type(material_t), intent(in) :: material
-    real(wp), intent(in) :: dt
-    type(block_state_t), intent(inout) :: elements
-    type(element_chunk_t), intent(inout) :: chunk
-    real(wp), intent(inout) :: work               !! of all hourglass forces in the step
-    logical :: failed(chunk_size), ignored
-    integer :: i, first
-
-    if (elements%n_failed(i_chunk) == 0) return
-    call find_failed(material, elements%history(elements%history_start(i_chunk)), failed, ignored)
-    do i = 1, chunk_size
-      if (.not. failed(i)) cycle
-      chunk%hourglass_work(i) = chunk%hourglass_work(i) - 0.5_wp*dt*(chunk%qx(i)*chunk%gx(i) &
-        + chunk%qy(i)*chunk%gy(i))
-      chunk%qx(i) = 0.0_wp
-      chunk%qy(i) = 0.0_wp
-      first = elements%hourglass_start(i_chunk) + i - 1
-      elements%hourglass_strain([first, first + chunk_size]) = 0.0_wp
-    end do
-    work = sum(chunk%hourglass_work)
-  end subroutine drop_failed
 
 end module hourglass_m

@@ -6,7 +6,7 @@
 module mass_scaling_m
   use block_state_m, only : block_state_t
   use element_mass_m, only : element_shares
-  use element_steps_m, only : chunk_steps, scaled_step, is_damped, has_exposed, exposed_step
+  use element_steps_m, only : chunk_steps, scaled_step, is_damped, exposed_step
   use kinds_m, only : wp
   use layout_m, only : chunk_size, slot_part, tile_t
   use model_m, only : model_t
@@ -111,7 +111,8 @@ contains
       any(abs(elements%mass_ratio(first:first + chunk_size - 1) - 1.0_wp) > 0.0_wp)
     if (allocated(elements%retardation)) is_own = is_own .or. elements%retardation(first) > 0.0_wp
     if (.not. is_own) then
-      if (.not. has_exposed(elements, i_chunk)) return
+      if (.not. allocated(elements%mass_shares)) return
+      if (.not. any(elements%mass_shares(:, first:first + chunk_size - 1) > 0.0_wp)) return
       do i = 1, model%layout%chunk_elements(i_chunk)
         elements%time_limit(i_chunk) = min(elements%time_limit(i_chunk), exposed_step(model, &
           elements, first + i - 1, motion))

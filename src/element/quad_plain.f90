@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> The frequent case of `quad_one_point` in three loops: an elastic material, or J2 plasticity
-!> without back stress, under viscous hourglass control and with nothing else. The equations are
-!> those of `quad_kinematics`, `material_j2`, `volumetric`, `hourglass` and `stable_step`; it saves
-!> a tenth of the instructions of a whole run (doc/theory/elements.md).
+!> The frequent case of a one-point quad (`quad`) in three loops: an elastic material, or J2
+!> plasticity without back stress, under viscous hourglass control and with nothing else. The
+!> equations are those of `quad_kinematics`, `material_j2`, `volumetric`, `hourglass` and
+!> `stable_step`; it saves a tenth of the instructions of a whole run (doc/theory/elements.md).
 !> One loop would be too long for a processor to look ahead into the next elements while divisions
 !> and roots are under way: for x86-64-v3 it takes a sixth less instructions than theirs and a
 !> quarter more time.
@@ -10,7 +10,7 @@ module quad_plain_m
   use kinds_m, only : wp
   use block_state_m, only : block_state_t
   use controls_m, only : length_by_diagonal
-  use element_chunk_m, only : element_chunk_t, gather_chunk
+  use element_chunk_m, only : element_chunk_t, gather_motion
   use layout_m, only : chunk_size
   use material_dispatch_m, only : is_elastic, returns_radially
   use model_m, only : model_t
@@ -104,12 +104,12 @@ contains
     elements%time_limit(i_chunk) = 1.0_wp/(material%sound_speed*sqrt(found%longest))
     elements%volume_limit(i_chunk) = (1.0_wp + found%least)/(1.0_wp - found%least)
     if (found%least >= -0.1_wp .and. found%largest <= 0.1_wp) return
-    call gather_chunk(nodes, motion, chunk)
+    call gather_motion(.false., nodes, motion, chunk)
     call correct_pressure(material%bulk, n_slot, elements%reference(first, 1), chunk)
     elements%volume_limit(i_chunk) = 1.0_wp + minval(chunk%stretch)
   end subroutine advance_plain
 
-  !> As `gather_chunk`, by vectors of four.
+  !> As `gather_motion`, by vectors of four.
   pure subroutine gather_diagonals(nodes, motion, diagonals)
     integer, intent(in) :: nodes(4, chunk_size)
     real(wp), intent(in) :: motion(4, *)

@@ -10,9 +10,8 @@ module quad_points_m
   implicit none
   private
   public :: n_point, shift, shape_at_points, form_point, add_point_force, point_ratios, &
-    point_areas, signed_area, round_point_t, form_radii, add_hoop_strain, add_hoop_force, &
-    round_point_ratios, along_a, along_b, along_h, step_sums_t, start_sums, &
-    add_point_sums, form_row_sums
+    point_areas, round_point_t, form_radii, add_hoop_strain, add_hoop_force, &
+    along_a, along_b, along_h, step_sums_t, add_point_sums, form_row_sums
 
   !> Points of a quad.
   integer, parameter :: n_point = 4
@@ -103,12 +102,16 @@ contains
     end do
   end subroutine add_point_force
 
-  !> J - 1 at the points of one element, and the initial area that each stands for.
-  pure subroutine point_ratios(reference, u, stretch, start)
-    real(wp), intent(in) :: reference(6) !! X31 Y31 X42 Y42 h.X h.Y
-    real(wp), intent(in) :: u(2, 4)      !! displacement of the nodes
+  !> J - 1 at the points of one element, and the initial area, or volume per radian, that each of
+  !> them stands for.
+  pure subroutine point_ratios(is_round, reference, u, stretch, start)
+    logical, intent(in) :: is_round
+    real(wp), intent(in) :: reference(reference_sum) !! X31 Y31 X42 Y42 h.X h.Y, and of axisymmetric
+                                                     !! quads the sum of the radii
+    real(wp), intent(in) :: u(2, 4)                  !! displacement of the nodes
     real(wp), intent(out) :: stretch(n_point), start(n_point)
     real(wp), dimension(2) :: p, q, d, e, h
+    real(wp) :: radius
     integer :: k
 
     h = (u(:, 1) - u(:, 2)) + (u(:, 3) - u(:, 4))
@@ -120,6 +123,14 @@ contains
       start(k) = 0.25_wp*signed_area(p, q)
       ! J - 1 from the displacement, so that no digit of a small strain is lost.
       stretch(k) = 0.25_wp*(signed_area(p, e) + signed_area(d, q + e))/start(k)
+    end do
+    if (.not. is_round) return
+    do k = 1, n_point
+      radius = 0.25_wp*reference(reference_sum) + along_a(k)*reference(1) &
+        + along_b(k)*reference(3) + along_h(k)*reference(5)
+      stretch(k) = stretch(k) + (1.0_wp + stretch(k))*dot_product(shape_at_points(:, k), u(1, :)) &
+        /radius
+      start(k) = start(k)*radius
     end do
   end subroutine point_ratios
 
@@ -222,31 +233,6 @@ contains
       chunk%hoop(i) = chunk%hoop(i) + 0.25_wp*force
     end do
   end subroutine add_hoop_force
-
-  !> J - 1 at the points of one element and the initial volume that each stands for.
-  pure subroutine round_point_ratios(x, u, stretch, start)
-    real(wp), intent(in) :: x(2, 4), u(2, 4)  !! corners at the start, displacements
-    real(wp), intent(out) :: stretch(n_point), start(n_point)
-    real(wp) :: reference(6), radius, growth
-    integer :: k
-
-    reference = [x(:, 3) - x(:, 1), x(:, 4) - x(:, 2), (x(:, 1) - x(:, 2)) + (x(:, 3) - x(:, 4))]
-    call point_ratios(reference, u, stretch, start)
-    do k = 1, n_point
-      radius = dot_product(shape_at_points(:, k), x(1, :))
-      growth = dot_product(shape_at_points(:, k), u(1, :))
-      stretch(k) = stretch(k) + (1.0_wp + stretch(k))*growth/radius
-      start(k) = start(k)*radius
-    end do
-  end subroutine round_point_ratios
-
-  !> Nothing summed yet.
-  pure subroutine start_sums(sums)
-    type(step_sums_t), intent(out) :: sums
-
-    sums%h = 0.0_wp
-    sums%volume = huge(1.0_wp)
-  end subroutine start_sums
 
   !> Add point `k`: B_3.B_3, B_4.B_4 and B_3.B_4 of its parallelogram over four times its area.
   pure subroutine add_point_sums(k, point, sums)

@@ -15,11 +15,20 @@ module stable_step_m
   use quad_points_m, only : step_sums_t
   implicit none
   private
-  public :: stable_step, axisymmetric_step, full_step, axisymmetric_full_step, harmless_coefficient
+  public :: moduli_t, moduli_of, stable_step, axisymmetric_step, full_step, &
+    axisymmetric_full_step, harmless_coefficient
 
   !> Coefficient up to which hourglass control never asks for less than L/c in a convex quad of its
   !> initial area (doc/theory/elements.md).
   real(wp), parameter :: harmless_coefficient = 0.25_wp
+
+  !> What stable steps take of a material, or of its present state.
+  type :: moduli_t
+    real(wp) :: density             !! of the undeformed body, kg/m^3
+    real(wp) :: bulk, shear         !! K and G
+    real(wp) :: sound_speed
+    logical :: has_mean_dilatation
+  end type moduli_t
 
   !> Of one-point axisymmetric quads, over the masses: bounds of omega^2 of strain and of its part
   !> by volume (over lambda); of hourglass control its gamma.gamma, and the square of its coupling
@@ -29,6 +38,15 @@ module stable_step_m
   end type axisymmetric_sums_t
 
 contains
+
+  !> Moduli of the undeformed body.
+  pure function moduli_of(material) result(moduli)
+    type(material_t), intent(in) :: material
+    type(moduli_t) :: moduli
+
+    moduli = moduli_t(material%density, material%bulk, material%shear, material%sound_speed, &
+      has_mean_dilatation(material))
+  end function moduli_of
 
   !> Smallest stable step of a chunk of one-point plane quads, and its smallest volume ratio.
   pure subroutine stable_step(length_rule, sound_speed, hourglass, nodes, chunk, limit, volume, &
@@ -147,7 +165,7 @@ contains
   !> below 0 where an area is.
   pure subroutine axisymmetric_step(material, hourglass, inverse_mass, stride, chunk, limit, &
       volume, single)
-    type(material_t), intent(in) :: material
+    type(moduli_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass      !! bulk viscosity too
     integer, intent(in) :: stride
     real(wp), intent(in) :: inverse_mass(stride, *) !! density over mass, first slot of the chunk; 0
@@ -334,7 +352,7 @@ contains
   !> sum_p A_p (grad N)(grad N)^T, and lambda <= (trace of its 16th power)^(1/16). A triangle has
   !> three nodes and one gradient; there lambda <= trace.
   pure subroutine full_step(material, viscosity, nodes, chunk, sums, limit, volume, single)
-    type(material_t), intent(in) :: material
+    type(moduli_t), intent(in) :: material
     type(hourglass_t), intent(in) :: viscosity  !! its Q1 and Q2 count
     integer, intent(in) :: nodes(4, chunk_size) !! a triangle repeats its third
     type(element_chunk_t), intent(in) :: chunk
@@ -436,7 +454,7 @@ contains
   !> lambda (div v + v_r/r)^2
   !>   omega^2 <= 2G (H + T) + lambda (sqrt(2H) + sqrt(T))^2,   K for lambda with mean dilatation.
   pure subroutine axisymmetric_full_step(material, viscosity, chunk, sums, limit, volume, single)
-    type(material_t), intent(in) :: material
+    type(moduli_t), intent(in) :: material
     type(hourglass_t), intent(in) :: viscosity      !! its Q1 and Q2 count
     type(element_chunk_t), intent(in) :: chunk
     type(step_sums_t), intent(in) :: sums
@@ -448,7 +466,7 @@ contains
     integer :: i
 
     modulus = material%bulk
-    if (.not. has_mean_dilatation(material)) &
+    if (.not. material%has_mean_dilatation) &
       modulus = max(0.0_wp, material%bulk - 2.0_wp*material%shear/3.0_wp)
     largest = 0.0_wp
     volume = huge(1.0_wp)

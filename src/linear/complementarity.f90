@@ -259,7 +259,8 @@ contains
     associate (n => problem%n)
       problem%slack(:n) = 0.0_wp
       call add_rows(m, list, n, problem%width, problem%band, problem%x, problem%r, problem%slack)
-      largest = largest_term(n, problem%width, problem%band, problem%x, problem%r)
+      largest = max(maxval(abs(problem%r(:n))), &
+        maxval(abs(problem%band(1:(problem%width + 1)*n:problem%width + 1)*problem%x(:n))))
       do k = 1, problem%n_column
         associate (column => problem%column((k - 1)*n + 1:k*n))
           total = dot_product(column, problem%x(:n))
@@ -296,19 +297,6 @@ contains
       end associate
     end do
   end subroutine add_rows
-
-  !> The largest of r and what the diagonal of the band makes of x.
-  pure function largest_term(n, width, band, x, r) result(largest)
-    integer, intent(in) :: n, width
-    real(wp), intent(in) :: band(0:width, n), x(n), r(n)
-    real(wp) :: largest
-    integer :: i
-
-    largest = 0.0_wp
-    do i = 1, n
-      largest = max(largest, abs(r(i)), abs(band(0, i)*x(i)))
-    end do
-  end function largest_term
 
   !> Force by force, each as the others stand, until none changes.
   pure subroutine sweep(problem, n_sweep)

@@ -6,15 +6,15 @@
 !> small, else sparse. Theory: doc/theory/implicit.md, "Linear systems".
 module linear_solver_m
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-  use banded_lu_m, only : banded_lu_t, factor_banded, order_equations, solve_banded
+  use sparse_m, only : banded_lu_t, bandwidth, factor_banded, reverse_cuthill_mckee, solve_banded, &
+    multiply, sparse_t
   use kinds_m, only : long, wp
   use log_m, only : to_text
   use memory_m, only : available_bytes
-  use sparse_m, only : multiply, sparse_t
   use umfpack_m, only : has_umfpack, factor_umfpack, free_umfpack, solve_umfpack, umfpack_t
   implicit none
   private
-  public :: report_t, solve_linear, method_best, method_banded, method_sparse, equilibrate
+  public :: report_t, solve_linear, method_banded, method_sparse, equilibrate
 
   !> Where the norm of A z is below this part of that of |A||z| (A equilibrated), A takes z to zero.
   !> Seen: 0.4e-16 to 7e-16 for rigid motions of up to 100,000 equations; 4e-15 for two
@@ -48,8 +48,8 @@ module linear_solver_m
     character(:), allocatable :: message  !! what is wrong, in words
   end type report_t
 
-  !> Methods: choose, or take the one named.
-  integer, parameter :: method_best = 0, method_banded = 1, method_sparse = 2
+  !> Methods.
+  integer, parameter :: method_banded = 1, method_sparse = 2
 
   !> Widest band that goes to LAPACK where UMFPACK is there. Seconds to factorise on one core
   !> (gfortran 12, reference BLAS), quads with two equations a node, banded against sparse:
@@ -87,14 +87,11 @@ contains
     type(sparse_t) :: scaled, magnitudes
     type(factor_t) :: factor
     real(wp), allocatable :: row_scale(:), column_scale(:)
-    integer :: wanted
     logical :: factored
 
     x = 0.0_wp
     report%message = ''
     report%method = 'none'
-    wanted = method_best
-    if (present(method)) wanted = method
     call check_entries(matrix, b, report)
     if (report%equation > 0) return
     if (matrix%n == 0) then
@@ -104,7 +101,7 @@ contains
     end if
     allocate (row_scale(matrix%n), column_scale(matrix%n))
     call equilibrate(matrix, row_scale, column_scale, scaled)
-    call factor_matrix(scaled, wanted, factor, factored)
+    call factor_matrix(scaled, factor, factored, method)
     report%bandwidth = factor%banded%width
     report%is_negative = factor%is_negative
     report%method = 'banded LU (LAPACK)'
@@ -114,7 +111,18 @@ contains
       report%bytes = factor%sparse%bytes
     end if
     if (.not. factored) then
-      call report_memory(matrix%n, factor, report)
+      ! How much is needed, and what helps.
+      report%out_of_memory = .true.
+      report%message = 'the factors of '//to_text(matrix%n)//' equations ('//report%method &
+        //', bandwidth '//to_text(report%bandwidth)//') need ' &
+        //to_text(nint(1.0e-6_wp*report%bytes))//' MB, but ' &
+        //to_text(nint(1.0e-6_wp*available_bytes()))//' MB are free'
+      if (factor%method == method_sparse .and. .not. has_umfpack) then
+        report%message = 'this program was built without UMFPACK'
+      else if (.not. has_umfpack) then
+        report%message = report%message//'; a program built with UMFPACK (libsuitesparse-dev on ' &
+          //'Debian and Ubuntu) needs far less'
+      end if
     else
       magnitudes = scaled
       magnitudes%value = abs(magnitudes%value)
@@ -151,24 +159,6 @@ contains
     report%is_singular = report%equation > 0
     if (report%is_singular) report%message = 'the matrix is singular: a row or column of it is zero'
   end subroutine check_entries
-
-  !> The factors do not fit: how much is needed, and what helps.
-  subroutine report_memory(n, factor, report)
-    integer, intent(in) :: n
-    type(factor_t), intent(in) :: factor
-    type(report_t), intent(inout) :: report
-
-    report%out_of_memory = .true.
-    report%message = 'the factors of '//to_text(n)//' equations ('//report%method//', bandwidth ' &
-      //to_text(report%bandwidth)//') need '//to_text(nint(1.0e-6_wp*report%bytes))//' MB, but ' &
-      //to_text(nint(1.0e-6_wp*available_bytes()))//' MB are free'
-    if (factor%method == method_sparse .and. .not. has_umfpack) then
-      report%message = 'this program was built without UMFPACK'
-    else if (.not. has_umfpack) then
-      report%message = report%message//'; a program built with UMFPACK (libsuitesparse-dev on '// &
-        'Debian and Ubuntu) needs far less'
-    end if
-  end subroutine report_memory
 
   !> The motion z that meets least stiffness: one step of inverse iteration for the least singular
   !> value, z = A^-1 A^-T s. For a singular matrix both solves grow without bound along the motion
@@ -259,18 +249,20 @@ contains
   !> suffice. One whose sparse factors have a zero pivot is factorised again with its diagonal
   !> changed in the last digit of one, which no entry exceeds by much: singular still, but to be
   !> solved with.
-  subroutine factor_matrix(matrix, method, factor, factored)
+  subroutine factor_matrix(matrix, factor, factored, method)
     type(sparse_t), intent(in) :: matrix
-    integer, intent(in) :: method          !! one of `method_`
     type(factor_t), intent(inout) :: factor
     logical, intent(out) :: factored
+    integer, intent(in), optional :: method
     type(sparse_t) :: shifted
     integer :: i, k
 
-    call order_equations(matrix, factor%banded)
-    factor%method = method
-    if (method == method_best) factor%method = merge(method_sparse, method_banded, &
-      has_umfpack .and. factor%banded%width > widest_band)
+    factor%banded%order = reverse_cuthill_mckee(matrix)
+    factor%banded%width = bandwidth(matrix, factor%banded%order)
+    factor%banded%bytes = 8_long*(3_long*factor%banded%width + 1)*matrix%n
+    factor%method = merge(method_sparse, method_banded, has_umfpack &
+      .and. factor%banded%width > widest_band)
+    if (present(method)) factor%method = method
     if (factor%method /= method_sparse) then
       call factor_banded(matrix, least_pivot, factor%banded, factored)
       factor%is_negative = factor%banded%is_negative
@@ -297,12 +289,11 @@ contains
     real(wp), intent(in) :: b(:)      !! (n)
     real(wp), intent(out) :: x(:)     !! (n)
 
-    select case (factor%method)
-    case (method_sparse)
+    if (factor%method == method_sparse) then
       call solve_umfpack(factor%sparse, transposed, b, x)
-    case default
+    else
       call solve_banded(factor%banded, transposed, b, x)
-    end select
+    end if
   end subroutine solve_factored
 
   !> scaled(i, j) = row_scale(i)*matrix(i, j)*column_scale(j), with the largest entries from

@@ -2,7 +2,6 @@
 !> Crushable foam: an elastic step of the whole stress, whose principal values are then cut to the
 !> curve of yield stress against 1 - V/V0 in compression and to the cut-off in tension.
 module material_crushable_foam_m
-  use curves_m, only : curve_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use parts_m, only : material_t
@@ -24,9 +23,20 @@ contains
     real(wp), intent(inout) :: mean(chunk_size) !! stress of the point, start to end
     real(wp), dimension(chunk_size) :: crush, share, growth
     real(wp) :: third, push, oxx, oyy, oxy, middle, root, half, xy, xx, yy, zz
-    integer :: i
+    real(wp) :: width, slope, from
+    integer :: i, k
 
-    call find_crush(material%crush, chunk%stretch, crush)
+    ! Yield stress: a polygon in 1 - V/V0, end values outside.
+    crush = material%crush%ordinate(1)
+    do k = 1, size(material%crush%abscissa) - 1
+      width = material%crush%abscissa(k + 1) - material%crush%abscissa(k)
+      slope = (material%crush%ordinate(k + 1) - material%crush%ordinate(k))/width
+      from = material%crush%abscissa(k)
+      !$omp simd
+      do i = 1, chunk_size
+        crush(i) = crush(i) + slope*max(0.0_wp, min(width, -chunk%stretch(i) - from))
+      end do
+    end do
     ! ln(J1/J0) = ln(1 + (J1 - J0)/J0).
     share = max(least, (chunk%stretch - chunk%former)/(1.0_wp + chunk%former))
     call form_log_ratios(chunk_size, share, growth)
@@ -61,24 +71,5 @@ contains
     chunk%bulk = material%bulk
     chunk%shear = material%shear
   end subroutine update_crushable_foam
-
-  !> Yield stress of each slot: a polygon in 1 - V/V0, end values outside.
-  pure subroutine find_crush(curve, stretch, crush)
-    type(curve_t), intent(in) :: curve
-    real(wp), intent(in) :: stretch(chunk_size) !! V/V0 - 1
-    real(wp), intent(out) :: crush(chunk_size)
-    real(wp) :: slope, width
-    integer :: i, k
-
-    crush = curve%ordinate(1)
-    do k = 1, size(curve%abscissa) - 1
-      width = curve%abscissa(k + 1) - curve%abscissa(k)
-      slope = (curve%ordinate(k + 1) - curve%ordinate(k))/width
-      !$omp simd
-      do i = 1, chunk_size
-        crush(i) = crush(i) + slope*max(0.0_wp, min(width, -stretch(i) - curve%abscissa(k)))
-      end do
-    end do
-  end subroutine find_crush
 
 end module material_crushable_foam_m

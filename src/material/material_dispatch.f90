@@ -8,14 +8,14 @@ module material_dispatch_m
     law_crushable_foam
   use stress_chunk_m, only : stress_chunk_t, stress_point_t
   use material_crushable_foam_m, only : update_crushable_foam
-  use material_elastic_m, only : update_elastic, tangent_elastic, update_null
+  use material_elastic_m, only : update_elastic, update_null
   use material_j2_m, only : update_j2_isotropic, update_j2_mixed, tangent_of_return
-  use material_johnson_cook_m, only : update_johnson_cook, update_hot_johnson_cook
+  use material_johnson_cook_m, only : update_johnson_cook
   use material_piecewise_m, only : update_piecewise, tangent_piecewise
   use material_rubber_m, only : update_mooney_rivlin, update_blatz_ko
   implicit none
   private
-  public :: update_stress, form_tangent, history_size, find_failed, break_points, &
+  public :: update_stress, form_tangent, history_size, find_failed, &
     column_temperature, column_damage, has_plastic_strain, &
     is_elastic, returns_radially, law_name, has_mean_dilatation
 
@@ -117,7 +117,7 @@ contains
     case (law_johnson_cook)
       call update_johnson_cook(material%shear, material%flow, chunk, history(:, 1))
     case (law_hot_johnson_cook)
-      call update_hot_johnson_cook(material%shear, material%flow, chunk, history(:, 1), &
+      call update_johnson_cook(material%shear, material%flow, chunk, history(:, 1), &
         history(:, column_temperature), history(:, column_damage))
     case (law_null)
       call update_null(material%viscosity, chunk)
@@ -168,14 +168,6 @@ contains
     end if
   end subroutine find_failed
 
-  !> Points that the cut-off of the pressure has broken: damage is full.
-  pure subroutine break_points(broken, history)
-    logical, intent(in) :: broken(chunk_size)
-    real(wp), intent(inout) :: history(chunk_size, *)
-
-    where (broken) history(:, column_damage) = max(1.0_wp, history(:, column_damage))
-  end subroutine break_points
-
   !> Deviator at the end of a step and its derivative, at one point.
   pure subroutine form_tangent(material, point)
     type(material_t), intent(in) :: material
@@ -183,7 +175,8 @@ contains
 
     select case (material%law)
     case (law_elastic)
-      call tangent_elastic(material%shear, point)
+      ! No stress reaches this surface.
+      call tangent_of_return(material%shear, huge(1.0_wp), 0.0_wp, point)
     case (law_plastic)
       call tangent_of_return(material%shear, material%yield + material%beta*material%hardening &
         *point%plastic_strain, material%hardening, point)

@@ -3,10 +3,10 @@
 module material_elastic_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
-  use stress_chunk_m, only : stress_chunk_t, stress_point_t, turn, turn_rate
+  use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: update_elastic, tangent_elastic, update_null
+  public :: update_elastic, update_null
 
 contains
 
@@ -33,23 +33,6 @@ contains
         + (chunk%syy(i) + oyy)*chunk%dyy(i)) + (chunk%sxy(i) + oxy)*chunk%dxy(i)
     end do
   end subroutine update_elastic
-
-  !> The same at one point, with its derivative.
-  pure subroutine tangent_elastic(shear, point)
-    real(wp), intent(in) :: shear
-    type(stress_point_t), intent(inout) :: point !! `stress` and `tangent` out
-    real(wp) :: turned(3), moduli(3)
-    integer :: i
-
-    moduli = 2.0_wp*shear*[1.0_wp/3.0_wp, 1.0_wp, 1.0_wp]
-    turned = turn(point, point%old)
-    point%stress = turned + moduli*point%strain
-    point%tangent = 0.0_wp
-    do i = 1, 3
-      point%tangent(i, i) = moduli(i)
-    end do
-    point%tangent(:, 4) = turn_rate(turned)
-  end subroutine tangent_elastic
 
   !> A fluid: the deviator is that of its viscosity, 2 mu dev(D), and none without.
   pure subroutine update_null(viscosity, chunk)

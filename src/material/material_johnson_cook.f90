@@ -6,7 +6,7 @@
 !> temperature (all plastic work heats) and damage (Johnson & Cook 1985).
 !> A chunk goes by in pieces of `n_lane` points; a piece in which nothing can yield is left out.
 module material_johnson_cook_m
-  use johnson_cook_m, only : johnson_cook_t
+  use parts_m, only : johnson_cook_t
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use material_piecewise_m, only : form_trial, return_to_surface
@@ -14,7 +14,7 @@ module material_johnson_cook_m
   use vector_functions_m, only : form_exponentials, form_logarithms, form_powers
   implicit none
   private
-  public :: update_johnson_cook, update_hot_johnson_cook, n_lane, find_growth
+  public :: update_johnson_cook, n_lane, find_growth
 
   !> Points side by side: a few vectors of any width, few enough to leave out most elastic ones.
   integer, parameter :: n_lane = 16
@@ -33,56 +33,51 @@ module material_johnson_cook_m
 
 contains
 
-  !> Advance a chunk by one step; no heat, no damage.
-  pure subroutine update_johnson_cook(shear, flow, chunk, plastic_strain)
+  !> Advance a chunk by one step. Of the heated law the flow stress is that of the temperature at
+  !> its start, and what is broken neither flows nor carries stress.
+  pure subroutine update_johnson_cook(shear, flow, chunk, plastic_strain, rise, damage)
     real(wp), intent(in) :: shear                         !! G
     type(johnson_cook_t), intent(in) :: flow
     type(stress_chunk_t), intent(inout) :: chunk          !! increments in, deviator in and out,
-                                                          !! work out
+                                                          !! work out; mean stress and V/V0 of the
+                                                          !! heated law
     real(wp), intent(inout) :: plastic_strain(chunk_size) !! effective plastic strain
-    real(wp), dimension(chunk_size) :: mises, growth
-    real(wp) :: cold(n_lane), ratio(n_lane)
-    integer :: i
-
-    call form_trial(shear, chunk, mises)
-    growth = 0.0_wp
-    cold = 1.0_wp
-    do i = 1, chunk_size, n_lane
-      if (is_elastic(flow%a, mises(i), cold)) cycle
-      call form_rate_ratio(flow, chunk%dt, chunk%dxx(i), chunk%dyy(i), chunk%dxy(i), ratio)
-      call find_growth(flow, shear, mises(i), plastic_strain(i), cold, ratio, growth(i))
-    end do
-    call return_to_surface(shear, mises, growth, chunk, plastic_strain)
-  end subroutine update_johnson_cook
-
-  !> Advance a chunk by one step; the flow stress is that of the temperature at its start.
-  pure subroutine update_hot_johnson_cook(shear, flow, chunk, plastic_strain, rise, damage)
-    real(wp), intent(in) :: shear
-    type(johnson_cook_t), intent(in) :: flow
-    type(stress_chunk_t), intent(inout) :: chunk  !! mean stress and V/V0 too
-    real(wp), intent(inout), dimension(chunk_size) :: plastic_strain
-    real(wp), intent(inout), dimension(chunk_size) :: rise   !! of the temperature, K
-    real(wp), intent(inout), dimension(chunk_size) :: damage !! 1 = broken
+    real(wp), intent(inout), optional :: rise(chunk_size) !! of the temperature, K: the heated law
+    real(wp), intent(inout), optional :: damage(chunk_size) !! of it, 1 = broken
     real(wp), dimension(chunk_size) :: mises, growth, whole
     real(wp), dimension(n_lane) :: hot, factor, ratio, stress
     integer :: i
 
     call form_trial(shear, chunk, mises)
     growth = 0.0_wp
-    ! What is broken does not flow.
-    whole = merge(mises, 0.0_wp, damage < 1.0_wp)
+    whole = mises
+    if (present(damage)) whole = merge(mises, 0.0_wp, damage < 1.0_wp)
+    factor = 1.0_wp
     do i = 1, chunk_size, n_lane
-      call soften(flow, rise(i), hot, factor)
+      if (present(rise)) call soften(flow, rise(i), hot, factor)
       if (is_elastic(flow%a, whole(i), factor)) cycle
       call form_rate_ratio(flow, chunk%dt, chunk%dxx(i), chunk%dyy(i), chunk%dxy(i), ratio)
       call find_growth(flow, shear, whole(i), plastic_strain(i), factor, ratio, growth(i))
+      if (.not. (present(rise) .and. present(damage))) cycle
       stress = whole(i:i + n_lane - 1) - 3.0_wp*shear*growth(i:i + n_lane - 1)
       call add_damage(flow, stress, chunk%mean(i), growth(i), hot, ratio, damage(i))
-      call add_heat(flow%heat, stress, growth(i), chunk%ratio(i), rise(i))
+      ! The work of the flow stress at the end of the step heats.
+      associate (piece => rise(i:i + n_lane - 1))
+        piece = piece + flow%heat*chunk%ratio(i:i + n_lane - 1)*stress*growth(i:i + n_lane - 1)
+      end associate
     end do
     call return_to_surface(shear, mises, growth, chunk, plastic_strain)
-    if (any(damage >= 1.0_wp)) call drop_stress(damage, chunk)
-  end subroutine update_hot_johnson_cook
+    if (.not. present(damage)) return
+    do i = 1, chunk_size
+      if (damage(i) < 1.0_wp) cycle
+      ! The end of the step has no share in the work then.
+      chunk%work(i) = chunk%work(i) - 0.5_wp*(chunk%sxx(i)*chunk%dxx(i) &
+        + chunk%syy(i)*chunk%dyy(i) + 2.0_wp*chunk%sxy(i)*chunk%dxy(i))
+      chunk%sxx(i) = 0.0_wp
+      chunk%syy(i) = 0.0_wp
+      chunk%sxy(i) = 0.0_wp
+    end do
+  end subroutine update_johnson_cook
 
   !> Whether nothing yields: neither hardening nor rates lower the flow stress, so that below A
   !> times the factor of temperature all is elastic.
@@ -141,19 +136,6 @@ contains
     end do
   end subroutine soften
 
-  !> The work of the flow stress at the end of the step heats.
-  pure subroutine add_heat(heat, stress, growth, ratio, rise)
-    real(wp), intent(in) :: heat
-    real(wp), intent(in), dimension(n_lane) :: stress, growth, ratio !! the last: V/V0
-    real(wp), intent(inout) :: rise(n_lane)
-    integer :: i
-
-    !$omp simd
-    do i = 1, n_lane
-      rise(i) = rise(i) + heat*ratio(i)*stress(i)*growth(i)
-    end do
-  end subroutine add_heat
-
   !> Damage grows by that of the plastic strain over the strain at fracture
   !> (D1 + D2 exp(D3 sigma_m/sigma)) (1 + D4 ln r) (1 + D5 T*), not below its bound.
   pure subroutine add_damage(flow, stress, mean, growth, hot, ratio, damage)
@@ -183,23 +165,6 @@ contains
     end do
   end subroutine add_damage
 
-  !> Points that are broken carry no stress.
-  pure subroutine drop_stress(damage, chunk)
-    real(wp), intent(in) :: damage(chunk_size)
-    type(stress_chunk_t), intent(inout) :: chunk
-    integer :: i
-
-    do i = 1, chunk_size
-      if (damage(i) < 1.0_wp) cycle
-      ! The end of the step has no share in the work then.
-      chunk%work(i) = chunk%work(i) - 0.5_wp*(chunk%sxx(i)*chunk%dxx(i) &
-        + chunk%syy(i)*chunk%dyy(i) + 2.0_wp*chunk%sxy(i)*chunk%dxy(i))
-      chunk%sxx(i) = 0.0_wp
-      chunk%syy(i) = 0.0_wp
-      chunk%sxy(i) = 0.0_wp
-    end do
-  end subroutine drop_stress
-
   !> Growth g of the plastic strain p in a step by the flow stress at its end, 3G g + sigma(p + g) =
   !> q, of some points side by side, so that the compiler forms vectors of them. What a point gets
   !> does not depend on those beside it. The left side rises with g, so that the root lies between 0
@@ -213,15 +178,23 @@ contains
     real(wp), intent(in) :: ratio(n_lane) !! r, not below 1; of the viscoplastic form r/g
     real(wp), intent(out) :: growth(n_lane)
     type(search_t) :: search
-    real(wp), dimension(n_lane) :: known, stress, slope
+    real(wp), dimension(n_lane) :: known, logarithm, stress, slope
     real(wp) :: near
     integer :: i_round
 
     known = factor
-    if (.not. flow%is_viscoplastic) call scale_by_rate(flow%c, ratio, known)
+    if (flow%c > 0.0_wp .and. .not. flow%is_viscoplastic) then
+      call form_logarithms(n_lane, ratio, logarithm)
+      known = factor*(1.0_wp + flow%c*logarithm)
+    end if
     growth = 0.0_wp
     call form_flow(flow, strain, growth, ratio, known, stress, slope)
-    call open_search(shear, mises, stress, slope, search)
+    ! Bounds where the trial stress is above the flow stress at the start, and what the slope there
+    ! makes of it.
+    search%low = 0.0_wp
+    search%high = max(0.0_wp, mises - stress)/(3.0_wp*shear)
+    search%growth = max(0.0_wp, mises - stress)/(3.0_wp*shear + slope)
+    search%is_open = merge(1.0_wp, 0.0_wp, mises > stress)
     if (.not. any(search%is_open > 0.0_wp)) return
     call bound_by_power(flow, mises, strain, known, search)
     ! Where the flow stress has corners, the last step of Newton's method may cross one.
@@ -236,42 +209,13 @@ contains
     growth = search%growth
   end subroutine find_growth
 
-  !> Bounds where the trial stress is above the flow stress at the start, and what the slope there
-  !> makes of it.
-  pure subroutine open_search(shear, mises, stress, slope, search)
-    real(wp), intent(in) :: shear
-    real(wp), intent(in), dimension(n_lane) :: mises, stress, slope !! at the start
-    type(search_t), intent(inout) :: search
-    integer :: i
-
-    !$omp simd
-    do i = 1, n_lane
-      search%low(i) = 0.0_wp
-      search%high(i) = max(0.0_wp, mises(i) - stress(i))/(3.0_wp*shear)
-      search%growth(i) = max(0.0_wp, mises(i) - stress(i))/(3.0_wp*shear + slope(i))
-      search%is_open(i) = merge(1.0_wp, 0.0_wp, mises(i) > stress(i))
-    end do
-  end subroutine open_search
-
-  !> Factor times 1 + C ln r.
-  pure subroutine scale_by_rate(c, ratio, factor)
-    real(wp), intent(in) :: c
-    real(wp), intent(in) :: ratio(n_lane) !! not below 1
-    real(wp), intent(inout) :: factor(n_lane)
-    real(wp) :: logarithm(n_lane)
-
-    if (.not. c > 0.0_wp) return
-    call form_logarithms(n_lane, ratio, logarithm)
-    factor = factor*(1.0_wp + c*logarithm)
-  end subroutine scale_by_rate
-
   !> Flow stress at the end of the step, and its slope over the growth.
   pure subroutine form_flow(flow, strain, growth, ratio, factor, stress, slope)
     type(johnson_cook_t), intent(in) :: flow
     real(wp), intent(in), dimension(n_lane) :: strain, growth, ratio
     real(wp), intent(in) :: factor(n_lane) !! of temperature, and of rates that growth is none of
     real(wp), intent(out), dimension(n_lane) :: stress, slope
-    real(wp), dimension(n_lane) :: total, power, speed, rise
+    real(wp), dimension(n_lane) :: total, power, rate, speed, rise
     real(wp) :: at_rest, static
     integer :: i
 
@@ -280,7 +224,16 @@ contains
       total(i) = max(least_strain, strain(i) + growth(i))
     end do
     call form_powers(n_lane, total, flow%n, power)
-    call form_rate(flow, growth, ratio, speed, rise)
+    ! 1 + C ln r where r goes with the growth, and its slope.
+    speed = 1.0_wp
+    rise = 0.0_wp
+    if (flow%is_viscoplastic .and. flow%c > 0.0_wp) then
+      ! By name: the compiler packs an expression into memory of the heap.
+      rate = max(1.0_wp, ratio*growth)
+      call form_logarithms(n_lane, rate, speed)
+      speed = 1.0_wp + flow%c*speed
+      rise = merge(flow%c/max(growth, least_strain), 0.0_wp, ratio*growth > 1.0_wp)
+    end if
     at_rest = merge(0.0_wp, 1.0_wp, flow%n > 0.0_wp)
     !$omp simd private(static)
     do i = 1, n_lane
@@ -292,27 +245,6 @@ contains
       slope(i) = merge(0.0_wp, slope(i), static*speed(i) >= flow%most)
     end do
   end subroutine form_flow
-
-  !> 1 + C ln r where r goes with the growth, and its slope; 1 and 0 else.
-  pure subroutine form_rate(flow, growth, ratio, speed, rise)
-    type(johnson_cook_t), intent(in) :: flow
-    real(wp), intent(in), dimension(n_lane) :: growth, ratio
-    real(wp), intent(out), dimension(n_lane) :: speed, rise
-    real(wp), dimension(n_lane) :: known, logarithm
-    integer :: i
-
-    speed = 1.0_wp
-    rise = 0.0_wp
-    if (.not. (flow%is_viscoplastic .and. flow%c > 0.0_wp)) return
-    ! By name: the compiler packs an expression into memory of the heap.
-    known = max(1.0_wp, ratio*growth)
-    call form_logarithms(n_lane, known, logarithm)
-    !$omp simd
-    do i = 1, n_lane
-      speed(i) = 1.0_wp + flow%c*logarithm(i)
-      rise(i) = merge(flow%c/max(growth(i), least_strain), 0.0_wp, ratio(i)*growth(i) > 1.0_wp)
-    end do
-  end subroutine form_rate
 
   !> Where p is smaller than g may be the slope at the start says nothing: there the start is what
   !> B (p + g)^n alone allows, if no bound of the flow stress comes before.

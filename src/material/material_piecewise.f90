@@ -26,12 +26,23 @@ contains
     type(stress_chunk_t), intent(inout) :: chunk          !! increments in, deviator in and out,
                                                           !! work out
     real(wp), intent(inout) :: plastic_strain(chunk_size) !! effective plastic strain
-    real(wp), dimension(chunk_size) :: mises, growth
+    real(wp), dimension(chunk_size) :: mises, growth, rate, hoop
+    real(wp) :: frequency
+    integer :: i
 
     call form_trial(shear, chunk, mises)
     if (depends_on_rate(hardening)) then
+      frequency = 0.0_wp
+      if (chunk%dt > 0.0_wp) frequency = 1.0_wp/chunk%dt
+      hoop = 0.0_wp
+      if (chunk%has_hoop) hoop = chunk%hoop
+      !$omp simd
+      do i = 1, chunk_size
+        rate(i) = frequency*sqrt((chunk%dxx(i) + hoop(i))**2 + (chunk%dyy(i) + hoop(i))**2 &
+          + hoop(i)**2 + 2.0_wp*chunk%dxy(i)**2)
+      end do
       call grow_with_rate(hardening, size(hardening%strain), size(hardening%rate), &
-        hardening%stress, hardening%slope, shear, chunk, mises, plastic_strain, growth)
+        hardening%stress, hardening%slope, shear, rate, mises, plastic_strain, growth)
     else
       call grow(size(hardening%strain), hardening%strain, hardening%stress, hardening%slope, &
         shear, mises, plastic_strain, growth)
@@ -103,21 +114,19 @@ contains
 
   !> The same where each slot has its own factor on the yield stress and its
   !> own place between the rates.
-  pure subroutine grow_with_rate(hardening, n, n_rate, stress, slope, shear, chunk, mises, &
+  pure subroutine grow_with_rate(hardening, n, n_rate, stress, slope, shear, rate, mises, &
       plastic_strain, growth)
     type(hardening_t), intent(in) :: hardening
     integer, intent(in) :: n, n_rate
     real(wp), intent(in), dimension(n, n_rate) :: stress, slope !! of `hardening`
     real(wp), intent(in) :: shear
-    type(stress_chunk_t), intent(in) :: chunk
-    real(wp), intent(in), dimension(chunk_size) :: mises, plastic_strain
+    real(wp), intent(in), dimension(chunk_size) :: rate, mises, plastic_strain !! sqrt(D:D) first
     real(wp), intent(out) :: growth(chunk_size)
-    real(wp), dimension(chunk_size) :: rate, factor, share, level, rise, place
+    real(wp), dimension(chunk_size) :: factor, share, level, rise, place
     real(wp) :: height, tilt
     integer :: low(chunk_size), high(chunk_size), i, k
     logical :: is_beyond
 
-    call total_rate(chunk, rate)
     call find_rows(n_rate, hardening%rate, rate, low, high, share)
     call find_factors(hardening, shear, rate, mises, plastic_strain, factor)
     level = 0.0_wp
@@ -141,27 +150,6 @@ contains
         /(3.0_wp*shear + rise(i))
     end do
   end subroutine grow_with_rate
-
-  !> Total strain rate sqrt(D:D) of the step.
-  pure subroutine total_rate(chunk, rate)
-    type(stress_chunk_t), intent(in) :: chunk
-    real(wp), intent(out) :: rate(chunk_size)
-    real(wp) :: frequency
-    integer :: i
-
-    frequency = 0.0_wp
-    if (chunk%dt > 0.0_wp) frequency = 1.0_wp/chunk%dt
-    !$omp simd
-    do i = 1, chunk_size
-      rate(i) = frequency*sqrt(chunk%dxx(i)**2 + chunk%dyy(i)**2 + 2.0_wp*chunk%dxy(i)**2)
-    end do
-    if (.not. chunk%has_hoop) return
-    !$omp simd
-    do i = 1, chunk_size
-      rate(i) = frequency*sqrt((chunk%dxx(i) + chunk%hoop(i))**2 + (chunk%dyy(i) &
-        + chunk%hoop(i))**2 + chunk%hoop(i)**2 + 2.0_wp*chunk%dxy(i)**2)
-    end do
-  end subroutine total_rate
 
   !> Between which rows of the table each slot's rate lies, and how far.
   pure subroutine find_rows(n_rate, rates, rate, low, high, share)

@@ -7,7 +7,7 @@
 module material_rubber_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
-  use rubbers_m, only : rubber_t
+  use parts_m, only : rubber_t
   use stress_chunk_m, only : stress_chunk_t
   use vector_functions_m, only : form_excesses, form_log_ratios
   implicit none

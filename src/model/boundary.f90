@@ -16,13 +16,6 @@ module boundary_m
     integer, allocatable :: start(:)     !! (n_node + 1) first edge leaving each node
   end type boundary_t
 
-  !> All edges of the chosen elements, filed under the lower of their nodes.
-  type :: edge_table_t
-    integer, allocatable :: start(:)   !! (n_node + 1) first edge of each node
-    integer, allocatable :: far(:)     !! the other node, negative when the edge runs from it
-    integer, allocatable :: owner(:)   !! the element, 0 once the edge is known to be shared
-  end type edge_table_t
-
 contains
 
   !> Edges that exactly one of the chosen elements has. Only edges with both nodes in `among` are
@@ -32,94 +25,55 @@ contains
     logical, intent(in) :: chosen(:)           !! (n)
     logical, intent(in) :: among(:)            !! (n_node)
     type(boundary_t), intent(out) :: boundary
-    type(edge_table_t) :: table
-    integer, allocatable :: order(:)
-    integer :: node, i, n, n_node
+    integer, allocatable :: latest(:)   !! (n_node) last edge so far whose lower node is this one
+    integer, allocatable :: before(:)   !! edge of the same lower node before each, 0: none
+    logical, allocatable :: is_outer(:) !! by edge: 4 (element - 1) + its first corner
+    integer, allocatable :: outer(:)
+    integer :: i, edge, other, node, ends(2)
 
-    n_node = size(among)
-    call file_edges(element_nodes, chosen, among, table)
-    call strike_shared(table, n_node)
-    boundary%n_edge = count(table%owner > 0)
-    allocate (boundary%nodes(2, boundary%n_edge), boundary%elements(boundary%n_edge))
-    n = 0
-    do node = 1, n_node
-      do i = table%start(node), table%start(node + 1) - 1
-        if (table%owner(i) == 0) cycle
-        n = n + 1
-        boundary%nodes(:, n) = [node, table%far(i)]
-        if (table%far(i) < 0) boundary%nodes(:, n) = [-table%far(i), node]
-        boundary%elements(n) = table%owner(i)
+    allocate (latest(size(among)), before(4*size(chosen)), source=0)
+    allocate (is_outer(4*size(chosen)), source=.false.)
+    do edge = 1, size(is_outer)
+      if (.not. chosen((edge + 3)/4)) cycle
+      ends = ends_of(edge)
+      if (ends(1) == ends(2) .or. .not. all(among(ends))) cycle
+      is_outer(edge) = .true.
+      node = minval(ends)
+      other = latest(node)
+      do while (other > 0)
+        if (maxval(ends_of(other)) == maxval(ends)) is_outer([edge, other]) = .false.
+        other = before(other)
       end do
+      before(edge) = latest(node)
+      latest(node) = edge
     end do
-    order = sorted_order(int(boundary%nodes(1, :), long))
-    boundary%nodes = boundary%nodes(:, order)
-    boundary%elements = boundary%elements(order)
-    allocate (boundary%start(n_node + 1), source=1)
-    do i = 1, n
+    outer = pack([(i, i=1, size(is_outer))], is_outer)
+    ! By the node that they leave, then the lower one, then the element.
+    outer = outer(sorted_order([(sum(ends_of(outer(i))*[size(among) + 1_long, 0_long]) &
+      + minval(ends_of(outer(i))), i=1, size(outer))]))
+    boundary%n_edge = size(outer)
+    boundary%nodes = reshape([(ends_of(outer(i)), i=1, size(outer))], [2, size(outer)])
+    boundary%elements = (outer + 3)/4
+    allocate (boundary%start(size(among) + 1), source=1)
+    do i = 1, size(outer)
       boundary%start(boundary%nodes(1, i) + 1) = i + 1
     end do
-    do node = 1, n_node ! some have none
+    do node = 1, size(among) ! some have none
       boundary%start(node + 1) = max(boundary%start(node), boundary%start(node + 1))
     end do
+
+  contains
+
+    !> Nodes of an edge.
+    pure function ends_of(edge) result(ends)
+      integer, intent(in) :: edge
+      integer :: ends(2), corner
+
+      corner = modulo(edge - 1, 4) + 1
+      ends = element_nodes([corner, modulo(corner, 4) + 1], (edge + 3)/4)
+    end function ends_of
+
   end subroutine find_boundary
-
-  !> File the edges of the chosen elements.
-  pure subroutine file_edges(element_nodes, chosen, among, table)
-    integer, intent(in) :: element_nodes(:, :)
-    logical, intent(in) :: chosen(:)
-    logical, intent(in) :: among(:)
-    type(edge_table_t), intent(out) :: table
-    integer, allocatable :: next(:)
-    integer :: pass, i, k, a, b, node
-
-    allocate (next(size(among) + 1))
-    do pass = 1, 2
-      next = 0
-      if (pass == 2) next = table%start
-      do i = 1, size(element_nodes, 2)
-        if (.not. chosen(i)) cycle
-        do k = 1, 4
-          a = element_nodes(k, i)
-          b = element_nodes(mod(k, 4) + 1, i)
-          if (a == b .or. .not. (among(a) .and. among(b))) cycle
-          node = min(a, b)
-          if (pass == 2) table%far(next(node)) = merge(b, -a, a < b)
-          if (pass == 2) table%owner(next(node)) = i
-          next(node) = next(node) + 1
-        end do
-      end do
-      if (pass == 2) exit
-      allocate (table%start(size(next)))
-      table%start(1) = 1
-      do node = 1, size(among)
-        table%start(node + 1) = table%start(node) + next(node)
-      end do
-      allocate (table%far(table%start(size(next)) - 1), table%owner(table%start(size(next)) - 1))
-    end do
-  end subroutine file_edges
-
-  !> Strike out (owner 0) every edge that more than one element has.
-  pure subroutine strike_shared(table, n_node)
-    type(edge_table_t), intent(inout) :: table
-    integer, intent(in) :: n_node
-    integer, allocatable :: n_use(:)
-    integer :: node, i, first, last
-
-    allocate (n_use(n_node), source=0)
-    do node = 1, n_node
-      first = table%start(node)
-      last = table%start(node + 1) - 1
-      do i = first, last
-        n_use(abs(table%far(i))) = n_use(abs(table%far(i))) + 1
-      end do
-      do i = first, last
-        if (n_use(abs(table%far(i))) > 1) table%owner(i) = 0
-      end do
-      do i = first, last
-        n_use(abs(table%far(i))) = 0
-      end do
-    end do
-  end subroutine strike_shared
 
   !> The exterior edge from node `a` to node `b`, or 0.
   pure function find_edge(boundary, a, b) result(edge)

@@ -6,7 +6,7 @@ module conditions_m
   use visitor_m, only : visited_t, visitor_t, absent, length, of_nodes
   implicit none
   private
-  public :: conditions_t, prescribed_motion_t, nodal_load_t, pressure_load_t, body_load_t, &
+  public :: conditions_t, prescribed_motion_t, nodal_load_t, pressure_load_t, &
     damping_t, part_damping_t, lumped_mass_t, common_motion_t, skew_support_t, motion_velocity, &
     motion_acceleration, motion_displacement
 
@@ -40,13 +40,6 @@ module conditions_m
     real(wp) :: scale = 1.0_wp
     real(wp) :: arrival = 0.0_wp !! no load before this time; the curve starts then
   end type pressure_load_t
-
-  !> Base acceleration: bodies feel minus the curve (*LOAD_BODY_X, _Y).
-  type :: body_load_t
-    integer :: direction = 1
-    integer :: curve = 0
-    real(wp) :: scale = 1.0_wp
-  end type body_load_t
 
   !> *DAMPING_GLOBAL: f = -D m v, factor per direction.
   type :: damping_t
@@ -93,7 +86,8 @@ module conditions_m
                                                                !! its turn
     type(nodal_load_t), allocatable :: nodal_loads(:)
     type(pressure_load_t), allocatable :: pressures(:)
-    type(body_load_t), allocatable :: body_loads(:)
+    type(nodal_load_t), allocatable :: body_loads(:)  !! base acceleration, without a node: bodies
+                                                      !! feel minus the curve (*LOAD_BODY_X, _Y)
     type(damping_t), allocatable :: damping     !! present only when the deck asks
     type(part_damping_t), allocatable :: part_damping(:)
     type(lumped_mass_t), allocatable :: lumped_masses(:)

@@ -14,6 +14,13 @@ module contacts_m
     penalty_distributed, penalty_factor, penalty_share, &
     penalty_implicit, implicit_factor, tie_none, tie_always, tie_breaks, tie_factor
 
+  !> Numbers of the contact types (CTYPE): the deck layer maps stock keywords to them, the contact
+  !> dispatcher has a row for each.
+  integer, parameter, public :: type_nts = 1, type_nts_ar = 2, type_two_pass_ar = 3, &
+    type_vts_ppt = 4, type_nts_mar = 5, type_mortar = 6, type_segmented_mortar = 7
+  !> What stands in place of a type in decks: the program chooses; there is none.
+  integer, parameter, public :: type_chosen = 0, type_missing = -1
+
   !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate,
   !> share of the largest stable penalty, factor on K L/A of springs whose forces are those of the
   !> end of the step.

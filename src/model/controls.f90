@@ -13,7 +13,7 @@ module controls_m
   private
   public :: boundary_rows_t, list_boundaries, boundary_load, boundary_body_load, &
     boundary_pressure, boundary_motion, boundary_body_motion, force_group_t, group_nodes, &
-    cross_section_t, find_edges, mark_corners, n_cut, end_condition_t, end_node_place, &
+    cross_section_t, find_edges, mark_corners, end_condition_t, end_node_place, &
     end_node_touch, end_body_place, end_body_way, end_contact, controls_t, relaxation_t, &
     implicit_t, output_plan_t, interval_t, is_asked, length_by_side, length_by_diagonal, &
     contact_step_warns, contact_step_free, contact_step_rules
@@ -242,23 +242,16 @@ contains
     nodes = [(groups(i)%nodes, i=1, size(groups))]
   end function group_nodes
 
-  !> Elements of all sections.
-  pure function n_cut(sections) result(n)
-    type(cross_section_t), intent(in) :: sections(:)
-    integer :: n, i
-
-    n = sum([(size(sections(i)%elements), i=1, size(sections))])
-  end function n_cut
-
   !> The edges of the elements that lie in the section, each once.
   subroutine find_edges(element_nodes, section)
     integer, intent(in) :: element_nodes(:, :) !! (4, n_element)
     type(cross_section_t), intent(inout) :: section
+    integer(long), allocatable :: keys(:)
     integer, allocatable :: edges(:, :), order(:)
     logical, allocatable :: is_in(:)
     integer :: i, k, n, a, b
 
-    allocate (is_in(maxval(element_nodes)), source=.false.)
+    allocate (is_in(max(maxval(element_nodes), maxval(section%nodes))), source=.false.)
     is_in(section%nodes) = .true.
     allocate (edges(2, 4*size(section%elements)))
     n = 0
@@ -271,18 +264,10 @@ contains
         edges(:, n) = [min(a, b), max(a, b)]
       end do
     end do
-    edges = edges(:, :n)
-    order = sorted_order(edges(1, :)*int(size(is_in), long) + edges(2, :))
-    edges = edges(:, order)
-    k = 0
-    do i = 1, n
-      if (k > 0) then
-        if (all(edges(:, k) == edges(:, i))) cycle
-      end if
-      k = k + 1
-      edges(:, k) = edges(:, i)
-    end do
-    section%edges = edges(:, :k)
+    keys = edges(1, :n)*int(size(is_in), long) + edges(2, :n)
+    order = sorted_order(keys)
+    keys = keys(order)
+    section%edges = edges(:, pack(order, [(i == 1 .or. keys(i) > keys(max(i - 1, 1)), i=1, n)]))
   end subroutine find_edges
 
   !> Find the corners of the elements that are nodes of the section, once there is a layout.
@@ -291,16 +276,14 @@ contains
     integer, intent(in) :: n_node
     type(cross_section_t), intent(inout) :: section
     logical, allocatable :: is_in(:)
-    integer :: i, k
+    integer :: i
 
     allocate (is_in(n_node), source=.false.)
     is_in(section%nodes) = .true.
     allocate (section%is_corner(4, size(section%elements)))
     do i = 1, size(section%elements)
-      do k = 1, 4
-        section%is_corner(k, i) = &
-          is_in(layout%slot_nodes(k, layout%element_slot(section%elements(i))))
-      end do
+      section%is_corner(:, i) = &
+        is_in(layout%slot_nodes(:, layout%element_slot(section%elements(i))))
     end do
   end subroutine mark_corners
 

@@ -4,8 +4,9 @@
 !> these are. Elements are sorted into the cells of a uniform grid by their boxes; used once, at the
 !> start.
 module element_finder_m
-  use kinds_m, only : wp
+  use kinds_m, only : wp, long
   use model_m, only : model_t
+  use sorting_m, only : sorted_order
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -230,6 +231,7 @@ contains
     real(wp), intent(in) :: line(2, 2)
     integer, intent(out) :: n, crossed(most_crossed)
     real(wp), intent(out) :: at(most_crossed)
+    integer, allocatable :: order(:)
     integer :: low(2), high(2), ix, iy, i, k, t, cell
     real(wp) :: place
 
@@ -249,33 +251,19 @@ contains
               if (surface%segment_element(t) /= element) cycle
               if (n == most_crossed .or. any(crossed(:n) == t)) cycle
               call cross(line, ends_of(model, surface, t), place)
-              if (place > 0.0_wp) call put_in_order(t, place, n, crossed, at)
+              if (.not. place > 0.0_wp) cycle
+              n = n + 1
+              crossed(n) = t
+              at(n) = place
             end do
           end associate
         end do
       end do
     end do
+    order = sorted_order(transfer(at(:n), [0_long])) ! bits of positive numbers sort as these
+    crossed(:n) = crossed(order)
+    at(:n) = at(order)
   end subroutine list_crossed
-
-  !> One more crossing, in order along the line.
-  pure subroutine put_in_order(segment, place, n, crossed, at)
-    integer, intent(in) :: segment
-    real(wp), intent(in) :: place
-    integer, intent(inout) :: n, crossed(most_crossed)
-    real(wp), intent(inout) :: at(most_crossed)
-    integer :: k
-
-    k = n + 1
-    do while (k > 1)
-      if (at(k - 1) <= place) exit
-      at(k) = at(k - 1)
-      crossed(k) = crossed(k - 1)
-      k = k - 1
-    end do
-    at(k) = place
-    crossed(k) = segment
-    n = n + 1
-  end subroutine put_in_order
 
   !> Where on one line (0 to 1) another goes through it, 0 where it does not.
   pure subroutine cross(one, two, place)

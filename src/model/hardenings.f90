@@ -1,8 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> Yield stress against plastic strain, point by point, and its dependence on the strain rate.
 module hardenings_m
-  use kinds_m, only : wp
+  use kinds_m, only : wp, long
   use curves_m, only : curve_t
+  use sorting_m, only : sorted_order
   use visitor_m, only : visited_t, visitor_t, absent
   implicit none
   private
@@ -34,50 +35,21 @@ contains
     type(curve_t), intent(in) :: curves(:) !! one for each rate
     real(wp), intent(in) :: rates(:)       !! increasing
     type(hardening_t) :: hardening
+    real(wp), allocatable :: strains(:)
     integer :: i, n
 
     hardening%rate = rates
-    allocate (hardening%strain(0))
-    do i = 1, size(curves)
-      hardening%strain = merged(hardening%strain, curves(i)%abscissa)
-    end do
+    strains = [(curves(i)%abscissa, i=1, size(curves))]
+    ! Bits of numbers that are not negative sort as the numbers.
+    strains = strains(sorted_order(transfer(strains, [0_long])))
+    hardening%strain = pack(strains, [(i == 1 .or. strains(i) > strains(max(i - 1, 1)), i=1, &
+      size(strains))])
     n = size(hardening%strain)
     allocate (hardening%stress(n, size(curves)), hardening%slope(n, size(curves)))
     do i = 1, size(curves)
       call fill_row(curves(i), hardening%strain, hardening%stress(:, i), hardening%slope(:, i))
     end do
   end function make_hardening
-
-  !> All values of two increasing lists, each once, increasing.
-  pure function merged(a, b) result(both)
-    real(wp), intent(in) :: a(:), b(:)
-    real(wp), allocatable :: both(:)
-    real(wp) :: values(size(a) + size(b))
-    integer :: i, j, n
-
-    i = 1
-    j = 1
-    n = 0
-    do while (i <= size(a) .or. j <= size(b))
-      n = n + 1
-      if (j > size(b)) then
-        values(n) = a(i)
-      else if (i > size(a)) then
-        values(n) = b(j)
-      else
-        values(n) = min(a(i), b(j))
-      end if
-      do while (i <= size(a))
-        if (a(i) > values(n)) exit
-        i = i + 1
-      end do
-      do while (j <= size(b))
-        if (b(j) > values(n)) exit
-        j = j + 1
-      end do
-    end do
-    both = values(:n)
-  end function merged
 
   !> Values and slopes of one curve at points that hold its own.
   pure subroutine fill_row(curve, strain, stress, slope)

@@ -85,15 +85,15 @@ contains
   subroutine build_local_numbers(mesh, layout)
     type(mesh_t), intent(in) :: mesh
     type(layout_t), intent(inout) :: layout
-    integer, allocatable :: local(:), special(:)
-    integer :: i_tile, slot, n_special_slots
+    integer, allocatable :: marks(:), local(:), special(:)
+    integer :: i_tile, slot, n_special_slots, i
 
     allocate (layout%slot_nodes(4, layout%n_slot), layout%slot_local(4, layout%n_slot))
-    allocate (local(mesh%n_node), source=0)
+    allocate (marks(mesh%n_node), local(layout%n_special), source=0)
     allocate (special(4*mesh%n_element))
     n_special_slots = 0
     do i_tile = 1, size(layout%tiles)
-      call number_tile(mesh, i_tile, layout, local, special, n_special_slots)
+      call number_tile(mesh, i_tile, layout, marks, local, special, n_special_slots)
     end do
     ! Slots behind all tiles have no local numbers.
     do slot = last_slot(layout%tiles(size(layout%tiles))) + 1, layout%n_slot
@@ -105,23 +105,39 @@ contains
       end if
     end do
     layout%special_node = special(:n_special_slots)
-    call list_node_slots(layout)
+    ! For each special node the force slots that hold its parts, in rising order.
+    layout%slot_list = sorted_order(int(layout%special_node, long))
+    allocate (layout%node_slots(layout%n_special + 1), source=1)
+    do i = 1, size(layout%slot_list)
+      layout%node_slots(layout%special_node(layout%slot_list(i)) + 1) = i + 1
+    end do
+    do i = 1, layout%n_special ! some have none
+      layout%node_slots(i + 1) = max(layout%node_slots(i), layout%node_slots(i + 1))
+    end do
   end subroutine build_local_numbers
 
-  !> Local numbers of one tile; its special nodes get the next force slots.
-  subroutine number_tile(mesh, i_tile, layout, local, special, n_special_slots)
+  !> Local numbers of one tile; its special nodes get the next force slots, by number: those that
+  !> one thread shares with another then lie together.
+  subroutine number_tile(mesh, i_tile, layout, marks, local, special, n_special_slots)
     type(mesh_t), intent(in) :: mesh
     integer, intent(in) :: i_tile
     type(layout_t), intent(inout) :: layout
-    integer, intent(inout) :: local(:)        !! (n_node) last force slot of each special node
+    integer, intent(inout) :: marks(:)        !! (n_node) last tile that has each node
+    integer, intent(inout) :: local(:)        !! (n_special) last force slot of each special node
     integer, intent(inout) :: special(:)      !! node of each force slot
     integer, intent(inout) :: n_special_slots
+    integer, allocatable :: nodes(:)
     integer :: n_interior, first_special, slot, k, node
 
     associate (tile => layout%tiles(i_tile))
       n_interior = tile%last_node - tile%first_node + 1
       first_special = n_special_slots + 1
-      call list_special(mesh, layout, tile, local, special, n_special_slots)
+      call list_nodes(mesh, tile, layout%slot_element, i_tile, marks, nodes)
+      nodes = pack(nodes, nodes <= layout%n_special)
+      nodes = nodes(sorted_order(int(nodes, long)))
+      n_special_slots = n_special_slots + size(nodes)
+      special(first_special:n_special_slots) = nodes
+      local(nodes) = [(k, k=first_special, n_special_slots)]
       do slot = first_slot(tile), last_slot(tile)
         if (layout%slot_element(slot) == 0) cycle
         do k = 1, 4
@@ -145,50 +161,6 @@ contains
       layout%n_local = max(layout%n_local, n_interior + n_special_slots - first_special + 1)
     end associate
   end subroutine number_tile
-
-  !> Append the special nodes of a tile, by number: those that one thread shares with
-  !> another then lie together.
-  subroutine list_special(mesh, layout, tile, local, special, n_special_slots)
-    type(mesh_t), intent(in) :: mesh
-    type(layout_t), intent(in) :: layout
-    type(tile_t), intent(in) :: tile
-    integer, intent(inout) :: local(:), special(:)
-    integer, intent(inout) :: n_special_slots
-    integer :: first, slot, k, node
-
-    first = n_special_slots + 1
-    do slot = first_slot(tile), last_slot(tile)
-      if (layout%slot_element(slot) == 0) cycle
-      do k = 1, 4
-        node = mesh%element_nodes(k, layout%slot_element(slot))
-        if (node > layout%n_special .or. local(node) >= first) cycle
-        n_special_slots = n_special_slots + 1
-        special(n_special_slots) = node
-        local(node) = n_special_slots
-      end do
-    end do
-    associate (nodes => special(first:n_special_slots))
-      nodes = nodes(sorted_order(int(nodes, long)))
-      do k = 1, size(nodes)
-        local(nodes(k)) = first + k - 1
-      end do
-    end associate
-  end subroutine list_special
-
-  !> For each special node the force slots that hold its parts, in rising order.
-  subroutine list_node_slots(layout)
-    type(layout_t), intent(inout) :: layout
-    integer :: i, node
-
-    layout%slot_list = sorted_order(int(layout%special_node, long))
-    allocate (layout%node_slots(layout%n_special + 1), source=1)
-    do i = 1, size(layout%slot_list)
-      layout%node_slots(layout%special_node(layout%slot_list(i)) + 1) = i + 1
-    end do
-    do node = 1, layout%n_special ! some have none
-      layout%node_slots(node + 1) = max(layout%node_slots(node), layout%node_slots(node + 1))
-    end do
-  end subroutine list_node_slots
 
   !> Position of each element's centre along a Hilbert curve over the bounding box.
   pure function hilbert_keys(mesh) result(keys)

@@ -12,7 +12,6 @@ module model_m
   use parts_m, only : part_t, section_t, material_t
   use mesh_m, only : mesh_t
   use layout_m, only : layout_t
-  use sets_m, only : node_set_t, segment_set_t, part_set_t, shell_set_t
   use conditions_m, only : conditions_t
   use contacts_m, only : contact_t, transducer_t
   use rigids_m, only : rigid_t
@@ -21,7 +20,35 @@ module model_m
   use controls_m, only : controls_t
   implicit none
   private
-  public :: model_t
+  public :: model_t, mark_meshed_nodes, mark_supports, node_set_t, segment_set_t, part_set_t, &
+    shell_set_t
+
+  !> *SET_NODE: members in the order of the deck (walking order where a surface is meant).
+  type :: node_set_t
+    integer :: id = 0
+    character(:), allocatable :: title !! only where the deck gives one
+    integer, allocatable :: nodes(:) !! node indices
+  end type node_set_t
+
+  !> *SET_SEGMENT, *SET_2D_SEGMENT: edges by their two nodes.
+  type :: segment_set_t
+    integer :: id = 0
+    integer, allocatable :: nodes(:, :) !! (2, n) node indices
+    integer, allocatable :: parts(:)    !! indices of the parts whose boundary they are, where they
+                                        !! are one
+  end type segment_set_t
+
+  !> *SET_PART.
+  type :: part_set_t
+    integer :: id = 0
+    integer, allocatable :: parts(:) !! indices into model%parts
+  end type part_set_t
+
+  !> *SET_SHELL.
+  type :: shell_set_t
+    integer :: id = 0
+    integer, allocatable :: elements(:) !! element indices
+  end type shell_set_t
 
   !> A whole problem.
   type, extends(visited_t) :: model_t
@@ -79,5 +106,29 @@ contains
     call visitor%visit('erodes', self%erodes)
     call visitor%visit('is_round', self%is_round)
   end subroutine visit_model
+
+  !> (n_node) nodes that some element has, so that they have mass.
+  pure function mark_meshed_nodes(model) result(is_meshed)
+    type(model_t), intent(in) :: model
+    logical :: is_meshed(model%mesh%n_node)
+
+    is_meshed = .false.
+    is_meshed(pack(model%mesh%element_nodes, model%mesh%element_nodes > 0)) = .true.
+  end function mark_meshed_nodes
+
+  !> (n_node) nodes with mass and a fixed degree of freedom, or held along an axis that is neither x
+  !> nor y.
+  pure function mark_supports(model) result(is_support)
+    type(model_t), intent(in) :: model
+    logical :: is_support(model%mesh%n_node)
+
+    is_support = .false.
+    associate (conditions => model%conditions)
+      if (allocated(conditions%fixed_nodes)) is_support(conditions%fixed_nodes) = .true.
+      if (allocated(conditions%skew_supports)) &
+        is_support(conditions%skew_supports%node) = .true.
+    end associate
+    if (any(is_support)) is_support = is_support .and. mark_meshed_nodes(model)
+  end function mark_supports
 
 end module model_m

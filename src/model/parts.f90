@@ -4,11 +4,8 @@ module parts_m
   use, intrinsic :: iso_c_binding, only : c_loc
   use curves_m, only : curve_t
   use eos_m, only : eos_t, eos_by_law
-  use erosion_m, only : erosion_t
   use hardenings_m, only : hardening_t
-  use johnson_cook_m, only : johnson_cook_t
   use kinds_m, only : wp
-  use rubbers_m, only : rubber_t
   use visitor_m, only : visited_t, visitor_t, absent
   implicit none
   private
@@ -17,7 +14,8 @@ module parts_m
     form_one_point, form_full, form_round_one_point, form_round_full, law_elastic, law_plastic, &
     law_piecewise, law_johnson_cook, law_hot_johnson_cook, law_null, &
     hourglass_viscous, hourglass_stiffness, hourglass_assumed, spall_pressure, spall_stress, &
-    spall_tension
+    spall_tension, johnson_cook_t, rubber_t, mooney_rivlin, blatz_ko, blatz_ko_poisson, &
+    erosion_t, asks_for_strain, asks_for_stress
 
   !> Element forms. Only the element dispatcher asks for them.
   integer, parameter :: form_one_point = 1, form_full = 2, form_round_one_point = 3, &
@@ -39,6 +37,59 @@ module parts_m
     logical :: is_full = .false.               !! full integration
     logical :: is_round = .false.              !! axisymmetric
   end type section_t
+
+  !> Constants of Johnson and Cook (1983, 1985), flow stress, heat and damage:
+  !> sigma = (A + B p^n)(1 + C ln(rate/rate0))(1 - T*^m), the rate not below rate0.
+  type :: johnson_cook_t
+    real(wp) :: a = 0.0_wp, b = 0.0_wp, n = 1.0_wp, c = 0.0_wp
+    real(wp) :: rate = 1.0_wp            !! rate0, 1/s
+    real(wp) :: most_static = huge(1.0_wp) !! SIGMAX, bound on A + B p^n
+    real(wp) :: most = huge(1.0_wp)      !! SIGSAT, bound on the flow stress
+    real(wp) :: m = 1.0_wp               !! thermal exponent
+    real(wp) :: span = 1.0_wp            !! melting temperature less room temperature, K
+    real(wp) :: room = 0.0_wp            !! room temperature, at which everything starts
+    real(wp) :: heat = 0.0_wp            !! 1/(rho0 c_p), K m^3/J; 0 = no heating
+    real(wp) :: d(5) = 0.0_wp            !! D1 to D5
+    real(wp) :: least = 0.0_wp           !! EFMIN, bound on the strain at fracture
+    logical :: is_viscoplastic = .false. !! the rate is that of the plastic strain
+    logical :: keeps_broken = .false.    !! broken elements stay in the mesh (EROD)
+    logical :: has_damage = .false.
+    logical :: has_memory = .false.      !! points keep a temperature and a damage
+  end type johnson_cook_t
+
+  !> Poisson's ratio of the law of Blatz and Ko.
+  real(wp), parameter :: blatz_ko_poisson = 0.463_wp
+
+  !> Constants of rubbers: W = A (I - 3) + B (II - 3) + U(J), I and II the invariants of C = F^T F.
+  type :: rubber_t
+    real(wp) :: a = 0.0_wp, b = 0.0_wp !! A and B
+    real(wp) :: c = 0.0_wp, d = 0.0_wp !! Mooney & Rivlin: U = C (J^-4 - 1) + D (J^2 - 1)^2
+    real(wp) :: exponent = 0.0_wp      !! Blatz & Ko: U = 2A (J^-exponent - 1)/exponent
+  end type rubber_t
+
+  !> When an element of a material leaves the mesh; what no deck asks for is out of reach. Criteria:
+  !> those of its law, of *CONTROL_TIMESTEP, and of *MAT_ADD_EROSION.
+  type :: erosion_t
+    logical :: by_law = .false.         !! goes once all of its points have failed
+    logical :: by_step = .false.        !! goes where its step, or its volume, has vanished (ERODE)
+    real(wp) :: least_step = 0.0_wp     !! DTMIN, s
+    real(wp) :: most_pressure = huge(1.0_wp)       !! MXPRES
+    real(wp) :: least_pressure = -huge(1.0_wp)     !! MNPRES
+    real(wp) :: principal_stress = huge(1.0_wp)    !! SIGP1
+    real(wp) :: mises = huge(1.0_wp)               !! SIGVM
+    real(wp) :: most_strain = huge(1.0_wp)         !! MXEPS, logarithmic as all strains
+    real(wp) :: least_strain = -huge(1.0_wp)       !! MNEPS
+    real(wp) :: effective_strain = huge(1.0_wp)    !! EFFEPS
+    real(wp) :: shear_strain = huge(1.0_wp)        !! EPSSH, half the difference of the outer ones
+    real(wp) :: most_volume = huge(1.0_wp)         !! VOLEPS above 0: ln(V/V0)
+    real(wp) :: least_volume = -huge(1.0_wp)       !! VOLEPS below 0
+    real(wp) :: threshold = 0.0_wp                 !! SIGTH
+    real(wp) :: impulse = huge(1.0_wp)             !! IMPULSE
+    real(wp) :: time = huge(1.0_wp)                !! FAILTM
+    integer :: n_given = 0                         !! criteria of the card that the deck gives
+    integer :: n_criteria = 1                      !! NCS: how many must hold at once
+    integer :: n_point = 1                         !! NUMFIP: at how many points
+  end type erosion_t
 
   !> One material. Moduli follow from E and nu once, in the deck layer.
   type, extends(visited_t) :: material_t
@@ -124,6 +175,44 @@ contains
     yes = material%failure_strain < huge(1.0_wp) .or. material%spall /= spall_pressure
     if (allocated(material%flow)) yes = yes .or. material%flow%has_damage
   end function may_fail
+
+  !> Mooney and Rivlin: C so that the undeformed body is free of stress, D for Poisson's ratio.
+  pure function mooney_rivlin(a, b, poisson) result(rubber)
+    real(wp), intent(in) :: a, b, poisson
+    type(rubber_t) :: rubber
+
+    rubber%a = a
+    rubber%b = b
+    rubber%c = 0.5_wp*a + b
+    rubber%d = (a*(5.0_wp*poisson - 2.0_wp) + b*(11.0_wp*poisson - 5.0_wp)) &
+      /(2.0_wp*(1.0_wp - 2.0_wp*poisson))
+  end function mooney_rivlin
+
+  !> Blatz and Ko: B = 0.
+  pure function blatz_ko(shear) result(rubber)
+    real(wp), intent(in) :: shear
+    type(rubber_t) :: rubber
+
+    rubber%a = 0.5_wp*shear
+    rubber%exponent = 2.0_wp*blatz_ko_poisson/(1.0_wp - 2.0_wp*blatz_ko_poisson)
+  end function blatz_ko
+
+  !> Whether some criterion looks at strains.
+  pure function asks_for_strain(erosion) result(asks)
+    type(erosion_t), intent(in) :: erosion
+    logical :: asks
+
+    asks = min(erosion%most_strain, erosion%effective_strain, erosion%shear_strain, &
+      -erosion%least_strain) < huge(1.0_wp)
+  end function asks_for_strain
+
+  !> Whether some criterion looks at stresses of points.
+  pure function asks_for_stress(erosion) result(asks)
+    type(erosion_t), intent(in) :: erosion
+    logical :: asks
+
+    asks = min(erosion%principal_stress, erosion%mises, erosion%impulse) < huge(1.0_wp)
+  end function asks_for_stress
 
   !> Its components.
   subroutine visit_material(self, visitor)

@@ -1,15 +1,15 @@
 ! SPDX-License-Identifier: MIT
 !> Puts a finished model into the order of the step: nodes renumbered everywhere, layout built.
 module renumber_m
-  use controls_m, only : list_boundaries, is_asked, mark_corners, end_node_place, end_node_touch
+  use controls_m, only : list_boundaries, is_asked, group_nodes, mark_corners, end_node_place, &
+    end_node_touch
   use exposed_quads_m, only : find_exposed
   use history_tables_m, only : table_bndout
   use kinds_m, only : wp, long
   use layout_building_m, only : build_slots, build_local_numbers, order_nodes
-  use model_m, only : model_t
+  use model_m, only : model_t, mark_supports
   use rigids_m, only : mark_rigid_nodes
   use sorting_m, only : sorted_order
-  use supports_m, only : mark_supports
   implicit none
   private
   public :: renumber_model, mark_moved_nodes, forget_start
@@ -89,18 +89,16 @@ contains
       is_special(model%contacts(i)%master%nodes) = .true.
     end do
     if (model%erodes) call mark_hidden_nodes(model, is_special)
-    is_special(model%conditions%motions%node) = .true.
-    is_special(model%conditions%nodal_loads%node) = .true.
-    if (allocated(model%conditions%skew_supports)) &
-      is_special(model%conditions%skew_supports%node) = .true.
-    if (allocated(model%conditions%common_motions)) then
-      do i = 1, size(model%conditions%common_motions)
-        is_special(model%conditions%common_motions(i)%nodes) = .true.
-      end do
-    end if
-    do i = 1, size(model%conditions%pressures)
-      is_special(model%conditions%pressures(i)%nodes) = .true.
-    end do
+    associate (conditions => model%conditions, output => model%controls%output)
+      is_special(conditions%motions%node) = .true.
+      is_special(conditions%nodal_loads%node) = .true.
+      if (allocated(conditions%skew_supports)) is_special(conditions%skew_supports%node) = .true.
+      if (allocated(conditions%common_motions)) is_special([(conditions%common_motions(i)%nodes, &
+        i=1, size(conditions%common_motions))]) = .true.
+      is_special([(conditions%pressures(i)%nodes, i=1, size(conditions%pressures))]) = .true.
+      ! Their forces are asked for in every cycle.
+      if (allocated(output%force_groups)) is_special(group_nodes(output%force_groups)) = .true.
+    end associate
     if (allocated(model%controls%ends)) then
       do i = 1, size(model%controls%ends)
         associate (ending => model%controls%ends(i))
@@ -108,16 +106,8 @@ contains
         end associate
       end do
     end if
-    if (allocated(model%controls%output%force_groups)) then
-      ! Their forces are asked for in every cycle.
-      do i = 1, size(model%controls%output%force_groups)
-        is_special(model%controls%output%force_groups(i)%nodes) = .true.
-      end do
-    end if
-    if (.not. allocated(model%walls)) return
-    do i = 1, size(model%walls)
-      is_special(model%walls(i)%nodes) = .true.
-    end do
+    if (allocated(model%walls)) &
+      is_special([(model%walls(i)%nodes, i=1, size(model%walls))]) = .true.
   end subroutine mark_touched_nodes
 
   !> Special nodes that contact, loads, prescribed motion, walls or rigid bodies may move.

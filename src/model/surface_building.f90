@@ -1,91 +1,111 @@
 ! SPDX-License-Identifier: MIT
-!> Surfaces from exterior edges: the whole boundary as chains, and the chain that a list of nodes
-!> describes.
+!> Surfaces from exterior edges: the whole boundary as chains, the chain that a list of nodes
+!> describes, and what is left of a surface once elements have gone.
 module surface_building_m
-  use boundary_m, only : boundary_t, find_edge
+  use boundary_m, only : boundary_t, find_boundary, find_edge
+  use kinds_m, only : wp
+  use mesh_m, only : mesh_t
   use surfaces_m, only : surface_t, link_segments
   implicit none
   private
-  public :: boundary_surface, chain_surface, chain_good, chain_turned, chain_ordered, &
-    chain_broken, chain_repeated, chain_short
+  public :: boundary_surface, chain_surface, surface_left, chain_good, chain_turned, &
+    chain_ordered, chain_broken, chain_repeated, chain_short
 
   !> How a list of nodes became a chain: as given, walked the other way, put into order; or why not:
   !> two neighbours in the list share no exterior edge, a node comes twice, fewer than two nodes.
   integer, parameter :: chain_good = 0, chain_turned = 1, chain_ordered = 2, chain_broken = 3, &
     chain_repeated = 4, chain_short = 5
 
+  !> Elements at the nodes where the boundary touches itself.
+  type :: corners_t
+    integer, allocatable :: node(:), element(:)
+  end type corners_t
+
 contains
 
-  !> The whole boundary as chains, open ones first. `crossing` is a node where the boundary touches
-  !> itself (no chains can be made then), or 0.
-  pure subroutine boundary_surface(boundary, surface, crossing)
+  !> The whole boundary, or its chosen edges, as chains, open ones first. `crossing` is a node where
+  !> they touch each other (no chains can be made then), or 0.
+  pure subroutine boundary_surface(boundary, is_chosen, surface, crossing)
     type(boundary_t), intent(in) :: boundary
+    logical, intent(in) :: is_chosen(:)    !! (n_edge)
     type(surface_t), intent(out) :: surface
     integer, intent(out) :: crossing
-    integer, allocatable :: n_incoming(:)
-    logical, allocatable :: used(:)
-    integer :: node, n_node, i, n, s
+    integer, allocatable :: outgoing(:), n_incoming(:), edges(:)
+    logical, allocatable :: is_first(:)
+    integer :: pass, node, here, i, n
 
-    n_node = size(boundary%start) - 1
-    allocate (n_incoming(n_node), source=0)
-    crossing = 0
+    allocate (outgoing(size(boundary%start) - 1), n_incoming(size(boundary%start) - 1), source=0)
+    crossing = huge(1)
     do i = 1, boundary%n_edge
-      n_incoming(boundary%nodes(2, i)) = n_incoming(boundary%nodes(2, i)) + 1
+      if (.not. is_chosen(i)) cycle
+      associate (from => boundary%nodes(1, i), to => boundary%nodes(2, i))
+        n_incoming(to) = n_incoming(to) + 1
+        if (outgoing(from) > 0) crossing = min(crossing, from)
+        if (n_incoming(to) > 1) crossing = min(crossing, to)
+        outgoing(from) = i
+      end associate
     end do
-    do node = 1, n_node
-      if (boundary%start(node + 1) - boundary%start(node) > 1 .or. n_incoming(node) > 1) then
-        crossing = node
-        return
-      end if
-    end do
-    allocate (surface%nodes(2*boundary%n_edge), surface%segments(2, boundary%n_edge), &
-      surface%segment_element(boundary%n_edge))
-    allocate (used(boundary%n_edge), source=.false.)
+    if (crossing < huge(1)) return
+    crossing = 0
+    allocate (edges(boundary%n_edge))
+    allocate (is_first(boundary%n_edge), source=.false.)
     n = 0
-    s = 0
-    do node = 1, n_node
-      if (n_incoming(node) == 0) call walk(boundary, node, used, surface, n, s)
+    do pass = 1, 2
+      do node = 1, size(outgoing)
+        if (outgoing(node) == 0 .or. (pass == 1 .and. n_incoming(node) > 0)) cycle
+        is_first(n + 1) = .true.
+        here = node
+        do while (outgoing(here) > 0)
+          n = n + 1
+          edges(n) = outgoing(here)
+          outgoing(here) = 0
+          here = boundary%nodes(2, edges(n))
+        end do
+      end do
     end do
-    do node = 1, n_node
-      call walk(boundary, node, used, surface, n, s)
+    call string_edges(boundary, edges(:n), is_first(:n), surface)
+  end subroutine boundary_surface
+
+  !> The surface of edges in walking order. A chain that comes back to its first node is closed; a
+  !> node stands in the surface once for each passage.
+  pure subroutine string_edges(boundary, edges, is_first, surface)
+    type(boundary_t), intent(in) :: boundary
+    integer, intent(in) :: edges(:)
+    logical, intent(in) :: is_first(:)     !! (size(edges)) of its chain
+    type(surface_t), intent(inout) :: surface
+    integer :: s, n, first
+
+    allocate (surface%nodes(2*size(edges)), surface%segments(2, size(edges)))
+    surface%segment_element = boundary%elements(edges)
+    n = 0
+    do s = 1, size(edges)
+      if (is_first(s)) then
+        first = n + 1
+        surface%nodes(first) = boundary%nodes(1, edges(s))
+        n = first
+      end if
+      surface%segments(:, s) = [n, n + 1]
+      if (is_last(s) .and. boundary%nodes(2, edges(s)) == surface%nodes(first)) then
+        surface%segments(2, s) = first
+      else
+        n = n + 1
+        surface%nodes(n) = boundary%nodes(2, edges(s))
+      end if
     end do
     surface%nodes = surface%nodes(:n)
     call link_segments(surface)
-  end subroutine boundary_surface
 
-  !> Follow unused edges from a node to the end of its chain, or round to its start.
-  pure subroutine walk(boundary, first_node, used, surface, n, s)
-    type(boundary_t), intent(in) :: boundary
-    integer, intent(in) :: first_node
-    logical, intent(inout) :: used(:)
-    type(surface_t), intent(inout) :: surface
-    integer, intent(inout) :: n, s    !! nodes and segments so far
-    integer :: node, edge, first_local
+  contains
 
-    edge = boundary%start(first_node)
-    if (edge == boundary%start(first_node + 1)) return
-    if (used(edge)) return
-    n = n + 1
-    first_local = n
-    surface%nodes(n) = first_node
-    node = first_node
-    do
-      edge = boundary%start(node)
-      if (edge == boundary%start(node + 1)) exit
-      if (used(edge)) exit
-      used(edge) = .true.
-      node = boundary%nodes(2, edge)
-      s = s + 1
-      surface%segment_element(s) = boundary%elements(edge)
-      if (node == first_node) then
-        surface%segments(:, s) = [n, first_local]
-        exit
-      end if
-      n = n + 1
-      surface%nodes(n) = node
-      surface%segments(:, s) = [n - 1, n]
-    end do
-  end subroutine walk
+    !> Whether an edge is the last one of its chain.
+    pure logical function is_last(s)
+      integer, intent(in) :: s
+
+      is_last = s == size(edges)
+      if (.not. is_last) is_last = is_first(s + 1)
+    end function is_last
+
+  end subroutine string_edges
 
   !> The chain that a list of nodes describes; its first node repeated at the end makes it closed.
   !> The list may be walked backwards, or in no order as long as its exterior edges form one
@@ -97,8 +117,9 @@ contains
     type(surface_t), intent(out) :: surface
     integer, intent(out) :: outcome        !! one of the `chain_` constants
     integer, intent(out) :: trouble(2)
-    integer, allocatable :: chain(:), position(:), ahead(:), back(:)
-    logical :: closed, is_ring
+    integer, allocatable :: ahead(:), back(:)
+    logical, allocatable :: is_listed(:)
+    logical :: closed
     integer :: n, i, n_link
 
     trouble = 0
@@ -108,94 +129,213 @@ contains
     if (n > 2) closed = given(n) == given(1)
     if (closed) n = n - 1
     if (n < 2) return
-    chain = given(:n)
-    allocate (position(size(boundary%start) - 1), source=0)
+    allocate (is_listed(size(boundary%start) - 1), source=.false.)
     do i = 1, n
       outcome = chain_repeated
-      trouble = chain(i)
-      if (position(chain(i)) > 0) return
-      position(chain(i)) = i
+      trouble = given(i)
+      if (is_listed(given(i))) return
+      is_listed(given(i)) = .true.
     end do
     trouble = 0
-    outcome = chain_good
     n_link = merge(n, n - 1, closed)
-    ahead = [(find_edge(boundary, chain(i), chain(mod(i, n) + 1)), i=1, n_link)]
-    back = [(find_edge(boundary, chain(mod(i, n) + 1), chain(i)), i=1, n_link)]
-    if (any(ahead == 0) .and. all(back > 0)) then
+    ahead = [(find_edge(boundary, given(i), given(mod(i, n) + 1)), i=1, n_link)]
+    back = [(find_edge(boundary, given(mod(i, n) + 1), given(i)), i=1, n_link)]
+    if (all(ahead > 0)) then
+      outcome = chain_good
+      call string_edges(boundary, ahead, [(i == 1, i=1, n_link)], surface)
+    else if (all(back > 0)) then
       outcome = chain_turned
-      chain = chain(n:1:-1)
-    else if (any(ahead == 0)) then
-      is_ring = closed
-      call order_chain(boundary, position, chain, closed, outcome)
-      if (is_ring .and. .not. closed) outcome = chain_broken
+      back = merge(cshift(back(n_link:1:-1), 1), back(n_link:1:-1), closed)
+      call string_edges(boundary, back, [(i == 1, i=1, n_link)], surface)
+    else
+      call order_chain(boundary, is_listed, given(:n), closed, surface, outcome)
     end if
-    if (outcome == chain_broken) then
-      ! In the walking direction that most of the edges have.
-      if (count(ahead > 0) < count(back > 0)) ahead = back
-      i = findloc(ahead > 0, .false., 1)
-      trouble = given([i, mod(i, n) + 1])
-      return
-    end if
-    call build_chain(boundary, chain, closed, surface)
+    if (outcome /= chain_broken) return
+    ! In the walking direction that most of the edges have.
+    if (count(ahead > 0) < count(back > 0)) ahead = back
+    i = findloc(ahead > 0, .false., 1)
+    trouble = given([i, mod(i, n) + 1])
   end subroutine chain_surface
 
-  !> Put the nodes into the one order that their exterior edges allow.
-  pure subroutine order_chain(boundary, position, chain, closed, outcome)
+  !> The one chain of the exterior edges between nodes of a list; a closed one starts at the first.
+  pure subroutine order_chain(boundary, is_listed, given, closed, surface, outcome)
     type(boundary_t), intent(in) :: boundary
-    integer, intent(in) :: position(:)      !! place of each node in the list, or 0
-    integer, intent(inout) :: chain(:)
-    logical, intent(inout) :: closed
+    logical, intent(in) :: is_listed(:)    !! (n_node)
+    integer, intent(in) :: given(:)        !! the list
+    logical, intent(in) :: closed          !! it has to be
+    type(surface_t), intent(out) :: surface
     integer, intent(out) :: outcome
-    integer, allocatable :: next(:), n_incoming(:), ordered(:)
-    integer :: i, edge, first, n
+    type(surface_t) :: found
+    integer :: crossing, shift
 
     outcome = chain_broken
-    n = size(chain)
-    allocate (next(n), n_incoming(n), source=0)
-    do i = 1, n
-      do edge = boundary%start(chain(i)), boundary%start(chain(i) + 1) - 1
-        if (position(boundary%nodes(2, edge)) == 0) cycle
-        if (next(i) > 0) return
-        next(i) = position(boundary%nodes(2, edge))
-        n_incoming(next(i)) = n_incoming(next(i)) + 1
-      end do
-    end do
-    if (any(n_incoming > 1) .or. count(n_incoming == 0) > 1) return
-    first = 1
-    do i = n, 1, -1
-      if (n_incoming(i) == 0) first = i
-    end do
-    allocate (ordered(n))
-    i = first
-    do edge = 1, n
-      if (i == 0) return
-      if (edge > 1 .and. i == first) return
-      ordered(edge) = chain(i)
-      i = next(i)
-    end do
-    closed = i == first
-    chain = ordered
+    call boundary_surface(boundary, is_listed(boundary%nodes(1, :)) &
+      .and. is_listed(boundary%nodes(2, :)), found, crossing)
+    if (crossing > 0) return
+    if (found%n_node < size(given) .or. any(found%chain > 1)) return
+    if (closed .and. found%previous(1) == 0) return
     outcome = chain_ordered
+    surface = found
+    if (surface%previous(1) == 0) return
+    shift = findloc(surface%nodes, given(1), 1) - 1
+    surface%nodes = cshift(surface%nodes, shift)
+    surface%segment_element = cshift(surface%segment_element, shift)
   end subroutine order_chain
 
-  !> Fill a surface from a chain whose edges are all there.
-  pure subroutine build_chain(boundary, chain, closed, surface)
-    type(boundary_t), intent(in) :: boundary
-    integer, intent(in) :: chain(:)
-    logical, intent(in) :: closed
-    type(surface_t), intent(inout) :: surface
-    integer :: i, n, n_segment
+  !> The outline of the elements that are left, where the surface is that of parts; else its
+  !> segments whose elements are left, in their order.
+  pure subroutine surface_left(mesh, is_left, former, surface)
+    type(mesh_t), intent(in) :: mesh
+    logical, intent(in) :: is_left(:)     !! (n_element)
+    type(surface_t), intent(in) :: former !! of the deck, before anything left
+    type(surface_t), intent(out) :: surface
+    type(boundary_t) :: boundary
+    logical, allocatable :: chosen_part(:), is_chosen(:), is_near(:)
+    integer :: i
 
-    n = size(chain)
-    n_segment = merge(n, n - 1, closed)
-    surface%nodes = chain
-    allocate (surface%segments(2, n_segment), surface%segment_element(n_segment))
-    do i = 1, n_segment
-      surface%segments(:, i) = [i, mod(i, n) + 1]
-      surface%segment_element(i) = boundary%elements(find_edge(boundary, chain(i), &
-        chain(mod(i, n) + 1)))
+    if (allocated(former%parts)) then
+      allocate (chosen_part(maxval(mesh%element_part)), source=.false.)
+      chosen_part(former%parts) = .true.
+      is_chosen = chosen_part(mesh%element_part)
+      if (.not. any(is_chosen .and. .not. is_left)) then
+        surface = former
+        return
+      end if
+      is_chosen = is_chosen .and. is_left
+      ! Nodes that the outline can have: those of the deck's, and of elements that have gone.
+      allocate (is_near(size(mesh%coordinates, 2)), source=.false.)
+      is_near(former%nodes) = .true.
+      do i = 1, size(is_left)
+        if (.not. is_left(i)) is_near(mesh%element_nodes(:, i)) = .true.
+      end do
+      call find_boundary(mesh%element_nodes, is_chosen, is_near, boundary)
+      call walk_outline(mesh, is_chosen, boundary, surface)
+      surface%parts = former%parts
+    else
+      call take_left(is_left, former, surface)
+    end if
+    if (allocated(former%is_on_axis)) surface%is_on_axis = &
+      .not. mesh%coordinates(1, surface%nodes) > 0.0_wp
+  end subroutine surface_left
+
+  !> Segments of a surface whose elements are left.
+  pure subroutine take_left(is_left, former, surface)
+    logical, intent(in) :: is_left(:)
+    type(surface_t), intent(in) :: former
+    type(surface_t), intent(out) :: surface
+    integer, allocatable :: segments(:), nodes(:)
+    integer :: place(former%n_node), s
+
+    segments = pack([(s, s=1, former%n_segment)], is_left(former%segment_element))
+    surface%segment_element = former%segment_element(segments)
+    surface%segments = former%segments(:, segments)
+    place = 0
+    do s = 1, size(segments)
+      place(surface%segments(:, s)) = 1
+    end do
+    nodes = pack([(s, s=1, former%n_node)], place > 0)
+    place(nodes) = [(s, s=1, size(nodes))]
+    surface%nodes = former%nodes(nodes)
+    do s = 1, size(segments)
+      surface%segments(:, s) = place(surface%segments(:, s))
     end do
     call link_segments(surface)
-  end subroutine build_chain
+  end subroutine take_left
+
+  !> Closed chains of a boundary. Where it touches itself in a node a chain goes on along the
+  !> elements that it came by.
+  pure subroutine walk_outline(mesh, is_chosen, boundary, surface)
+    type(mesh_t), intent(in) :: mesh
+    logical, intent(in) :: is_chosen(:)
+    type(boundary_t), intent(in) :: boundary
+    type(surface_t), intent(out) :: surface
+    type(corners_t) :: corners
+    logical, dimension(boundary%n_edge) :: is_used, is_first
+    integer :: edges(boundary%n_edge), start, edge, n
+
+    call find_corners(mesh, is_chosen, boundary, corners)
+    is_used = .false.
+    is_first = .false.
+    n = 0
+    ! Edges are sorted by the node that they leave.
+    do start = 1, boundary%n_edge
+      if (is_used(start)) cycle
+      edge = start
+      is_first(n + 1) = .true.
+      do while (.not. is_used(edge))
+        is_used(edge) = .true.
+        n = n + 1
+        edges(n) = edge
+        edge = edge_behind(mesh, boundary, corners, edge)
+      end do
+    end do
+    call string_edges(boundary, edges, is_first, surface)
+  end subroutine walk_outline
+
+  !> Chosen elements at nodes that several edges leave.
+  pure subroutine find_corners(mesh, is_chosen, boundary, corners)
+    type(mesh_t), intent(in) :: mesh
+    logical, intent(in) :: is_chosen(:)
+    type(boundary_t), intent(in) :: boundary
+    type(corners_t), intent(out) :: corners
+    logical, allocatable :: is_crossing(:)
+    integer :: i, n
+
+    n = size(boundary%start) - 1
+    allocate (is_crossing(n))
+    is_crossing = boundary%start(2:) - boundary%start(:n) > 1
+    allocate (corners%node(0), corners%element(0))
+    if (.not. any(is_crossing)) return
+    do i = 1, size(is_chosen)
+      if (.not. is_chosen(i)) cycle
+      associate (nodes => mesh%element_nodes(:, i))
+        if (.not. any(is_crossing(nodes))) cycle
+        corners%node = [corners%node, pack(nodes, is_crossing(nodes))]
+        corners%element = [corners%element, spread(i, 1, count(is_crossing(nodes)))]
+      end associate
+    end do
+  end subroutine find_corners
+
+  !> The edge that follows another along its elements.
+  pure function edge_behind(mesh, boundary, corners, edge) result(next)
+    type(mesh_t), intent(in) :: mesh
+    type(boundary_t), intent(in) :: boundary
+    type(corners_t), intent(in) :: corners
+    integer, intent(in) :: edge
+    integer :: next
+    integer :: node, far, element, i, step
+
+    node = boundary%nodes(2, edge)
+    next = boundary%start(node)
+    if (boundary%start(node + 1) - next == 1) return
+    element = boundary%elements(edge)
+    do step = 1, size(corners%node)
+      far = node_behind(mesh%element_nodes(:, element), node)
+      do next = boundary%start(node), boundary%start(node + 1) - 1
+        if (boundary%nodes(2, next) == far .and. boundary%elements(next) == element) return
+      end do
+      do i = 1, size(corners%node)
+        if (corners%node(i) /= node) cycle
+        if (node_behind(mesh%element_nodes(:, corners%element(i)), far) == node) exit
+      end do
+      if (i > size(corners%node)) exit
+      element = corners%element(i)
+    end do
+    next = boundary%start(node)
+  end function edge_behind
+
+  !> The node that follows another round an element, 0 where it has not that one.
+  pure function node_behind(nodes, node) result(behind)
+    integer, intent(in) :: nodes(4), node
+    integer :: behind
+    integer :: k
+
+    behind = 0
+    do k = 1, 4
+      if (nodes(k) /= node) cycle
+      behind = nodes(mod(k, 4) + 1)
+      if (behind /= node) return
+    end do
+  end function node_behind
 
 end module surface_building_m

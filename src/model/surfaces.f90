@@ -33,22 +33,16 @@ contains
   !> Fill the neighbour lists from `nodes` and `segments`.
   pure subroutine link_segments(surface)
     type(surface_t), intent(inout) :: surface !! its neighbour lists are made anew
-    integer :: i_segment
+    integer :: s
 
     surface%n_node = size(surface%nodes)
     surface%n_segment = size(surface%segments, 2)
-    if (allocated(surface%incoming)) deallocate (surface%incoming, surface%outgoing)
-    if (allocated(surface%previous)) deallocate (surface%previous, surface%next)
-    allocate (surface%incoming(surface%n_node), surface%outgoing(surface%n_node), source=0)
-    allocate (surface%previous(surface%n_segment), surface%next(surface%n_segment))
-    do i_segment = 1, surface%n_segment
-      surface%outgoing(surface%segments(1, i_segment)) = i_segment
-      surface%incoming(surface%segments(2, i_segment)) = i_segment
-    end do
-    do i_segment = 1, surface%n_segment
-      surface%previous(i_segment) = surface%incoming(surface%segments(1, i_segment))
-      surface%next(i_segment) = surface%outgoing(surface%segments(2, i_segment))
-    end do
+    surface%incoming = spread(0, 1, surface%n_node)
+    surface%outgoing = surface%incoming
+    surface%outgoing(surface%segments(1, :)) = [(s, s=1, surface%n_segment)]
+    surface%incoming(surface%segments(2, :)) = [(s, s=1, surface%n_segment)]
+    surface%previous = surface%incoming(surface%segments(1, :))
+    surface%next = surface%outgoing(surface%segments(2, :))
     call number_chains(surface)
   end subroutine link_segments
 
@@ -70,12 +64,9 @@ contains
     type(surface_t), intent(in) :: surface
     logical :: closed
     logical :: is_open(maxval([0, surface%chain]))
-    integer :: s
 
     is_open = .false.
-    do s = 1, surface%n_segment
-      if (surface%previous(s) == 0) is_open(surface%chain(s)) = .true.
-    end do
+    is_open(pack(surface%chain, surface%previous == 0)) = .true.
     closed = .not. all(is_open)
   end function has_closed_chain
 

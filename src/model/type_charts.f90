@@ -6,13 +6,17 @@ module type_charts_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: scene_bound, scene_matching, scene_general, scene_led, scene_friction, scene_name, &
-    published_estimate, cheapest_type, better_type, refinement
+  public :: scene_bound, scene_matching, scene_general, scene_led, scene_friction, scene_names, &
+    estimates, cheapest_type, better_type, mesh_order
 
   !> Kinds of scenes: something else binds the type; flat faces that match and stay so; any; led
   !> along each other; with friction.
   integer, parameter :: scene_bound = 0, scene_matching = 1, scene_general = 2, scene_led = 3, &
     scene_friction = 4
+
+  !> The kinds but the first, for the log.
+  character(30), parameter :: scene_names(4) = [character(30) :: 'flat faces that match', &
+    'uneven meshes and round faces', 'faces led along each other', 'friction']
 
   integer, parameter :: n_type = 7
 
@@ -25,7 +29,7 @@ module type_charts_m
     0.0412_wp, 0.0284_wp, 0.0285_wp]
   real(wp), parameter :: ironing(n_type) = [2.173_wp, 0.5273_wp, 0.1062_wp, 0.0923_wp, &
     0.0964_wp, 0.0857_wp, 0.0829_wp]
-  !> Faces that match: all types are exact.
+  !> The estimate of each type in scenes of each kind. Faces that match: all types are exact.
   real(wp), parameter :: estimates(n_type, 4) = reshape([0.0_wp*patch, max(patch, hertz), &
     max(patch, sliding), max(patch, ironing)], [n_type, 4])
 
@@ -37,27 +41,6 @@ module type_charts_m
   real(wp), parameter :: mesh_order = 0.89_wp
 
 contains
-
-  !> A kind of scenes, for the log.
-  pure function scene_name(scene) result(name)
-    integer, intent(in) :: scene
-    character(:), allocatable :: name
-
-    select case (scene)
-    case (scene_matching); name = 'flat faces that match'
-    case (scene_led); name = 'faces led along each other'
-    case (scene_friction); name = 'friction'
-    case default; name = 'uneven meshes and round faces'
-    end select
-  end function scene_name
-
-  !> The estimate of a type in scenes of a kind.
-  elemental function published_estimate(scene, contact_type) result(estimate)
-    integer, intent(in) :: scene, contact_type
-    real(wp) :: estimate
-
-    estimate = estimates(contact_type, scene)
-  end function published_estimate
 
   !> The cheapest type that keeps the estimate at or below a bound, or if there is none the one with
   !> the smallest. Type 1 has no row of its own on flat faces that match: type 2 weighs their ends.
@@ -82,7 +65,6 @@ contains
     real(wp), intent(in) :: estimate, bound
     integer, intent(out) :: best
     real(wp), intent(out) :: expected
-
     integer :: chart
 
     best = present
@@ -92,13 +74,5 @@ contains
     best = cheapest_type(chart, estimates(present, chart)*bound/estimate)
     expected = estimate*estimates(best, chart)/estimates(present, chart)
   end subroutine better_type
-
-  !> By which factor elements should be smaller to bring an estimate down to a bound.
-  elemental function refinement(estimate, bound) result(factor)
-    real(wp), intent(in) :: estimate, bound
-    real(wp) :: factor
-
-    factor = (estimate/bound)**(1.0_wp/mesh_order)
-  end function refinement
 
 end module type_charts_m

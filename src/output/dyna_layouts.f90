@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> The layouts of DYNA's text files, byte for byte as scripts read them: one block of lines for all
 !> rows of one instant. Columns are those of `history_tables`, by their number; forces and energies
-!> per unit depth.
+!> per unit depth. In a layout each `@` stands for the next number and each `|` ends a line.
 module dyna_layouts_m
   use controls_m, only : boundary_load, boundary_body_load, boundary_pressure, &
     boundary_motion, boundary_body_motion
@@ -9,7 +9,7 @@ module dyna_layouts_m
     table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout, table_bndout, &
     table_nodfor, table_secforc
   use kinds_m, only : wp
-  use number_text_m, only : es, integer_size, put_integer
+  use text_m, only : es, integer_size, put_integer
   use text_files_m, only : line_file_t, put_lines
   implicit none
   private
@@ -40,6 +40,10 @@ module dyna_layouts_m
     ' global y velocity..............', &
     ' global z velocity..............']
 
+  !> Forces and energy of a node or a body, behind its number, and sums of them.
+  character(*), parameter :: force_line = '  xforce=@   yforce=@  zforce=@   energy=@|', &
+    total_line = '              xtotal=@   ytotal=@  ztotal=@   etotal=@|'
+
 contains
 
   !> One line.
@@ -50,13 +54,32 @@ contains
     call put_lines(file, text//new_line('a'))
   end subroutine put_line
 
-  !> Some empty lines.
-  subroutine put_blanks(file, n)
+  !> Lines of a layout.
+  subroutine put(file, layout, values, width, n_digit)
     type(line_file_t), intent(inout) :: file
-    integer, intent(in) :: n
+    character(*), intent(in) :: layout
+    real(wp), intent(in) :: values(:)         !! one for each `@`
+    integer, intent(in) :: width, n_digit     !! of each as ESw.d
+    character(len(layout) + (width - 1)*size(values)) :: text
+    integer :: i, k, n
 
-    call put_lines(file, repeat(new_line('a'), n))
-  end subroutine put_blanks
+    k = 0
+    n = 0
+    do i = 1, len(layout)
+      select case (layout(i:i))
+      case ('@')
+        k = k + 1
+        text(n + 1:n + width) = es(values(k), width, n_digit)
+        n = n + width - 1
+      case ('|')
+        text(n + 1:n + 1) = new_line('a')
+      case default
+        text(n + 1:n + 1) = layout(i:i)
+      end select
+      n = n + 1
+    end do
+    call put_lines(file, text(:n))
+  end subroutine put
 
   !> A whole number at the right of `width` columns, or of as many as it needs.
   pure function number(value, width) result(text)
@@ -74,23 +97,19 @@ contains
   subroutine put_head(i_table, file)
     integer, intent(in) :: i_table   !! one of `table_`
     type(line_file_t), intent(inout) :: file
+    real(wp), parameter :: none(0) = 0.0_wp
 
     select case (i_table)
     case (table_spcforc)
-      call put_line(file, ' single point constraint forces')
-      call put_blanks(file, 1)
+      call put(file, ' single point constraint forces||', none, 1, 0)
     case (table_rwforc)
-      call put_blanks(file, 2)
-      call put_line(file, '    time       wall#   normal-force    x-force        y-force        ' &
-        //'z-force')
+      call put(file, '||    time       wall#   normal-force    x-force        y-force        ' &
+        //'z-force|', none, 1, 0)
     case (table_secforc)
-      call put_line(file, ' line#1   section#     time      x-force      y-force      z-force    ' &
-        //'magnitude')
-      call put_line(file, ' line#2   resultant moments     x-moment     y-moment     z-moment    ' &
-        //'magnitude')
-      call put_line(file, ' line#3   centroids                    x            y            z    ' &
-        //'     area')
-      call put_blanks(file, 1)
+      call put(file, ' line#1   section#     time      x-force      y-force      z-force    ' &
+        //'magnitude| line#2   resultant moments     x-moment     y-moment     z-moment    ' &
+        //'magnitude| line#3   centroids                    x            y            z    ' &
+        //'     area||', none, 1, 0)
     end select
   end subroutine put_head
 
@@ -101,6 +120,7 @@ contains
     logical, intent(in) :: scales        !! masses are scaled
     real(wp), intent(in) :: rows(:, :)   !! (n_column, n_row)
     type(line_file_t), intent(inout) :: file
+    character(*), parameter :: indent = repeat(' ', 24)
     integer :: i
 
     select case (i_table)
@@ -108,9 +128,9 @@ contains
       call put_glstat(rows(:, 1), control, scales, file)
     case (table_rcforc)
       do i = 1, size(rows, 2)
-        call put_line(file, '  '//merge('slave ', 'master', nint(rows(3, i)) == 1) &
-          //number(rows(2, i), 11)//' time'//es(rows(1, i), 12, 5)//'  x '//es(rows(4, i), 12, 5) &
-          //'  y '//es(rows(5, i), 12, 5)//'  z '//es(zero, 12, 5)//' mass '//es(zero, 12, 5))
+        call put(file, '  '//merge('slave ', 'master', nint(rows(3, i)) == 1) &
+          //number(rows(2, i), 11)//' time@  x @  y @  z @ mass @|', &
+          [rows(1, i), rows(4:5, i), zero, zero], 12, 5)
       end do
     case (table_nodout)
       call put_nodout(rows, file)
@@ -119,17 +139,16 @@ contains
     case (table_sleout)
       call put_sleout(rows, file)
     case (table_spcforc)
-      call put_line(file, ' output at time ='//es(rows(1, 1), 14, 5))
+      call put(file, ' output at time =@|', rows(1:1, 1), 14, 5)
       do i = 1, size(rows, 2)
-        call put_line(file, ' node='//number(rows(2, i), 8)//' local x,y,z forces =' &
-          //es([rows(3:4, i), zero], 14, 4))
+        call put(file, ' node='//number(rows(2, i), 8)//' local x,y,z forces =@@@|', &
+          [rows(3:4, i), zero], 14, 4)
       end do
-      call put_line(file, '             force resultants   =' &
-        //es([sum(rows(3, :)), sum(rows(4, :)), zero], 14, 4))
+      call put(file, '             force resultants   =@@@|', [sum(rows(3:4, :), 2), zero], 14, 4)
     case (table_rwforc)
       do i = 1, size(rows, 2)
-        call put_line(file, es(rows(1, i), 12, 5)//number(rows(2, i), 8) &
-          //es([rows(5, i), rows(3:4, i), zero], 15, 6))
+        call put(file, es(rows(1, i), 12, 5)//number(rows(2, i), 8)//'@@@@|', &
+          [rows(5, i), rows(3:4, i), zero], 15, 6)
       end do
     case (table_elout)
       call put_elout(rows, file)
@@ -145,11 +164,9 @@ contains
       call put_nodfor(rows, file)
     case (table_secforc)
       do i = 1, size(rows, 2)
-        call put_line(file, number(rows(2, i), 11)//es([rows(1, i), rows(3:4, i), zero, &
-          norm2(rows(3:4, i))], 13, 4))
-        call put_line(file, repeat(' ', 24)//es([zero, zero, rows(5, i), abs(rows(5, i))], 13, 4))
-        call put_line(file, repeat(' ', 24)//es([rows(6:7, i), zero, rows(8, i)], 13, 4))
-        call put_blanks(file, 1)
+        call put(file, number(rows(2, i), 11)//'@@@@@|'//indent//'@@@@|'//indent//'@@@@||', &
+          [rows(1, i), rows(3:4, i), zero, norm2(rows(3:4, i)), zero, zero, rows(5, i), &
+          abs(rows(5, i)), rows(6:7, i), zero, rows(8, i)], 13, 4)
       end do
     end select
   end subroutine put_instant
@@ -170,9 +187,6 @@ contains
     by = control
     if (nint(row(25)) > 0) by = 'shell '//number(row(25), 8)//' of part '//number(row(26), 8)
     if (scales .and. nint(row(18)) > 0) by = 'dt2ms'
-    call put_blanks(file, 2)
-    call put_line(file, ' dt of cycle'//number(row(2), 8)//' is controlled by '//by)
-    call put_blanks(file, 1)
     associate (eroded => row(19:22), total => row(11))
       share = 1.0_wp
       if (abs(total) > zero) share = 1.0_wp - sum(eroded)/total
@@ -180,14 +194,14 @@ contains
         row(6) + eroded(3), row(8), row(9) + row(14) + eroded(4), row(10), eroded(:3), total, &
         row(12), share*row(12), row(23), row(24), zero]
     end associate
+    call put(file, '|| dt of cycle'//number(row(2), 8)//' is controlled by '//by//'||', &
+      values(:0), 14, 5)
     do i = 1, n_label
-      call put_line(file, labels(i)//es(values(i), 14, 5))
+      call put(file, labels(i)//'@|', values(i:i), 14, 5)
     end do
     call put_line(file, ' time per zone cycle.(nanosec)..             0')
-    if (.not. scales) return
-    call put_blanks(file, 1)
-    call put_line(file, ' added mass.....................'//es(row(15), 14, 5))
-    call put_line(file, ' percentage increase............'//es(row(17), 14, 5))
+    if (scales) call put(file, '| added mass.....................@' &
+      //'| percentage increase............@|', [row(15), row(17)], 14, 5)
   end subroutine put_glstat
 
   !> Motion of nodes.
@@ -197,12 +211,10 @@ contains
     character(:), allocatable :: id
     integer :: i
 
-    call put_blanks(file, 3)
-    call put_line(file, ' n o d a l   p r i n t   o u t   f o r   t i m e  s t e p' &
-      //number(rows(11, 1), 8)//repeat(' ', 30)//'( at time'//es(rows(1, 1), 14, 7)//' )')
-    call put_blanks(file, 1)
-    call put_line(file, ' nodal point  x-disp     y-disp      z-disp      x-vel       y-vel      ' &
-      //' z-vel      x-accl      y-accl      z-accl      x-coor      y-coor      z-coor')
+    call put(file, '||| n o d a l   p r i n t   o u t   f o r   t i m e  s t e p' &
+      //number(rows(11, 1), 8)//repeat(' ', 30)//'( at time@ )|| nodal point  x-disp     ' &
+      //'y-disp      z-disp      x-vel       y-vel       z-vel      x-accl      y-accl      ' &
+      //'z-accl      x-coor      y-coor      z-coor|', rows(1:1, 1), 14, 7)
     do i = 1, size(rows, 2)
       id = number(rows(2, i), 9)
       if (len(id) == 9) id = id//' '
@@ -220,22 +232,16 @@ contains
     real(wp) :: velocity(2)
     integer :: i
 
-    call put_blanks(file, 2)
-    call put_line(file, ' time ='//es(rows(1, 1), 13, 4))
+    call put(file, '|| time =@|', rows(1:1, 1), 13, 4)
     do i = 1, size(rows, 2)
       id = number(rows(2, i), 5)
       if (len(id) < 8) id = id//repeat(' ', 8 - len(id))
       velocity = zero
       if (rows(8, i) > zero) velocity = rows(6:7, i)/rows(8, i)
-      call put_line(file, ' mat.#='//id//'          inten='//es(rows(4, i), 13, 4) &
-        //'     kinen='//es(rows(3, i), 13, 4)//'     eroded_ie='//es(zero, 13, 4) &
-        //'     eroded_ke='//es(zero, 13, 4))
-      call put_line(file, ' x-mom='//es(rows(6, i), 13, 4)//'     y-mom='//es(rows(7, i), 13, 4) &
-        //'     z-mom='//es(zero, 13, 4))
-      call put_line(file, ' x-rbv='//es(velocity(1), 13, 4)//'     y-rbv='//es(velocity(2), 13, 4) &
-        //'     z-rbv='//es(zero, 13, 4))
-      call put_line(file, repeat(' ', 25)//'hgeng='//es(rows(5, i), 13, 4)//'     +mass=' &
-        //es(rows(9, i), 13, 4))
+      call put(file, ' mat.#='//id//'          inten=@     kinen=@     eroded_ie=@     ' &
+        //'eroded_ke=@| x-mom=@     y-mom=@     z-mom=@| x-rbv=@     y-rbv=@     z-rbv=@|' &
+        //repeat(' ', 25)//'hgeng=@     +mass=@|', [rows(4, i), rows(3, i), zero, zero, &
+        rows(6:7, i), zero, velocity, zero, rows(5, i), rows(9, i)], 13, 4)
     end do
   end subroutine put_matsum
 
@@ -249,20 +255,15 @@ contains
     integer :: i
 
     total = sum(rows(energies, :))
-    call put_blanks(file, 3)
-    call put_line(file, ' contact interface energy file, time='//es(rows(1, 1), 14, 7))
-    call put_line(file, '    #            slave       master   frictional   cycle=' &
-      //number(rows(2, 1), 14))
-    call put_blanks(file, 1)
+    call put(file, '||| contact interface energy file, time=@|    #            slave       ' &
+      //'master   frictional   cycle='//number(rows(2, 1), 14)//'||', rows(1:1, 1), 14, 7)
     do i = 1, size(rows, 2)
-      call put_line(file, number(rows(3, i), 10)//es([sum(rows(energies, i)), zero, rows(7, i)], &
-        13, 4))
+      call put(file, number(rows(3, i), 10)//'@@@|', [sum(rows(energies, i)), zero, rows(7, i)], &
+        13, 4)
     end do
-    call put_blanks(file, 1)
-    call put_line(file, ' summary   total slave side='//es(total, 14, 7))
-    call put_line(file, '           total mastr side='//es(zero, 14, 7))
-    call put_line(file, '           total energy    ='//es(total, 14, 7))
-    call put_line(file, '           friction energy ='//es(sum(rows(7, :)), 14, 7))
+    call put(file, '| summary   total slave side=@|           total mastr side=@|           ' &
+      //'total energy    =@|           friction energy =@|', [total, zero, total, &
+      sum(rows(7, :))], 14, 7)
   end subroutine put_sleout
 
   !> Stress of elements. DYNA's 2D solids stand among the shells: one line for a point through the
@@ -273,14 +274,10 @@ contains
     character(8) :: state
     integer :: i
 
-    call put_blanks(file, 3)
-    call put_line(file, ' e l e m e n t   s t r e s s   c a l c u l a t i o n s   f o r   ' &
-      //'t i m e  s t e p'//number(rows(8, 1), 9)//'   ( at time'//es(rows(1, 1), 12, 5)//' )')
-    call put_blanks(file, 1)
-    call put_line(file, ' element  materl(global)')
-    call put_line(file, ' ipt-shl  stress       sig-xx      sig-yy      sig-zz      sig-xy      ' &
-      //'sig-yz      sig-zx       plastic')
-    call put_line(file, '           state'//repeat(' ', 82)//'strain')
+    call put(file, '||| e l e m e n t   s t r e s s   c a l c u l a t i o n s   f o r   ' &
+      //'t i m e  s t e p'//number(rows(8, 1), 9)//'   ( at time@ )|| element  materl(global)|' &
+      //' ipt-shl  stress       sig-xx      sig-yy      sig-zz      sig-xy      sig-yz      ' &
+      //'sig-zx       plastic|           state'//repeat(' ', 82)//'strain|', rows(1:1, 1), 12, 5)
     do i = 1, size(rows, 2)
       state = 'elastic'
       if (rows(7, i) > zero) state = 'plastic'
@@ -296,38 +293,29 @@ contains
   subroutine put_rbdout(rows, file)
     real(wp), intent(in) :: rows(:, :)
     type(line_file_t), intent(inout) :: file
-    character(*), parameter :: heads(3) = [character(17) :: ' displacements:', '    velocities:', &
-      ' accelerations:']
     real(wp) :: axes(3, 3), values(3, 3)
     integer :: i, k
 
-    call put_line(file, '1')
-    call put_blanks(file, 1)
-    call put_line(file, '  r i g i d   b o d y   m o t i o n   a t  cycle=' &
-      //number(rows(14, 1), 8)//'    time='//es(rows(1, 1), 15, 6))
+    call put(file, '1||  r i g i d   b o d y   m o t i o n   a t  cycle=' &
+      //number(rows(14, 1), 8)//'    time=@|', rows(1:1, 1), 15, 6)
     do i = 1, size(rows, 2)
       associate (angle => rows(7, i))
         axes = reshape([cos(angle), sin(angle), zero, -sin(angle), cos(angle), zero, zero, zero, &
           1.0_wp], [3, 3])
       end associate
       values = reshape(rows(5:13, i), [3, 3])
-      call put_blanks(file, 1)
-      call put_line(file, ' rigid body'//number(rows(2, i), 8))
-      call put_line(file, '   global             x           y           z          x-rot       ' &
-        //'y-rot       z-rot')
-      call put_line(file, '   coordinates:  '//es([rows(3:4, i), zero], 12, 4))
+      call put(file, '| rigid body'//number(rows(2, i), 8)//'|   global             x           ' &
+        //'y           z          x-rot       y-rot       z-rot|   coordinates:  @@@|', &
+        [rows(3:4, i), zero], 12, 4)
       call put_motion()
-      call put_blanks(file, 1)
-      call put_line(file, 'principal or user defined local coordinate direction vectors')
-      call put_line(file, '                     a           b           c')
+      call put(file, '|principal or user defined local coordinate direction vectors|' &
+        //'                     a           b           c|     row 1@@@|     row 2@@@|' &
+        //'     row 3@@@|| output in principal or user defined local coordinate directions|' &
+        //'                      a           b           c          a-rot       b-rot       ' &
+        //'c-rot|', reshape(transpose(axes), [9]), 15, 4)
       do k = 1, 3
-        call put_line(file, '     row '//number(real(k, wp), 1)//es(axes(k, :), 15, 4))
         values(:2, k) = matmul(values(:2, k), axes(:2, :2))
       end do
-      call put_blanks(file, 1)
-      call put_line(file, ' output in principal or user defined local coordinate directions')
-      call put_line(file, '                      a           b           c          a-rot       ' &
-        //'b-rot       c-rot')
       call put_motion()
     end do
 
@@ -335,11 +323,8 @@ contains
 
     !> Three translations and three rotations a line; those of the plane.
     subroutine put_motion()
-      integer :: m
-
-      do m = 1, 3
-        call put_line(file, heads(m)//es([values(:2, m), zero, zero, zero, values(3, m)], 12, 4))
-      end do
+      call put(file, ' displacements:  @@@@@@|    velocities:  @@@@@@| accelerations:  @@@@@@|', &
+        [(values(:2, k), zero, zero, zero, values(3, k), k=1, 3)], 12, 4)
     end subroutine put_motion
 
   end subroutine put_rbdout
@@ -351,26 +336,22 @@ contains
     real(wp), intent(in) :: rows(:, :)
     type(line_file_t), intent(inout) :: file
     character(4), parameter :: heads(5) = [' nd#', ' mt#', ' nd#', ' nd#', 'mat#'] !! by `boundary_`
-    real(wp) :: total(3)
+    real(wp) :: forces(4), total(4) !! along x, y and z, energy
     integer :: i
 
     if (.not. any([(any(nint(rows(2, i)) == conditions), i=1, size(rows, 2))])) return
-    call put_blanks(file, 5)
-    call put_line(file, ' n o d a l   f o r c e/e n e r g y    o u t p u t  t=' &
-      //es(rows(1, 1), 12, 5))
-    call put_blanks(file, 4)
-    call put_line(file, ' '//title)
-    call put_blanks(file, 1)
+    call put(file, '||||| n o d a l   f o r c e/e n e r g y    o u t p u t  t=@||||| '//title &
+      //'||', rows(1:1, 1), 12, 5)
     total = zero
     do i = 1, size(rows, 2)
       if (.not. any(nint(rows(2, i)) == conditions)) cycle
-      total = total + [rows(4:5, i), rows(7, i)]
-      call put_force(heads(nint(rows(2, i))), rows(3, i), [rows(4:5, i), rows(7, i)], file)
-      if (nint(rows(2, i)) /= boundary_body_motion) cycle
-      call put_line(file, '             xmoment='//es(zero, 13, 4)//'  ymoment='//es(zero, 13, 4) &
-        //' zmoment='//es(rows(6, i), 13, 4))
+      forces = [rows(4:5, i), zero, rows(7, i)]
+      total = total + forces
+      call put(file, heads(nint(rows(2, i)))//number(rows(3, i), 8)//force_line, forces, 13, 4)
+      if (nint(rows(2, i)) == boundary_body_motion) call put(file, &
+        '             xmoment=@  ymoment=@ zmoment=@|', [zero, zero, rows(6, i)], 13, 4)
     end do
-    call put_total(total, file)
+    call put(file, total_line, total, 13, 4)
   end subroutine put_section
 
   !> Forces of groups of nodes, and their sums. The rows of a group come together.
@@ -378,45 +359,24 @@ contains
     real(wp), intent(in) :: rows(:, :)
     type(line_file_t), intent(inout) :: file
     integer :: group(0:size(rows, 2) + 1), i, n_group
-    real(wp) :: total(3)
+    real(wp) :: forces(4), total(4) !! along x, y and z, energy
 
-    call put_blanks(file, 5)
-    call put_line(file, ' n o d a l   f o r c e   g r o u p    o u t p u t  t=' &
-      //es(rows(1, 1), 12, 5))
+    call put(file, '||||| n o d a l   f o r c e   g r o u p    o u t p u t  t=@|', rows(1:1, 1), &
+      12, 5)
     group = [-1, nint(rows(2, :)), -1]
     n_group = 0
     do i = 1, size(rows, 2)
       if (group(i) /= group(i - 1)) then
         n_group = n_group + 1
         total = zero
-        call put_blanks(file, 5)
-        call put_line(file, ' nodal group output number '//number(real(n_group, wp), 2))
-        call put_blanks(file, 1)
+        call put(file, '||||| nodal group output number '//number(real(n_group, wp), 2)//'||', &
+          total(:0), 1, 0)
       end if
-      total = total + rows(4:6, i)
-      call put_force(' nd#', rows(3, i), rows(4:6, i), file)
-      if (group(i) /= group(i + 1)) call put_total(total, file)
+      forces = [rows(4:5, i), zero, rows(6, i)]
+      total = total + forces
+      call put(file, ' nd#'//number(rows(3, i), 8)//force_line, forces, 13, 4)
+      if (group(i) /= group(i + 1)) call put(file, total_line, total, 13, 4)
     end do
   end subroutine put_nodfor
-
-  !> One line of a node or a body.
-  subroutine put_force(head, id, values, file)
-    character(4), intent(in) :: head
-    real(wp), intent(in) :: id
-    real(wp), intent(in) :: values(3)  !! force along x and y, energy
-    type(line_file_t), intent(inout) :: file
-
-    call put_line(file, head//number(id, 8)//'  xforce='//es(values(1), 13, 4)//'   yforce=' &
-      //es(values(2), 13, 4)//'  zforce='//es(zero, 13, 4)//'   energy='//es(values(3), 13, 4))
-  end subroutine put_force
-
-  !> Sums of some lines.
-  subroutine put_total(values, file)
-    real(wp), intent(in) :: values(3)  !! as in `put_force`
-    type(line_file_t), intent(inout) :: file
-
-    call put_line(file, '              xtotal='//es(values(1), 13, 4)//'   ytotal=' &
-      //es(values(2), 13, 4)//'  ztotal='//es(zero, 13, 4)//'   etotal='//es(values(3), 13, 4))
-  end subroutine put_total
 
 end module dyna_layouts_m

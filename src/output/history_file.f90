@@ -1,28 +1,55 @@
 ! SPDX-License-Identifier: MIT
-!> The histories: one CSV table per quantity, and DYNA's text file beside it where the deck asks for
-!> it. A table whose output was not asked for is not made.
+!> The histories: one CSV table per quantity (comma between values, no blanks, reals as the shortest
+!> decimals that read back as the same numbers), and a text file in DYNA's layout beside it where
+!> the deck asks for it (`<job>.glstat`, `.rcforc` and so on). A table whose output was not asked
+!> for is not made. The values are kept: the results file takes them over at the end.
 module history_file_m
+  use build_info_m, only : version
   use contacts_m, only : n_told
-  use errors_m, only : error_t
-  use model_m, only : model_t
   use controls_m, only : is_asked
-  use csv_table_m, only : csv_table_t, plan_table, open_table, flush_table, close_table, &
-    visit_rows
-  use dyna_text_m, only : open_dyna_text
-  use kinds_m, only : wp
-  use log_m, only : to_text
-  use history_tables_m, only : history_tables, n_table, asked_alone, asked_by_states, each_run, &
+  use dyna_layouts_m, only : put_line, put_head, put_instant
+  use errors_m, only : error_t
+  use history_tables_m, only : history_tables, n_table, table_rcforc, table_nodout, table_matsum, &
+    table_sleout, table_elout, table_secforc, asked_alone, asked_by_states, each_run, &
     each_contact, each_history_node, each_part, each_wall, each_support, each_history_element, &
     each_body, each_boundary, each_group_node, each_section, text_none, text_rows
-  use visitor_m, only : visited_t, visitor_t, length
+  use kinds_m, only : wp
+  use log_m, only : to_text
+  use model_m, only : model_t
+  use text_files_m, only : line_file_t, open_lines, put_lines, keep_up, flush_lines, close_lines
+  use text_m, only : text_of, real_size, put_real, put_integer
+  use visitor_m, only : visited_t, visitor_t, any_length, length
   implicit none
   private
-  public :: histories_t, plan_histories, open_histories, check_histories, flush_histories, &
-    close_histories, has_rows
+  public :: history_t, histories_t, plan_table, plan_histories, open_table, open_histories, &
+    add_row, row_text, flush_histories, close_histories, n_each, kind_real, kind_integer, kind_side
+
+  !> Kinds of columns: a real, an integer, a side of an interface (1 = slave, 2 = master).
+  integer, parameter :: kind_real = 1, kind_integer = 2, kind_side = 3
+  !> Bytes of a title in a legend.
+  integer, parameter :: title_size = 70
+
+  !> One table.
+  type :: history_t
+    integer :: i_table = 0                  !! one of `table_`
+    logical :: tells_mass = .false.         !! masses are scaled
+    logical, allocatable :: is_kept(:)      !! (columns of `history_tables`) those that this run has
+    character(20), allocatable :: names(:)  !! (n_column)
+    integer, allocatable :: kinds(:)        !! (n_column) `kind_` of each
+    integer :: n_csv = 0                    !! columns of the CSV file, the first ones
+    integer :: n_row = 0                    !! rows so far
+    real(wp), allocatable :: values(:, :)   !! (n_column, capacity) all rows; integers are exact
+    type(line_file_t) :: file               !! rows are taken only while it is open
+    type(line_file_t) :: text               !! the file in DYNA's layout, where the deck asks for it
+    character(:), allocatable :: control    !! for it: what rules the step where no element does
+    integer :: n_waiting = 0                !! rows of the present instant, which wait until it is
+                                            !! complete
+    real(wp), allocatable :: waiting(:, :)  !! (columns of `history_tables`, rows of an instant)
+  end type history_t
 
   !> All tables of a run.
   type, extends(visited_t) :: histories_t
-    type(csv_table_t) :: tables(n_table) !! by the `table_` constants
+    type(history_t) :: tables(n_table)      !! by the `table_` constants
   contains
     procedure :: visit => visit_histories
   end type histories_t
@@ -38,7 +65,7 @@ contains
 
     tells_mass = abs(model%controls%mass_step) > 0.0_wp .and. .not. model%controls%implicit%is_on
     do k = 1, n_table
-      is_wanted = has_rows(model, k)
+      is_wanted = n_each(model, k) > 0
       if (history_tables(k)%asked == asked_alone) is_wanted = is_wanted .and. &
         is_asked(model%controls%output%histories(k))
       if (history_tables(k)%asked == asked_by_states) is_wanted = is_wanted .and. &
@@ -47,43 +74,158 @@ contains
     end do
   end subroutine plan_histories
 
+  !> The columns of a table, which has no rows and no file yet.
+  subroutine plan_table(table, i_table, tells_mass, erodes)
+    type(history_t), intent(out) :: table
+    integer, intent(in) :: i_table    !! one of `table_`
+    logical, intent(in) :: tells_mass !! masses are scaled
+    logical, intent(in) :: erodes     !! elements may leave the mesh
+    character(len(history_tables%columns) + 1) :: left
+    integer :: i, n, last
+    logical :: is_beside
+
+    left = trim(history_tables(i_table)%columns)//','
+    table%i_table = i_table
+    table%tells_mass = tells_mass
+    n = count([(scan(left(i:i), ',;') == 1, i=1, len(left))])
+    allocate (table%is_kept(n), table%names(n), table%kinds(n))
+    is_beside = .false.
+    do i = 1, n
+      last = scan(left, ',;') - 1
+      table%is_kept(i) = (tells_mass .or. left(1:1) /= '+') .and. (erodes .or. left(1:1) /= '-')
+      if (table%is_kept(i) .and. .not. is_beside) table%n_csv = table%n_csv + 1
+      table%kinds(i) = kind_real
+      if (index(left(:last), '#') > 0) table%kinds(i) = kind_integer
+      if (index(left(:last), '@') > 0) table%kinds(i) = kind_side
+      table%names(i) = left(verify(left, '+-#@'):last)
+      is_beside = is_beside .or. left(last + 1:last + 1) == ';'
+      left = left(last + 2:)
+    end do
+    table%names = pack(table%names, table%is_kept)
+    table%kinds = pack(table%kinds, table%is_kept)
+    allocate (table%values(size(table%kinds), 64))
+  end subroutine plan_table
+
   !> Plan the tables and make their files, those in DYNA's layout too.
   subroutine open_histories(histories, prefix, model, error)
     type(histories_t), intent(out) :: histories
     character(*), intent(in) :: prefix   !! directory and job name
     type(model_t), intent(in) :: model
     type(error_t), allocatable, intent(out) :: error
-    character(:), allocatable :: path
-    integer :: k, n_row
+    integer :: k
 
     call plan_histories(histories, model)
     do k = 1, n_table
-      if (.not. allocated(histories%tables(k)%values)) cycle
+      if (allocated(error) .or. .not. allocated(histories%tables(k)%values)) cycle
       call open_table(histories%tables(k), prefix//'.'//trim(history_tables(k)%name)//'.csv', error)
-      if (allocated(error)) return
     end do
     do k = 1, n_table
       associate (table => histories%tables(k), interval => model%controls%output%histories(k))
-        if (history_tables(k)%text == text_none .or. .not. table%file%is_open) cycle
-        if (.not. (interval%is_text .and. is_asked(interval))) cycle
-        path = prefix//'.'//trim(history_tables(k)%name)
-        n_row = n_each(model, k)
-        if (history_tables(k)%text == text_rows) n_row = 1
-        call open_dyna_text(table%text, path, k, model, table%tells_mass, &
-          size(table%is_kept), n_row, error)
+        if (allocated(error) .or. history_tables(k)%text == text_none) cycle
+        if (table%file%is_open .and. interval%is_text .and. is_asked(interval)) &
+          call open_text(table, prefix//'.'//trim(history_tables(k)%name), model, error)
       end associate
-      if (allocated(error)) return
     end do
   end subroutine open_histories
 
-  !> Whether a table would have rows.
-  pure function has_rows(model, i_table)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i_table   !! one of `table_`
-    logical :: has_rows
+  !> Make the CSV file of a planned table and write its header.
+  subroutine open_table(table, path, error)
+    type(history_t), intent(inout) :: table
+    character(*), intent(in) :: path
+    type(error_t), allocatable, intent(out) :: error
+    character(:), allocatable :: header
+    integer :: i
 
-    has_rows = n_each(model, i_table) > 0
-  end function has_rows
+    header = trim(table%names(1))
+    do i = 2, table%n_csv
+      header = header//','//trim(table%names(i))
+    end do
+    call open_lines(table%file, path, error)
+    if (allocated(error)) return
+    call put_lines(table%file, header//new_line('a'))
+    call flush_lines(table%file, error)
+  end subroutine open_table
+
+  !> Make the file in DYNA's layout and write its head: title, program and the legend of entities,
+  !> where they have titles.
+  subroutine open_text(table, path, model, error)
+    type(history_t), intent(inout) :: table
+    character(*), intent(in) :: path
+    type(model_t), intent(in) :: model
+    type(error_t), allocatable, intent(out) :: error
+    integer :: n_row
+
+    call open_lines(table%text, path, error)
+    if (allocated(error)) return
+    table%control = 'load curve'
+    if (model%controls%implicit%is_on) table%control = 'implicit'
+    n_row = n_each(model, table%i_table)
+    if (history_tables(table%i_table)%text == text_rows) n_row = 1
+    allocate (table%waiting(size(table%is_kept), n_row))
+    call put_line(table%text, ' '//text_of(model%controls%title))
+    call put_line(table%text, '                         slideline (version '//version//')     ' &
+      //trim(merge('axisymmetric, per radian    ', 'plane strain, per unit depth', model%is_round)))
+    call put_legend(table, model)
+    call put_head(table%i_table, table%text)
+    call flush_lines(table%text, error)
+  end subroutine open_text
+
+  !> Numbers and titles of what the rows are of; nothing where there are no titles.
+  subroutine put_legend(table, model)
+    type(history_t), intent(inout) :: table
+    type(model_t), intent(in) :: model
+    logical :: has_legend
+    integer :: i
+
+    has_legend = .false.
+    associate (plan => model%controls%output)
+      select case (table%i_table)
+      case (table_matsum)
+        do i = 1, size(model%parts)
+          call put_entity(model%parts(i)%id, text_of(model%parts(i)%title))
+        end do
+      case (table_rcforc, table_sleout)
+        do i = 1, n_told(model%contacts)
+          call put_entity(model%contacts(i)%id, text_of(model%contacts(i)%title))
+        end do
+        if (table%i_table == table_rcforc .and. allocated(model%transducers)) then
+          do i = 1, size(model%transducers)
+            call put_entity(model%transducers(i)%id, text_of(model%transducers(i)%title))
+          end do
+        end if
+      case (table_nodout)
+        do i = 1, size(plan%history_nodes)
+          call put_entity(model%mesh%node_id(plan%history_nodes(i)), 'node')
+        end do
+      case (table_secforc)
+        do i = 1, size(plan%cross_sections)
+          call put_entity(plan%cross_sections(i)%id, text_of(plan%cross_sections(i)%title))
+        end do
+      case (table_elout)
+        do i = 1, size(plan%history_elements)
+          call put_entity(model%mesh%element_id(plan%history_elements(i)), 'shell')
+        end do
+      end select
+    end associate
+    if (has_legend) call put_line(table%text, '{END LEGEND}'//new_line('a'))
+
+  contains
+
+    !> One entity; the first opens the legend.
+    subroutine put_entity(id, title)
+      integer, intent(in) :: id
+      character(*), intent(in) :: title
+      character(9) :: number
+
+      if (len_trim(title) == 0) return
+      if (.not. has_legend) call put_line(table%text, new_line('a')//'{BEGIN LEGEND}' &
+        //new_line('a')//' Entity #        Title')
+      has_legend = .true.
+      write (number, '(ss,i9)') id
+      call put_line(table%text, number//'     '//title(:min(len(title), title_size)))
+    end subroutine put_entity
+
+  end subroutine put_legend
 
   !> Number of those that a table tells of.
   pure function n_each(model, i_table) result(n)
@@ -111,31 +253,74 @@ contains
     end associate
   end function n_each
 
-  !> The first failure that any table or its text file has had so far.
-  pure subroutine check_histories(histories, error)
-    type(histories_t), intent(in) :: histories
+  !> Take one row; nothing happens to a table that is not open.
+  subroutine add_row(table, values)
+    type(history_t), intent(inout) :: table
+    real(wp), intent(in) :: values(:)   !! of all columns of `history_tables`
+    real(wp), allocatable :: larger(:, :)
+
+    if (.not. table%file%is_open) return
+    if (table%n_row == size(table%values, 2)) then
+      allocate (larger(size(table%values, 1), 2*table%n_row))
+      larger(:, :table%n_row) = table%values
+      call move_alloc(larger, table%values)
+    end if
+    table%n_row = table%n_row + 1
+    table%values(:, table%n_row) = pack(values, table%is_kept)
+    call put_lines(table%file, row_text(table%values(:table%n_csv, table%n_row), table%kinds))
+    call keep_up(table%file)
+    if (.not. table%text%is_open) return
+    table%n_waiting = table%n_waiting + 1
+    table%waiting(:, table%n_waiting) = values
+    if (table%n_waiting < size(table%waiting, 2)) return
+    table%n_waiting = 0
+    call put_instant(table%i_table, table%control, table%tells_mass, table%waiting, table%text)
+    call keep_up(table%text)
+  end subroutine add_row
+
+  !> One row as text, with its line end.
+  pure function row_text(values, kinds) result(text)
+    real(wp), intent(in) :: values(:)
+    integer, intent(in) :: kinds(:)   !! `kind_` of each value
+    character(:), allocatable :: text
+    character((real_size + 1)*size(values)) :: buffer
+    character(real_size) :: word
+    integer :: i, n, length
+
+    n = 0
+    do i = 1, size(values)
+      select case (kinds(i))
+      case (kind_integer)
+        call put_integer(nint(values(i)), word, length)
+      case (kind_side)
+        word = merge('slave ', 'master', nint(values(i)) == 1)
+        length = len_trim(word)
+      case default
+        call put_real(values(i), word, length)
+      end select
+      buffer(n + 1:n + length + 1) = word(:length)//','
+      n = n + length + 1
+    end do
+    text = buffer(:n - 1)//new_line('a')
+  end function row_text
+
+  !> Bring all rows into the files, or look only whether all that came so far could be written;
+  !> reports the first failure of any table.
+  subroutine flush_histories(histories, is_asked, error)
+    type(histories_t), intent(inout) :: histories
+    logical, intent(in) :: is_asked
     type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: ignored
     integer :: k
 
     do k = 1, n_table
       associate (table => histories%tables(k))
-        if (allocated(table%text%file%trouble)) error = table%text%file%trouble
+        if (is_asked) call flush_lines(table%text, ignored)
+        if (is_asked) call flush_lines(table%file, ignored)
+        if (allocated(error)) cycle
+        if (allocated(table%text%trouble)) error = table%text%trouble
         if (allocated(table%file%trouble)) error = table%file%trouble
       end associate
-      if (allocated(error)) return
-    end do
-  end subroutine check_histories
-
-  !> Bring all rows into the files; reports the first failure of any table.
-  subroutine flush_histories(histories, error)
-    type(histories_t), intent(inout) :: histories
-    type(error_t), allocatable, intent(out) :: error
-    type(error_t), allocatable :: trouble
-    integer :: i_table
-
-    do i_table = 1, n_table
-      call flush_table(histories%tables(i_table), trouble)
-      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
     end do
   end subroutine flush_histories
 
@@ -143,24 +328,45 @@ contains
   subroutine close_histories(histories, error)
     type(histories_t), intent(inout) :: histories
     type(error_t), allocatable, intent(out) :: error
-    type(error_t), allocatable :: trouble
-    integer :: i_table
+    integer :: k
 
-    do i_table = 1, n_table
-      call close_table(histories%tables(i_table), trouble)
-      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+    do k = 1, n_table
+      call finish(histories%tables(k)%file)
+      call finish(histories%tables(k)%text)
     end do
+
+  contains
+
+    !> One file; the first failure stays.
+    subroutine finish(file)
+      type(line_file_t), intent(inout) :: file
+      type(error_t), allocatable :: trouble
+
+      call close_lines(file, trouble)
+      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+    end subroutine finish
+
   end subroutine close_histories
 
   !> Its components. Tables are kept whole: the run that goes on writes them again from the first
-  !> row, so that they do not depend on what has become of the files.
+  !> row, so that they do not depend on what has become of the files; not those that it no longer
+  !> writes.
   subroutine visit_histories(self, visitor)
     class(histories_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
-    integer :: i
+    real(wp), allocatable :: rows(:, :)
+    integer :: k, i
 
-    do i = 1, n_table
-      call visit_rows(self%tables(i), to_text(i), visitor)
+    do k = 1, n_table
+      associate (table => self%tables(k))
+        if (allocated(rows)) deallocate (rows)
+        if (allocated(table%values)) rows = table%values(:, :table%n_row)
+        call visitor%visit(to_text(k), rows, any_length)
+        if (.not. visitor%judges .or. .not. allocated(rows)) cycle
+        do i = 1, size(rows, 2)
+          if (table%file%is_open) call add_row(table, unpack(rows(:, i), table%is_kept, 0.0_wp))
+        end do
+      end associate
     end do
   end subroutine visit_histories
 

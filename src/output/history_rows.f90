@@ -5,8 +5,8 @@
 module history_rows_m
   use controls_m, only : boundary_body_load, boundary_body_motion
   use contacts_m, only : n_told
-  use csv_table_m, only : csv_table_t, add_row
   use snapshot_m, only : total_energy, energy_ratio, snapshot_t, rubbed_t
+  use history_file_m, only : history_t, add_row, n_each
   use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_contact, &
     table_matsum, table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout, &
     table_bndout, table_nodfor, table_secforc
@@ -23,101 +23,44 @@ contains
 
   !> Append the rows of an instant to a table.
   subroutine append_rows(table, i_table, model, shot)
-    type(csv_table_t), intent(inout) :: table
+    type(history_t), intent(inout) :: table
     integer, intent(in) :: i_table   !! which it is, one of `table_`
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(in) :: shot
+    integer :: i, k, n
 
     if (.not. table%file%is_open) return
     select case (i_table)
-    case (table_glstat)
-      associate (e => shot%energies)
-        call add_row(table, [shot%time, real(shot%cycle, wp), shot%dt, e%kinetic, e%internal, &
-          e%hourglass, e%viscous, e%damping, e%contact, e%external_work, total_energy(e), &
-          energy_ratio(e), e%leapfrog, e%friction, e%added_mass, sum(e%eroded), e%mass_increase, &
-          real(shot%by_dt2ms, wp), e%eroded, shot%mean_velocity, real(shot%slowest, wp)])
-      end associate
-    case (table_matsum, table_rbdout, table_elout, table_nodout)
-      call append_motion(table, i_table, model, shot)
-    case (table_rcforc, table_sleout)
-      call append_interfaces(table, i_table, model, shot)
-    case (table_contact)
-      call append_slaves(table, model, shot)
-    case default
-      call append_forces(table, i_table, model, shot)
-    end select
-  end subroutine append_rows
-
-  !> Sums over parts, motion of rigid bodies and nodes, stress of elements.
-  subroutine append_motion(table, i_table, model, shot)
-    type(csv_table_t), intent(inout) :: table
-    integer, intent(in) :: i_table
-    type(model_t), intent(in) :: model
-    type(snapshot_t), intent(in) :: shot
-    integer :: i
-
-    associate (plan => model%controls%output, cycle => real(shot%cycle, wp))
-      select case (i_table)
-      case (table_matsum)
-        do i = 1, size(model%parts)
-          associate (part => shot%parts(i))
-            call add_row(table, [shot%time, real(model%parts(i)%id, wp), part%kinetic, &
-              part%internal, part%hourglass, part%momentum, part%mass, part%added_mass])
-          end associate
-        end do
-      case (table_rbdout)
-        do i = 1, size(shot%bodies)
-          associate (body => shot%bodies(i))
-            call add_row(table, [shot%time, real(model%parts(model%rigids(i)%part)%id, wp), &
-              body%place, body%displacement, body%velocity, body%acceleration, cycle])
-          end associate
-        end do
-      case (table_elout)
-        do i = 1, size(shot%history_elements)
-          associate (element => shot%history_elements(i))
-            call add_row(table, [shot%time, &
-              real(model%mesh%element_id(plan%history_elements(i)), wp), element%stress, &
-              element%plastic_strain, cycle, real(element%part, wp), &
-              merge(1.0_wp, 0.0_wp, element%is_gone)])
-          end associate
-        end do
-      case (table_nodout)
-        do i = 1, size(plan%history_nodes)
-          associate (node => plan%history_nodes(i))
-            call add_row(table, [shot%time, real(model%mesh%node_id(node), wp), &
-              model%mesh%coordinates(:, node) + shot%displacement(:, node), &
-              shot%displacement(:, node), shot%velocity(:, node), shot%acceleration(:, node), &
-              cycle])
-          end associate
-        end do
-      end select
-    end associate
-  end subroutine append_motion
-
-  !> Resultants of both sides, those of transducers, and energies.
-  subroutine append_interfaces(table, i_table, model, shot)
-    type(csv_table_t), intent(inout) :: table
-    integer, intent(in) :: i_table
-    type(model_t), intent(in) :: model
-    type(snapshot_t), intent(in) :: shot
-    integer :: i
-
-    do i = 1, n_told(model%contacts)
-      associate (id => model%contacts(i)%id, one => shot%interfaces(i))
-        if (i_table == table_rcforc) then
+    case (table_rcforc)
+      do i = 1, n_told(model%contacts)
+        associate (id => model%contacts(i)%id, one => shot%interfaces(i))
           call add_side(id, side_slave, one%slave_force, one%n_active)
           call add_side(id, side_master, one%master_force, one%n_active)
-        else
-          call add_row(table, [shot%time, real([shot%cycle, id], wp), one%energy, one%damping, &
-            one%stored, one%friction, one%estimate, one%row_energy, one%step_limit])
-        end if
-      end associate
-    end do
-    if (i_table /= table_rcforc .or. .not. allocated(model%transducers)) return
-    do i = 1, size(model%transducers)
-      call add_side(model%transducers(i)%id, side_slave, shot%transducers(i)%slave_force, &
-        shot%transducers(i)%n_active)
-    end do
+        end associate
+      end do
+      if (.not. allocated(model%transducers)) return
+      do i = 1, size(model%transducers)
+        call add_side(model%transducers(i)%id, side_slave, shot%transducers(i)%slave_force, &
+          shot%transducers(i)%n_active)
+      end do
+    case (table_contact)
+      call append_slaves(table, model, shot)
+    case (table_nodfor)
+      n = 0
+      do i = 1, size(model%controls%output%force_groups)
+        associate (group => model%controls%output%force_groups(i))
+          do k = 1, size(group%nodes)
+            n = n + 1
+            call add_row(table, [shot%time, real([group%id, model%mesh%node_id(group%nodes(k))], &
+              wp), shot%group_force(:, n), shot%group_work(n)])
+          end do
+        end associate
+      end do
+    case default
+      do i = 1, n_each(model, i_table)
+        call add_row(table, [shot%time, row_of(i_table, i, model, shot)])
+      end do
+    end select
 
   contains
 
@@ -129,11 +72,79 @@ contains
       call add_row(table, [shot%time, real(id, wp), side, force, real(n_active, wp)])
     end subroutine add_side
 
-  end subroutine append_interfaces
+  end subroutine append_rows
+
+  !> One row of a table that has one for each of what it tells of, behind its time.
+  pure function row_of(i_table, i, model, shot) result(row)
+    integer, intent(in) :: i_table
+    integer, intent(in) :: i         !! which of them
+    type(model_t), intent(in) :: model
+    type(snapshot_t), intent(in) :: shot
+    real(wp), allocatable :: row(:)
+    integer :: id, node
+
+    associate (plan => model%controls%output, cycle => real(shot%cycle, wp), e => shot%energies)
+      select case (i_table)
+      case (table_glstat)
+        row = [cycle, shot%dt, e%kinetic, e%internal, e%hourglass, e%viscous, e%damping, &
+          e%contact, e%external_work, total_energy(e), energy_ratio(e), e%leapfrog, e%friction, &
+          e%added_mass, sum(e%eroded), e%mass_increase, real(shot%by_dt2ms, wp), e%eroded, &
+          shot%mean_velocity, real(shot%slowest, wp)]
+      case (table_matsum)
+        associate (part => shot%parts(i))
+          row = [real(model%parts(i)%id, wp), part%kinetic, part%internal, part%hourglass, &
+            part%momentum, part%mass, part%added_mass]
+        end associate
+      case (table_rbdout)
+        associate (body => shot%bodies(i))
+          row = [real(model%parts(model%rigids(i)%part)%id, wp), body%place, body%displacement, &
+            body%velocity, body%acceleration, cycle]
+        end associate
+      case (table_elout)
+        associate (element => shot%history_elements(i))
+          row = [real(model%mesh%element_id(plan%history_elements(i)), wp), element%stress, &
+            element%plastic_strain, cycle, real(element%part, wp), &
+            merge(1.0_wp, 0.0_wp, element%is_gone)]
+        end associate
+      case (table_nodout)
+        node = plan%history_nodes(i)
+        row = [real(model%mesh%node_id(node), wp), model%mesh%coordinates(:, node) &
+          + shot%displacement(:, node), shot%displacement(:, node), shot%velocity(:, node), &
+          shot%acceleration(:, node), cycle]
+      case (table_sleout)
+        associate (one => shot%interfaces(i))
+          row = [cycle, real(model%contacts(i)%id, wp), one%energy, one%damping, one%stored, &
+            one%friction, one%estimate, one%row_energy, one%step_limit]
+        end associate
+      case (table_rwforc)
+        associate (wall => shot%walls(i))
+          row = [real(model%walls(i)%id, wp), wall%force, wall%normal_force, wall%impulse, &
+            wall%work, real(wall%n_active, wp), wall%tangential_force, wall%dissipated]
+        end associate
+      case (table_spcforc)
+        row = [real(model%mesh%node_id(shot%supports(i)), wp), shot%reaction(:, i)]
+      case (table_secforc)
+        associate (section => shot%sections(i))
+          row = [real(plan%cross_sections(i)%id, wp), section%force, section%moment, &
+            section%centroid, section%area]
+        end associate
+      case (table_bndout)
+        associate (rows => plan%boundaries)
+          if (any(rows%condition(i) == [boundary_body_load, boundary_body_motion])) then
+            id = model%parts(model%rigids(rows%where(i))%part)%id
+          else
+            id = model%mesh%node_id(rows%where(i))
+          end if
+          row = [real([rows%condition(i), id], wp), shot%boundary_force(:, i), &
+            shot%boundary_work(i)]
+        end associate
+      end select
+    end associate
+  end function row_of
 
   !> Nodes of the slaves.
   subroutine append_slaves(table, model, shot)
-    type(csv_table_t), intent(inout) :: table
+    type(history_t), intent(inout) :: table
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(in) :: shot
     type(rubbed_t) :: rubbed
@@ -158,61 +169,5 @@ contains
       end associate
     end do
   end subroutine append_slaves
-
-  !> Resultants of rigid walls and cross sections, forces on fixed nodes and of groups of nodes,
-  !> force and work of what acts on nodes and rigid bodies.
-  subroutine append_forces(table, i_table, model, shot)
-    type(csv_table_t), intent(inout) :: table
-    integer, intent(in) :: i_table
-    type(model_t), intent(in) :: model
-    type(snapshot_t), intent(in) :: shot
-    integer :: i, k, n, id
-
-    select case (i_table)
-    case (table_rwforc)
-      do i = 1, size(shot%walls)
-        associate (wall => shot%walls(i))
-          call add_row(table, [shot%time, real(model%walls(i)%id, wp), wall%force, &
-            wall%normal_force, wall%impulse, wall%work, real(wall%n_active, wp), &
-            wall%tangential_force, wall%dissipated])
-        end associate
-      end do
-    case (table_spcforc)
-      do i = 1, size(shot%supports)
-        call add_row(table, [shot%time, real(model%mesh%node_id(shot%supports(i)), wp), &
-          shot%reaction(:, i)])
-      end do
-    case (table_bndout)
-      associate (rows => model%controls%output%boundaries)
-        do i = 1, size(rows%where)
-          if (any(rows%condition(i) == [boundary_body_load, boundary_body_motion])) then
-            id = model%parts(model%rigids(rows%where(i))%part)%id
-          else
-            id = model%mesh%node_id(rows%where(i))
-          end if
-          call add_row(table, [shot%time, real([rows%condition(i), id], wp), &
-            shot%boundary_force(:, i), shot%boundary_work(i)])
-        end do
-      end associate
-    case (table_nodfor)
-      n = 0
-      do i = 1, size(model%controls%output%force_groups)
-        associate (group => model%controls%output%force_groups(i))
-          do k = 1, size(group%nodes)
-            n = n + 1
-            call add_row(table, [shot%time, real([group%id, model%mesh%node_id(group%nodes(k))], &
-              wp), shot%group_force(:, n), shot%group_work(n)])
-          end do
-        end associate
-      end do
-    case (table_secforc)
-      do i = 1, size(shot%sections)
-        associate (section => shot%sections(i))
-          call add_row(table, [shot%time, real(model%controls%output%cross_sections(i)%id, wp), &
-            section%force, section%moment, section%centroid, section%area])
-        end associate
-      end do
-    end select
-  end subroutine append_forces
 
 end module history_rows_m

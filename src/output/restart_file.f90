@@ -16,16 +16,15 @@ module restart_file_m
   use archive_m, only : archive_t
   use checksum_m, only : add_bytes, checksum_text
   use errors_m, only : error_t, raise, status_files, status_input
-  use file_facts_m, only : what_hinders
-  use files_m, only : rename_file, remove_file, force_to_disk, is_endless, folder_of, &
-    unfinished
+  use files_m, only : what_hinders, rename_file, remove_file, force_to_disk, is_endless, &
+    folder_of, unfinished
   use hdf5_writing_m, only : open_library
   use kinds_m, only : long
   use log_m, only : to_text
   use text_files_m, only : overwrite_start
   implicit none
   private
-  public :: create_restart, finish_restart, open_restart, close_restart, file_checksum
+  public :: create_restart, finish_restart, open_restart, close_restart
 
   !> Layout of the file. To be raised when a component of the state comes, goes or changes its
   !> meaning, and when nodes or elements get another order: arrays lie in that order.
@@ -100,7 +99,7 @@ contains
     integer(long) :: length, n_byte
     integer :: unit, status
 
-    call file_checksum(path, head_size, length, checksum, reason)
+    call file_checksum(path, length, checksum, reason)
     if (.not. allocated(reason)) then
       head = head_text(length, checksum)
       call overwrite_start(path, head, error)
@@ -128,10 +127,9 @@ contains
     head = mark//to_text(format_version)//n//'length '//trim(digits)//n//'checksum '//checksum//n
   end function head_text
 
-  !> Checksum of a file behind its first bytes; `reason` is set when it can not be read.
-  subroutine file_checksum(path, n_skipped, length, checksum, reason)
+  !> Checksum of a file behind its head; `reason` is set when it can not be read.
+  subroutine file_checksum(path, length, checksum, reason)
     character(*), intent(in) :: path
-    integer, intent(in) :: n_skipped
     integer(long), intent(out) :: length    !! bytes that count
     character(:), allocatable, intent(out) :: checksum
     character(:), allocatable, intent(out) :: reason
@@ -143,10 +141,10 @@ contains
     length = 0
     call open_bytes(path, unit, n_byte, reason)
     if (allocated(reason)) return
-    length = max(n_byte - n_skipped, 0_long)
+    length = max(n_byte - head_size, 0_long)
     allocate (block)
     sum_of_bytes = 0
-    start = n_skipped
+    start = head_size
     status = 0
     do while (start < n_byte .and. status == 0)
       n = int(min(int(block_size, long), n_byte - start))
@@ -205,7 +203,7 @@ contains
     character(:), allocatable, intent(out) :: reason
     character(head_size) :: head
     character(:), allocatable :: checksum
-    integer(long) :: length, n_byte
+    integer(long) :: length, expected, n_byte
     integer :: unit, status, version, i
 
     head = ''
@@ -237,29 +235,17 @@ contains
         'a newer ', version < format_version))//' version; this program reads format ' &
         //to_text(format_version)
     else
-      call file_checksum(path, head_size, length, checksum, reason)
-      if (.not. allocated(reason)) call compare_heads(head, length, checksum, reason)
+      call file_checksum(path, length, checksum, reason)
+      if (allocated(reason) .or. head == head_text(length, checksum)) return
+      reason = 'it is damaged (its checksum is '//checksum//', not that of its head)'
+      i = index(head, 'length ')
+      if (i == 0) return
+      read (head(i + 7:), *, iostat=status) expected
+      if (status /= 0 .or. expected == length) return
+      reason = 'it is damaged (it has another length than its head says)'
+      if (length < expected) reason = 'it is truncated'
     end if
   end subroutine judge_file
-
-  !> Compare what the head says with what the file is.
-  subroutine compare_heads(head, length, checksum, reason)
-    character(*), intent(in) :: head
-    integer(long), intent(in) :: length
-    character(*), intent(in) :: checksum
-    character(:), allocatable, intent(out) :: reason
-    integer(long) :: expected
-    integer :: at, status
-
-    if (head == head_text(length, checksum)) return
-    reason = 'it is damaged (its checksum is '//checksum//', not that of its head)'
-    at = index(head, 'length ')
-    if (at == 0) return
-    read (head(at + 7:), *, iostat=status) expected
-    if (status /= 0 .or. expected == length) return
-    reason = 'it is damaged (it has another length than its head says)'
-    if (length < expected) reason = 'it is truncated'
-  end subroutine compare_heads
 
   !> Close a file that was read.
   subroutine close_restart(archive, error)

@@ -6,30 +6,32 @@
 !>
 !> The mesh is stored once; each state appends rows to the arrays. All of a state is handed to the
 !> system before the file says that it is there: whenever the process is killed, the file opens with
-!> the states before (see results_arrays_m).
+!> the states before (see results_arrays_m). A restart takes the states before it over from the file
+!> that the run has left: into a new one, which then replaces the old one in one step.
 module results_file_m
   use, intrinsic :: iso_c_binding, only : c_loc
-  use hdf5, only : hid_t, H5F_SCOPE_LOCAL_F, H5_INTEGER_KIND, h5kind_to_type, h5gopen_f, &
-    h5gclose_f, h5awrite_f, h5aclose_f, h5fflush_f, h5fclose_f, h5close_f
+  use archive_m, only : archive_t, is_hard, own_layout
+  use hdf5, only : hid_t, hsize_t, H5F_ACC_RDONLY_F, H5F_SCOPE_LOCAL_F, H5T_STD_I64LE, h5awrite_f, &
+    h5aclose_f, h5fflush_f, h5fclose_f, h5fopen_f, h5close_f, h5lexists_f, h5screate_simple_f
   use kinds_m, only : wp, long
   use contacts_m, only : has_shear
-  use errors_m, only : error_t, raise, status_files
-  use file_facts_m, only : file_facts_t, facts_of_name, is_same_file
-  use files_m, only : lengthen_file, remove_file, rename_file, unfinished
+  use errors_m, only : error_t, raise, status_files, status_input
+  use files_m, only : file_facts_t, facts_of_name, is_same_file, file_exists, lengthen_file, &
+    remove_file, rename_file, unfinished
   use model_m, only : model_t
   use parts_m, only : has_memory_of_heat
   use snapshot_m, only : snapshot_t
   use history_file_m, only : histories_t
-  use results_tables_m, only : run_info_t, write_run, write_histories
-  use results_mesh_m, only : write_mesh, deck_nodes
   use results_arrays_m, only : results_file_t, create_file, create_steps, create_fields, &
-    planned_states, block_rows, fields, n_step_array, step_values, step_points, step_ones
-  use hdf5_writing_m, only : end_of_file, append_rows, close_growing, make_group, &
-    write_string_attribute, write_index_attribute, check_status
+    planned_states, block_rows, fields, n_step_array, step_values, step_points, step_ones, &
+    run_info_t, write_mesh, write_run, write_histories, deck_nodes
+  use hdf5_writing_m, only : growing_t, as_index, open_library, end_of_file, append_rows, &
+    open_growing, read_rows, close_growing, text_attribute, write_attribute, check_status, &
+    memory_type
   implicit none
   private
-  public :: results_file_t, run_info_t, open_results, append_state, append_instant, publish, &
-    take_name, note_failure, finish_results
+  public :: results_file_t, run_info_t, open_results, append_state, publish, finish_results, &
+    check_old_results, copy_states
 
 contains
 
@@ -43,53 +45,41 @@ contains
     type(run_info_t), intent(in) :: run_info
     logical, intent(in) :: goes_on      !! a restart: what stands under the name stays for now
     type(error_t), allocatable, intent(out) :: error
-    integer(hid_t) :: group
+    type(archive_t) :: tree
+    integer(long), target :: version(2)
+    integer(hid_t) :: space
     integer :: status, n_planned, i
+    logical :: has(5)
 
-    group = -1
     n_planned = planned_states(model%controls)
     file%path = path
     if (.not. goes_on) call remove_file(path, error)
     if (allocated(error)) return
     allocate (file%times(n_planned))
-    file%which = pack([(i, i=1, size(fields))], [(has_field(fields(i)%name, model), i=1, &
-      size(fields))])
+    has = [.true., any(has_shear(model%contacts)), model%is_round, &
+      any(has_memory_of_heat(model%materials)), model%erodes] ! by the needs of fields
+    file%which = pack([(i, i=1, size(fields))], has(fields%needs))
     call create_file(file, error)
     if (allocated(error)) return
-    call make_group(file%id, 'VTKHDF', error)
-    if (.not. allocated(error)) call h5gopen_f(file%id, 'VTKHDF', group, status)
-    call create_steps(file, group, n_planned, error)
-    call create_fields(file, group, model%mesh, n_planned, error)
-    call write_string_attribute(group, 'Type', 'UnstructuredGrid', .true., error)
-    call write_index_attribute(group, 'Version', [2_long, 0_long], error)
-    call write_mesh(group, model, error)
-    call write_run(file%id, run_info, error)
-    call make_group(file%id, 'history', error)
+    tree%id = file%id
+    tree%folder = ''
+    call tree%enter('VTKHDF')
+    call create_steps(file, tree, n_planned)
+    call create_fields(file, tree, model%mesh, n_planned)
+    call text_attribute(file%id, 'VTKHDF', 'Type', 'UnstructuredGrid', .true., tree%error)
+    version = [2, 0]
+    call h5screate_simple_f(1, [2_hsize_t], space, status)
+    call write_attribute(file%id, 'VTKHDF', 'Version', [memory_type(as_index), H5T_STD_I64LE], &
+      space, c_loc(version), tree%error)
+    call write_mesh(tree, model)
+    call tree%leave()
+    call write_run(tree, run_info)
+    call tree%enter('history')
+    call move_alloc(tree%error, error)
     call publish(file, error)
-    call h5gclose_f(group, status)
     allocate (file%rows(3*min(max(model%mesh%n_node, model%mesh%n_element), block_rows)))
     call note_failure(file, error)
   end subroutine open_results
-
-  !> Whether the file of a run has a field.
-  pure function has_field(name, model) result(has)
-    character(*), intent(in) :: name
-    type(model_t), intent(in) :: model
-    logical :: has
-
-    select case (name)
-    case ('PointData/contact_traction', 'PointData/contact_slip', 'PointData/contact_state')
-      has = any(has_shear(model%contacts))
-    case ('CellData/hoop_strain')
-      has = model%is_round
-    case ('CellData/temperature', 'CellData/damage')
-      has = any(has_memory_of_heat(model%materials))
-    case ('CellData/eroded')
-      has = model%erodes
-    case default
-      has = .true.
-    end select
-  end function has_field
 
   !> Append one state and bring it into the file whole.
   subroutine append_state(file, model, snapshot, error)
@@ -147,7 +137,8 @@ contains
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(in), target :: snapshot
     type(error_t), allocatable, intent(inout) :: error
-    integer :: i, k, first, n, n_row
+    integer, allocatable :: places(:)
+    integer :: i, k, m, first, n, n_row
 
     do k = 1, size(file%which)
       i = file%which(k)
@@ -159,113 +150,70 @@ contains
       file%rows = 0.0_wp
       do first = 1, n_row, block_rows
         n = min(block_rows, n_row - first + 1)
-        if (fields(i)%of_cells) then
-          call gather_cells(fields(i)%name, first, n, snapshot, file%rows)
-        else
-          call gather_points(fields(i)%name, deck_nodes(model%mesh, first, n), model, snapshot, &
-            file%rows)
-        end if
+        places = [(m, m=first, first + n - 1)]
+        if (.not. fields(i)%of_cells) places = deck_nodes(model%mesh, first, n)
+        call gather_rows(fields(i)%name, places, model, snapshot, file%rows)
         call append_rows(file%fields(i), n, c_loc(file%rows), error)
       end do
     end do
   end subroutine append_fields
 
-  !> Rows of a field of some nodes.
-  pure subroutine gather_points(name, nodes, model, snapshot, rows)
+  !> Rows of a field at some nodes or elements. Mises stress is sqrt(3/2 s:s).
+  pure subroutine gather_rows(name, places, model, shot, rows)
     character(*), intent(in) :: name
-    integer, intent(in), contiguous :: nodes(:)
+    integer, intent(in), contiguous :: places(:)
     type(model_t), intent(in) :: model
-    type(snapshot_t), intent(in) :: snapshot
+    type(snapshot_t), intent(in) :: shot
     real(wp), intent(inout), contiguous :: rows(:)
+    integer :: i
 
     select case (name)
     case ('Points')
-      call gather_vectors(nodes, snapshot%displacement, rows, model%mesh%coordinates)
-    case ('PointData/displacement')
-      call gather_vectors(nodes, snapshot%displacement, rows)
-    case ('PointData/velocity')
-      call gather_vectors(nodes, snapshot%velocity, rows)
-    case ('PointData/contact_force')
-      call gather_vectors(nodes, snapshot%contact_force, rows)
-    case ('PointData/contact_pressure')
-      call gather_scalars(nodes, snapshot%contact_pressure, rows)
-    case ('PointData/gap')
-      call gather_scalars(nodes, snapshot%gap, rows)
-    case ('PointData/contact_traction')
-      call gather_scalars(nodes, snapshot%contact_traction, rows)
-    case ('PointData/contact_slip')
-      call gather_scalars(nodes, snapshot%contact_slip, rows)
-    case ('PointData/contact_state')
-      call gather_scalars(nodes, snapshot%contact_state, rows)
+      do i = 1, size(places)
+        rows(3*i - 2:3*i - 1) = model%mesh%coordinates(:, places(i)) &
+          + shot%displacement(:, places(i))
+      end do
+    case ('PointData/displacement'); call gather(places, 2, 3, rows, shot%displacement)
+    case ('PointData/velocity'); call gather(places, 2, 3, rows, shot%velocity)
+    case ('PointData/contact_force'); call gather(places, 2, 3, rows, shot%contact_force)
+    case ('PointData/contact_pressure'); call gather(places, 1, 1, rows, shot%contact_pressure)
+    case ('PointData/gap'); call gather(places, 1, 1, rows, shot%gap)
+    case ('PointData/contact_traction'); call gather(places, 1, 1, rows, shot%contact_traction)
+    case ('PointData/contact_slip'); call gather(places, 1, 1, rows, shot%contact_slip)
+    case ('PointData/contact_state'); call gather(places, 1, 1, rows, shot%contact_state)
+    case ('CellData/plastic_strain'); call gather(places, 1, 1, rows, shot%plastic_strain)
+    case ('CellData/hoop_strain'); call gather(places, 1, 1, rows, shot%hoop_strain)
+    case ('CellData/temperature'); call gather(places, 1, 1, rows, shot%temperature)
+    case ('CellData/damage'); call gather(places, 1, 1, rows, shot%damage)
+    case ('CellData/eroded'); call gather(places, 1, 1, rows, shot%eroded)
+    case ('CellData/pressure')
+      do i = 1, size(places)
+        rows(i) = -sum(shot%stress(:3, places(i)))/3.0_wp
+      end do
+    case ('CellData/mises')
+      do i = 1, size(places)
+        associate (s => shot%stress(:, places(i)))
+          rows(i) = sqrt(0.5_wp*((s(1) - s(2))**2 + (s(2) - s(3))**2 + (s(3) - s(1))**2) &
+            + 3.0_wp*s(4)**2)
+        end associate
+      end do
     end select
-  end subroutine gather_points
+  end subroutine gather_rows
 
-  !> Rows (x, y, 0) of some nodes; the third component stays as it is, and all of them
-  !> where there are no vectors.
-  pure subroutine gather_vectors(nodes, vectors, rows, origins)
-    integer, intent(in), contiguous :: nodes(:)
-    real(wp), intent(in), allocatable :: vectors(:, :)       !! (2, n_node)
-    real(wp), intent(inout) :: rows(3, *)
-    real(wp), intent(in), contiguous, optional :: origins(:, :) !! (2, n_node) to be added
+  !> Rows of values at some places; columns beyond the components stay as they are, and all where
+  !> there are no values.
+  pure subroutine gather(places, n_component, n_column, rows, values)
+    integer, intent(in), contiguous :: places(:)
+    integer, intent(in) :: n_component, n_column
+    real(wp), intent(inout) :: rows(n_column, *)
+    real(wp), intent(in), optional :: values(n_component, *)
     integer :: i
 
-    if (.not. allocated(vectors)) return
-    if (present(origins)) then
-      do i = 1, size(nodes)
-        rows(1:2, i) = origins(:, nodes(i)) + vectors(:, nodes(i))
-      end do
-    else
-      do i = 1, size(nodes)
-        rows(1:2, i) = vectors(:, nodes(i))
-      end do
-    end if
-  end subroutine gather_vectors
-
-  !> Values of some nodes; they stay as they are where there are none.
-  pure subroutine gather_scalars(nodes, values, rows)
-    integer, intent(in), contiguous :: nodes(:)
-    real(wp), intent(in), allocatable :: values(:) !! (n_node)
-    real(wp), intent(inout) :: rows(*)
-
-    if (allocated(values)) rows(:size(nodes)) = values(nodes)
-  end subroutine gather_scalars
-
-  !> Rows of a field of `n` elements from the element `first` on.
-  pure subroutine gather_cells(name, first, n, snapshot, rows)
-    character(*), intent(in) :: name
-    integer, intent(in) :: first, n
-    type(snapshot_t), intent(in) :: snapshot
-    real(wp), intent(inout), contiguous :: rows(:)
-    integer :: last
-
-    last = first + n - 1
-    associate (stress => snapshot%stress(:, first:last))
-      select case (name)
-      case ('CellData/plastic_strain')
-        if (allocated(snapshot%plastic_strain)) rows(:n) = snapshot%plastic_strain(first:last)
-      case ('CellData/pressure')
-        rows(:n) = -sum(stress(:3, :), 1)/3.0_wp
-      case ('CellData/mises')
-        rows(:n) = mises_stress(stress(1, :), stress(2, :), stress(3, :), stress(4, :))
-      case ('CellData/hoop_strain')
-        rows(:n) = snapshot%hoop_strain(first:last)
-      case ('CellData/temperature')
-        rows(:n) = snapshot%temperature(first:last)
-      case ('CellData/damage')
-        rows(:n) = snapshot%damage(first:last)
-      case ('CellData/eroded')
-        rows(:n) = snapshot%eroded(first:last)
-      end select
-    end associate
-  end subroutine gather_cells
-
-  !> Von Mises stress of a plane-strain state: sqrt(3/2 s:s).
-  elemental function mises_stress(xx, yy, zz, xy) result(mises)
-    real(wp), intent(in) :: xx, yy, zz, xy   !! Pa
-    real(wp) :: mises
-
-    mises = sqrt(0.5_wp*((xx - yy)**2 + (yy - zz)**2 + (zz - xx)**2) + 3.0_wp*xy**2)
-  end function mises_stress
+    if (.not. present(values)) return
+    do i = 1, size(places)
+      rows(:n_component, i) = values(:, places(i))
+    end do
+  end subroutine gather
 
   !> Say how many states the file has, and bring that into the file.
   subroutine publish(file, error)
@@ -276,7 +224,7 @@ contains
 
     if (allocated(error)) return
     number = file%n_state
-    call h5awrite_f(file%n_steps, h5kind_to_type(long, H5_INTEGER_KIND), c_loc(number), status)
+    call h5awrite_f(file%n_steps, memory_type(as_index), c_loc(number), status)
     call check_status(status, 'NSteps', error)
     call flush_file(file, error)
   end subroutine publish
@@ -338,11 +286,14 @@ contains
     type(results_file_t), intent(inout) :: file
     type(histories_t), intent(in) :: histories
     type(error_t), allocatable, intent(out) :: error
+    type(archive_t) :: tree
     integer :: i, status
 
     if (file%id < 0 .or. file%is_broken) return
-    call check_untouched(file, error)
-    call write_histories(file%id, histories, error)
+    call check_untouched(file, tree%error)
+    tree%id = file%id
+    call write_histories(tree, histories)
+    call move_alloc(tree%error, error)
     call flush_file(file, error)
     if (.not. allocated(error)) then
       call h5aclose_f(file%n_steps, status)
@@ -360,5 +311,118 @@ contains
     call take_name(file, error)
     call note_failure(file, error)
   end subroutine finish_results
+
+  !> Whether there is a results file to take states over from. One that does not hold the states of
+  !> these times is an error: it is of another run, and would be lost.
+  subroutine check_old_results(path, n_node, times, found, error)
+    character(*), intent(in) :: path
+    integer, intent(in) :: n_node
+    real(wp), intent(in) :: times(:)
+    logical, intent(out) :: found
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: unread
+    type(growing_t) :: array
+    character(len(fields%name)) :: names(2 + size(fields))
+    real(wp), target :: stored(max(size(times), 1))
+    integer(hid_t) :: id
+    integer :: status, i
+    logical :: fits
+
+    found = file_exists(path)
+    if (.not. found) return
+    names = [character(len(names)) :: 'Steps/Values', 'PointData/node_id', fields%name]
+    call open_library(status)
+    call h5fopen_f(path, H5F_ACC_RDONLY_F, id, status)
+    fits = status >= 0
+    do i = 1, size(names)
+      if (allocated(error) .or. .not. fits) exit
+      call open_own(id, 'VTKHDF/'//trim(names(i)), path, array, error)
+      if (allocated(error)) exit
+      if (i == 1) then
+        fits = array%id >= 0 .and. array%n_row >= size(times)
+        if (fits .and. size(times) > 0) then
+          call read_rows(array, 0_long, size(times), c_loc(stored), unread)
+          fits = .not. allocated(unread)
+          if (fits) fits = all(.not. abs(stored(:size(times)) - times) > 0.0_wp)
+        end if
+      else if (i == 2) then
+        fits = array%id >= 0 .and. array%n_row == n_node
+      end if
+      call close_growing(array, error)
+    end do
+    if (status >= 0) call h5fclose_f(id, status)
+    if (.not. (fits .or. allocated(error))) call raise(error, path//' does not hold the states ' &
+      //'before the restart: it is of another run, or damaged; move it away, or give another ' &
+      //'folder by d=', status_input)
+  end subroutine check_old_results
+
+  !> Open an array of a results file, if it is there. One that lies elsewhere is refused: in another
+  !> file, by a link or as a virtual dataset, or in outer storage. It would get into the results of
+  !> this run.
+  subroutine open_own(id, name, path, array, error)
+    integer(hid_t), intent(in) :: id       !! open file
+    character(*), intent(in) :: name, path !! of the array; of the file, for messages
+    type(growing_t), intent(out) :: array
+    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: ignored
+    type(archive_t) :: file
+    integer :: n, status
+    logical :: is_own, found
+
+    file%id = id
+    file%folder = ''
+    is_own = .true.
+    found = .true.
+    n = 0
+    do while (n <= len(name) .and. found .and. is_own) ! the groups that it lies in, and itself
+      n = n + index(name(n + 1:)//'/', '/')
+      call h5lexists_f(id, name(:n - 1), found, status)
+      if (found) is_own = is_hard(file, name(:n - 1))
+    end do
+    if (found .and. is_own) call open_growing(id, name, 0, array)
+    if (array%id >= 0) is_own = own_layout(array%id) >= 0
+    if (is_own) return
+    call close_growing(array, ignored)
+    call raise(error, path//' is refused: its '//name//' is not stored in it, but a link, a ' &
+      //'virtual dataset or outer storage; move it away, or give another folder by d=', &
+      status_input)
+  end subroutine open_own
+
+  !> Copy the states of these times from the file under the name of the new one, which then takes
+  !> the name. The old file must have passed `check_old_results`.
+  subroutine copy_states(file, model, times, error)
+    type(results_file_t), intent(inout) :: file
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: times(:)
+    type(error_t), allocatable, intent(out) :: error
+    type(growing_t) :: array
+    real(wp), allocatable, target :: rows(:)
+    integer(hid_t) :: old
+    integer :: status, i, k, n
+
+    if (size(times) == 0) return
+    call h5fopen_f(file%path, H5F_ACC_RDONLY_F, old, status)
+    if (status < 0) then
+      call raise(error, 'cannot read '//file%path, status_files)
+      return
+    end if
+    do k = 1, size(times)
+      do i = 1, size(file%which)
+        associate (field => fields(file%which(i)))
+          n = merge(model%mesh%n_element, model%mesh%n_node, field%of_cells)
+          allocate (rows(n*max(field%n_column, 1)))
+          call open_growing(old, 'VTKHDF/'//trim(field%name), field%n_column, array)
+          call read_rows(array, (k - 1)*int(n, long), n, c_loc(rows), error)
+          call close_growing(array, error)
+        end associate
+        call append_rows(file%fields(file%which(i)), n, c_loc(rows), error)
+        deallocate (rows)
+      end do
+      call append_instant(file, model, times(k), error)
+    end do
+    call h5fclose_f(old, status)
+    call take_name(file, error)
+    call note_failure(file, error)
+  end subroutine copy_states
 
 end module results_file_m

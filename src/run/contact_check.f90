@@ -14,7 +14,7 @@ module contact_check_m
   use log_m, only : log_t, warn, write_log, to_text, percent, two_decimals
   use model_m, only : model_t
   use state_m, only : state_t
-  use type_charts_m, only : better_type, refinement
+  use type_charts_m, only : better_type, mesh_order
   use units_m, only : per_depth
   implicit none
   private
@@ -220,7 +220,7 @@ contains
       text = text//'by the published studies type '//to_text(better)//' would keep it'
     else
       text = text//'by the published studies no type would, but elements smaller by a factor of ' &
-        //two_decimals(refinement(expected, contact%target))
+        //two_decimals((expected/contact%target)**(1.0_wp/mesh_order))
       if (better /= contact%contact_type) text = text//' with type '//to_text(better)
     end if
   end function target_words
@@ -236,6 +236,10 @@ contains
   !> One interface whose springs stored much. Like bodies part as if both were softer; of a hard one
   !> on a soft one the springs give back what the soft one would in part have kept, and the rebound
   !> is wrong: a warning, unless the springs are stiff beside the elements, too coarse ones then.
+  !> The penalty whose springs would store no more than that part, and the step that bears it, are
+  !> named: by a given force their energy goes with the power -1 of their stiffness, by blows of a
+  !> hard block on a soft one -0.64, and less where rows are coarse: no penalty makes less what the
+  !> first row of nodes takes.
   subroutine tell_softness(model, contact, estimate, log)
     type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact
@@ -243,7 +247,8 @@ contains
     type(log_t), intent(inout) :: log
     character(:), allocatable :: text
     integer, allocatable :: behind(:) !! materials of the parts behind the surfaces
-    real(wp) :: softest, hardest
+    real(wp) :: softest, hardest, factor, wanted
+    logical :: is_wrong
     integer :: i
 
     behind = pack([model%parts%material], parts_behind(model, contact))
@@ -254,43 +259,32 @@ contains
       hardest = max(hardest, model%materials(behind(i))%bulk)
       if (model%materials(behind(i))%is_rigid) hardest = huge(1.0_wp)
     end do
-    text = 'interface '//to_text(contact%id)//': its springs have stored up to ' &
-      //to_text(estimate%stored)//', '//percent(estimate%stored, estimate%bodies) &
-      //' of the largest internal energy of the bodies on both sides, ' &
-      //to_text(estimate%bodies)
-    if (estimate%softness > stiff .and. hardest >= much_harder*softest) then
-      call warn(log, text//': springs give back all of it, of which the soft body would keep a ' &
-        //'part, so that the hard one goes in deeper and may rebound faster than it should; ' &
-        //remedy(model%controls, contact, estimate))
-    else
-      call write_log(log, text//'; '//remedy(model%controls, contact, estimate))
-    end if
-  end subroutine tell_softness
-
-  !> The penalty whose springs would store no more than that part, and the step that bears it. By a
-  !> given force their energy goes with the power -1 of their stiffness, by blows of a hard block on
-  !> a soft one -0.64, and less where rows are coarse: no penalty makes less what the first row of
-  !> nodes takes.
-  pure function remedy(controls, contact, estimate) result(text)
-    type(controls_t), intent(in) :: controls
-    type(contact_t), intent(in) :: contact
-    type(contact_estimate_t), intent(in) :: estimate
-    character(:), allocatable :: text
-    real(wp) :: factor
-
     text = 'finer elements would take more of it'
-    if (.not. estimate%softness > stiff) return
-    factor = min((estimate%stored/(noticed_part*estimate%bodies))**2, &
-      2.0_wp*estimate%softness/stiff)
-    associate (wanted => factor*contact%penalty)
+    if (estimate%softness > stiff) then
+      factor = min((estimate%stored/(noticed_part*estimate%bodies))**2, &
+        2.0_wp*estimate%softness/stiff)
+      wanted = factor*contact%penalty
       text = 'PEN '//to_text(wanted)//' would do'
       if (contact%penalty_unit == penalty_factor) text = 'SFACT '//to_text(wanted) &
         //', or PEN with PUNIT 2, would do'
       if (contact%penalty_unit == penalty_share .and. wanted > 1.0_wp) text = &
         'a penalty '//to_text(factor)//' times as large would do'
-    end associate
-    if (.not. controls%implicit%is_on .and. controls%contact_step /= contact_step_rules) &
-      text = text//', with the step of the springs (ECDT 2 of *CONTROL_CONTACT)'
-  end function remedy
+      if (.not. model%controls%implicit%is_on .and. model%controls%contact_step &
+        /= contact_step_rules) text = text//', with the step of the springs (ECDT 2 of ' &
+        //'*CONTROL_CONTACT)'
+    end if
+    is_wrong = estimate%softness > stiff .and. hardest >= much_harder*softest
+    if (is_wrong) text = 'springs give back all of it, of which the soft body would keep a part, ' &
+      //'so that the hard one goes in deeper and may rebound faster than it should; '//text
+    text = 'interface '//to_text(contact%id)//': its springs have stored up to ' &
+      //to_text(estimate%stored)//', '//percent(estimate%stored, estimate%bodies) &
+      //' of the largest internal energy of the bodies on both sides, ' &
+      //to_text(estimate%bodies)//trim(merge(': ', '; ', is_wrong))//' '//text
+    if (is_wrong) then
+      call warn(log, text)
+    else
+      call write_log(log, text)
+    end if
+  end subroutine tell_softness
 
 end module contact_check_m

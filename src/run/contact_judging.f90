@@ -14,8 +14,7 @@ module contact_judging_m
   use layout_m, only : slot_part
   use model_m, only : model_t
   use rows_behind_m, only : face_rows_t, find_rows, face_pressure, face_inertia, &
-    elastic_energy, has_stress
-  use shared_faces_m, only : others_t, find_others, face_share, present_contact
+    elastic_energy, has_stress, others_t, find_others, face_share, present_contact
   use snapshot_filling_m, only : fill_slaves, join_slaves
   use snapshot_m, only : snapshot_t, interface_result_t, part_result_t
   use state_m, only : state_t
@@ -26,14 +25,6 @@ module contact_judging_m
 
   !> The second difference of noise that is not correlated has so many times its square.
   real(wp), parameter :: of_noise = 6.0_wp
-
-  !> What one side of an interface adds.
-  type :: side_t
-    real(wp) :: misfit = 0.0_wp     !! sum of (p - row stress)^2 a
-    real(wp) :: load = 0.0_wp       !! sum of p^2 a
-    real(wp) :: still = 0.0_wp      !! as `misfit`, less the inertia of the rows
-    real(wp) :: row_energy = 0.0_wp !! of the elements behind what is pressed, J/m
-  end type side_t
 
 contains
 
@@ -46,8 +37,10 @@ contains
     type(snapshot_t), intent(inout) :: snapshot
     type(others_t), allocatable :: others(:)
     type(contact_t) :: contact
-    type(side_t) :: side
+    type(contact_estimate_t) :: side
+    type(spring_bound_t) :: bound(1)
     real(wp), allocatable :: unused(:)
+    real(wp) :: element_limit, scale(1)
     integer :: i
 
     if (size(model%contacts) == 0) return
@@ -59,12 +52,19 @@ contains
       call fill_slaves(model, state, snapshot)
       call join_slaves(model, snapshot)
     end if
-    call find_limits(model, state, snapshot%interfaces)
+    element_limit = minval(state%elements%time_limit)
     allocate (others(2*n_told(model%contacts)))
     if (rows%are_shared) call find_others(model, state, snapshot%slaves, others)
     do i = 1, n_told(model%contacts)
       contact = present_contact(state, i)
-      side = side_t()
+      ! What interfaces that share nodes allow together takes too long to find for every row.
+      if (.not. model%controls%implicit%is_on) then
+        scale = merge(0.0_wp, 1.0_wp, model%contacts(i)%penalty_unit == penalty_implicit)
+        call bound_springs(state%outlines(i:i), state%contact_mass, state%contacts(i:i), scale, &
+          bound)
+        snapshot%interfaces(i)%step_limit = stable_step(element_limit, bound(1))
+      end if
+      side = contact_estimate_t()
       associate (slaves => snapshot%slaves(i), result => snapshot%interfaces(i))
         call add_side(model, state, rows, contact%slave, slaves%pressure, &
           others(2*i - 1)%pressure, side, slaves%row_stress)
@@ -73,7 +73,7 @@ contains
           slaves%master_pressure, others(2*i)%pressure, side, unused)
         ! Accelerations of nodes that rigid walls or common motions hold are others than these.
         side%still = min(side%still, side%misfit)
-        result%row_energy = side%row_energy
+        result%row_energy = side%rows
         result%estimate = 0.0_wp
         if (side%load > 0.0_wp) result%estimate = sqrt(side%misfit/side%load)
         if (state%cycle > state%estimates(i)%cycle) call sum_up(state%cycle, state%dt, side, &
@@ -91,7 +91,7 @@ contains
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: own(:) !! pressure of its nodes
     real(wp), allocatable, intent(in) :: others(:) !! of other interfaces there
-    type(side_t), intent(inout) :: side
+    type(contact_estimate_t), intent(inout) :: side
     real(wp), allocatable, intent(inout) :: row_stress(:) !! of its nodes
     real(wp), dimension(surface%n_node) :: area, moved, pressure
     real(wp) :: share(2), stress
@@ -113,7 +113,7 @@ contains
         row_stress(ends) = row_stress(ends) + share*stress
         if (.not. any(abs(own(ends)) > 0.0_wp)) cycle
         moved(ends) = moved(ends) + face_inertia(model, state, rows, element, nodes)
-        side%row_energy = side%row_energy + elastic_energy(model, state, element)
+        side%rows = side%rows + elastic_energy(model, state, element)
       end associate
     end do
     do k = 1, surface%n_node
@@ -126,30 +126,11 @@ contains
     end do
   end subroutine add_side
 
-  !> Stable step of the elements and the springs of each interface alone: what interfaces that share
-  !> nodes allow together takes too long to find for every row. Implicit runs have none.
-  subroutine find_limits(model, state, results)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(interface_result_t), intent(inout) :: results(:)
-    type(spring_bound_t) :: bounds(size(results))
-    real(wp) :: scale(1)
-    integer :: i
-
-    if (model%controls%implicit%is_on) return
-    do i = 1, size(results)
-      scale = merge(0.0_wp, 1.0_wp, model%contacts(i)%penalty_unit == penalty_implicit)
-      call bound_springs(state%outlines(i:i), state%contact_mass, state%contacts(i:i), scale, &
-        bounds(i:i))
-    end do
-    results%step_limit = stable_step(minval(state%elements%time_limit), bounds)
-  end subroutine find_limits
-
   !> Add an instant to what is known of the run.
   pure subroutine sum_up(cycle, dt, side, result, estimate)
     integer, intent(in) :: cycle
     real(wp), intent(in) :: dt
-    type(side_t), intent(in) :: side
+    type(contact_estimate_t), intent(in) :: side
     type(interface_result_t), intent(in) :: result
     type(contact_estimate_t), intent(inout) :: estimate
     real(wp) :: ratio
@@ -167,7 +148,7 @@ contains
     end if
     if (side%load > 0.0_wp) then
       estimate%springs = estimate%springs + result%stored
-      estimate%rows = estimate%rows + side%row_energy
+      estimate%rows = estimate%rows + side%rows
     end if
     if (estimate%n > 2) then
       estimate%jumps = estimate%jumps + sum((result%slave_force - estimate%force &
@@ -240,14 +221,11 @@ contains
     integer :: s
 
     is_behind = .false.
-    do s = 1, contact%slave%n_segment
-      is_behind(slot_part(model%layout, model%layout%element_slot( &
-        contact%slave%segment_element(s)))) = .true.
-    end do
-    do s = 1, contact%master%n_segment
-      is_behind(slot_part(model%layout, model%layout%element_slot( &
-        contact%master%segment_element(s)))) = .true.
-    end do
+    associate (elements => [contact%slave%segment_element, contact%master%segment_element])
+      do s = 1, size(elements)
+        is_behind(slot_part(model%layout, model%layout%element_slot(elements(s)))) = .true.
+      end do
+    end associate
   end function parts_behind
 
   !> Which parts are of the bodies that some of them belong to.
@@ -256,12 +234,9 @@ contains
     logical, intent(in) :: is_some(:) !! (n_part)
     logical :: is_of(size(bodies))
     logical :: is_body(size(bodies))
-    integer :: i
 
     is_body = .false.
-    do i = 1, size(bodies)
-      if (is_some(i)) is_body(bodies(i)) = .true.
-    end do
+    is_body(pack(bodies, is_some)) = .true.
     is_of = is_body(bodies)
   end function of_bodies
 

@@ -6,7 +6,6 @@ module health_m
   use controls_m, only : controls_t
   use snapshot_m, only : energies_t, energy_ratio, total_energy
   use element_state_m, only : smallest_ratio, is_gone
-  use eos_pressure_m, only : is_too_dense
   use errors_m, only : error_t, raise, status_run
   use kinds_m, only : wp
   use layout_m, only : chunk_size, slot_part, tile_t
@@ -136,28 +135,19 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(error_t), allocatable, intent(out) :: error
-    integer :: slot, element, first, last
-    real(wp) :: ratio
+    character(:), allocatable :: what
+    integer :: look, slot, first, last
 
-    do slot = 1, model%layout%n_slot
-      element = model%layout%slot_element(slot)
-      if (element == 0 .or. all(abs(state%elements%deviator(slot, :)) <= huge(ratio))) cycle
-      call blame(model, state, slot, 'values that are not finite', error)
-      return
+    do look = 1, 3
+      do slot = 1, model%layout%n_slot
+        if (model%layout%slot_element(slot) == 0) cycle
+        what = fault_of(model, state, slot, look)
+        if (len(what) == 0) cycle
+        call blame(model, state, slot, what, error)
+        if (index(what, 'negative') == 1) error%message = error%message//remedy
+        return
+      end do
     end do
-    do slot = 1, model%layout%n_slot
-      element = model%layout%slot_element(slot)
-      if (element == 0) cycle
-      if (is_gone(state%elements, slot)) cycle
-      ratio = smallest_ratio(model, state%motion, state%elements, slot)
-      if (ratio > 0.0_wp .and. ratio <= huge(ratio)) cycle
-      call blame(model, state, slot, merge('negative area             ', &
-        'values that are not finite', ratio <= 0.0_wp), error)
-      if (ratio <= 0.0_wp) error%message = error%message//remedy
-      return
-    end do
-    call name_dense_element(model, state, error)
-    if (allocated(error)) return
     ! The element under the largest stress of those whose chunk has done work beyond all measure.
     associate (work => abs(state%elements%deviatoric_work) + abs(state%elements%hourglass_work))
       first = (maxloc(work, 1) - 1)*chunk_size + 1
@@ -170,28 +160,39 @@ contains
       'negative area or values that are not finite'//instant_text(state), status_run)
   end subroutine name_bad_chunk
 
-  !> The element whose equation of state has next to no bound at its volume.
-  subroutine name_dense_element(model, state, error)
+  !> What is wrong with an element, in three looks: stresses, the area, and an equation of state
+  !> that has next to no bound at its volume; nothing where all is well.
+  function fault_of(model, state, slot, look) result(what)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    type(error_t), allocatable, intent(out) :: error
-    integer :: i_chunk, slot, first
-    real(wp) :: stretch
+    integer, intent(in) :: slot, look
+    character(:), allocatable :: what
+    real(wp) :: ratio
+    integer :: i_chunk, first
 
-    do slot = 1, model%layout%n_slot
+    what = ''
+    select case (look)
+    case (1)
+      if (.not. all(abs(state%elements%deviator(slot, :)) <= huge(ratio))) &
+        what = 'values that are not finite'
+    case (2)
+      if (is_gone(state%elements, slot)) return
+      ratio = smallest_ratio(model, state%motion, state%elements, slot)
+      if (.not. (ratio > 0.0_wp .and. ratio <= huge(ratio))) what = 'values that are not finite'
+      if (ratio <= 0.0_wp) what = 'negative area'
+    case (3)
       i_chunk = (slot - 1)/chunk_size + 1
       first = state%elements%eos_start(i_chunk)
-      if (first == 0 .or. model%layout%slot_element(slot) == 0) cycle
-      stretch = state%elements%eos_state(first + 2*chunk_size + mod(slot - 1, chunk_size))
+      if (first == 0) return
+      ratio = state%elements%eos_state(first + 2*chunk_size + mod(slot - 1, chunk_size))
       associate (eos => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material)%eos)
-        if (.not. is_too_dense(eos, stretch)) cycle
-        call blame(model, state, slot, 'V/V0 '//to_text(1.0_wp + stretch)//', near which the ' &
+        if (1.0_wp + ratio < eos%least_ratio) what = 'V/V0 '//to_text(1.0_wp + ratio) &
+          //', near which the ' &
           //'pressure of equation of state '//to_text(eos%id)//' has no bound (1 - (S1 - 1) mu - ' &
-          //'S2 mu^2/(1 + mu) - S3 mu^3/(1 + mu)^2 comes to 0),', error)
-        return
+          //'S2 mu^2/(1 + mu) - S3 mu^3/(1 + mu)^2 comes to 0),'
       end associate
-    end do
-  end subroutine name_dense_element
+    end select
+  end function fault_of
 
   !> The error that names the element in a slot.
   subroutine blame(model, state, slot, what, error)

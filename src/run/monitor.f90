@@ -1,28 +1,57 @@
 ! SPDX-License-Identifier: MIT
-!> Watches a run for the files: what is due, and writing it.
+!> Watches a run for the files: what is due, and writing it: the part of that which both drivers do.
 module monitor_m
   use clock_m, only : clock_t
-  use controls_m, only : interval_t, is_asked
+  use contact_judging_m, only : judge_contacts, follow_softness
+  use controls_m, only : controls_t, interval_t, is_asked
+  use curves_m, only : curve_t, curve_value
   use errors_m, only : error_t
-  use history_file_m, only : histories_t, plan_histories, open_histories, check_histories, &
-    flush_histories, close_histories, has_rows
+  use history_file_m, only : histories_t, plan_histories, open_histories, flush_histories, &
+    close_histories, n_each
+  use history_filling_m, only : fill_boundaries, fill_history_elements, fill_sections
   use history_rows_m, only : append_rows
-  use history_tables_m, only : history_tables, n_table, asked_or_states, asked_by_states
-  use kinds_m, only : wp
+  use history_tables_m, only : history_tables, n_table, asked_or_states, asked_by_states, &
+    table_rcforc, table_sleout, table_contact, table_elout, table_bndout, table_nodfor, &
+    table_secforc
+  use kinds_m, only : wp, long
   use log_m, only : log_t, write_log
   use model_m, only : model_t
-  use output_schedule_m, only : schedule_t, start_schedule, is_due, mark_written
-  use progress_m, only : progress_t, start_progress
+  use progress_m, only : progress_t, start_progress, show_progress
   use ranks_m, only : ranks_t
   use restart_plan_m, only : restarts_t
   use results_file_m, only : results_file_t, run_info_t, open_results, append_state, finish_results
   use rows_behind_m, only : face_rows_t
-  use snapshot_m, only : snapshot_t
-  use snapshot_filling_m, only : start_snapshot
+  use snapshot_m, only : snapshot_t, total_energy
+  use snapshot_filling_m, only : start_snapshot, fill_interfaces, fill_plot
+  use state_m, only : state_t
+  use visitor_m, only : visited_t, visitor_t, any_length
   implicit none
   private
-  public :: monitor_t, open_files, start_monitor, start_schedules, find_due, any_due, write_due, &
-    finish_monitor, due_t
+  public :: monitor_t, open_files, start_monitor, start_schedules, find_due, write_due, &
+    note_energies, write_instant, finish_monitor, due_t, schedule_t, start_schedule, is_due, &
+    mark_written, output_reach, go_on_with
+
+  !> A tie of two cycles round an output time goes to the first, although sums of steps carry
+  !> rounding: this fraction of a step is forgiven.
+  real(wp), parameter :: forgiven = 1.0e-6_wp
+  !> Part of a step that a state may be early for an output time where steps can be cut.
+  real(wp), parameter :: soon = 1.0e-6_wp
+  !> Shortest interval as a fraction of the run, so that every count stays finite; a bound of these.
+  real(wp), parameter :: shortest = 1.0e-9_wp
+  integer(long), parameter :: most_outputs = 2_long**53
+
+  !> The plan of one output.
+  type, extends(visited_t) :: schedule_t
+    logical :: active = .false.         !! false: never due
+    real(wp) :: interval = 0.0_wp       !! constant interval, s; unused with a curve
+    logical :: varies = .false.         !! the interval comes from the curve
+    type(curve_t) :: curve              !! interval against time, s
+    integer(long) :: count = 0          !! multiples that are done
+    real(wp) :: next = 0.0_wp           !! next output time, s
+    real(wp) :: end_time = 0.0_wp       !! no output time lies after it
+  contains
+    procedure :: visit => visit_schedule
+  end type schedule_t
 
   !> What is due in one cycle.
   type :: due_t
@@ -72,7 +101,7 @@ contains
     if (allocated(error)) return
     names = ''
     do k = 1, n_table
-      if (is_asked(model%controls%output%histories(k)) .and. .not. has_rows(model, k)) &
+      if (is_asked(model%controls%output%histories(k)) .and. n_each(model, k) <= 0) &
         names = names//', '//trim(history_tables(k)%name)
     end do
     if (len(names) > 0) call write_log(monitor%log, 'no file, since the model has nothing for ' &
@@ -109,7 +138,7 @@ contains
       call start_schedule(monitor%plot, plan%plot, model%curves, end_time)
       do k = 1, n_table
         ! Rows that no file receives must not make a cycle write.
-        if (.not. has_rows(model, k)) cycle
+        if (n_each(model, k) <= 0) cycle
         interval = plan%histories(k)
         if (history_tables(k)%asked == asked_or_states .and. .not. is_asked(interval)) &
           interval = plan%plot
@@ -139,14 +168,6 @@ contains
       due%tables = due%plot
   end function find_due
 
-  !> Whether anything is due.
-  pure function any_due(due) result(any_of_them)
-    type(due_t), intent(in) :: due
-    logical :: any_of_them
-
-    any_of_them = due%plot .or. any(due%tables)
-  end function any_due
-
   !> Write what is due from the snapshot.
   subroutine write_due(model, due, dt, monitor, error)
     type(model_t), intent(in) :: model
@@ -167,16 +188,55 @@ contains
       if (due%plot .and. monitor%ranks%mine == 0) then
         call append_state(monitor%results, model, shot, error)
         if (allocated(error)) return
-        call flush_histories(histories, error)
-      else
-        call check_histories(histories, error)
       end if
+      call flush_histories(histories, due%plot .and. monitor%ranks%mine == 0, error)
       do k = 1, n_table
         if (due%tables(k)) call mark_written(monitor%tables(k), shot%time, dt)
       end do
       if (due%plot) call mark_written(monitor%plot, shot%time, dt)
     end associate
   end subroutine write_due
+
+  !> Energies of the snapshot are known: those at time zero are the initial ones; contact springs
+  !> beside the bodies.
+  subroutine note_energies(model, knows_parts, state, monitor)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: knows_parts !! internal energies of parts too
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+
+    if (state%cycle == 0) then
+      state%initial_energy = total_energy(monitor%snapshot%energies)
+      monitor%snapshot%energies%initial = state%initial_energy
+    end if
+    if (knows_parts) call follow_softness(model, monitor%snapshot%parts, monitor%bodies, state)
+  end subroutine note_energies
+
+  !> Fill the rest of a snapshot, of which the driver has filled what it has its own way with, and
+  !> write what is due of it.
+  subroutine write_instant(model, due, dt, ratio, state, monitor, error)
+    type(model_t), intent(in) :: model
+    type(due_t), intent(in) :: due
+    real(wp), intent(in) :: dt    !! reach of the outputs, s
+    real(wp), intent(in) :: ratio !! last energy ratio known
+    type(state_t), intent(inout) :: state
+    type(monitor_t), intent(inout) :: monitor
+    type(error_t), allocatable, intent(inout) :: error
+
+    associate (shot => monitor%snapshot)
+      if (any(due%tables([table_rcforc, table_sleout, table_contact]))) &
+        call fill_interfaces(model, state, shot)
+      if (due%tables(table_elout)) call fill_history_elements(model, state, shot)
+      if (any(due%tables([table_bndout, table_nodfor]))) call fill_boundaries(state, shot)
+      if (due%tables(table_secforc)) call fill_sections(model, state, shot)
+      if (due%plot) call fill_plot(model, state, shot)
+      if (any(due%tables([table_sleout, table_contact]))) &
+        call judge_contacts(model, state, due%plot, monitor%rows, shot)
+    end associate
+    call write_due(model, due, dt, monitor, error)
+    if (due%plot .and. .not. allocated(error)) call show_progress(monitor%progress, monitor%clock, &
+      state%cycle, state%time, state%dt, ratio, 'write vtkhdf state')
+  end subroutine write_instant
 
   !> Close the files.
   subroutine finish_monitor(monitor, error)
@@ -187,5 +247,119 @@ contains
     if (allocated(error)) return
     call finish_results(monitor%results, monitor%histories, error)
   end subroutine finish_monitor
+
+  ! ---- schedules: an output is due at time zero and at the cycle nearest to each multiple of its
+  ! interval. Multiples are formed as k times the interval, never by adding, so that nothing drifts.
+  ! An interval that varies (a curve of time) leads from each output time to the next.
+
+  !> Plan the outputs of `interval` from time zero to `end_time`.
+  pure subroutine start_schedule(schedule, interval, curves, end_time)
+    type(schedule_t), intent(out) :: schedule
+    type(interval_t), intent(in) :: interval
+    type(curve_t), intent(in) :: curves(:)   !! the model's curves
+    real(wp), intent(in) :: end_time         !! s
+
+    schedule%end_time = end_time
+    schedule%varies = interval%curve > 0
+    if (schedule%varies) schedule%curve = curves(interval%curve)
+    schedule%active = schedule%varies .or. interval%dt > 0.0_wp
+    schedule%interval = max(interval%dt, shortest*end_time)
+  end subroutine start_schedule
+
+  !> The step by which the state nearest to an output time is found. A planned implicit step may be
+  !> cut: then the state at or after an output time counts, not the nearest.
+  pure function output_reach(controls, dt) result(reach)
+    type(controls_t), intent(in) :: controls
+    real(wp), intent(in) :: dt     !! step that leads away from the state, s
+    real(wp) :: reach
+
+    reach = dt
+    if (controls%implicit%is_on .and. controls%implicit%is_automatic) reach = soon*dt
+  end function output_reach
+
+  !> Whether the state at `time` is the nearest to an output time that has not been written;
+  !> `dt` is the step between states.
+  pure function is_due(schedule, time, dt) result(due)
+    type(schedule_t), intent(in) :: schedule
+    real(wp), intent(in) :: time, dt   !! s
+    logical :: due
+    real(wp) :: step
+
+    due = schedule%active
+    step = min(dt, schedule%end_time)
+    if (due) due = schedule%next <= schedule%end_time + forgiven*step .and. &
+      schedule%next <= time + (0.5_wp + forgiven)*step
+  end function is_due
+
+  !> Move on to the first output time that a later state is nearest to. Several intervals that fell
+  !> into one step are done together.
+  pure subroutine mark_written(schedule, time, dt)
+    type(schedule_t), intent(inout) :: schedule
+    real(wp), intent(in) :: time, dt   !! s, as given to `is_due`
+
+    ! A first state may lie far beyond the end.
+    if (.not. schedule%varies .and. schedule%active) schedule%count = max(schedule%count, &
+      int((min(time, schedule%end_time) + (0.5_wp + forgiven)*min(dt, schedule%end_time)) &
+      /schedule%interval, long) - 1)
+    do while (is_due(schedule, time, dt))
+      call advance(schedule)
+    end do
+  end subroutine mark_written
+
+  !> The output time after the present one. A curve that falls to zero ends the output.
+  pure subroutine advance(schedule)
+    type(schedule_t), intent(inout) :: schedule
+    real(wp) :: interval
+
+    schedule%count = schedule%count + 1
+    if (.not. schedule%varies) then
+      schedule%next = real(schedule%count, wp)*schedule%interval
+      return
+    end if
+    interval = curve_value(schedule%curve, schedule%next)
+    schedule%next = schedule%next + max(interval, shortest*schedule%end_time)
+    if (interval <= 0.0_wp) schedule%active = .false.
+  end subroutine advance
+
+  !> Take up how far an output is. Where the run goes on with another interval, the first output
+  !> comes at the next multiple of the new one. That of a curve may have come to its end.
+  pure subroutine go_on_with(kept, time, dt, schedule)
+    type(schedule_t), intent(in) :: kept            !! of the run before
+    real(wp), intent(in) :: time, dt      !! of the state before, as given to `is_due` then
+    type(schedule_t), intent(inout) :: schedule     !! planned from the deck
+    logical :: same, follows
+
+    same = kept%varies .eqv. schedule%varies
+    follows = same .and. schedule%varies
+    if (same .and. .not. follows) same = (kept%active .eqv. schedule%active) &
+      .and. .not. abs(kept%interval - schedule%interval) > 0.0_wp
+    if (follows) same = allocated(kept%curve%ordinate) .and. allocated(kept%curve%abscissa)
+    if (follows .and. same) same = size(kept%curve%ordinate) == size(schedule%curve%ordinate) &
+      .and. size(kept%curve%abscissa) == size(schedule%curve%abscissa)
+    if (follows .and. same) same = &
+      all(.not. abs(kept%curve%ordinate - schedule%curve%ordinate) > 0.0_wp) &
+      .and. all(.not. abs(kept%curve%abscissa - schedule%curve%abscissa) > 0.0_wp)
+    if (same) then
+      schedule%active = kept%active
+      schedule%count = kept%count
+      schedule%next = kept%next
+    else
+      call mark_written(schedule, time, dt)
+    end if
+  end subroutine go_on_with
+
+  !> Its components; the deck, which may change it, has the end.
+  subroutine visit_schedule(self, visitor)
+    class(schedule_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('active', self%active)
+    call visitor%visit('interval', self%interval)
+    call visitor%visit('varies', self%varies)
+    call visitor%visit('curve_abscissa', self%curve%abscissa, any_length)
+    call visitor%visit('curve_ordinate', self%curve%ordinate, any_length)
+    call visitor%visit('count', self%count, most_outputs, 'a count that no run can reach')
+    call visitor%visit('next', self%next, 0.0_wp, 'a time below zero')
+  end subroutine visit_schedule
 
 end module monitor_m

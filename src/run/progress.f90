@@ -1,20 +1,23 @@
 ! SPDX-License-Identifier: MIT
 !> What a person or a script sees while the run goes on: one updating line on a terminal, plain
-!> lines in the DYNA manner in a pipe, and the summary at the end. A screen that takes no more (a
-!> closed window, a full disk behind `>`) does not end a run: the log has the same lines.
+!> lines in the DYNA manner in a pipe, the file status.out, and the summary at the end. A screen
+!> that takes no more (a closed window, a full disk behind `>`) does not end a run: the log has the
+!> same lines. Nor does a status.out that can not be written; it is replaced as a whole.
 module progress_m
   use clock_m, only : clock_t, look_at_clock, elapsed_seconds, total_seconds, phase_seconds, &
-    lap_seconds, phase_names, n_phase, phase_input, phase_output
-  use endings_m, only : normal_ending, error_ending
+    lap_seconds, phase_names, n_phase, n_contact_phase, phase_contact_search, phase_input, &
+    phase_output
+  use errors_m, only : error_t
+  use files_m, only : rename_file, unfinished
   use kinds_m, only : wp, long
   use log_m, only : log_t, write_log, to_text
-  use screen_m, only : show, show_part
-  use signals_m, only : output_is_terminal
-  use status_file_m, only : status_t, keep_status, write_status, done_share, &
-    seconds_to_go, duration
+  use text_files_m, only : show, show_part, normal_ending, error_ending
+  use system_m, only : output_is_terminal
+  use text_files_m, only : write_whole
   implicit none
   private
-  public :: progress_t, start_progress, follow_progress, show_progress, show_note, show_end
+  public :: progress_t, start_progress, follow_progress, show_progress, show_note, show_end, &
+    write_status, timing_text
 
   !> Cycles between two looks at a clock that takes no laps.
   integer, parameter :: look_cycles = 64
@@ -24,18 +27,30 @@ module progress_m
   integer, parameter :: most_lines = 20
   character(1), parameter :: n = new_line('a')
 
-  !> What the lines need to know.
+  !> Seconds between two status files at least.
+  real(wp), parameter :: file_interval = 1.0_wp
+
+  !> What the lines and the file status.out need to know.
   type :: progress_t
     logical :: terminal = .false.
     logical :: is_quiet = .false.   !! nothing but how the run has ended
     logical :: line_open = .false.  !! an updating line waits for its end
     integer :: n_line = 0           !! lines written into a pipe
     integer :: status_interval = 0  !! cycles between lines, 0 = by time only
-    real(wp) :: end_time = 0.0_wp
-    integer :: first_cycle = 0      !! from which this run goes on
     integer(long) :: next_tick = 0  !! clock tick of the next line
     integer(long) :: wait = 0       !! ticks between lines
-    type(status_t) :: status        !! the file status.out
+    character(:), allocatable :: path !! of status.out; not allocated: no file
+    character(:), allocatable :: job
+    integer(long) :: next_file = 0  !! clock tick of the next one
+    integer :: cycle = 0
+    integer :: start_cycle = 0      !! where this run began: not 0 after a restart
+    integer :: end_cycle = 0        !! ENDCYC, 0 = none
+    real(wp) :: time = 0.0_wp
+    real(wp) :: dt = 0.0_wp
+    real(wp) :: ratio = 1.0_wp      !! last energy ratio known
+    real(wp) :: start_time = 0.0_wp
+    real(wp) :: end_time = 0.0_wp
+    real(wp) :: start_seconds = 0.0_wp !! clock time when its cycles began
   end type progress_t
 
 contains
@@ -72,8 +87,8 @@ contains
       is_due = is_due .or. mod(cycle, progress%status_interval) == 0
     if (is_due) then
       call show_progress(progress, clock, cycle, time, dt, ratio, '')
-    else if (clock%last >= progress%status%next_tick) then
-      call keep_status(progress%status, clock, cycle, time, dt, ratio)
+    else if (clock%last >= progress%next_file) then
+      call keep_status(progress, clock, cycle, time, dt, ratio)
     end if
   end subroutine follow_progress
 
@@ -90,29 +105,27 @@ contains
     real(wp) :: share, to_go
     integer(long) :: now
     character(120) :: line
-    character(8) :: date
-    character(10) :: hour
+    character(:), allocatable :: stamp
 
     call system_clock(now)
     progress%next_tick = now + progress%wait
-    call keep_status(progress%status, clock, cycle, time, dt, ratio)
+    call keep_status(progress, clock, cycle, time, dt, ratio)
     if (progress%is_quiet) return
     if (progress%terminal) then
       share = min(1.0_wp, time/progress%end_time)
-      to_go = max(0.0_wp, seconds_to_go(progress%status, elapsed_seconds(clock)))
+      to_go = max(0.0_wp, seconds_to_go(progress, elapsed_seconds(clock)))
       write (line, '(ss,a,es11.4,a,f5.1,a,i0,a,es9.2,a,f8.5,a)') achar(13)//' t', time, '  ', &
         100.0_wp*share, ' %  cycle ', cycle, '  dt', dt, '  energy ratio', ratio, '  to go '
       call show_part(trim(line)//' '//duration(to_go)//'   ')
       progress%line_open = .true.
     else
       if (.not. present(is_asked)) then
-        if ((most_lines - 1)*done_share(progress%status) < progress%n_line) return
+        if ((most_lines - 1)*done_share(progress) < progress%n_line) return
       end if
       progress%n_line = progress%n_line + 1
-      call date_and_time(date, hour)
+      stamp = time_stamp()
       write (line, '(ss,i10,a,es10.4,a,es8.2,1x,a22,10x,a)') cycle, ' t ', time, ' dt ', dt, &
-        event, date(5:6)//'/'//date(7:8)//'/'//date(3:4)//' '//hour(1:2)//':'//hour(3:4)//':' &
-        //hour(5:6)
+        event, stamp(6:7)//'/'//stamp(9:10)//'/'//stamp(3:4)//stamp(11:)
       call show(trim(line))
     end if
   end subroutine show_progress
@@ -147,16 +160,16 @@ contains
 
     if (progress%line_open) call show('')
     progress%line_open = .false.
-    progress%status%cycle = cycle
-    progress%status%time = time
-    call write_status(progress%status, clock, trim(merge('normal termination', &
+    progress%cycle = cycle
+    progress%time = time
+    call write_status(progress, clock, trim(merge('normal termination', &
       'error termination ', normal))//': '//reason(:scan(reason//n, n) - 1))
     seconds = phase_seconds(clock)
     elapsed = elapsed_seconds(clock)
     cost = 0.0_wp
-    if (cycle > progress%first_cycle) cost = 1.0e9_wp &
+    if (cycle > progress%start_cycle) cost = 1.0e9_wp &
       *(total_seconds(clock) - sum(seconds([phase_output, phase_input])))/real(cycle &
-      - progress%first_cycle, wp)/n_element
+      - progress%start_cycle, wp)/n_element
     ending = trim(merge(normal_ending, error_ending//'  ', normal))
     write (line, '(ss,es16.8)') time
     lines = n//' *** '//reason//' ***'//n//ending//n//n &
@@ -213,5 +226,173 @@ contains
     text = trim(buffer)
     if (text(1:1) == '.') text = '0'//text
   end function fixed
+
+  !> Take new numbers, and write them when the last file is old enough.
+  subroutine keep_status(progress, clock, cycle, time, dt, ratio)
+    type(progress_t), intent(inout) :: progress
+    type(clock_t), intent(in) :: clock
+    integer, intent(in) :: cycle
+    real(wp), intent(in) :: time, dt, ratio
+    integer(long) :: now
+
+    progress%cycle = cycle
+    progress%time = time
+    progress%dt = dt
+    progress%ratio = ratio
+    call system_clock(now)
+    if (now >= progress%next_file) call write_status(progress, clock, 'running')
+  end subroutine keep_status
+
+  !> Write the file status.out: how far a run is and how long it may take.
+  subroutine write_status(progress, clock, state)
+    type(progress_t), intent(inout) :: progress
+    type(clock_t), intent(in) :: clock
+    character(*), intent(in) :: state !! running, or how the run has ended
+    type(error_t), allocatable :: error
+    integer(long) :: now, rate
+
+    call system_clock(now, rate)
+    progress%next_file = now + int(file_interval*real(rate, wp), long)
+    if (.not. allocated(progress%path)) return
+    call write_whole(progress%path//unfinished, status_text(progress, clock, state), error)
+    if (.not. allocated(error)) call rename_file(progress%path//unfinished, progress%path, error)
+  end subroutine write_status
+
+  !> The lines of the file.
+  function status_text(progress, clock, state) result(text)
+    type(progress_t), intent(in) :: progress
+    type(clock_t), intent(in) :: clock
+    character(*), intent(in) :: state
+    character(:), allocatable :: text
+    real(wp) :: elapsed, to_go
+
+    elapsed = elapsed_seconds(clock)
+    to_go = 0.0_wp
+    if (state == 'running') to_go = seconds_to_go(progress, elapsed)
+    text = ' job                              '//progress%job//n &
+      //' state                            '//state//n &
+      //' cycle no.                        '//to_text(progress%cycle)//n &
+      //' time                             '//to_text(progress%time)//n &
+      //' termination time                 '//to_text(progress%end_time)//n &
+      //' time step                        '//to_text(progress%dt)//n &
+      //' energy ratio                     '//to_text(progress%ratio)//n &
+      //' elapsed clock time               '//duration(elapsed)//n
+    if (to_go >= 0.0_wp) then
+      text = text//' estimated total clock time       '//duration(elapsed + to_go)//n &
+        //' estimated clock time to complete '//duration(to_go)//n
+    else
+      text = text//' estimated total clock time       not known yet'//n &
+        //' estimated clock time to complete not known yet'//n
+    end if
+    text = text//' written                          '//time_stamp()//n
+  end function status_text
+
+  !> Share of the run that has been done, by time or by cycles.
+  pure function done_share(progress) result(share)
+    type(progress_t), intent(in) :: progress
+    real(wp) :: share
+
+    share = 0.0_wp
+    if (progress%end_time > progress%start_time) &
+      share = (progress%time - progress%start_time)/(progress%end_time - progress%start_time)
+    if (progress%end_cycle > progress%start_cycle) share = max(share, &
+      real(progress%cycle - progress%start_cycle, wp)/(progress%end_cycle - progress%start_cycle))
+  end function done_share
+
+  !> Seconds until the end at the pace since this run began; -1 where nothing has been done yet.
+  pure function seconds_to_go(progress, elapsed) result(seconds)
+    type(progress_t), intent(in) :: progress
+    real(wp), intent(in) :: elapsed
+    real(wp) :: seconds
+    real(wp) :: share
+
+    share = done_share(progress)
+    seconds = -1.0_wp
+    if (share > 0.0_wp) seconds = max(0.0_wp, &
+      (elapsed - progress%start_seconds)*(1.0_wp - share)/share)
+  end function seconds_to_go
+
+  !> Seconds as h:mm:ss.
+  pure function duration(seconds) result(text)
+    real(wp), intent(in) :: seconds
+    character(:), allocatable :: text
+    character(20) :: buffer
+    integer(long) :: whole
+
+    whole = int(min(seconds, 1.0e9_wp), long)
+    write (buffer, '(ss,i0,":",i2.2,":",i2.2)') whole/3600, mod(whole/60, 60_long), &
+      mod(whole, 60_long)
+    text = trim(buffer)
+  end function duration
+
+  !> Date and time as yyyy-mm-dd hh:mm:ss.
+  function time_stamp() result(text)
+    character(19) :: text
+    character(8) :: date
+    character(10) :: hour
+
+    call date_and_time(date, hour)
+    text = date(1:4)//'-'//date(5:6)//'-'//date(7:8)//' '//hour(1:2)//':'//hour(3:4)//':' &
+      //hour(5:6)
+  end function time_stamp
+
+  !> The timing file as text, wall clock of the run by phase: `phase,seconds,calls,share`, one row
+  !> per phase and the row `total`, which is the time from the start to the last lap. Where
+  !> interfaces are timed, rows such as `contact_force.2` follow their phase and add up to it. Where
+  !> no laps are taken there is the total alone. Seconds are whole nanoseconds with nine decimals,
+  !> so that the phases add up to the total to the last digit.
+  function timing_text(clock, interfaces) result(text)
+    type(clock_t), intent(in) :: clock
+    integer, intent(in) :: interfaces(:) !! their ids
+    character(:), allocatable :: text
+    integer(long) :: nanoseconds(n_phase), total, first, rate
+    integer :: i_phase, i_row, i
+
+    call system_clock(first, rate)
+    nanoseconds = in_nanoseconds(clock%ticks, rate)
+    total = sum(nanoseconds)
+    if (.not. clock%is_on) total = in_nanoseconds(clock%last - clock%first, rate)
+    text = 'phase,seconds,calls,share'//new_line('a')
+    do i_phase = 1, n_phase
+      if (.not. clock%is_on) exit
+      text = text//timing_row(phase_names(i_phase), nanoseconds(i_phase), clock%calls(i_phase), &
+        total)
+      ! The rows of a contact phase by interface, with its id as in the other tables.
+      i_row = i_phase - phase_contact_search + 1
+      if (i_row < 1 .or. i_row > n_contact_phase .or. .not. allocated(clock%interface_ticks)) cycle
+      do i = 1, size(interfaces)
+        text = text//timing_row(trim(phase_names(i_phase))//'.'//to_text(interfaces(i)), &
+          in_nanoseconds(clock%interface_ticks(i_row, i), rate), clock%interface_calls(i_row, i), &
+          total)
+      end do
+    end do
+    text = text//timing_row('total', total, 1_long, total)
+  end function timing_text
+
+  !> Ticks as nanoseconds.
+  elemental function in_nanoseconds(ticks, rate) result(nanoseconds)
+    integer(long), intent(in) :: ticks, rate
+    integer(long) :: nanoseconds
+
+    if (rate == 1000000000_long) then
+      nanoseconds = ticks
+    else
+      nanoseconds = nint(1.0e9_wp*real(ticks, wp)/real(rate, wp), long)
+    end if
+  end function in_nanoseconds
+
+  !> One row, with its line end.
+  pure function timing_row(name, nanoseconds, n_call, total) result(row)
+    character(*), intent(in) :: name           !! of the phase
+    integer(long), intent(in) :: nanoseconds   !! spent in it
+    integer(long), intent(in) :: n_call        !! laps
+    integer(long), intent(in) :: total         !! nanoseconds of the whole run
+    character(:), allocatable :: row
+    character(80) :: buffer
+
+    write (buffer, '(ss,i0, ".", i9.9, ",", i0, ",", f8.6)') nanoseconds/1000000000_long, &
+      mod(nanoseconds, 1000000000_long), n_call, real(nanoseconds, wp)/real(max(total, 1_long), wp)
+    row = trim(name)//','//trim(buffer)//new_line('a')
+  end function timing_row
 
 end module progress_m

@@ -4,25 +4,33 @@
 !> There a run is its state, what its driver hands from cycle to cycle besides, how far its
 !> outputs are, and the deck. All of that is written, so that the run that goes on makes the same
 !> bits as one that was not interrupted.
+!>
+!> Of a state that was read every index lies within what it points at, and every list is one.
+!> Shapes, and bounds that one component has, are looked at where they are visited. A restart file
+!> may come from elsewhere: its checksum says that it is whole, not that it is sound.
 module restart_m
   use archive_m, only : archive_t
+  use checksum_m, only : add_bytes, checksum_text
   use clock_m, only : lap, phase_nodes, phase_output
+  use contact_state_m, only : contact_state_t, tracking_t, is_free, is_touching
+  use contacts_m, only : contact_t
   use errors_m, only : error_t, status_files
   use files_m, only : file_exists, remove_file, unfinished
   use history_tables_m, only : history_tables, n_table, asked_by_states
   use kinds_m, only : wp, long
-  use log_m, only : write_log
-  use monitor_m, only : monitor_t
-  use output_schedule_m, only : schedule_t, go_on_with
+  use law_state_m, only : is_open, is_held, is_broken
+  use log_m, only : write_log, to_text
+  use model_m, only : model_t
+  use monitor_m, only : monitor_t, schedule_t, go_on_with
   use progress_m, only : show_note
-  use restart_file_m, only : create_restart, finish_restart, file_checksum
+  use restart_file_m, only : create_restart, finish_restart
   use restart_plan_m, only : restarts_t, dump_path, running_path, place_text, numbered_file
   use state_m, only : state_t
   use text_files_m, only : read_whole
   use visitor_m, only : visited_t, any_length
   implicit none
   private
-  public :: write_restarts, forget_files, keep_run, keep_outputs
+  public :: write_restarts, forget_files, keep_run, keep_outputs, check_state
 
   !> Bounds on numbered files and on the length of a job's name.
   integer, parameter :: most_dumps = 1000000000, longest_name = 4096
@@ -69,19 +77,20 @@ contains
     type(restarts_t), intent(in) :: restarts
     type(archive_t), intent(inout) :: archive
     character(:), allocatable, intent(out) :: text
-    character(:), allocatable :: path, checksum, reason
-    integer(long) :: length
+    character(:), allocatable :: path, reason
+    integer(long) :: checksum
     logical :: is_read
 
     if (allocated(archive%error)) return
     path = restarts%prefix//'.effective.k'
-    call file_checksum(path, 0, length, checksum, reason)
-    if (.not. allocated(reason)) then
-      if (checksum /= restarts%effective_deck_checksum) reason = 'it has been changed'
-    end if
-    if (.not. allocated(reason)) then
-      call read_whole(path, text, is_read)
-      if (.not. is_read) reason = 'it can not be read'
+    call read_whole(path, text, is_read)
+    if (is_read) then
+      checksum = 0
+      call add_bytes(checksum, text)
+      if (checksum_text(checksum) /= restarts%effective_deck_checksum) &
+        reason = 'it has been changed'
+    else
+      reason = 'it can not be read'
     end if
     if (allocated(reason)) call archive%fail('no restart file can be written, since it ' &
       //'would hold the deck as run, '//path//': '//reason, status_files)
@@ -92,6 +101,7 @@ contains
     type(archive_t), intent(inout) :: archive
     type(restarts_t), intent(inout) :: restarts
     character(:), allocatable, intent(inout) :: effective_deck
+    integer :: i
 
     call archive%enter('run')
     call archive%text('effective_deck', effective_deck)
@@ -100,22 +110,16 @@ contains
     call archive%text('program', restarts%program)
     call archive%visit('n_dump', restarts%n_dump, 0, most_dumps - 1, 'a number that no run reaches')
     call archive%visit('is_implicit', restarts%is_implicit)
-    if (archive%judges) call archive%expect('job', is_stem(restarts%job), &
-      'a name that no file can have')
+    ! It begins the names of files in the folder of the results.
+    if (archive%judges) then
+      associate (job => restarts%job)
+        call archive%expect('job', len(job) > 0 .and. len(job) <= longest_name .and. &
+          index(job, '/') == 0 .and. all([(iachar(job(i:i)) >= 32, i=1, len(job))]), &
+          'a name that no file can have')
+      end associate
+    end if
     call archive%leave()
   end subroutine keep_run
-
-  !> Whether a text may begin the names of files in the folder of the results.
-  pure function is_stem(text)
-    character(*), intent(in) :: text
-    logical :: is_stem
-    integer :: i
-
-    is_stem = len(text) > 0 .and. len(text) <= longest_name .and. index(text, '/') == 0
-    do i = 1, len(text)
-      is_stem = is_stem .and. iachar(text(i:i)) >= 32
-    end do
-  end function is_stem
 
   !> Write or read how far the outputs are.
   subroutine keep_outputs(archive, time, dt, monitor)
@@ -177,5 +181,139 @@ contains
       path = dump_path(restarts, i)
     end do
   end subroutine forget_files
+
+  !> Look at a whole state; the first thing that is wrong is told as an error of the archive. A
+  !> phase before time zero is one that the deck has, with a velocity of each node.
+  subroutine check_state(model, state, archive)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state      !! of the shapes of the model
+    type(archive_t), intent(inout) :: archive
+    logical :: fits
+    integer :: i
+
+    associate (relaxation => state%relaxation)
+      call archive%expect('state/relaxation/n', relaxation%n == 0 .or. (relaxation%n > 0 .and. &
+        model%controls%relaxation%is_on), 'a phase that the deck does not ask for')
+      fits = allocated(relaxation%velocity) .eqv. relaxation%n > 0
+      if (fits .and. relaxation%n > 0) fits = all(shape(relaxation%velocity) == &
+        [2, size(state%motion, 2)])
+      call archive%expect('state/relaxation/velocity', fits, 'another number of velocities ' &
+        //'than there are nodes')
+      call archive%expect('state/time', relaxation%n == 0 .or. .not. state%time > 0.0_wp, &
+        'a time after that of the relaxation')
+    end associate
+    do i = 1, size(state%contacts)
+      call check_contact(state%outlines(i), state%contacts(i), &
+        'state/contacts/'//to_text(i)//'/', archive)
+    end do
+  end subroutine check_state
+
+  !> The memory of one interface.
+  subroutine check_contact(contact, memory, folder, archive)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    character(*), intent(in) :: folder
+    type(archive_t), intent(inout) :: archive
+    integer :: n_segments(2), n_spot
+
+    call check_points(memory, folder//'points/', archive)
+    if (allocated(memory%ties%side)) call check_ties(memory, folder//'ties/', archive)
+    n_segments = [contact%slave%n_segment, contact%master%n_segment]
+    n_spot = memory%n_slave
+    if (allocated(memory%spot_xi)) n_spot = size(memory%spot_xi)*n_segments(1)
+    call check_tracking(memory%slave_tracking, n_spot, n_segments(2), &
+      folder//'slave_tracking/', archive)
+    call check_tracking(memory%master_tracking, memory%n_master, n_segments(1), &
+      folder//'master_tracking/', archive)
+  end subroutine check_contact
+
+  !> The list of points: as many in all its arrays, and nodes of the interface.
+  subroutine check_points(memory, folder, archive)
+    type(contact_state_t), intent(in) :: memory
+    character(*), intent(in) :: folder
+    type(archive_t), intent(inout) :: archive
+    integer :: n_local
+    logical :: fits
+
+    associate (points => memory%points)
+      fits = allocated(points%slave_nodes) .and. allocated(points%master_nodes) .and. &
+        allocated(points%slave_weights) .and. allocated(points%master_weights) .and. &
+        allocated(points%normal) .and. allocated(points%gap) .and. allocated(points%area) .and. &
+        allocated(points%stiffness) .and. allocated(points%pressure)
+      if (fits) fits = all([size(points%slave_nodes, 2), size(points%master_nodes, 2), &
+        size(points%slave_weights, 2), size(points%master_weights, 2), size(points%normal, 2), &
+        size(points%area), size(points%stiffness), size(points%pressure)] == size(points%gap))
+      if (fits .and. allocated(points%load)) fits = size(points%load, 2) == size(points%gap)
+      if (fits .and. allocated(points%traction)) fits = size(points%traction) == size(points%gap)
+      call archive%expect(folder//'gap', fits, 'not as many values as the arrays beside it')
+      if (allocated(archive%error)) return
+      call archive%expect(folder//'n', points%n >= 0 .and. points%n <= size(points%gap), &
+        'a number beyond the length of the list')
+      n_local = memory%n_slave + memory%n_master
+      call archive%expect(folder//'slave_nodes', all(points%slave_nodes >= 1 &
+        .and. points%slave_nodes <= n_local), 'numbers that no node of the interface has')
+      call archive%expect(folder//'master_nodes', all(points%master_nodes >= 1 &
+        .and. points%master_nodes <= n_local), 'numbers that no node of the interface has')
+    end associate
+  end subroutine check_points
+
+  !> Springs of ties, as many as the deck makes: their points follow each other, nodes and places
+  !> are those of the interface.
+  subroutine check_ties(memory, folder, archive)
+    type(contact_state_t), intent(in) :: memory
+    character(*), intent(in) :: folder
+    type(archive_t), intent(inout) :: archive
+    integer :: n, n_place
+
+    associate (ties => memory%ties)
+      n = size(ties%side)
+      n_place = memory%n_master + memory%n_slave
+      if (allocated(memory%spots)) n_place = memory%n_master + size(memory%spot_xi)*memory%n_slave
+      if (allocated(ties%state)) then
+        call archive%expect(folder//'state', all(ties%state == is_open .or. ties%state &
+          == is_held .or. ties%state == is_broken), 'numbers that mean nothing')
+        call archive%expect(folder//'place', all(ties%place >= merge(0, 1, &
+          allocated(memory%node_pressure)) .and. ties%place <= n_place), &
+          'numbers that no place of the interface has')
+      end if
+      call archive%expect(folder//'first', ties%first(1) == 1 &
+        .and. all(ties%first(2:) > ties%first(:n)) .and. (ties%first(n + 1) == memory%points%n + 1 &
+        .or. memory%points%n == 0), 'numbers that do not rise to the number of points')
+      call archive%expect(folder//'owner', all(ties%owner >= 1 .and. ties%owner &
+        <= memory%n_slave + memory%n_master), 'numbers that no node of the interface has')
+    end associate
+  end subroutine check_ties
+
+  !> Spots followed over a chain.
+  subroutine check_tracking(tracking, n_spot, n_segment, folder, archive)
+    type(tracking_t), intent(in) :: tracking
+    integer, intent(in) :: n_spot       !! spots, where there are any
+    integer, intent(in) :: n_segment    !! of the chain
+    character(*), intent(in) :: folder
+    type(archive_t), intent(inout) :: archive
+    logical, allocatable :: is_listed(:)
+    integer :: n
+
+    n = tracking%n
+    if (.not. allocated(tracking%status)) then
+      call archive%expect(folder//'n', n == 0, 'another number of spots than there are')
+      call archive%expect(folder//'n_touching', tracking%n_touching == 0, &
+        'spots that are not there')
+      return
+    end if
+    call archive%expect(folder//'n', n == n_spot, 'another number of spots than there are')
+    call archive%expect(folder//'segment', all(tracking%segment >= 0 &
+      .and. tracking%segment <= n_segment), 'numbers that no segment has')
+    call archive%expect(folder//'status', all(tracking%status == is_free &
+      .or. tracking%segment > 0), 'spots that stand before no segment')
+    call archive%expect(folder//'n_touching', count(tracking%status == is_touching) &
+      == tracking%n_touching, 'another number than there are spots in contact')
+    if (allocated(archive%error)) return
+    allocate (is_listed(0:n), source=.false.)
+    is_listed(tracking%touching(:tracking%n_touching)) = .true.
+    call archive%expect(folder//'touching', all(is_listed(1:) .eqv. tracking%status &
+      == is_touching), 'spots that are not those in contact, each once')
+    call archive%expect(folder//'reach', tracking%reach >= 0.0_wp, 'a distance below zero')
+  end subroutine check_tracking
 
 end module restart_m

@@ -1,17 +1,26 @@
 ! SPDX-License-Identifier: MIT
-!> When a run writes restart files and under which names, and the one that it goes on from.
+!> When a run writes restart files, and the one that it goes on from; the names of all results of a
+!> run, looked at before anything is touched.
 module restart_plan_m
   use archive_m, only : archive_t
+  use errors_m, only : error_t, raise, status_files
+  use files_m, only : file_facts_t, facts_of_name, facts_of_target, is_same_file, what_hinders, &
+    join_path, unfinished
+  use history_tables_m, only : history_tables
   use kinds_m, only : wp, long
   use log_m, only : to_text
   use state_m, only : state_t
   implicit none
   private
   public :: restarts_t, dump_path, running_path, place_text, wanted_files, &
-    numbered_file, running_file, wants_look
+    numbered_file, running_file, wants_look, switch_path, check_names
 
   !> Kinds of restart files: those that stay, and the one that is replaced again and again.
   integer, parameter :: numbered_file = 1, running_file = 2
+
+  !> Numbered restart files that are looked at in any case where the deck asks for some: those with
+  !> two digits.
+  integer, parameter :: least_numbers = 99
 
   !> Seconds between two looks for a sense switch, and cycles where no clock is read anyhow.
   real(wp), parameter :: look_interval = 0.5_wp
@@ -110,5 +119,104 @@ contains
     call system_clock(now, rate)
     restarts%next_look = now + int(look_interval*real(rate, wp), long)
   end subroutine wants_look
+
+  !> Where a request is looked for.
+  pure function switch_path(directory) result(path)
+    character(*), intent(in) :: directory !! of the results
+    character(:), allocatable :: path
+
+    path = join_path(directory, 'd3kil')
+  end function switch_path
+
+  !> Refuse names of results under which something else stands than a file: a directory, a pipe, a
+  !> device, a symbolic link; and those of files that the run reads, by whatever path. Other files
+  !> are replaced. Numbered restart files have no last number: beyond the least, or where only a
+  !> request can ask for one, they are looked at while they follow without a gap. The restart file
+  !> that a run goes on from may have the name of the running one, or of one that it does not
+  !> write any more.
+  subroutine check_names(restarts, keeps_files, inputs_only, error)
+    type(restarts_t), intent(in) :: restarts !! its directory, job, prefix, inputs and source
+    logical, intent(in) :: keeps_files       !! the deck asks for numbered restart files
+    logical, intent(in) :: inputs_only       !! only files that the run reads are looked for
+    type(error_t), allocatable, intent(out) :: error
+    character(12), parameter :: kinds(4) = [character(12) :: '.log', '.effective.k', '.vtkhdf', &
+      '.timing.csv']
+    type(file_facts_t) :: inputs(size(restarts%inputs) + 1) !! last the restart file, if any
+    integer :: i, n_deck
+
+    n_deck = size(restarts%inputs)
+    do i = 1, n_deck
+      inputs(i) = facts_of_target(trim(restarts%inputs(i)))
+    end do
+    if (restarts%goes_on) inputs(n_deck + 1) = facts_of_target(restarts%source%path)
+    call check_name(switch_path(restarts%directory), size(inputs), .true.)
+    do i = 1, size(kinds)
+      call look(restarts%prefix//trim(kinds(i)), size(inputs))
+    end do
+    do i = 1, size(history_tables)
+      call look(restarts%prefix//'.'//trim(history_tables(i)%name), size(inputs))
+      call look(restarts%prefix//'.'//trim(history_tables(i)%name)//'.csv', size(inputs))
+    end do
+    call look(join_path(restarts%directory, 'status.out'), size(inputs))
+    call look(join_path(restarts%directory, restarts%job//'.status.out'), size(inputs))
+    call look(running_path(restarts), n_deck)
+    i = 1
+    do
+      if (i > least_numbers .or. .not. keeps_files) then
+        if (.not. is_taken(dump_path(restarts, i))) exit
+      end if
+      call look(dump_path(restarts, i), merge(n_deck, size(inputs), i <= restarts%n_dump))
+      i = i + 1
+    end do
+
+  contains
+
+    !> Look at one name and at that which the file has before it is complete.
+    subroutine look(path, n)
+      character(*), intent(in) :: path
+      integer, intent(in) :: n !! inputs whose name it may not have, the first ones
+
+      call check_name(path, n, inputs_only)
+      call check_name(path//unfinished, n, inputs_only)
+    end subroutine look
+
+    !> Refuse one name; the first failure stays.
+    subroutine check_name(path, n, may_be_any)
+      character(*), intent(in) :: path
+      integer, intent(in) :: n
+      logical, intent(in) :: may_be_any !! whatever else stands there
+      character(:), allocatable :: input
+      type(file_facts_t) :: facts
+      integer :: i
+
+      if (allocated(error)) return
+      facts = facts_of_name(path)
+      if (.not. facts%is_there) return
+      if (.not. (facts%is_regular .or. may_be_any)) then
+        call raise(error, 'cannot write '//path//': '//what_hinders(path), status_files)
+        return
+      end if
+      do i = 1, n
+        if (.not. is_same_file(facts, inputs(i))) cycle
+        if (i > n_deck) input = restarts%source%path
+        if (i <= n_deck) input = trim(restarts%inputs(i))
+        call raise(error, 'cannot write '//path//': it is the file '//input//', which this run ' &
+          //'reads; give the run another name (jobid=) or folder (d=)', status_files)
+        return
+      end do
+    end subroutine check_name
+
+  end subroutine check_names
+
+  !> Whether a file of this name stands there, whole or not.
+  function is_taken(path)
+    character(*), intent(in) :: path
+    logical :: is_taken
+    type(file_facts_t) :: whole, part
+
+    whole = facts_of_name(path)
+    part = facts_of_name(path//unfinished)
+    is_taken = whole%is_there .or. part%is_there
+  end function is_taken
 
 end module restart_plan_m

@@ -5,22 +5,21 @@ module snapshot_filling_m
   use kinds_m, only : wp, long
   use block_state_m, only : block_state_t
   use common_motion_m, only : fill_common
-  use constraints_m, only : is_active
+  use loads_m, only : is_active
   use contact_results_m, only : interface_resultants, slave_rows, join_rows
   use element_mass_m, only : element_shares
-  use element_state_m, only : add_part_energies, element_stresses, element_plastic_strains, &
-    element_heats, element_erosion, hoop_strains
+  use element_state_m, only : add_part_energies, is_gone, stress_of_slot, plastic_strain_of_slot, &
+    find_heat, hoop_strain_of_slot
   use contacts_m, only : has_shear, n_told, told_as
   use controls_m, only : is_asked
   use history_tables_m, only : table_elout, table_matsum, table_rbdout, table_spcforc
   use layout_m, only : slot_part
   use mass_scaling_m, only : scales_masses, added_masses
-  use model_m, only : model_t
+  use model_m, only : model_t, mark_supports
   use parts_m, only : has_memory_of_heat
   use snapshot_m, only : snapshot_t, interface_result_t, slave_result_t
   use sorting_m, only : sorted_order
   use state_m, only : state_t
-  use supports_m, only : mark_supports
   implicit none
   private
   public :: start_snapshot, fill_motion, find_motion, damping_at, fill_energies, fill_parts, &
@@ -323,16 +322,22 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(snapshot_t), intent(inout) :: snapshot
-    integer :: i, k
+    integer :: i, k, slot
 
-    call element_stresses(model, state%motion, state%elements, snapshot%stress)
-    if (allocated(snapshot%plastic_strain)) &
-      call element_plastic_strains(model, state%elements, snapshot%plastic_strain)
-    if (model%erodes) call element_erosion(model, state%elements, snapshot%eroded)
-    if (model%is_round) call hoop_strains(model, state%motion, snapshot%hoop_strain)
-    if (allocated(snapshot%damage)) then
-      call element_heats(model, state%elements, snapshot%temperature, snapshot%damage)
-    end if
+    ! The slots are walked, whose streams and nodes lie side by side.
+    do slot = 1, model%layout%n_slot
+      i = model%layout%slot_element(slot)
+      if (i == 0) cycle
+      snapshot%stress(:, i) = 0.0_wp
+      if (.not. is_gone(state%elements, slot)) snapshot%stress(1:4, i) = stress_of_slot(model, &
+        state%motion, state%elements, slot)
+      if (allocated(snapshot%plastic_strain)) &
+        snapshot%plastic_strain(i) = plastic_strain_of_slot(model, state%elements, slot)
+      if (model%erodes) snapshot%eroded(i) = merge(1.0_wp, 0.0_wp, is_gone(state%elements, slot))
+      if (model%is_round) snapshot%hoop_strain(i) = hoop_strain_of_slot(model, state%motion, slot)
+      if (allocated(snapshot%damage)) call find_heat(model, state%elements, slot, &
+        snapshot%temperature(i), snapshot%damage(i))
+    end do
     if (size(model%contacts) == 0) return
     snapshot%contact_force = 0.0_wp
     snapshot%contact_pressure = 0.0_wp

@@ -5,21 +5,20 @@ module restart_reading_m
   use archive_m, only : archive_t
   use errors_m, only : error_t, raise, status_input
   use explicit_cycle_m, only : explicit_cycle_t, read_cycle
-  use implicit_start_m, only : implicit_memory_t, read_memory
+  use implicit_forces_m, only : start_trial
+  use implicit_start_m, only : implicit_memory_t
   use others_memory_m, only : answers_t, others_t, forgetters_of
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
   use history_file_m, only : plan_histories
-  use monitor_m, only : monitor_t, start_schedules
-  use outlines_m, only : resume_outlines
-  use output_schedule_m, only : output_reach
+  use element_losses_m, only : resume_outlines
+  use monitor_m, only : monitor_t, start_schedules, output_reach
   use progress_m, only : show_note
-  use restart_bounds_m, only : check_state
   use restart_file_m, only : open_restart
-  use restart_m, only : keep_run, keep_outputs
+  use restart_m, only : keep_run, keep_outputs, check_state
   use restart_plan_m, only : restarts_t, place_text
-  use results_copy_m, only : check_old_results, copy_states
+  use results_file_m, only : check_old_results, copy_states
   use start_m, only : start_state, resume_contacts
   use state_m, only : state_t
   use visitor_m, only : any_length
@@ -121,7 +120,8 @@ contains
     call keep_outputs(source, state%time - state%dt_before, &
       output_reach(model%controls, state%dt_before), planned)
     if (model%controls%implicit%is_on) then
-      call read_memory(model, state, source, memory)
+      call start_trial(model, state, memory%trial)
+      call source%part('driver', memory)
     else if (state%relaxation%n == 0) then
       call read_cycle(model, state, source, cycle)
     end if

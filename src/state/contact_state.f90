@@ -426,7 +426,7 @@ contains
     call visitor%visit('damping_work', self%damping_work)
     call visitor%part('watch', self%watch)
     call visitor%part('limit', self%limit)
-    call visitor%visit('n_active', self%n_active, 0, what='a number below zero')
+    call visitor%visit('n_active', self%n_active, 0, huge(1), 'a number below zero')
     call visitor%visit('rules_step', self%rules_step)
     call visitor%visit('n_swept', self%n_swept)
     call visitor%visit('n_dropped', self%n_dropped)

@@ -57,6 +57,8 @@ contains
     type(forgetter_t) :: forgetters(2)
     integer :: k
 
+    ! Results of functions do not get their default values from gfortran 12.
+    forgetters = forgetter_t()
     do k = 1, 2
       forgetters(k)%ranges(:, of_nodes) = others%nodes(2*k - 1:2*k)
       call choose_slots(forgetters(k), (others%slots(2*k - 1:2*k) + [chunk_size - 1, 0]) &

@@ -53,7 +53,7 @@ DISPATCHERS = {
 MOST_FILE_LINES, MOST_PROCEDURE_LINES, MOST_ARGUMENTS, MOST_COLUMNS = 500, 80, 8, 100
 MOST_TEST_COLUMNS = 132
 #: procedures that have more arguments, and how many; none may be added
-MORE_ARGUMENTS = {"advance_one_point": 9, "grow_with_rate": 10}
+MORE_ARGUMENTS = {"grow_with_rate": 10}
 MORE_ARGUMENTS_IN_CONTACT = 10
 MOST_MEDIAN_LINES = 25
 AIM_FILE_LINES, AIM_PROCEDURE_LINES, AIM_ARGUMENTS = 300, 60, 8

@@ -23,7 +23,7 @@ EXEMPT = {
     "explicit_cycle_t": dict.fromkeys((
         "writes", "finished", "last", "due", "leap", "sums", "rest", "pressing", "common", "rates", "checks", "parcel",
         "asked", "active", "velocity", "displacement", "freed"), EACH_CYCLE) | dict.fromkeys((
-            "plots", "shares", "borders", "first_check", "echoes", "failures", "reason", "error"), "of each run") | dict.fromkeys((
+            "plots", "shares", "first_check", "echoes", "failures", "reason", "error"), "of each run") | dict.fromkeys((
                 "refines", "presses", "timed_motions"), OF_THE_DECK) | {"told": "of the state"},
     "implicit_memory_t": {"written": "of another state"},
     "step_control_t": {"next": "planned anew", "is_last": "planned anew", "end_time": "from the deck, which may change it"}

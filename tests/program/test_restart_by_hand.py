@@ -67,7 +67,7 @@ LIES = {
     "state/elements/hourglass_start": (lambda old: old * 0 + 10**8, "follow from the deck"),
     "state/motion": (lambda old: old * np.nan, "finite"),
     "state/mass": (lambda old: old[:-1], "in all"),
-    "state/time": (lambda old: np.float64(old[0]), "a single one"),
+    "state/time": (lambda old: np.float64(old[0]), "in all"),
     "driver/steps/first_dt": (lambda old: old * 0, "not positive"),
     "run/n_dump": (lambda old: old * 0 - 1, "no run reaches"),
     "state/contacts/1/watch/node": (lambda old: old * 0 + 99999, "no node"),
@@ -217,13 +217,9 @@ int close(int f) {
   int bad = fails("close", f, 0), kept = errno, status = NEXT(int, "close", int)(f);
   if (bad) errno = kept;
   return bad ? -1 : status; }
-int fclose(FILE *s) {
-  int bad = s ? fails("fclose", fileno(s), 0) : 0, kept = errno, status = NEXT(int, "fclose", FILE *)(s);
-  if (bad) errno = kept;
-  return bad ? -1 : status; }
 int rename(const char *a, const char *b) { return fails("rename", -1, b) ? -1 : NEXT(int, "rename", const char *, const char *)(a, b); }
 """
-CALLS = {"write": 60, "fsync": 3, "close": 8, "fclose": 8, "rename": 3}
+CALLS = {"write": 60, "fsync": 3, "close": 8, "rename": 3}
 
 
 def is_whole(path):
@@ -263,8 +259,8 @@ def test_a_fault_at_any_call_leaves_a_whole_file(exe, job, checked, kind):
                 continue
             tried += 1
             where = (kind, number, once, done.returncode, done.stderr[-500:])
-            # A file that has been read and can not be closed is no loss.
-            assert done.returncode == 3 and "runrsf.h5" in done.stderr or kind == "close" and number > 1, where
+            # Of five calls that close the second and the fourth follow reading: a file that can not be closed then is no loss.
+            assert done.returncode == 3 and "runrsf.h5" in done.stderr or kind == "close" and once and number % 5 in (2, 4), where
             path = folder / "job.runrsf.h5"
             log = (folder / "job.log").read_text()
             assert is_whole(path) if path.exists() else "restart file faulty/job.runrsf.h5" not in log, where

@@ -48,7 +48,7 @@ fn=__place_nts_m_MOD_place_nts
 fn=memcpy
 40 150
 
-fn=__quad_one_point_m_MOD_advance
+fn=__quad_m_MOD_advance_chunk
 50 30
 fn=__crossing_m_MOD_find_crossings
 60 7

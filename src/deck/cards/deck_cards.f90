@@ -7,15 +7,15 @@ module deck_cards_m
   use text_m, only : read_integer, number_good
   use deck_lines_m, only : deck_t, place_t, line_text, line_warning, replace_line, flag_blank, &
     flag_parameter, block_of_line, given_by, format_long, max_field
-  use deck_card_specs_m, only : card_spec_t, make_spec, field_number
-  use deck_fields_m, only : card_t, cut_card, read_numbers, field_text, field_error
-  use deck_schema_m, only : keyword_cards, refusal_reason, lost_effect, max_card
-  use deck_parameters_m, only : substitute
+  use deck_fields_m, only : card_spec_t, make_spec, field_number, card_t, begin_card, cut_card, &
+    read_numbers, field_text, field_error
+  use deck_schema_m, only : table, keyword_cards, refusal_reason, expectations, &
+    text_of_field, max_card
+  use deck_parameter_table_m, only : look_up
   implicit none
   private
-  public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_of, rows_of, &
-    next_text, next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field, &
-    find_field
+  public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_of, &
+    next_text, next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field
 
   !> A place in a block.
   type :: cursor_t
@@ -25,7 +25,6 @@ module deck_cards_m
     integer :: last = 0           !! last line of the block
     integer :: n_card = 0         !! cards that the keyword has
     character(60) :: options = '' !! of the keyword (`deck_schema_m`)
-    character(27) :: head = ''    !! beginning of the keywords whose rows are read
     type(card_spec_t) :: specs(max_card)
   end type cursor_t
 
@@ -41,16 +40,16 @@ contains
     type(deck_t), intent(in) :: deck
     integer, intent(in) :: i_block
     type(cursor_t), intent(out) :: cursor
-    character(160) :: cards(max_card)
-    integer :: k
+    integer :: k, row
 
     cursor%block = i_block
     cursor%source = deck%blocks(i_block)%source
     cursor%line = deck%blocks(i_block)%first
     cursor%last = deck%blocks(i_block)%last
-    call keyword_cards(deck%blocks(i_block)%name, cards, cursor%n_card, cursor%options)
+    call keyword_cards(deck%blocks(i_block)%name, row, cursor%n_card, cursor%options)
     do k = 1, cursor%n_card
-      call make_spec(cards(k), k, deck%blocks(i_block)%layout, cursor%specs(k))
+      call make_spec(table(row + k), k, deck%blocks(i_block)%layout, cursor%specs(k))
+      cursor%specs(k)%row = row + k
     end do
   end subroutine open_cursor
 
@@ -66,18 +65,6 @@ contains
     call next_card(deck, cursor, 1, card)
   end subroutine first_card
 
-  !> Position of a field of card `number`, for rows that are many: looked up once.
-  function find_field(cursor, number, name) result(k)
-    type(cursor_t), intent(in) :: cursor
-    integer, intent(in) :: number
-    character(*), intent(in) :: name
-    integer :: k
-
-    associate (spec => cursor%specs(number))
-      k = field_number(spec%names(:spec%n), name)
-    end associate
-  end function find_field
-
   !> Card number `number`: the next line, blank or not; all defaults when the block has ended.
   subroutine next_card(deck, cursor, number, card)
     type(deck_t), intent(inout) :: deck
@@ -86,72 +73,59 @@ contains
     type(card_t), intent(out) :: card
 
     if (cursor%line > cursor%last) then
-      card%line = deck%blocks(cursor%block)%keyword
-      card%number = number
-      card%names = cursor%specs(number)%names
-      card%kinds = cursor%specs(number)%kinds
+      call begin_card(cursor%specs(number), deck%blocks(cursor%block)%keyword, card)
       call read_numbers(deck, cursor%specs(number), cursor%source, card)
       return
     end if
     call read_line(deck, cursor, number, card)
   end subroutine next_card
 
-  !> The next line that is not blank, as card `number`; `found` is false at the end of the block.
-  subroutine next_row(deck, cursor, number, card, found)
+  !> Read the next line that is not blank as card `number`; false at the end of the block.
+  function next_row(deck, cursor, number, card) result(found)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
     integer, intent(in) :: number
     type(card_t), intent(inout) :: card
-    logical, intent(out) :: found
+    logical :: found
 
-    call row_comes(deck, cursor, found)
+    found = row_comes(deck, cursor)
     if (found) call read_line(deck, cursor, number, card)
-  end subroutine next_row
+  end function next_row
 
-  !> Start at the first row of the first keyword that begins so; `next_of` goes on from keyword to
-  !> keyword.
-  pure subroutine rows_of(head, cursor)
-    character(*), intent(in) :: head
-    type(cursor_t), intent(out) :: cursor
-
-    cursor%head = head
-  end subroutine rows_of
-
-  !> The next row that is not blank, as card 1; `found` is false behind the last keyword.
-  subroutine next_of(deck, cursor, card, found)
+  !> Read the next row that is not blank, as card 1, of the keywords that begin with `head`, from
+  !> the first of them on where the cursor is at none yet; false behind the last row of the last.
+  function next_of(deck, head, cursor, card) result(found)
     type(deck_t), intent(inout) :: deck
+    character(*), intent(in) :: head
     type(cursor_t), intent(inout) :: cursor
     type(card_t), intent(inout) :: card
-    logical, intent(out) :: found
-    character(len(cursor%head)) :: head
+    logical :: found
     integer :: i
 
-    call next_row(deck, cursor, 1, card, found)
-    head = cursor%head
+    found = next_row(deck, cursor, 1, card)
     i = cursor%block
     do while (.not. found .and. i < deck%n_block)
       i = i + 1
       if (.not. deck%blocks(i)%is_honoured) cycle
-      if (index(deck%blocks(i)%name, trim(head)) /= 1) cycle
+      if (deck%blocks(i)%name(:len(head)) /= head) cycle
       call open_cursor(deck, i, cursor)
-      cursor%head = head
       call skip_title(deck, cursor)
-      call next_row(deck, cursor, 1, card, found)
+      found = next_row(deck, cursor, 1, card)
     end do
-  end subroutine next_of
+  end function next_of
 
   !> Whether a line that is not blank is left; those before it are passed.
-  subroutine row_comes(deck, cursor, found)
+  function row_comes(deck, cursor) result(found)
     type(deck_t), intent(in) :: deck
     type(cursor_t), intent(inout) :: cursor
-    logical, intent(out) :: found
+    logical :: found
 
     do while (cursor%line <= cursor%last)
       if (iand(deck%flags(cursor%line), flag_blank) == 0) exit
       cursor%line = cursor%line + 1
     end do
     found = cursor%line <= cursor%last
-  end subroutine row_comes
+  end function row_comes
 
   !> The next line as plain text (titles and names are never cut).
   subroutine next_text(deck, cursor, text)
@@ -223,13 +197,40 @@ contains
     cursor%line = cursor%line + 1
   end subroutine read_line
 
+  !> The line of a card with its references replaced, in free format.
+  subroutine substitute(deck, spec, source, card, text)
+    type(deck_t), intent(inout) :: deck
+    type(card_spec_t), intent(in) :: spec
+    integer, intent(in) :: source
+    type(card_t), intent(inout) :: card
+    character(:), allocatable, intent(out) :: text
+    character(:), allocatable :: field, value
+    integer :: k, last
+
+    last = findloc(card%blank(:spec%n), .false., 1, back=.true.)
+    text = ''
+    do k = 1, last
+      field = field_text(deck, card, k)
+      if (index(field, '&') == 1 .or. index(field, '-&') == 1 .or. index(field, '+&') == 1) then
+        if (index(field, '&(') == 0) then
+          call look_up(deck%parameters, field, source, value)
+          if (len(value) == 0 .and. .not. deck%incomplete) call field_error(deck, card, k, &
+            'is not defined by any *PARAMETER')
+          field = value
+        end if
+      end if
+      text = text//field
+      if (k < last .or. last == 1) text = text//','
+    end do
+  end subroutine substitute
+
   !> A field that is not honoured: a warning or an error when it asks for something.
   subroutine notice_field(deck, spec, card, k)
     type(deck_t), intent(inout) :: deck
     type(card_spec_t), intent(in) :: spec
     type(card_t), intent(inout) :: card
     integer, intent(in) :: k
-    character(:), allocatable :: name
+    character(:), allocatable :: name, effect
 
     if (card%bad(k)) return
     if (index('if', spec%kinds(k)) > 0 .and. (.not. abs(card%r(k)) > 0.0_wp &
@@ -238,9 +239,11 @@ contains
     if (spec%treatments(k) == 'r') then
       call field_error(deck, card, k, refusal_reason(trim(spec%names(k))))
     else
+      effect = text_of_field(expectations, name, trim(spec%names(k)))
+      if (index(effect, ':') /= 1) effect = ''
       call line_warning(deck, card%line, 'field '//name//' '//spec%names(k)//to_text(spec%number), &
         'card '//to_text(spec%number)//' field '//to_text(k)//' ('//trim(spec%names(k))//'): "' &
-        //field_text(deck, card, k)//'" has no effect here'//lost_effect(trim(spec%names(k))))
+        //field_text(deck, card, k)//'" has no effect here'//effect)
     end if
   end subroutine notice_field
 
@@ -248,11 +251,10 @@ contains
   subroutine check_rest(deck, cursor)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
-    logical :: found
 
-    call row_comes(deck, cursor, found)
-    if (found) call line_warning(deck, cursor%line, 'rest'//to_text(cursor%line), &
-      'from here to the next keyword ignored: more lines than the keyword has cards')
+    if (row_comes(deck, cursor)) call line_warning(deck, cursor%line, 'rest' &
+      //to_text(cursor%line), 'from here to the next keyword ignored: more lines than the ' &
+      //'keyword has cards')
   end subroutine check_rest
 
   !> An error of the field of a name, of a card just read.

@@ -3,19 +3,17 @@
 !> studies (doc/choose.md): the type as such, or the cheapest that keeps a target. The effective
 !> deck has the type chosen and the target, so that runs from it and restarts go on in the same way.
 module deck_choose_type_m
-  use conditions_m, only : conditions_t
-  use contact_types_m, only : type_nts_ar, type_nts_mar, type_segmented_mortar, type_chosen
-  use contacts_m, only : contact_t, has_friction, is_tied, penalty_factor, penalty_share, &
+  use contacts_m, only : type_nts_ar, type_nts_mar, type_segmented_mortar, type_chosen, &
+    contact_t, has_friction, is_tied, penalty_factor, penalty_share, &
     penalty_implicit, tie_factor
   use deck_edits_m, only : set_field
   use deck_lines_m, only : deck_t
   use kinds_m, only : wp
   use log_m, only : to_text
   use model_m, only : model_t
-  use number_text_m, only : shortest
-  use surfaces_m, only : surface_t
+  use text_m, only : shortest
   use type_charts_m, only : scene_bound, scene_matching, scene_general, scene_led, &
-    scene_friction, scene_name, published_estimate, cheapest_type
+    scene_friction, scene_names, estimates, cheapest_type
   implicit none
   private
   public :: choose_type
@@ -47,8 +45,17 @@ contains
       call decide_by_scene(contact)
     end if
     if (.not. has_target) contact%target = default_target
-    if (.not. abs(contact%penalty) > 0.0_wp) call take_penalty(model%controls%implicit%is_on, &
-      contact)
+    if (.not. abs(contact%penalty) > 0.0_wp) then
+      ! The largest that an explicit step bears; K L/A of implicit runs and ties, up to which
+      ! contact costs next to nothing.
+      contact%penalty_unit = penalty_share
+      contact%penalty = 1.0_wp
+      if (model%controls%implicit%is_on .or. is_tied(contact)) then
+        contact%penalty_unit = penalty_factor
+        contact%penalty = tie_factor
+      end if
+      contact%master_penalty = contact%penalty
+    end if
     ! The card shows what was chosen.
     call set_field(deck, i_block, 'CTYPE', to_text(contact%contact_type))
     call set_field(deck, i_block, 'PEN', shortest(contact%penalty))
@@ -57,22 +64,6 @@ contains
     call set_field(deck, i_block, 'TARGET', shortest(contact%target))
   end subroutine choose_type
 
-  !> The penalty where the deck has none: the largest that an explicit step bears; K L/A of implicit
-  !> runs and ties, up to which contact costs next to nothing.
-  pure subroutine take_penalty(is_implicit, contact)
-    logical, intent(in) :: is_implicit
-    type(contact_t), intent(inout) :: contact
-
-    if (is_implicit .or. is_tied(contact)) then
-      contact%penalty_unit = penalty_factor
-      contact%penalty = tie_factor
-    else
-      contact%penalty_unit = penalty_share
-      contact%penalty = 1.0_wp
-    end if
-    contact%master_penalty = contact%penalty
-  end subroutine take_penalty
-
   !> How the scene stands, the first that holds.
   pure function scene_of(model, contact) result(scene)
     type(model_t), intent(in) :: model
@@ -80,18 +71,28 @@ contains
     integer :: scene
     real(wp) :: along(2)
 
-    along = chord(model, contact%slave)
-    if (contact%penalty_unit == penalty_implicit .or. contact%strict .or. is_tied(contact)) then
-      scene = scene_bound
-    else if (has_friction(contact)) then
-      scene = scene_friction
-    else if (is_led(model%conditions, along)) then
-      scene = scene_led
-    else if (is_at_rest(model, contact, along) .and. match(model, contact, along)) then
-      scene = scene_matching
-    else
-      scene = scene_general
-    end if
+    ! Unit vector from the first to the last node of a surface that is one open chain; else none.
+    along = 0.0_wp
+    associate (x => model%mesh%coordinates, nodes => contact%slave%nodes)
+      if (count(contact%slave%previous == 0) == 1) along = x(:, nodes(size(nodes))) - x(:, nodes(1))
+    end associate
+    if (norm2(along) > 0.0_wp) along = along/norm2(along)
+    associate (given => model%conditions)
+      if (contact%penalty_unit == penalty_implicit .or. contact%strict .or. is_tied(contact)) then
+        scene = scene_bound
+      else if (has_friction(contact)) then
+        scene = scene_friction
+      else if (any(abs(along(given%motions%direction)) > aside) &
+        .or. any(abs(along(pack([given%rigid_motions%direction], &
+        given%rigid_motions%direction <= 2))) > aside)) then
+        ! A prescribed motion, of nodes or rigid bodies, leads along the faces.
+        scene = scene_led
+      else if (is_at_rest(model, contact, along) .and. match(model, contact, along)) then
+        scene = scene_matching
+      else
+        scene = scene_general
+      end if
+    end associate
   end function scene_of
 
   !> The type and the reason, without a target.
@@ -127,50 +128,20 @@ contains
   !> The cheapest type that keeps the target in the published studies, and the reason.
   pure subroutine decide_by_charts(contact)
     type(contact_t), intent(inout) :: contact
-    character(:), allocatable :: figure
 
     contact%contact_type = cheapest_type(contact%scene, contact%target)
-    figure = 'in studies of '//scene_name(contact%scene)//' its estimate is up to ' &
-      //to_text(published_estimate(contact%scene, contact%contact_type))
-    if (published_estimate(contact%scene, contact%contact_type) <= contact%target) then
-      contact%reason = figure//', the cheapest that keeps the target '//to_text(contact%target)
-    else
-      contact%reason = figure//', the smallest: none keeps the target ' &
-        //to_text(contact%target)//' on their meshes'
-    end if
-  end subroutine decide_by_charts
-
-  !> Unit vector from the first to the last node of a surface that is one open chain; else none.
-  pure function chord(model, surface) result(along)
-    type(model_t), intent(in) :: model
-    type(surface_t), intent(in) :: surface
-    real(wp) :: along(2)
-
-    along = 0.0_wp
-    if (count(surface%previous == 0) /= 1) return
-    associate (x => model%mesh%coordinates, nodes => surface%nodes)
-      along = x(:, nodes(size(nodes))) - x(:, nodes(1))
+    associate (estimate => estimates(contact%contact_type, contact%scene))
+      contact%reason = 'in studies of '//trim(scene_names(contact%scene)) &
+        //' its estimate is up to '//to_text(estimate)
+      if (estimate <= contact%target) then
+        contact%reason = contact%reason//', the cheapest that keeps the target ' &
+          //to_text(contact%target)
+      else
+        contact%reason = contact%reason//', the smallest: none keeps the target ' &
+          //to_text(contact%target)//' on their meshes'
+      end if
     end associate
-    if (norm2(along) > 0.0_wp) along = along/norm2(along)
-  end function chord
-
-  !> Whether prescribed motion, of nodes or rigid bodies, leads along the faces.
-  pure function is_led(conditions, along)
-    type(conditions_t), intent(in) :: conditions
-    real(wp), intent(in) :: along(2)
-    logical :: is_led
-    integer :: i
-
-    is_led = .false.
-    do i = 1, size(conditions%motions)
-      is_led = is_led .or. abs(along(conditions%motions(i)%direction)) > aside
-    end do
-    do i = 1, size(conditions%rigid_motions)
-      associate (direction => conditions%rigid_motions(i)%direction)
-        if (direction <= 2) is_led = is_led .or. abs(along(min(direction, 2))) > aside
-      end associate
-    end do
-  end function is_led
+  end subroutine decide_by_charts
 
   !> Whether nothing starts or pulls one face along the other: initial velocities, loads on nodes,
   !> edges and bodies, base acceleration.

@@ -4,25 +4,23 @@
 !> that leaves the type to the program, is written as our own card first.
 module deck_contact_m
   use kinds_m, only : wp
-  use number_text_m, only : shortest
+  use text_m, only : shortest
   use log_m, only : to_text
   use units_m, only : in_units
   use model_m, only : model_t
-  use contact_types_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_nts_mar, &
-    type_segmented_mortar, type_missing, type_chosen
-  use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, kind_text, is_tied, breaks, &
-    penalty_distributed, penalty_factor, penalty_share, penalty_implicit, implicit_factor, &
-    tie_none, tie_always, tie_breaks
+  use contacts_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_nts_mar, &
+    type_segmented_mortar, type_missing, type_chosen, contact_t, contact_kind_t, friction_rule_t, &
+    kind_text, is_tied, breaks, penalty_per_node, penalty_distributed, penalty_factor, &
+    penalty_share, penalty_implicit, implicit_factor, tie_none, tie_always, tie_breaks, tie_factor
   use deck_lines_m, only : deck_t, place_t, line_error, line_warning, given_by
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &
-    report_field, reject_field
+    report_field, reject_field, warn_of_field
   use deck_edits_m, only : given_number, set_field, rewrite_block
   use deck_ids_m, only : a_curve
   use deck_values_m, only : integer_of, real_of, is_blank, is_bad, place_of, take_life, find_id
   use deck_friction_m, only : default_friction_t, take_friction, take_stock_friction, &
     take_penalty_friction, warn_of_rule
-  use deck_tie_m, only : take_tie, take_stock_tie, check_tie
   use deck_overrides_m, only : contact_names, find_word, edit_contact
   implicit none
   private
@@ -130,19 +128,27 @@ contains
         call take_interference(deck, cards(3), model, contact)
         call take_tie(deck, cards, contact)
         call take_friction(cards, contact%friction, place)
-      case ('CONTACT_2D_PENALTY', 'CONTACT_2D_PENALTY_FRICTION', 'CONTACT_2D_SLIDING_VOIDS')
+      case ('CONTACT_2D_PENALTY', 'CONTACT_2D_PENALTY_FRICTION', 'CONTACT_2D_SLIDING_VOIDS', &
+          'CONTACT_2D_TIED_SLIDING')
         call take_penalty(deck, entry)
         if (cursor%n_card > 2) call take_penalty_friction(deck, cards(3), contact%friction, place)
-      case ('CONTACT_2D_TIED_SLIDING')
-        call take_penalty(deck, entry)
-        call take_stock_tie(0.0_wp, contact)
-      case ('CONTACT_2D_AUTOMATIC_TIED', 'CONTACT_2D_AUTOMATIC_TIED_ONE_WAY')
-        call take_automatic(deck, cards, contact)
-        call take_stock_tie(real_of(cards(3), 'TIEDGAP'), contact)
       case default
         call take_automatic(deck, cards, contact)
-        call take_stock_friction(cards, default, contact%friction, place)
+        if (index(name, '_TIED') > 0) then
+          contact%tie_reach = real_of(cards(3), 'TIEDGAP')
+        else
+          call take_stock_friction(cards, default, contact%friction, place)
+        end if
       end select
+      if (index(name, '_TIED') > 0) then
+        ! SFACT multiplies the factor of the program; what there is for contact that opens has no
+        ! effect: friction, damping, FREQ.
+        contact%tie = tie_always
+        contact%penalty = tie_factor*contact%penalty
+        contact%master_penalty = contact%penalty
+        contact%search_interval = 0
+        contact%damping = 0.0_wp
+      end if
       entry%friction_line = place%line
       call check_tie(deck, deck%blocks(entry%block)%keyword, contact)
       if (name == our_own) call check_slideline(deck, cards, kinds, contact)
@@ -331,7 +337,8 @@ contains
       'is not a penalty (more than 0)')
     if (contact%penalty_unit == penalty_implicit .and. any(kinds%number == contact%contact_type &
       .and. .not. kinds%has_implicit_springs)) call report_field(deck, cards(2), 'PUNIT', &
-      'asks for implicit springs'//implicit_names(kinds))
+      'asks for implicit springs, which only '//kind_text(kinds(findloc( &
+      kinds%has_implicit_springs, .true., 1)))//' has (CTYPE)')
     if (len(given_by(deck, cards(3)%line, findloc(cards(3)%names, 'TARGET', 1))) > 0 &
       .and. type_chosen /= contact%contact_type) call report_field(deck, cards(3), 'TARGET', &
       'is for types that the program chooses (CTYPE 0); interface '//to_text(contact%id) &
@@ -340,6 +347,91 @@ contains
       deck, cards(1), 'PEN', &
       'is not a share of the largest stable penalty (PUNIT 3: above 0, at most 1)')
   end subroutine check_slideline
+
+  !> *CONTACT_2D_SLIDELINE: with TIE 1 or 2 SRCH is the reach of the tie. Without PEN its penalty is
+  !> the factor of the program where the unit is a factor, or not given (blank and 0 are the same);
+  !> PENT stays where it is given.
+  subroutine take_tie(deck, cards, contact)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: cards(:)
+    type(contact_t), intent(inout) :: contact
+
+    call take_strength(deck, cards(3), contact)
+    if (.not. any(integer_of(cards(3), 'TIE') == [tie_always, tie_breaks])) return
+    contact%tie = integer_of(cards(3), 'TIE')
+    contact%tie_reach = contact%search_depth
+    contact%search_depth = 0.0_wp
+    if (abs(contact%penalty) > 0.0_wp) return
+    if (all(contact%penalty_unit /= [penalty_factor, penalty_per_node])) return
+    if (abs(contact%master_penalty) > 0.0_wp) then
+      if (contact%penalty_unit == penalty_per_node) call report_field(deck, cards(2), 'PENT', &
+        'is a force per length (PUNIT 0) beside a blank PEN, which ties take as a factor on ' &
+        //'the built-in estimate; give PEN too, or PUNIT 2')
+    else
+      contact%master_penalty = tie_factor
+    end if
+    contact%penalty_unit = penalty_factor
+    contact%penalty = tie_factor
+  end subroutine take_tie
+
+  !> NFLS and SFLS: both, where ties break.
+  subroutine take_strength(deck, card, contact)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    type(contact_t), intent(inout) :: contact
+    character(4), parameter :: names(2) = ['NFLS', 'SFLS']
+    integer :: k
+
+    do k = 1, 2
+      contact%strength(k) = real_of(card, names(k))
+      if (integer_of(card, 'TIE') == tie_breaks) then
+        if (.not. contact%strength(k) > 0.0_wp .and. .not. is_bad(card, names(k))) &
+          call report_field(deck, card, names(k), 'is not a strength: ties that break (TIE 2) ' &
+          //'need NFLS and SFLS, more than 0')
+      else if (abs(contact%strength(k)) > 0.0_wp) then
+        call warn_of_field(deck, place_of(card, names(k)), 'has no effect: only ties that break ' &
+          //'(TIE 2) have strengths')
+        contact%strength(k) = 0.0_wp
+      end if
+    end do
+  end subroutine take_strength
+
+  !> What ties do not have: an error, or without effect. Ties that break hand damping, friction and
+  !> FREQ to the contact behind them.
+  subroutine check_tie(deck, line, contact)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line !! of the keyword
+    type(contact_t), intent(inout) :: contact
+    character(4), parameter :: fields(6) = [character(4) :: 'FS', 'FD', 'DC', 'VC', 'TFAC', 'FREQ']
+    character(:), allocatable :: what, useless
+    type(friction_rule_t) :: none
+    logical :: is_given(size(fields))
+    integer :: k
+
+    if (.not. is_tied(contact)) return
+    what = 'interface '//to_text(contact%id)//' is tied'
+    if (contact%is_self) call line_error(deck, line, what &
+      //': a surface can not be tied to itself (SURFB 0)')
+    if (contact%penalty_unit == penalty_share) call line_error(deck, line, what//': its ' &
+      //'penalty can not be a share of the largest stable one (PUNIT 3)')
+    if (contact%birth > 0.0_wp) call line_error(deck, line, what//' in the reference geometry: ' &
+      //'a time from which on it acts (TBIRTH) is not supported')
+    if (breaks(contact)) return
+    if (contact%damping > 0.0_wp) call line_error(deck, line, what &
+      //': contact damping (VDC) of ties is not supported')
+    associate (rule => contact%friction)
+      is_given = abs([rule%at_rest, rule%sliding - rule%at_rest, rule%decay, rule%most, &
+        rule%stiffness - none%stiffness, real(contact%search_interval, wp)]) > 0.0_wp
+    end associate
+    useless = ''
+    do k = 1, size(fields)
+      if (is_given(k)) useless = useless//', '//trim(fields(k))
+    end do
+    if (any(is_given)) call line_warning(deck, line, 'friction of a tie'//to_text(contact%id), &
+      what//': '//useless(3:)//' of contact that opens has no effect')
+    contact%friction = friction_rule_t()
+    contact%search_interval = 0
+  end subroutine check_tie
 
   !> Fields of a stock card that are below 0 and that the command line replaces are left blank.
   subroutine leave_negatives(deck, i_block, id)
@@ -388,21 +480,6 @@ contains
     end associate
     call rewrite_block(deck, entry%block, our_own, text//third)
   end subroutine write_as_ours
-
-  !> `, which only name (type n) has`.
-  pure function implicit_names(kinds) result(text)
-    type(contact_kind_t), intent(in) :: kinds(:)
-    character(:), allocatable :: text
-    integer :: i
-
-    text = ''
-    do i = 1, size(kinds)
-      if (.not. kinds(i)%has_implicit_springs) cycle
-      if (len(text) > 0) text = text//' and '
-      text = text//kind_text(kinds(i))
-    end do
-    text = ', which only '//text//' has (CTYPE)'
-  end function implicit_names
 
   !> ` (1 name, 2 name, ...)`.
   pure function kind_names(kinds) result(text)

@@ -1,21 +1,27 @@
 ! SPDX-License-Identifier: MIT
 !> The surfaces of an interface from the sets that SURFA and SURFB name: parts, nodes or segments.
+!> Those that can not be right as the bodies stand at time zero are refused: one that crosses or
+!> overlaps itself, and bodies that overlap deeper than contact between whole outlines takes up.
 module deck_contact_sides_m
+  use kinds_m, only : wp
   use log_m, only : to_text
-  use surfaces_m, only : surface_t
-  use model_m, only : model_t
-  use sets_m, only : segment_set_t
+  use surfaces_m, only : surface_t, has_closed_chain
+  use model_m, only : model_t, segment_set_t
+  use units_m, only : in_units
+  use element_finder_m, only : body_view_t, view_body
+  use initial_overlap_m, only : overlap_t, find_crossing, find_overlap
   use boundary_m, only : boundary_t, find_boundary, find_edge
   use surface_building_m, only : boundary_surface, chain_surface, chain_turned, chain_ordered, &
     chain_broken, chain_repeated, chain_short
-  use deck_ids_m, only : index_of, a_node_set, a_part, a_part_set, a_segment_set, a_shell_set
+  use deck_ids_m, only : index_of, kind_names, a_node_set, a_part, a_part_set, a_segment_set, &
+    a_shell_set
   use deck_lines_m, only : deck_t, place_t, line_warning
   use deck_cards_m, only : reject_field
   use deck_contact_m, only : contact_cards_t, side_fields
   use deck_values_m, only : resolve_id, place_of
   implicit none
   private
-  public :: outline_t, find_side, mark_set, mark_surface, find_surface
+  public :: outline_t, find_side, set_nodes, mark_surface, find_surface, check_overlap
 
   !> Where surfaces are looked for. Of a mesh some elements of which are refused those are made that
   !> have no nodes of them: mistakes that do not follow from theirs are told in the same pass.
@@ -63,7 +69,7 @@ contains
     type(model_t), intent(in) :: model
     logical, intent(out) :: is_on(:)  !! (n_node)
     logical :: is_of_part(size(model%parts))
-    integer :: kind, found, k
+    integer :: kind, found
 
     is_on = .false.
     call find_side(deck, entry, 1, kind, found)
@@ -74,56 +80,44 @@ contains
     else if (kind == side_parts) then
       is_of_part = .false.
       is_of_part(model%part_sets(found)%parts) = .true.
-      do k = 1, model%mesh%n_element
-        if (is_of_part(model%mesh%element_part(k))) is_on(model%mesh%element_nodes(:, k)) = .true.
-      end do
+      is_on(pack(model%mesh%element_nodes, spread(is_of_part(model%mesh%element_part), 1, 4))) &
+        = .true.
     else
-      call mark_set(model, kind, found, is_on)
+      is_on(set_nodes(model, kind, found)) = .true.
     end if
   end subroutine mark_surface
 
-  !> Nodes of a node or segment set.
-  pure subroutine mark_set(model, kind, found, is_on)
+  !> Nodes of a node or segment set; none of parts.
+  pure function set_nodes(model, kind, found) result(nodes)
     type(model_t), intent(in) :: model
     integer, intent(in) :: kind, found
-    logical, intent(inout) :: is_on(:)
+    integer, allocatable :: nodes(:)
 
-    if (kind == side_nodes) then
-      is_on(model%node_sets(found)%nodes) = .true.
-    else if (kind == side_segments) then
-      is_on(model%segment_sets(found)%nodes(1, :)) = .true.
-      is_on(model%segment_sets(found)%nodes(2, :)) = .true.
-    end if
-  end subroutine mark_set
+    allocate (nodes(0))
+    if (kind == side_nodes) nodes = model%node_sets(found)%nodes
+    if (kind == side_segments) nodes = [model%segment_sets(found)%nodes]
+  end function set_nodes
 
-  !> An error of a side that names no set.
+  !> An error of a side that names no set, with what else has its number.
   subroutine refuse_side(deck, entry, side)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
     integer, intent(in) :: side
-    integer :: found
+    integer, parameter :: kinds(4) = [a_node_set, a_part_set, a_shell_set, a_part]
+    character(:), allocatable :: namesakes
+    integer :: found, k
 
+    namesakes = ''
     associate (id => entry%sides(side))
+      do k = 1, size(kinds)
+        if (index_of(deck%maps(kinds(k)), abs(id)) > 0) namesakes = namesakes//', ' &
+          //trim(kind_names(kinds(k)))//' '//to_text(abs(id))//' exists'
+      end do
+      if (len(namesakes) > 0) namesakes(1:1) = ';'
       if (id /= 0) call resolve_id(deck, merge(a_part_set, a_node_set, id > 0), abs(id), &
-        place_of(entry%cards(1), side_fields(side)), found, namesakes(deck, id))
+        place_of(entry%cards(1), side_fields(side)), found, namesakes)
     end associate
   end subroutine refuse_side
-
-  !> What else has the number of a set that is not there, for a message; nothing where nothing has.
-  pure function namesakes(deck, side) result(text)
-    type(deck_t), intent(in) :: deck
-    integer, intent(in) :: side  !! as on the card, with its sign
-    character(:), allocatable :: text
-    character(:), allocatable :: number
-
-    number = ' '//to_text(abs(side))//' exists'
-    text = ''
-    if (index_of(deck%maps(a_node_set), abs(side)) > 0) text = text//', node set'//number
-    if (index_of(deck%maps(a_part_set), abs(side)) > 0) text = text//', part set'//number
-    if (index_of(deck%maps(a_shell_set), abs(side)) > 0) text = text//', shell set'//number
-    if (index_of(deck%maps(a_part), abs(side)) > 0) text = text//', part'//number
-    if (len(text) > 0) text(1:1) = ';'
-  end function namesakes
 
   !> The surface of one side of an interface. It has no nodes where some of a node set do not exist,
   !> which has been told, and where it is in doubt.
@@ -174,11 +168,10 @@ contains
 
     is_certain = body%is_sound
     if (is_certain .or. kind == side_parts) return
-    if (kind == side_nodes) then
-      is_certain = .not. any(body%in_doubt(model%node_sets(found)%nodes))
-    else if (.not. allocated(model%segment_sets(found)%parts)) then
-      is_certain = .not. any(body%in_doubt([model%segment_sets(found)%nodes]))
+    if (kind == side_segments) then
+      if (allocated(model%segment_sets(found)%parts)) return
     end if
+    is_certain = .not. any(body%in_doubt(set_nodes(model, kind, found)))
   end function is_certain
 
   !> Chains of the edges of a segment set, in any order and walked either way.
@@ -189,9 +182,8 @@ contains
     type(boundary_t), intent(in) :: outside
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
-    type(boundary_t) :: chosen
     logical, allocatable :: is_chosen(:)
-    integer :: i, node, n, edge, crossing
+    integer :: i, edge, crossing
 
     allocate (is_chosen(outside%n_edge), source=.false.)
     do i = 1, size(set%nodes, 2)
@@ -205,17 +197,7 @@ contains
       end if
       is_chosen(edge) = .true.
     end do
-    allocate (chosen%start(size(outside%start)))
-    n = 0
-    do node = 1, size(outside%start) - 1
-      chosen%start(node) = n + 1
-      n = n + count(is_chosen(outside%start(node):outside%start(node + 1) - 1))
-    end do
-    chosen%start(size(outside%start)) = n + 1
-    chosen%n_edge = n
-    chosen%elements = pack(outside%elements, is_chosen)
-    chosen%nodes = reshape(pack(outside%nodes, spread(is_chosen, 1, 2)), [2, n])
-    call boundary_surface(chosen, surface, crossing)
+    call boundary_surface(outside, is_chosen, surface, crossing)
     if (crossing > 0) call reject_field(deck, place, 'is a set whose edges touch each other at ' &
       //'node '//to_text(model%mesh%node_id(crossing))//'; give the surface as a node set')
   end subroutine surface_of_segments
@@ -253,7 +235,7 @@ contains
     end do
     call find_boundary(element_nodes, spread(.true., 1, size(elements)), &
       spread(.true., 1, size(nodes)), boundary)
-    call boundary_surface(boundary, surface, crossing)
+    call boundary_surface(boundary, spread(.true., 1, boundary%n_edge), surface, crossing)
     if (crossing > 0) then
       call reject_field(deck, place, 'has a boundary that touches itself at node ' &
         //to_text(model%mesh%node_id(nodes(crossing)))//'; give the surface as a node set')
@@ -297,5 +279,80 @@ contains
         //to_text(model%mesh%node_id(trouble(2))))
     end select
   end subroutine surface_of_nodes
+
+  !> Check one interface. With a birth time after zero bodies may be anywhere before it; between
+  !> open chains penetrations are taken as they are, however deep.
+  subroutine check_overlap(deck, entry, sides, model)
+    type(deck_t), intent(inout) :: deck
+    type(contact_cards_t), intent(in) :: entry
+    type(surface_t), intent(in) :: sides(2)
+    type(model_t), intent(in) :: model
+    type(body_view_t) :: views(2)
+    type(overlap_t) :: found(2)
+    integer :: k, n_side, pair(2)
+    logical :: crosses
+
+    if (min(sides(1)%n_segment, sides(2)%n_segment) == 0) return
+    crosses = .false.
+    n_side = merge(1, 2, entry%contact%is_self)
+    do k = 1, n_side
+      call view_body(model, sides(k), sides(3 - k), views(k))
+      call find_crossing(model, sides(k), views(k), pair)
+      if (pair(1) == 0) cycle
+      crosses = .true.
+      call reject_field(deck, place_of(entry%cards(1), side_fields(k)), 'is a surface that ' &
+        //'crosses itself: the segment between '//ends_text(model, sides(k), pair(1)) &
+        //' crosses the one between '//ends_text(model, sides(k), pair(2)))
+    end do
+    if (crosses .or. entry%contact%birth > 0.0_wp) return
+    if (.not. (has_closed_chain(sides(1)) .or. has_closed_chain(sides(2)))) return
+    do k = 1, n_side
+      call find_overlap(model, sides(k), sides(k), views(k), .true., found(k))
+      if (found(k)%segment > 0) call reject_field(deck, place_of(entry%cards(1), side_fields(k)), &
+        'is a surface that overlaps itself: '//depth_text(model, sides(k), found(k)))
+    end do
+    if (n_side == 1) return
+    ! Either side in the bodies of the other: the deeper one by the depth allowed is told.
+    do k = 1, 2
+      call find_overlap(model, sides(k), sides(3 - k), views(3 - k), .false., found(k))
+    end do
+    if (all(found%segment == 0)) return
+    k = 1
+    if (found(2)%depth*found(1)%allowed > found(1)%depth*found(2)%allowed &
+      .or. found(1)%segment == 0) k = 2
+    call reject_field(deck, place_of(entry%cards(1), 'SURFB'), 'overlaps the slave surface at ' &
+      //'the start: '//depth_text(model, sides(3 - k), found(k)))
+  end subroutine check_overlap
+
+  !> Which place lies how deep, behind what, and how deep it may.
+  function depth_text(model, other, found) result(text)
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: other
+    type(overlap_t), intent(in) :: found
+    character(:), allocatable :: text
+
+    text = 'node '//to_text(model%mesh%node_id(found%nodes(1)))
+    if (found%nodes(1) /= found%nodes(2)) text = 'a place between nodes ' &
+      //to_text(model%mesh%node_id(found%nodes(1)))//' and ' &
+      //to_text(model%mesh%node_id(found%nodes(2)))
+    text = text//' lies '//to_text(found%depth)//in_units(model%controls%units, 'L') &
+      //' deep behind the segment between ' &
+      //ends_text(model, other, found%segment)//'; contact takes up less than ' &
+      //to_text(found%allowed)//in_units(model%controls%units, 'L') &
+      //' there, half of the element behind it'
+  end function depth_text
+
+  !> `nodes a and b`, the ends of a segment.
+  function ends_text(model, surface, segment) result(text)
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: segment
+    character(:), allocatable :: text
+
+    associate (ends => surface%nodes(surface%segments(:, segment)))
+      text = 'nodes '//to_text(model%mesh%node_id(ends(1)))//' and ' &
+        //to_text(model%mesh%node_id(ends(2)))
+    end associate
+  end function ends_text
 
 end module deck_contact_sides_m

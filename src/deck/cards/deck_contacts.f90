@@ -1,31 +1,27 @@
 ! SPDX-License-Identifier: MIT
-!> Interfaces and transducers of a deck: their cards, then their surfaces. Surfaces that can not be
-!> right as the bodies stand at time zero are refused: one that crosses or overlaps itself, and
-!> bodies that overlap deeper than contact between whole outlines takes up.
+!> Interfaces and transducers of a deck: their cards, then their surfaces; and what interfaces do
+!> not go with: the implicit method, elements that leave the mesh, and what implicit penalties do
+!> not have.
 module deck_contacts_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, breaks, tie_none
-  use controls_m, only : controls_t
-  use surfaces_m, only : surface_t, has_closed_chain
+  use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, is_tied, breaks, tie_none, &
+    penalty_implicit, penalty_share
+  use surfaces_m, only : surface_t
   use model_m, only : model_t
   use boundary_m, only : find_boundary
-  use deck_lines_m, only : deck_t, place_t, blocks_of, line_warning
+  use deck_lines_m, only : deck_t, place_t, blocks_of, line_error, line_warning
   use deck_fields_m, only : card_t
-  use deck_cards_m, only : reject_field
+  use deck_cards_m, only : reject_field, warn_of_field
   use deck_choose_type_m, only : choose_type
-  use deck_contact_m, only : contact_cards_t, transducer, side_fields, read_contact
-  use deck_contact_rules_m, only : check_implicit_method, check_implicit_penalties, &
-    check_eroding_contacts
-  use deck_contact_sides_m, only : outline_t, find_side, mark_set, mark_surface, find_surface
+  use deck_contact_m, only : contact_cards_t, transducer, read_contact
+  use deck_contact_sides_m, only : outline_t, find_side, set_nodes, mark_surface, find_surface, &
+    check_overlap
   use deck_control_m, only : control_cards, warn_of_explicit
-  use deck_friction_m, only : default_friction_t, take_default_friction, warn_of_unused
+  use deck_friction_m, only : default_friction_t, take_rule, warn_of_unused
   use deck_loads_m, only : settle_pressures
   use deck_overrides_m, only : check_words
-  use units_m, only : in_units
-  use element_finder_m, only : body_view_t, view_body
-  use initial_overlap_m, only : overlap_t, find_crossing, find_overlap
-  use deck_values_m, only : integer_of, real_of, place_of, refuse_again
+  use deck_values_m, only : integer_of, real_of, has_field, place_of, refuse_again
   implicit none
   private
   public :: read_contacts
@@ -41,11 +37,9 @@ contains
     type(outline_t), intent(inout) :: body                !! gets the outer edges
     type(model_t), intent(inout) :: model
     type(contact_cards_t), allocatable :: contacts(:), transducers(:)
-    type(default_friction_t) :: default
     integer :: i
 
-    call read_default(deck, model%controls, default)
-    call read_all(deck, kinds, default, model, contacts, transducers)
+    call read_all(deck, kinds, model, contacts, transducers)
     if (model%controls%implicit%is_on) then
       do i = 1, size(contacts)
         call check_implicit_method(deck, contacts(i))
@@ -63,41 +57,41 @@ contains
       if (model%erodes) call check_eroding_contacts(deck, contacts, model)
     end if
     call take_transducers(deck, transducers, body, model)
-    if (body%is_sound .and. model%is_round) call mark_round_contacts(model)
+    if (body%is_sound .and. model%is_round) then
+      model%contacts%is_round = .true.
+      do i = 1, size(model%contacts)
+        associate (slave => model%contacts(i)%slave, master => model%contacts(i)%master, &
+          radii => model%mesh%coordinates(1, :))
+          slave%is_on_axis = .not. radii(slave%nodes) > 0.0_wp
+          master%is_on_axis = .not. radii(master%nodes) > 0.0_wp
+        end associate
+      end do
+    end if
     call check_implicit_penalties(deck, contacts, model, body%is_sound)
   end subroutine read_contacts
 
-  !> *CONTROL_CONTACT.
-  subroutine read_default(deck, controls, default)
-    type(deck_t), intent(inout) :: deck
-    type(controls_t), intent(inout) :: controls
-    type(default_friction_t), intent(out) :: default
-    type(card_t) :: cards(6)
-    integer, allocatable :: blocks(:)
-    integer :: i
-
-    blocks = blocks_of(deck, 'CONTROL_CONTACT')
-    do i = 1, size(blocks)
-      call control_cards(deck, blocks(i), cards)
-      controls%penalty_scale = real_of(cards(1), 'SLSFAC')
-      controls%contact_step = integer_of(cards(2), 'ECDT')
-      if (controls%implicit%is_on) call warn_of_explicit(deck, cards(2), 'ECDT')
-      call take_default_friction(cards(3), default)
-    end do
-  end subroutine read_default
-
-  !> The cards, each number that of one thing.
-  subroutine read_all(deck, kinds, default, model, contacts, transducers)
+  !> The cards, those of *CONTROL_CONTACT first; each number is that of one thing.
+  subroutine read_all(deck, kinds, model, contacts, transducers)
     type(deck_t), intent(inout) :: deck
     type(contact_kind_t), intent(in) :: kinds(:)
-    type(default_friction_t), intent(inout) :: default
-    type(model_t), intent(in) :: model
+    type(model_t), intent(inout) :: model
     type(contact_cards_t), allocatable, intent(out) :: contacts(:), transducers(:)
     type(contact_cards_t) :: entry
+    type(default_friction_t) :: default
+    type(card_t) :: cards(6)
     integer, allocatable :: blocks(:), ids(:)
     logical, allocatable :: measures(:)
     integer :: i, n
 
+    blocks = blocks_of(deck, 'CONTROL_CONTACT')
+    do i = 1, size(blocks)
+      call control_cards(deck, blocks(i), cards)
+      model%controls%penalty_scale = real_of(cards(1), 'SLSFAC')
+      model%controls%contact_step = integer_of(cards(2), 'ECDT')
+      if (model%controls%implicit%is_on) call warn_of_explicit(deck, cards(2), 'ECDT')
+      call take_rule(cards(3), cards(3), ['SFRIC', 'DFRIC', 'EDC  ', 'VFC  '], default%rule, &
+        default%place)
+    end do
     blocks = blocks_of(deck, 'CONTACT_')
     measures = deck%blocks(blocks)%name == transducer
     allocate (contacts(count(.not. measures)), transducers(count(measures)))
@@ -135,7 +129,7 @@ contains
     do i = 1, size(contacts)
       do k = 1, 2
         call find_side(deck, contacts(i), k, kind, found)
-        call mark_set(model, kind, found, among)
+        among(set_nodes(model, kind, found)) = .true.
       end do
     end do
     do i = 1, size(model%conditions%pressures)
@@ -207,109 +201,23 @@ contains
     type(surface_t), intent(in) :: sides(2)
     type(model_t), intent(in) :: model
     logical, allocatable :: on_slave(:)
+    integer, allocatable :: shared(:)
     character(:), allocatable :: names
     integer :: i, n
 
     if (size(sides(1)%nodes) == 0 .or. size(sides(2)%nodes) == 0) return
     allocate (on_slave(model%mesh%n_node), source=.false.)
     on_slave(sides(1)%nodes) = .true.
-    n = 0
+    shared = pack(sides(2)%nodes, on_slave(sides(2)%nodes))
+    n = size(shared)
     names = ''
-    do i = 1, size(sides(2)%nodes)
-      if (.not. on_slave(sides(2)%nodes(i))) cycle
-      n = n + 1
-      if (n <= 5) names = names//' '//to_text(model%mesh%node_id(sides(2)%nodes(i)))
+    do i = 1, min(n, 5)
+      names = names//' '//to_text(model%mesh%node_id(shared(i)))
     end do
     if (n > 5) names = names//' and '//to_text(n - 5)//' more'
     if (n > 0) call reject_field(deck, place_of(entry%cards(1), 'SURFB'), &
       'shares nodes with the slave surface:'//names)
   end subroutine check_common_nodes
-
-  !> Check one interface. With a birth time after zero bodies may be anywhere before it; between
-  !> open chains penetrations are taken as they are, however deep.
-  subroutine check_overlap(deck, entry, sides, model)
-    type(deck_t), intent(inout) :: deck
-    type(contact_cards_t), intent(in) :: entry
-    type(surface_t), intent(in) :: sides(2)
-    type(model_t), intent(in) :: model
-    type(body_view_t) :: views(2)
-    type(overlap_t) :: found
-    integer :: k, n_side, pair(2)
-    logical :: crosses
-
-    if (min(sides(1)%n_segment, sides(2)%n_segment) == 0) return
-    crosses = .false.
-    n_side = merge(1, 2, entry%contact%is_self)
-    do k = 1, n_side
-      call view_body(model, sides(k), sides(3 - k), views(k))
-      call find_crossing(model, sides(k), views(k), pair)
-      if (pair(1) == 0) cycle
-      crosses = .true.
-      call reject_field(deck, place_of(entry%cards(1), side_fields(k)), 'is a surface that ' &
-        //'crosses itself: the segment between '//ends_text(model, sides(k), pair(1)) &
-        //' crosses the one between '//ends_text(model, sides(k), pair(2)))
-    end do
-    if (crosses .or. entry%contact%birth > 0.0_wp) return
-    if (.not. (has_closed_chain(sides(1)) .or. has_closed_chain(sides(2)))) return
-    do k = 1, n_side
-      call find_overlap(model, sides(k), sides(k), views(k), .true., found)
-      if (found%segment > 0) call reject_field(deck, place_of(entry%cards(1), side_fields(k)), &
-        'is a surface that overlaps itself: '//depth_text(model, sides(k), found))
-    end do
-    if (n_side == 2) call check_between(deck, entry, sides, views, model)
-  end subroutine check_overlap
-
-  !> Either side in the bodies of the other: the deeper one by the depth allowed is told.
-  subroutine check_between(deck, entry, sides, views, model)
-    type(deck_t), intent(inout) :: deck
-    type(contact_cards_t), intent(in) :: entry
-    type(surface_t), intent(in) :: sides(2)
-    type(body_view_t), intent(in) :: views(2)
-    type(model_t), intent(in) :: model
-    type(overlap_t) :: found(2)
-    integer :: k
-
-    do k = 1, 2
-      call find_overlap(model, sides(k), sides(3 - k), views(3 - k), .false., found(k))
-    end do
-    if (all(found%segment == 0)) return
-    k = 1
-    if (found(2)%depth*found(1)%allowed > found(1)%depth*found(2)%allowed &
-      .or. found(1)%segment == 0) k = 2
-    call reject_field(deck, place_of(entry%cards(1), 'SURFB'), 'overlaps the slave surface at ' &
-      //'the start: '//depth_text(model, sides(3 - k), found(k)))
-  end subroutine check_between
-
-  !> Which place lies how deep, behind what, and how deep it may.
-  function depth_text(model, other, found) result(text)
-    type(model_t), intent(in) :: model
-    type(surface_t), intent(in) :: other
-    type(overlap_t), intent(in) :: found
-    character(:), allocatable :: text
-
-    text = 'node '//to_text(model%mesh%node_id(found%nodes(1)))
-    if (found%nodes(1) /= found%nodes(2)) text = 'a place between nodes ' &
-      //to_text(model%mesh%node_id(found%nodes(1)))//' and ' &
-      //to_text(model%mesh%node_id(found%nodes(2)))
-    text = text//' lies '//to_text(found%depth)//in_units(model%controls%units, 'L') &
-      //' deep behind the segment between ' &
-      //ends_text(model, other, found%segment)//'; contact takes up less than ' &
-      //to_text(found%allowed)//in_units(model%controls%units, 'L') &
-      //' there, half of the element behind it'
-  end function depth_text
-
-  !> `nodes a and b`, the ends of a segment.
-  function ends_text(model, surface, segment) result(text)
-    type(model_t), intent(in) :: model
-    type(surface_t), intent(in) :: surface
-    integer, intent(in) :: segment
-    character(:), allocatable :: text
-
-    associate (ends => surface%nodes(surface%segments(:, segment)))
-      text = 'nodes '//to_text(model%mesh%node_id(ends(1)))//' and ' &
-        //to_text(model%mesh%node_id(ends(2)))
-    end associate
-  end function ends_text
 
   !> Of each transducer the nodes that interfaces have: no others carry contact forces.
   subroutine take_transducers(deck, entries, body, model)
@@ -343,19 +251,201 @@ contains
     end do
   end subroutine take_transducers
 
-  !> Contacts of an axisymmetric deck know it, and which of their nodes are on the axis.
-  pure subroutine mark_round_contacts(model)
-    type(model_t), intent(inout) :: model
-    integer :: i
+  !> What the implicit method asks of an interface: automatic and implicit penalties are made for
+  !> explicit steps.
+  subroutine check_implicit_method(deck, entry)
+    type(deck_t), intent(inout) :: deck
+    type(contact_cards_t), intent(in) :: entry
+    character(*), parameter :: no_effect = 'has no effect with the implicit method'
+    character(:), allocatable :: reason
 
-    model%contacts%is_round = .true.
-    do i = 1, size(model%contacts)
-      associate (slave => model%contacts(i)%slave, master => model%contacts(i)%master, &
-        radii => model%mesh%coordinates(1, :))
-        slave%is_on_axis = .not. radii(slave%nodes) > 0.0_wp
-        master%is_on_axis = .not. radii(master%nodes) > 0.0_wp
+    if (entry%contact%damping > 0.0_wp) call line_warning(deck, &
+      deck%blocks(entry%block)%keyword, 'implicit contact damping', &
+      'contact damping (VDC) '//no_effect)
+    if (entry%contact%search_interval > 0) call warn_of_field(deck, place_of(entry%cards(merge(1, &
+      2, has_field(entry%cards(1), 'FREQ'))), 'FREQ'), no_effect)
+    select case (entry%contact%penalty_unit)
+    case (penalty_share)
+      reason = 'asks for a share of the largest stable penalty of an explicit step'
+    case (penalty_implicit)
+      reason = 'asks for the implicit springs of explicit steps'
+    case default
+      return
+    end select
+    call reject_field(deck, place_of(entry%cards(2), 'PUNIT'), reason//', which the implicit ' &
+      //'method does not have (0, 1 or 2)')
+  end subroutine check_implicit_method
+
+  !> Ties and initial overlaps do not follow surfaces that change.
+  subroutine check_eroding_contacts(deck, contacts, model)
+    type(deck_t), intent(inout) :: deck
+    type(contact_cards_t), intent(in) :: contacts(:)
+    type(model_t), intent(in) :: model
+    logical :: may_go(size(model%materials))
+    integer :: i, m
+
+    do m = 1, size(model%materials)
+      may_go(m) = allocated(model%materials(m)%erosion)
+    end do
+    do i = 1, size(contacts)
+      associate (contact => contacts(i)%contact)
+        if (.not. (is_tied(contact) .or. allocated(contact%interference))) cycle
+        if (.not. (touches(contact%slave%segment_element) &
+          .or. touches(contact%master%segment_element))) cycle
+        call line_error(deck, deck%blocks(contacts(i)%block)%keyword, trim(merge( &
+          'ties                  ', 'has an overlap (LCINT)', is_tied(contact)))//' on elements ' &
+          //'that may leave the mesh, which this version does not have')
       end associate
     end do
-  end subroutine mark_round_contacts
+
+  contains
+
+    !> Whether some of the elements may leave.
+    pure function touches(elements)
+      integer, intent(in) :: elements(:)
+      logical :: touches
+
+      touches = any(may_go(model%parts(model%mesh%element_part(elements))%material))
+    end function touches
+
+  end subroutine check_eroding_contacts
+
+  !> What implicit penalties (PUNIT 4) do not have: refused by name.
+  subroutine check_implicit_penalties(deck, contacts, model, sound)
+    type(deck_t), intent(inout) :: deck
+    type(contact_cards_t), intent(in) :: contacts(:)
+    type(model_t), intent(in) :: model
+    logical, intent(in) :: sound !! the interfaces have their surfaces
+    integer :: i
+
+    if (.not. any(contacts%contact%penalty_unit == penalty_implicit)) return
+    do i = 1, size(contacts)
+      associate (entry => contacts(i), contact => contacts(i)%contact)
+        if (contact%penalty_unit /= penalty_implicit) cycle
+        if (contact%is_self) call refuse(deck, entry, 'do not act between a surface and itself')
+        if (is_tied(contact)) call refuse(deck, entry, 'only push: a tie (TIE) has other springs')
+        if (contact%damping > 0.0_wp) call refuse(deck, entry, 'have no damping of their own (VDC)')
+        if (allocated(contact%interference)) call refuse(deck, entry, &
+          'have no initial overlap that grows (LCINT)')
+        if (model%erodes) call refuse(deck, entry, 'do not act where elements may leave the mesh')
+      end associate
+    end do
+    if (sound) call check_shared_nodes(deck, contacts, model)
+    if (sound) call check_shared_bodies(deck, contacts, model)
+  end subroutine check_implicit_penalties
+
+  !> One error for each interface, rigid wall, set of nodes that move alike and skew support that
+  !> has nodes of such an interface too.
+  subroutine check_shared_nodes(deck, contacts, model)
+    type(deck_t), intent(inout) :: deck
+    type(contact_cards_t), intent(in) :: contacts(:)
+    type(model_t), intent(in) :: model
+    integer, parameter :: most = 4 !! owners of a node that are known
+    integer, allocatable :: owners(:, :), told(:), nodes(:), others(:)
+    character(:), allocatable :: name
+    integer :: i, k, n, free, n_contact, n_wall
+
+    n_contact = size(contacts)
+    n_wall = 0
+    if (allocated(model%walls)) n_wall = size(model%walls)
+    n = n_contact + n_wall + 1
+    if (allocated(model%conditions%common_motions)) n = n + size(model%conditions%common_motions)
+    allocate (owners(most, model%mesh%n_node), source=0)
+    do i = 1, n
+      call know_owner(i, nodes, name)
+      do k = 1, size(nodes)
+        free = findloc(owners(:, nodes(k)), 0, 1)
+        if (free > 0) owners(free, nodes(k)) = i
+      end do
+    end do
+    do i = 1, size(contacts)
+      if (contacts(i)%contact%penalty_unit /= penalty_implicit) cycle
+      told = [0, i]
+      call know_owner(i, nodes, name)
+      do k = 0, most*size(nodes) - 1
+        associate (node => nodes(1 + k/most), owner => owners(1 + modulo(k, most), &
+          nodes(1 + k/most)))
+          if (any(told == owner)) cycle
+          told = [told, owner]
+          call know_owner(owner, others, name)
+          call refuse(deck, contacts(i), 'share no nodes with others: node ' &
+            //to_text(model%mesh%node_id(node))//' belongs to '//name//' too')
+        end associate
+      end do
+    end do
+
+  contains
+
+    !> Nodes and name of an owner: interfaces come first, then walls, sets of nodes that move alike,
+    !> supports.
+    subroutine know_owner(owner, nodes, name)
+      integer, intent(in) :: owner
+      integer, allocatable, intent(out) :: nodes(:)
+      character(:), allocatable, intent(out) :: name
+
+      allocate (nodes(0))
+      if (owner <= n_contact) then
+        nodes = [contacts(owner)%contact%slave%nodes, contacts(owner)%contact%master%nodes]
+        name = 'interface '//to_text(contacts(owner)%contact%id)
+      else if (owner <= n_contact + n_wall) then
+        nodes = model%walls(owner - n_contact)%nodes
+        name = 'rigid wall '//to_text(model%walls(owner - n_contact)%id)
+      else if (owner < n) then
+        nodes = model%conditions%common_motions(owner - n_contact - n_wall)%nodes
+        name = 'a set of nodes that move alike'
+      else
+        if (allocated(model%conditions%skew_supports)) nodes = model%conditions%skew_supports%node
+        name = 'a support along neither x nor y'
+      end if
+    end subroutine know_owner
+
+  end subroutine check_shared_nodes
+
+  !> One error for each rigid body, free to move, that another such interface presses too: the
+  !> pressures of both would depend on each other.
+  subroutine check_shared_bodies(deck, contacts, model)
+    type(deck_t), intent(inout) :: deck
+    type(contact_cards_t), intent(in) :: contacts(:)
+    type(model_t), intent(in) :: model
+    integer, allocatable :: body_of(:), n_press(:), last(:)
+    integer :: i, k, pass
+
+    allocate (body_of(model%mesh%n_node), n_press(0:size(model%rigids)), last(0:size(model%rigids)))
+    body_of = 0
+    n_press = 0
+    do k = 1, size(model%rigids)
+      if (.not. all(model%rigids(k)%is_fixed)) body_of(model%rigids(k)%nodes) = k
+    end do
+    do pass = 1, 2
+      last = 0
+      do i = 1, size(contacts)
+        if (contacts(i)%contact%penalty_unit /= penalty_implicit) cycle
+        last(0) = i
+        associate (nodes => [contacts(i)%contact%slave%nodes, contacts(i)%contact%master%nodes])
+          do k = 1, size(nodes)
+            associate (body => body_of(nodes(k)))
+              if (last(body) == i) cycle
+              last(body) = i
+              if (pass == 1) n_press(body) = n_press(body) + 1
+              if (pass == 2 .and. n_press(body) > 1) call refuse(deck, contacts(i), &
+                'share no rigid body that may move: part ' &
+                //to_text(model%parts(model%rigids(body)%part)%id) &
+                //' is pressed by another interface of PUNIT 4 too')
+            end associate
+          end do
+        end associate
+      end do
+    end do
+  end subroutine check_shared_bodies
+
+  !> An error of an interface with implicit penalties.
+  subroutine refuse(deck, entry, message)
+    type(deck_t), intent(inout) :: deck
+    type(contact_cards_t), intent(in) :: entry
+    character(*), intent(in) :: message
+
+    call reject_field(deck, place_of(entry%cards(2), 'PUNIT'), 'asks for implicit springs, which ' &
+      //'in this version '//message)
+  end subroutine refuse
 
 end module deck_contacts_m

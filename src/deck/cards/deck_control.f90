@@ -1,29 +1,31 @@
 ! SPDX-License-Identifier: MIT
 !> *TITLE, *CONTROL_ cards but those of the implicit method and of contact, and the *DATABASE_ cards
-!> that say how often files are written.
+!> that say how often files are written; *TERMINATION_.
 module deck_control_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use text_m, only : upper_case
   use units_m, only : units_t, find_unit, set_force
-  use controls_m, only : controls_t, interval_t, is_asked, length_by_side, length_by_diagonal
+  use contacts_m, only : n_told
+  use controls_m, only : controls_t, interval_t, is_asked, length_by_side, length_by_diagonal, &
+    end_condition_t, end_node_place, end_node_touch, end_body_place, end_body_way, end_contact
   use curves_m, only : curve_t
   use parts_m, only : hourglass_t
   use model_m, only : model_t
-  use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning, given_by, shown_text, &
-    block_of_line
-  use deck_fields_m, only : card_t, field_text
-  use deck_card_specs_m, only : field_number
-  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_text, row_comes, check_rest, &
-    report_field, warn_of_field
-  use deck_ids_m, only : a_curve
-  use deck_values_m, only : integer_of, real_of, place_of, is_bad, find_id
+  use deck_lines_m, only : deck_t, blocks_of, count_rows, line_error, line_warning, given_by, &
+    shown_text, block_of_line
+  use deck_fields_m, only : field_number, card_t, field_text
+  use deck_cards_m, only : cursor_t, open_cursor, next_card, next_text, next_of, row_comes, &
+    check_rest, report_field, warn_of_field
+  use deck_ids_m, only : a_node, a_curve
+  use deck_supports_m, only : find_body
+  use deck_values_m, only : integer_of, real_of, place_of, is_blank, has_field, find_id
   use history_tables_m, only : history_tables, n_table, table_of_keyword, table_nodout, &
     table_elout, table_nodfor, table_secforc
   use deck_part_m, only : hourglass_form, hourglass_coefficient
   implicit none
   private
-  public :: control_cards, warn_of_explicit, read_controls, read_outputs, read_relaxation
+  public :: control_cards, warn_of_explicit, read_controls, read_outputs, read_relaxation, read_ends
 
   !> Files of the output plan: states, and histories by their `table_` constants.
   integer, parameter :: output_plot = 0
@@ -72,10 +74,19 @@ contains
     logical, intent(out) :: erodes              !! ERODE of *CONTROL_TIMESTEP
     integer, intent(out) :: step_line           !! its card, 0 = none
     type(card_t) :: cards(6), step
+    type(cursor_t) :: cursor
+    character(:), allocatable :: text
     integer, allocatable :: blocks(:)
     integer :: i
 
-    call read_title(deck, model%controls%title)
+    model%controls%title = ''
+    blocks = blocks_of(deck, 'TITLE')
+    if (size(blocks) > 0) then
+      ! The last one given.
+      call open_cursor(deck, blocks(size(blocks)), cursor)
+      if (row_comes(deck, cursor)) call next_text(deck, cursor, text)
+      if (allocated(text)) model%controls%title = trim(adjustl(shown_text(text)))
+    end if
     blocks = blocks_of(deck, 'CONTROL_')
     do i = 1, size(blocks)
       associate (name => deck%blocks(blocks(i))%name)
@@ -108,23 +119,6 @@ contains
     erodes = integer_of(step, 'ERODE') == 1
     call check_step(deck, step, model)
   end subroutine read_controls
-
-  !> The title of the deck, the last one given.
-  subroutine read_title(deck, title)
-    type(deck_t), intent(inout) :: deck
-    character(:), allocatable, intent(out) :: title
-    type(cursor_t) :: cursor
-    integer, allocatable :: blocks(:)
-    logical :: found
-
-    title = ''
-    blocks = blocks_of(deck, 'TITLE')
-    if (size(blocks) == 0) return
-    call open_cursor(deck, blocks(size(blocks)), cursor)
-    call row_comes(deck, cursor, found)
-    call next_text(deck, cursor, title)
-    title = trim(adjustl(shown_text(title)))
-  end subroutine read_title
 
   !> *CONTROL_TERMINATION.
   subroutine take_termination(deck, card, controls)
@@ -290,9 +284,9 @@ contains
         case ('DATABASE_BINARY_D3PLOT')
           plans(output_plot) = card
         case ('DATABASE_BINARY_D3DUMP')
-          call take_cycles(deck, card, output%dump_cycles)
+          output%dump_cycles = integer_of(card, 'CYCL')
         case ('DATABASE_BINARY_RUNRSF')
-          call take_cycles(deck, card, output%running_cycles)
+          output%running_cycles = integer_of(card, 'CYCL')
         case default
           plans(table_of_keyword(name)) = card
         end select
@@ -337,35 +331,111 @@ contains
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line, table
     type(interval_t), intent(in) :: interval
-    character(:), allocatable :: needed
+    integer, parameter :: tables(4) = [table_nodout, table_elout, table_nodfor, table_secforc]
+    character(26), parameter :: needed(4) = [character(26) :: 'DATABASE_HISTORY_NODE', &
+      'DATABASE_HISTORY_SHELL', 'DATABASE_NODAL_FORCE_GROUP', 'DATABASE_CROSS_SECTION_SET']
+    integer :: k
 
-    select case (table)
-    case (table_nodout)
-      needed = 'DATABASE_HISTORY_NODE'
-    case (table_elout)
-      needed = 'DATABASE_HISTORY_SHELL'
-    case (table_nodfor)
-      needed = 'DATABASE_NODAL_FORCE_GROUP'
-    case (table_secforc)
-      needed = 'DATABASE_CROSS_SECTION_SET'
-    case default
-      return
-    end select
-    if (size(blocks_of(deck, needed)) > 0 .or. deck%incomplete) return
-    if (is_asked(interval)) call line_warning(deck, line, 'empty '//history_tables(table)%name, &
-      'asks for a history and the deck has no *'//needed//': no file is written')
+    k = findloc(tables, table, 1)
+    if (k == 0 .or. deck%incomplete) return
+    if (is_asked(interval) .and. size(blocks_of(deck, trim(needed(k)))) == 0) call &
+      line_warning(deck, line, 'empty '//history_tables(table)%name, 'asks for a history and the ' &
+      //'deck has no *'//trim(needed(k))//': no file is written')
   end subroutine warn_of_empty
 
-  !> Cycles between two restart files.
-  subroutine take_cycles(deck, card, cycles)
+  !> *TERMINATION_: nodes, rigid bodies and interfaces that end a run. Rigid bodies and interfaces
+  !> of the model are known.
+  subroutine read_ends(deck, model, sound)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(inout) :: model
+    logical, intent(in) :: sound !! the interfaces have their surfaces
+    type(end_condition_t), allocatable :: ends(:)
+    type(end_condition_t) :: ending
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    integer :: n
+
+    allocate (ends(count_rows(deck, 'TERMINATION_')))
+    if (size(ends) == 0) return
+    n = 0
+    do while (next_of(deck, 'TERMINATION_', cursor, card))
+      ending = end_condition_t()
+      if (has_field(card, 'CID')) then
+        call take_contact(deck, card, model, ending)
+      else if (has_field(card, 'NID')) then
+        call take_bounds(deck, card, end_node_place, end_node_touch, ending)
+        ending%id = integer_of(card, 'NID')
+        call find_id(deck, a_node, card, 'NID', ending%where)
+        if (ending%kind == end_node_touch .and. ending%where > 0 .and. sound) then
+          if (.not. is_in_contact(model, ending%where)) call report_field(deck, card, 'NID', &
+            'is no node of an interface')
+        end if
+      else
+        call take_bounds(deck, card, end_body_place, end_body_way, ending)
+        ending%id = integer_of(card, 'PID')
+        call find_body(deck, card, model, '', ending%where)
+      end if
+      n = n + 1
+      ends(n) = ending
+    end do
+    model%controls%ends = ends(:n)
+  end subroutine read_ends
+
+  !> *TERMINATION_CONTACT.
+  subroutine take_contact(deck, card, model, ending)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
-    integer, intent(out) :: cycles
+    type(model_t), intent(in) :: model
+    type(end_condition_t), intent(out) :: ending
 
-    cycles = 0
-    if (.not. is_bad(card, 'CYCL')) cycles = nint(real_of(card, 'CYCL'))
-    if (abs(real_of(card, 'CYCL') - cycles) > 0.0_wp) call report_field(deck, card, 'CYCL', &
-      'is not a whole number of cycles')
-  end subroutine take_cycles
+    ending = end_condition_t(kind=end_contact, id=integer_of(card, 'CID'), &
+      direction=integer_of(card, 'DOF'), start=real_of(card, 'ACTIM'), &
+      duration=real_of(card, 'DUR'), threshold=real_of(card, 'THRES'))
+    if (any(card%bad)) return
+    ending%where = findloc(model%contacts(:n_told(model%contacts))%id, ending%id, 1)
+    if (ending%where == 0) then
+      if (.not. deck%incomplete) call report_field(deck, card, 'CID', &
+        'is no interface of this deck')
+    else if (model%contacts(ending%where)%is_self) then
+      call report_field(deck, card, 'CID', 'is an interface of a surface with itself, whose ' &
+        //'forces cancel')
+    end if
+  end subroutine take_contact
+
+  !> Bounds of a node or a rigid body. A bound that is blank, of bodies also 0, does not count.
+  subroutine take_bounds(deck, card, along, other, ending)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    integer, intent(in) :: along, other      !! kind of STOP 1 and 2, of STOP 4
+    type(end_condition_t), intent(inout) :: ending
+    logical :: is_open(2)
+
+    ending%kind = merge(other, along, integer_of(card, 'STOP') == 4)
+    if (ending%kind == along) ending%direction = integer_of(card, 'STOP')
+    if (ending%kind == end_node_touch .or. any(card%bad)) return
+    is_open = [is_blank(card, 'MAXC'), is_blank(card, 'MINC')]
+    if (along == end_body_place) is_open = is_open .or. [abs(real_of(card, 'MAXC')), &
+      abs(real_of(card, 'MINC'))] <= 0.0_wp
+    if (ending%kind == end_body_way) is_open(2) = .true.
+    if (all(is_open)) call report_field(deck, card, 'MAXC', 'is no bound, nor is MINC: ' &
+      //'nothing would end the run')
+    if (.not. is_open(1)) ending%most = real_of(card, 'MAXC')
+    if (.not. is_open(2)) ending%least = real_of(card, 'MINC')
+    if (ending%least >= ending%most) call report_field(deck, card, 'MINC', 'is not below MAXC')
+  end subroutine take_bounds
+
+  !> Whether some interface has the node.
+  pure function is_in_contact(model, node) result(yes)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: node
+    logical :: yes
+    integer :: i
+
+    yes = .false.
+    do i = 1, size(model%contacts)
+      yes = yes .or. any(model%contacts(i)%slave%nodes == node) &
+        .or. any(model%contacts(i)%master%nodes == node)
+    end do
+  end function is_in_contact
 
 end module deck_control_m

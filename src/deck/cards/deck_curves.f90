@@ -7,9 +7,9 @@ module deck_curves_m
   use model_m, only : model_t
   use deck_ids_m, only : a_curve, a_table, a_system, index_of
   use deck_lines_m, only : deck_t, blocks_of, line_error
-  use deck_fields_m, only : card_t
-  use deck_cards_m, only : cursor_t, first_card, next_row, report_field, find_field, &
-    next_card, check_rest
+  use deck_fields_m, only : field_number, card_t
+  use deck_cards_m, only : cursor_t, first_card, next_row, report_field, next_card, &
+    check_rest
   use deck_values_m, only : integer_of, real_of, reals_of, define, map_defined
   implicit none
   private
@@ -24,13 +24,16 @@ module deck_curves_m
 
 contains
 
-  !> All curves and tables.
+  !> All curves and tables: points, then scale factors and offsets applied, x = SFA*(x + OFFA).
   subroutine read_curves(deck, model, tables)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
     type(table_t), allocatable, intent(out) :: tables(:)
     type(curve_t), allocatable :: curves(:)
-    type(curve_t) :: curve
+    type(cursor_t) :: cursor
+    type(card_t) :: head
+    real(wp), allocatable :: points(:, :)
+    real(wp) :: scale(2)
     integer, allocatable :: blocks(:)
     integer :: of_block(deck%n_block), i, n
 
@@ -38,39 +41,25 @@ contains
     allocate (curves(size(blocks)))
     of_block = 0
     do i = 1, size(blocks)
-      call read_curve(deck, blocks(i), curve, n)
+      call first_card(deck, blocks(i), cursor, head)
+      call define(deck, a_curve, head, n)
       of_block(blocks(i)) = n
-      if (n > 0) curves(n) = curve
+      scale = reals_of(head, 'SFA', 'SFO')
+      scale(1) = abs(scale(1)) ! a negative one has been refused
+      call read_rows(deck, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
+        'is not beyond the point before it: abscissas must increase', cursor, points)
+      if (size(points, 2) == 0) call line_error(deck, head%line, 'the curve has no points')
+      if (size(points, 2) == 0) points = reshape([0.0_wp, 0.0_wp], [2, 1])
+      if (n == 0) cycle
+      curves(n)%phase = integer_of(head, 'SIDR')
+      curves(n)%id = integer_of(head, 'LCID')
+      curves(n)%abscissa = points(1, :)
+      curves(n)%ordinate = points(2, :)
     end do
     model%curves = curves(:deck%maps(a_curve)%n)
     call map_defined(deck, a_curve, 'LCID')
     call read_tables(deck, of_block, tables)
   end subroutine read_curves
-
-  !> *DEFINE_CURVE: points, then scale factors and offsets applied, x = SFA*(x + OFFA).
-  subroutine read_curve(deck, i_block, curve, n)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    type(curve_t), intent(out) :: curve
-    integer, intent(out) :: n             !! its index, 0 where it was refused
-    type(cursor_t) :: cursor
-    type(card_t) :: head
-    real(wp), allocatable :: points(:, :)
-    real(wp) :: scale(2)
-
-    call first_card(deck, i_block, cursor, head)
-    call define(deck, a_curve, head, n)
-    scale = reals_of(head, 'SFA', 'SFO')
-    scale(1) = abs(scale(1)) ! a negative one has been refused
-    curve%phase = integer_of(head, 'SIDR')
-    call read_rows(deck, ['A1', 'O1'], scale, reals_of(head, 'OFFA', 'OFFO'), &
-      'is not beyond the point before it: abscissas must increase', cursor, points)
-    if (size(points, 2) == 0) call line_error(deck, head%line, 'the curve has no points')
-    if (size(points, 2) == 0) points = reshape([0.0_wp, 0.0_wp], [2, 1])
-    curve%id = integer_of(head, 'LCID')
-    curve%abscissa = points(1, :)
-    curve%ordinate = points(2, :)
-  end subroutine read_curve
 
   !> *DEFINE_TABLE: a number, and a value for each of the curves that come next.
   subroutine read_tables(deck, of_block, tables)
@@ -81,7 +70,7 @@ contains
     type(card_t) :: head
     real(wp), allocatable :: values(:, :)
     integer, allocatable :: blocks(:)
-    integer :: i, n
+    integer :: i, k, m, n
 
     blocks = blocks_of(deck, 'DEFINE_TABLE')
     allocate (tables(size(blocks)))
@@ -95,34 +84,26 @@ contains
       tables(n)%values = values(1, :)
       if (index_of(deck%maps(a_curve), integer_of(head, 'TBID')) > 0) call &
         report_field(deck, head, 'TBID', 'is the number of a curve too')
-      call find_table_curves(deck, of_block, blocks(i), head, tables(n))
+      ! Its curves are those of the blocks that come next.
+      associate (table => tables(n), n_value => size(tables(n)%values))
+        m = 0
+        do k = blocks(i) + 1, deck%n_block
+          if (m == n_value) exit
+          if (deck%blocks(k)%dropped) cycle
+          if (deck%blocks(k)%name /= 'DEFINE_CURVE') exit
+          m = m + 1
+          if (of_block(k) == 0) exit ! its own mistake has been reported
+          if (m == 1) table%curves(1) = of_block(k)
+          if (m == n_value) table%curves(2) = of_block(k)
+        end do
+        if (m < n_value .and. .not. deck%maps(a_curve)%lost) call line_error(deck, head%line, &
+          'table '//to_text(integer_of(head, 'TBID'))//' has '//to_text(n_value)//' values but ' &
+          //to_text(m)//' *DEFINE_CURVE right behind it: it takes one for each value, in that ' &
+          //'order')
+      end associate
     end do
     call map_defined(deck, a_table, 'TBID')
   end subroutine read_tables
-
-  !> The curves of a table: those of the blocks that come next, one for each value.
-  subroutine find_table_curves(deck, of_block, i_block, head, table)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: of_block(:), i_block
-    type(card_t), intent(in) :: head
-    type(table_t), intent(inout) :: table
-    integer :: i, n
-
-    n = 0
-    do i = i_block + 1, deck%n_block
-      if (n == size(table%values)) exit
-      if (deck%blocks(i)%dropped) cycle
-      if (deck%blocks(i)%name /= 'DEFINE_CURVE') exit
-      n = n + 1
-      if (of_block(i) == 0) return ! its own mistake has been reported
-      if (n == 1) table%curves(1) = of_block(i)
-      if (n == size(table%values)) table%curves(2) = of_block(i)
-    end do
-    if (n < size(table%values) .and. .not. deck%maps(a_curve)%lost) call line_error(deck, &
-      head%line, 'table '//to_text(integer_of(head, 'TBID'))//' has ' &
-      //to_text(size(table%values))//' values but '//to_text(n) &
-      //' *DEFINE_CURVE right behind it: it takes one for each value, in that order')
-  end subroutine find_table_curves
 
   !> The rows behind it, scale*(value + offset) in each column; the first column must increase.
   subroutine read_rows(deck, names, scale, offset, not_beyond, cursor, rows)
@@ -134,17 +115,15 @@ contains
     real(wp), allocatable, intent(out) :: rows(:, :)   !! (n_column, n_row)
     type(card_t) :: card
     real(wp) :: last
-    logical :: found, is_sound
+    logical :: is_sound
     integer :: i, n, columns(size(names))
 
-    columns = [(find_field(cursor, 2, names(i)), i=1, size(names))]
+    columns = [(field_number(cursor%specs(2)%names, names(i)), i=1, size(names))]
     allocate (rows(size(scale), max(cursor%last - cursor%line + 1, 0)))
     n = 0
     last = -huge(1.0_wp)
     is_sound = .true.
-    do
-      call next_row(deck, cursor, 2, card, found)
-      if (.not. found) exit
+    do while (next_row(deck, cursor, 2, card))
       n = n + 1
       rows(:, n) = scale*(card%r(columns) + offset)
       is_sound = is_sound .and. .not. card%bad(columns(1))

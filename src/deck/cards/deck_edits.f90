@@ -5,11 +5,10 @@ module deck_edits_m
   use text_m, only : read_real, number_good
   use kinds_m, only : wp
   use deck_lines_m, only : deck_t, made_line_t, replace_line, flag_blank
-  use deck_card_specs_m, only : card_spec_t
   use deck_cards_m, only : cursor_t, open_cursor
-  use deck_fields_m, only : card_t, cut_card, field_text
-  use deck_parameters_m, only : look_up
-  use deck_source_m, only : add_line, open_block
+  use deck_fields_m, only : card_spec_t, card_t, cut_card, field_text
+  use deck_parameter_table_m, only : look_up
+  use deck_reader_m, only : add_line, open_block
   implicit none
   private
   public :: given_number, set_field, rewrite_block, append_block
@@ -121,7 +120,6 @@ contains
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
     integer, value :: number !! of the line in the file that messages name; a copy, as lists grow
-    type(made_line_t), allocatable :: longer(:)
     integer :: n
 
     if (.not. allocated(deck%made)) then
@@ -130,12 +128,8 @@ contains
     end if
     call add_line(deck, 1, 0, number, flag_blank)
     n = deck%n_line - deck%n_written
-    if (n > size(deck%made)) then
-      allocate (longer(2*size(deck%made)))
-      longer(:n - 1) = deck%made
-      call move_alloc(longer, deck%made)
-    end if
-    deck%made(n)%block = i_block
+    if (n > size(deck%made)) deck%made = [deck%made, deck%made]
+    deck%made(n) = made_line_t(block=i_block)
   end subroutine append_line
 
   !> Give a block another keyword and other lines.

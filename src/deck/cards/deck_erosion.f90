@@ -2,11 +2,10 @@
 !> *MAT_ADD_EROSION, and which materials may leave the mesh.
 module deck_erosion_m
   use kinds_m, only : wp
-  use erosion_m, only : erosion_t
   use log_m, only : to_text
   use model_m, only : model_t
-  use parts_m, only : material_t, law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
-    law_hot_johnson_cook, law_null, hourglass_assumed
+  use parts_m, only : law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
+    law_hot_johnson_cook, law_null, hourglass_assumed, erosion_t
   use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, first_card, next_card, check_rest, report_field
@@ -30,14 +29,26 @@ contains
     type(model_t), intent(inout) :: model
     integer, allocatable :: blocks(:)
     integer :: i, m
+    logical :: by_law
 
     blocks = blocks_of(deck, 'MAT_ADD_EROSION')
     do i = 1, size(blocks)
       call read_erosion(deck, blocks(i), model)
     end do
     do m = 1, size(model%materials)
-      call add_criteria_of_law(by_step, model%materials(m))
-      model%erodes = model%erodes .or. allocated(model%materials(m)%erosion)
+      associate (material => model%materials(m))
+        ! What the law itself and ERODE ask for.
+        by_law = material%failure_strain < huge(1.0_wp)
+        if (allocated(material%flow)) by_law = by_law .or. (material%flow%has_damage &
+          .and. .not. material%flow%keeps_broken)
+        if ((by_law .or. by_step) .and. any(can_go == material%law) &
+          .and. .not. material%is_rigid) then
+          if (.not. allocated(material%erosion)) allocate (material%erosion)
+          material%erosion%by_law = by_law
+          material%erosion%by_step = by_step
+        end if
+        model%erodes = model%erodes .or. allocated(material%erosion)
+      end associate
     end do
     if (.not. model%controls%implicit%is_on) then
       call check_parts(deck, by_step, step_line, model)
@@ -68,7 +79,16 @@ contains
     call check_rest(deck, cursor)
     call take_criteria(deck, cards(1), cards(2), erosion)
     erosion%least_step = max(0.0_wp, real_of(cards(5), 'DTMIN'))
-    call take_counts(deck, cards(1), erosion)
+    associate (card => cards(1), n_most => max(1, erosion%n_given))
+      if (.not. is_bad(card, 'NUMFIP')) erosion%n_point = max(1, nint(real_of(card, 'NUMFIP')))
+      erosion%n_criteria = max(1, nint(real_of(card, 'NCS')))
+      if (erosion%n_given == 0 .and. .not. erosion%least_step > 0.0_wp) then
+        call report_field(deck, card, 'MID', 'gets no criterion: all of them are blank or EXCL')
+      else if (real_of(card, 'NCS') > n_most) then
+        call report_field(deck, card, 'NCS', 'is not a number of criteria that may hold at ' &
+          //'once (1 to '//to_text(n_most)//', which are given)')
+      end if
+    end associate
     call find_id(deck, a_material, cards(1), 'MID', m)
     if (m == 0) return
     associate (material => model%materials(m))
@@ -155,39 +175,6 @@ contains
     end subroutine take
 
   end subroutine take_criteria
-
-  !> NUMFIP and NCS.
-  subroutine take_counts(deck, card, erosion)
-    type(deck_t), intent(inout) :: deck
-    type(card_t), intent(inout) :: card
-    type(erosion_t), intent(inout) :: erosion
-
-    if (.not. is_bad(card, 'NUMFIP')) erosion%n_point = max(1, nint(real_of(card, 'NUMFIP')))
-    if (erosion%n_given == 0 .and. .not. erosion%least_step > 0.0_wp) then
-      call report_field(deck, card, 'MID', 'gets no criterion: all of them are blank or EXCL')
-    else if (real_of(card, 'NCS') > max(1, erosion%n_given)) then
-      call report_field(deck, card, 'NCS', 'is not a number of criteria that may hold at ' &
-        //'once (1 to '//to_text(max(1, erosion%n_given))//', which are given)')
-    else
-      erosion%n_criteria = max(1, nint(real_of(card, 'NCS')))
-    end if
-  end subroutine take_counts
-
-  !> What the law itself and ERODE ask for.
-  pure subroutine add_criteria_of_law(by_step, material)
-    logical, intent(in) :: by_step
-    type(material_t), intent(inout) :: material
-    logical :: by_law
-
-    if (material%is_rigid .or. .not. any(can_go == material%law)) return
-    by_law = material%failure_strain < huge(1.0_wp)
-    if (allocated(material%flow)) by_law = by_law .or. (material%flow%has_damage &
-      .and. .not. material%flow%keeps_broken)
-    if (.not. (by_law .or. by_step)) return
-    if (.not. allocated(material%erosion)) allocate (material%erosion)
-    material%erosion%by_law = by_law
-    material%erosion%by_step = by_step
-  end subroutine add_criteria_of_law
 
   !> Hourglass works of each element are those of the viscous and the stiffness form; ERODE passes
   !> over rubber and foam, which can not lose their pressure.

@@ -10,7 +10,7 @@ module deck_friction_m
   use deck_values_m, only : real_of, is_bad, place_of
   implicit none
   private
-  public :: take_friction, take_stock_friction, take_penalty_friction, take_default_friction, &
+  public :: take_friction, take_stock_friction, take_penalty_friction, take_rule, &
     warn_of_unused, warn_of_rule, default_friction_t
 
   !> Friction of *CONTROL_CONTACT.
@@ -29,7 +29,7 @@ contains
     type(place_t), intent(out) :: place       !! of the coefficient
 
     call take_rule(cards(1), cards(3), ['FS', 'FD', 'DC', 'VC'], rule, place)
-    if (.not. abs(rule%sliding) > 0.0_wp) rule%sliding = rule%at_rest
+    if (.not. abs(real_of(cards(1), 'FD')) > 0.0_wp) rule%sliding = rule%at_rest
     rule%stiffness = real_of(cards(3), 'TFAC')
   end subroutine take_friction
 
@@ -41,17 +41,17 @@ contains
     type(place_t), intent(out) :: place       !! of the coefficient
 
     call take_rule(cards(1), cards(3), ['FS', 'FD', 'DC', 'VC'], rule, place)
-    if (max(abs(rule%at_rest), abs(rule%sliding), abs(rule%decay), abs(rule%most)) > 0.0_wp) then
-      call keep_zero(rule)
-      return
-    end if
+    if (max(abs(rule%at_rest), abs(rule%sliding), abs(rule%decay), abs(rule%most)) > 0.0_wp) return
     default%acts = .true.
     if (.not. max(default%rule%at_rest, default%rule%sliding) > 0.0_wp) return
     rule = default%rule
     place = default%place
   end subroutine take_stock_friction
 
-  !> Coefficients at rest and sliding, decay, largest stress; and where the coefficient stands.
+  !> Coefficients at rest and sliding, decay, largest stress; and where the coefficient stands. A
+  !> coefficient in fast sliding of 0 where there is one at rest: stock cards mean it. As our own
+  !> card means FS by it, the smallest number stands for it: a deck that is written with our card
+  !> then gives the same bits.
   subroutine take_rule(card, last, names, rule, place)
     type(card_t), intent(in) :: card, last     !! of the first three, of the stress
     character(*), intent(in) :: names(4)
@@ -60,21 +60,13 @@ contains
 
     rule%at_rest = real_of(card, trim(names(1)))
     rule%sliding = real_of(card, trim(names(2)))
+    if (rule%at_rest > 0.0_wp .and. .not. abs(rule%sliding) > 0.0_wp) rule%sliding = smallest_value
     rule%decay = real_of(card, trim(names(3)))
     rule%most = real_of(last, trim(names(4)))
     place = place_of(card, trim(names(1)))
     if (rule%sliding > 0.0_wp .and. .not. rule%at_rest > 0.0_wp) &
       place = place_of(card, trim(names(2)))
   end subroutine take_rule
-
-  !> A coefficient in fast sliding of 0 where there is one at rest: stock cards mean it. As our own
-  !> card means FS by it, the smallest number stands for it: a deck that is written with our card
-  !> then gives the same bits.
-  pure subroutine keep_zero(rule)
-    type(friction_rule_t), intent(inout) :: rule
-
-    if (rule%at_rest > 0.0_wp .and. .not. abs(rule%sliding) > 0.0_wp) rule%sliding = smallest_value
-  end subroutine keep_zero
 
   !> *CONTACT_2D_PENALTY_FRICTION: FRIC alone, or FRIC_L and FRIC_H as FS and FD. The card has no
   !> decay between two that differ.
@@ -100,15 +92,6 @@ contains
     end do
     rule%sliding = rule%at_rest
   end subroutine take_penalty_friction
-
-  !> SFRIC, DFRIC, EDC and VFC of *CONTROL_CONTACT.
-  subroutine take_default_friction(card, default)
-    type(card_t), intent(in) :: card
-    type(default_friction_t), intent(inout) :: default
-
-    call take_rule(card, card, ['SFRIC', 'DFRIC', 'EDC  ', 'VFC  '], default%rule, default%place)
-    call keep_zero(default%rule)
-  end subroutine take_default_friction
 
   !> Friction of *CONTROL_CONTACT that no interface takes.
   subroutine warn_of_unused(deck, default)

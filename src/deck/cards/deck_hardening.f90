@@ -8,17 +8,16 @@ module deck_hardening_m
   use log_m, only : to_text
   use model_m, only : model_t
   use parts_m, only : material_t, law_piecewise, law_johnson_cook, law_hot_johnson_cook, &
-    spall_pressure, spall_stress
+    spall_pressure, spall_stress, johnson_cook_t
   use deck_lines_m, only : deck_t, line_error, line_warning
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, next_card, report_field, warn_of_field
   use deck_curves_m, only : table_t
   use deck_ids_m, only : a_curve, a_table, index_of
   use deck_values_m, only : integer_of, real_of, is_bad, find_id, reals_of, place_of
-  use johnson_cook_m, only : johnson_cook_t
   implicit none
   private
-  public :: take_piecewise, take_hydro, check_tangent_modulus, plastic_modulus, take_johnson_cook, &
+  public :: take_piecewise, take_hydro, take_tangent_modulus, take_johnson_cook, &
     take_simplified_johnson_cook, take_failure, take_cutoff
 
   !> A strain at failure from here on means never.
@@ -36,28 +35,26 @@ contains
     type(table_t), intent(in) :: tables(:)
     type(model_t), intent(inout) :: model     !! its curves get to know what they are of
     type(material_t), intent(inout) :: material
-    type(card_t) :: rate, strains(1), stresses(1)
-    logical :: has_points
+    type(card_t) :: rate, points(2)
 
     material%law = law_piecewise
     call take_failure(card, 'FAIL', material)
     call next_card(deck, cursor, 2, rate)
     if (real_of(rate, 'C') > 0.0_wp .and. .not. real_of(rate, 'P') > 0.0_wp) call &
       report_field(deck, rate, 'P', 'is not an exponent (more than 0) for the C beside it')
-    call next_card(deck, cursor, 3, strains(1))
-    call next_card(deck, cursor, 4, stresses(1))
-    has_points = any(abs([strains(1)%r(:8), stresses(1)%r(:8)]) > 0.0_wp)
+    call next_card(deck, cursor, 3, points(1))
+    call next_card(deck, cursor, 4, points(2))
     if (integer_of(rate, 'LCSS') > 0) then
-      if (has_points) call line_warning(deck, strains(1)%line, 'points', &
+      if (has_points(points)) call line_warning(deck, points(1)%line, 'points', &
         'EPS and ES have no effect where LCSS gives the yield stress')
       call take_curves(deck, card, rate, tables, model, material)
-    else if (has_points) then
-      call take_points(deck, card, strains, stresses, material)
+    else if (has_points(points)) then
+      call take_points(deck, card, points, material)
     else if (.not. is_bad(rate, 'LCSS')) then
       if (.not. real_of(card, 'SIGY') > 0.0_wp) call report_field(deck, card, 'SIGY', &
         'is not a yield stress (more than 0), and there is neither LCSS nor EPS and ES')
-      call check_tangent_modulus(deck, card)
-      if (.not. any(card%bad)) call take_line(deck, card, plastic_modulus(card), material)
+      call take_tangent_modulus(deck, card, material%hardening)
+      if (.not. any(card%bad)) call take_line(deck, card, material%hardening, material)
     end if
     call take_rates(deck, rate, model, material)
   end subroutine take_piecewise
@@ -68,7 +65,7 @@ contains
     type(cursor_t), intent(inout) :: cursor
     type(card_t), intent(inout) :: card
     type(material_t), intent(inout) :: material
-    type(card_t) :: strains(2), stresses(2)
+    type(card_t) :: points(4)
     integer :: k
 
     material%law = law_piecewise
@@ -76,14 +73,11 @@ contains
     material%needs_eos = .true.
     call take_failure(card, 'FS', material)
     call take_cutoff(card, material)
-    do k = 1, 2
-      call next_card(deck, cursor, 1 + k, strains(k))
+    do k = 1, 4
+      call next_card(deck, cursor, 1 + k, points(k))
     end do
-    do k = 1, 2
-      call next_card(deck, cursor, 3 + k, stresses(k))
-    end do
-    if (any(abs([(strains(k)%r(:8), stresses(k)%r(:8), k=1, 2)]) > 0.0_wp)) then
-      call take_points(deck, card, strains, stresses, material)
+    if (has_points(points)) then
+      call take_points(deck, card, points, material)
     else if (.not. real_of(card, 'SIGY') > 0.0_wp) then
       call report_field(deck, card, 'SIGY', &
         'is not a yield stress (more than 0), and there are no EPS and ES')
@@ -92,31 +86,24 @@ contains
     end if
   end subroutine take_hydro
 
-  !> ETAN beside E.
-  subroutine check_tangent_modulus(deck, card)
+  !> Slope of the yield stress over plastic strain from that of the uniaxial curve, ETAN beside E.
+  subroutine take_tangent_modulus(deck, card, modulus)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
-
-    if (real_of(card, 'ETAN') >= real_of(card, 'E') .and. .not. is_bad(card, 'E')) call &
-      report_field(deck, card, 'ETAN', 'is not below E: the tangent modulus of the uniaxial ' &
-      //'stress-strain curve must be')
-  end subroutine check_tangent_modulus
-
-  !> Slope of the yield stress over plastic strain from that of the uniaxial curve, ETAN beside E.
-  function plastic_modulus(card) result(modulus)
-    type(card_t), intent(in) :: card
-    real(wp) :: modulus
+    real(wp), intent(inout) :: modulus   !! as it was where the card has mistakes
 
     associate (young => real_of(card, 'E'), tangent => real_of(card, 'ETAN'))
-      modulus = young*tangent/(young - tangent)
+      if (tangent >= young .and. .not. is_bad(card, 'E')) call report_field(deck, card, 'ETAN', &
+        'is not below E: the tangent modulus of the uniaxial stress-strain curve must be')
+      if (.not. any(card%bad)) modulus = young*tangent/(young - tangent)
     end associate
-  end function plastic_modulus
+  end subroutine take_tangent_modulus
 
   !> SIGY, and a slope behind it.
   subroutine take_line(deck, card, modulus, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
-    real(wp), intent(in) :: modulus
+    real(wp), value :: modulus
     type(material_t), intent(inout) :: material
     type(curve_t) :: points(1)
 
@@ -127,32 +114,42 @@ contains
     call settle_hardening(deck, card, material)
   end subroutine take_line
 
+  !> Whether cards of EPS and ES have any.
+  pure function has_points(cards) result(yes)
+    type(card_t), intent(in) :: cards(:)
+    logical :: yes
+    integer :: i
+
+    yes = any([(any(abs(cards(i)%r(:8)) > 0.0_wp), i=1, size(cards))])
+  end function has_points
+
   !> EPS and ES, eight on a card: as many points as there are up to the last that is not zero.
-  subroutine take_points(deck, card, strains, stresses, material)
+  subroutine take_points(deck, card, cards, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
-    type(card_t), intent(inout) :: strains(:), stresses(:)
+    type(card_t), intent(inout) :: cards(:)   !! of EPS, then as many of ES
     type(material_t), intent(inout) :: material
     type(curve_t) :: points(1)
     real(wp), allocatable :: strain(:), stress(:)
-    integer :: i, k, n
+    integer :: i, k, n, half
 
-    strain = [(strains(i)%r(:8), i=1, size(strains))]
-    stress = [(stresses(i)%r(:8), i=1, size(stresses))]
+    half = size(cards)/2
+    strain = [(cards(i)%r(:8), i=1, half)]
+    stress = [(cards(half + i)%r(:8), i=1, half)]
     n = max(1, findloc(abs(strain) > 0.0_wp .or. abs(stress) > 0.0_wp, .true., dim=1, back=.true.))
-    if (n < 2) call report_field(deck, strains(1), 'EPS2', &
+    if (n < 2) call report_field(deck, cards(1), 'EPS2', &
       'ends the points, of which there must be two or more')
-    if (abs(strain(1)) > 0.0_wp) call report_field(deck, strains(1), 'EPS1', &
+    if (abs(strain(1)) > 0.0_wp) call report_field(deck, cards(1), 'EPS1', &
       'is not 0: the first point is the initial yield stress')
     do k = 1, n
       i = (k + 7)/8
-      if (.not. stress(k) > 0.0_wp) call report_field(deck, stresses(i), k - 8*(i - 1), &
+      if (.not. stress(k) > 0.0_wp) call report_field(deck, cards(half + i), k - 8*(i - 1), &
         'is not a yield stress (more than 0)')
       if (k == 1) cycle
-      if (strain(k) <= strain(k - 1)) call report_field(deck, strains(i), k - 8*(i - 1), &
+      if (strain(k) <= strain(k - 1)) call report_field(deck, cards(i), k - 8*(i - 1), &
         'is not beyond the point before it: plastic strains must increase')
     end do
-    if (any([(any(strains(i)%bad) .or. any(stresses(i)%bad), i=1, size(strains))])) return
+    if (any([(any(cards(i)%bad), i=1, 2*half)])) return
     points(1)%abscissa = strain(:n)
     points(1)%ordinate = stress(:n)
     material%curve = make_hardening(points, [0.0_wp])
@@ -167,6 +164,7 @@ contains
     type(table_t), intent(in) :: tables(:)
     type(model_t), intent(inout) :: model
     type(material_t), intent(inout) :: material
+    character(:), allocatable :: name
     integer :: i, k, n_before, ends(2)
     real(wp), allocatable :: rates(:)
 
@@ -187,27 +185,20 @@ contains
       //'values, logarithms of strain rates, which this version does not have')
     do i = ends(1), ends(2)
       model%curves(i)%is_of_time = .false.
-      call check_curve(deck, model%curves(i), deck%maps(a_curve)%lines(i))
+      if (deck%maps(a_curve)%lost) cycle
+      associate (curve => model%curves(i), line => deck%maps(a_curve)%lines(i))
+        name = 'curve '//to_text(curve%id) &
+          //' is a yield stress against plastic strain (LCSS) and must '
+        if (abs(curve%abscissa(1)) > 0.0_wp) call line_error(deck, line, name &
+          //'start at plastic strain 0, not '//to_text(curve%abscissa(1)))
+        if (.not. minval(curve%ordinate) > 0.0_wp) call line_error(deck, line, name &
+          //'be above 0 everywhere')
+      end associate
     end do
     if (deck%report%n_error > n_before) return
     material%curve = make_hardening(model%curves(ends(1):ends(2)), rates)
     call settle_hardening(deck, card, material)
   end subroutine take_curves
-
-  !> Whether a curve can be a yield stress.
-  subroutine check_curve(deck, curve, line)
-    type(deck_t), intent(inout) :: deck
-    type(curve_t), intent(in) :: curve
-    integer, intent(in) :: line
-    character(:), allocatable :: name
-
-    name = 'curve '//to_text(curve%id)//' is a yield stress against plastic strain (LCSS) and must '
-    if (deck%maps(a_curve)%lost) return
-    if (abs(curve%abscissa(1)) > 0.0_wp) call line_error(deck, line, name &
-      //'start at plastic strain 0, not '//to_text(curve%abscissa(1)))
-    if (.not. minval(curve%ordinate) > 0.0_wp) call line_error(deck, line, name &
-      //'be above 0 everywhere')
-  end subroutine check_curve
 
   !> What the law starts with, and a fall that it cannot follow.
   subroutine settle_hardening(deck, card, material)
@@ -317,7 +308,15 @@ contains
       call next_card(deck, cursor, 4, damage)
       call take_stress(card, stress, flow)
       call take_heat(deck, stress, heat, material)
-      call take_spall(deck, heat, material)
+      ! PC and what it means, SPALL 1, 2 or 3, which count from 1 as the constants do.
+      call take_cutoff(heat, material)
+      material%spall = spall_pressure
+      if (real_of(heat, 'PC') < 0.0_wp) then
+        material%spall = nint(real_of(heat, 'SPALL'))
+      else if (nint(real_of(heat, 'SPALL')) /= spall_stress) then
+        call warn_of_field(deck, place_of(heat, 'SPALL'), 'has no effect: PC is 0, so that ' &
+          //'nothing breaks by tension')
+      end if
       flow%d = [reals_of(heat, 'D1', 'D4'), real_of(damage, 'D5')]
       ! Tension breaks sooner, whichever sign of pressure and D3 the deck has in mind.
       flow%d(3) = -abs(flow%d(3))
@@ -391,21 +390,5 @@ contains
     material%flow%span = real_of(stress, 'TM') - real_of(stress, 'TR')
     material%flow%heat = 1.0_wp/(material%density*real_of(card, 'CP'))
   end subroutine take_heat
-
-  !> PC and what it means, SPALL 1, 2 or 3, which count from 1 as the constants do.
-  subroutine take_spall(deck, card, material)
-    type(deck_t), intent(inout) :: deck
-    type(card_t), intent(in) :: card
-    type(material_t), intent(inout) :: material
-
-    call take_cutoff(card, material)
-    material%spall = spall_pressure
-    if (real_of(card, 'PC') < 0.0_wp) then
-      material%spall = nint(real_of(card, 'SPALL'))
-    else if (nint(real_of(card, 'SPALL')) /= spall_stress) then
-      call warn_of_field(deck, place_of(card, 'SPALL'), 'has no effect: PC is 0, so that ' &
-        //'nothing breaks by tension')
-    end if
-  end subroutine take_spall
 
 end module deck_hardening_m

@@ -27,7 +27,9 @@ contains
     type(implicit_t), intent(inout) :: implicit
     type(card_t) :: cards(6)
     integer, allocatable :: blocks(:)
+    real(wp), parameter :: round_off = 1.0e-9_wp
     real(wp) :: newmark(2), alpha, radius !! 0 = blank; a radius below 0 is not given
+    real(wp) :: least
     integer :: i, line                    !! of *CONTROL_IMPLICIT_DYNAMICS
 
     newmark = 0.0_wp
@@ -53,14 +55,26 @@ contains
         if (is_blank(cards(1), 'RHO')) call report_field(deck, cards(1), 'RHO', &
           'is not a spectral radius (0 to 1)')
       case ('CONTROL_IMPLICIT_SOLUTION')
-        call take_solution(cards(1), implicit)
+        ! Every iteration forms the tangent anew (full Newton), whatever ILIMIT.
+        implicit%is_linear = integer_of(cards(1), 'NSOLVR') == 1
+        implicit%max_iteration = integer_of(cards(1), 'MAXREF')
+        implicit%step_tolerance = real_of(cards(1), 'DCTOL')
+        implicit%energy_tolerance = real_of(cards(1), 'ECTOL')
+        implicit%residual_tolerance = real_of(cards(1), 'RCTOL')
+        if (implicit%residual_tolerance >= 1.0e10_wp) implicit%residual_tolerance = 0.0_wp
+        implicit%search_tolerance = real_of(cards(1), 'LSTOL')
       case ('CONTROL_IMPLICIT_AUTO')
         call take_automatic(deck, cards(1), implicit)
       end select
     end do
     if (.not. implicit%is_on) return
     call settle_scheme(newmark, -alpha, radius, implicit)
-    if (implicit%is_dynamic) call check_scheme(deck, line, implicit)
+    ! Only Newmark's method with parameters of the deck can be one that is not stable at every step.
+    least = 0.25_wp*(implicit%gamma + 0.5_wp)**2
+    if (implicit%is_dynamic .and. implicit%beta < least*(1.0_wp - round_off)) call line_warning( &
+      deck, line, 'newmark', 'Newmark''s method with GAMMA '//to_text(implicit%gamma) &
+      //' and BETA '//to_text(implicit%beta)//' is stable for small steps only: for all steps ' &
+      //'BETA must be at least (GAMMA + 1/2)^2/4 = '//to_text(least))
   end subroutine read_implicit
 
   !> GAMMA and BETA of *CONTROL_IMPLICIT_DYNAMICS ask for Newmark's method (ALPHA below 0 for HHT);
@@ -82,21 +96,6 @@ contains
         'is not a parameter of Newmark''s method (at most 10)')
     end do
   end subroutine take_newmark
-
-  !> *CONTROL_IMPLICIT_SOLUTION. Every iteration forms the tangent anew (full Newton), whatever
-  !> ILIMIT.
-  subroutine take_solution(card, implicit)
-    type(card_t), intent(in) :: card
-    type(implicit_t), intent(inout) :: implicit
-
-    implicit%is_linear = integer_of(card, 'NSOLVR') == 1
-    implicit%max_iteration = integer_of(card, 'MAXREF')
-    implicit%step_tolerance = real_of(card, 'DCTOL')
-    implicit%energy_tolerance = real_of(card, 'ECTOL')
-    implicit%residual_tolerance = real_of(card, 'RCTOL')
-    if (implicit%residual_tolerance >= 1.0e10_wp) implicit%residual_tolerance = 0.0_wp
-    implicit%search_tolerance = real_of(card, 'LSTOL')
-  end subroutine take_solution
 
   !> *CONTROL_IMPLICIT_AUTO.
   subroutine take_automatic(deck, card, implicit)
@@ -145,26 +144,12 @@ contains
     implicit%beta = 0.25_wp*(1.0_wp - implicit%alpha_m + implicit%alpha_f)**2
   end subroutine settle_scheme
 
-  !> A scheme that is not stable at every step: beta below (gamma + 1/2)^2/4, which only Newmark's
-  !> method with parameters of the deck can have.
-  subroutine check_scheme(deck, line, implicit)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: line       !! of *CONTROL_IMPLICIT_DYNAMICS
-    type(implicit_t), intent(in) :: implicit
-    real(wp), parameter :: round_off = 1.0e-9_wp
-    real(wp) :: least
-
-    least = 0.25_wp*(implicit%gamma + 0.5_wp)**2
-    if (implicit%beta >= least*(1.0_wp - round_off)) return
-    call line_warning(deck, line, 'newmark', 'Newmark''s method with GAMMA ' &
-      //to_text(implicit%gamma)//' and BETA '//to_text(implicit%beta)//' is stable for small ' &
-      //'steps only: for all steps BETA must be at least (GAMMA + 1/2)^2/4 = '//to_text(least))
-  end subroutine check_scheme
-
-  !> What the implicit method asks of the rest of the deck.
+  !> What the implicit method asks of the rest of the deck: no bulk viscosity, and no laws with
+  !> rates, heat, energy or failure, which have no tangent.
   subroutine check_implicit(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(in) :: model
+    character(:), allocatable :: reason
     integer :: i
 
     do i = 1, size(model%parts)
@@ -175,16 +160,6 @@ contains
           //'does not have')
       end associate
     end do
-    call check_implicit_laws(deck, model)
-  end subroutine check_implicit
-
-  !> Laws with rates, heat, energy or failure have no tangent.
-  subroutine check_implicit_laws(deck, model)
-    type(deck_t), intent(inout) :: deck
-    type(model_t), intent(in) :: model
-    character(:), allocatable :: reason
-    integer :: i
-
     do i = 1, size(model%materials)
       associate (material => model%materials(i))
         reason = ''
@@ -216,6 +191,6 @@ contains
         //', which the implicit method does not have')
     end subroutine refuse
 
-  end subroutine check_implicit_laws
+  end subroutine check_implicit
 
 end module deck_implicit_m

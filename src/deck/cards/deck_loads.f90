@@ -1,24 +1,29 @@
 ! SPDX-License-Identifier: MIT
-!> *LOAD_: forces on nodes and rigid bodies, pressures on outer edges, body loads; *ELEMENT_MASS.
+!> *LOAD_: forces on nodes and rigid bodies, pressures on outer edges, body loads; *ELEMENT_MASS;
+!> *DAMPING_GLOBAL, *DAMPING_PART_MASS (with a second card where FLAG asks for it) and
+!> *DAMPING_PART_STIFFNESS.
 module deck_loads_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use boundary_m, only : boundary_t, find_edge
-  use conditions_m, only : nodal_load_t, pressure_load_t, body_load_t, lumped_mass_t
+  use conditions_m, only : nodal_load_t, pressure_load_t, lumped_mass_t, &
+    damping_t, part_damping_t
   use model_m, only : model_t
+  use parts_m, only : gives_pressure
   use rigids_m, only : mark_rigid_nodes
-  use deck_cards_m, only : cursor_t, next_of, rows_of, open_cursor, next_row, check_rest, &
-    report_field, reject_field
+  use deck_cards_m, only : cursor_t, next_of, open_cursor, next_card, next_row, row_comes, &
+    check_rest, report_field, reject_field
   use deck_fields_m, only : card_t
-  use deck_ids_m, only : a_node, a_part, a_curve, a_segment_set, a_system
-  use deck_lines_m, only : deck_t, place_t, blocks_of, line_warning
+  use deck_ids_m, only : a_node, a_part, a_part_set, a_curve, a_segment_set, a_system
+  use deck_lines_m, only : deck_t, place_t, blocks_of, line_text, line_error
   use deck_sets_m, only : check_edge
-  use deck_supports_m, only : card_nodes, mark_axis, mark_massive, across_axis
-  use deck_values_m, only : integer_of, real_of, has_field, find_id
+  use deck_supports_m, only : card_nodes, find_body, mark_axis, mark_massive, warn_of_nodes, &
+    across_axis
+  use deck_values_m, only : integer_of, real_of, reals_of, has_field, find_id
   implicit none
   private
   public :: read_nodal_loads, read_pressures, settle_pressures, read_body_loads, read_masses, &
-    read_rigid_loads, warn_of_bores
+    read_rigid_loads, read_global_damping, read_mass_damping, read_stiffness_damping, warn_of_bores
 
   !> No bore is narrower than this share of the largest radius: its nodes were meant to be on the
   !> axis.
@@ -33,7 +38,7 @@ contains
     type(nodal_load_t), allocatable :: loads(:)
     type(cursor_t) :: cursor
     type(card_t) :: card
-    logical :: found, is_massive(model%mesh%n_node)
+    logical :: is_massive(model%mesh%n_node), is_axis(model%mesh%n_node)
     integer, allocatable :: nodes(:)
     integer :: curve, j, k, n, first_radial
     real(wp) :: axis(2)
@@ -42,10 +47,7 @@ contains
     is_massive = mark_massive(deck, model)
     n = 0
     first_radial = 0
-    call rows_of('LOAD_NODE_', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'LOAD_NODE_', cursor, card))
       if (any(card%bad)) cycle
       if (integer_of(card, 'DOF') == 1 .and. first_radial == 0) first_radial = card%line
       call card_nodes(deck, card, model, nodes)
@@ -65,7 +67,10 @@ contains
       end do
     end do
     model%conditions%nodal_loads = loads(:n)
-    if (model%is_round) call warn_of_axis_loads(deck, first_radial, model)
+    is_axis = mark_axis(model)
+    call warn_of_nodes(deck, first_radial, 'radial load', model, pack([loads(:n)%node], &
+      is_axis(loads(:n)%node) .and. loads(:n)%direction == 1), ' load(s) in r act on nodes on ' &
+      //'the axis (x = 0), which do not move in r: they do nothing; the first is on node ', '')
   end subroutine read_nodal_loads
 
   !> The direction of a load in the axes of the model; 0 for a moment.
@@ -84,42 +89,25 @@ contains
     if (system > 0) axis = deck%axes(:, direction, system)
   end subroutine load_axes
 
-  !> Warn of forces in r on nodes of the axis, at the first card with a force in r.
-  subroutine warn_of_axis_loads(deck, line, model)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: line
-    type(model_t), intent(in) :: model
-    logical :: is_there(model%mesh%n_node), is_lost(size(model%conditions%nodal_loads))
-
-    is_there = mark_axis(model)
-    associate (loads => model%conditions%nodal_loads)
-      is_lost = is_there(loads%node) .and. loads%direction == 1
-      if (any(is_lost)) call line_warning(deck, line, 'radial load', to_text(count(is_lost)) &
-        //' load(s) in r act on nodes on the axis (x = 0), which do not move in r: they do ' &
-        //'nothing; the first is on node ' &
-        //to_text(model%mesh%node_id(loads(findloc(is_lost, .true., dim=1))%node)))
-    end associate
-  end subroutine warn_of_axis_loads
-
   !> Warn of free nodes next to the axis: the hoop stress at the rim of a bore is not that of a body
   !> without one, however narrow it is.
   subroutine warn_of_bores(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(in) :: model
     logical :: is_rim(model%mesh%n_node)
-    integer :: first
+    integer, allocatable :: nodes(:)
+    integer :: i
 
     if (.not. model%is_round .or. model%mesh%n_node == 0) return
     associate (radius => model%mesh%coordinates(1, :), conditions => model%conditions)
       is_rim = radius > 0.0_wp .and. radius < bore_share*maxval(radius) &
         .and. .not. mark_rigid_nodes(model%rigids, model%mesh%n_node)
       is_rim(pack(conditions%fixed_nodes, conditions%fixed_directions == 1)) = .false.
-      if (.not. any(is_rim)) return
-      first = findloc(is_rim, .true., dim=1)
-      call line_warning(deck, deck%maps(a_node)%lines(first), 'bore', to_text(count(is_rim)) &
-        //' node(s) lie next to the axis but not on it, and move in r as the rim of a bore; the ' &
-        //'first is '//to_text(model%mesh%node_id(first))//' at the radius ' &
-        //to_text(radius(first))//'; give them x = 0, or hold them')
+      nodes = pack([(i, i=1, size(is_rim))], is_rim)
+      if (size(nodes) > 0) call warn_of_nodes(deck, deck%maps(a_node)%lines(nodes(1)), 'bore', &
+        model, nodes, ' node(s) lie next to the axis but not on it, and move in r as the rim of ' &
+        //'a bore; the first is ', ' at the radius '//to_text(radius(nodes(1))) &
+        //'; give them x = 0, or hold them')
     end associate
   end subroutine warn_of_bores
 
@@ -129,27 +117,16 @@ contains
     type(model_t), intent(inout) :: model
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer :: part, curve, body, k
+    integer :: curve, body, k
     real(wp) :: along(3)
-    logical :: found
 
-    call rows_of('LOAD_RIGID_BODY', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'LOAD_RIGID_BODY', cursor, card))
       if (any(card%bad)) cycle
-      call find_id(deck, a_part, card, 'PID', part)
+      call find_body(deck, card, model, '; *LOAD_NODE_SET loads nodes', body)
       call find_id(deck, a_curve, card, 'LCID', curve)
       call load_axes(deck, card, along(:2))
       along(3) = merge(1.0_wp, 0.0_wp, integer_of(card, 'DOF') == 7)
-      if (part == 0 .or. curve == 0) cycle
-      if (model%parts(part)%material == 0) cycle
-      body = findloc(model%rigids%part, part, dim=1)
-      if (body == 0) then
-        call report_field(deck, card, 'PID', 'is not a rigid part (*MAT_RIGID); *LOAD_NODE_SET ' &
-          //'loads nodes')
-        cycle
-      end if
+      if (body == 0 .or. curve == 0) cycle
       if (model%is_round .and. any(abs(along([1, 3])) > 0.0_wp)) &
         call report_field(deck, card, 'DOF', across_axis)
       if (.not. allocated(model%conditions%rigid_loads)) allocate (model%conditions%rigid_loads(0))
@@ -171,14 +148,10 @@ contains
     type(card_t) :: card
     integer, allocatable :: edges(:, :)
     integer :: curve, set, k, n
-    logical :: found
 
     allocate (loads(64), all_places(64))
     n = 0
-    call rows_of('LOAD_SEGMENT', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'LOAD_SEGMENT', cursor, card))
       if (has_field(card, 'N1')) call check_edge(deck, card)
       if (any(card%bad)) cycle
       edges = reshape([integer ::], [2, 0])
@@ -239,7 +212,7 @@ contains
     type(model_t), intent(inout) :: model
     type(cursor_t) :: cursor
     type(card_t) :: card
-    type(body_load_t) :: load
+    type(nodal_load_t) :: load
     integer, allocatable :: blocks(:)
     integer :: i
     logical :: found
@@ -248,7 +221,7 @@ contains
     blocks = blocks_of(deck, 'LOAD_BODY_')
     do i = 1, size(blocks)
       call open_cursor(deck, blocks(i), cursor)
-      call next_row(deck, cursor, 1, card, found)
+      found = next_row(deck, cursor, 1, card)
       call check_rest(deck, cursor)
       if (any(card%bad)) cycle
       call find_id(deck, a_curve, card, 'LCID', load%curve)
@@ -267,7 +240,7 @@ contains
     type(lumped_mass_t), allocatable :: masses(:)
     type(cursor_t) :: cursor
     type(card_t) :: card
-    logical :: found, is_massive(model%mesh%n_node)
+    logical :: is_massive(model%mesh%n_node)
     integer, allocatable :: nodes(:)
     integer :: k, n
 
@@ -275,10 +248,7 @@ contains
     is_massive = mark_massive(deck, model)
     allocate (masses(64))
     n = 0
-    call rows_of('ELEMENT_MASS', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'ELEMENT_MASS', cursor, card))
       if (any(card%bad)) cycle
       call card_nodes(deck, card, model, nodes)
       k = findloc(is_massive(nodes), .false., dim=1)
@@ -293,5 +263,146 @@ contains
     end do
     model%conditions%lumped_masses = masses(:n)
   end subroutine read_masses
+
+  !> *DAMPING_GLOBAL.
+  subroutine read_global_damping(deck, model)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(inout) :: model
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    type(damping_t) :: damping
+    integer, allocatable :: blocks(:)
+    integer :: i
+    logical :: found
+
+    blocks = blocks_of(deck, 'DAMPING_GLOBAL')
+    do i = 1, size(blocks)
+      call open_cursor(deck, blocks(i), cursor)
+      found = next_row(deck, cursor, 1, card)
+      call check_rest(deck, cursor)
+      if (any(card%bad)) cycle
+      call refuse_static(deck, model, card%line, '*DAMPING_GLOBAL')
+      if (allocated(model%conditions%damping)) call line_error(deck, card%line, &
+        'is given a second time')
+      damping = damping_t(coefficient=real_of(card, 'VALDMP'))
+      ! All six factors zero mean one everywhere.
+      if (any(abs(reals_of(card, 'STX', 'SRZ')) > 0.0_wp)) damping%factor = &
+        reals_of(card, 'STX', 'STY')
+      if (integer_of(card, 'LCID') > 0) call find_curve(deck, card, model, damping%curve)
+      model%conditions%damping = damping
+    end do
+  end subroutine read_global_damping
+
+  !> *DAMPING_PART_MASS.
+  subroutine read_mass_damping(deck, model)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(inout) :: model
+    type(cursor_t) :: cursor
+    type(card_t) :: card, factors
+    type(part_damping_t) :: damping
+    integer, allocatable :: parts(:)
+    integer :: k
+    logical :: found
+
+    do while (next_of(deck, 'DAMPING_PART_MASS', cursor, card))
+      damping%factor = 1.0_wp
+      if (integer_of(card, 'FLAG') == 1) then
+        call next_card(deck, cursor, 2, factors)
+        damping%factor = reals_of(factors, 'STX', 'STY')
+      else
+        ! A second card of zeros, which common writers put where FLAG is 0 too, is no row: there is
+        ! no part 0.
+        found = row_comes(deck, cursor)
+        if (found) found = verify(line_text(deck, cursor%line), ' 0.,+-eEdD') == 0
+        if (found) cursor%line = cursor%line + 1
+      end if
+      if (any(card%bad)) cycle
+      call refuse_static(deck, model, card%line, '*DAMPING_PART_MASS')
+      call card_parts(deck, card, model, parts)
+      call find_curve(deck, card, model, damping%curve)
+      if (damping%curve == 0) cycle
+      if (.not. allocated(model%conditions%part_damping)) &
+        allocate (model%conditions%part_damping(0))
+      damping%scale = real_of(card, 'SF')
+      do k = 1, size(parts)
+        damping%part = parts(k)
+        model%conditions%part_damping = [model%conditions%part_damping, damping]
+      end do
+    end do
+  end subroutine read_mass_damping
+
+  !> *DAMPING_PART_STIFFNESS.
+  subroutine read_stiffness_damping(deck, model)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(inout) :: model
+    type(cursor_t) :: cursor
+    type(card_t) :: card
+    integer, allocatable :: parts(:)
+    integer :: k
+
+    do while (next_of(deck, 'DAMPING_PART_STIFFNESS', cursor, card))
+      if (any(card%bad)) cycle
+      if (model%controls%implicit%is_on) call line_error(deck, card%line, &
+        '*DAMPING_PART_STIFFNESS is damping that the implicit method does not have')
+      call card_parts(deck, card, model, parts)
+      do k = 1, size(parts)
+        associate (part => model%parts(parts(k)))
+          if (part%material == 0) cycle
+          if (allocated(model%materials(part%material)%eos) .or. &
+            gives_pressure(model%materials(part%material))) call report_field(deck, card, 1, &
+            ': part '//to_text(part%id)//' has an equation of state, or is a rubber or a law ' &
+            //'whose points may fail, for which there is no damping by stiffness')
+          if (abs(part%stiffness_damping) > 0.0_wp) call report_field(deck, card, 1, &
+            ': part '//to_text(part%id)//' is damped by stiffness by another card too')
+          if (model%materials(part%material)%is_rigid) cycle
+          part%stiffness_damping = real_of(card, 'COEF')
+        end associate
+      end do
+    end do
+  end subroutine read_stiffness_damping
+
+  !> The part of a card, or those of its part set; none where the id is wrong.
+  subroutine card_parts(deck, card, model, parts)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    type(model_t), intent(in) :: model
+    integer, allocatable, intent(out) :: parts(:)
+    integer :: found
+
+    allocate (parts(0))
+    if (has_field(card, 'PSID')) then
+      call find_id(deck, a_part_set, card, 'PSID', found)
+      if (found > 0) parts = model%part_sets(found)%parts
+    else
+      call find_id(deck, a_part, card, 'PID', found)
+      if (found > 0) parts = [found]
+    end if
+  end subroutine card_parts
+
+  !> The curve of damping over time, which may not push.
+  subroutine find_curve(deck, card, model, curve)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    type(model_t), intent(in) :: model
+    integer, intent(out) :: curve
+
+    call find_id(deck, a_curve, card, 'LCID', curve)
+    if (curve == 0) return
+    if (minval(model%curves(curve)%ordinate) < 0.0_wp) call report_field(deck, card, 'LCID', &
+      'is a curve with values below 0: forces that push along with the velocity would feed energy')
+  end subroutine find_curve
+
+  !> Damping by mass acts on velocities.
+  subroutine refuse_static(deck, model, line, name)
+    type(deck_t), intent(inout) :: deck
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: line
+    character(*), intent(in) :: name
+
+    associate (implicit => model%controls%implicit)
+      if (implicit%is_on .and. .not. implicit%is_dynamic) call line_error(deck, line, name &
+        //' damps velocities, which statics do not have (IMASS 1 of *CONTROL_IMPLICIT_DYNAMICS)')
+    end associate
+  end subroutine refuse_static
 
 end module deck_loads_m

@@ -5,20 +5,19 @@ module deck_material_m
   use kinds_m, only : wp
   use model_m, only : model_t
   use parts_m, only : material_t, law_elastic, law_plastic, law_null, law_crushable_foam, &
-    law_mooney_rivlin, law_blatz_ko
+    law_mooney_rivlin, law_blatz_ko, mooney_rivlin, blatz_ko, blatz_ko_poisson
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, first_card, next_card, check_rest, report_field
   use deck_curves_m, only : table_t
-  use deck_hardening_m, only : take_piecewise, take_hydro, check_tangent_modulus, plastic_modulus, &
+  use deck_hardening_m, only : take_piecewise, take_hydro, take_tangent_modulus, &
     take_johnson_cook, take_simplified_johnson_cook, take_failure, take_cutoff
   use deck_ids_m, only : a_material, a_curve, an_eos
   use deck_values_m, only : integer_of, real_of, is_bad, has_field, define, map_defined, find_id, &
     reals_of, along_axes
   use eos_m, only : eos_t, eos_by_law, initial_stiffness, initial_pressure, asymptote, &
     eos_gruneisen, eos_linear_polynomial, eos_logarithmic
-  use rubbers_m, only : mooney_rivlin, blatz_ko, blatz_ko_poisson
   implicit none
   private
   public :: read_materials, read_equations, take_equation, settle_pressures
@@ -33,7 +32,7 @@ contains
     type(material_t), allocatable :: materials(:)
     type(material_t) :: material, unset
     type(cursor_t) :: cursor
-    type(card_t) :: card
+    type(card_t) :: card, more
     integer, allocatable :: blocks(:)
     integer :: i, n
 
@@ -48,7 +47,12 @@ contains
       case ('MAT_ELASTIC')
         material%law = law_elastic
       case ('MAT_PLASTIC_KINEMATIC')
-        call take_plastic_kinematic(deck, cursor, card, material)
+        material%law = law_plastic
+        call take_tangent_modulus(deck, card, material%hardening)
+        material%yield = real_of(card, 'SIGY')
+        material%beta = real_of(card, 'BETA')
+        call next_card(deck, cursor, 2, more)
+        call take_failure(more, 'FS', material)
       case ('MAT_PIECEWISE_LINEAR_PLASTICITY')
         call take_piecewise(deck, cursor, card, tables, model, material)
       case ('MAT_NULL')
@@ -103,23 +107,6 @@ contains
     end associate
     material%sound_speed = sqrt((material%bulk + 4.0_wp*material%shear/3.0_wp)/material%density)
   end subroutine take_moduli
-
-  !> *MAT_PLASTIC_KINEMATIC.
-  subroutine take_plastic_kinematic(deck, cursor, card, material)
-    type(deck_t), intent(inout) :: deck
-    type(cursor_t), intent(inout) :: cursor
-    type(card_t), intent(inout) :: card
-    type(material_t), intent(inout) :: material
-    type(card_t) :: rate
-
-    material%law = law_plastic
-    call check_tangent_modulus(deck, card)
-    material%yield = real_of(card, 'SIGY')
-    material%beta = real_of(card, 'BETA')
-    if (.not. any(card%bad)) material%hardening = plastic_modulus(card)
-    call next_card(deck, cursor, 2, rate)
-    call take_failure(rate, 'FS', material)
-  end subroutine take_plastic_kinematic
 
   !> *MAT_CRUSHABLE_FOAM: elastic up to a curve, which must not fall, and to TSC in tension.
   subroutine take_crushable_foam(deck, card, model, material)

@@ -7,9 +7,8 @@ module deck_mesh_m
   use mesh_m, only : mesh_t
   use model_m, only : model_t
   use deck_lines_m, only : deck_t, place_t, count_rows, line_error, line_warning
-  use deck_fields_m, only : card_t
-  use deck_card_specs_m, only : field_number
-  use deck_cards_m, only : cursor_t, next_of, rows_of, report_field, reject_field
+  use deck_fields_m, only : field_number, card_t
+  use deck_cards_m, only : cursor_t, next_of, report_field, reject_field
   use deck_ids_m, only : a_node, an_element, a_part
   use deck_values_m, only : define, map_defined, lose, find_id
   implicit none
@@ -30,7 +29,7 @@ contains
     logical, allocatable, intent(out) :: is_sound(:) !! (n_element) of each whether its edges are
                                                      !! those that were meant
     logical, intent(out) :: sound
-    integer :: n_before, i
+    integer :: n_before
     logical :: has_place
 
     n_before = deck%report%n_error
@@ -38,9 +37,7 @@ contains
     has_place = deck%report%n_error == n_before
     call read_elements(deck, model%mesh)
     allocate (is_sound(model%mesh%n_element))
-    do i = 1, model%mesh%n_element
-      is_sound(i) = all(model%mesh%element_nodes(:, i) > 0)
-    end do
+    if (size(is_sound) > 0) is_sound = all(model%mesh%element_nodes > 0, dim=1)
     if (has_place) call check_shapes(deck, model%mesh, is_sound)
     ! A part or node that was lost with its own mistake is not told again where it is named.
     if (.not. has_place .or. deck%maps(a_node)%lost .or. deck%maps(an_element)%lost) &
@@ -60,15 +57,12 @@ contains
     real(wp), allocatable :: coordinates(:, :)
     integer :: n, x, y, z, code
     real(wp) :: plane
-    logical :: found, is_flat
+    logical :: is_flat
 
     n = count_rows(deck, 'NODE')
     allocate (codes(n), coordinates(2, n))
     is_flat = .true.
-    call rows_of('NODE', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'NODE', cursor, card))
       if (deck%maps(a_node)%n == 0) then
         x = field_number(card%names, 'X')
         y = field_number(card%names, 'Y')
@@ -109,14 +103,10 @@ contains
     type(card_t) :: card
     integer, allocatable :: parts(:), nodes(:, :)
     integer :: n, k, part, first
-    logical :: found
 
     n = count_rows(deck, 'ELEMENT_SHELL')
     allocate (parts(n), nodes(4, n))
-    call rows_of('ELEMENT_SHELL', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'ELEMENT_SHELL', cursor, card))
       if (deck%maps(an_element)%n == 0) then
         part = field_number(card%names, 'PID')
         first = field_number(card%names, 'N1')
@@ -170,6 +160,7 @@ contains
     type(deck_t), intent(inout) :: deck
     type(mesh_t), intent(inout) :: mesh
     logical, intent(inout) :: is_sound(:) !! (n_element) what is refused here is not
+    character(:), allocatable :: mistake
     integer :: i, n_turned, first_turned
     real(wp) :: corners(4), area, tolerance
 
@@ -184,18 +175,21 @@ contains
         area = corners(1) + corners(3)
       end if
       tolerance = 1.0e-10_wp*maxval(abs(corners))
-      is_sound(i) = .false.
-      if (repeated(mesh%element_nodes(:, i))) then
-        call reject_field(deck, place_t(deck%maps(an_element)%lines(i), 1, 'EID'), 'uses a node ' &
-          //'twice (a triangle repeats its third node, and no other)')
-      else if (minval(corners) < -tolerance .and. maxval(corners) > tolerance) then
-        call reject_field(deck, place_t(deck%maps(an_element)%lines(i), 1, 'EID'), &
-          'is not convex: its edges cross or a corner points inwards')
-      else if (.not. abs(area) > 2.0_wp*tolerance) then
-        call reject_field(deck, place_t(deck%maps(an_element)%lines(i), 1, 'EID'), 'has no area')
-      else
-        is_sound(i) = .true.
-        if (area > 0.0_wp) cycle
+      mistake = ''
+      associate (nodes => mesh%element_nodes(:, i))
+        if (any(nodes(1:2) == nodes([2, 3])) .or. nodes(1) == nodes(3) &
+          .or. any(nodes(1:2) == nodes(4))) then
+          mistake = 'uses a node twice (a triangle repeats its third node, and no other)'
+        else if (minval(corners) < -tolerance .and. maxval(corners) > tolerance) then
+          mistake = 'is not convex: its edges cross or a corner points inwards'
+        else if (.not. abs(area) > 2.0_wp*tolerance) then
+          mistake = 'has no area'
+        end if
+      end associate
+      is_sound(i) = len(mistake) == 0
+      if (.not. is_sound(i)) then
+        call reject_field(deck, place_t(deck%maps(an_element)%lines(i), 1, 'EID'), mistake)
+      else if (area <= 0.0_wp) then
         mesh%element_nodes(:, i) = mesh%element_nodes([1, 4, 3, 2], i)
         if (mesh%element_nodes(2, i) == mesh%element_nodes(3, i)) &
           mesh%element_nodes(3:4, i) = mesh%element_nodes(4, i)
@@ -228,14 +222,5 @@ contains
       areas(k) = before(1)*after(2) - before(2)*after(1)
     end do
   end function corner_areas
-
-  !> Whether a node comes twice, other than as the fourth node of a triangle.
-  pure function repeated(nodes) result(twice)
-    integer, intent(in) :: nodes(4)
-    logical :: twice
-
-    twice = nodes(1) == nodes(2) .or. nodes(1) == nodes(3) .or. nodes(2) == nodes(3) &
-      .or. nodes(4) == nodes(1) .or. nodes(4) == nodes(2)
-  end function repeated
 
 end module deck_mesh_m

@@ -8,7 +8,7 @@ module deck_overrides_m
   use deck_fields_m, only : largest_value, smallest_value
   use deck_lines_m, only : deck_t, word_t, line_error, line_warning
   use deck_edits_m, only : given_number, set_field, append_block
-  use deck_parameters_m, only : override_parameter
+  use deck_parameter_table_m, only : parameter_t, add_parameter
   implicit none
   private
   public :: is_override, override_mistake, read_words, edit_controls, edit_contact, find_word, &
@@ -33,9 +33,9 @@ contains
     integer :: dot
 
     upper = upper_case(name)
-    dot = index(name, '.')
-    known = any(contact_names == upper) .or. any(run_names == upper) .or. index(upper, 'P:') == 1
-    if (dot > 1 .and. dot < len(name)) known = known .or. (any(contact_names == upper(:dot - 1)) &
+    dot = index(name//'.', '.')
+    known = any(run_names == upper) .or. index(upper, 'P:') == 1
+    if (dot /= len(name)) known = known .or. (any(contact_names == upper(:dot - 1)) &
       .and. verify(name(dot + 1:), '0123456789') == 0)
   end function is_override
 
@@ -54,6 +54,7 @@ contains
     character(*), intent(in) :: texts(:)
     type(deck_t), intent(inout) :: deck
     type(word_t) :: word
+    type(parameter_t) :: item
     character(:), allocatable :: mistake
     integer :: i
 
@@ -62,7 +63,10 @@ contains
       if (len(mistake) > 0) then
         call line_error(deck, 0, word%phrase//mistake)
       else if (index(word%name, 'P:') == 1) then
-        call override_parameter(deck%parameters, word%name(3:), word%text)
+        ! A value from the command line wins over the deck.
+        item = parameter_t(name=word%name(3:), kind='?', fixed=.true.)
+        item%text = word%text
+        call add_parameter(deck%parameters, item)
       else
         deck%words = [deck%words, word]
       end if
@@ -201,18 +205,12 @@ contains
     character(:), allocatable :: number
     integer, parameter :: high = 90000001
     integer :: i, k
-    logical :: is_used
 
     do k = high, huge(k) - 1
       number = to_text(k)
-      is_used = .false.
-      do i = 1, deck%n_source
-        is_used = is_used .or. index(deck%sources(i)%text, number) > 0
-      end do
-      do i = 1, deck%parameters%n
-        is_used = is_used .or. index(deck%parameters%items(i)%text, number) > 0
-      end do
-      if (.not. is_used) return
+      if (any([(index(deck%sources(i)%text, number) > 0, i=1, deck%n_source)])) cycle
+      if (any([(index(deck%parameters%items(i)%text, number) > 0, i=1, deck%parameters%n)])) cycle
+      return
     end do
   end function unused_number
 

@@ -12,9 +12,9 @@ module deck_part_m
   use deck_ids_m, only : a_part, a_section, a_material, an_hourglass, an_element
   use deck_lines_m, only : deck_t, place_t, blocks_of, count_rows, line_text, line_error, &
     line_warning, flag_blank
-  use deck_fields_m, only : card_t
+  use deck_fields_m, only : field_number, card_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
-    next_of, rows_of, row_comes, report_field, reject_field, find_field
+    next_of, row_comes, report_field, reject_field
   use deck_values_m, only : integer_of, real_of, is_blank, is_bad, define, map_defined, find_id
   use deck_material_m, only : take_equation
   implicit none
@@ -36,7 +36,6 @@ contains
     type(card_t) :: card
     integer, allocatable :: blocks(:), taken(:)
     integer :: i, k, n
-    logical :: found
 
     call read_hourglasses(deck, default, hourglasses)
     taken = spread(-1, 1, size(model%materials))
@@ -49,8 +48,7 @@ contains
         if (cursor%line > cursor%last) exit
         call next_text(deck, cursor, part%title)
         part%title = trim(adjustl(part%title))
-        call next_row(deck, cursor, 2, card, found)
-        if (.not. found) then
+        if (.not. next_row(deck, cursor, 2, card)) then
           call line_error(deck, cursor%line - 1, 'a heading without the card of its part after it')
           exit
         end if
@@ -82,7 +80,7 @@ contains
     character(:), allocatable :: text
     integer :: number, status, width
 
-    width = cursor%specs(2)%widths(find_field(cursor, 2, 'PID'))
+    width = cursor%specs(2)%widths(field_number(cursor%specs(2)%names, 'PID'))
     do while (cursor%line <= cursor%last)
       if (iand(deck%flags(cursor%line), flag_blank) == 0) return
       if (cursor%line < cursor%last) then
@@ -116,7 +114,7 @@ contains
         call skip_title(deck, cursor)
         call next_card(deck, cursor, 1, card)
         call next_card(deck, cursor, 2, thickness)
-        call row_comes(deck, cursor, found)
+        found = row_comes(deck, cursor)
         call check_form(deck, card)
         section%id = integer_of(card, 'SECID')
         section%is_full = integer_of(card, 'NIP') == 4
@@ -136,20 +134,22 @@ contains
   subroutine check_form(deck, card)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
+    character(:), allocatable :: message
 
     select case (integer_of(card, 'ELFORM'))
     case (13, 15)
-      continue
+      return
     case (12)
-      call report_field(deck, card, 'ELFORM', 'is plane stress, which this version does not ' &
-        //'have; 13 (plane strain) and 15 (axisymmetric) are what it has')
+      message = 'is plane stress, which this version does not have; 13 (plane strain) and 15 ' &
+        //'(axisymmetric) are what it has'
     case (14)
-      call report_field(deck, card, 'ELFORM', 'is axisymmetric and area weighted, which this ' &
-        //'version does not have; 15 (axisymmetric, volume weighted) is what it has')
+      message = 'is axisymmetric and area weighted, which this version does not have; 15 ' &
+        //'(axisymmetric, volume weighted) is what it has'
     case default
-      call report_field(deck, card, 'ELFORM', 'is not an element form for the plane; 13 (plane ' &
-        //'strain) and 15 (axisymmetric) are what this version has')
+      message = 'is not an element form for the plane; 13 (plane strain) and 15 (axisymmetric) ' &
+        //'are what this version has'
     end select
+    call report_field(deck, card, 'ELFORM', message)
   end subroutine check_form
 
   !> *HOURGLASS: one card each.
@@ -161,13 +161,9 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     integer :: n
-    logical :: found
 
     allocate (hourglasses(count_rows(deck, 'HOURGLASS')))
-    call rows_of('HOURGLASS', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'HOURGLASS', cursor, card))
       call skip_title(deck, cursor)
       hourglass%id = integer_of(card, 'HGID')
       call hourglass_form(deck, card, 'IHQ', hourglass%form)
@@ -230,6 +226,7 @@ contains
   subroutine settle_form(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
+    character(*), parameter :: forms(2) = ['plane strain (ELFORM 13)', 'axisymmetry (ELFORM 15) ']
     logical :: is_round(size(model%parts)), is_known(size(model%parts))
     integer :: i, first
 
@@ -244,19 +241,10 @@ contains
     do i = 1, size(model%parts)
       if (.not. is_known(i) .or. (is_round(i) .eqv. is_round(first))) cycle
       call reject_field(deck, place_t(deck%maps(a_part)%lines(i), 2, 'SECID'), 'is a section of ' &
-        //form_name(is_round(i))//', but part '//to_text(model%parts(first)%id)//' is of ' &
-        //form_name(is_round(first))//': a deck is of one kind')
+        //trim(forms(merge(2, 1, is_round(i))))//', but part '//to_text(model%parts(first)%id) &
+        //' is of '//trim(forms(merge(2, 1, is_round(first))))//': a deck is of one kind')
     end do
   end subroutine settle_form
-
-  !> An element form in words.
-  pure function form_name(is_round) result(name)
-    logical, intent(in) :: is_round
-    character(:), allocatable :: name
-
-    name = 'plane strain (ELFORM 13)'
-    if (is_round) name = 'axisymmetry (ELFORM 15)'
-  end function form_name
 
   !> Parts of one-point quads: those with assumed strain must resist shear; in implicit runs those
   !> without it, or of rubber, whose tangent is that of full integration, are fully integrated,
@@ -265,7 +253,9 @@ contains
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
     character(:), allocatable :: changed
-    integer :: twins(size(model%sections)) !! fully integrated ones, 0 where there is none
+    type(section_t) :: twin
+    integer :: twins(size(model%sections)) !! fully integrated ones, which other parts may go on
+                                           !! sharing as they are; 0 where there is none
     integer :: i, line
 
     changed = ''
@@ -286,7 +276,13 @@ contains
         else if (model%controls%implicit%is_on) then
           if (len(changed) == 0) line = deck%maps(a_section)%lines(part%section)
           changed = changed//', '//to_text(part%id)
-          if (twins(part%section) == 0) call add_full_section(part%section, model, twins)
+          if (twins(part%section) == 0) then
+            twin = model%sections(part%section)
+            twin%is_full = .true.
+            twin%element_form = merge(form_round_full, form_full, twin%is_round)
+            model%sections = [model%sections, twin]
+            twins(part%section) = size(model%sections)
+          end if
           part%section = twins(part%section)
         end if
       end associate
@@ -295,20 +291,6 @@ contains
       //'takes parts whose NIP is not 4 as NIP 4 where hourglass control is not by ' &
       //'assumed strain (IHQ 6), which would keep them as they are (but for rubber): '//changed(3:))
   end subroutine settle_points
-
-  !> The fully integrated twin of a section, which other parts may go on sharing as it is.
-  pure subroutine add_full_section(section, model, twins)
-    integer, value :: section             !! index
-    type(model_t), intent(inout) :: model
-    integer, intent(inout) :: twins(:)    !! index, by that of the section
-    type(section_t) :: twin
-
-    twin = model%sections(section)
-    twin%is_full = .true.
-    twin%element_form = merge(form_round_full, form_full, twin%is_round)
-    model%sections = [model%sections, twin]
-    twins(section) = size(model%sections)
-  end subroutine add_full_section
 
   !> One body for each part of *MAT_RIGID.
   subroutine make_rigids(deck, model, owner)
@@ -320,8 +302,9 @@ contains
     integer :: i, k
 
     associate (mesh => model%mesh)
-      parts = pack([(i, i=1, size(model%parts))], &
-        [(is_rigid_part(model, i), i=1, size(model%parts))])
+      parts = pack([(i, i=1, size(model%parts))], model%parts%material > 0)
+      parts = pack(parts, [(model%materials(model%parts(parts(i))%material)%is_rigid, i=1, &
+        size(parts))])
       allocate (model%rigids(size(parts)), owner(mesh%n_node))
       owner = 0
       do i = 1, size(parts)
@@ -346,16 +329,6 @@ contains
       deck%maps(a_part)%lines(1), 'all parts are rigid, so no element gives a time step; give ' &
       //'one by a curve (LCTM of *CONTROL_TIMESTEP)')
   end subroutine make_rigids
-
-  !> Whether a part has *MAT_RIGID.
-  pure function is_rigid_part(model, i_part) result(yes)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i_part
-    logical :: yes
-
-    yes = model%parts(i_part)%material > 0
-    if (yes) yes = model%materials(model%parts(i_part)%material)%is_rigid
-  end function is_rigid_part
 
   !> No node may have two bodies, and a body needs some.
   subroutine own_nodes(deck, i, model, owner)

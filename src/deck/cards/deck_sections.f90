@@ -26,7 +26,7 @@ contains
     type(cursor_t) :: cursor
     integer, allocatable :: blocks(:), ids(:), lines(:)
     integer :: i, n, n_row
-    logical :: found, is_sound
+    logical :: is_sound
 
     blocks = blocks_of(deck, 'DATABASE_CROSS_SECTION_SET')
     if (size(blocks) == 0) return
@@ -36,8 +36,7 @@ contains
     n_row = 0
     do i = 1, size(blocks)
       call open_cursor(deck, blocks(i), cursor)
-      call row_comes(deck, cursor, found)
-      do while (found)
+      do while (row_comes(deck, cursor))
         section%id = 0
         section%title = ''
         if (deck%blocks(blocks(i))%titled) call next_heading(deck, cursor, section%id, &
@@ -49,7 +48,6 @@ contains
         call take_section(deck, cursor, model, section, is_sound)
         if (is_sound) n = n + 1
         if (is_sound) sections(n) = section
-        call row_comes(deck, cursor, found)
       end do
     end do
     call refuse_again(deck, ids(:n_row), lines(:n_row), 'number ', 'cross section ' &
@@ -89,7 +87,7 @@ contains
     type(model_t), intent(in) :: model
     type(cross_section_t), intent(in) :: section
     logical, allocatable :: is_held(:)
-    integer :: i, material
+    integer :: i, part, material
 
     allocate (is_held(model%mesh%n_node), source=.false.)
     do i = 1, size(section%elements)
@@ -103,7 +101,9 @@ contains
       exit
     end do
     do i = 1, size(section%elements)
-      material = model%parts(model%mesh%element_part(section%elements(i)))%material
+      part = model%mesh%element_part(section%elements(i))
+      if (part < 1) cycle
+      material = model%parts(part)%material
       if (material < 1) cycle
       if (.not. model%materials(material)%is_rigid) cycle
       call report_field(deck, card, 'SSID', 'has element ' &

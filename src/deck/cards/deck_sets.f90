@@ -13,10 +13,10 @@ module deck_sets_m
   use deck_lines_m, only : deck_t, blocks_of, count_rows, line_error, line_warning
   use deck_fields_m, only : card_t, field_text
   use deck_cards_m, only : cursor_t, open_cursor, next_text, next_card, next_row, next_of, &
-    rows_of, report_field
+    report_field
   use deck_ids_m, only : ids_between, kind_names, a_node, an_element, a_part, a_node_set, &
     a_part_set, a_segment_set, a_shell_set
-  use deck_values_m, only : integer_of, is_bad, map_kind, lose, find_id
+  use deck_values_m, only : integer_of, is_bad, map_defined, lose, find_id
   implicit none
   private
   public :: read_sets, read_histories, keep_first, check_edge
@@ -45,6 +45,9 @@ contains
     logical, allocatable, intent(out) :: is_whole(:) !! of each node set: all nodes that its cards
                                                      !! name exist
     type(set_t), allocatable :: sets(:), beams(:, :)
+    type(boundary_t) :: boundary
+    logical, allocatable :: is_chosen(:), all_nodes(:)
+    logical :: is_of_part(0:size(model%parts))
     integer :: i
 
     call read_kind(deck, 'SET_PART', a_part_set, model, sets)
@@ -70,11 +73,19 @@ contains
     is_whole = sets%is_whole
     call read_kind(deck, 'SEGMENT', a_segment_set, model, sets, beams(:, 2))
     allocate (model%segment_sets(size(sets)))
+    allocate (all_nodes(model%mesh%n_node), source=.true.)
     do i = 1, size(sets)
       model%segment_sets(i)%id = sets(i)%id
       if (sets(i)%is_boundary) then
         call move_alloc(sets(i)%members, model%segment_sets(i)%parts)
-        call bound_parts(model, model%segment_sets(i)%parts, model%segment_sets(i)%nodes)
+        allocate (model%segment_sets(i)%nodes(2, 0))
+        ! Of a mesh with mistakes only these are told.
+        if (any(model%mesh%element_nodes < 1)) cycle
+        is_of_part = .false.
+        is_of_part(model%segment_sets(i)%parts) = .true.
+        is_chosen = is_of_part(model%mesh%element_part)
+        call find_boundary(model%mesh%element_nodes, is_chosen, all_nodes, boundary)
+        model%segment_sets(i)%nodes = boundary%nodes
       else
         if (.not. sets(i)%is_whole) sets(i)%n = 0
         model%segment_sets(i)%nodes = reshape(sets(i)%members(:sets(i)%n), [2, sets(i)%n/2])
@@ -109,7 +120,10 @@ contains
         sets = sets(order)
       end if
     end if
-    call map_kind(deck, kind, [sets%id], [sets%line], 'SID', [sets%of_beams])
+    deck%maps(kind)%n = size(sets)
+    deck%maps(kind)%ids = [sets%id]
+    deck%maps(kind)%lines = [sets%line]
+    call map_defined(deck, kind, 'SID', [sets%of_beams])
   end subroutine read_kind
 
   !> A set of nodes, parts, elements or segments: its number, then its members.
@@ -120,8 +134,8 @@ contains
     type(set_t), intent(out) :: set           !! its id is 0 where it was refused
     type(cursor_t) :: cursor
     type(card_t) :: head, card
-    logical :: found, is_sound
-    integer :: k
+    logical :: is_sound
+    integer :: k, kind
 
     call open_cursor(deck, i_block, cursor)
     if (deck%blocks(i_block)%titled) call next_text(deck, cursor, set%title)
@@ -129,24 +143,19 @@ contains
     set%line = head%line
     allocate (set%members(64))
     is_sound = .true.
-    do
-      call next_row(deck, cursor, 2, card, found)
-      if (.not. found) exit
+    kind = a_part
+    if (index(deck%blocks(i_block)%name, 'SET_NODE') == 1) kind = a_node
+    if (index(deck%blocks(i_block)%name, 'SET_SHELL') == 1) kind = an_element
+    do while (next_row(deck, cursor, 2, card))
       select case (deck%blocks(i_block)%name)
-      case ('SET_NODE_LIST')
-        call take_members(deck, card, a_node, set)
-      case ('SET_PART_LIST', 'SET_2D_SEGMENT')
-        call take_members(deck, card, a_part, set)
-      case ('SET_SHELL_LIST')
-        call take_members(deck, card, an_element, set)
-      case ('SET_NODE_LIST_GENERATE')
-        call take_blocks(deck, card, a_node, set)
-      case ('SET_PART_LIST_GENERATE')
-        call take_blocks(deck, card, a_part, set)
-      case ('SET_SHELL_LIST_GENERATE')
-        call take_blocks(deck, card, an_element, set)
+      case ('SET_NODE_LIST', 'SET_PART_LIST', 'SET_SHELL_LIST', 'SET_2D_SEGMENT')
+        call take_members(deck, card, kind, set)
+      case ('SET_NODE_LIST_GENERATE', 'SET_PART_LIST_GENERATE', 'SET_SHELL_LIST_GENERATE')
+        call take_blocks(deck, card, kind, set)
       case ('SET_2D_SEGMENT_SET')
-        call take_part_set(deck, card, model, set)
+        call find_id(deck, a_part_set, card, 'PSID', k)
+        set%n_named = set%n_named + 1
+        if (k > 0) call append(set, model%part_sets(k)%parts)
       case ('SET_SEGMENT')
         call check_edge(deck, card)
         if (.not. any(card%bad)) call take_edge(deck, card, set)
@@ -167,16 +176,19 @@ contains
     if (.not. is_bad(head, 'SID')) set%id = integer_of(head, 'SID')
   end subroutine read_set
 
-  !> One more member; 0 is none.
-  subroutine append(set, member)
+  !> More members; 0 is none.
+  subroutine append(set, members)
     type(set_t), intent(inout) :: set
-    integer, intent(in) :: member
+    integer, intent(in) :: members(:)
+    integer :: i
 
-    set%n_named = set%n_named + 1
-    if (member == 0) return
-    if (set%n == size(set%members)) set%members = [set%members, set%members]
-    set%n = set%n + 1
-    set%members(set%n) = member
+    do i = 1, size(members)
+      set%n_named = set%n_named + 1
+      if (members(i) == 0) cycle
+      if (set%n == size(set%members)) set%members = [set%members, set%members]
+      set%n = set%n + 1
+      set%members(set%n) = members(i)
+    end do
   end subroutine append
 
   !> The ids of a row, one in each of its fields; zeros are padding.
@@ -191,7 +203,7 @@ contains
       if (card%i(k) < 0) call report_field(deck, card, k, 'is not a number of 1 or more')
       if (card%i(k) < 1) cycle
       call find_id(deck, kind, card, k, found)
-      call append(set, found)
+      call append(set, [found])
     end do
   end subroutine take_members
 
@@ -202,7 +214,7 @@ contains
     integer, intent(in) :: kind
     type(set_t), intent(inout) :: set
     integer, allocatable :: block(:)
-    integer :: k, i
+    integer :: k
 
     do k = 1, count(card%kinds == 'i') - 1, 2
       if (all(card%i(k:k + 1) == 0)) cycle
@@ -215,27 +227,9 @@ contains
         report_field(deck, card, k, 'to "'//to_text(card%i(k + 1))//'": there is no ' &
         //trim(kind_names(kind))//' in this block')
       set%n_named = set%n_named + 1
-      do i = 1, size(block)
-        call append(set, block(i))
-      end do
+      call append(set, block)
     end do
   end subroutine take_blocks
-
-  !> The parts of a part set.
-  subroutine take_part_set(deck, card, model, set)
-    type(deck_t), intent(inout) :: deck
-    type(card_t), intent(inout) :: card
-    type(model_t), intent(in) :: model
-    type(set_t), intent(inout) :: set
-    integer :: found, i
-
-    call find_id(deck, a_part_set, card, 'PSID', found)
-    set%n_named = set%n_named + 1
-    if (found == 0) return
-    do i = 1, size(model%part_sets(found)%parts)
-      call append(set, model%part_sets(found)%parts(i))
-    end do
-  end subroutine take_part_set
 
   !> Two nodes from N1 on.
   subroutine take_edge(deck, card, set)
@@ -246,8 +240,7 @@ contains
 
     call find_id(deck, a_node, card, 'N1', ends(1))
     call find_id(deck, a_node, card, 'N2', ends(2))
-    call append(set, ends(1))
-    call append(set, ends(2))
+    call append(set, ends)
   end subroutine take_edge
 
   !> A row of a general set: what it adds or takes out. Each node stands in the set once, where it
@@ -294,7 +287,7 @@ contains
         if (action(1:1) == 'D') then
           set%place(nodes(j)) = 0
         else if (set%place(nodes(j)) == 0) then
-          call append(set, nodes(j))
+          call append(set, nodes(j:j))
           set%place(nodes(j)) = set%n
         end if
       end do
@@ -318,26 +311,6 @@ contains
     end do
   end subroutine check_edge
 
-  !> The boundary of some parts.
-  subroutine bound_parts(model, parts, nodes)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: parts(:)
-    integer, allocatable, intent(out) :: nodes(:, :) !! (2, n) nodes of its edges
-    type(boundary_t) :: boundary
-    logical, allocatable :: is_chosen(:), all_nodes(:)
-    logical :: is_of_part(0:size(model%parts))
-
-    allocate (nodes(2, 0))
-    ! Of a mesh with mistakes only these are told.
-    if (any(model%mesh%element_nodes < 1)) return
-    is_of_part = .false.
-    is_of_part(parts) = .true.
-    is_chosen = is_of_part(model%mesh%element_part)
-    allocate (all_nodes(model%mesh%n_node), source=.true.)
-    call find_boundary(model%mesh%element_nodes, is_chosen, all_nodes, boundary)
-    nodes = boundary%nodes
-  end subroutine bound_parts
-
   !> *ELEMENT_BEAM: the node set and the segment set of the number of each part.
   subroutine read_beams(deck, model, sets)
     type(deck_t), intent(inout) :: deck
@@ -349,13 +322,9 @@ contains
     type(card_t) :: card
     integer, allocatable :: kept(:)
     integer :: i
-    logical :: found
 
     allocate (edges(0), unset%members(64))
-    call rows_of('ELEMENT_BEAM', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'ELEMENT_BEAM', cursor, card))
       if (any(card%bad)) call lose(deck, [a_node_set, a_segment_set])
       if (any(card%bad)) cycle
       call line_warning(deck, card%line, 'beams', 'beams are no elements of a plane mesh: the ' &
@@ -383,12 +352,17 @@ contains
     end do
   end subroutine read_beams
 
-  !> Nodes and elements of *DATABASE_HISTORY_, each once, in deck order; force groups.
+  !> Nodes and elements of *DATABASE_HISTORY_, each once, in deck order; force groups of
+  !> *DATABASE_NODAL_FORCE_GROUP, none of their node sets twice.
   subroutine read_histories(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
+    type(force_group_t), allocatable :: groups(:)
+    type(cursor_t) :: cursor
+    type(card_t) :: card
     integer, allocatable :: members(:), sets(:)
-    integer :: i
+    logical :: is_taken(size(model%node_sets))
+    integer :: i, n, set
 
     call read_chosen(deck, 'DATABASE_HISTORY_NODE', [a_node, a_node_set], members, sets)
     members = [members, (model%node_sets(sets(i))%nodes, i=1, size(sets))]
@@ -396,7 +370,22 @@ contains
     call read_chosen(deck, 'DATABASE_HISTORY_SHELL', [an_element, a_shell_set], members, sets)
     members = [members, (model%shell_sets(sets(i))%elements, i=1, size(sets))]
     call keep_first(members, model%mesh%n_element, model%controls%output%history_elements)
-    call read_groups(deck, model)
+    n = count_rows(deck, 'DATABASE_NODAL_FORCE_GROUP')
+    if (n == 0) return
+    allocate (groups(n))
+    is_taken = .false.
+    n = 0
+    do while (next_of(deck, 'DATABASE_NODAL_FORCE_GROUP', cursor, card))
+      call find_id(deck, a_node_set, card, 'NSID', set)
+      if (set == 0) cycle
+      if (is_taken(set)) call report_field(deck, card, 'NSID', &
+        'is the node set of another force group')
+      is_taken(set) = .true.
+      n = n + 1
+      groups(n)%id = integer_of(card, 'NSID')
+      call keep_first(model%node_sets(set)%nodes, model%mesh%n_node, groups(n)%nodes)
+    end do
+    model%controls%output%force_groups = groups(:n)
   end subroutine read_histories
 
   !> What the keywords that begin so name: members, and by those that end so sets.
@@ -409,49 +398,15 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     integer :: k
-    logical :: found
 
     allocate (chosen(1)%members(64), chosen(2)%members(64))
-    call rows_of(head, cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, head, cursor, card))
       k = merge(2, 1, deck%blocks(cursor%block)%name == head//'_SET')
       call take_members(deck, card, kinds(k), chosen(k))
     end do
     members = chosen(1)%members(:chosen(1)%n)
     sets = chosen(2)%members(:chosen(2)%n)
   end subroutine read_chosen
-
-  !> *DATABASE_NODAL_FORCE_GROUP: node sets, none of them twice.
-  subroutine read_groups(deck, model)
-    type(deck_t), intent(inout) :: deck
-    type(model_t), intent(inout) :: model
-    type(force_group_t), allocatable :: groups(:)
-    type(cursor_t) :: cursor
-    type(card_t) :: card
-    integer :: set, n
-    logical :: found, is_taken(size(model%node_sets))
-
-    allocate (groups(count_rows(deck, 'DATABASE_NODAL_FORCE_GROUP')))
-    if (size(groups) == 0) return
-    is_taken = .false.
-    n = 0
-    call rows_of('DATABASE_NODAL_FORCE_GROUP', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
-      call find_id(deck, a_node_set, card, 'NSID', set)
-      if (set == 0) cycle
-      if (is_taken(set)) call report_field(deck, card, 'NSID', &
-        'is the node set of another force group')
-      is_taken(set) = .true.
-      n = n + 1
-      groups(n)%id = integer_of(card, 'NSID')
-      call keep_first(model%node_sets(set)%nodes, model%mesh%n_node, groups(n)%nodes)
-    end do
-    model%controls%output%force_groups = groups(:n)
-  end subroutine read_groups
 
   !> Members of a list, each where it comes first.
   pure subroutine keep_first(members, n_all, kept)

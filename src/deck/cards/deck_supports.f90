@@ -4,19 +4,20 @@
 module deck_supports_m
   use kinds_m, only : wp
   use log_m, only : to_text
-  use conditions_m, only : conditions_t, prescribed_motion_t, skew_support_t, common_motion_t, &
+  use conditions_m, only : prescribed_motion_t, skew_support_t, common_motion_t, &
     motion_acceleration
-  use model_m, only : model_t
+  use model_m, only : model_t, mark_meshed_nodes
   use rigids_m, only : mark_rigid_nodes
-  use supports_m, only : mark_meshed_nodes
-  use deck_cards_m, only : cursor_t, next_of, rows_of, report_field, reject_field
+  use deck_cards_m, only : cursor_t, next_of, report_field, reject_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, an_element, a_part, a_curve, a_node_set, a_system
   use deck_lines_m, only : deck_t, place_t, blocks_of, line_warning, line_error
+  use deck_sets_m, only : keep_first
   use deck_values_m, only : integer_of, real_of, has_field, take_life, find_id, along_axes
   implicit none
   private
-  public :: read_supports, read_motions, read_common_motions, card_nodes, mark_axis, mark_massive
+  public :: read_supports, read_motions, read_common_motions, card_nodes, find_body, mark_axis, &
+    mark_massive, mark_taken, warn_of_nodes
 
   !> Why a rigid body of an axisymmetric deck does not go where it is told to.
   character(*), parameter, public :: across_axis = 'asks a rigid body of an axisymmetric deck ' &
@@ -30,25 +31,47 @@ contains
     type(card_t), intent(inout) :: card
     type(model_t), intent(in) :: model
     integer, allocatable, intent(out) :: nodes(:)
-    logical, allocatable :: first(:), listed(:)
-    integer :: found, i
+    integer :: found
 
-    if (.not. has_field(card, 'NSID')) then
+    if (has_field(card, 'NSID')) then
+      call find_id(deck, a_node_set, card, 'NSID', found)
+      allocate (nodes(0))
+      if (found > 0) call keep_first(model%node_sets(found)%nodes, model%mesh%n_node, nodes)
+    else
       call find_id(deck, a_node, card, 'NID', found)
       nodes = pack([found], [found > 0])
-      return
     end if
-    call find_id(deck, a_node_set, card, 'NSID', found)
-    allocate (nodes(0))
-    if (found > 0) nodes = model%node_sets(found)%nodes
-    if (size(nodes) < 2) return
-    allocate (first(size(nodes)), listed(model%mesh%n_node), source=.false.)
-    do i = 1, size(nodes)
-      first(i) = .not. listed(nodes(i))
-      listed(nodes(i)) = .true.
-    end do
-    nodes = pack(nodes, first)
   end subroutine card_nodes
+
+  !> The rigid body of the part PID of a card; 0 where there is none, which is an error.
+  subroutine find_body(deck, card, model, advice, body)
+    type(deck_t), intent(inout) :: deck
+    type(card_t), intent(inout) :: card
+    type(model_t), intent(in) :: model
+    character(*), intent(in) :: advice !! how the message goes on
+    integer, intent(out) :: body
+    integer :: part
+
+    body = 0
+    call find_id(deck, a_part, card, 'PID', part)
+    if (part == 0) return
+    if (model%parts(part)%material == 0) return
+    body = findloc(model%rigids%part, part, dim=1)
+    if (body == 0) call report_field(deck, card, 'PID', 'is not a rigid part (*MAT_RIGID)'//advice)
+  end subroutine find_body
+
+  !> A warning of nodes where there are some: how many, the first of them.
+  subroutine warn_of_nodes(deck, line, key, model, nodes, what, advice)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: line
+    character(*), intent(in) :: key
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: nodes(:)
+    character(*), intent(in) :: what, advice !! between the two, and behind them
+
+    if (size(nodes) > 0) call line_warning(deck, line, key, to_text(size(nodes))//what &
+      //to_text(model%mesh%node_id(nodes(1)))//advice)
+  end subroutine warn_of_nodes
 
   !> (n_node) nodes on the axis of an axisymmetric deck.
   pure function mark_axis(model) result(is_there)
@@ -77,7 +100,7 @@ contains
     logical, allocatable, intent(out) :: fixed(:, :) !! (2, n_node)
     type(cursor_t) :: cursor
     type(card_t) :: card
-    logical :: is_free(model%mesh%n_node), along(2), found
+    logical :: is_free(model%mesh%n_node), along(2)
     integer, allocatable :: nodes(:)
     integer :: i
 
@@ -85,25 +108,19 @@ contains
     allocate (fixed(2, model%mesh%n_node), source=.false.)
     do i = 1, model%mesh%n_node
       if (codes(i) >= 0 .and. codes(i) <= 7) fixed(:, i) = along_axes(:2, codes(i))
-      if (owner(i) > 0 .and. any(fixed(:, i))) call reject_field(deck, &
-        place_t(deck%maps(a_node)%lines(i), 1, 'TC'), ': node '//follows(model, i, owner(i)) &
-        //'CON1 and CON2 of *MAT_RIGID hold the body')
+      if (any(fixed(:, i))) call refuse_rigid(deck, place_t(deck%maps(a_node)%lines(i), 1, 'TC'), &
+        [i], owner, model, 'CON1 and CON2 of *MAT_RIGID hold the body')
       if (is_free(i)) fixed(:, i) = .true.
     end do
-    if (any(is_free) .and. model%mesh%n_element > 0 .and. deck%report%n_error == 0) then
-      i = findloc(is_free, .true., dim=1)
-      call line_warning(deck, deck%maps(a_node)%lines(i), 'free', to_text(count(is_free)) &
-        //' node(s) belong to no element and are fixed; the first is ' &
-        //to_text(model%mesh%node_id(i)))
-    end if
-    call rows_of('BOUNDARY_SPC_', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    nodes = pack([(i, i=1, size(is_free))], is_free .and. model%mesh%n_element > 0 &
+      .and. deck%report%n_error == 0)
+    if (size(nodes) > 0) call warn_of_nodes(deck, deck%maps(a_node)%lines(nodes(1)), 'free', &
+      model, nodes, ' node(s) belong to no element and are fixed; the first is ', '')
+    do while (next_of(deck, 'BOUNDARY_SPC_', cursor, card))
       if (any(card%bad)) cycle
       call card_nodes(deck, card, model, nodes)
       along = [integer_of(card, 'DOFX'), integer_of(card, 'DOFY')] == 1
-      if (any(along)) call refuse_rigid(deck, card, nodes, owner, model, &
+      if (any(along)) call refuse_rigid(deck, place_t(card%line, 1, field=1), nodes, owner, model, &
         'CON1 and CON2 of *MAT_RIGID hold the body')
       if (integer_of(card, 'CID') /= 0) then
         call fix_along_axes(deck, card, along, nodes, model, fixed)
@@ -168,28 +185,19 @@ contains
   !> Nodes of a rigid body follow the body: nothing else may hold or move them. (LS-DYNA passes over
   !> such constraints or turns them into some of the body, according to its version.) One error for
   !> each card.
-  subroutine refuse_rigid(deck, card, nodes, owner, model, advice)
+  subroutine refuse_rigid(deck, place, nodes, owner, model, advice)
     type(deck_t), intent(inout) :: deck
-    type(card_t), intent(inout) :: card
+    type(place_t), intent(in) :: place
     integer, intent(in) :: nodes(:), owner(:)
     type(model_t), intent(in) :: model
     character(*), intent(in) :: advice
     integer :: i
 
     i = findloc(owner(nodes) > 0, .true., dim=1)
-    if (i > 0) call report_field(deck, card, 1, ': node '//follows(model, nodes(i), &
-      owner(nodes(i)))//advice)
+    if (i > 0) call reject_field(deck, place, ': node '//to_text(model%mesh%node_id(nodes(i))) &
+      //' belongs to rigid part '//to_text(model%parts(model%rigids(owner(nodes(i)))%part)%id) &
+      //' and follows it; '//advice)
   end subroutine refuse_rigid
-
-  !> Node and body of a message.
-  pure function follows(model, node, body) result(text)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: node, body
-    character(:), allocatable :: text
-
-    text = to_text(model%mesh%node_id(node))//' belongs to rigid part ' &
-      //to_text(model%parts(model%rigids(body)%part)%id)//' and follows it; '
-  end function follows
 
   !> *BOUNDARY_PRESCRIBED_MOTION_: of nodes and of rigid bodies.
   subroutine read_motions(deck, owner, fixed, model)
@@ -203,23 +211,24 @@ contains
     type(card_t) :: card
     integer, allocatable :: nodes(:), lines(:), rigid_lines(:)
     integer :: k, n
-    logical :: found, is_sound, is_static
+    logical :: is_static
 
     allocate (motions(64), lines(64), rigid_lines(0), model%conditions%rigid_motions(0))
     is_static = model%controls%implicit%is_on .and. .not. model%controls%implicit%is_dynamic
     n = 0
-    call rows_of('BOUNDARY_PRESCRIBED_MOTION_', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
-      call take_motion(deck, card, motion, is_sound)
-      if (.not. is_sound) cycle
+    do while (next_of(deck, 'BOUNDARY_PRESCRIBED_MOTION_', cursor, card))
+      call take_life(deck, card, ['BIRTH', 'DEATH'], motion%birth, motion%death)
+      if (any(card%bad)) cycle
+      motion%direction = integer_of(card, 'DOF')
+      motion%kind = integer_of(card, 'VAD')
+      motion%scale = real_of(card, 'SF')
+      call find_id(deck, a_curve, card, 'LCID', motion%curve)
       if (has_field(card, 'PID')) then
         call take_rigid_motion(deck, card, motion, rigid_lines, model)
         cycle
       end if
       call card_nodes(deck, card, model, nodes)
-      call refuse_rigid(deck, card, nodes, owner, model, &
+      call refuse_rigid(deck, place_t(card%line, 1, field=1), nodes, owner, model, &
         '*BOUNDARY_PRESCRIBED_MOTION_RIGID moves the body')
       if (motion%kind == motion_acceleration .and. is_static) call report_field(deck, card, 'VAD', &
         'is an acceleration, which has no meaning in statics ' &
@@ -289,22 +298,6 @@ contains
     end do
   end subroutine check_motions
 
-  !> What the cards of nodes and of rigid bodies share.
-  subroutine take_motion(deck, card, motion, is_sound)
-    type(deck_t), intent(inout) :: deck
-    type(card_t), intent(inout) :: card
-    type(prescribed_motion_t), intent(inout) :: motion
-    logical, intent(out) :: is_sound     !! no field is out of its range
-
-    call take_life(deck, card, ['BIRTH', 'DEATH'], motion%birth, motion%death)
-    is_sound = .not. any(card%bad)
-    if (.not. is_sound) return
-    motion%direction = integer_of(card, 'DOF')
-    motion%kind = integer_of(card, 'VAD')
-    motion%scale = real_of(card, 'SF')
-    call find_id(deck, a_curve, card, 'LCID', motion%curve)
-  end subroutine take_motion
-
   !> *BOUNDARY_PRESCRIBED_MOTION_RIGID. A moved degree of freedom may not be fixed, nor moved twice
   !> at one time.
   subroutine take_rigid_motion(deck, card, motion, lines, model)
@@ -313,18 +306,12 @@ contains
     type(prescribed_motion_t), intent(inout) :: motion
     integer, allocatable, intent(inout) :: lines(:) !! of the motions so far
     type(model_t), intent(inout) :: model
-    integer :: i, part
+    integer :: i
 
-    call find_id(deck, a_part, card, 'PID', part)
-    if (part == 0 .or. motion%curve == 0) return
-    if (model%parts(part)%material == 0) return
-    motion%node = findloc(model%rigids%part, part, dim=1)
+    call find_body(deck, card, model, '; *BOUNDARY_PRESCRIBED_MOTION_SET moves nodes', motion%node)
+    if (motion%node == 0 .or. motion%curve == 0) return
     if (motion%direction == 7) motion%direction = 3
-    if (motion%node == 0) then
-      call report_field(deck, card, 'PID', 'is not a rigid part (*MAT_RIGID); ' &
-        //'*BOUNDARY_PRESCRIBED_MOTION_SET moves nodes')
-      return
-    else if (model%is_round .and. motion%direction /= 2) then
+    if (model%is_round .and. motion%direction /= 2) then
       call report_field(deck, card, 'DOF', across_axis)
     else if (model%rigids(motion%node)%is_fixed(motion%direction)) then
       call report_field(deck, card, 'DOF', 'is fixed by CON1 or CON2 of the part''s *MAT_RIGID ' &
@@ -351,18 +338,14 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     logical :: taken(2, model%mesh%n_node), is_rigid(model%mesh%n_node), meshed(model%mesh%n_node)
-    logical :: found
     character(:), allocatable :: message
     integer :: i, k
 
     if (size(blocks_of(deck, 'CONSTRAINED_NODE_SET')) == 0) return
-    call mark_taken(model%conditions, taken)
+    taken = mark_taken(model)
     meshed = mark_meshed_nodes(model)
     is_rigid = mark_rigid_nodes(model%rigids, model%mesh%n_node)
-    call rows_of('CONSTRAINED_NODE_SET', cursor)
-    do
-      call next_of(deck, cursor, card, found)
-      if (.not. found) exit
+    do while (next_of(deck, 'CONSTRAINED_NODE_SET', cursor, card))
       if (any(card%bad)) cycle
       if (model%controls%implicit%is_on) call line_error(deck, card%line, &
         '*CONSTRAINED_NODE_SET is a constraint that the implicit method does not have')
@@ -391,19 +374,21 @@ contains
   end subroutine read_common_motions
 
   !> Degrees of freedom that something holds or moves.
-  pure subroutine mark_taken(conditions, taken)
-    type(conditions_t), intent(in) :: conditions
-    logical, intent(out) :: taken(:, :) !! (2, n_node)
+  pure function mark_taken(model) result(taken)
+    type(model_t), intent(in) :: model
+    logical :: taken(2, model%mesh%n_node)
     integer :: i
 
     taken = .false.
-    do i = 1, size(conditions%fixed_nodes)
-      taken(conditions%fixed_directions(i), conditions%fixed_nodes(i)) = .true.
-    end do
-    do i = 1, size(conditions%motions)
-      taken(conditions%motions(i)%direction, conditions%motions(i)%node) = .true.
-    end do
-    if (allocated(conditions%skew_supports)) taken(:, conditions%skew_supports%node) = .true.
-  end subroutine mark_taken
+    associate (conditions => model%conditions)
+      do i = 1, size(conditions%fixed_nodes)
+        taken(conditions%fixed_directions(i), conditions%fixed_nodes(i)) = .true.
+      end do
+      do i = 1, size(conditions%motions)
+        taken(conditions%motions(i)%direction, conditions%motions(i)%node) = .true.
+      end do
+      if (allocated(conditions%skew_supports)) taken(:, conditions%skew_supports%node) = .true.
+    end associate
+  end function mark_taken
 
 end module deck_supports_m

@@ -5,14 +5,13 @@ module deck_values_m
   use kinds_m, only : wp
   use deck_ids_m, only : id_map_t, map_ids, index_of, kind_names, a_node, an_element, a_part
   use deck_lines_m, only : place_t, deck_t, line_error, where_text
-  use deck_card_specs_m, only : field_number
-  use deck_fields_m, only : card_t
+  use deck_fields_m, only : field_number, card_t
   use log_m, only : to_text
   use deck_cards_m, only : reject_field, report_field
   implicit none
   private
   public :: integer_of, real_of, reals_of, has_field, is_blank, is_bad, place_of, take_life, &
-    define, map_defined, map_kind, find_id, resolve_id, refuse_again, lose
+    define, map_defined, find_id, resolve_id, refuse_again, lose
 
   !> Directions x, y and z of the codes TC, DOF and CON: 0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7
   !> xyz.
@@ -140,48 +139,36 @@ contains
     end associate
   end subroutine define
 
-  !> The map of a kind of which all are defined.
-  subroutine map_defined(deck, kind, field)
+  !> The map of a kind of which all are defined, with an error for each id that comes again.
+  subroutine map_defined(deck, kind, field, of_beams)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: kind
-    character(*), intent(in) :: field  !! of the numbers
-    integer, allocatable :: ids(:), lines(:)
-
-    allocate (ids(0), lines(0))
-    if (deck%maps(kind)%n > 0) then
-      ids = deck%maps(kind)%ids(:deck%maps(kind)%n)
-      lines = deck%maps(kind)%lines(:deck%maps(kind)%n)
-    end if
-    call map_kind(deck, kind, ids, lines, field)
-    call move_alloc(ids, deck%maps(kind)%ids)
-  end subroutine map_defined
-
-  !> The map of one kind, with an error for each id that comes again.
-  subroutine map_kind(deck, kind, ids, lines, field, of_beams)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: kind
-    integer, intent(in) :: ids(:), lines(:)      !! of all, and where each stands
     character(*), intent(in) :: field            !! of the ids
     logical, intent(in), optional :: of_beams(:) !! the number of a set is that of a part
-    integer, allocatable :: twice(:)
+    integer, allocatable :: ids(:), lines(:), twice(:)
     type(id_map_t) :: map
     character(5) :: name
-    integer :: i
+    integer :: i, n
 
+    n = deck%maps(kind)%n
+    allocate (ids(n), lines(n))
+    if (n > 0) ids = deck%maps(kind)%ids(:n)
+    if (n > 0) lines = deck%maps(kind)%lines(:n)
     call map_ids(ids, map, twice)
-    map%n = size(ids)
-    map%lines = lines
+    map%n = n
     map%lost = deck%maps(kind)%lost .or. deck%incomplete
-    map%incomplete = map%lost .or. (any(kind == [a_node, an_element]) .and. size(ids) == 0)
+    map%incomplete = map%lost .or. (any(kind == [a_node, an_element]) .and. n == 0)
+    call move_alloc(ids, map%ids)
+    call move_alloc(lines, map%lines)
     deck%maps(kind) = map
     do i = 1, size(twice)
       name = field
       if (present(of_beams)) name = merge('PID  ', name, of_beams(twice(i)))
-      call reject_field(deck, place_t(lines(twice(i)), merge(2, 1, kind == a_part), trim(name)), &
-        'is the number of another '//trim(kind_names(kind))//' (' &
-        //where_text(deck, lines(index_of(map, ids(twice(i)))))//')')
+      call reject_field(deck, place_t(map%lines(twice(i)), merge(2, 1, kind == a_part), &
+        trim(name)), 'is the number of another '//trim(kind_names(kind))//' (' &
+        //where_text(deck, map%lines(index_of(map, map%ids(twice(i)))))//')')
     end do
-  end subroutine map_kind
+  end subroutine map_defined
 
   !> Definitions of a kind that were refused: a reference to them is no further mistake.
   pure subroutine lose(deck, kinds)

@@ -3,14 +3,13 @@
 !> _GENERATION in deck order.
 module deck_velocity_m
   use kinds_m, only : wp
-  use log_m, only : to_text
   use model_m, only : model_t
   use rigids_m, only : mark_rigid_nodes
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_row, check_rest, report_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, a_part, a_node_set, a_part_set
   use deck_lines_m, only : deck_t, blocks_of, line_warning
-  use deck_supports_m, only : mark_axis, across_axis
+  use deck_supports_m, only : find_body, mark_axis, warn_of_nodes, across_axis
   use deck_values_m, only : integer_of, real_of, reals_of, find_id
   implicit none
   private
@@ -22,9 +21,11 @@ contains
   subroutine read_velocities(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
+    type(cursor_t) :: cursor
+    type(card_t) :: card
     real(wp), allocatable :: velocity(:, :)
-    integer, allocatable :: blocks(:)
-    integer :: i, turn, lines(2)
+    integer, allocatable :: blocks(:), held(:)
+    integer :: i, node, turn, lines(2)
     logical :: is_generation
 
     blocks = blocks_of(deck, 'INITIAL_VELOCITY')
@@ -34,15 +35,21 @@ contains
       do i = 1, size(blocks)
         is_generation = deck%blocks(blocks(i))%name == 'INITIAL_VELOCITY_GENERATION'
         if (is_generation .neqv. turn == 2) cycle
+        call open_cursor(deck, blocks(i), cursor)
         select case (deck%blocks(blocks(i))%name)
         case ('INITIAL_VELOCITY_RIGID_BODY')
-          call read_rigid_velocities(deck, blocks(i), model)
+          call read_rigid_velocities(deck, cursor, model)
         case ('INITIAL_VELOCITY_NODE')
-          call read_node_velocities(deck, blocks(i), lines(1), velocity)
+          do while (next_row(deck, cursor, 1, card))
+            if (any(card%bad)) cycle
+            if (lines(1) == 0) lines(1) = card%line
+            call find_id(deck, a_node, card, 'NID', node)
+            if (node > 0) velocity(:, node) = reals_of(card, 'VX', 'VY')
+          end do
         case ('INITIAL_VELOCITY')
-          call read_velocity(deck, blocks(i), model, lines(2), velocity)
+          call read_velocity(deck, cursor, model, lines(2), velocity)
         case default
-          call read_generation(deck, blocks(i), model, lines(2), velocity)
+          call read_generation(deck, cursor, model, lines(2), velocity)
         end select
       end do
     end do
@@ -50,46 +57,29 @@ contains
     i = merge(lines(2), lines(1), lines(2) > 0)
     if (model%controls%implicit%is_on .and. .not. model%controls%implicit%is_dynamic) call &
       line_warning(deck, i, 'static velocity', 'an initial velocity has no effect in statics')
-    if (model%is_round) call keep_on_axis(deck, i, model, velocity)
+    if (model%is_round) then
+      held = pack([(node, node=1, model%mesh%n_node)], abs(velocity(1, :)) > 0.0_wp &
+        .and. (mark_axis(model) .or. mark_rigid_nodes(model%rigids, model%mesh%n_node)))
+      velocity(1, held) = 0.0_wp
+      call warn_of_nodes(deck, i, 'radial velocity', model, held, ' node(s) on the axis or of ' &
+        //'rigid bodies have an initial velocity in r, which they can not take: it is left out; ' &
+        //'the first is ', '')
+    end if
     call move_alloc(velocity, model%conditions%initial_velocity)
   end subroutine read_velocities
 
-  !> *INITIAL_VELOCITY_NODE.
-  subroutine read_node_velocities(deck, i_block, first_line, velocity)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
-    integer, intent(inout) :: first_line    !! of all such cards, 0: none yet
-    real(wp), intent(inout) :: velocity(:, :)
-    type(cursor_t) :: cursor
-    type(card_t) :: card
-    integer :: node
-    logical :: found
-
-    call open_cursor(deck, i_block, cursor)
-    do
-      call next_row(deck, cursor, 1, card, found)
-      if (.not. found) exit
-      if (any(card%bad)) cycle
-      if (first_line == 0) first_line = card%line
-      call find_id(deck, a_node, card, 'NID', node)
-      if (node > 0) velocity(:, node) = reals_of(card, 'VX', 'VY')
-    end do
-  end subroutine read_node_velocities
-
   !> *INITIAL_VELOCITY: a set or all nodes, less those of a second set, which have a velocity of
   !> their own.
-  subroutine read_velocity(deck, i_block, model, first_line, velocity)
+  subroutine read_velocity(deck, cursor, model, first_line, velocity)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
+    type(cursor_t), intent(inout) :: cursor
     type(model_t), intent(in) :: model
     integer, intent(inout) :: first_line
     real(wp), intent(inout) :: velocity(:, :)
-    type(cursor_t) :: cursor
     type(card_t) :: cards(3)
     logical :: is_chosen(model%mesh%n_node)
     integer :: set, others, i
 
-    call open_cursor(deck, i_block, cursor)
     call next_card(deck, cursor, 1, cards(1))
     call next_card(deck, cursor, 2, cards(2))
     if (integer_of(cards(1), 'NSIDEX') /= 0) call next_card(deck, cursor, 3, cards(3))
@@ -116,21 +106,19 @@ contains
   end subroutine read_velocity
 
   !> *INITIAL_VELOCITY_GENERATION: translation and spin about an axis along z.
-  subroutine read_generation(deck, i_block, model, first_line, velocity)
+  subroutine read_generation(deck, cursor, model, first_line, velocity)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
+    type(cursor_t), intent(inout) :: cursor
     type(model_t), intent(in) :: model
     integer, intent(inout) :: first_line
     real(wp), intent(inout) :: velocity(:, :)
     character(*), parameter :: turned = &
       'turns the axis out of z; in the plane bodies spin about z'
-    type(cursor_t) :: cursor
     type(card_t) :: card, axis
     logical :: is_chosen(model%mesh%n_node)
     real(wp) :: spin, centre(2), ahead(2)
     integer :: i
 
-    call open_cursor(deck, i_block, cursor)
     call next_card(deck, cursor, 1, card)
     call next_card(deck, cursor, 2, axis)
     call check_rest(deck, cursor)
@@ -162,7 +150,7 @@ contains
     logical, intent(out) :: is_chosen(:)    !! (n_node)
     integer, parameter :: kinds(3) = [a_part_set, a_part, a_node_set]
     logical :: is_of_part(0:size(model%parts))
-    integer :: kind, found, i, k
+    integer :: kind, found
 
     is_chosen = integer_of(card, 'ID') == 0
     if (integer_of(card, 'ID') == 0) return
@@ -176,37 +164,26 @@ contains
     is_of_part = .false.
     if (kind == a_part) is_of_part(found) = .true.
     if (kind == a_part_set) is_of_part(model%part_sets(found)%parts) = .true.
-    do i = 1, model%mesh%n_element
-      if (.not. is_of_part(model%mesh%element_part(i))) cycle
-      do k = 1, 4
-        if (model%mesh%element_nodes(k, i) > 0) is_chosen(model%mesh%element_nodes(k, i)) = .true.
-      end do
-    end do
+    associate (nodes => model%mesh%element_nodes)
+      is_chosen(pack(nodes, nodes > 0 .and. spread(is_of_part(model%mesh%element_part), 1, 4))) &
+        = .true.
+    end associate
   end subroutine choose_nodes
 
   !> *INITIAL_VELOCITY_RIGID_BODY: it comes before what nodes of the body are given.
-  subroutine read_rigid_velocities(deck, i_block, model)
+  subroutine read_rigid_velocities(deck, cursor, model)
     type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: i_block
+    type(cursor_t), intent(inout) :: cursor
     type(model_t), intent(inout) :: model
-    type(cursor_t) :: cursor
     type(card_t) :: card
-    integer :: part, body
-    logical :: found
+    integer :: body
 
-    call open_cursor(deck, i_block, cursor)
-    do
-      call next_row(deck, cursor, 1, card, found)
-      if (.not. found) exit
+    do while (next_row(deck, cursor, 1, card))
       if (any(card%bad)) cycle
-      call find_id(deck, a_part, card, 'PID', part)
-      if (part == 0) cycle
-      if (model%parts(part)%material == 0) cycle
-      body = findloc(model%rigids%part, part, dim=1)
-      if (body == 0) then
-        call report_field(deck, card, 'PID', 'is not a rigid part (*MAT_RIGID); ' &
-          //'*INITIAL_VELOCITY_GENERATION gives a part its velocity')
-      else if (model%rigids(body)%has_velocity) then
+      call find_body(deck, card, model, &
+        '; *INITIAL_VELOCITY_GENERATION gives a part its velocity', body)
+      if (body == 0) cycle
+      if (model%rigids(body)%has_velocity) then
         call report_field(deck, card, 'PID', 'has a velocity by another card')
       else
         model%rigids(body)%has_velocity = .true.
@@ -218,22 +195,5 @@ contains
       end if
     end do
   end subroutine read_rigid_velocities
-
-  !> Initial velocities across the axis where there can be none.
-  subroutine keep_on_axis(deck, line, model, velocity)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: line
-    type(model_t), intent(in) :: model
-    real(wp), intent(inout) :: velocity(:, :)
-    logical :: is_held(model%mesh%n_node)
-
-    is_held = (mark_axis(model) .or. mark_rigid_nodes(model%rigids, model%mesh%n_node)) &
-      .and. abs(velocity(1, :)) > 0.0_wp
-    if (.not. any(is_held)) return
-    where (is_held) velocity(1, :) = 0.0_wp
-    call line_warning(deck, line, 'radial velocity', to_text(count(is_held))//' node(s) on the ' &
-      //'axis or of rigid bodies have an initial velocity in r, which they can not take: it is ' &
-      //'left out; the first is '//to_text(model%mesh%node_id(findloc(is_held, .true., dim=1))))
-  end subroutine keep_on_axis
 
 end module deck_velocity_m

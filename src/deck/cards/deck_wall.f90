@@ -10,7 +10,7 @@ module deck_wall_m
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node_set
   use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
-  use deck_supports_m, only : mark_massive
+  use deck_supports_m, only : mark_massive, mark_taken, warn_of_nodes
   use deck_values_m, only : integer_of, real_of, reals_of, take_life, find_id, refuse_again
   implicit none
   private
@@ -35,7 +35,6 @@ contains
     do i = 1, size(blocks)
       call read_wall(deck, blocks(i), model, model%walls(i))
       call look_at_nodes(deck, lines(i), model, model%walls(i))
-      call look_at_motions(deck, lines(i), model, model%walls(i))
     end do
     has_number = model%walls%id > 0
     call refuse_again(deck, pack([model%walls%id], has_number), pack(lines, has_number), &
@@ -122,8 +121,8 @@ contains
       if (k > 0) sees(model%node_sets(k)%nodes) = .false.
     end if
     is_rigid = sees .and. mark_rigid_nodes(model%rigids, size(sees))
-    if (any(is_rigid)) call line_warning(deck, line, 'wall and rigid body'//to_text(line), &
-      to_text(count(is_rigid))//' node(s) of rigid bodies do not see the wall')
+    call warn_of_nodes(deck, line, 'wall and rigid body'//to_text(line), model, pack([(k, k=1, &
+      size(sees))], is_rigid), ' node(s) of rigid bodies do not see the wall, the first is ', '')
     sees = sees .and. .not. is_rigid
   end subroutine find_nodes
 
@@ -145,64 +144,41 @@ contains
     end do
   end subroutine number_walls
 
-  !> A wall without nodes, and nodes that start behind it.
+  !> A wall without nodes, nodes that start behind it, and nodes that can not give way: wherever the
+  !> wall pushes, a motion is prescribed or the node is fixed. Nodes that are fixed in all such
+  !> directions never come nearer, so they are no reason for a warning.
   subroutine look_at_nodes(deck, line, model, wall)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line
     type(model_t), intent(in) :: model
     type(wall_t), intent(in) :: wall
-    real(wp) :: size_of_mesh
-    integer :: i, n, first
+    logical :: is_behind(size(wall%nodes))
+    logical, dimension(2, model%mesh%n_node) :: is_pushed, is_moved
+    real(wp) :: round_off
+    integer :: i
 
     if (size(wall%nodes) == 0) call line_warning(deck, line, 'wall'//to_text(line), &
       'no node sees this wall')
-    size_of_mesh = maxval(abs(model%mesh%coordinates))
-    n = 0
-    first = 0
-    do i = 1, size(wall%nodes)
-      if (wall_distance(wall, model%mesh%coordinates(:, wall%nodes(i)), [0.0_wp, 0.0_wp]) &
-        >= -1.0e-12_wp*size_of_mesh) cycle
-      n = n + 1
-      if (first == 0) first = wall%nodes(i)
-    end do
-    if (n > 0) call line_warning(deck, line, 'behind the wall'//to_text(line), to_text(n) &
-      //' node(s) start behind the wall, the first is '//to_text(model%mesh%node_id(first)) &
-      //': they are kept from going further, not brought back')
-  end subroutine look_at_nodes
-
-  !> Nodes that can not give way: wherever the wall pushes, a motion is prescribed or the
-  !> node is fixed. Nodes that are fixed in all such directions never come nearer, so they
-  !> are no reason for a warning.
-  subroutine look_at_motions(deck, line, model, wall)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: line
-    type(model_t), intent(in) :: model
-    type(wall_t), intent(in) :: wall
-    logical :: is_free(2, model%mesh%n_node), is_moved(model%mesh%n_node)
-    integer, allocatable :: blind(:)
-    integer :: i
-
-    is_free = spread(abs(wall%normal) > 0.0_wp, 2, model%mesh%n_node)
-    is_moved = .false.
-    associate (conditions => model%conditions)
-      do i = 1, size(conditions%fixed_nodes)
-        is_free(conditions%fixed_directions(i), conditions%fixed_nodes(i)) = .false.
-      end do
-      do i = 1, size(conditions%motions)
-        associate (motion => conditions%motions(i))
-          is_moved(motion%node) = is_moved(motion%node) .or. is_free(motion%direction, motion%node)
-        end associate
-      end do
-      do i = 1, size(conditions%motions)
-        is_free(conditions%motions(i)%direction, conditions%motions(i)%node) = .false.
-      end do
+    associate (x => model%mesh%coordinates)
+      round_off = 1.0e-12_wp*maxval(abs(x))
+      is_behind = [(wall_distance(wall, x(:, wall%nodes(i)), [0.0_wp, 0.0_wp]) < -round_off, &
+        i=1, size(wall%nodes))]
     end associate
-    is_moved = is_moved .and. .not. any(is_free, 1)
-    blind = pack(wall%nodes, is_moved(wall%nodes))
-    if (size(blind) > 0) call line_warning(deck, line, 'wall and motion'//to_text(line), &
-      to_text(size(blind))//' node(s) do not see the wall while their motion is prescribed ' &
-      //'(*BOUNDARY_PRESCRIBED_MOTION), the first is '//to_text(model%mesh%node_id(blind(1))) &
-      //': they pass through it')
-  end subroutine look_at_motions
+    call warn_of_nodes(deck, line, 'behind the wall'//to_text(line), model, pack(wall%nodes, &
+      is_behind), ' node(s) start behind the wall, the first is ', ': they are kept from going ' &
+      //'further, not brought back')
+    is_pushed = spread(abs(wall%normal) > 0.0_wp, 2, model%mesh%n_node)
+    is_moved = .false.
+    do i = 1, size(model%conditions%motions)
+      associate (motion => model%conditions%motions(i))
+        is_moved(motion%direction, motion%node) = .true.
+      end associate
+    end do
+    is_moved(1, :) = any(is_moved .and. is_pushed, 1) .and. all(mark_taken(model) &
+      .or. .not. is_pushed, 1)
+    call warn_of_nodes(deck, line, 'wall and motion'//to_text(line), model, pack(wall%nodes, &
+      is_moved(1, wall%nodes)), ' node(s) do not see the wall while their motion is prescribed ' &
+      //'(*BOUNDARY_PRESCRIBED_MOTION), the first is ', ': they pass through it')
+  end subroutine look_at_nodes
 
 end module deck_wall_m

@@ -1,18 +1,22 @@
 ! SPDX-License-Identifier: MIT
-!> What was understood of a deck, for the log.
+!> What was understood of a deck, for the log, and the deck as run: one file, parameters and command
+!> line resolved, which read again gives the same model to the last bit. Lines that nothing changed
+!> are copied as they were written.
 module deck_echo_m
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, to_text
   use controls_m, only : interval_t
   use curves_m, only : curve_is_constant
+  use deck_lines_m, only : deck_t, layout_marks
   use hardenings_m, only : hardening_t
   use history_tables_m, only : history_tables, n_table
   use model_m, only : model_t
   use parts_m, only : material_t
+  use system_m, only : give_back_memory
   use walls_m, only : friction_sticks
   implicit none
   private
-  public :: echo_model
+  public :: echo_model, write_effective
 
 contains
 
@@ -212,30 +216,69 @@ contains
   subroutine echo_walls(model, log)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
+    character(:), allocatable :: sliding
     integer :: i
 
     do i = 1, size(model%walls)
       associate (wall => model%walls(i))
+        sliding = 'without sliding'
+        if (wall%friction < friction_sticks) sliding = 'with friction '//to_text(wall%friction)
+        if (.not. wall%friction > 0.0_wp) sliding = 'without friction'
         call write_log(log, 'wall '//to_text(wall%id)//': through ('//to_text(wall%foot(1))//', ' &
           //to_text(wall%foot(2))//'), normal ('//to_text(wall%normal(1))//', ' &
           //to_text(wall%normal(2))//'), seen by '//to_text(size(wall%nodes))//' nodes, plastic ' &
-          //'impact '//friction_text(wall%friction))
+          //'impact '//sliding)
       end associate
     end do
   end subroutine echo_walls
 
-  !> Friction of a wall.
-  pure function friction_text(friction) result(text)
-    real(wp), intent(in) :: friction
-    character(:), allocatable :: text
+  !> The text of the effective deck: its characters are counted, then written. What only messages
+  !> need is given up before, the files that it is made of are on the way.
+  subroutine write_effective(deck, effective)
+    type(deck_t), intent(inout) :: deck
+    character(:), allocatable, intent(out) :: effective
+    integer :: i, k, line, source, n, last_block(deck%n_source)
 
-    if (.not. friction > 0.0_wp) then
-      text = 'without friction'
-    else if (friction < friction_sticks) then
-      text = 'with friction '//to_text(friction)
-    else
-      text = 'without sliding'
-    end if
-  end function friction_text
+    if (allocated(deck%number)) deallocate (deck%number, deck%flags)
+    call give_back_memory()
+    do i = 1, deck%n_block
+      last_block(deck%blocks(i)%source) = i
+    end do
+    do k = 1, 2
+      if (k == 2) allocate (character(n) :: effective)
+      n = 0
+      call put('$ The deck as run: includes, parameters and command line resolved.')
+      do i = 1, deck%parameters%n
+        associate (item => deck%parameters%items(i))
+          if (item%found) call put('$ parameter '//trim(item%name)//' = '//item%text)
+        end associate
+      end do
+      call put('*KEYWORD')
+      do i = 1, deck%n_block
+        source = deck%blocks(i)%source
+        if (.not. deck%blocks(i)%dropped) then
+          call put('*'//deck%blocks(i)%given//trim(layout_marks(deck%blocks(i)%layout)))
+          do line = deck%blocks(i)%first, deck%blocks(i)%last
+            call put(deck%sources(merge(0, source, deck%first(line) < 0))%text( &
+              abs(deck%first(line)):deck%last(line)))
+          end do
+        end if
+        ! The text of a file goes behind its last block.
+        if (k == 2 .and. last_block(source) == i) deallocate (deck%sources(source)%text)
+      end do
+      call put('*END')
+    end do
+
+  contains
+
+    !> Append a line.
+    subroutine put(text)
+      character(*), intent(in) :: text
+
+      if (k == 2) effective(n + 1:n + len(text) + 1) = text//new_line('a')
+      n = n + len(text) + 1
+    end subroutine put
+
+  end subroutine write_effective
 
 end module deck_echo_m

@@ -22,7 +22,7 @@ contains
     character(:), allocatable, intent(out) :: merged
     type(error_t), allocatable, intent(out) :: error
     character(:), allocatable :: mistakes, kept, taken, names, name
-    integer :: start, next, line, i
+    integer :: start, next, line, i, n
 
     mistakes = ''
     taken = ''
@@ -49,18 +49,6 @@ contains
       call raise(error, mistakes(:len(mistakes) - 1), status_input)
       return
     end if
-    call leave_out(deck, names, kept)
-    merged = kept//taken//'*END'//new_line('a')
-  end subroutine merge_decks
-
-  !> A deck without the blocks of these names and without its *END.
-  subroutine leave_out(deck, names, kept)
-    character(*), intent(in) :: deck
-    character(*), intent(in) :: names        !! blanks around each
-    character(:), allocatable, intent(out) :: kept
-    character(:), allocatable :: name
-    integer :: start, next, n
-
     allocate (character(len(deck)) :: kept)
     n = 0
     start = 1
@@ -72,8 +60,8 @@ contains
       end if
       start = next
     end do
-    kept = kept(:n)
-  end subroutine leave_out
+    merged = kept(:n)//taken//'*END'//new_line('a')
+  end subroutine merge_decks
 
   !> The block that starts at `start`: its keyword, empty for what comes before the first one,
   !> and where the next starts.

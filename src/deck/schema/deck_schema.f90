@@ -12,19 +12,20 @@
 !> Widths are 10 unless said. A field asks for something when it is neither 0 nor its default.
 module deck_schema_m
   use deck_schema_others_m, only : table_others
-  use deck_spelling_m, only : keep_nearer
   use deck_schema_tables_m, only : table_control, table_mesh, table_conditions, table_contact, &
     table_database
   implicit none
   private
-  public :: keyword_cards, find_keyword, nearest_keyword, expected, refusal_reason, lost_effect, &
-    max_card, known_honoured, known_ignored, known_refused, known_not
+  public :: table, keyword_cards, find_keyword, nearest_keyword, expectations, &
+    refusal_reason, text_of_field, first_too_far, keep_nearer, max_card, known_honoured, &
+    known_ignored, known_refused, known_not
 
   !> All keywords that are honoured, and their cards.
   character(131), parameter :: table(*) = [character(131) :: table_control, table_mesh, &
     table_conditions, table_contact, table_database]
   !> What fields are expected to be, for errors of their range, which follows in parentheses unless
-  !> there are some: field, or beginning of keyword and field; the first that fits.
+  !> there are some; of a field with treatment w how its warning goes on. Fields, or beginnings of
+  !> keywords and fields, with commas between; the first that fits.
   character(188), parameter :: expectations(*) = [character(188) :: &
     'CONTROL_TERM.DTMIN a share of the first step', &
     'ENDTIM an end time', &
@@ -34,20 +35,18 @@ module deck_schema_m
     'TERMINATION_BODY.STOP 1 (x), 2 (y) or 4 (displacement)', &
     'TERMINATION_CONTACT.DOF 0 (both), 1 (x) or 2 (y)', &
     'TSSFAC a scale of the step', &
-    'LCTM a curve number', &
+    'LCTM,DATABASE.LCUR,DATABASE.LCDT,LCSR a curve number', &
     'ISDO an element length rule (0 area over longest side, 1 area over longest diagonal)', &
     'ERODE 0 or 1 (1: elements whose step falls below DTMIN times the first step, or whose ' &
     //'volume vanishes, leave the mesh)', &
     'MS1ST 0 or 1 (masses are scaled at the start alone)', &
-    'NRCYCK a number of cycles', &
+    'NRCYCK,CYCL a number of cycles', &
     'DRTOL a share', &
     'DRFCTR a factor', &
     'IDRFLG 0 (relaxation where a curve asks for it), 1 (in any case) or -999 (in no case)', &
     'CONTROL_BULK_VISCOSITY.TYPE a kind of bulk viscosity that this version has (1 standard)', &
-    'QH an hourglass coefficient (0 to 10; 0.05 to 0.15 are usual)', &
-    'QM an hourglass coefficient (0 to 10; 0.05 to 0.15 are usual)', &
-    'Q1 a coefficient of bulk viscosity (0 to 100; Q1 1.5 and Q2 0.06 are usual)', &
-    'Q2 a coefficient of bulk viscosity (0 to 100; Q1 1.5 and Q2 0.06 are usual)', &
+    'QH,QM an hourglass coefficient (0 to 10; 0.05 to 0.15 are usual)', &
+    'Q1,Q2 a coefficient of bulk viscosity (0 to 100; Q1 1.5 and Q2 0.06 are usual)', &
     'ECDT 0 (a warning where contact needs a smaller step), 1 (none) or 2 (a step stable with ' &
     //'it)', &
     'IMFLAG a method that this version has (0 explicit, 1 implicit; no switching)', &
@@ -59,28 +58,23 @@ module deck_schema_m
     'ITEOPT a number of iterations', &
     'CONTROL_IMPLICIT_AUTO.DTMAX a longest step (0 or more; curves of it are not supported)', &
     'BINARY 0, 1 (text file), 2 (binout) or 3 (both)', &
-    'DATABASE.LCUR a curve number', &
-    'DATABASE.LCDT a curve number', &
-    'CYCL a number of cycles', &
     'DATABASE.NSID a node set number', &
     'DATABASE.SSID a shell set number', &
     'NGAUSS a number of Gauss points', &
-    'PUNIT a unit of the penalty (0 force per length at each contact node, 1 stress, 2 factor on ' &
-    //'the built-in estimate, 3 share of the largest stable one, 4 factor on K L/A of implicit ' &
-    //'springs)', &
+    'PUNIT a unit of the penalty (0 force per length at each contact node, 1 stress, 2 factor ' &
+    //'on the built-in estimate, 3 share of the largest stable one, 4 factor on K L/A of ' &
+    //'implicit springs)', &
     'PENT a penalty (above 0; blank and 0 mean PEN)', &
     'TFAC a tangential over the normal penalty', &
     'TARGET a target of the estimate of contact (above 0, below 1)', &
     'VDC a damping in per cent of critical', &
     'IPF 0 or 1 (the strict rule of type 5)', &
     'FREQ a number of cycles between two searches', &
-    'NODE.NID a node number', &
-    'NODE.X a coordinate', &
-    'NODE.Y a coordinate', &
+    'NODE.NID,N1,N2,N3,N4 a node number', &
+    'NODE.X,NODE.Y a coordinate', &
     'TC a boundary code (0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)', &
     'ELEMENT_SHELL.EID an element number', &
-    'ELEMENT_SHELL.PID a part number', &
-    'ELEMENT_BEAM.PID a part number', &
+    'ELEMENT_SHELL.PID,ELEMENT_BEAM.PID a part number', &
     'SID a set number', &
     'RO a density', &
     'E a Young''s modulus', &
@@ -88,19 +82,14 @@ module deck_schema_m
     //'and more is usual)', &
     'PR a Poisson''s ratio', &
     'G a shear modulus', &
-    'MAT_PLASTIC.SIGY a yield stress', &
+    'MAT_PLASTIC.SIGY,MAT_JOHNSON.A,MAT_SIMPLIFIED.A a yield stress', &
     'MAT_PLASTIC.BETA between 0 (kinematic) and 1 (isotropic hardening)', &
-    'MAT_PLASTIC.FS a plastic strain at failure (0 or more; 0 means never)', &
-    'MAT_ELASTIC.FS a plastic strain at failure (0 or more; 0 means never)', &
-    'FAIL a plastic strain at failure (0 or more; 0 means never)', &
+    'MAT_PLASTIC.FS,MAT_ELASTIC.FS,FAIL a plastic strain at failure (0 or more; 0 means never)', &
     'PC a cut-off, the least pressure, of tension (0 or less; 0 means none)', &
     'LCSS a curve or table number', &
-    'LCSR a curve number', &
     'MAT_PIECEWISE.VP a rate form that this version has (0 scales the yield stress with the ' &
     //'total strain rate)', &
     'VP a rate form (0 counts the total strain rate, 1 that of the plastic strain)', &
-    'MAT_JOHNSON.A a yield stress', &
-    'MAT_SIMPLIFIED.A a yield stress', &
     'EPSO a strain rate', &
     'SPALL 1 (least pressure), 2 (largest stress) or 3 (largest tension)', &
     'MAT_CRUSHABLE.LCID the number of a curve: yield stress against volumetric strain 1 - V', &
@@ -110,28 +99,46 @@ module deck_schema_m
     'CMO 0 (no constraints) or 1 (constraints in global axes)', &
     'NIP a number of points (0, 1, 2 or blank: one point; 4: two by two, full integration)', &
     'SIDR a phase (0 run, 1 dynamic relaxation, 2 both)', &
-    'DOFX 0 (free) or 1 (fixed)', &
-    'DOFY 0 (free) or 1 (fixed)', &
+    'DOFX,DOFY 0 (free) or 1 (fixed)', &
     'BOUNDARY_PRESCRIBED_MOTION_RIGID.DOF a motion that a rigid body has here (1 x, 2 y, 7 turn ' &
     //'about z)', &
-    'LOAD_RIGID_BODY.DOF a load on a rigid body that this version has (1 x, 2 y, 7 moment ' &
-    //'about z)', &
+    'LOAD_RIGID_BODY.DOF a load on a rigid body that this version has (1 x, 2 y, 7 moment about ' &
+    //'z)', &
     'CONSTRAINED.DOF a code of directions (1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)', &
     'DOF a direction that this version has (1 x, 2 y)', &
     'VAD a kind of motion that this version has (0 velocity, 1 acceleration, 2 displacement)', &
     'DAMPING_PART.LCID a curve number (1 or more); the curve gives the damping over time', &
-    'BOUNDARY.LCID a curve number', &
-    'LOAD.LCID a curve number', &
+    'BOUNDARY.LCID,LOAD.LCID a curve number', &
     'RIGIDWALL.NSID a node set, nor 0 (all nodes)', &
     'STYP a kind of set (1 part set, 2 part, 3 node set)', &
     'OMEGA a number of this size (at most 1e30)', &
     'FLAG 0 or 1 (a second card with factors of the directions)', &
     'COEF a share of critical damping (at most 1; below 0 it is a time)', &
-    'N1 a node number', &
-    'N2 a node number', &
-    'N3 a node number', &
-    'N4 a node number', &
-    'TIE 0 (contact), 1 (tied) or 2 (tied until it breaks)']
+    'TIE 0 (contact), 1 (tied) or 2 (tied until it breaks)', &
+    'DAMP : the viscous damping of the foam, its rate effect, is left out']
+  !> Other names of keywords, and those in the table.
+  character(42), parameter :: aliases(*) = [character(42) :: &
+    'MAT_001 MAT_ELASTIC', &
+    'MAT_003 MAT_PLASTIC_KINEMATIC', &
+    'MAT_007 MAT_BLATZ-KO_RUBBER', &
+    'MAT_009 MAT_NULL', &
+    'MAT_010 MAT_ELASTIC_PLASTIC_HYDRO', &
+    'MAT_015 MAT_JOHNSON_COOK', &
+    'MAT_020 MAT_RIGID', &
+    'MAT_024 MAT_PIECEWISE_LINEAR_PLASTICITY', &
+    'MAT_027 MAT_MOONEY-RIVLIN_RUBBER', &
+    'MAT_063 MAT_CRUSHABLE_FOAM', &
+    'MAT_098 MAT_SIMPLIFIED_JOHNSON_COOK', &
+    'EOS_001 EOS_LINEAR_POLYNOMIAL', &
+    'EOS_004 EOS_GRUNEISEN', &
+    'SET_NODE SET_NODE_LIST', &
+    'SET_NODE_GENERATE SET_NODE_LIST_GENERATE', &
+    'SET_PART SET_PART_LIST', &
+    'SET_PART_GENERATE SET_PART_LIST_GENERATE', &
+    'SET_SHELL SET_SHELL_LIST', &
+    'SET_SHELL_GENERATE SET_SHELL_LIST_GENERATE', &
+    'DATABASE_D3PLOT DATABASE_BINARY_D3PLOT', &
+    'INCLUDE_PATH_RELATIVE INCLUDE_PATH']
   !> Why fields with treatment r may not be used; what ends without a `;` goes on as below.
   character(145), parameter :: refusals(*) = [character(145) :: &
     'FRIC_S is a shear factor of friction', &
@@ -172,26 +179,24 @@ module deck_schema_m
 
 contains
 
-  !> The cards of a keyword (canonical name) and its options.
-  subroutine keyword_cards(name, cards, n_card, options)
+  !> Where the cards of a keyword (canonical name) stand, and its options.
+  subroutine keyword_cards(name, row, n_card, options)
     character(*), intent(in) :: name
-    character(*), intent(out) :: cards(max_card)
+    integer, intent(out) :: row       !! of the table; the cards are in the rows behind it
     integer, intent(out) :: n_card
-    character(*), intent(out), optional :: options
-    integer :: i, k, at
+    character(*), intent(out) :: options
+    integer :: at
 
-    cards = ''
+    options = ''
     n_card = 0
-    i = row_of(name)
-    if (present(options)) options = ''
-    if (i == 0) return
-    if (present(options)) options = table(i)(len_trim(name) + 2:)
-    at = index(table(i), '=')
-    if (at > 0) i = row_of(trim(table(i)(at + 1:)))
-    do k = i + 1, min(i + max_card, size(table))
-      if (table(k)(1:1) /= ' ') return
+    row = row_of(name)
+    if (row == 0) return
+    options = table(row)(len_trim(name) + 2:)
+    at = index(table(row), '=')
+    if (at > 0) row = row_of(trim(table(row)(at + 1:)))
+    do while (row + n_card < size(table))
+      if (table(row + n_card + 1)(1:1) /= ' ') return
       n_card = n_card + 1
-      cards(n_card) = table(k)
     end do
   end subroutine keyword_cards
 
@@ -221,6 +226,7 @@ contains
     logical, intent(out) :: titled
     character(:), allocatable, intent(out) :: reason
     character(len(given)) :: base
+    character(len(table_others)) :: pattern
     integer :: i
 
     reason = ''
@@ -234,7 +240,11 @@ contains
     if (i > 0) titled = index(table(i)(len_trim(name) + 1:), 't') > 0
     if (titled) return
     name = given
-    call look_others(given, known, reason)
+    known = known_not
+    call find_other(given, i, pattern)
+    if (i == 0) return
+    reason = trim(table_others(i)(index(table_others(i), ' ') + 1:))
+    if (reason /= 'unknown') known = merge(known_ignored, known_refused, reason == 'ignored')
   end subroutine find_keyword
 
   !> The name without its _TITLE or _ID; blank when it has none.
@@ -257,52 +267,13 @@ contains
   pure function canonical(given) result(name)
     character(*), intent(in) :: given
     character(len(given) + longest_addition) :: name
+    integer :: i, at
 
     name = given
-    select case (given)
-    case ('MAT_001')
-      name = 'MAT_ELASTIC'
-    case ('MAT_003')
-      name = 'MAT_PLASTIC_KINEMATIC'
-    case ('MAT_024')
-      name = 'MAT_PIECEWISE_LINEAR_PLASTICITY'
-    case ('MAT_009')
-      name = 'MAT_NULL'
-    case ('MAT_010')
-      name = 'MAT_ELASTIC_PLASTIC_HYDRO'
-    case ('MAT_015')
-      name = 'MAT_JOHNSON_COOK'
-    case ('MAT_007')
-      name = 'MAT_BLATZ-KO_RUBBER'
-    case ('MAT_027')
-      name = 'MAT_MOONEY-RIVLIN_RUBBER'
-    case ('MAT_063')
-      name = 'MAT_CRUSHABLE_FOAM'
-    case ('MAT_098')
-      name = 'MAT_SIMPLIFIED_JOHNSON_COOK'
-    case ('EOS_001')
-      name = 'EOS_LINEAR_POLYNOMIAL'
-    case ('EOS_004')
-      name = 'EOS_GRUNEISEN'
-    case ('MAT_020')
-      name = 'MAT_RIGID'
-    case ('SET_NODE')
-      name = 'SET_NODE_LIST'
-    case ('SET_NODE_GENERATE')
-      name = 'SET_NODE_LIST_GENERATE'
-    case ('SET_PART')
-      name = 'SET_PART_LIST'
-    case ('SET_PART_GENERATE')
-      name = 'SET_PART_LIST_GENERATE'
-    case ('SET_SHELL')
-      name = 'SET_SHELL_LIST'
-    case ('SET_SHELL_GENERATE')
-      name = 'SET_SHELL_LIST_GENERATE'
-    case ('DATABASE_D3PLOT')
-      name = 'DATABASE_BINARY_D3PLOT'
-    case ('INCLUDE_PATH_RELATIVE')
-      name = 'INCLUDE_PATH'
-    end select
+    do i = 1, size(aliases)
+      at = index(aliases(i), ' ')
+      if (aliases(i)(:at) == given) name = aliases(i)(at + 1:)
+    end do
   end function canonical
 
   !> The honoured keyword that a name is likely meant for: at most two letters away. Blank where
@@ -313,15 +284,17 @@ contains
     integer, parameter :: near = 2, least_length = 6
     integer :: least, i, n
     character(len(given)) :: base
+    character(len(table_others)) :: pattern
 
     nearest = ''
     longer = ''
     if (len_trim(given) < least_length) return
-    do i = 1, size(table_others)
-      if (.not. matches(table_others(i)(:index(table_others(i), ' ') - 1), given)) cycle
-      if (.not. is_family(table_others(i))) return
-      exit
-    end do
+    call find_other(given, i, pattern)
+    ! Of families, as in `MAT_*`, and where a misspelt name must not pass for another.
+    if (i > 0) then
+      if (index(table_others(i), ' unknown ') == 0 .and. index(pattern, '_') &
+        /= index(pattern, '_* ')) return
+    end if
     least = near + 1
     call take_option(given, base)
     if (len_trim(base) == 0) base = given
@@ -336,88 +309,105 @@ contains
     if (len_trim(nearest) == 0) nearest = longer
   end function nearest_keyword
 
-  !> Whether a row of the others stands for a family of names, as in `MAT_*`, or for unknown ones.
-  pure function is_family(row) result(yes)
-    character(*), intent(in) :: row
-    logical :: yes
-    integer :: n
-
-    n = index(row, ' ') - 1
-    yes = row(n + 2:) == 'unknown' .or. (index(row(:n), '*') > 0 .and. index(row(:n), '_') == n - 1)
-  end function is_family
-
-  !> Treatment of a name that is not honoured.
-  pure subroutine look_others(name, known, reason)
+  !> The first row of the others that a name fits, and what it fits there: a name, or the beginning
+  !> of one with an asterisk; 0 where there is none.
+  pure subroutine find_other(name, row, pattern)
     character(*), intent(in) :: name
-    integer, intent(out) :: known
-    character(:), allocatable, intent(out) :: reason
-    integer :: i, n
+    integer, intent(out) :: row
+    character(*), intent(out) :: pattern
+    integer :: start, n
 
-    known = known_not
-    reason = ''
-    do i = 1, size(table_others)
-      n = index(table_others(i), ' ')
-      if (.not. matches(table_others(i)(:n - 1), name)) cycle
-      if (table_others(i)(n + 1:) == 'unknown') return
-      known = merge(known_ignored, known_refused, table_others(i)(n + 1:) == 'ignored')
-      reason = trim(table_others(i)(n + 1:))
-      return
+    do row = 1, size(table_others)
+      start = 1
+      do while (start <= index(table_others(row), ' '))
+        n = scan(table_others(row)(start:), ', ') - 1
+        pattern = table_others(row)(start:start + n - 1)
+        if (pattern == name) return
+        if (pattern(n:n) == '*' .and. index(name, pattern(:n - 1)) == 1) return
+        start = start + n + 1
+      end do
     end do
-  end subroutine look_others
-
-  !> Whether a name is the pattern, or starts as it does when the pattern ends with an asterisk.
-  pure function matches(pattern, name) result(yes)
-    character(*), intent(in) :: pattern, name
-    logical :: yes
-    integer :: n
-
-    n = len(pattern)
-    if (pattern(n:n) == '*') then
-      yes = index(name, pattern(:n - 1)) == 1
-    else
-      yes = name == pattern
-    end if
-  end function matches
-
-  !> What is left out of a run where a field with treatment w is given, as the end of its warning.
-  pure function lost_effect(field) result(text)
-    character(*), intent(in) :: field
-    character(:), allocatable :: text
-
-    text = ''
-    if (field == 'DAMP') text = ': the viscous damping of the foam, its rate effect, is left out'
-  end function lost_effect
-
-  !> What a field is expected to be, where its range alone says too little; blank for the others.
-  pure function expected(keyword, field) result(text)
-    character(*), intent(in) :: keyword, field
-    character(:), allocatable :: text
-    integer :: i, at, dot
-
-    text = ''
-    do i = 1, size(expectations)
-      at = index(expectations(i), ' ')
-      dot = index(expectations(i)(:at), '.')
-      if (expectations(i)(dot + 1:at) /= field) cycle
-      if (index(keyword, expectations(i)(:dot - 1)) /= 1) cycle
-      text = trim(expectations(i)(at + 1:))
-      return
-    end do
-  end function expected
+    row = 0
+  end subroutine find_other
 
   !> Why a field with treatment r may not be used.
   pure function refusal_reason(field) result(text)
     character(*), intent(in) :: field
     character(:), allocatable :: text
-    integer :: i, at
 
-    text = 'is not supported here; leave it at its default'
-    do i = 1, size(refusals)
-      at = index(refusals(i), ' ')
-      if (index(','//refusals(i)(:at - 1)//',', ','//field//',') == 0) cycle
-      text = trim(refusals(i)(at + 1:))
-      if (index(text, ';') == 0) text = text//', which this version does not have; leave it 0'
-    end do
+    text = text_of_field(refusals, '', field)
+    if (len(text) == 0) then
+      text = 'is not supported here; leave it at its default'
+    else if (index(text, ';') == 0) then
+      text = text//', which this version does not have; leave it 0'
+    end if
   end function refusal_reason
+
+  !> The text of the first row that names a field, or the beginning of its keyword and the field;
+  !> empty where there is none.
+  pure function text_of_field(rows, keyword, field) result(text)
+    character(*), intent(in) :: rows(:), keyword, field
+    character(:), allocatable :: text
+    integer :: i, start, n, dot
+
+    do i = 1, size(rows)
+      start = 1
+      do while (start <= index(rows(i), ' '))
+        n = scan(rows(i)(start:), ', ') - 1
+        dot = start + index(rows(i)(start:start + n - 1), '.') - 1
+        if (rows(i)(dot + 1:start + n - 1) == field .and. index(keyword, rows(i)(start:dot - 1)) &
+          == 1) then
+          text = trim(rows(i)(index(rows(i), ' ') + 1:))
+          return
+        end if
+        start = start + n + 1
+      end do
+    end do
+    text = ''
+  end function text_of_field
+
+  !> Letters by which no name differs from one that it is meant for: three, fewer of a short one.
+  pure function first_too_far(name) result(letters)
+    character(*), intent(in) :: name
+    integer :: letters
+
+    letters = min(3, (len(name) + 2)/2)
+  end function first_too_far
+
+  !> Take a name in place of the nearest so far where it is nearer to the one given.
+  pure subroutine keep_nearer(name, given, least, nearest)
+    character(*), intent(in) :: name, given      !! without blanks behind
+    integer, intent(inout) :: least              !! distance of the nearest so far
+    character(*), intent(inout) :: nearest
+    integer :: distance
+
+    if (abs(len(name) - len(given)) >= least) return
+    distance = edit_distance(name, given)
+    if (distance >= min(least, first_too_far(name))) return
+    least = distance
+    nearest = name
+  end subroutine keep_nearer
+
+  !> Letters to insert, to leave out or to change, or neighbours to swap, that make one name of
+  !> another (optimal string alignment).
+  pure function edit_distance(a, b) result(distance)
+    character(*), intent(in) :: a, b    !! without blanks behind
+    integer :: distance
+    integer :: cost(0:len(a), 0:len(b)), i, k
+
+    cost = 0
+    cost(:, 0) = [(i, i=0, len(a))]
+    cost(0, :) = [(k, k=0, len(b))]
+    do k = 1, len(b)
+      do i = 1, len(a)
+        cost(i, k) = min(cost(i - 1, k) + 1, cost(i, k - 1) + 1, &
+          cost(i - 1, k - 1) + merge(0, 1, a(i:i) == b(k:k)))
+        if (i == 1 .or. k == 1) cycle
+        if (a(i:i) == b(k - 1:k - 1) .and. a(i - 1:i - 1) == b(k:k)) &
+          cost(i, k) = min(cost(i, k), cost(i - 2, k - 2) + 1)
+      end do
+    end do
+    distance = cost(len(a), len(b))
+  end function edit_distance
 
 end module deck_schema_m

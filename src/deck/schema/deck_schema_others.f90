@@ -5,10 +5,11 @@ module deck_schema_others_m
   private
   public :: table_others
 
-  !> First match counts: without effect here, or the beginning of `... not available in slideline`.
-  !> An asterisk stands for any ending. `unknown` keeps names of a family that holds honoured
-  !> keywords from the lines below it: a misspelt one must not pass for another.
-  character(81), parameter :: table_others(*) = [character(81) :: &
+  !> First match counts: names with commas between, and `ignored`, without effect here, or the
+  !> beginning of `... not available in slideline`. An asterisk stands for any ending. `unknown`
+  !> keeps names of a family that holds honoured keywords from the lines below it: a misspelt one
+  !> must not pass for another.
+  character(88), parameter :: table_others(*) = [character(88) :: &
     'MAT_* this material is', &
     'EOS_* this equation of state is', &
     'ELEMENT_MASS_PART* masses of whole parts are', &
@@ -45,137 +46,81 @@ module deck_schema_others_m
     'INCLUDE_* this kind of include is', &
     'NODE_* this kind of node is', &
     'CONTROL_IMPLICIT_AUTO_DYN switching phases of an implicit run is', &
-    'CONTROL_IMPLICIT_AUTO_SPR springback phases are', &
+    'CONTROL_IMPLICIT_AUTO_SPR,CONTROL_IMPLICIT_DYNAMICS_SPR springback phases are', &
     'CONTROL_IMPLICIT_BUCKLE a buckling analysis is', &
     'CONTROL_IMPLICIT_CONSISTENT_MASS a consistent mass matrix is', &
     'CONTROL_IMPLICIT_DYNAMICS_DYN switching phases of an implicit run is', &
-    'CONTROL_IMPLICIT_DYNAMICS_SPR springback phases are', &
     'CONTROL_IMPLICIT_EIGENVALUE* an eigenvalue analysis is', &
     'CONTROL_IMPLICIT_EXPLICIT_HYBRID an implicit analysis of some parts alone is', &
-    'CONTROL_IMPLICIT_FORMING* this implicit option is', &
+    'CONTROL_IMPLICIT_FORMING*,CONTROL_IMPLICIT_INERTIA_RELIEF this implicit option is', &
     'CONTROL_IMPLICIT_GENERAL_DYN switching phases of an implicit run is', &
-    'CONTROL_IMPLICIT_GENERAL_SPR springback phases are', &
-    'CONTROL_IMPLICIT_INERTIA_RELIEF this implicit option is', &
-    'CONTROL_IMPLICIT_MODAL_DYNAMIC* a modal analysis is', &
-    'CONTROL_IMPLICIT_MODES* a modal analysis is', &
+    'CONTROL_IMPLICIT_GENERAL_SPR,CONTROL_IMPLICIT_SOLUTION_SPR springback phases are', &
+    'CONTROL_IMPLICIT_MODAL_DYNAMIC*,CONTROL_IMPLICIT_MODES* a modal analysis is', &
     'CONTROL_IMPLICIT_RESIDUAL_VECTOR a modal analysis is', &
     'CONTROL_IMPLICIT_ROTATIONAL_DYNAMICS rotating parts are', &
     'CONTROL_IMPLICIT_SOLUTION_DYN switching phases of an implicit run is', &
-    'CONTROL_IMPLICIT_SOLUTION_SPR springback phases are', &
     'CONTROL_IMPLICIT_SSD* a steady state analysis is', &
     'CONTROL_IMPLICIT_STABILIZATION* artificial stabilisation is', &
     'CONTROL_IMPLICIT_STATIC_CONDENSATION* static condensation is', &
     'CONTROL_IMPLICIT_TERMINATION an end by displacement or energy is', &
-    'CONTROL_2D_REMESHING* remeshing during the run is', &
-    'CONTROL_ACOUSTIC* acoustics is', &
+    'CONTROL_2D_REMESHING*,CONTROL_REMESHING* remeshing during the run is', &
+    'CONTROL_ACOUSTIC*,CONTROL_VIBRO_ACOUSTIC acoustics is', &
     'CONTROL_ADAP* adaptive meshing is', &
-    'CONTROL_AIRBAG airbags are', &
+    'CONTROL_AIRBAG,CONTROL_CPM,AIRBAG_* airbags are', &
     'CONTROL_COARSEN a mesh that the program makes coarser is', &
-    'CONTROL_COUPLING coupling to another program is', &
-    'CONTROL_CPM airbags are', &
+    'CONTROL_COUPLING,COSIM_* coupling to another program is', &
     'CONTROL_DISCRETE_ELEMENT* discrete elements are', &
     'CONTROL_EFG meshless parts are', &
-    'CONTROL_EXPLICIT_THERMAL_* a thermal analysis is', &
+    'CONTROL_EXPLICIT_THERMAL_*,CONTROL_THERMAL_* a thermal analysis is', &
     'CONTROL_EXPLOSIVE_SHADOW* explosives are', &
     'CONTROL_FORMING_* set-up of metal forming is', &
-    'CONTROL_FREQUENCY_* a frequency domain analysis is', &
+    'CONTROL_FREQUENCY_*,FREQUENCY_* a frequency domain analysis is', &
     'CONTROL_HOURGLASS_936 this variant of hourglass control is', &
     'CONTROL_NONLOCAL nonlocal failure is', &
     'CONTROL_PORE_* pore pressure is', &
     'CONTROL_PZELECTRIC a piezoelectric analysis is', &
     'CONTROL_REFERENCE_* a search for the unloaded shape is', &
     'CONTROL_REFINE_* refinement of the mesh during the run is', &
-    'CONTROL_REMESHING* remeshing during the run is', &
-    'CONTROL_SEGMENTS_IN_ALE* ALE is', &
+    'CONTROL_SEGMENTS_IN_ALE*,ALE_* ALE is', &
     'CONTROL_STAGED_CONSTRUCTION staged construction is', &
     'CONTROL_START a start at another time than 0 is', &
     'CONTROL_STEADY_STATE_ROLLING rolling in the steady state is', &
     'CONTROL_SUBCYCLE_* mass scaling of chosen parts is', &
-    'CONTROL_THERMAL_* a thermal analysis is', &
-    'CONTROL_VIBRO_ACOUSTIC acoustics is', &
-    'CONTROL_SHELL ignored', &
-    'CONTROL_SOLID ignored', &
-    'CONTROL_CPU ignored', &
-    'CONTROL_PARALLEL ignored', &
-    'CONTROL_MPP_* ignored', &
-    'CONTROL_ACCURACY ignored', &
-    'CONTROL_IMPLICIT_JOINTS ignored', &
-    'CONTROL_IMPLICIT_ORDERING ignored', &
-    'CONTROL_IMPLICIT_SOLVER* ignored', &
-    'CONTROL_STRUCTURED* ignored', &
-    'CONTROL_DEBUG ignored', &
-    'CONTROL_REQUIRE_REVISION ignored', &
-    'CONTROL_SPH* ignored', &
-    'CONTROL_ALE ignored', &
-    'CONTROL_CHECK* ignored', &
-    'CONTROL_LSDA ignored', &
-    'CONTROL_SPOTWELD_BEAM ignored', &
-    'CONTROL_SUBCYCLE ignored', &
-    'CONTROL_RIGID ignored', &
-    'DATABASE_FORMAT ignored', &
-    'DATABASE_BINARY_D3THDT ignored', &
-    'DATABASE_BINARY_INTFOR* ignored', &
-    'DATABASE_BINARY_D3DRLF ignored', &
+    'CONTROL_SHELL,CONTROL_SOLID,CONTROL_CPU,CONTROL_PARALLEL,CONTROL_MPP_* ignored', &
+    'CONTROL_ACCURACY,CONTROL_IMPLICIT_JOINTS,CONTROL_IMPLICIT_ORDERING ignored', &
+    'CONTROL_IMPLICIT_SOLVER*,CONTROL_STRUCTURED*,CONTROL_DEBUG,CONTROL_SPOTWELD_BEAM ignored', &
+    'CONTROL_REQUIRE_REVISION,CONTROL_SPH*,CONTROL_ALE,CONTROL_CHECK*,CONTROL_LSDA ignored', &
+    'CONTROL_SUBCYCLE,CONTROL_RIGID,DATABASE_FORMAT,DATABASE_BINARY_D3THDT ignored', &
+    'DATABASE_BINARY_INTFOR*,DATABASE_BINARY_D3DRLF,DATABASE_BINARY_D3PROP ignored', &
     'DATABASE_BINARY_D3PART a plot file of some parts is', &
-    'DATABASE_BINARY_D3PROP ignored', &
-    'DATABASE_BINARY_BLSTFOR ignored', &
-    'DATABASE_ABSTAT* ignored', &
-    'DATABASE_JNTFORC ignored', &
-    'DATABASE_DEFORC ignored', &
-    'DATABASE_NCFORC* ignored', &
-    'DATABASE_EXTENT_* ignored', &
-    'DATABASE_GCEOUT ignored', &
-    'DATABASE_SPHOUT ignored', &
-    'DATABASE_TPRINT ignored', &
-    'DATABASE_SBTOUT ignored', &
-    'DATABASE_SWFORC ignored', &
-    'DATABASE_DISBOUT ignored', &
-    'DATABASE_ATDOUT ignored', &
-    'DATABASE_AVSFLT ignored', &
-    'DATABASE_MOVIE ignored', &
-    'DATABASE_MPGS ignored', &
-    'DATABASE_TRHIST ignored', &
-    'DATABASE_CURVOUT ignored', &
-    'DATABASE_PLLYOUT ignored', &
-    'DATABASE_FREQUENCY_* ignored', &
-    'DATABASE_HISTORY_ACOUSTIC* a history of such elements is', &
-    'DATABASE_HISTORY_BEAM* a history of such elements is', &
-    'DATABASE_HISTORY_DISCRETE* a history of such elements is', &
-    'DATABASE_HISTORY_NODE_LOCAL* a history in local axes is', &
-    'DATABASE_HISTORY_NODE_SET_LOCAL* a history in local axes is', &
-    'DATABASE_HISTORY_SEATBELT* a history of such elements is', &
+    'DATABASE_BINARY_BLSTFOR,DATABASE_ABSTAT*,DATABASE_JNTFORC,DATABASE_DEFORC ignored', &
+    'DATABASE_NCFORC*,DATABASE_EXTENT_*,DATABASE_GCEOUT,DATABASE_SPHOUT ignored', &
+    'DATABASE_TPRINT,DATABASE_SBTOUT,DATABASE_SWFORC,DATABASE_DISBOUT,DATABASE_ATDOUT ignored', &
+    'DATABASE_AVSFLT,DATABASE_MOVIE,DATABASE_MPGS,DATABASE_TRHIST,DATABASE_CURVOUT ignored', &
+    'DATABASE_PLLYOUT,DATABASE_FREQUENCY_*,COMPONENT_* ignored', &
+    'DATABASE_HISTORY_ACOUSTIC*,DATABASE_HISTORY_BEAM* a history of such elements is', &
+    'DATABASE_HISTORY_DISCRETE*,DATABASE_HISTORY_SEATBELT* a history of such elements is', &
+    'DATABASE_HISTORY_NODE_LOCAL*,DATABASE_HISTORY_NODE_SET_LOCAL* a history in local axes is', &
     'DATABASE_HISTORY_SHELL_ID* a heading of a shell (give *DATABASE_HISTORY_SHELL) is', &
-    'DATABASE_HISTORY_SOLID* a history of such elements is', &
-    'DATABASE_HISTORY_SPH* a history of such elements is', &
+    'DATABASE_HISTORY_SOLID*,DATABASE_HISTORY_SPH* a history of such elements is', &
     'DATABASE_HISTORY_TSHELL* a history of such elements is', &
-    'DATABASE_ACEOUT this output is', &
-    'DATABASE_PBSTAT this output is', &
-    'DATABASE_SSSTAT* this output is', &
+    'DATABASE_ACEOUT,DATABASE_PBSTAT,DATABASE_SSSTAT* this output is', &
     'DATABASE_CROSS_SECTION_PLANE* sections cut by a plane (give sets by _SET) are', &
     'INTERFACE_SPRINGBACK_* the file of a next stage (dynain) is', &
     'INTERFACE_* a file for another run is', &
-    'COMPONENT_* ignored', &
-    'CASE several runs of one deck are', &
-    'CASE_* several runs of one deck are', &
+    'CASE,CASE_* several runs of one deck are', &
     'DATABASE_* this output is', &
     'TERMINATION_* this end of a run is', &
     'PERTURBATION_* perturbations are', &
-    'AIRBAG_* airbags are', &
-    'ALE_* ALE is', &
     'DEFORMABLE_TO_RIGID* parts that become rigid are', &
     'EF_* this keyword family is', &
     'BATTERY_* electrochemistry is', &
-    'CESE_* flow of fluids is', &
-    'CHANGE_* a change at a restart (besides outputs and the end) is', &
+    'CESE_*,DUALCESE_*,ICFD_* flow of fluids is', &
+    'CHANGE_*,DELETE_* a change at a restart (besides outputs and the end) is', &
     'CHEMISTRY_* chemistry is', &
     'CONTROLLER_* a controller is', &
-    'COSIM_* coupling to another program is', &
-    'DELETE_* a change at a restart (besides outputs and the end) is', &
-    'DUALCESE_* flow of fluids is', &
     'EM_* electromagnetism is', &
     'FATIGUE* a fatigue analysis is', &
-    'FREQUENCY_* a frequency domain analysis is', &
-    'ICFD_* flow of fluids is', &
     'IGA_* isogeometric analysis is', &
     'INTEGRATION_* an integration rule of shells or beams is', &
     'LSO_* output of other solvers is', &

@@ -21,8 +21,7 @@ module deck_schema_tables_m
     'PARAMETER_LOCAL o =PARAMETER', &
     'PARAMETER_EXPRESSION o', &
     ' PRMR:a EXPRESSION:a70', &
-    'PARAMETER_EXPRESSION_LOCAL o', &
-    ' PRMR:a EXPRESSION:a70', &
+    'PARAMETER_EXPRESSION_LOCAL o =PARAMETER_EXPRESSION', &
     'PARAMETER_DUPLICATION o', &
     ' DFLAG:i=1|1|2|3|4|5', &
     'CONTROL_TERMINATION o', &
@@ -312,9 +311,9 @@ module deck_schema_tables_m
     ' DT:f>=0 LCDT:i>=0 BEAM:is NPLTC:i>=0 PSETID:iw', &
     ' IOOPT:is RATE:fs CUTOFF:fs WINDOW:fs TYPE:is PSET:iw', &
     'DATABASE_BINARY_D3DUMP', &
-    ' CYCL:f>=0<=2e9 NR:is BEAM:is NPLTC:iw PSETID:iw', &
+    ' CYCL:i>=0<=2e9 NR:is BEAM:is NPLTC:iw PSETID:iw', &
     'DATABASE_BINARY_RUNRSF', &
-    ' CYCL:f>=0<=2e9 NR:iw=1 BEAM:is NPLTC:iw PSETID:iw', &
+    ' CYCL:i>=0<=2e9 NR:iw=1 BEAM:is NPLTC:iw PSETID:iw', &
     'DATABASE_HISTORY_NODE r', &
     ' ID1:i ID2:i ID3:i ID4:i ID5:i ID6:i ID7:i ID8:i', &
     'DATABASE_HISTORY_NODE_ID r', &

@@ -1,54 +1,52 @@
 ! SPDX-License-Identifier: MIT
 !> Value of a Fortran-like expression of *PARAMETER_EXPRESSION: + - * / **, parentheses, functions,
-!> names of parameters (with or without &). Nothing in it can raise an arithmetic exception: every
-!> step is checked before it is taken; powers and functions are defined wherever that can not be.
+!> names of parameters (with or without &). What is not defined or too large is told by its value:
+!> arithmetic exceptions do not end the program here.
 module deck_expression_m
+  use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+  use, intrinsic :: ieee_exceptions, only : ieee_all, ieee_set_halting_mode
+  use deck_parameter_table_m, only : parameters_t, find_parameter
   use kinds_m, only : wp, pi
   use text_m, only : upper_case, read_real, number_good
   implicit none
   private
-  public :: evaluate, named_value_t, name_characters
+  public :: evaluate
 
-  !> What names are made of (upper case).
-  character(*), parameter :: name_characters = 'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_'
-  !> Nested parentheses, signs and powers.
+  !> Parentheses, signs and powers inside each other.
   integer, parameter :: max_depth = 100
   !> Largest magnitude of any intermediate value.
   real(wp), parameter :: largest = 1.0e300_wp
-
-  !> A name and its value.
-  type :: named_value_t
-    character(20) :: name = ''   !! upper case
-    real(wp) :: value = 0.0_wp
-  end type named_value_t
+  !> Operators of a sum and of a product.
+  character(2), parameter :: operators(2) = ['+-', '*/']
 
   !> Where the reading stands.
   type :: scanner_t
     character(:), allocatable :: text
     integer :: at = 1
     integer :: depth = 0
-    type(named_value_t), allocatable :: names(:)
+    integer :: source = 0                !! file that the expression stands in
     character(:), allocatable :: trouble !! first mistake
   end type scanner_t
 
 contains
 
   !> Value of `text`; `trouble` is allocated when there is none.
-  subroutine evaluate(text, names, value, trouble)
+  subroutine evaluate(text, parameters, source, value, trouble)
     character(*), intent(in) :: text
-    type(named_value_t), intent(in) :: names(:)
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: source !! file that the text stands in
     real(wp), intent(out) :: value
     character(:), allocatable, intent(out) :: trouble
     type(scanner_t) :: scanner
 
     scanner%text = trim(upper_case(text))//' '
-    scanner%names = names
-    call take_sum(scanner, value)
-    call skip_blanks(scanner)
-    if (.not. allocated(scanner%trouble) .and. scanner%at < len(scanner%text)) &
+    scanner%source = source
+    call take_terms(scanner, parameters, 1, value)
+    if (take(scanner, '')) continue
+    if (scanner%at < len(scanner%text)) &
       call complain(scanner, 'cannot read "'//trim(scanner%text(scanner%at:))//'"')
     if (allocated(scanner%trouble)) then
-      trouble = scanner%trouble
+      call move_alloc(scanner%trouble, trouble)
       value = 0.0_wp
     end if
   end subroutine evaluate
@@ -62,137 +60,129 @@ contains
     scanner%at = len(scanner%text)
   end subroutine complain
 
-  !> Move to the next character that is not blank; the text ends with one blank.
-  subroutine skip_blanks(scanner)
-    type(scanner_t), intent(inout) :: scanner
-
-    do while (scanner%at < len(scanner%text))
-      if (scanner%text(scanner%at:scanner%at) /= ' ') exit
-      scanner%at = scanner%at + 1
-    end do
-  end subroutine skip_blanks
-
-  !> Whether `word` comes next; it is taken if so.
+  !> Whether `word` comes next behind blanks; it is taken if so. The text ends with a blank.
   function take(scanner, word) result(taken)
     type(scanner_t), intent(inout) :: scanner
     character(*), intent(in) :: word
     logical :: taken
+    integer :: n
 
-    call skip_blanks(scanner)
-    taken = .false.
-    if (scanner%at + len(word) - 1 > len(scanner%text)) return
-    taken = scanner%text(scanner%at:scanner%at + len(word) - 1) == word
+    n = verify(scanner%text(scanner%at:), ' ') - 1
+    if (n < 0) n = len(scanner%text) - scanner%at
+    scanner%at = scanner%at + n
+    taken = index(scanner%text(scanner%at:), word) == 1
     if (taken) scanner%at = scanner%at + len(word)
   end function take
 
-  !> term {+ term | - term}
-  recursive subroutine take_sum(scanner, value)
+  !> A sum (level 1) of products (level 2) of factors: operand {operator operand}.
+  recursive subroutine take_terms(scanner, parameters, level, value)
     type(scanner_t), intent(inout) :: scanner
+    type(parameters_t), intent(in) :: parameters
+    integer, intent(in) :: level
     real(wp), intent(out) :: value
-    real(wp) :: term
+    real(wp) :: operand
+    character :: operator
 
-    value = 0.0_wp
-    scanner%depth = scanner%depth + 1
-    if (scanner%depth > max_depth) call complain(scanner, 'too many parentheses or signs')
-    call take_product(scanner, value)
+    call take_operand(value)
     do while (.not. allocated(scanner%trouble))
-      if (take(scanner, '+')) then
-        call take_product(scanner, term)
-        value = value + term
-      else if (take(scanner, '-')) then
-        call take_product(scanner, term)
-        value = value - term
+      if (take(scanner, operators(level)(1:1))) then
+        operator = operators(level)(1:1)
+      else if (take(scanner, operators(level)(2:2))) then
+        operator = operators(level)(2:2)
       else
-        exit
+        return
       end if
-      if (abs(value) > largest) call complain(scanner, 'the value is too large')
+      call take_operand(operand)
+      if (operator == '/' .and. .not. abs(operand) > 0.0_wp) &
+        call complain(scanner, 'division by zero')
+      if (.not. allocated(scanner%trouble)) call operate(scanner, operator, operand, value)
     end do
-    scanner%depth = scanner%depth - 1
-  end subroutine take_sum
 
-  !> factor {* factor | / factor}
-  recursive subroutine take_product(scanner, value)
+  contains
+
+    !> The next operand.
+    recursive subroutine take_operand(next)
+      real(wp), intent(out) :: next
+
+      if (level == 1) call take_terms(scanner, parameters, 2, next)
+      if (level == 2) call take_factor(scanner, parameters, next)
+    end subroutine take_operand
+
+  end subroutine take_terms
+
+  !> value = value operator operand; ^ stands for a power.
+  subroutine operate(scanner, operator, operand, value)
     type(scanner_t), intent(inout) :: scanner
-    real(wp), intent(out) :: value
-    real(wp) :: factor
+    character, intent(in) :: operator
+    real(wp), intent(in) :: operand
+    real(wp), intent(inout) :: value
+    logical :: is_whole
 
-    value = 0.0_wp
-    call take_signed(scanner, value)
-    do while (.not. allocated(scanner%trouble))
-      if (take(scanner, '*')) then
-        call take_signed(scanner, factor)
-        if (exponent(value) + exponent(factor) > 996) then
-          call complain(scanner, 'the value is too large')
-        else
-          value = value*factor
-        end if
-      else if (take(scanner, '/')) then
-        call take_signed(scanner, factor)
-        if (.not. abs(factor) > 0.0_wp) then
-          call complain(scanner, 'division by zero')
-        else if (exponent(value) - exponent(factor) > 995) then
-          call complain(scanner, 'the value is too large')
-        else
-          value = value/factor
-        end if
+    call ieee_set_halting_mode(ieee_all, .false.)
+    select case (operator)
+    case ('+'); value = value + operand
+    case ('-'); value = value - operand
+    case ('*'); value = value*operand
+    case ('/'); value = value/operand
+    case ('^')
+      is_whole = abs(operand) < 1.0e6_wp .and. .not. abs(operand - anint(operand)) > 0.0_wp
+      if (.not. abs(value) > 0.0_wp .and. operand < 0.0_wp) &
+        call complain(scanner, 'division by zero')
+      if (value < 0.0_wp .and. .not. is_whole) &
+        call complain(scanner, 'a negative number to a power that is not whole')
+      if (is_whole) then
+        value = value**nint(operand)
       else
-        exit
+        value = value**operand
       end if
-    end do
-  end subroutine take_product
+    end select
+    if (.not. abs(value) <= largest) call complain(scanner, 'the value is too large')
+  end subroutine operate
 
-  !> A factor with signs before it; a power binds stronger than a sign, as in Fortran.
-  recursive subroutine take_signed(scanner, value)
+  !> Signs, a number, and powers of it taken from the right: they bind stronger than a sign, as in
+  !> Fortran.
+  recursive subroutine take_factor(scanner, parameters, value)
     type(scanner_t), intent(inout) :: scanner
+    type(parameters_t), intent(in) :: parameters
     real(wp), intent(out) :: value
-    logical :: negative
+    real(wp) :: power
+    logical :: is_negative
 
-    negative = .false.
+    is_negative = .false.
     do
       if (take(scanner, '-')) then
-        negative = .not. negative
+        is_negative = .not. is_negative
       else if (.not. take(scanner, '+')) then
         exit
       end if
     end do
-    call take_power(scanner, value)
-    if (negative) value = -value
-  end subroutine take_signed
-
-  !> base [** power], taken from the right
-  recursive subroutine take_power(scanner, value)
-    type(scanner_t), intent(inout) :: scanner
-    real(wp), intent(out) :: value
-    real(wp) :: power
-    character(:), allocatable :: trouble
-
-    call take_primary(scanner, value)
-    if (allocated(scanner%trouble)) return
-    if (.not. take(scanner, '**')) return
     scanner%depth = scanner%depth + 1
-    if (scanner%depth > max_depth) call complain(scanner, 'too many powers')
-    call take_signed(scanner, power)
+    if (scanner%depth > max_depth) call complain(scanner, 'too many parentheses or powers')
+    call take_primary(scanner, parameters, value)
+    if (take(scanner, '**')) then
+      call take_factor(scanner, parameters, power)
+      if (.not. allocated(scanner%trouble)) call operate(scanner, '^', power, value)
+    end if
     scanner%depth = scanner%depth - 1
-    if (allocated(scanner%trouble)) return
-    call raise_power(power, value, trouble)
-    if (len(trouble) > 0) call complain(scanner, trouble)
-  end subroutine take_power
+    if (is_negative) value = -value
+  end subroutine take_factor
 
   !> A number, a name, a function or an expression in parentheses.
-  recursive subroutine take_primary(scanner, value)
+  recursive subroutine take_primary(scanner, parameters, value)
     type(scanner_t), intent(inout) :: scanner
+    type(parameters_t), intent(in) :: parameters
     real(wp), intent(out) :: value
     character(:), allocatable :: word
-    integer :: n, i
+    integer :: n, i, status
 
     value = 0.0_wp
     if (take(scanner, '(')) then
-      call take_sum(scanner, value)
+      call take_terms(scanner, parameters, 1, value)
       if (.not. take(scanner, ')')) call complain(scanner, 'a ")" is missing')
       return
     end if
     if (take(scanner, '&')) continue
-    n = verify(scanner%text(scanner%at:), name_characters) - 1
+    n = verify(scanner%text(scanner%at:), 'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_') - 1
     if (scan(scanner%text(scanner%at:scanner%at), '0123456789.') == 1) then
       call take_number(scanner, value)
       return
@@ -202,15 +192,13 @@ contains
     end if
     word = scanner%text(scanner%at:scanner%at + n - 1)
     scanner%at = scanner%at + n
-    do i = size(scanner%names), 1, -1
-      if (scanner%names(i)%name == word) exit
-    end do
+    i = find_parameter(parameters, word, scanner%source, .true.)
     if (i > 0) then
-      value = scanner%names(i)%value
+      call read_real(parameters%items(i)%text, value, status)
     else if (word == 'PI') then
       value = pi
     else if (take(scanner, '(')) then
-      call take_function(scanner, word, value)
+      call take_function(scanner, parameters, word, value)
     else
       call complain(scanner, 'there is no parameter '//word//' up to here')
     end if
@@ -220,15 +208,14 @@ contains
   subroutine take_number(scanner, value)
     type(scanner_t), intent(inout) :: scanner
     real(wp), intent(out) :: value
+    character(*), parameter :: digits = '0123456789'
     integer :: n, m, status
 
     associate (rest => scanner%text(scanner%at:))
-      n = verify(rest, '0123456789.') - 1
+      n = verify(rest, digits//'.') - 1
       if (scan(rest(n + 1:n + 1), 'ED') == 1) then
-        m = n + 1
-        if (scan(rest(m + 1:min(m + 1, len(rest))), '+-') == 1) m = m + 1
-        if (scan(rest(m + 1:min(m + 1, len(rest))), '0123456789') == 1) &
-          n = m + verify(rest(m + 1:), '0123456789') - 1
+        m = n + 1 + scan(rest(n + 2:n + 2), '+-')
+        if (scan(rest(m + 1:m + 1), digits) == 1) n = m + verify(rest(m + 1:), digits) - 1
       end if
       call read_real(rest(:n), value, status)
     end associate
@@ -240,12 +227,12 @@ contains
   end subroutine take_number
 
   !> The arguments of a function (its opening parenthesis has been taken) and its value.
-  recursive subroutine take_function(scanner, word, value)
+  recursive subroutine take_function(scanner, parameters, word, value)
     type(scanner_t), intent(inout) :: scanner
+    type(parameters_t), intent(in) :: parameters
     character(*), intent(in) :: word
     real(wp), intent(out) :: value
     real(wp) :: arguments(10)
-    character(:), allocatable :: trouble
     integer :: n
 
     value = 0.0_wp
@@ -254,102 +241,53 @@ contains
       n = n + 1
       if (n > size(arguments)) call complain(scanner, word//' has more than 10 arguments')
       if (allocated(scanner%trouble)) return
-      call take_sum(scanner, arguments(n))
+      call take_terms(scanner, parameters, 1, arguments(n))
       if (.not. take(scanner, ',')) exit
     end do
-    if (allocated(scanner%trouble)) return
     if (.not. take(scanner, ')')) call complain(scanner, 'a ")" is missing after '//word)
-    if (allocated(scanner%trouble)) return
-    call apply_function(word, arguments(:n), value, trouble)
-    if (len(trouble) > 0) call complain(scanner, trouble)
+    select case (word)
+    case ('MIN', 'MAX', 'MOD', 'SIGN', 'ATAN2')
+      if (n < 2) call complain(scanner, word//' needs two arguments')
+    case default
+      if (n /= 1) call complain(scanner, word//' takes one argument')
+    end select
+    if (.not. allocated(scanner%trouble)) call apply_function(scanner, word, arguments(:n), value)
   end subroutine take_function
 
-  !> value = value ** power where that is defined and not too large.
-  pure subroutine raise_power(power, value, trouble)
-    real(wp), intent(in) :: power
-    real(wp), intent(inout) :: value
-    character(:), allocatable, intent(out) :: trouble !! empty when all is well
-    logical :: whole
-
-    trouble = ''
-    whole = abs(power) < 1.0e6_wp
-    if (whole) whole = abs(power - anint(power)) <= 0.0_wp
-    if (.not. abs(value) > 0.0_wp) then
-      if (power < 0.0_wp) trouble = 'division by zero'
-      if (abs(power) > 0.0_wp) then
-        value = 0.0_wp
-      else
-        value = 1.0_wp
-      end if
-    else if (value < 0.0_wp .and. .not. whole) then
-      trouble = 'a negative number to a power that is not whole'
-    else if (exponent(power) > 60 .or. exponent(value) > 1000) then
-      trouble = 'the value is too large'
-    else if (power*log(abs(value)) > 690.0_wp) then
-      trouble = 'the value is too large'
-    else if (power*log(abs(value)) < -700.0_wp) then
-      value = 0.0_wp
-    else if (whole) then
-      value = value**nint(power)
-    else
-      value = value**power
-    end if
-  end subroutine raise_power
-
   !> Value of a function.
-  pure subroutine apply_function(word, a, value, trouble)
+  subroutine apply_function(scanner, word, a, value)
+    type(scanner_t), intent(inout) :: scanner
     character(*), intent(in) :: word
     real(wp), intent(in) :: a(:)
     real(wp), intent(out) :: value
-    character(:), allocatable, intent(out) :: trouble !! empty when all is well
-    logical :: inside
 
-    trouble = ''
+    call ieee_set_halting_mode(ieee_all, .false.)
     value = 0.0_wp
-    inside = abs(a(1)) < 1.0e15_wp
     select case (word)
-    case ('MIN', 'MAX', 'MOD', 'SIGN', 'ATAN2')
-      if (size(a) < 2) trouble = word//' needs two arguments'
-    case default
-      if (size(a) /= 1) trouble = word//' takes one argument'
-    end select
-    if (len(trouble) > 0) return
-    select case (word)
-    case ('SIN'); if (inside) value = sin(a(1))
-    case ('COS'); if (inside) value = cos(a(1))
-    case ('TAN'); if (inside) value = tan(a(1))
-    case ('ASIN', 'ACOS')
-      inside = abs(a(1)) <= 1.0_wp
-      if (inside .and. word == 'ASIN') value = asin(a(1))
-      if (inside .and. word == 'ACOS') value = acos(a(1))
-    case ('ATAN'); value = atan(a(1)); inside = .true.
+    case ('SIN'); value = sin(a(1))
+    case ('COS'); value = cos(a(1))
+    case ('TAN'); value = tan(a(1))
+    case ('ASIN'); value = asin(a(1))
+    case ('ACOS'); value = acos(a(1))
+    case ('ATAN'); value = atan(a(1))
     case ('ATAN2')
-      inside = abs(a(1)) > 0.0_wp .or. abs(a(2)) > 0.0_wp
-      if (inside) value = atan2(a(1), a(2))
-    case ('SQRT')
-      inside = a(1) >= 0.0_wp
-      if (inside) value = sqrt(a(1))
-    case ('EXP')
-      inside = a(1) <= 690.0_wp
-      if (inside .and. a(1) > -700.0_wp) value = exp(a(1))
-    case ('LOG', 'LOG10')
-      inside = a(1) > 0.0_wp
-      if (inside .and. word == 'LOG') value = log(a(1))
-      if (inside .and. word == 'LOG10') value = log10(a(1))
-    case ('ABS'); value = abs(a(1)); inside = .true.
-    case ('INT'); if (inside) value = aint(a(1))
-    case ('NINT'); if (inside) value = anint(a(1))
-    case ('MOD')
-      inside = abs(a(2)) > 0.0_wp .and. exponent(a(1)) - exponent(a(2)) < 52
-      if (inside) value = mod(a(1), a(2))
-    case ('SIGN'); value = sign(a(1), a(2)); inside = .true.
-    case ('MIN'); value = minval(a); inside = .true.
-    case ('MAX'); value = maxval(a); inside = .true.
+      value = atan2(a(1), a(2))
+      if (.not. maxval(abs(a(:2))) > 0.0_wp) call complain(scanner, 'ATAN2 is not defined there')
+    case ('SQRT'); value = sqrt(a(1))
+    case ('EXP'); value = exp(a(1))
+    case ('LOG'); value = log(a(1))
+    case ('LOG10'); value = log10(a(1))
+    case ('ABS'); value = abs(a(1))
+    case ('INT'); value = aint(a(1))
+    case ('NINT'); value = anint(a(1))
+    case ('MOD'); value = mod(a(1), a(2))
+    case ('SIGN'); value = sign(a(1), a(2))
+    case ('MIN'); value = minval(a)
+    case ('MAX'); value = maxval(a)
     case default
-      trouble = 'there is no function '//word
-      return
+      call complain(scanner, 'there is no function '//word)
     end select
-    if (.not. inside) trouble = word//' is not defined there'
+    if (.not. ieee_is_finite(value)) call complain(scanner, word//' is not defined there')
   end subroutine apply_function
 
 end module deck_expression_m

@@ -1,20 +1,38 @@
 ! SPDX-License-Identifier: MIT
-!> Lines to cards: fields cut by column or at commas, numbers read, defaults filled in; and messages
-!> about fields.
+!> What a card may hold, from one line of the table in `deck_schema_tables_m`, and lines to cards:
+!> fields cut by column or at commas, numbers read, defaults filled in; and messages about fields.
 module deck_fields_m
   use kinds_m, only : wp
+  use, intrinsic :: iso_fortran_env, only : error_unit
   use text_m, only : read_real, read_integer, number_good, number_range, number_fraction
   use log_m, only : to_text
-  use deck_card_specs_m, only : card_spec_t, is_listed, range_text
-  use deck_schema_m, only : expected
+  use deck_schema_m, only : expectations, text_of_field
   use deck_report_m, only : spot_t, add_error, count_only
-  use deck_lines_m, only : deck_t, line_text, where_text, line_warning, line_spot, deck_error, &
-    given_by, words_of, order_line, keyword_of_line, written_text, shown_text, marked_line, &
-    flag_comma, max_field
+  use deck_lines_m, only : deck_t, line_text, where_text, line_warning, line_spot, line_error, &
+    given_by, words_of, order_line, block_of_line, written_text, shown_text, marked_line, &
+    flag_comma, format_long, format_i10, max_field
   implicit none
   private
-  public :: card_t, cut_card, read_numbers, field_text, field_error, &
-    largest_value, smallest_value
+  public :: begin_card, card_spec_t, make_spec, field_number, range_text, card_t, cut_card, &
+    read_numbers, field_text, field_error, largest_value, smallest_value
+
+  !> What a card may hold.
+  type :: card_spec_t
+    integer :: n = 0                            !! fields
+    integer :: number = 1                       !! card number in messages
+    integer :: row = 0                          !! of the table
+    character(12) :: names(max_field) = ''
+    character :: kinds(max_field) = 'x'         !! i integer, f real, a text, x not used
+    character :: treatments(max_field) = 'h'    !! h honoured, s silently ignored, w ignored with a
+                                                !! warning, r refused unless it is the default
+    integer :: widths(max_field) = 10
+    real(wp) :: defaults(max_field) = 0.0_wp
+    character :: zeros(max_field) = ''          !! what a 0 means where blank is another value: =
+                                                !! the default, ~ 0
+    character(32) :: ranges(max_field) = ''     !! as in the table; blank: any value
+    real(wp) :: least(max_field) = -huge(1.0_wp), most(max_field) = huge(1.0_wp) !! of the range;
+                                                !! between those of a list there is no number
+  end type card_spec_t
 
   !> Numbers beyond the largest are refused, those below the smallest are zero, so that products of
   !> deck values and of what follows from them stay finite. Both lie beyond what single precision
@@ -25,6 +43,7 @@ module deck_fields_m
   type :: card_t
     integer :: line = 0                     !! line in the deck
     integer :: number = 1                   !! card number
+    integer :: row = -1                     !! of the table of keywords
     logical :: present = .false.            !! the deck has this card
     integer :: first(max_field) = 1         !! characters of each field in the line, trimmed;
     integer :: last(max_field) = 0          !! last < first: blank
@@ -38,6 +57,144 @@ module deck_fields_m
 
 contains
 
+  !> A card from its line of the table: words
+  !> `NAME:kind[treatment][width][=default][range]`, or ~default.
+  subroutine make_spec(text, number, layout, spec)
+    character(*), intent(in) :: text
+    integer, intent(in) :: number
+    integer, intent(in) :: layout   !! one of the `format_` constants
+    type(card_spec_t), intent(out) :: spec
+    integer :: start, next, finish, colon, at, status, last
+
+    spec%number = number
+    start = 1
+    last = len_trim(text)
+    do
+      do while (start <= last)
+        if (text(start:start) /= ' ') exit
+        start = start + 1
+      end do
+      if (start > last .or. spec%n == max_field) exit
+      finish = index(text(start:)//' ', ' ') + start - 2
+      next = finish + 1
+      spec%n = spec%n + 1
+      at = scan(text(start:finish), '<>|')
+      if (at > 0) then
+        call set_range(text(start + at - 1:finish), spec)
+        finish = start + at - 2
+      end if
+      colon = index(text(start:finish), ':') + start - 1
+      spec%names(spec%n) = text(start:colon - 1)
+      spec%kinds(spec%n) = text(colon + 1:colon + 1)
+      at = colon + 2
+      if (at <= finish) then
+        if (scan(text(at:at), 'swr') == 1) then
+          spec%treatments(spec%n) = text(at:at)
+          at = at + 1
+        end if
+      end if
+      colon = scan(text(start:finish), '=~') + start - 1
+      if (colon >= start) then
+        call read_real(text(colon + 1:finish), spec%defaults(spec%n), status)
+        if (spec%treatments(spec%n) == 'h') spec%zeros(spec%n) = text(colon:colon)
+      else
+        colon = finish + 1
+      end if
+      if (at < colon) call read_integer(text(at:colon - 1), spec%widths(spec%n), status)
+      start = next
+    end do
+    if (layout == format_long) spec%widths = max(spec%widths, 20)
+    if (layout == format_i10) spec%widths = max(spec%widths, 10)
+  end subroutine make_spec
+
+  !> The range of the last field: `>0`, `>=0`, `<1`, `<=1`, two of them, or whole numbers, as in
+  !> `|1|2|4`.
+  subroutine set_range(text, spec)
+    character(*), intent(in) :: text
+    type(card_spec_t), intent(inout) :: spec
+    real(wp) :: bound
+    integer :: at, finish, status
+
+    spec%ranges(spec%n) = text
+    if (text(1:1) == '|') spec%most(spec%n) = -huge(1.0_wp)
+    at = 1
+    do while (at <= len(text) .and. text(1:1) /= '|')
+      finish = scan(text(at + 1:)//' ', '<> ') + at - 1
+      call read_real(text(at + verify(text(at:), '<>=') - 1:finish), bound, status)
+      if (text(at + 1:at + 1) /= '=') bound = nearest(bound, merge(1.0_wp, -1.0_wp, &
+        text(at:at) == '>'))
+      if (text(at:at) == '>') spec%least(spec%n) = bound
+      if (text(at:at) == '<') spec%most(spec%n) = bound
+      at = finish + 1
+    end do
+  end subroutine set_range
+
+  !> Whether a range is a list of whole numbers that has the number.
+  pure function is_listed(range, value) result(yes)
+    character(*), intent(in) :: range    !! as in the table
+    real(wp), intent(in) :: value
+    logical :: yes
+
+    yes = .false.
+    if (range(1:1) == '|' .and. abs(value) < 1.0e6_wp .and. .not. abs(value - anint(value)) &
+      > 0.0_wp) yes = index(trim(range)//'|', '|'//to_text(nint(value))//'|') > 0
+  end function is_listed
+
+  !> The range of a field in words.
+  pure function range_text(range) result(text)
+    character(*), intent(in) :: range    !! as in the table
+    character(:), allocatable :: text
+    integer :: at, last
+
+    text = trim(range(2:))
+    if (range(1:1) == '|') then
+      do
+        at = index(text, '|')
+        if (at == 0) return
+        last = index(text, '|', back=.true.)
+        text = text(:at - 1)//trim(merge(' or', ',  ', at == last))//' '//text(at + 1:)
+      end do
+    end if
+    at = scan(text, '<>')
+    if (at == 0) then
+      text = bound_text(trim(range), ' or more', ' or less')
+    else if (range(2:2) == '=' .and. text(at + 1:at + 1) == '=') then
+      text = text(2:at - 1)//' to '//text(at + 2:)
+    else
+      text = bound_text(trim(range(:at)), '', '')//', '//bound_text(text(at:), '', '')
+    end if
+  end function range_text
+
+  !> One bound in words.
+  pure function bound_text(bound, or_more, or_less) result(text)
+    character(*), intent(in) :: bound, or_more, or_less
+    character(:), allocatable :: text
+
+    if (bound(2:2) /= '=') then
+      text = merge('above ', 'below ', bound(1:1) == '>')//bound(2:)
+    else if (len(or_more) > 0) then
+      text = bound(3:)//merge(or_more, or_less, bound(1:1) == '>')
+    else
+      text = merge('at least ', 'at most  ', bound(1:1) == '>')
+      text = trim(text)//' '//bound(3:)
+    end if
+  end function bound_text
+
+  !> Position of a field by its name. Names are written in this program, never in a deck: one that
+  !> the card does not have is a fault of the program and ends it.
+  function field_number(names, name) result(k)
+    character(*), intent(in) :: names(:)   !! of the card, in order
+    character(*), intent(in) :: name
+    integer :: k
+
+    do k = 1, size(names)
+      if (names(k) == name) return
+    end do
+    write (error_unit, '(*(a))') 'slideline: fault of the program: no field ', name, &
+      ' on the card with ', (trim(names(k)), ' ', k=1, size(names))
+    error stop 'a field was asked for by a name that the table of keywords does not have'
+  end function field_number
+
   !> Cut a line into the fields of a card; text beyond them gives a warning.
   subroutine cut_card(deck, spec, source, line, card)
     type(deck_t), intent(inout) :: deck
@@ -46,28 +203,32 @@ contains
     integer, intent(in) :: line
     type(card_t), intent(inout) :: card
     character(:), allocatable :: where
-    integer :: first, last, rest
+    integer :: rest
 
-    card%line = line
-    card%number = spec%number
-    card%names = spec%names
-    card%kinds = spec%kinds
+    call begin_card(spec, line, card)
     card%present = .true.
     card%bad = .false.
-    first = deck%first(line)
-    last = deck%last(line)
-    if (first < 0) then
-      call cut_text(deck%patch(-first:last), spec, iand(deck%flags(line), flag_comma) /= 0, card, &
-        rest)
-    else
-      call cut_text(deck%sources(source)%text(first:last), spec, &
-        iand(deck%flags(line), flag_comma) /= 0, card, rest)
-    end if
+    call cut_text(deck%sources(merge(0, source, deck%first(line) < 0))%text(abs(deck%first(line)): &
+      deck%last(line)), spec, iand(deck%flags(line), flag_comma) /= 0, card, rest)
     if (rest == 0) return
     where = where_text(deck, line)
     call line_warning(deck, line, 'extra'//where(index(where, '*', back=.true.):), &
       'text after the last field (column '//to_text(rest)//') is ignored')
   end subroutine cut_card
+
+  !> Line, number and names of a card, the names only where it has been another one before.
+  pure subroutine begin_card(spec, line, card)
+    type(card_spec_t), intent(in) :: spec
+    integer, intent(in) :: line
+    type(card_t), intent(inout) :: card
+
+    card%line = line
+    if (card%row == spec%row) return
+    card%row = spec%row
+    card%number = spec%number
+    card%names = spec%names
+    card%kinds = spec%kinds
+  end subroutine begin_card
 
   !> Cut a text: by column, or at commas when it holds one.
   pure subroutine cut_text(text, spec, comma, card, rest)
@@ -114,23 +275,26 @@ contains
     type(card_spec_t), intent(in) :: spec
     integer, intent(in) :: source
     type(card_t), intent(inout) :: card
-    integer :: k, status, first, shift
+    integer :: k, status, before, from
 
-    first = 1
-    shift = 0
-    if (card%line > 0) first = deck%first(card%line)
+    before = 0
+    from = source
+    if (card%present) before = abs(deck%first(card%line)) - 1
+    if (card%present .and. deck%first(max(card%line, 1)) < 0) from = 0
     do k = 1, spec%n
       call set_default(spec, card, k)
       if (spec%kinds(k) == 'x' .or. spec%kinds(k) == 'a') cycle
       if (.not. card%blank(k)) then
-        if (first < 0) then
-          shift = -first - 1
-          call read_field(deck%patch(shift + card%first(k):shift + card%last(k)), spec%kinds(k))
-        else
-          shift = first - 1
-          call read_field(deck%sources(source)%text(shift + card%first(k):shift + card%last(k)), &
-            spec%kinds(k))
-        end if
+        associate (text => deck%sources(from)%text(before + card%first(k):before + card%last(k)))
+          if (spec%kinds(k) == 'i') then
+            call read_integer(text, card%i(k), status)
+            card%r(k) = real(card%i(k), wp)
+          else
+            call read_real(text, card%r(k), status)
+            if (abs(card%r(k)) > largest_value) status = number_range
+            if (abs(card%r(k)) < smallest_value) card%r(k) = 0.0_wp
+          end if
+        end associate
         if (status /= number_good) then
           call number_error(deck, spec, card, k, status)
           cycle
@@ -140,24 +304,6 @@ contains
       if (card%r(k) < spec%least(k) .or. card%r(k) > spec%most(k)) &
         call check_range(deck, spec, card, k)
     end do
-
-  contains
-
-    !> Read field `k`.
-    subroutine read_field(text, kind)
-      character(*), intent(in) :: text
-      character, intent(in) :: kind
-
-      if (kind == 'i') then
-        call read_integer(text, card%i(k), status)
-        card%r(k) = real(card%i(k), wp)
-      else
-        call read_real(text, card%r(k), status)
-        if (abs(card%r(k)) > largest_value) status = number_range
-        if (abs(card%r(k)) < smallest_value) card%r(k) = 0.0_wp
-      end if
-    end subroutine read_field
-
   end subroutine read_numbers
 
   !> An error of a number outside the bounds of its field, unless it is one of a list.
@@ -169,7 +315,8 @@ contains
     character(:), allocatable :: words, range
 
     if (card%bad(k) .or. is_listed(spec%ranges(k), card%r(k))) return
-    words = expected(keyword_of_line(deck, card%line), trim(spec%names(k)))
+    words = text_of_field(expectations, deck%blocks(block_of_line(deck, card%line))%given, &
+      trim(spec%names(k)))
     range = range_text(spec%ranges(k))
     if (len(words) == 0 .and. spec%ranges(k)(:3) == '>=0' .and. card%r(k) < 0.0_wp) then
       call field_error(deck, card, k, 'is negative')
@@ -197,7 +344,8 @@ contains
     name = to_text(spec%defaults(k))
     if (abs(spec%defaults(k)) < 1.0e6_wp .and. .not. abs(spec%defaults(k) &
       - anint(spec%defaults(k))) > 0.0_wp) name = to_text(nint(spec%defaults(k)))
-    name = trim(spec%names(k))//' = '//name//' of *'//keyword_of_line(deck, card%line)
+    name = trim(spec%names(k))//' = '//name//' of *' &
+      //deck%blocks(block_of_line(deck, card%line))%given
     place = where_text(deck, card%line)
     place = ' ('//place(:index(place, ': *', back=.true.) - 1)//')'
     if (spec%zeros(k) == '~') then
@@ -278,10 +426,11 @@ contains
 
     card%bad(k) = .true.
     if (len(given_by(deck, card%line, k)) > 0) then
-      call deck_error(deck, given_by(deck, card%line, k)//' '//message)
+      call line_error(deck, 0, given_by(deck, card%line, k)//' '//message)
       return
     end if
-    call count_only(deck%report, keyword_of_line(deck, card%line), card%names(k), message, is_done)
+    call count_only(deck%report, deck%blocks(block_of_line(deck, card%line))%given, card%names(k), &
+      message, is_done)
     if (is_done) return
     text = where_text(deck, card%line)//' card '//to_text(card%number)//' field '//to_text(k) &
       //' ('//trim(card%names(k))//'): '

@@ -2,20 +2,20 @@
 !> A deck as text: files, lines and keyword blocks, and messages that point into them.
 !>
 !> Files stay in memory as they were read. A line is a range of characters of its file. Where
-!> parameters or the command line change a line, its new text is kept in `patch` and the line
+!> parameters or the command line change a line, its new text is that of source 0 and the line
 !> points there (its `first` is negative), so that what is parsed is what the effective deck shows.
 module deck_lines_m
   use, intrinsic :: iso_fortran_env, only : int8
-  use deck_report_m, only : report_t, spot_t, add_error, has_error, add_warning
+  use deck_report_m, only : report_t, spot_t, add_error, add_warning
   use deck_ids_m, only : id_map_t, n_kind
+  use deck_parameter_table_m, only : parameters_t
   use kinds_m, only : wp
   use log_m, only : to_text
   implicit none
   private
-  public :: deck_t, blocks_of, count_rows, source_t, block_t, place_t, parameter_t, parameters_t, &
-    again_error, &
-    file_paths, line_text, order_line, block_of_line, where_text, line_error, deck_error, &
-    line_warning, replace_line, written_text, line_spot, keyword_of_line, shown_text, marked_line, &
+  public :: deck_t, blocks_of, count_rows, source_t, block_t, place_t, file_paths, &
+    line_text, order_line, block_of_line, where_text, line_error, &
+    line_warning, replace_line, written_text, line_spot, shown_text, marked_line, &
     layout_marks, word_t, made_line_t, given_by, words_of, format_standard, format_long, &
     format_i10, flag_comma, flag_parameter, flag_blank, max_source, max_field
 
@@ -27,9 +27,6 @@ module deck_lines_m
   integer(int8), parameter :: flag_comma = 1_int8, flag_parameter = 2_int8, flag_blank = 4_int8
   !> Files in one deck, fields of one card.
   integer, parameter :: max_source = 1000, max_field = 16
-
-  !> A second definition of a parameter with another value is an error.
-  integer, parameter :: again_error = 0
 
   !> One file.
   type :: source_t
@@ -64,25 +61,6 @@ module deck_lines_m
     integer :: field = 0        !! its position, where there is no name: members of sets
   end type place_t
 
-  !> One parameter.
-  type :: parameter_t
-    character(20) :: name = ''            !! upper case
-    character :: kind = 'R'               !! R real, I integer, C text
-    character(:), allocatable :: text     !! what is put in its place
-    integer :: source = 0                 !! file it is private to, 0 = the whole deck
-    logical :: fixed = .false.            !! given on the command line
-    logical :: found = .false.            !! the deck defines it
-    integer :: next = 0                   !! the next one of the same hash, in the order they come
-  end type parameter_t
-
-  !> All parameters, with the first and last one of each hash of a name.
-  type :: parameters_t
-    type(parameter_t), allocatable :: items(:)
-    integer :: n = 0
-    integer, allocatable :: first(:), last(:)
-    integer :: again = again_error
-  end type parameters_t
-
   !> A word of the command line that changes the deck.
   type :: word_t
     character(:), allocatable :: name   !! upper case
@@ -99,9 +77,9 @@ module deck_lines_m
 
   !> The whole deck.
   type :: deck_t
-    type(source_t), allocatable :: sources(:)
+    type(source_t), allocatable :: sources(:) !! from 0 on, the text of changed lines
     integer :: n_source = 0
-    integer, allocatable :: first(:), last(:) !! characters of each line; first < 0: in `patch`
+    integer, allocatable :: first(:), last(:) !! characters of each line; first < 0: of source 0
     integer, allocatable :: number(:)         !! line number in its file
     integer(int8), allocatable :: flags(:)
     integer :: n_line = 0
@@ -110,10 +88,8 @@ module deck_lines_m
     type(word_t), allocatable :: words(:)
     type(block_t), allocatable :: blocks(:)
     integer :: n_block = 0
-    character(:), allocatable :: patch        !! text of changed lines
-    integer :: n_patch = 0                    !! characters of it in use
-    integer, allocatable :: replaced(:, :)    !! (3, n) lines in `patch`, and where their file has
-                                              !! them
+    integer :: n_changed = 0                  !! characters of source 0 in use
+    integer, allocatable :: replaced(:, :)    !! (3, n) changed lines, and where their file has them
     integer :: n_replaced = 0
     logical :: incomplete = .false.           !! an included file could not be read
     character(:), allocatable :: default_zeros, kept_zeros !! fields with a 0 that means their
@@ -146,12 +122,9 @@ contains
     character(:), allocatable :: text
     integer :: source
 
-    if (deck%first(line) < 0) then
-      text = deck%patch(-deck%first(line):deck%last(line))
-    else
-      source = deck%blocks(block_of_line(deck, line))%source
-      text = deck%sources(source)%text(deck%first(line):deck%last(line))
-    end if
+    source = 0
+    if (deck%first(line) > 0) source = deck%blocks(block_of_line(deck, line))%source
+    text = deck%sources(source)%text(abs(deck%first(line)):deck%last(line))
   end function line_text
 
   !> Blocks whose cards are read and whose keyword begins so, in the order of the deck.
@@ -162,7 +135,7 @@ contains
     integer :: i
 
     blocks = pack([(i, i=1, deck%n_block)], [(deck%blocks(i)%is_honoured &
-      .and. index(deck%blocks(i)%name, head) == 1, i=1, deck%n_block)])
+      .and. deck%blocks(i)%name(:len(head)) == head, i=1, deck%n_block)])
   end function blocks_of
 
   !> Rows that the keywords that begin so may have.
@@ -261,30 +234,18 @@ contains
     if (order_line > deck%n_written) order_line = deck%n_written
   end function order_line
 
-  !> An error of a whole line, with the line under it.
+  !> An error of a whole line, with the line under it; 0: of the deck as a whole, or of the command
+  !> line.
   subroutine line_error(deck, line, message)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line
     character(*), intent(in) :: message
+    character(:), allocatable :: text
 
-    if (line < 1) then
-      call add_error(deck%report, line, where_text(deck, line)//': '//message, &
-        line_spot(deck, line, message))
-    else
-      call add_error(deck%report, order_line(deck, line), where_text(deck, line)//': '//message &
-        //new_line('a') &
-        //'  | '//trim(shown_text(line_text(deck, line))), line_spot(deck, line, message))
-    end if
+    text = where_text(deck, line)//': '//message
+    if (line > 0) text = text//new_line('a')//'  | '//trim(shown_text(line_text(deck, line)))
+    call add_error(deck%report, order_line(deck, line), text, line_spot(deck, line, message))
   end subroutine line_error
-
-  !> An error of the deck as a whole, or of the command line; the same one is told once.
-  subroutine deck_error(deck, message)
-    type(deck_t), intent(inout) :: deck
-    character(*), intent(in) :: message
-
-    if (.not. has_error(deck%report, where_text(deck, 0)//': '//message)) &
-      call line_error(deck, 0, message)
-  end subroutine deck_error
 
   !> A warning of a line; the same `key` is told once.
   subroutine line_warning(deck, line, key, message)
@@ -313,59 +274,35 @@ contains
     spot%keyword = deck%blocks(i_block)%given
   end function line_spot
 
-  !> The keyword that a line belongs to, blank for none.
-  pure function keyword_of_line(deck, line) result(keyword)
-    type(deck_t), intent(in) :: deck
-    integer, intent(in) :: line
-    character(:), allocatable :: keyword
-    integer :: i_block
-
-    keyword = ''
-    if (line < 1) return
-    i_block = block_of_line(deck, line)
-    if (i_block > 0) keyword = deck%blocks(i_block)%given
-  end function keyword_of_line
-
   !> Give a line a new text (free format).
   subroutine replace_line(deck, line, text)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line
     character(*), intent(in) :: text
-    character(:), allocatable :: larger
+    integer :: n
 
-    if (.not. allocated(deck%patch)) allocate (character(4096) :: deck%patch)
-    if (deck%n_patch + len(text) > len(deck%patch)) then
-      allocate (character(2*len(deck%patch) + len(text)) :: larger)
-      larger(:deck%n_patch) = deck%patch(:deck%n_patch)
-      call move_alloc(larger, deck%patch)
+    if (deck%first(line) > 0) then
+      ! Messages tell the line as its file has it too.
+      if (.not. allocated(deck%replaced)) allocate (deck%replaced(3, 64))
+      n = size(deck%replaced, 2)
+      if (deck%n_replaced == n) deck%replaced = reshape([deck%replaced, deck%replaced], [3, 2*n])
+      deck%n_replaced = deck%n_replaced + 1
+      deck%replaced(:, deck%n_replaced) = [line, deck%first(line), deck%last(line)]
     end if
-    call note_replaced(deck, line)
-    deck%patch(deck%n_patch + 1:deck%n_patch + len(text)) = text
-    deck%first(line) = -(deck%n_patch + 1)
-    deck%n_patch = deck%n_patch + len(text)
-    deck%last(line) = deck%n_patch
+    associate (changed => deck%sources(0))
+      if (.not. allocated(changed%text)) changed%text = repeat(' ', 4096)
+      n = deck%n_changed + len(text)
+      if (n > len(changed%text)) changed%text = changed%text//repeat(' ', n)
+      changed%text(deck%n_changed + 1:n) = text
+    end associate
+    deck%first(line) = -(deck%n_changed + 1)
+    deck%last(line) = n
+    deck%n_changed = n
     deck%flags(line) = 0_int8
     if (index(text, ',') > 0) deck%flags(line) = flag_comma
     if (index(text, '&') > 0) deck%flags(line) = ior(deck%flags(line), flag_parameter)
     if (len_trim(text) == 0) deck%flags(line) = flag_blank
   end subroutine replace_line
-
-  !> Keep where the file has a line, for messages.
-  subroutine note_replaced(deck, line)
-    type(deck_t), intent(inout) :: deck
-    integer, intent(in) :: line
-    integer, allocatable :: larger(:, :)
-
-    if (deck%first(line) < 0) return
-    if (.not. allocated(deck%replaced)) allocate (deck%replaced(3, 64))
-    if (deck%n_replaced == size(deck%replaced, 2)) then
-      allocate (larger(3, 2*deck%n_replaced))
-      larger(:, :deck%n_replaced) = deck%replaced
-      call move_alloc(larger, deck%replaced)
-    end if
-    deck%n_replaced = deck%n_replaced + 1
-    deck%replaced(:, deck%n_replaced) = [line, deck%first(line), deck%last(line)]
-  end subroutine note_replaced
 
   !> A line as its file has it where something replaced it, otherwise nothing.
   pure function written_text(deck, line) result(text)

@@ -1,76 +1,52 @@
 ! SPDX-License-Identifier: MIT
-!> Files to keyword blocks: comments left out, includes put in their place.
+!> Files to keyword blocks: read in one go, cut into lines, comments left out, includes put in their
+!> place; keyword lines taken apart.
 module deck_reader_m
   use, intrinsic :: iso_fortran_env, only : int8
-  use kinds_m, only : line_length
+  use kinds_m, only : line_length, long
+  use files_m, only : is_directory, is_endless
   use log_m, only : to_text
-  use errors_m, only : error_t, raise, status_input
-  use deck_lines_m, only : deck_t, line_text, line_error, shown_text, max_source
-  use deck_source_m, only : read_file, scan_line, open_block, add_line, file_options, reserve_lines
+  use text_m, only : upper_case
+  use deck_lines_m, only : deck_t, block_t, line_text, line_error, shown_text, max_source, &
+    flag_comma, flag_parameter, flag_blank, format_standard, format_long, format_i10
   implicit none
   private
-  public :: read_blocks, cut_deck
+  public :: read_file, cut_deck, scan_line, open_block, add_line, file_options
 
   !> Includes inside includes.
   integer, parameter :: max_depth = 32
   !> Characters of all files of a deck together.
   integer, parameter :: max_character = 2000000000
 
-  !> A folder of *INCLUDE_PATH.
-  type :: folder_t
-    character(:), allocatable :: path
-  end type folder_t
-
-  !> The folders that a file can see: those of its own so far behind those of the files above it.
-  type :: folders_t
-    type(folder_t), allocatable :: items(:)
-    integer :: n = 0
-  end type folders_t
-
 contains
-
-  !> Read a deck and all that it includes. `error` is set when the deck itself cannot be read;
-  !> everything else goes to the deck's report.
-  subroutine read_blocks(path, deck, error)
-    character(*), intent(in) :: path
-    type(deck_t), intent(inout) :: deck
-    type(error_t), allocatable, intent(out) :: error
-    character(:), allocatable :: reason, text
-
-    call read_file(path, text, reason)
-    if (allocated(reason)) then
-      call raise(error, 'cannot read the deck '//path//': '//reason, status_input)
-      return
-    end if
-    call cut_deck(path, text, deck)
-  end subroutine read_blocks
 
   !> Cut the text of a deck into blocks, its includes in their place.
   subroutine cut_deck(path, text, deck)
     character(*), intent(in) :: path
     character(:), allocatable, intent(inout) :: text !! moves into the deck
     type(deck_t), intent(inout) :: deck
-    type(folders_t) :: folders
+    character(:), allocatable :: folders
 
-    allocate (deck%sources(max_source), deck%blocks(64), folders%items(16))
+    allocate (deck%sources(0:max_source), deck%blocks(64))
     deck%n_source = 1
     deck%sources(1)%path = path
     call move_alloc(text, deck%sources(1)%text)
-    call cut_source(deck, 1, 1, folders)
+    folders = ''
+    call cut_source(deck, 1, folders)
   end subroutine cut_deck
 
   !> Cut a file into lines and blocks, its includes in their place.
-  recursive subroutine cut_source(deck, source, depth, folders)
+  recursive subroutine cut_source(deck, source, folders)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
-    integer, intent(in) :: depth
-    type(folders_t), intent(inout) :: folders !! *INCLUDE_PATH entries so far; as before behind it
+    character(:), allocatable, intent(inout) :: folders !! of *INCLUDE_PATH so far, a line each; as
+                                                        !! before behind the file
     integer :: start, last, next, number, n_stray, n_above
     integer(int8) :: flags
     logical :: in_block
 
     call reserve_lines(deck, len(deck%sources(source)%text)/60 + 64)
-    n_above = folders%n
+    n_above = len(folders)
     start = 1
     number = 0
     n_stray = 0
@@ -81,7 +57,7 @@ contains
       call scan_line(deck%sources(source)%text, start, last, next, flags)
       number = number + 1
       if (deck%sources(source)%text(start:start) == '*' .and. last >= start) then
-        if (in_block) call close_block(deck, source, depth, folders)
+        if (in_block) call close_block(deck, source, folders)
         call add_line(deck, start, last, number, flags)
         call open_block(deck, source, deck%sources(source)%text(start + 1:min(last, &
           start + line_length - 1)))
@@ -105,8 +81,8 @@ contains
       end if
       start = next
     end do
-    if (in_block) call close_block(deck, source, depth, folders)
-    folders%n = n_above
+    if (in_block) call close_block(deck, source, folders)
+    folders = folders(:n_above)
     if (n_stray > 0) call line_error(deck, 0, 'in '//deck%sources(source)%path//', ' &
       //to_text(n_stray)//' line(s) before the first keyword (a line that starts with *)')
   end subroutine cut_source
@@ -126,23 +102,17 @@ contains
   end subroutine limit_line
 
   !> The block is complete: an include puts its files here.
-  recursive subroutine close_block(deck, source, depth, folders)
+  recursive subroutine close_block(deck, source, folders)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
-    integer, intent(in) :: depth
-    type(folders_t), intent(inout) :: folders
+    character(:), allocatable, intent(inout) :: folders
     character(:), allocatable :: name
     integer :: i_block, line
 
     i_block = deck%n_block
-    if (deck%blocks(i_block)%source /= source) return
-    select case (deck%blocks(i_block)%name)
-    case ('INCLUDE', 'INCLUDE_PATH', 'INCLUDE_PATH_RELATIVE')
-      continue
-    case default
-      return
-    end select
-    if (deck%blocks(i_block)%dropped) return
+    if (deck%blocks(i_block)%source /= source .or. deck%blocks(i_block)%dropped) return
+    if (all(deck%blocks(i_block)%name /= ['INCLUDE              ', 'INCLUDE_PATH         ', &
+      'INCLUDE_PATH_RELATIVE'])) return
     deck%blocks(i_block)%dropped = .true.
     line = deck%blocks(i_block)%first
     if (deck%blocks(i_block)%last < line) call line_error(deck, line - 1, 'a file name is missing')
@@ -150,27 +120,12 @@ contains
       call join_name(deck, i_block, line, name)
       if (len(name) == 0) cycle
       if (deck%blocks(i_block)%name == 'INCLUDE') then
-        call include_file(deck, source, depth, folders, name, line - 1)
+        call include_file(deck, source, folders, name, line - 1)
       else
-        call add_folder(folders, name)
+        folders = folders//name//new_line('a')
       end if
     end do
   end subroutine close_block
-
-  !> One more folder.
-  subroutine add_folder(folders, path)
-    type(folders_t), intent(inout) :: folders
-    character(*), intent(in) :: path
-    type(folder_t), allocatable :: longer(:)
-
-    if (folders%n == size(folders%items)) then
-      allocate (longer(2*folders%n))
-      longer(:folders%n) = folders%items
-      call move_alloc(longer, folders%items)
-    end if
-    folders%n = folders%n + 1
-    folders%items(folders%n)%path = path
-  end subroutine add_folder
 
   !> A file name that may go on over several lines (each ends with ` +`); `line` moves past it.
   subroutine join_name(deck, i_block, line, name)
@@ -185,31 +140,25 @@ contains
     do while (line <= deck%blocks(i_block)%last)
       text = trim(adjustl(line_text(deck, line)))
       line = line + 1
-      n = len(text)
-      if (n >= 2) then
-        if (text(n - 1:n) == ' +') then
-          name = name//trim(text(:n - 2))
-          cycle
-        end if
-      end if
-      name = name//text
-      return
+      n = max(len(text), 2) - 2
+      if (text(n + 1:) /= ' +') exit
+      name = name//trim(text(:n))
+      text = ''
     end do
+    if (allocated(text)) name = name//text
   end subroutine join_name
 
   !> Read an included file into the deck.
-  recursive subroutine include_file(deck, source, depth, folders, name, line)
+  recursive subroutine include_file(deck, source, folders, name, line)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
-    integer, intent(in) :: depth
-    type(folders_t), intent(inout) :: folders
+    character(:), allocatable, intent(inout) :: folders
     character(*), intent(in) :: name
     integer, intent(in) :: line !! where it is included
     character(:), allocatable :: path, reason
-    integer :: above, i
+    integer :: above, i, depth
 
-    call find_file(deck%sources(1)%path, deck%sources(source)%path, &
-      folders%items(:folders%n), name, path)
+    call find_file(deck%sources(1)%path, deck%sources(source)%path, folders, name, path)
     if (len(path) == 0) then
       call line_error(deck, line, 'the file "'//trim(shown_text(name))//'" was not found; what ' &
         //'refers to nodes, elements and so on is not judged without it')
@@ -217,7 +166,9 @@ contains
       return
     end if
     above = source
+    depth = 0
     do while (above > 0)
+      depth = depth + 1
       if (deck%sources(above)%path == path) then
         call line_error(deck, line, 'the file "'//name//'" includes itself')
         return
@@ -247,7 +198,7 @@ contains
       deck%incomplete = .true.
       return
     end if
-    call cut_source(deck, i, depth + 1, folders)
+    call cut_source(deck, i, folders)
   end subroutine include_file
 
   !> Where an included file is: as given, in the *INCLUDE_PATH folders (which may be meant from
@@ -255,29 +206,204 @@ contains
   subroutine find_file(main, including, folders, name, path)
     character(*), intent(in) :: main       !! the deck itself
     character(*), intent(in) :: including
-    type(folder_t), intent(in) :: folders(:)
+    character(*), intent(in) :: folders    !! each with its line end
     character(*), intent(in) :: name
     character(:), allocatable, intent(out) :: path !! empty when there is none
-    logical :: exists
-    integer :: i
+    integer :: start, next
 
-    path = name
-    inquire (file=path, exist=exists)
-    if (exists) return
+    if (is_there(name)) return
     if (name(1:1) /= '/') then
-      do i = 1, size(folders)
-        path = folders(i)%path//'/'//name
-        inquire (file=path, exist=exists)
-        if (exists) return
-        path = main(:index(main, '/', back=.true.))//folders(i)%path//'/'//name
-        inquire (file=path, exist=exists)
-        if (exists) return
+      start = 1
+      do while (start <= len(folders))
+        next = start + index(folders(start:), new_line('a'))
+        if (is_there(folders(start:next - 2)//'/'//name)) return
+        if (is_there(main(:index(main, '/', back=.true.))//folders(start:next - 2)//'/'//name)) &
+          return
+        start = next
       end do
-      path = including(:index(including, '/', back=.true.))//name
-      inquire (file=path, exist=exists)
-      if (exists) return
+      if (is_there(including(:index(including, '/', back=.true.))//name)) return
     end if
     path = ''
+
+  contains
+
+    !> Whether there is a file, whose path is kept.
+    function is_there(candidate) result(exists)
+      character(*), intent(in) :: candidate
+      logical :: exists
+
+      path = candidate
+      inquire (file=candidate, exist=exists)
+    end function is_there
+
   end subroutine find_file
+
+  !> The bytes of a file; `reason` is set when that fails.
+  subroutine read_file(path, text, reason)
+    character(*), intent(in) :: path
+    character(:), allocatable, intent(out) :: text
+    character(:), allocatable, intent(out) :: reason
+    integer :: unit, status, n
+    integer(long) :: n_byte
+    character(len(path) + 200) :: why
+
+    if (is_directory(path)) then
+      reason = 'it is a directory'
+    else if (is_endless(path)) then
+      reason = 'it is empty, or a pipe or a device and no file'
+    end if
+    if (allocated(reason)) return
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
+      action='read', iostat=status, iomsg=why)
+    if (status /= 0) then
+      ! Whoever asks names the file: the library's "Cannot open file 'PATH': " would be the second.
+      n = index(why, "': ", back=.true.)
+      if (n > 0) n = n + 2
+      reason = trim(why(n + 1:))
+      return
+    end if
+    inquire (unit=unit, size=n_byte)
+    if (n_byte > huge(unit) - 1024) then
+      reason = 'the file is larger than 2 GB'
+    else
+      allocate (character(max(n_byte, 0_long)) :: text)
+      if (n_byte > 0) then
+        read (unit, iostat=status, iomsg=why) text
+        if (status /= 0) reason = trim(why)
+      end if
+    end if
+    close (unit, iostat=status)
+  end subroutine read_file
+
+  !> Find the line that starts at `start`: its last character, the start of the next line, and its
+  !> flags. Tabs become blanks on the way.
+  pure subroutine scan_line(text, start, last, next, flags)
+    character(*), intent(inout) :: text
+    integer, intent(in) :: start
+    integer, intent(out) :: last !! without end-of-line characters
+    integer, intent(out) :: next
+    integer(int8), intent(out) :: flags
+    integer :: i
+
+    flags = flag_blank
+    do i = start, len(text)
+      select case (text(i:i))
+      case (' ', achar(13))
+        cycle
+      case (achar(10))
+        exit
+      case (achar(9))
+        text(i:i) = ' '
+      case (',')
+        flags = iand(ior(flags, flag_comma), not(flag_blank))
+      case ('&')
+        flags = iand(ior(flags, flag_parameter), not(flag_blank))
+      case default
+        flags = iand(flags, not(flag_blank))
+      end select
+    end do
+    next = i + 1
+    last = i - 1
+    do while (last >= start)
+      if (text(last:last) /= achar(13)) exit
+      last = last - 1
+    end do
+  end subroutine scan_line
+
+  !> Make room for `n_more` lines.
+  subroutine reserve_lines(deck, n_more)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: n_more
+    integer, allocatable :: more(:)
+    integer :: n
+
+    if (.not. allocated(deck%first)) then
+      allocate (deck%first(n_more), deck%last(n_more), deck%number(n_more), deck%flags(n_more))
+      return
+    end if
+    if (deck%n_line + n_more <= size(deck%first)) return
+    n = deck%n_line
+    allocate (more(max(n_more, n/2)), source=0)
+    deck%first = [deck%first(:n), more]
+    deck%last = [deck%last(:n), more]
+    deck%number = [deck%number(:n), more]
+    deck%flags = [deck%flags(:n), int(more, int8)]
+  end subroutine reserve_lines
+
+  !> One more line.
+  subroutine add_line(deck, first, last, number, flags)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: first, last, number
+    integer(int8), intent(in) :: flags
+
+    if (deck%n_line == size(deck%first)) call reserve_lines(deck, 64)
+    deck%n_line = deck%n_line + 1
+    deck%first(deck%n_line) = first
+    deck%last(deck%n_line) = last
+    deck%number(deck%n_line) = number
+    deck%flags(deck%n_line) = flags
+  end subroutine add_line
+
+  !> A new block from its keyword line (already the last line of the deck).
+  subroutine open_block(deck, source, text)
+    type(deck_t), intent(inout) :: deck
+    integer, intent(in) :: source
+    character(*), intent(in) :: text !! the line without its asterisk
+    type(block_t) :: unset
+    integer :: n_name
+
+    if (deck%n_block == size(deck%blocks)) deck%blocks = [deck%blocks, deck%blocks]
+    deck%n_block = deck%n_block + 1
+    deck%blocks(deck%n_block) = unset
+    n_name = length_of_name(upper_case(text)//' ')
+    associate (block => deck%blocks(deck%n_block))
+      block%given = upper_case(text(:n_name))
+      block%name = block%given
+      block%rest = trim(adjustl(text(n_name + 1:)))//' '
+      block%source = source
+      block%keyword = deck%n_line
+      block%first = deck%n_line + 1
+      block%last = deck%n_line
+      block%layout = deck%sources(source)%layout
+      if (index(block%rest, '+ ') == 1) block%layout = format_long
+      if (index(block%rest, '- ') == 1) block%layout = format_standard
+      if (index(block%rest, '% ') == 1) block%layout = format_i10
+    end associate
+  end subroutine open_block
+
+  !> Characters of the keyword at the start of a line that ends with a blank. A hyphen between two
+  !> letters is part of a name (MAT_BLATZ-KO_RUBBER); behind a name it marks its layout.
+  pure function length_of_name(text) result(n)
+    character(*), intent(in) :: text !! upper case
+    integer :: n
+    character(*), parameter :: letters = 'ABCDEFGHIJKLMNOPQRSTUVWXYZ'
+
+    n = 0
+    do
+      n = n + verify(text(n + 1:), letters//'0123456789_') - 1
+      if (n == 0 .or. text(n + 1:n + 1) /= '-') return
+      if (verify(text(n:n), letters) > 0 .or. verify(text(n + 2:n + 2), letters) > 0) return
+      n = n + 1
+    end do
+  end function length_of_name
+
+  !> Options of a *KEYWORD line: LONG=Y|S|K|N and I10=Y; the others say nothing about the deck.
+  pure subroutine file_options(rest, layout)
+    character(*), intent(in) :: rest
+    integer, intent(inout) :: layout
+    character(len(rest) + 1) :: upper
+    integer :: at
+
+    upper = upper_case(rest)
+    at = index(upper, 'LONG=')
+    if (at > 0) then
+      layout = format_standard
+      if (scan(upper(at + 5:at + 5), 'YK') == 1) layout = format_long
+    end if
+    at = index(upper, 'I10=')
+    if (at > 0) then
+      if (upper(at + 4:at + 4) == 'Y') layout = format_i10
+    end if
+  end subroutine file_options
 
 end module deck_reader_m

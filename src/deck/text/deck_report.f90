@@ -1,14 +1,15 @@
 ! SPDX-License-Identifier: MIT
 !> All that is wrong or strange in a deck, collected while it is read and shown in deck order. The
 !> same mistake many times is one message with a count: errors of one field whose messages differ in
-!> numbers alone are of one kind.
+!> numbers alone are of one kind. Programs get the messages as JSON (RFC 8259).
 module deck_report_m
   use errors_m, only : error_t, raise, status_input
   use log_m, only : log_t, warn, to_text
+  use text_m, only : text_of, utf8_length
   implicit none
   private
-  public :: report_t, note_t, spot_t, add_error, count_only, has_error, add_warning, &
-    emit_warnings, emit_errors, deck_order
+  public :: report_t, spot_t, add_error, count_only, add_warning, &
+    emit_warnings, emit_errors, list_findings, add_finding, json_text
 
   !> Errors kept, and warnings; what comes later is counted. Of a kind of errors that comes later
   !> the first ones are kept too, so that none goes untold.
@@ -61,7 +62,8 @@ module deck_report_m
 
 contains
 
-  !> One more error, `line` giving its place in the order.
+  !> One more error, `line` giving its place in the order; the same one of the deck as a whole (line
+  !> 0) is told once.
   subroutine add_error(report, line, text, spot)
     type(report_t), intent(inout) :: report
     integer, intent(in) :: line
@@ -72,6 +74,9 @@ contains
 
     if (.not. allocated(report%errors)) &
       allocate (report%errors(max_kept + first_kept*max_kinds), report%kinds(max_kinds))
+    do k = 1, merge(report%n_kept, 0, line < 1)
+      if (report%errors(k)%line < 1 .and. report%errors(k)%text == text) return
+    end do
     report%n_error = report%n_error + 1
     if (allocated(spot%keyword)) then
       call find_kind(report, key_of(spot%keyword, spot%name, spot%message), k)
@@ -150,21 +155,6 @@ contains
     key = keyword//' '//text(:n)
   end function key_of
 
-  !> Whether an error of this text, which belongs to no line, is kept.
-  pure function has_error(report, text) result(found)
-    type(report_t), intent(in) :: report
-    character(*), intent(in) :: text
-    logical :: found
-    integer :: i
-
-    found = .false.
-    do i = 1, report%n_kept
-      if (report%errors(i)%line > 0) cycle
-      found = report%errors(i)%text == text
-      if (found) return
-    end do
-  end function has_error
-
   !> One more warning; warnings of the same key are given once.
   subroutine add_warning(report, line, key, text, spot)
     type(report_t), intent(inout) :: report
@@ -172,33 +162,24 @@ contains
     character(*), intent(in) :: key
     character(*), intent(in) :: text
     type(spot_t), intent(in) :: spot
+    integer :: i
 
     if (.not. allocated(report%warnings)) allocate (report%warnings(max_kept))
-    if (has_warning(report, key)) return
+    do i = report%n_warning, 1, -1
+      if (report%warnings(i)%key == key) return
+    end do
     if (report%n_warning == max_kept) then
       report%n_dropped = report%n_dropped + 1
       return
     end if
     report%n_warning = report%n_warning + 1
-    report%warnings(report%n_warning)%line = line
-    report%warnings(report%n_warning)%key = key
-    report%warnings(report%n_warning)%text = text
-    report%warnings(report%n_warning)%spot = spot
+    associate (note => report%warnings(report%n_warning))
+      note%line = line
+      note%key = key
+      note%text = text
+      note%spot = spot
+    end associate
   end subroutine add_warning
-
-  !> Whether a warning of this key has been given.
-  pure function has_warning(report, key) result(found)
-    type(report_t), intent(in) :: report
-    character(*), intent(in) :: key
-    logical :: found
-    integer :: i
-
-    found = .false.
-    do i = report%n_warning, 1, -1
-      found = report%warnings(i)%key == key
-      if (found) return
-    end do
-  end function has_warning
 
   !> Give all warnings to the log in deck order.
   subroutine emit_warnings(report, log)
@@ -298,5 +279,81 @@ contains
       end do
     end do
   end function deck_order
+
+  !> All messages kept by the report as JSON objects with commas between them, errors first, each
+  !> kind in deck order; empty when there are none.
+  pure subroutine list_findings(report, findings)
+    type(report_t), intent(in) :: report
+    character(:), allocatable, intent(out) :: findings
+
+    findings = ''
+    call list_notes(report%errors, report%n_kept, report%n_error - report%n_kept, 'error', findings)
+    call list_notes(report%warnings, report%n_warning, report%n_dropped, 'warning', findings)
+  end subroutine list_findings
+
+  !> Messages of one kind, and how many there are beyond those that are kept.
+  pure subroutine list_notes(notes, n, n_more, severity, findings)
+    type(note_t), intent(in), optional :: notes(:) !! absent: there are none
+    integer, intent(in) :: n, n_more
+    character(*), intent(in) :: severity
+    character(:), allocatable, intent(inout) :: findings
+    integer :: order(n), i
+    type(spot_t) :: spot
+
+    if (.not. present(notes)) return
+    order = deck_order(notes(:n))
+    do i = 1, n
+      call add_finding(severity, notes(order(i))%spot, findings)
+    end do
+    if (n_more < 1) return
+    spot%message = 'and '//to_text(n_more)//' more '//severity//'s'
+    call add_finding(severity, spot, findings)
+  end subroutine list_notes
+
+  !> One more object; what is not known of its place is left out.
+  pure subroutine add_finding(severity, spot, findings)
+    character(*), intent(in) :: severity !! error or warning
+    type(spot_t), intent(in) :: spot
+    character(:), allocatable, intent(inout) :: findings
+    character(:), allocatable :: text
+
+    text = '{"severity": "'//severity//'"'
+    if (allocated(spot%file)) text = text//', "file": '//json_text(spot%file)
+    if (spot%line > 0) text = text//', "line": '//to_text(spot%line) &
+      //', "keyword": '//json_text('*'//text_of(spot%keyword))
+    if (spot%card > 0) text = text//', "card": '//to_text(spot%card)//', "field": ' &
+      //to_text(spot%field)//', "name": '//json_text(trim(spot%name))
+    if (spot%first > 0) text = text//', "first_column": '//to_text(spot%first) &
+      //', "last_column": '//to_text(spot%last)
+    if (allocated(spot%found)) text = text//', "found": '//json_text(spot%found)
+    text = text//', "message": '//json_text(spot%message)//'}'
+    if (len(findings) > 0) findings = findings//','//new_line('a')
+    findings = findings//'    '//text
+  end subroutine add_finding
+
+  !> A JSON string with its quotes, always UTF-8: characters of UTF-8 pass, and a byte that belongs
+  !> to none is taken for Latin-1, whose codes are the first of Unicode.
+  pure function json_text(text) result(quoted)
+    character(*), intent(in) :: text
+    character(:), allocatable :: quoted
+    character(6) :: code
+    integer :: i, n
+
+    quoted = '"'
+    i = 1
+    do while (i <= len(text))
+      n = utf8_length(text(i:))
+      if (n == 0 .or. iachar(text(i:i)) < 32 .or. text(i:i) == achar(127)) then
+        write (code, '(a, z4.4)') achar(92)//'u', iachar(text(i:i))
+        quoted = quoted//code
+      else if (scan(text(i:i), '"'//achar(92)) > 0) then
+        quoted = quoted//achar(92)//text(i:i)
+      else
+        quoted = quoted//text(i:i + n - 1)
+      end if
+      i = i + max(n, 1)
+    end do
+    quoted = quoted//'"'
+  end function json_text
 
 end module deck_report_m

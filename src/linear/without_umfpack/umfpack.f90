@@ -26,7 +26,6 @@ contains
     type(umfpack_t), intent(inout) :: factor
     logical, intent(out) :: factored
 
-    factor%bytes = 0
     factored = matrix%n == 0
   end subroutine factor_umfpack
 

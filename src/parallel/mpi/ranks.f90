@@ -12,8 +12,8 @@ module ranks_m
     mpi_min, mpi_statuses_ignore, mpi_thread_funneled, mpi_waitall
   implicit none
   private
-  public :: ranks_t, join_ranks, leave_ranks, bring_reals, bring_integers, swap_reals, &
-    find_least, spread_values, share_error
+  public :: ranks_t, join_ranks, leave_ranks, bring_reals, swap_reals, find_least, &
+    spread_values, share_error
 
   integer, parameter :: real_bytes = storage_size(1.0_wp)/8
 
@@ -69,20 +69,6 @@ contains
     if (to_all .or. ranks%mine == 0) ranks%joined(2) = ranks%joined(2) &
       + int(real_bytes, long)*(sum(int(counts, long)) - counts(ranks%mine))
   end subroutine bring_reals
-
-  !> The same for integers, which go as reals.
-  subroutine bring_integers(ranks, starts, width, to_all, values)
-    type(ranks_t), intent(inout) :: ranks
-    integer, intent(in) :: starts(0:)     !! (0:n) item at which each piece starts, then one beyond
-    integer, intent(in) :: width          !! values of an item
-    logical, intent(in) :: to_all
-    integer, intent(inout) :: values(*)
-    real(wp), allocatable :: copies(:)
-
-    copies = real(values(:width*(starts(ranks%n) - 1)), wp)
-    call bring_reals(ranks, starts, width, to_all, copies)
-    values(:size(copies)) = nint(copies)
-  end subroutine bring_integers
 
   !> Values for some other processes, a message each, against what these have for this one.
   subroutine swap_reals(ranks, peers, out_starts, outgoing, in_starts, incoming)

@@ -7,8 +7,8 @@ module ranks_m
   use kinds_m, only : wp, long
   implicit none
   private
-  public :: ranks_t, join_ranks, leave_ranks, bring_reals, bring_integers, swap_reals, &
-    find_least, spread_values, share_error
+  public :: ranks_t, join_ranks, leave_ranks, bring_reals, swap_reals, find_least, &
+    spread_values, share_error
 
   !> This process among those of the run.
   type :: ranks_t
@@ -39,15 +39,6 @@ contains
     logical, intent(in) :: to_all
     real(wp), intent(inout) :: values(*)
   end subroutine bring_reals
-
-  !> The same for integers.
-  subroutine bring_integers(ranks, starts, width, to_all, values)
-    type(ranks_t), intent(inout) :: ranks
-    integer, intent(in) :: starts(0:)     !! (0:n) item at which each piece starts, then one beyond
-    integer, intent(in) :: width          !! values of an item
-    logical, intent(in) :: to_all
-    integer, intent(inout) :: values(*)
-  end subroutine bring_integers
 
   !> Values for some other processes, a message each, against what these have for this one.
   subroutine swap_reals(ranks, peers, out_starts, outgoing, in_starts, incoming)

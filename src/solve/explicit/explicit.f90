@@ -7,10 +7,10 @@
 !> written belongs to one instant.
 module explicit_m
   use clock_m, only : lap, phase_elements, phase_nodes, phase_output
-  use contact_account_m, only : report_contact_energies
+  use explicit_contact_m, only : report_contact_energies, press_contacts
   use contact_check_m, only : report_contact_end
-  use contact_pressing_m, only : press_contacts
-  use element_dispatch_m, only : add_tile_forces
+  use element_dispatch_m, only : add_tile_forces, share_tile_forces, keep_tile_forces, &
+    sum_special_forces
   use eroding_tiles_m, only : add_eroding_tile_forces
   use element_losses_m, only : report_erosion, report_failures
   use errors_m, only : error_t
@@ -21,7 +21,7 @@ module explicit_m
   use kinds_m, only : wp
   use mass_scaling_m, only : refine_limits
   use model_m, only : model_t
-  use load_work_m, only : sum_motion, sum_blocks
+  use load_work_m, only : sum_motion
   use monitor_m, only : monitor_t
   use node_motion_m, only : leap_t, move_tile_nodes, move_special_nodes, move_damped_nodes
   use rank_exchange_m, only : report_exchange
@@ -29,7 +29,6 @@ module explicit_m
   use resting_tiles_m, only : awake, flying, remember_tile, judge_tile, look_at_tile, report_rest
   use held_nodes_m, only : hold_skew_nodes, hold_nodes
   use state_m, only : state_t
-  use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
   implicit none
   private
   public :: advance_explicit
@@ -128,7 +127,16 @@ contains
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, n_local) this thread's own
     integer :: i, i_tile
 
-    if (allocated(cycle%sums%parts)) call sum_blocks(model%layout, state, cycle%sums)
+    if (allocated(cycle%sums%parts)) then
+      ! Nothing moves the nodes of blocks while tiles advance: the team does not wait.
+      !$omp do schedule(static)
+      do i = cycle%sums%first, size(cycle%sums%blocks, 2)
+        if (i > cycle%sums%last .and. i <= cycle%sums%n_special) cycle
+        call sum_motion(cycle%sums%blocks(1, i), cycle%sums%blocks(2, i), state, &
+          cycle%sums%parts(:, size(model%layout%tiles) + i))
+      end do
+      !$omp end do nowait
+    end if
     if (size(cycle%rest%watched) > 0) then
       !$omp do schedule(static)
       do i = 1, size(cycle%rest%watched)
@@ -201,7 +209,7 @@ contains
 
     !$omp do schedule(static)
     do i = 1, size(cycle%rest%summed)
-      associate (run => cycle%borders%runs(:, cycle%rest%summed(i)))
+      associate (run => cycle%shares%runs(:, cycle%rest%summed(i)))
         call sum_special_forces(model%layout, state%force_slots, run(1), run(2), &
           state%internal_force)
       end associate
@@ -226,8 +234,8 @@ contains
 
     !$omp do schedule(static)
     do i = 1, size(cycle%rest%summed)
-      associate (first => cycle%borders%runs(1, cycle%rest%summed(i)), &
-        last => cycle%borders%runs(2, cycle%rest%summed(i)))
+      associate (first => cycle%shares%runs(1, cycle%rest%summed(i)), &
+        last => cycle%shares%runs(2, cycle%rest%summed(i)))
         if (.not. cycle%presses) call sum_special_forces(model%layout, state%force_slots, first, &
           last, state%internal_force)
         if (.not. cycle%writes) then
@@ -277,7 +285,7 @@ contains
     !$omp end do
     !$omp do schedule(static)
     do i = 1, size(cycle%rest%summed)
-      associate (run => cycle%borders%runs(:, cycle%rest%summed(i)))
+      associate (run => cycle%shares%runs(:, cycle%rest%summed(i)))
         call move_run(model, cycle%leap, run(1), run(2), state)
       end associate
     end do

@@ -4,45 +4,42 @@
 module explicit_cycle_m
   use archive_m, only : archive_t
   use behind_ties_m, only : hear_tie, settle_with_tie
-  use prescribed_motion_m, only : find_prescribed_velocities, impose_prescribed, count_motions, &
-    count_body_motions, count_boundary_loads, count_groups
+  use element_dispatch_m, only : sum_special_forces
+  use load_work_m, only : find_prescribed_velocities, impose_prescribed, count_motions, &
+    count_body_motions, count_boundary_loads, count_groups, apply_loads, motion_sums_t, plan_sums, &
+    count_sums
   use clock_m, only : lap, share_contact, phase_nodes
   use common_motion_m, only : common_velocity
-  use constraints_m, only : fix_nodes, update_activity, is_active
-  use contact_account_m, only : plan_looks, follow_contact
-  use rigid_start_m, only : weigh_contacts
-  use contact_pressing_m, only : pressing_t
+  use loads_m, only : fix_nodes, update_activity, is_active
+  use explicit_contact_m, only : plan_looks, follow_contact, pressing_t
+  use start_m, only : check_added_mass, weigh_contacts
   use contacts_m, only : told_as, penalty_implicit
-  use load_work_m, only : apply_loads, motion_sums_t, plan_sums, count_sums
-  use early_end_m, only : find_early_end
-  use element_losses_m, only : settle_elements, release_nodes, failure_watch_t, follow_failures
+  use element_losses_m, only : settle_elements, release_nodes, failure_watch_t, follow_failures, &
+    follow_outlines
   use errors_m, only : error_t
-  use health_m, only : tile_check_t, are_sound, check_step, name_collapsed, check_cycle
+  use health_m, only : tile_check_t, check_elements, are_sound, check_step, name_collapsed, &
+    check_cycle
   use history_tables_m, only : table_secforc
   use interface_m, only : apply_contact
   use kinds_m, only : wp
+  use layout_m, only : chunk_size
   use mass_scaling_m, only : needs_refinement, grow_masses
-  use model_log_m, only : check_added_mass
   use model_m, only : model_t
-  use monitor_m, only : monitor_t, due_t, find_due, any_due
-  use node_motion_m, only : follow_damping, leap_t, make_leap
-  use outlines_m, only : follow_outlines
+  use monitor_m, only : monitor_t, due_t, find_due
+  use node_motion_m, only : follow_damping, leap_t, make_leap, solve_rigids, move_rigids
   use packed_buffer_m, only : stream_starts
   use progress_m, only : follow_progress
-  use rank_exchange_m, only : parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, &
-    exchange_erosion, gather_motion, gather_state, judge_elements, &
-    hear_requests, cut_sections
-  use rank_shares_m, only : shares_t, share_out, borders_t, plan_borders
-  use ranks_m, only : ranks_t, bring_integers, bring_reals, share_error
-  use requests_m, only : requests_t, take_requests, echoes_t
+  use rank_exchange_m, only : parcel_t, plan_parcel, exchange_parcel, exchange_checks, loses, &
+    fails, errs, bring_integers, gather_motion, gather_state, hear_requests, cut_sections
+  use rank_shares_m, only : shares_t, share_out, plan_borders
+  use ranks_m, only : ranks_t, bring_reals, share_error
+  use requests_m, only : find_early_end, requests_t, take_requests, echoes_t
   use restart_file_m, only : close_restart
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use resting_tiles_m, only : rest_t, plan_rest, follow_rest
-  use rigid_motion_m, only : solve_rigids, move_rigids
   use held_nodes_m, only : move_common, count_walls
   use state_m, only : state_t
-  use tile_forces_m, only : sum_special_forces
   use time_step_m, only : step_plan_t, volume_step, next_step, obey_approach, &
     is_last, follow_springs, cycles_in, has_springs
   use visitor_m, only : visited_t, visitor_t
@@ -58,8 +55,7 @@ module explicit_cycle_m
     logical :: last = .false.        !! this cycle is the last one
     logical :: plots = .false.       !! this cycle writes a plot state because someone asked for it
     type(due_t) :: due
-    type(shares_t) :: shares         !! tiles of each process
-    type(borders_t) :: borders       !! nodes between them
+    type(shares_t) :: shares         !! tiles of each process, and nodes between them
     type(parcel_t) :: parcel         !! what they exchange in each cycle
     type(requests_t) :: asked        !! what someone asks for, heard in this cycle
     type(echoes_t) :: echoes         !! what was asked for before, of several processes
@@ -114,11 +110,10 @@ contains
       cycle%shares = share_out(model%layout, ranks%mine, ranks%n)
       if (ranks%n > 1) cycle%first_check = size(model%layout%tiles) + 1
       allocate (cycle%checks(max(size(model%layout%tiles), cycle%first_check)))
-      call plan_borders(model, cycle%shares, ranks%mine, cycle%sums, cycle%borders)
-      if (ranks%n > 1) call plan_parcel(cycle%borders, cycle%shares, ranks%mine, state%elements, &
-        cycle%sums, cycle%parcel)
-      call plan_rest(model, cycle%shares, cycle%borders%run_tiles, allocated(cycle%sums%parts), &
-        cycle%rest)
+      call plan_borders(model, ranks%mine, cycle%sums, cycle%shares)
+      if (ranks%n > 1) call plan_parcel(cycle%shares, ranks%mine, state%elements, cycle%sums, &
+        cycle%parcel)
+      call plan_rest(model, cycle%shares, allocated(cycle%sums%parts), cycle%rest)
     end associate
     cycle%reason = 'termination time reached'
     if (model%erodes) allocate (cycle%told, source=state%elements%erosion%n_eroded)
@@ -161,7 +156,7 @@ contains
     cycle%due = find_due(monitor, state%time, state%dt, state%cycle == 0 .or. cycle%last)
     cycle%due%plot = cycle%due%plot .or. (cycle%plots .and. monitor%has_plot)
     cycle%plots = .false.
-    cycle%writes = any_due(cycle%due) .or. state%cycle == 0 .or. cycle%last
+    cycle%writes = cycle%due%plot .or. any(cycle%due%tables) .or. state%cycle == 0 .or. cycle%last
     call apply_loads(model, state, cycle%damping, cycle%sums)
     if (allocated(state%boundary_work)) call count_boundary_loads(model, state)
     if (allocated(state%node_damping)) call follow_damping(model, cycle%rates, state)
@@ -222,29 +217,36 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    type(record_t) :: record
+    logical :: tells(7)
 
     associate (ranks => monitor%ranks, shares => cycle%shares, elements => state%elements)
       call hear_requests(state, cycle%ratio, monitor, cycle%echoes, cycle%asked, cycle%error)
-      record%asked = cycle%asked
-      record%has_error = allocated(cycle%error)
-      call exchange_parcel(shares, cycle%borders, ranks, cycle%parcel, state, cycle%sums)
-      call exchange_record(shares, cycle%checks, elements, ranks, cycle%parcel, record)
-      cycle%asked = record%asked
-      cycle%checks(cycle%first_check) = tile_check_t(time_limit=record%time_limit, &
-        has_volume=record%is_sound, volume_change=record%volume_change)
-      if (record%has_error) call share_error(ranks, cycle%error)
-      if (record%loses) call exchange_erosion(ranks, shares, elements)
+      associate (asked => cycle%asked)
+        tells = [.false., .false., allocated(cycle%error), asked%dump, asked%plot, asked%stop, &
+          asked%signalled]
+      end associate
+      call exchange_parcel(shares, ranks, cycle%parcel, state, cycle%sums)
+      call exchange_checks(shares, elements, ranks, cycle%parcel, cycle%checks, tells)
+      cycle%asked = requests_t(tells(4), tells(5), tells(6), tells(7))
+      if (tells(errs)) call share_error(ranks, cycle%error)
+      if (tells(loses)) then
+        associate (erosion => elements%erosion, slots => (shares%chunks - 1)*chunk_size + 1)
+          call bring_integers(ranks, shares%chunks, erosion%n_gone)
+          call bring_integers(ranks, slots, erosion%status)
+          call bring_reals(ranks, slots, 1, .true., erosion%hourglass)
+          call bring_reals(ranks, slots, 1, .true., erosion%internal)
+        end associate
+      end if
       if (state%cycle == 0) call bring_reals(ranks, shares%chunks, 1, .true., &
         elements%time_limit)
-      if (record%fails) then
-        call bring_integers(ranks, shares%chunks, 1, .true., elements%n_failed)
+      if (tells(fails)) then
+        call bring_integers(ranks, shares%chunks, elements%n_failed)
         ! The log names the first one.
         if (cycle%failures%told == 0 .and. any(elements%n_failed > 0)) &
           call bring_reals(ranks, stream_starts(shares%chunks, elements%history_start, &
           size(elements%history)), 1, .false., elements%history)
       end if
-      if (cycle%writes) call gather_state(shares, cycle%borders, .false., ranks, state)
+      if (cycle%writes) call gather_state(shares, .false., ranks, state)
       if (cycle%writes .and. ranks%mine == 0) call sum_special_forces(model%layout, &
         state%force_slots, 1, model%layout%n_special, state%internal_force)
     end associate
@@ -261,15 +263,15 @@ contains
 
     if (allocated(state%elements%n_failed)) call follow_failures(model, state, cycle%failures, &
       monitor%log)
-    call follow_rest(model, cycle%rest)
+    call follow_rest(model, cycle%shares, cycle%rest)
     if (cycle%finished) return
     if (.not. cycle%writes) then
       call count_sums(cycle%sums, state%external_work, state%damping_work)
       if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
       if (.not. are_sound(cycle%checks(cycle%first_check:), state%contacts)) then
-        if (monitor%ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .false., &
-          monitor%ranks, state)
-        call judge_elements(monitor%ranks, model, state, cycle%error)
+        if (monitor%ranks%n > 1) call gather_state(cycle%shares, .false., monitor%ranks, state)
+        if (monitor%ranks%mine == 0) call check_elements(model, state, cycle%error)
+        call share_error(monitor%ranks, cycle%error)
       end if
     end if
     if (size(cycle%velocity) > 0) then
@@ -286,8 +288,7 @@ contains
     end if
     if (allocated(state%group_work)) call count_groups(model, [.not. cycle%writes, .true.], state)
     if (allocated(cycle%freed)) then
-      if (monitor%ranks%n > 1) call gather_motion(cycle%shares, cycle%borders, .true., &
-        monitor%ranks, state)
+      if (monitor%ranks%n > 1) call gather_motion(cycle%shares, .true., monitor%ranks, state)
       ! Nodes that no element holds any more, and surfaces of interfaces.
       call release_nodes(model, cycle%leap, cycle%freed, state)
       associate (n_eroded => state%elements%erosion%n_eroded)
@@ -308,8 +309,8 @@ contains
     call next_step(model, limit, monitor%log, state%cycle, cycle%steps, state%time, state%dt)
     if (.not. allocated(cycle%error)) then
       call check_step(model%controls, cycle%steps%first_dt, state%time, state%dt, cycle%error)
-      if (allocated(cycle%error) .and. monitor%ranks%n > 1) call gather_state(cycle%shares, &
-        cycle%borders, .false., monitor%ranks, state)
+      if (allocated(cycle%error) .and. monitor%ranks%n > 1) &
+        call gather_state(cycle%shares, .false., monitor%ranks, state)
       if (allocated(cycle%error) .and. monitor%ranks%mine == 0) call name_collapsed(model, state, &
         cycle%error)
     end if
@@ -354,7 +355,7 @@ contains
 
     if (model%controls%masses_stay) return
     if (minval(cycle%checks(cycle%first_check:)%time_limit) >= abs(model%controls%mass_step)) return
-    if (ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .true., ranks, state)
+    if (ranks%n > 1) call gather_state(cycle%shares, .true., ranks, state)
     before = state%mass
     call grow_masses(model, state%motion, state%dt, state%elements, state%mass, work)
     ! The places of the next cycle have been looked at.
@@ -389,8 +390,7 @@ contains
     wanted = wanted_files(monitor%restarts, state%cycle, cycle%asked%dump, ends, &
       cycle%asked%signalled .and. .not. ends)
     if (any(wanted) .and. .not. allocated(cycle%error)) then
-      if (monitor%ranks%n > 1) call gather_state(cycle%shares, cycle%borders, .false., &
-        monitor%ranks, state)
+      if (monitor%ranks%n > 1) call gather_state(cycle%shares, .false., monitor%ranks, state)
       if (monitor%ranks%mine == 0) call write_restarts(wanted, state, monitor, cycle%error, cycle)
       call share_error(monitor%ranks, cycle%error)
     end if

@@ -1,38 +1,41 @@
 ! SPDX-License-Identifier: MIT
-!> A cycle of an explicit run that writes: what the elements have come to, and what is due from it.
+!> A cycle of an explicit run that writes: what the elements have come to, and what is due from it;
+!> what its energies lack so that their sum is what leap-frog keeps: v(n-1/2).M v(n+1/2)/2 + U with
+!> equal steps (doc/theory/time_integration.md). One thread.
 module explicit_report_m
-  use history_filling_m, only : fill_explicit_reactions
-  use prescribed_motion_m, only : count_motions, count_body_motions, count_groups, start_prescribed
+  use common_motion_m, only : common_drive, common_velocity
+  use loads_m, only : is_active
   use contact_check_m, only : report_contact_start
-  use contact_pressing_m, only : press_contacts
+  use explicit_contact_m, only : press_contacts
   use curves_m, only : curve_value
-  use snapshot_m, only : energy_ratio, snapshot_t
   use element_losses_m, only : settle_elements
+  use element_steps_m, only : find_smallest_steps
   use explicit_cycle_m, only : explicit_cycle_t, prepare_leap
-  use time_step_m, only : first_change, first_step, largest_change, obey_approach, &
-    obey_defaults, follow_springs
-  use health_m, only : check_energy, check_ratio, check_radii, made_by_springs, unaccounted
+  use health_m, only : check_elements, check_energy, check_ratio, check_radii, made_by_springs, &
+    unaccounted
+  use held_nodes_m, only : hold_skew_nodes, hold_nodes, count_walls
+  use history_filling_m, only : fill_explicit_reactions
   use history_tables_m, only : table_glstat, table_matsum, table_rwforc, table_spcforc, table_rbdout
   use kinds_m, only : wp
   use layout_m, only : slot_part
-  use leapfrog_balance_m, only : complete_balance
-  use log_m, only : write_log, to_text
-  use model_log_m, only : log_smallest_steps, judge_damping
+  use load_work_m, only : count_sums, count_motions, count_body_motions, count_groups
+  use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
-  use monitor_m, only : monitor_t, write_due
-  use load_work_m, only : count_sums
-  use rank_exchange_m, only : judge_elements
+  use monitor_m, only : monitor_t, write_due, note_energies, write_instant
   use ranks_m, only : share_error, spread_values
-  use reporting_m, only : note_energies, write_instant
-  use rigid_motion_m, only : solve_rigids, start_rigid_motions, fill_rigids, fill_bodies
-  use held_nodes_m, only : hold_skew_nodes, hold_nodes, count_walls, fill_walls
-  use element_steps_m, only : find_smallest_steps
-  use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts
+  use node_motion_m, only : solve_rigids, fill_rigids
+  use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, find_motion, damping_at
+  use snapshot_m, only : energy_ratio, snapshot_t
   use state_m, only : state_t
+  use time_step_m, only : first_change, first_step, largest_change, obey_approach, obey_defaults, &
+    follow_springs
+  use walls_m, only : wall_tangent
   implicit none
   private
-  public :: report_cycle
+  public :: report_cycle, complete_balance
 
+  !> Elements of the list of smallest steps.
+  integer, parameter :: n_listed = 10
   !> Part of DT2MS by which a step that mass scaling has set may differ from it.
   real(wp), parameter :: round_off = 1.0e-9_wp
 
@@ -46,11 +49,14 @@ contains
     type(explicit_cycle_t), intent(inout) :: cycle
     real(wp), allocatable :: held(:, :)              !! (2, n_skew) forces of skew supports
     integer, allocatable :: held_nodes(:)
+    real(wp) :: energy(1)
     logical, parameter :: due(2) = [.true., .false.] !! works of the half step before the instant
 
     call count_sums(cycle%sums, state%external_work, state%damping_work)
     if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
-    call judge_elements(monitor%ranks, model, state, cycle%error)
+    ! The first process has gathered the state of all elements.
+    if (monitor%ranks%mine == 0) call check_elements(model, state, cycle%error)
+    call share_error(monitor%ranks, cycle%error)
     if (state%cycle == 0) then
       call obey_defaults(model, state)
       call follow_springs(model, state, cycle%steps%springs)
@@ -67,7 +73,6 @@ contains
       if (model%erodes) state%elements%erosion%least_step = model%controls%dt_floor &
         *cycle%steps%first_dt/model%controls%dt_scale
       call prepare_leap(model, state, cycle)
-      call start_prescribed(model, cycle%velocity, state)
       if (cycle%presses .and. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
         cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
       call report_contact_start(model, state, monitor%log)
@@ -76,7 +81,6 @@ contains
     end if
     if (size(state%rigids) > 0) then
       call solve_rigids(model, cycle%damping, state)
-      if (state%cycle == 0) call start_rigid_motions(model, state)
       call count_body_motions(model, cycle%damping, due, state)
     end if
     if (allocated(state%walls)) then
@@ -91,8 +95,16 @@ contains
     end if
     call count_motions(model, cycle%velocity, cycle%damping, due, state)
     if (allocated(state%group_work)) call count_groups(model, due, state)
-    if (monitor%ranks%mine == 0) call write_report(model, held, state, monitor, cycle)
-    if (monitor%ranks%n > 1) call hear_report(model, state, monitor, cycle)
+    if (monitor%ranks%mine == 0) then
+      call write_report(model, held, state, monitor, cycle)
+    else
+      monitor%snapshot%time = state%time
+      call write_due(model, cycle%due, state%dt, monitor, cycle%error)
+    end if
+    energy = state%initial_energy
+    if (state%cycle == 0) call spread_values(monitor%ranks, energy)
+    state%initial_energy = energy(1)
+    call share_error(monitor%ranks, cycle%error)
     cycle%finished = cycle%last .or. allocated(cycle%error)
   end subroutine report_cycle
 
@@ -145,11 +157,24 @@ contains
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
     logical :: follows !! springs beside the bodies, of which energies are known
+    integer :: i
 
     call fill_motion(model, state, cycle%damping, cycle%velocity, monitor%snapshot)
     call fill_rigids(model, state, monitor%snapshot)
-    if (cycle%due%tables(table_rwforc) .and. allocated(state%walls)) &
-      call fill_walls(model, state, monitor%snapshot%walls)
+    if (cycle%due%tables(table_rwforc) .and. allocated(state%walls)) then
+      do i = 1, size(state%walls)
+        associate (result => monitor%snapshot%walls(i), wall => state%walls(i))
+          result%normal_force = sum(wall%force)
+          result%tangential_force = sum(wall%friction)
+          result%force = result%normal_force*model%walls(i)%normal
+          result%force = result%force + result%tangential_force*wall_tangent(model%walls(i))
+          result%impulse = wall%impulse
+          result%work = wall%work
+          result%dissipated = wall%dissipated
+          result%n_active = count(wall%force > 0.0_wp)
+        end associate
+      end do
+    end if
     follows = any(cycle%due%tables([table_glstat, table_matsum])) &
       .or. (cycle%due%plot .and. size(model%contacts) > 0)
     if (follows) call fill_energies(model, state, cycle%damping, monitor%snapshot)
@@ -164,7 +189,16 @@ contains
     end if
     if (cycle%due%tables(table_spcforc)) &
       call fill_explicit_reactions(model, state, monitor%snapshot, held)
-    if (cycle%due%tables(table_rbdout)) call fill_bodies(state, monitor%snapshot)
+    if (cycle%due%tables(table_rbdout) .and. allocated(monitor%snapshot%bodies)) then
+      do i = 1, size(monitor%snapshot%bodies)
+        associate (rigid => state%rigids(i), body => monitor%snapshot%bodies(i))
+          body%displacement = rigid%place
+          body%place = rigid%centre + rigid%place(1:2)
+          body%velocity = rigid%velocity + 0.5_wp*state%dt_before*rigid%acceleration
+          body%acceleration = rigid%acceleration
+        end associate
+      end do
+    end if
     call write_instant(model, cycle%due, state%dt, cycle%ratio, state, monitor, cycle%error)
     if (.not. allocated(cycle%error) .and. cycle%due%tables(table_glstat)) then
       call check_energy(model%controls, monitor%snapshot%energies, made_by_springs, cycle%error)
@@ -173,24 +207,6 @@ contains
     end if
     call check_radii(model, state, monitor%told_radii, monitor%log)
   end subroutine write_report
-
-  !> What a process that writes nothing has to know of the report, and what came of it.
-  subroutine hear_report(model, state, monitor, cycle)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(explicit_cycle_t), intent(inout) :: cycle
-    real(wp) :: energy(1)
-
-    if (monitor%ranks%mine > 0) then
-      monitor%snapshot%time = state%time
-      call write_due(model, cycle%due, state%dt, monitor, cycle%error)
-    end if
-    energy = state%initial_energy
-    if (state%cycle == 0) call spread_values(monitor%ranks, energy)
-    state%initial_energy = energy(1)
-    call share_error(monitor%ranks, cycle%error)
-  end subroutine hear_report
 
   !> Ids of the element with the smallest stable step, and of its part; 0 where the curve rules. And
   !> whether that step is the one of DT2MS.
@@ -216,5 +232,177 @@ contains
     snapshot%slowest = [model%mesh%element_id(found(1)), &
       model%parts(slot_part(model%layout, model%layout%element_slot(found(1))))%id]
   end subroutine find_slowest
+
+  !> Complete the energies of the snapshot, which must be filled: the leap-frog part of the kinetic
+  !> energy, from m a^2 of all degrees of freedom, and what the damping of this instant takes over
+  !> the half step behind.
+  subroutine complete_balance(model, state, damping, velocity_next, snapshot)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2)       !! D per direction
+    real(wp), intent(in) :: velocity_next(:) !! (n_motion) v(n+1/2) of prescribed motions
+    type(snapshot_t), intent(inout) :: snapshot
+    real(wp) :: dt, mean, inertia, led, work, velocity(2), acceleration(2)
+    integer :: i
+
+    ! Time zero has no step behind: that of equal steps stands for it.
+    dt = merge(state%dt_before, state%dt, state%dt_before > 0.0_wp)
+    mean = 0.5_wp*(state%dt + state%dt_before)
+    led = 0.0_wp
+    if (state%dt > 0.0_wp) led = sum(state%mass(model%conditions%motions%node)*((velocity_next &
+      - state%prescribed_velocity)/mean)**2, is_active(model%conditions%motions, state%time))
+    inertia = free_inertia(model, state, damping) + led
+    led = 0.0_wp
+    do i = 1, size(state%rigids)
+      associate (rigid => state%rigids(i))
+        led = led + sum(rigid%inertia*((rigid%next_velocity - rigid%velocity)/mean)**2)
+      end associate
+    end do
+    inertia = inertia + led
+    if (allocated(model%conditions%common_motions)) &
+      inertia = inertia + common_inertia(model, state, damping)
+    if (allocated(state%walls) .and. .not. state%dt_before > 0.0_wp) &
+      inertia = inertia - wall_power(model, state, damping)
+    snapshot%energies%leapfrog = -0.125_wp*dt**2*inertia
+    if (.not. allocated(state%former_velocity)) return
+    ! Work that the damping forces D m v(n) take over the half step behind.
+    work = 0.0_wp
+    do i = 1, model%mesh%n_node
+      if (allocated(snapshot%velocity)) then
+        velocity = snapshot%velocity(:, i)
+      else
+        call find_motion(model%layout%n_special, state, damping, i, velocity, acceleration)
+      end if
+      work = work + state%mass(i)*sum(damping_at(state, damping, i)*velocity*state%motion(3:4, i))
+    end do
+    snapshot%energies%damping = snapshot%energies%damping + 0.5_wp*state%dt_before*work
+  end subroutine complete_balance
+
+  !> Sum of m a^2 over degrees of freedom that move freely, with a = (v(n+1/2) - v(n-1/2))/h.
+  pure function free_inertia(model, state, damping) result(total)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2)
+    real(wp) :: total
+    real(wp) :: velocity(2), a(2), late(2)
+    integer :: i, k
+
+    total = 0.0_wp
+    ! At time zero damping acts on the mean of v(0) and v(1/2).
+    late = 1.0_wp
+    if (.not. state%dt_before > 0.0_wp) late = 1.0_wp + 0.25_wp*damping*state%dt
+    do i = 1, model%mesh%n_node
+      if (allocated(state%node_damping) .and. .not. state%dt_before > 0.0_wp) late = 1.0_wp &
+        + 0.25_wp*state%node_damping(:, i)*state%dt
+      call find_motion(model%layout%n_special, state, damping, i, velocity, a)
+      do k = 1, 2
+        if (state%inverse_mass(k, i) > 0.0_wp) total = total + state%mass(i)*(a(k)/late(k))**2
+      end do
+    end do
+  end function free_inertia
+
+  !> The same over nodes that move alike.
+  pure function common_inertia(model, state, damping) result(total)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2)
+    real(wp) :: total
+    real(wp) :: push, rate, a, before(2)
+    integer :: i, k
+
+    total = 0.0_wp
+    do i = 1, size(model%conditions%common_motions)
+      before = common_velocity(model, i, state)
+      associate (common => model%conditions%common_motions(i))
+        do k = 1, 2
+          if (.not. common%along(k)) cycle
+          call common_drive(model, i, k, state, damping, push, rate)
+          a = (push - rate*before(k))/(1.0_wp &
+            + 0.5_wp*rate*merge(state%dt_before, 0.5_wp*state%dt, state%dt_before > 0.0_wp))
+          total = total + sum(state%mass(common%nodes))*a**2
+        end do
+      end associate
+    end do
+  end function common_inertia
+
+  !> Sum of F.a of the forces of rigid walls: their work at time zero is that of the mean of v(0)
+  !> and v(1/2), not that of v(1/2) as for all other forces.
+  pure function wall_power(model, state, damping) result(total)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: damping(2)
+    real(wp) :: total
+    real(wp) :: velocity(2), a(2), push(2)
+    integer :: i, k
+
+    total = 0.0_wp
+    do i = 1, size(state%walls)
+      do k = 1, size(model%walls(i)%nodes)
+        if (.not. state%walls(i)%force(k) > 0.0_wp) cycle
+        call find_motion(model%layout%n_special, state, damping, model%walls(i)%nodes(k), &
+          velocity, a)
+        push = state%walls(i)%force(k)*model%walls(i)%normal
+        if (size(state%walls(i)%friction) > 0) push = push + state%walls(i)%friction(k) &
+          *wall_tangent(model%walls(i))
+        total = total + dot_product(push, a/(1.0_wp + 0.25_wp*damping_at(state, damping, &
+          model%walls(i)%nodes(k))*state%dt))
+      end do
+    end do
+  end function wall_power
+
+  !> The elements that rule the time step.
+  subroutine log_smallest_steps(model, state, log)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(log_t), intent(inout) :: log
+    integer, allocatable :: found(:)
+    real(wp), allocatable :: steps(:)
+    character(60) :: line
+    integer :: i
+
+    call find_smallest_steps(model, state%elements, state%motion, n_listed, found, steps)
+    if (size(found) == 0) return
+    call write_log(log, 'smallest stable steps of elements (TSSFAC not applied):')
+    call write_log(log, '   element      part   stable step')
+    do i = 1, size(found)
+      write (line, '(ss,2i10,es14.6)') model%mesh%element_id(found(i)), &
+        model%parts(slot_part(model%layout, model%layout%element_slot(found(i))))%id, steps(i)
+      call write_log(log, trim(line))
+    end do
+  end subroutine log_smallest_steps
+
+  !> A warning where a step is too long for the global damping. A free node keeps
+  !> (2 - D dt)/(2 + D dt) of its velocity in a step (node_motion): that never grows, but is no
+  !> longer exp(-D dt) where D dt passes 1, and is below 0 where it passes 2.
+  subroutine judge_damping(model, dt, log)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: dt          !! first step, s
+    type(log_t), intent(inout) :: log
+    character(:), allocatable :: text
+    real(wp) :: largest, share
+
+    if (.not. allocated(model%conditions%damping)) return
+    associate (damping => model%conditions%damping)
+      text = 'VALDMP'
+      largest = damping%coefficient
+      if (damping%curve > 0) then
+        associate (curve => model%curves(damping%curve), end_time => model%controls%end_time)
+          text = 'the largest ordinate of curve '//to_text(curve%id)
+          largest = max(curve_value(curve, 0.0_wp), curve_value(curve, end_time), &
+            maxval(curve%ordinate, curve%abscissa >= 0.0_wp .and. curve%abscissa <= end_time))
+        end associate
+      end if
+      share = largest*maxval(damping%factor)*dt
+      if (.not. share > 1.0_wp) return
+      text = '*DAMPING_GLOBAL acts on all parts with D = ' &
+        //to_text(largest*maxval(damping%factor))//' ('//text &
+        //', times STX or STY); times the step '//to_text(dt)//' that is ' &
+        //to_text(share)//', above 1: a step leaves '//to_text((2.0_wp - share)/(2.0_wp + share)) &
+        //' of a velocity where exp(-D dt) = '//to_text(exp(-share))//' is meant'
+    end associate
+    if (share > 2.0_wp) text = text//', and above 2 velocities change sign in every step'
+    call warn(log, text//'; nothing grows, but a smaller D or a smaller step is needed ' &
+      //'to follow it')
+  end subroutine judge_damping
 
 end module explicit_report_m

@@ -9,13 +9,11 @@ module held_nodes_m
   use kinds_m, only : wp
   use model_m, only : model_t
   use node_motion_m, only : leap_t, look_ahead
-  use snapshot_m, only : wall_result_t
   use state_m, only : state_t
   use walls_m, only : wall_t, wall_distance, wall_tangent, friction_sticks
   implicit none
   private
-  public :: hold_skew_nodes, move_common, hold_nodes, count_walls, fill_walls, &
-    wall_work_ahead
+  public :: hold_skew_nodes, move_common, hold_nodes, count_walls, wall_work_ahead
 
   !> Rounds over the walls that one node meets (two in a corner settle at once where
   !> they are at right angles).
@@ -78,62 +76,59 @@ contains
     type(leap_t), intent(in) :: leap
     integer, intent(in) :: first, last
     type(state_t), intent(inout) :: state
-    integer :: node
-
-    do node = first, last
-      call hold_node(model, leap, node, state)
-    end do
-  end subroutine hold_nodes
-
-  !> One node.
-  subroutine hold_node(model, leap, node, state)
-    type(model_t), intent(in) :: model
-    type(leap_t), intent(in) :: leap
-    integer, intent(in) :: node
-    type(state_t), intent(inout) :: state
     real(wp) :: velocity(2), mobility(2), more, most
-    integer :: i, k, round, n_seen
+    integer :: node, i, k, round, n_seen
     logical :: settles
 
-    n_seen = 0
-    settles = .true.
-    do i = 1, size(model%walls)
-      k = model%walls(i)%place(node)
-      if (k == 0) cycle
-      n_seen = n_seen + 1
-      state%walls(i)%force(k) = 0.0_wp
-      state%walls(i)%speed(k) = dot_product(model%walls(i)%normal, state%motion(3:4, node))
-      if (.not. model%walls(i)%friction > 0.0_wp) cycle
-      state%walls(i)%friction(k) = 0.0_wp
-      state%walls(i)%slip_speed(k) = dot_product(wall_tangent(model%walls(i)), &
-        state%motion(3:4, node))
-      settles = .false.
-    end do
-    if (n_seen == 0) return
-    call look_ahead(leap, state, node, mobility, velocity)
-    do round = 1, most_rounds
-      most = 0.0_wp
+    do node = first, last
+      n_seen = 0
+      settles = .true.
       do i = 1, size(model%walls)
         k = model%walls(i)%place(node)
         if (k == 0) cycle
-        more = missing_force(model%walls(i), state%time, leap%dt, model%mesh%coordinates(:, node), &
-          state%motion(1:2, node), velocity, mobility, state%walls(i)%force(k))
-        state%walls(i)%force(k) = state%walls(i)%force(k) + more
-        velocity = velocity + mobility*(more*model%walls(i)%normal)
-        state%force_special(:, node) = state%force_special(:, node) + more*model%walls(i)%normal
-        most = max(most, abs(more) - 1.0e-14_wp*state%walls(i)%force(k))
+        n_seen = n_seen + 1
+        state%walls(i)%force(k) = 0.0_wp
+        state%walls(i)%speed(k) = dot_product(model%walls(i)%normal, state%motion(3:4, node))
         if (.not. model%walls(i)%friction > 0.0_wp) cycle
-        more = missing_friction(model%walls(i), velocity, mobility, state%walls(i)%force(k), &
-          state%walls(i)%friction(k))
-        state%walls(i)%friction(k) = state%walls(i)%friction(k) + more
-        velocity = velocity + mobility*(more*wall_tangent(model%walls(i)))
-        state%force_special(:, node) = state%force_special(:, node) &
-          + more*wall_tangent(model%walls(i))
-        most = max(most, abs(more) - 1.0e-14_wp*state%walls(i)%force(k))
+        state%walls(i)%friction(k) = 0.0_wp
+        state%walls(i)%slip_speed(k) = dot_product(wall_tangent(model%walls(i)), &
+          state%motion(3:4, node))
+        settles = .false.
       end do
-      if ((n_seen == 1 .and. settles) .or. .not. most > 0.0_wp) exit
+      if (n_seen == 0) cycle
+      call look_ahead(leap, state, node, mobility, velocity)
+      do round = 1, most_rounds
+        most = 0.0_wp
+        do i = 1, size(model%walls)
+          k = model%walls(i)%place(node)
+          if (k == 0) cycle
+          associate (wall => model%walls(i), force => state%walls(i)%force(k))
+            more = missing_force(wall, state%time, leap%dt, model%mesh%coordinates(:, node), &
+              state%motion(1:2, node), velocity, mobility, force)
+            force = force + more
+            call push(more, wall%normal, force)
+            if (.not. wall%friction > 0.0_wp) cycle
+            more = missing_friction(wall, velocity, mobility, force, state%walls(i)%friction(k))
+            state%walls(i)%friction(k) = state%walls(i)%friction(k) + more
+            call push(more, wall_tangent(wall), force)
+          end associate
+        end do
+        if ((n_seen == 1 .and. settles) .or. .not. most > 0.0_wp) exit
+      end do
     end do
-  end subroutine hold_node
+
+  contains
+
+    !> Push the node by what a force lacked.
+    subroutine push(more, along, force)
+      real(wp), intent(in) :: more, along(2), force !! the last one along the normal of the wall
+
+      velocity = velocity + mobility*(more*along)
+      state%force_special(:, node) = state%force_special(:, node) + more*along
+      most = max(most, abs(more) - 1.0e-14_wp*force)
+    end subroutine push
+
+  end subroutine hold_nodes
 
   !> What the force of one wall lacks so that the node does not pass; never so
   !> negative that the wall pulls.
@@ -251,25 +246,5 @@ contains
 
     way = 0.25_wp*(state%dt_before + state%dt)*(speed + next) - 0.5_wp*state%dt_before*speed
   end function way_ahead
-
-  !> What the output says of the walls.
-  subroutine fill_walls(model, state, results)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(wall_result_t), intent(inout) :: results(:)
-    integer :: i
-
-    do i = 1, size(state%walls)
-      results(i)%normal_force = sum(state%walls(i)%force)
-      results(i)%force = results(i)%normal_force*model%walls(i)%normal
-      results(i)%impulse = state%walls(i)%impulse
-      results(i)%work = state%walls(i)%work
-      results(i)%n_active = count(state%walls(i)%force > 0.0_wp)
-      results(i)%tangential_force = sum(state%walls(i)%friction)
-      results(i)%force = results(i)%force + results(i)%tangential_force &
-        *wall_tangent(model%walls(i))
-      results(i)%dissipated = state%walls(i)%dissipated
-    end do
-  end subroutine fill_walls
 
 end module held_nodes_m

@@ -8,7 +8,7 @@ module rank_exchange_m
   use block_state_m, only : block_state_t
   use cut_forces_m, only : find_cut_forces
   use errors_m, only : error_t
-  use health_m, only : tile_check_t, check_elements, most_work
+  use health_m, only : tile_check_t, most_work
   use kinds_m, only : wp, long
   use layout_m, only : chunk_size
   use log_m, only : log_t, write_log, to_text
@@ -16,18 +16,21 @@ module rank_exchange_m
   use monitor_m, only : monitor_t
   use load_work_m, only : motion_sums_t
   use packed_buffer_m, only : packed_buffer_t, start_loading, start_unloading, choose_slots
-  use rank_shares_m, only : shares_t, borders_t
-  use ranks_m, only : ranks_t, bring_reals, bring_integers, swap_reals, find_least, share_error
+  use rank_shares_m, only : shares_t
+  use ranks_m, only : ranks_t, bring_reals, swap_reals, find_least
   use requests_m, only : requests_t, take_requests, echoes_t, hear_signals, drop_echoes
   use state_m, only : state_t
   implicit none
   private
-  public :: parcel_t, record_t, plan_parcel, exchange_parcel, exchange_record, exchange_erosion, &
-    gather_motion, gather_state, judge_elements, hear_requests, report_exchange, &
+  public :: parcel_t, plan_parcel, exchange_parcel, exchange_checks, loses, fails, errs, &
+    bring_integers, gather_motion, gather_state, hear_requests, report_exchange, &
     cut_sections
 
   !> Values of the sums over the nodes of a tile.
   integer, parameter :: n_sum = 4
+  !> Places of what a process tells all others: its elements have left, its points have failed, it
+  !> has an error; what someone asks of it stands behind them.
+  integer, parameter :: loses = 1, fails = 2, errs = 3
   !> Chunks of a piece at most.
   integer, parameter :: most_chunks = 128
 
@@ -42,45 +45,32 @@ module rank_exchange_m
     integer, allocatable :: n_failed(:)  !! failed points of its chunks that are known
   end type parcel_t
 
-  !> What all have to know of each other's elements, and what someone asks of any of them.
-  type :: record_t
-    real(wp) :: time_limit = huge(1.0_wp) !! smallest of the elements
-    real(wp) :: volume_change = 0.0_wp    !! largest of the elements
-    logical :: is_sound = .true.          !! volumes are positive, works finite
-    logical :: loses = .false.            !! elements have left
-    logical :: fails = .false.            !! points have failed
-    logical :: has_error = .false.
-    type(requests_t) :: asked
-  end type record_t
-
 contains
 
   !> Room for what is exchanged in each cycle.
-  pure subroutine plan_parcel(borders, shares, mine, elements, sums, parcel)
-    type(borders_t), intent(in) :: borders
+  pure subroutine plan_parcel(shares, mine, elements, sums, parcel)
     type(shares_t), intent(in) :: shares
     integer, intent(in) :: mine !! number of this process
     type(block_state_t), intent(in) :: elements
     type(motion_sums_t), intent(in) :: sums
     type(parcel_t), intent(out) :: parcel
 
-    parcel%starts = 2*(borders%common_starts - 1) + 1
+    parcel%starts = 2*(shares%common_starts - 1) + 1
     if (allocated(sums%parts)) parcel%starts = parcel%starts + n_sum*(shares%tiles - 1 &
       + sums%starts - 1)
     allocate (parcel%values(parcel%starts(size(parcel%starts)) - 1), source=0.0_wp)
-    allocate (parcel%outgoing(2, size(borders%out_slots)), source=0.0_wp)
-    allocate (parcel%incoming(2, size(borders%in_slots)), source=0.0_wp)
+    allocate (parcel%outgoing(2, size(shares%out_slots)), source=0.0_wp)
+    allocate (parcel%incoming(2, size(shares%in_slots)), source=0.0_wp)
     associate (first => shares%chunks(mine), last => shares%chunks(mine + 1) - 1)
       if (allocated(elements%erosion)) parcel%n_gone = sum(elements%erosion%n_gone(first:last))
       if (allocated(elements%n_failed)) parcel%n_failed = elements%n_failed(first:last)
     end associate
   end subroutine plan_parcel
 
-  !> Forces of tiles on special nodes and, where they are formed, sums over nodes; `exchange_record`
+  !> Forces of tiles on special nodes and, where they are formed, sums over nodes; `exchange_checks`
   !> follows.
-  subroutine exchange_parcel(shares, borders, ranks, parcel, state, sums)
+  subroutine exchange_parcel(shares, ranks, parcel, state, sums)
     type(shares_t), intent(in) :: shares
-    type(borders_t), intent(in) :: borders
     type(ranks_t), intent(inout) :: ranks
     type(parcel_t), intent(inout) :: parcel
     type(state_t), intent(inout) :: state
@@ -90,10 +80,10 @@ contains
     parcel%sent = parcel%sent - ranks%sent
     parcel%joined = parcel%joined - ranks%joined
     parcel%n_cycle = parcel%n_cycle + 1
-    call copy_columns(.true., borders%out_slots, 2, state%force_slots, parcel%outgoing)
-    call swap_reals(ranks, borders%peers, 2*borders%out_starts - 1, parcel%outgoing, &
-      2*borders%in_starts - 1, parcel%incoming)
-    call copy_columns(.false., borders%in_slots, 2, state%force_slots, parcel%incoming)
+    call copy_columns(.true., shares%out_slots, 2, state%force_slots, parcel%outgoing)
+    call swap_reals(ranks, shares%peers, 2*shares%out_starts - 1, parcel%outgoing, &
+      2*shares%in_starts - 1, parcel%incoming)
+    call copy_columns(.false., shares%in_slots, 2, state%force_slots, parcel%incoming)
     if (size(parcel%values) == 0) return
     call fill_piece(ranks%mine, .true.)
     call bring_reals(ranks, parcel%starts, 1, .true., parcel%values)
@@ -110,9 +100,9 @@ contains
       integer :: at, i
 
       at = parcel%starts(rank + 1)
-      associate (first => borders%common_starts(rank + 1), &
-        last => borders%common_starts(rank + 2) - 1)
-        if (last >= first) call copy_columns(puts, borders%common(first:last), 2, &
+      associate (first => shares%common_starts(rank + 1), &
+        last => shares%common_starts(rank + 2) - 1)
+        if (last >= first) call copy_columns(puts, shares%common(first:last), 2, &
           state%force_slots, parcel%values(at))
         at = at + 2*(last - first + 1)
       end associate
@@ -144,76 +134,60 @@ contains
     end do
   end subroutine copy_columns
 
-  !> The record of this process, from what the elements of its tiles have come to, becomes that of
-  !> all.
-  subroutine exchange_record(shares, checks, elements, ranks, parcel, record)
+  !> What the elements of all have come to, into the last of the checks; what any process tells.
+  subroutine exchange_checks(shares, elements, ranks, parcel, checks, tells)
     type(shares_t), intent(in) :: shares
-    type(tile_check_t), intent(in) :: checks(:)   !! of all tiles
     type(block_state_t), intent(in) :: elements
     type(ranks_t), intent(inout) :: ranks
     type(parcel_t), intent(inout) :: parcel
-    type(record_t), intent(inout) :: record       !! in: an error and what is asked of this one
-    real(wp) :: values(10)
+    type(tile_check_t), intent(inout) :: checks(:) !! of all tiles, and one behind them
+    logical, intent(inout) :: tells(:) !! in: of this process, its elements aside; out: of any
+    real(wp) :: values(3 + size(tells))
     integer :: n_gone
 
-    associate (own => checks(shares%first_tile:shares%last_tile))
-      record%time_limit = minval(own%time_limit)
-      record%volume_change = maxval(own%volume_change)
-      ! So that the works of all are below the bound where those of each are.
-      record%is_sound = all(own%has_volume) &
-        .and. abs(sum(own%checksum)) <= most_work/(ranks%n + 1)
-    end associate
     associate (first => shares%chunks(ranks%mine), last => shares%chunks(ranks%mine + 1) - 1)
       if (allocated(elements%erosion)) then
         n_gone = sum(elements%erosion%n_gone(first:last))
-        record%loses = n_gone > parcel%n_gone
+        tells(loses) = n_gone > parcel%n_gone
         parcel%n_gone = n_gone
       end if
       if (allocated(elements%n_failed)) then
-        record%fails = any(elements%n_failed(first:last) /= parcel%n_failed)
+        tells(fails) = any(elements%n_failed(first:last) /= parcel%n_failed)
         parcel%n_failed = elements%n_failed(first:last)
       end if
     end associate
-    associate (asked => record%asked)
-      values(1) = record%time_limit
-      values(10) = -record%volume_change
-      ! The least of numbers: below zero where it holds of any process.
-      values(2:9) = merge(-1.0_wp, 0.0_wp, [.not. record%is_sound, record%loses, record%fails, &
-        record%has_error, asked%dump, asked%plot, asked%stop, asked%signalled])
-      call find_least(ranks, values)
-      record%time_limit = values(1)
-      record%volume_change = -values(10)
-      record%is_sound = values(2) >= 0.0_wp
-      record%loses = values(3) < 0.0_wp
-      record%fails = values(4) < 0.0_wp
-      record%has_error = values(5) < 0.0_wp
-      asked%dump = values(6) < 0.0_wp
-      asked%plot = values(7) < 0.0_wp
-      asked%stop = values(8) < 0.0_wp
-      asked%signalled = values(9) < 0.0_wp
+    ! The least of numbers: below zero where it holds of any process.
+    values(4:) = merge(-1.0_wp, 0.0_wp, tells)
+    associate (own => checks(shares%first_tile:shares%last_tile))
+      values(1) = minval(own%time_limit)
+      values(2) = -maxval(own%volume_change)
+      ! So that the works of all are below the bound where those of each are.
+      values(3) = merge(0.0_wp, -1.0_wp, all(own%has_volume) &
+        .and. abs(sum(own%checksum)) <= most_work/(ranks%n + 1))
     end associate
+    call find_least(ranks, values)
+    checks(size(checks)) = tile_check_t(time_limit=values(1), volume_change=-values(2), &
+      has_volume=values(3) >= 0.0_wp)
+    tells = values(4:) < 0.0_wp
     parcel%sent = parcel%sent + ranks%sent
     parcel%joined = parcel%joined + ranks%joined
-  end subroutine exchange_record
+  end subroutine exchange_checks
 
-  !> Elements that have left in this cycle, and what they take along.
-  subroutine exchange_erosion(ranks, shares, elements)
+  !> Pieces of an array of integers, one a process, to all of them, as reals.
+  subroutine bring_integers(ranks, starts, values)
     type(ranks_t), intent(inout) :: ranks
-    type(shares_t), intent(in) :: shares
-    type(block_state_t), intent(inout) :: elements
+    integer, intent(in) :: starts(0:)     !! (0:n) item at which each piece starts, then one beyond
+    integer, intent(inout) :: values(:)
+    real(wp), allocatable :: copies(:)
 
-    associate (erosion => elements%erosion, slots => (shares%chunks - 1)*chunk_size + 1)
-      call bring_integers(ranks, shares%chunks, 1, .true., erosion%n_gone)
-      call bring_integers(ranks, slots, 1, .true., erosion%status)
-      call bring_reals(ranks, slots, 1, .true., erosion%hourglass)
-      call bring_reals(ranks, slots, 1, .true., erosion%internal)
-    end associate
-  end subroutine exchange_erosion
+    copies = real(values, wp)
+    call bring_reals(ranks, starts, 1, .true., copies)
+    values = nint(copies)
+  end subroutine bring_integers
 
   !> Motion of all nodes that only some processes move, with the velocities that damped runs keep.
-  subroutine gather_motion(shares, borders, to_all, ranks, state)
+  subroutine gather_motion(shares, to_all, ranks, state)
     type(shares_t), intent(in) :: shares
-    type(borders_t), intent(in) :: borders
     logical, intent(in) :: to_all
     type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state
@@ -222,24 +196,23 @@ contains
     call bring_reals(ranks, shares%special, 4, to_all, state%motion)
     if (.not. allocated(state%former_velocity)) return
     call bring_reals(ranks, shares%nodes, 2, to_all, state%former_velocity)
-    call bring_reals(ranks, borders%block_nodes, 2, to_all, state%former_velocity)
+    call bring_reals(ranks, shares%block_nodes, 2, to_all, state%former_velocity)
   end subroutine gather_motion
 
   !> The whole state for the first process, or for all.
-  subroutine gather_state(shares, borders, to_all, ranks, state)
+  subroutine gather_state(shares, to_all, ranks, state)
     type(shares_t), intent(in) :: shares
-    type(borders_t), intent(in) :: borders
     logical, intent(in) :: to_all
     type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state
 
-    call gather_motion(shares, borders, to_all, ranks, state)
+    call gather_motion(shares, to_all, ranks, state)
     call bring_reals(ranks, shares%nodes, 2, to_all, state%internal_force)
     call bring_reals(ranks, shares%special, 2, to_all, state%internal_force)
     call bring_reals(ranks, shares%force_slots, 2, to_all, state%force_slots)
     if (allocated(state%former_damping)) then
       call bring_reals(ranks, shares%nodes, 2, to_all, state%former_damping)
-      call bring_reals(ranks, borders%block_nodes, 2, to_all, state%former_damping)
+      call bring_reals(ranks, shares%block_nodes, 2, to_all, state%former_damping)
     end if
     call gather_elements(shares, to_all, ranks, state%elements)
   end subroutine gather_state
@@ -274,17 +247,6 @@ contains
     end do
   end subroutine gather_elements
 
-  !> The first process looks at all elements, whose state it has gathered, and tells the others.
-  subroutine judge_elements(ranks, model, state, error)
-    type(ranks_t), intent(inout) :: ranks
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(error_t), allocatable, intent(inout) :: error
-
-    if (ranks%mine == 0) call check_elements(model, state, error)
-    if (ranks%n > 1) call share_error(ranks, error)
-  end subroutine judge_elements
-
   !> What someone asks of this process, for all of them.
   subroutine hear_requests(state, ratio, monitor, echoes, asked, error)
     type(state_t), intent(in) :: state
@@ -309,40 +271,31 @@ contains
     type(parcel_t), intent(in) :: parcel
     type(ranks_t), intent(inout) :: ranks
     type(log_t), intent(inout) :: log
-    integer :: starts(ranks%n + 1), i
+    integer :: i
     real(wp) :: counts(4, ranks%n), rest(2)
+    character(31) :: figures(10) !! means of four counts, the most of each, and the rest
 
     rest = real(ranks%joined - parcel%joined, wp)
-    starts = [(i, i=1, ranks%n + 1)]
     counts(:, ranks%mine + 1) = real([parcel%sent, parcel%joined], wp) &
       /real(max(parcel%n_cycle, 1_long), wp)
-    call bring_reals(ranks, starts, 4, .false., counts)
+    call bring_reals(ranks, [(i, i=1, ranks%n + 1)], 4, .false., counts)
     if (ranks%mine > 0) return
+    write (figures, '(f31.2)') sum(counts, 2)/ranks%n, maxval(counts, 2), rest
+    figures = adjustl(figures)
     call write_log(log, 'exchange: '//to_text(ranks%n)//' processes; a cycle, mean (most): ' &
-      //'messages '//spread_text(counts(1, :))//', bytes '//spread_text(counts(2, :)) &
-      //', calls of all '//spread_text(counts(3, :))//', bytes by them ' &
-      //spread_text(counts(4, :))//'; besides, first process, in all: calls of all ' &
-      //plain_text(rest(1))//', bytes by them '//plain_text(rest(2)))
+      //'messages '//mean_and_most(1)//', bytes '//mean_and_most(2)//', calls of all ' &
+      //mean_and_most(3)//', bytes by them '//mean_and_most(4)//'; besides, first process, in ' &
+      //'all: calls of all '//trim(figures(9))//', bytes by them '//trim(figures(10)))
 
   contains
 
-    !> Mean and largest of what the processes have.
-    function spread_text(values) result(text)
-      real(wp), intent(in) :: values(:)
+    !> Of one of the counts, in words.
+    function mean_and_most(k) result(text)
+      integer, intent(in) :: k
       character(:), allocatable :: text
 
-      text = plain_text(sum(values)/size(values))//' ('//plain_text(maxval(values))//')'
-    end function spread_text
-
-    !> A number with two decimals.
-    function plain_text(value) result(text)
-      real(wp), intent(in) :: value
-      character(:), allocatable :: text
-      character(32) :: buffer
-
-      write (buffer, '(f31.2)') value
-      text = trim(adjustl(buffer))
-    end function plain_text
+      text = trim(figures(k))//' ('//trim(figures(4 + k))//')'
+    end function mean_and_most
 
   end subroutine report_exchange
 

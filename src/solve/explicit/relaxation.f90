@@ -5,7 +5,7 @@
 module relaxation_m
   use clock_m, only : lap, phase_input
   use load_work_m, only : apply_loads, motion_sums_t
-  use element_dispatch_m, only : add_tile_forces
+  use element_dispatch_m, only : add_tile_forces, share_tile_forces, sum_special_forces
   use errors_m, only : error_t, raise, status_run, status_stopped
   use health_m, only : check_elements
   use kinds_m, only : wp
@@ -22,9 +22,8 @@ module relaxation_m
   use requests_m, only : requests_t, echoes_t
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
-  use scaled_step_m, only : scaled_step
+  use loads_m, only : scaled_step
   use held_nodes_m, only : hold_skew_nodes
-  use tile_forces_m, only : share_tile_forces, sum_special_forces
   use time_step_m, only : volume_step
   implicit none
   private
@@ -51,7 +50,8 @@ contains
     type(echoes_t) :: echoes
     real(wp), allocatable :: force(:, :)
     real(wp) :: share !! of the largest kinetic energy
-    integer :: n
+    real(wp) :: momentum(2), mass
+    integer :: n, i
 
     allocate (relaxing, source=model)
     call switch_loads(relaxing, 0)
@@ -63,13 +63,24 @@ contains
     end if
     allocate (force(2, model%layout%n_local))
     share = 1.0_wp
+    ! The first step follows from the elements at time zero: a cycle that moves nothing.
+    if (.not. state%dt > 0.0_wp) call relax_once(relaxing, force, state)
     associate (rules => model%controls%relaxation)
       do n = state%relaxation%n + 1, most_cycles
         call relax_once(relaxing, force, state)
         if (mod(n, 100) == 0 .or. mod(n, rules%check_cycles) == 0) &
           call check_elements(relaxing, state, error)
         if (allocated(error)) return
-        share = own_energy(state)
+        ! Kinetic energy beyond that of the mean velocity.
+        share = 0.0_wp
+        momentum = 0.0_wp
+        mass = 0.0_wp
+        do i = 1, size(state%mass)
+          share = share + 0.5_wp*state%mass(i)*(state%motion(3, i)**2 + state%motion(4, i)**2)
+          momentum = momentum + state%mass(i)*state%motion(3:4, i)
+          mass = mass + state%mass(i)
+        end do
+        share = max(0.0_wp, share - 0.5_wp*sum(momentum**2)/mass)
         state%relaxation%most = max(state%relaxation%most, share)
         if (state%relaxation%most > 0.0_wp) share = share/state%relaxation%most
         if (mod(n, rules%check_cycles) == 0 .and. share < rules%tolerance) exit
@@ -105,14 +116,12 @@ contains
 
     call lap(monitor%clock, phase_input)
     call hear_requests(state, 1.0_wp, monitor, echoes, asked, error)
-    if (monitor%ranks%n > 1) then
-      ! What one process is asked for is done by all.
-      none = merge(0.0_wp, 1.0_wp, [asked%dump, asked%stop, asked%signalled])
-      call find_least(monitor%ranks, none)
-      asked%dump = none(1) < 1.0_wp
-      asked%stop = none(2) < 1.0_wp
-      asked%signalled = none(3) < 1.0_wp
-    end if
+    ! What one process is asked for is done by all.
+    none = merge(0.0_wp, 1.0_wp, [asked%dump, asked%stop, asked%signalled])
+    call find_least(monitor%ranks, none)
+    asked%dump = none(1) < 1.0_wp
+    asked%stop = none(2) < 1.0_wp
+    asked%signalled = none(3) < 1.0_wp
     wanted = wanted_files(monitor%restarts, 0, asked%dump, .false., asked%signalled)
     if (any(wanted)) then
       ! In restart files the run stands at time zero.
@@ -129,31 +138,26 @@ contains
     state%time = 0.0_wp
   end subroutine heed_requests
 
-  !> One cycle of relaxation: v(n+1/2) = DRFCTR v(n-1/2) + h a.
+  !> One cycle of relaxation, v(n+1/2) = DRFCTR v(n-1/2) + h a, and the step of the next one.
   subroutine relax_once(model, force, state)
     type(model_t), intent(in) :: model
     real(wp), intent(inout), contiguous :: force(:, :) !! work array of a tile
     type(state_t), intent(inout) :: state
     type(motion_sums_t) :: unused
     type(leap_t) :: leap
-    real(wp) :: global(2)
+    real(wp) :: global(2), limit, wanted
     real(wp), parameter :: none(2) = 0.0_wp
     integer :: i
 
     global = none
     call apply_loads(model, state, global, unused)
-    ! The first step follows from the elements at time zero, which the forces below leave.
-    if (.not. state%dt > 0.0_wp) then
-      do i = 1, size(model%layout%tiles)
-        call advance_tile(model, i, state, force)
-      end do
-      call choose_step(model, state)
-    end if
     leap = make_leap(state%dt_before, state%dt, none, state%body_acceleration)
     leap%keep = model%controls%relaxation%factor
     do i = 1, size(model%layout%tiles)
-      call advance_tile(model, i, state, force)
       associate (tile => model%layout%tiles(i))
+        call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
+        if (needs_refinement(state%elements)) &
+          call refine_limits(model, tile, state%motion, state%dt_before, state%elements)
         call share_tile_forces(tile, force, state%force_slots)
         call move_tile_nodes(leap, tile%first_node, tile%last_node, force, state%inverse_mass, &
           state%motion)
@@ -166,54 +170,14 @@ contains
     end associate
     state%time = state%time + state%dt
     state%dt_before = state%dt
-    call choose_step(model, state)
-  end subroutine relax_once
-
-  !> Forces of one tile, and its limits.
-  subroutine advance_tile(model, i, state, force)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: i
-    type(state_t), intent(inout) :: state
-    real(wp), intent(inout), contiguous :: force(:, :)
-
-    associate (tile => model%layout%tiles(i))
-      call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
-      if (needs_refinement(state%elements)) &
-        call refine_limits(model, tile, state%motion, state%dt_before, state%elements)
-    end associate
-  end subroutine advance_tile
-
-  !> TSSFDR, or what the run takes, times the limit; held while that rises by little.
-  pure subroutine choose_step(model, state)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(inout) :: state
-    real(wp) :: limit, wanted
-
-    limit = min(minval(state%elements%time_limit), volume_step(state%dt_before, &
-      state%dt_before, maxval(state%elements%volume_change)))
+    ! TSSFDR, or what the run takes, times the limit; held while that rises by little.
+    limit = min(minval(state%elements%time_limit), volume_step(state%dt, state%dt, &
+      maxval(state%elements%volume_change)))
     wanted = scaled_step(model, limit, 0.0_wp)
     if (model%controls%relaxation%step_scale > 0.0_wp) &
       wanted = model%controls%relaxation%step_scale*limit
     if (wanted < state%dt .or. wanted > (1.0_wp + least_rise)*state%dt) state%dt = wanted
-  end subroutine choose_step
-
-  !> Kinetic energy beyond that of the mean velocity.
-  pure function own_energy(state) result(energy)
-    type(state_t), intent(in) :: state
-    real(wp) :: energy
-    real(wp) :: momentum(2), mass
-    integer :: i
-
-    energy = 0.0_wp
-    momentum = 0.0_wp
-    mass = 0.0_wp
-    do i = 1, size(state%mass)
-      energy = energy + 0.5_wp*state%mass(i)*(state%motion(3, i)**2 + state%motion(4, i)**2)
-      momentum = momentum + state%mass(i)*state%motion(3:4, i)
-      mass = mass + state%mass(i)
-    end do
-    energy = max(0.0_wp, energy - 0.5_wp*sum(momentum**2)/mass)
-  end function own_energy
+  end subroutine relax_once
 
   !> The clock and the account of the run begin; velocities are those that the deck gives.
   subroutine begin_at_zero(model, velocity, state)

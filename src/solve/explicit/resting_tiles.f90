@@ -6,6 +6,7 @@
 !> bring about, and is stepped from then on. Tiles that rest at velocity zero amid others that do
 !> are not even looked at.
 module resting_tiles_m
+  use element_dispatch_m, only : take_values, same_bits
   use packed_buffer_m, only : packed_buffer_t
   use kinds_m, only : wp, long
   use layout_m, only : layout_t, tile_t
@@ -15,7 +16,6 @@ module resting_tiles_m
   use ranks_m, only : ranks_t, bring_reals
   use renumber_m, only : mark_moved_nodes
   use state_m, only : state_t
-  use tile_forces_m, only : take_values, same_bits
   implicit none
   private
   public :: rest_t, awake, flying, plan_rest, remember_tile, judge_tile, look_at_tile, &
@@ -31,10 +31,8 @@ module resting_tiles_m
   !> Which tiles rest, and which are still looked at.
   type :: rest_t
     integer, allocatable :: status(:)    !! (tiles)
-    integer :: first_tile = 1, last_tile = 0 !! of this process
     integer, allocatable :: stepped(:)   !! tiles to step, of this process
     integer, allocatable :: watched(:)   !! resting ones that may wake, or whose nodes move
-    integer, allocatable :: run_tiles(:) !! the tile that owns each run of special nodes
     integer, allocatable :: summed(:)    !! runs that are summed and moved
     logical :: watches_all = .false.     !! tiles that rest are all looked at
     real(wp), allocatable :: no_force(:, :) !! (2, n_local) this and the next three only once tiles
@@ -53,10 +51,9 @@ module resting_tiles_m
 contains
 
   !> All tiles are awake, and may come to rest if the model lets them.
-  subroutine plan_rest(model, shares, run_tiles, watches_all, rest)
+  subroutine plan_rest(model, shares, watches_all, rest)
     type(model_t), intent(in) :: model
     type(shares_t), intent(in) :: shares
-    integer, intent(in) :: run_tiles(:)  !! of the runs of special nodes that this process moves
     logical, intent(in) :: watches_all   !! resting tiles have to be looked at in each cycle
     type(rest_t), intent(out) :: rest
     logical :: may_rest
@@ -77,11 +74,8 @@ contains
         model%layout%tiles(first:last)%last_chunk >= model%layout%tiles(first:last)%first_chunk)
       allocate (rest%stepped(last - first + 1), source=[(i, i = first, last)])
       allocate (rest%watched(0))
-      allocate (rest%run_tiles, source=run_tiles)
-      allocate (rest%summed(size(run_tiles)), source=[(i, i = 1, size(run_tiles))])
+      rest%summed = [(i, i=1, size(shares%run_tiles))]
     end associate
-    rest%first_tile = shares%first_tile
-    rest%last_tile = shares%last_tile
     rest%watches_all = watches_all
   end subroutine plan_rest
 
@@ -105,11 +99,11 @@ contains
     if (model%is_round) goes_on = goes_on .and. same_bits(one(1:3:2), [0.0_wp, 0.0_wp])
     if (allocated(state%node_damping)) &
       goes_on = goes_on .and. same_bits(one(3:4), [0.0_wp, 0.0_wp])
-    if (.not. goes_on) rest%status(i_tile) = awake
     do i = model%layout%tiles(i_tile)%first_node, model%layout%tiles(i_tile)%last_node
-      if (rest%status(i_tile) == awake) exit
-      if (.not. same_bits(state%motion(:, i), one)) rest%status(i_tile) = awake
+      if (.not. goes_on) exit
+      goes_on = same_bits(state%motion(:, i), one)
     end do
+    if (.not. goes_on) rest%status(i_tile) = awake
     if (rest%status(i_tile) == awake .or. .not. state%dt_before > 0.0_wp) return
     call take_values(model%layout%tiles(i_tile), state%elements, buffer)
     call move_alloc(buffer%values, before)
@@ -196,8 +190,9 @@ contains
   end function moves_as_one
 
   !> At the end of a cycle: steps that were not taken, and the tiles of the next one.
-  subroutine follow_rest(model, rest)
+  subroutine follow_rest(model, shares, rest)
     type(model_t), intent(in) :: model
+    type(shares_t), intent(in) :: shares
     type(rest_t), intent(inout) :: rest
 
     rest%n_cycle = rest%n_cycle + 1
@@ -206,16 +201,17 @@ contains
     rest%n_resting = rest%n_resting - rest%n_woken + rest%n_fallen
     rest%n_woken = 0
     rest%n_fallen = 0
-    call list_tiles(model, rest)
+    call list_tiles(model, shares, rest)
   end subroutine follow_rest
 
   !> The tiles of the next cycle. A resting one is looked at if it may wake, for its nodes may have
   !> moved, or a neighbour may, which would then push its nodes. Those of other processes count as
   !> awake: what becomes of them is not known here.
-  subroutine list_tiles(model, rest)
+  subroutine list_tiles(model, shares, rest)
     type(model_t), intent(in) :: model
+    type(shares_t), intent(in) :: shares
     type(rest_t), intent(inout) :: rest
-    logical, dimension(size(rest%status)) :: may_wake, is_watched, is_stepped
+    logical, dimension(size(rest%status)) :: may_wake, is_watched
     integer :: i
 
     if (.not. allocated(rest%no_force)) then
@@ -230,57 +226,45 @@ contains
       is_watched(i) = rest%status(i) < awake .and. (may_wake(i) .or. rest%status(i) == flying &
         .or. any(may_wake(rest%near(rest%first(i):rest%first(i + 1) - 1))))
     end do
-    is_stepped = .false.
-    is_stepped(rest%first_tile:rest%last_tile) = &
-      rest%status(rest%first_tile:rest%last_tile) >= awake
-    rest%stepped = pack([(i, i=1, size(rest%status))], is_stepped)
+    rest%stepped = pack([(i, i=shares%first_tile, shares%last_tile)], &
+      rest%status(shares%first_tile:shares%last_tile) >= awake)
     rest%watched = pack([(i, i=1, size(rest%status))], is_watched)
     if (rest%watches_all) return ! all runs are listed
     is_watched = is_watched .or. rest%status >= awake
-    rest%summed = pack([(i, i=1, size(rest%run_tiles))], is_watched(rest%run_tiles))
+    rest%summed = pack([(i, i=1, size(shares%run_tiles))], is_watched(shares%run_tiles))
   end subroutine list_tiles
 
   !> Which tiles have nodes that feel more than their elements, and which have special nodes in
-  !> common: counted, then listed.
+  !> common.
   subroutine find_neighbours(model, rest)
     type(model_t), intent(in) :: model
     type(rest_t), intent(inout) :: rest
     logical, allocatable :: is_moved(:)
-    integer, allocatable :: tile_of(:), last_met(:)
-    integer :: pass, i, k, m, n
+    logical :: is_near(size(model%layout%tiles))
+    integer :: tile_of(size(model%layout%special_node)), i, k
 
     call mark_moved_nodes(model, is_moved)
     associate (layout => model%layout, tiles => model%layout%tiles)
-      allocate (tile_of(size(layout%special_node)), last_met(size(tiles)), &
-        rest%first(size(tiles) + 1), rest%is_touched(size(tiles)))
+      allocate (rest%is_touched(size(tiles)), rest%first(size(tiles) + 1), rest%near(0))
       do i = 1, size(tiles)
         tile_of(tiles(i)%first_special:tiles(i)%last_special) = i
-        rest%is_touched(i) = any(is_moved(layout%special_node(tiles(i)%first_special: &
-          tiles(i)%last_special)))
       end do
+      do i = 1, size(tiles)
+        associate (nodes => layout%special_node(tiles(i)%first_special:tiles(i)%last_special))
+          rest%is_touched(i) = any(is_moved(nodes))
+          is_near = .false.
+          do k = 1, size(nodes)
+            is_near(tile_of(layout%slot_list(layout%node_slots(nodes(k)): &
+              layout%node_slots(nodes(k) + 1) - 1))) = .true.
+          end do
+        end associate
+        is_near(i) = .false.
+        rest%first(i) = size(rest%near) + 1
+        rest%near = [rest%near, pack([(k, k=1, size(tiles))], is_near)]
+      end do
+      rest%first(size(tiles) + 1) = size(rest%near) + 1
       ! The last one has the nodes without element, too.
       rest%is_touched(size(tiles)) = .true.
-      do pass = 1, 2
-        last_met = 0
-        n = 0
-        do i = 1, size(tiles)
-          rest%first(i) = n + 1
-          last_met(i) = i
-          do k = tiles(i)%first_special, tiles(i)%last_special
-            do m = layout%node_slots(layout%special_node(k)), &
-              layout%node_slots(layout%special_node(k) + 1) - 1
-              associate (other => tile_of(layout%slot_list(m)))
-                if (last_met(other) == i) cycle
-                last_met(other) = i
-                n = n + 1
-                if (pass == 2) rest%near(n) = other
-              end associate
-            end do
-          end do
-        end do
-        rest%first(size(tiles) + 1) = n + 1
-        if (pass == 1) allocate (rest%near(n))
-      end do
     end associate
   end subroutine find_neighbours
 

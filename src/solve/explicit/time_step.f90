@@ -6,7 +6,7 @@
 !> the step of the next, so that a cycle need not wait for its own elements.
 module time_step_m
   use block_state_m, only : block_state_t
-  use constraints_m, only : is_active
+  use loads_m, only : is_active, scaled_step
   use contact_penalty_m, only : has_default_penalty
   use contact_state_m, only : contact_state_t
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, approach_step, &
@@ -23,7 +23,6 @@ module time_step_m
   use node_motion_m, only : leap_t
   use rank_shares_m, only : shares_t
   use ranks_m, only : ranks_t, find_least
-  use scaled_step_m, only : scaled_step
   use state_m, only : state_t
   use visitor_m, only : visited_t, visitor_t
   implicit none
@@ -70,7 +69,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: limit
 
-    limit = stable_limit(minval(elements%time_limit), steps)
+    limit = minval(elements%time_limit)
+    if (allocated(steps%springs)) limit = minval([limit, stable_step(limit, steps%springs)])
     dt = choose_step(model, limit, steps%start_time, log, steps)
     if (model%controls%dt_initial > 0.0_wp .and. model%controls%dt_curve == 0) &
       dt = min(dt, model%controls%dt_initial)
@@ -150,16 +150,6 @@ contains
     if (time < 0.5_wp*huge(n)*dt) n = max(1, nint(time/dt))
   end function cycles_in
 
-  !> Smallest L/c of the elements, or below it what contact springs leave of it.
-  pure function stable_limit(element_limit, steps) result(limit)
-    real(wp), intent(in) :: element_limit !! smallest L/c
-    type(step_plan_t), intent(in) :: steps
-    real(wp) :: limit
-
-    limit = element_limit
-    if (allocated(steps%springs)) limit = minval([limit, stable_step(limit, steps%springs)])
-  end function stable_limit
-
   !> Step at `time` from the elements' limit; warns once when the cap is above the stable step.
   function choose_step(model, limit, time, log, steps) result(dt)
     type(model_t), intent(in) :: model
@@ -191,7 +181,7 @@ contains
     type(step_plan_t), intent(inout) :: steps
     real(wp), intent(inout) :: time           !! in: old, out: new
     real(wp), intent(inout) :: dt             !! in: step that led here, out: next one
-    real(wp) :: wanted, before
+    real(wp) :: limit, wanted, before
     logical :: changes
 
     before = time
@@ -200,7 +190,9 @@ contains
     else
       time = time + dt
     end if
-    wanted = choose_step(model, stable_limit(element_limit, steps), time, log, steps)
+    limit = element_limit
+    if (allocated(steps%springs)) limit = minval([limit, stable_step(limit, steps%springs)])
+    wanted = choose_step(model, limit, time, log, steps)
     ! Leap-frog keeps energy without a trend only while its step is constant; the limits of elements
     ! and springs beat with the vibrations of a body, and a step that follows them feeds those
     ! (doc/theory/time_integration.md). So a step that a limit has set is held, whatever curve lies
@@ -297,7 +289,7 @@ contains
     call visitor%expect('first_dt', self%first_dt > 0.0_wp, 'a step that is not positive')
     call visitor%visit('constant', self%constant, 0.0_wp, 'a step below zero')
     call visitor%visit('start_time', self%start_time)
-    call visitor%visit('start_cycle', self%start_cycle, 0, what='a cycle below zero')
+    call visitor%visit('start_cycle', self%start_cycle, 0, huge(1), 'a cycle below zero')
     call visitor%visit('n_cycle', self%n_cycle)
     call visitor%visit('end_cycle', self%end_cycle)
     call visitor%visit('end_time', self%end_time)
@@ -317,7 +309,7 @@ contains
     type(ranks_t), intent(inout) :: ranks
     real(wp), intent(out) :: change
     real(wp), allocatable :: next(:, :)
-    real(wp) :: least(1), push(2)
+    real(wp) :: least(1), push(2), x31(2), x42(2), v31(2), v42(2), rate
     integer :: i, i_tile, i_chunk, slot
 
     ! v(1/2) of the nodes whose forces this process knows.
@@ -338,7 +330,19 @@ contains
       do i_chunk = model%layout%tiles(i_tile)%first_chunk, model%layout%tiles(i_tile)%last_chunk
         do slot = (i_chunk - 1)*chunk_size + 1, (i_chunk - 1)*chunk_size &
           + model%layout%chunk_elements(i_chunk)
-          change = max(change, leap%dt*abs(volume_rate(model, slot, next, state)))
+          associate (nodes => model%layout%slot_nodes(:, slot), &
+            r => state%elements%reference(slot, :4))
+            ! Rate of ln V: of its area, and in bodies of revolution of the radius of its middle.
+            x31 = r(1:2) + (state%motion(1:2, nodes(3)) - state%motion(1:2, nodes(1)))
+            x42 = r(3:4) + (state%motion(1:2, nodes(4)) - state%motion(1:2, nodes(2)))
+            v31 = next(:, nodes(3)) - next(:, nodes(1))
+            v42 = next(:, nodes(4)) - next(:, nodes(2))
+            rate = (v31(1)*x42(2) - v42(1)*x31(2) + x31(1)*v42(2) - x42(1)*v31(2)) &
+              /(x31(1)*x42(2) - x42(1)*x31(2))
+            if (model%is_round) rate = rate + sum(next(1, nodes)) &
+              /sum(model%mesh%coordinates(1, nodes) + state%motion(1, nodes))
+          end associate
+          change = max(change, leap%dt*abs(rate))
         end do
       end do
     end do
@@ -346,27 +350,5 @@ contains
     if (ranks%n > 1) call find_least(ranks, least)
     change = -least(1)
   end subroutine first_change
-
-  !> Rate of ln V of the element in a slot, 1/s: of its area, and in bodies of revolution of the
-  !> radius of its middle.
-  pure function volume_rate(model, slot, velocity, state) result(rate)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: slot
-    real(wp), intent(in) :: velocity(:, :)  !! (2, n_node)
-    type(state_t), intent(in) :: state
-    real(wp) :: rate
-    real(wp) :: x31(2), x42(2), v31(2), v42(2)
-
-    associate (nodes => model%layout%slot_nodes(:, slot), r => state%elements%reference(slot, :4))
-      x31 = r(1:2) + (state%motion(1:2, nodes(3)) - state%motion(1:2, nodes(1)))
-      x42 = r(3:4) + (state%motion(1:2, nodes(4)) - state%motion(1:2, nodes(2)))
-      v31 = velocity(:, nodes(3)) - velocity(:, nodes(1))
-      v42 = velocity(:, nodes(4)) - velocity(:, nodes(2))
-      rate = (v31(1)*x42(2) - v42(1)*x31(2) + x31(1)*v42(2) - x42(1)*v31(2)) &
-        /(x31(1)*x42(2) - x42(1)*x31(2))
-      if (model%is_round) rate = rate + sum(velocity(1, nodes)) &
-        /sum(model%mesh%coordinates(1, nodes) + state%motion(1, nodes))
-    end associate
-  end function volume_rate
 
 end module time_step_m

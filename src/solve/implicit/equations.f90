@@ -1,15 +1,21 @@
 ! SPDX-License-Identifier: MIT
 !> Equations of the implicit driver: free degrees of freedom first, then those with a prescribed
-!> motion; fixed ones, and nodes that no element has, get none.
+!> motion; fixed ones, and nodes that no element has, get none. And what the curves ask of the
+!> prescribed ones over one step: displacement, velocity and acceleration (doc/theory/implicit.md,
+!> section 1).
 module equations_m
+  use conditions_m, only : prescribed_motion_t, motion_velocity, motion_acceleration, &
+    motion_displacement
+  use loads_m, only : is_active
+  use curves_m, only : curve_t, curve_value, curve_integral
   use kinds_m, only : wp
-  use constraints_m, only : is_active
   use model_m, only : model_t
   use sparse_m, only : sparse_t
   use state_m, only : state_t
   implicit none
   private
-  public :: equations_t, number_equations, find_equation, move_prescribed, take_free, put_prescribed
+  public :: equations_t, number_equations, move_prescribed, take_free, prescribed_step_t, &
+    prescribe_step, prescribe_start, list_changes, mean_slope, curve_moment
 
   !> Numbering for one step.
   type :: equations_t
@@ -19,6 +25,23 @@ module equations_m
     integer, allocatable :: motion_of(:)    !! (n - n_free) which prescribed motion
   end type equations_t
 
+  !> Part of a step below which two times are the same.
+  real(wp), parameter :: same_time = 1.0e-6_wp
+
+  !> Change of slope that makes a corner of a curve, as a part of the steeper side.
+  real(wp), parameter :: corner = 0.5_wp
+  !> Plot states for which steps end.
+  real(wp), parameter :: most_plots = 1.0e4_wp
+
+  !> The prescribed degrees of freedom of one step, in the order of their equations.
+  type :: prescribed_step_t
+    real(wp), allocatable :: increment(:)    !! u(n+1) - u(n)
+    real(wp), allocatable :: velocity(:)     !! v(n+1)
+    real(wp), allocatable :: acceleration(:) !! a(n+1)
+    real(wp), allocatable :: mean(:)         !! (v(n+1) - v(n))/dt, which the inertia of the step
+                                             !! feels
+  end type prescribed_step_t
+
 contains
 
   !> Number the equations for a step; `time` lies inside it (no motion is born or dies there).
@@ -27,7 +50,8 @@ contains
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: time
     type(equations_t), intent(out) :: equations
-    integer :: i, k, n
+    logical :: is_free(2, model%mesh%n_node)
+    integer :: i
 
     allocate (equations%number(2, model%mesh%n_node), source=0)
     do i = 1, model%mesh%n_node
@@ -42,38 +66,15 @@ contains
           prescribed%node) /= 0) equations%number(prescribed%direction, prescribed%node) = -i
       end associate
     end do
-    n = 0
-    do i = 1, model%mesh%n_node
-      do k = 1, 2
-        if (equations%number(k, i) <= 0) cycle
-        n = n + 1
-        equations%number(k, i) = n
-      end do
-    end do
-    equations%n_free = n
-    allocate (equations%motion_of(count(equations%number < 0)))
-    do i = 1, model%mesh%n_node
-      do k = 1, 2
-        if (equations%number(k, i) >= 0) cycle
-        n = n + 1
-        equations%motion_of(n - equations%n_free) = -equations%number(k, i)
-        equations%number(k, i) = n
-      end do
-    end do
-    equations%n = n
+    is_free = equations%number > 0
+    equations%motion_of = -pack(equations%number, equations%number < 0)
+    equations%n_free = count(is_free)
+    equations%n = equations%n_free + size(equations%motion_of)
+    associate (number => equations%number, n_free => equations%n_free, n => equations%n)
+      number = unpack([(i, i=n_free + 1, n)], number < 0, number)
+      number = unpack([(i, i=1, n_free)], is_free, number)
+    end associate
   end subroutine number_equations
-
-  !> Node and direction of an equation.
-  pure subroutine find_equation(equations, number, node, direction)
-    type(equations_t), intent(in) :: equations
-    integer, intent(in) :: number
-    integer, intent(out) :: node, direction !! 0 when there is none
-    integer :: place(2)
-
-    place = findloc(equations%number, number)
-    direction = place(1)
-    node = place(2)
-  end subroutine find_equation
 
   !> Move prescribed columns of the collected matrix to the right-hand side: b(free) -= K(free,
   !> prescribed) * increments. What is left in the matrix are the free rows and columns.
@@ -106,29 +107,196 @@ contains
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: field(:, :) !! (2, n_node)
     real(wp) :: vector(equations%n_free)
-    integer :: i, k
 
-    do i = 1, size(field, 2)
-      do k = 1, 2
-        if (equations%number(k, i) > 0 .and. equations%number(k, i) <= equations%n_free) &
-          vector(equations%number(k, i)) = field(k, i)
-      end do
-    end do
+    vector = pack(field, equations%number > 0 .and. equations%number <= equations%n_free)
   end function take_free
 
-  !> Give the prescribed entries of a nodal field their values.
-  pure subroutine put_prescribed(equations, values, field)
+  !> What the curves ask for from `state` to `time`. No motion is born or dies inside the step.
+  pure subroutine prescribe_step(model, state, time, equations, prescribed)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    real(wp), intent(in) :: time
     type(equations_t), intent(in) :: equations
-    real(wp), intent(in) :: values(:)       !! (n - n_free)
-    real(wp), intent(inout) :: field(:, :)  !! (2, n_node)
-    integer :: i, k
+    type(prescribed_step_t), intent(out) :: prescribed
+    real(wp) :: path(3)
+    integer :: i, n
 
-    do i = 1, size(field, 2)
-      do k = 1, 2
-        if (equations%number(k, i) > equations%n_free) &
-          field(k, i) = values(equations%number(k, i) - equations%n_free)
-      end do
+    n = size(equations%motion_of)
+    allocate (prescribed%increment(n), prescribed%velocity(n), prescribed%acceleration(n), &
+      prescribed%mean(n))
+    do i = 1, n
+      associate (motion => model%conditions%motions(equations%motion_of(i)))
+        associate (v => state%motion(2 + motion%direction, motion%node))
+          path = follow_curve(model, motion, [state%time, time], &
+            state%motion(motion%direction, motion%node), v)
+          prescribed%increment(i) = path(1)
+          prescribed%velocity(i) = path(2)
+          prescribed%acceleration(i) = path(3)
+          prescribed%mean(i) = (path(2) - v)/(time - state%time)
+        end associate
+      end associate
     end do
-  end subroutine put_prescribed
+  end subroutine prescribe_step
+
+  !> Velocity and acceleration at time zero: motions that hold from the start are under way.
+  !> (Velocity curves have set theirs already.)
+  pure subroutine prescribe_start(model, dt, state)
+    type(model_t), intent(in) :: model
+    real(wp), intent(in) :: dt !! first step
+    type(state_t), intent(inout) :: state
+    integer :: i
+    real(wp) :: slope
+
+    do i = 1, size(model%conditions%motions)
+      associate (motion => model%conditions%motions(i))
+        if (.not. is_active(motion, 0.0_wp)) cycle
+        associate (curve => model%curves(motion%curve), k => motion%direction)
+          slope = motion%scale*mean_slope(curve, 0.0_wp, dt, [0.0_wp, motion%death])
+          select case (motion%kind)
+          case (motion_velocity)
+            state%acceleration(k, motion%node) = slope
+          case (motion_acceleration)
+            state%acceleration(k, motion%node) = motion%scale*curve_value(curve, 0.0_wp)
+          case (motion_displacement)
+            state%motion(2 + k, motion%node) = slope
+          end select
+        end associate
+      end associate
+    end do
+  end subroutine prescribe_start
+
+  !> Displacement of the step, velocity and acceleration at its end. Velocities and
+  !> accelerations given by a curve are integrated exactly; what must be differentiated is
+  !> differenced over a step to both sides.
+  pure function follow_curve(model, motion, times, displacement, velocity) result(path)
+    type(model_t), intent(in) :: model
+    type(prescribed_motion_t), intent(in) :: motion
+    real(wp), intent(in) :: times(2)               !! start and end of the step
+    real(wp), intent(in) :: displacement, velocity !! at its start
+    real(wp) :: path(3)
+    real(wp) :: dt, life(2)
+
+    dt = times(2) - times(1)
+    life = [max(motion%birth, 0.0_wp), min(motion%death, model%controls%end_time)]
+    path = 0.0_wp
+    associate (curve => model%curves(motion%curve))
+      select case (motion%kind)
+      case (motion_velocity)
+        path = [curve_integral(curve, times(1), times(2)), curve_value(curve, times(2)), &
+          mean_slope(curve, times(2), dt, life)]
+      case (motion_acceleration)
+        path = [curve_moment(curve, times(1), times(2)), &
+          curve_integral(curve, times(1), times(2)), curve_value(curve, times(2))]
+      case (motion_displacement)
+        path = [curve_value(curve, times(2)), mean_slope(curve, times(2), dt, life), 0.0_wp]
+        ! The change of slope; none where one side lies outside the life of the motion.
+        if (times(2) - dt >= life(1) - same_time*dt .and. times(2) + dt <= life(2) + same_time*dt) &
+          path(3) = ((curve_value(curve, times(2) + dt) - path(1)) &
+          - (path(1) - curve_value(curve, times(2) - dt)))/dt**2
+      end select
+    end associate
+    path = motion%scale*path
+    if (motion%kind == motion_acceleration) path(1:2) = path(1:2) + [dt*velocity, velocity]
+    if (motion%kind == motion_displacement) path(1) = path(1) - displacement
+  end function follow_curve
+
+  !> Slope at `time`: the mean over `dt` to both sides, or that of the present piece where one side
+  !> lies outside the life of the motion. 0 for a life next to nothing.
+  pure function mean_slope(curve, time, dt, life) result(slope)
+    type(curve_t), intent(in) :: curve
+    real(wp), intent(in) :: time
+    real(wp), intent(in) :: dt
+    real(wp), intent(in) :: life(2) !! first and last time that count
+    real(wp) :: slope
+    real(wp) :: x(2)
+    logical :: is_past, is_future
+
+    is_past = time - dt >= life(1) - same_time*dt
+    is_future = time + dt <= life(2) + same_time*dt
+    x = [time - dt, time + dt]
+    if (.not. is_future) then
+      x = [max(time - dt, life(1), maxval(curve%abscissa, mask=curve%abscissa < time &
+        - same_time*dt)), time]
+    else if (.not. is_past) then
+      x = [time, min(time + dt, minval(curve%abscissa, mask=curve%abscissa > time + same_time*dt))]
+    end if
+    slope = 0.0_wp
+    if (x(2) > x(1)) slope = (curve_value(curve, x(2)) - curve_value(curve, x(1)))/(x(2) - x(1))
+  end function mean_slope
+
+  !> Integral of (b - s) f(s) from a to b, the displacement from an acceleration: exact (Simpson's
+  !> rule from point to point, the integrand is of second degree).
+  pure function curve_moment(curve, a, b) result(total)
+    type(curve_t), intent(in) :: curve
+    real(wp), intent(in) :: a, b !! a <= b
+    real(wp) :: total
+    real(wp) :: x, next
+    integer :: i
+
+    total = 0.0_wp
+    x = a
+    do i = 1, size(curve%abscissa) + 1
+      next = b
+      if (i <= size(curve%abscissa)) next = min(curve%abscissa(i), b)
+      if (next <= x) cycle
+      total = total + (next - x)/6.0_wp*((b - x)*curve_value(curve, x) &
+        + 4.0_wp*(b - 0.5_wp*(x + next))*curve_value(curve, 0.5_wp*(x + next)) &
+        + (b - next)*curve_value(curve, next))
+      x = next
+    end do
+  end function curve_moment
+
+  !> Times at which a step must end: births and deaths of prescribed motions, where the equations
+  !> change; and with steps that grow, lest they leap over it, where a curve in use turns, where
+  !> forces come and go and where states are written.
+  pure subroutine list_changes(model, changes)
+    type(model_t), intent(in) :: model
+    real(wp), allocatable, intent(out) :: changes(:)
+    integer, allocatable :: used(:)
+    integer :: i
+
+    associate (conditions => model%conditions)
+      changes = [conditions%motions%birth, conditions%motions%death]
+      if (.not. model%controls%implicit%is_automatic) return
+      changes = [changes, conditions%pressures%arrival, model%contacts%birth, &
+        model%contacts%death]
+      ! Plot states, where they are no closer than the first step.
+      associate (controls => model%controls, interval => model%controls%output%plot%dt)
+        if (controls%output%plot%curve == 0 .and. interval >= controls%implicit%dt &
+          .and. controls%end_time < most_plots*interval) &
+          changes = [changes, [(i*interval, i=1, int(controls%end_time/interval))]]
+      end associate
+      used = [conditions%motions%curve, conditions%nodal_loads%curve, conditions%body_loads%curve]
+      if (allocated(conditions%damping)) used = [used, conditions%damping%curve]
+      if (allocated(conditions%part_damping)) used = [used, conditions%part_damping%curve]
+      do i = 1, size(model%curves)
+        if (any(used == i)) changes = [changes, turning_points(model%curves(i))]
+      end do
+      ! Curves of pressures start at their arrival: once for each time of arrival in a row.
+      do i = 1, size(conditions%pressures)
+        associate (load => conditions%pressures(i), before => conditions%pressures(max(1, i - 1)))
+          if (i > 1 .and. load%curve == before%curve .and. abs(load%arrival - before%arrival) &
+            <= 0.0_wp) cycle
+          changes = [changes, load%arrival + turning_points(model%curves(load%curve))]
+        end associate
+      end do
+    end associate
+  end subroutine list_changes
+
+  !> Corners of a curve: where its slope changes sign, or by more than half of the steeper side.
+  !> (The points of a finely sampled smooth curve are none.)
+  pure function turning_points(curve) result(times)
+    type(curve_t), intent(in) :: curve
+    real(wp), allocatable :: times(:)
+    real(wp) :: slope(0:size(curve%abscissa)) !! before and after each point
+    integer :: n
+
+    n = size(curve%abscissa)
+    slope = 0.0_wp
+    slope(1:n - 1) = (curve%ordinate(2:) - curve%ordinate(:n - 1))/(curve%abscissa(2:) &
+      - curve%abscissa(:n - 1))
+    times = pack(curve%abscissa, abs(slope(1:n) - slope(0:n - 1)) &
+      > corner*max(abs(slope(1:n)), abs(slope(0:n - 1))))
+  end function turning_points
 
 end module equations_m

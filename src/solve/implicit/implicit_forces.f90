@@ -1,28 +1,34 @@
 ! SPDX-License-Identifier: MIT
-!> All nodal forces of one instant for the implicit driver: the explicit kernels from a committed
-!> state to a trial displacement (doc/theory/implicit.md, section 1).
+!> All nodal forces of one instant for the implicit driver, by the explicit kernels from a committed
+!> state to a trial displacement; residual and tangent of one step (doc/theory/implicit.md, sections
+!> 1 and 2).
 module implicit_forces_m
   use behind_ties_m, only : hear_tie
+  use block_state_m, only : block_state_t
+  use clock_m, only : clock_t, lap, share_contact, phase_elements, phase_contact_force, phase_nodes
+  use conditions_m, only : pressure_load_t
+  use contact_state_m, only : contact_state_t
+  use contact_stiffness_m, only : add_contact_stiffness
   use contacts_m, only : told_as
+  use curves_m, only : curve_value
+  use cut_forces_m, only : find_cut_forces
+  use element_dispatch_m, only : add_tile_forces, share_tile_forces, keep_tile_forces, &
+    sum_special_forces
+  use element_mass_m, only : mass_times, add_mass
+  use element_stiffness_m, only : add_stiffness
+  use equations_m, only : equations_t, prescribed_step_t
+  use loads_m, only : form_external_force, body_acceleration, damping_rates
   use interface_m, only : evaluate_contact
   use kinds_m, only : wp
-  use block_state_m, only : block_state_t
-  use clock_m, only : clock_t, lap, share_contact, phase_elements, &
-    phase_contact_force, phase_nodes
-  use contact_state_m, only : contact_state_t
-  use cut_forces_m, only : find_cut_forces
-  use element_dispatch_m, only : add_tile_forces
-  use element_mass_m, only : mass_times
-  use external_force_m, only : form_external_force, body_acceleration, damping_rates
-  use packed_buffer_m, only : packed_buffer_t
   use model_m, only : model_t
+  use packed_buffer_m, only : packed_buffer_t
+  use sparse_m, only : sparse_t, start_matrix, add_block
   use state_m, only : state_t
-  use tile_forces_m, only : share_tile_forces, keep_tile_forces, sum_special_forces
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: trial_t, start_trial, assemble_forces, damping_force, net_force, trouble_of, &
-    cut_sections
+  public :: trial_t, start_trial, assemble_forces, net_force, trouble_of, &
+    cut_sections, step_t, assemble_residual, assemble_tangent, new_acceleration, new_velocity
 
   !> Step of the kernels: motion holds increments in place of velocities.
   real(wp), parameter :: unit_step = 1.0_wp
@@ -43,6 +49,23 @@ module implicit_forces_m
   contains
     procedure :: visit => visit_trial
   end type trial_t
+
+  !> One step. Static: all weights of the old instant are zero and there is no inertia.
+  type, extends(visited_t) :: step_t
+    real(wp) :: time = 0.0_wp          !! at its end
+    real(wp) :: dt = 0.0_wp
+    logical :: is_dynamic = .false.
+    real(wp) :: alpha_m = 0.0_wp, alpha_f = 0.0_wp, gamma = 0.5_wp, beta = 0.25_wp
+    real(wp), allocatable :: old_force(:, :) !! (2, n_node) `net_force` at its start
+    type(equations_t) :: equations
+    logical :: searches = .false.      !! iterations that go too far are shortened
+    logical :: began_negative = .false. !! the matrix at its start had an odd number of negative
+                                       !! pivots
+    logical :: slips_on = .true.       !! what slipped before does so in the first iteration
+    type(prescribed_step_t) :: prescribed    !! what the curves ask for
+  contains
+    procedure :: visit => visit_step
+  end type step_t
 
 contains
 
@@ -95,7 +118,6 @@ contains
       call lap(clock, phase_contact_force)
       call share_contact(clock, k)
     end do
-    trial%external = 0.0_wp
     call form_external_force(model, trial%motion, time, trial%external)
     if (size(model%conditions%body_loads) > 0) then
       body = body_acceleration(model%conditions, model%curves, time)
@@ -115,16 +137,6 @@ contains
       state%elements, state%cut_force, trial%before)
     deallocate (trial%before)
   end subroutine cut_sections
-
-  !> What damping by mass takes, D M v with the consistent mass of each part.
-  pure function damping_force(model, time, velocity) result(force)
-    type(model_t), intent(in) :: model
-    real(wp), intent(in) :: time
-    real(wp), intent(in) :: velocity(:, :) !! (2, n_node) at `time`
-    real(wp) :: force(2, size(velocity, 2))
-
-    force = mass_times(model, velocity, damping_rates(model, time))
-  end function damping_force
 
   !> Internal minus contact and external forces, and damping.
   pure function net_force(trial) result(force)
@@ -161,5 +173,134 @@ contains
     call visitor%visit('external', self%external)
     call visitor%visit('damping', self%damping)
   end subroutine visit_trial
+
+  !> R = M A + (1 - alpha_f) f(n+1) + alpha_f f(n) with f = f_int - f_contact - f_ext
+  !> + D M v and A = (1 - alpha_m) a(n+1) + alpha_m a(n) (Chung & Hulbert 1993, eq. 12, forces of
+  !> both instants weighted); on prescribed degrees of freedom A is the change of velocity over the
+  !> step, whatever the weights.
+  function assemble_residual(model, state, step, trial) result(residual)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(trial_t), intent(in) :: trial
+    real(wp), allocatable :: residual(:, :) !! (2, n_node)
+    real(wp), allocatable :: acceleration(:, :)
+
+    residual = trial%internal - trial%contact - trial%external
+    if (.not. step%is_dynamic) return
+    acceleration = new_acceleration(state, step, trial)
+    if (allocated(trial%damping)) residual = residual + mass_times(model, &
+      new_velocity(state, step, acceleration), damping_rates(model, step%time))
+    acceleration = (1.0_wp - step%alpha_m)*acceleration + step%alpha_m*state%acceleration
+    acceleration = unpack(step%prescribed%mean, step%equations%number &
+      > step%equations%n_free, acceleration)
+    residual = (1.0_wp - step%alpha_f)*residual + step%alpha_f*step%old_force &
+      + mass_times(model, acceleration)
+  end function assemble_residual
+
+  !> a(n+1): Newmark's formulas from the displacement of the trial, or the curves.
+  pure function new_acceleration(state, step, trial) result(acceleration)
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(trial_t), intent(in) :: trial
+    real(wp) :: acceleration(2, size(state%motion, 2))
+
+    acceleration = (trial%motion(3:4, :) - step%dt*state%motion(3:4, :))/(step%beta*step%dt**2) &
+      - (0.5_wp/step%beta - 1.0_wp)*state%acceleration
+    acceleration = unpack(step%prescribed%acceleration, step%equations%number &
+      > step%equations%n_free, acceleration)
+  end function new_acceleration
+
+  !> v(n+1) likewise.
+  pure function new_velocity(state, step, acceleration) result(velocity)
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    real(wp), intent(in) :: acceleration(:, :) !! a(n+1)
+    real(wp) :: velocity(2, size(state%motion, 2))
+
+    velocity = state%motion(3:4, :) + step%dt*((1.0_wp - step%gamma)*state%acceleration &
+      + step%gamma*acceleration)
+    velocity = unpack(step%prescribed%velocity, step%equations%number > step%equations%n_free, &
+      velocity)
+  end function new_velocity
+
+  !> dR/du(n+1), collected. Inertia and damping of prescribed degrees of freedom do not depend on u,
+  !> so their columns hold stiffness alone.
+  subroutine assemble_tangent(model, state, step, trial, clock, matrix)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(in) :: state
+    type(step_t), intent(in) :: step
+    type(trial_t), intent(in) :: trial
+    type(clock_t), intent(inout) :: clock
+    type(sparse_t), intent(inout) :: matrix
+    integer :: columns(2, model%mesh%n_node), i
+
+    call start_matrix(matrix, step%equations%n)
+    call add_stiffness(model, trial%motion, 1.0_wp, state%elements, step%equations%number, matrix)
+    call lap(clock, phase_elements)
+    do i = 1, size(model%contacts)
+      call add_contact_stiffness(model%contacts(i), trial%contacts(i), step%equations%number, &
+        matrix)
+      call lap(clock, phase_contact_force)
+      call share_contact(clock, told_as(model%contacts, i))
+    end do
+    do i = 1, size(model%conditions%pressures)
+      call add_pressure_stiffness(model, model%conditions%pressures(i), trial%motion, step%time, &
+        step%equations, matrix)
+    end do
+    if (.not. step%is_dynamic) return
+    matrix%values(:matrix%n_entry) = (1.0_wp - step%alpha_f)*matrix%values(:matrix%n_entry)
+    columns = merge(step%equations%number, 0, step%equations%number <= step%equations%n_free)
+    call add_mass(model, (1.0_wp - step%alpha_m)/(step%beta*step%dt**2), columns, matrix)
+    if (allocated(trial%damping)) call add_mass(model, (1.0_wp - step%alpha_f)*step%gamma &
+      /(step%beta*step%dt), columns, matrix, damping_rates(model, step%time))
+  end subroutine assemble_tangent
+
+  !> Minus the derivative of a pressure, which turns and stretches with its edge, and grows with its
+  !> radius on a round body.
+  subroutine add_pressure_stiffness(model, load, motion, time, equations, matrix)
+    type(model_t), intent(in) :: model
+    type(pressure_load_t), intent(in) :: load
+    real(wp), intent(in) :: motion(:, :) !! (4, n_node)
+    real(wp), intent(in) :: time
+    type(equations_t), intent(in) :: equations
+    type(sparse_t), intent(inout) :: matrix
+    real(wp), parameter :: share(2, 2) = reshape([2.0_wp, 1.0_wp, 1.0_wp, 2.0_wp], [2, 2])/3.0_wp
+    real(wp) :: half, block(4, 4), x(2, 2), force(2)
+    integer :: rows(4), a, b
+
+    if (time < load%arrival) return
+    half = 0.5_wp*load%scale*curve_value(model%curves(load%curve), time - load%arrival)
+    ! Force on both nodes: half*(-edge_y, edge_x), edge = x_2 - x_1.
+    block = 0.0_wp
+    block([1, 3], 2) = -half
+    block([1, 3], 4) = half
+    block([2, 4], 1) = half
+    block([2, 4], 3) = -half
+    if (model%is_round) then
+      ! Node 1 gets (2 r_1 + r_2)/3 of the plane half, node 2 (r_1 + 2 r_2)/3.
+      x = model%mesh%coordinates(:, load%nodes) + motion(1:2, load%nodes)
+      force = half*[x(2, 1) - x(2, 2), x(1, 2) - x(1, 1)]
+      do a = 1, 2
+        associate (rows => block(2*a - 1:2*a, :))
+          rows = dot_product(share(:, a), x(1, :))*rows
+          do b = 1, 2
+            rows(:, 2*b - 1) = rows(:, 2*b - 1) - share(b, a)*force
+          end do
+        end associate
+      end do
+    end if
+    rows = [equations%number(:, load%nodes(1)), equations%number(:, load%nodes(2))]
+    call add_block(matrix, rows, rows, block)
+  end subroutine add_pressure_stiffness
+
+  !> What a step hands to the next.
+  subroutine visit_step(self, visitor)
+    class(step_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('searches', self%searches)
+    call visitor%visit('began_negative', self%began_negative)
+  end subroutine visit_step
 
 end module implicit_forces_m

@@ -1,26 +1,27 @@
 ! SPDX-License-Identifier: MIT
 !> What the implicit driver remembers from step to step besides the state, and where a run begins:
-!> at time zero, or where a restart file says.
+!> at time zero, or where a restart file says. Lengths of steps: constant, or growing and shrinking
+!> with the iterations that they take; where the equations change (birth or death of a prescribed
+!> motion) a step is divided.
 module implicit_start_m
-  use archive_m, only : archive_t
   use clock_m, only : lap, phase_solver
   use contact_check_m, only : report_contact_start
   use contact_spring_ratios_m, only : spring_ratios
   use contact_springs_m, only : measure_springs
   use contact_state_m, only : contact_state_t
   use contacts_m, only : is_tied
+  use controls_m, only : controls_t
   use cut_forces_m, only : keep_cut_chunks
   use damping_m, only : of_stuck
   use element_mass_m, only : add_mass, mass_times
-  use equations_m, only : equations_t, number_equations, take_free
+  use equations_m, only : equations_t, number_equations, take_free, prescribe_start, list_changes
   use errors_m, only : error_t, raise, status_run
   use implicit_forces_m, only : trial_t, start_trial, net_force, cut_sections, assemble_forces, &
-    damping_force
-  use implicit_prescribed_m, only : prescribe_start, list_changes
-  use implicit_tangent_m, only : step_t
+    step_t
   use kinds_m, only : wp
   use law_friction_m, only : has_decay
   use linear_solver_m, only : report_t, solve_linear
+  use loads_m, only : damping_rates
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, due_t
@@ -29,11 +30,35 @@ module implicit_start_m
   use restart_plan_m, only : wanted_files
   use sparse_m, only : sparse_t, start_matrix, compress_matrix
   use state_m, only : state_t
-  use step_control_m, only : step_control_t, start_step_control, plan_step, round_off
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: implicit_memory_t, read_memory, write_files, begin_steps, plan_next, has_ended
+  public :: step_control_t, start_step_control, plan_step, grow_step, cut_step, round_off, &
+    implicit_memory_t, begin_steps, plan_next, has_ended
+
+  !> What a step that took few iterations grows by, and what one that failed shrinks to.
+  real(wp), parameter :: growth = 1.5_wp, cut = 0.5_wp
+  !> Part of a step that is not left over before a time at which a step must end.
+  real(wp), parameter :: least_rest = 0.25_wp
+  !> Part of a step by which a time may be missed.
+  real(wp), parameter :: round_off = 1.0e-9_wp
+
+  !> Step lengths of a run.
+  type, extends(visited_t) :: step_control_t
+    real(wp) :: dt = 0.0_wp        !! of a whole step, s
+    real(wp) :: target = 0.0_wp    !! where the present whole step ends
+    real(wp) :: next = 0.0_wp      !! where the next step ends: there, or where the equations change
+    real(wp) :: end_time = 0.0_wp
+    logical :: is_last = .false.   !! the next step ends the run
+    logical :: is_automatic = .false.
+    real(wp) :: least = 0.0_wp     !! shortest step
+    real(wp) :: most = 0.0_wp      !! longest step
+    integer :: few = 0             !! iterations below which the step grows
+    integer :: many = 0            !! iterations above which it shrinks
+    real(wp), allocatable :: changes(:) !! when the equations change
+  contains
+    procedure :: visit => visit_control
+  end type step_control_t
 
   !> What one step remembers of those before.
   type, extends(visited_t) :: implicit_memory_t
@@ -48,6 +73,94 @@ module implicit_start_m
 
 contains
 
+  !> As the deck asks; the first step is brought between the shortest and the longest.
+  pure function start_step_control(controls, changes) result(control)
+    type(controls_t), intent(in) :: controls
+    real(wp), intent(in) :: changes(:) !! times at which the equations change, in any order
+    type(step_control_t) :: control
+
+    control%changes = changes
+    associate (implicit => controls%implicit)
+      control%dt = implicit%dt
+      control%end_time = controls%end_time
+      control%is_automatic = implicit%is_automatic
+      control%least = implicit%dt_least
+      if (.not. control%least > 0.0_wp) control%least = 1.0e-3_wp*implicit%dt
+      control%most = implicit%dt_most
+      if (.not. control%most > 0.0_wp) control%most = 10.0_wp*implicit%dt
+      control%most = max(control%most, control%least)
+      if (control%is_automatic) control%dt = min(max(control%dt, control%least), control%most)
+      control%few = implicit%best_iterations - implicit%iteration_window
+      ! A step that took all iterations it may take was a hard one too.
+      control%many = max(control%few, min(implicit%best_iterations + implicit%iteration_window, &
+        implicit%max_iteration - 1))
+    end associate
+  end function start_step_control
+
+  !> End of the next step. The last step is stretched or shortened to end the run in time. Of
+  !> constant steps what a change leaves over follows as a step of its own, of automatic ones a
+  !> whole step; a step that would leave a small rest before a change goes half of the way.
+  pure subroutine plan_step(control, time)
+    type(step_control_t), intent(inout) :: control
+    real(wp), intent(in) :: time !! start of the step
+    real(wp) :: change
+
+    associate (missed => round_off*control%dt)
+      if (time >= control%target - missed) then
+        control%target = time + control%dt
+        if (control%target >= control%end_time - missed) control%target = control%end_time
+      end if
+      control%next = control%target
+      change = minval(control%changes, mask=control%changes > time + missed)
+      if (change < control%target - missed) then
+        control%next = change
+      else if (control%is_automatic .and. change > control%target + missed .and. &
+        change < control%target + least_rest*control%dt) then
+        control%next = time + 0.5_wp*(change - time)
+      end if
+      if (control%is_automatic) control%target = control%next
+      control%is_last = control%next >= control%end_time
+    end associate
+  end subroutine plan_step
+
+  !> After a step of length `dt` that converged. Few iterations of a shortened step
+  !> say nothing of a whole one.
+  pure subroutine grow_step(control, dt, iterations)
+    type(step_control_t), intent(inout) :: control
+    real(wp), intent(in) :: dt
+    integer, intent(in) :: iterations
+
+    if (.not. control%is_automatic) return
+    if (iterations <= control%few .and. dt >= (1.0_wp - round_off)*control%dt) &
+      control%dt = min(control%most, growth*control%dt)
+    if (iterations > control%many) control%dt = max(control%least, cut*control%dt)
+  end subroutine grow_step
+
+  !> After a step from `time` that did not converge: whether a shorter one
+  !> than was tried may follow.
+  pure subroutine cut_step(control, time, may_retry)
+    type(step_control_t), intent(inout) :: control
+    real(wp), intent(in) :: time
+    logical, intent(out) :: may_retry
+    real(wp) :: tried
+
+    tried = control%next - time
+    may_retry = control%is_automatic .and. tried > (1.0_wp + round_off)*control%least
+    if (.not. may_retry) return
+    control%dt = max(control%least, cut*tried)
+    control%target = time
+  end subroutine cut_step
+
+  !> What the deck and the plan of the next step do not give.
+  subroutine visit_control(self, visitor)
+    class(step_control_t), intent(inout), target :: self
+    class(visitor_t), intent(inout) :: visitor
+
+    call visitor%visit('dt', self%dt)
+    call visitor%expect('dt', self%dt > 0.0_wp, 'a step that is not positive')
+    call visitor%visit('target', self%target)
+  end subroutine visit_control
+
   !> What the next step has to know of those before.
   subroutine visit_memory(self, visitor)
     class(implicit_memory_t), intent(inout), target :: self
@@ -59,31 +172,6 @@ contains
     call visitor%visit('ratio', self%ratio)
   end subroutine visit_memory
 
-  !> Write restart files after a step. The memory is that of the state, its
-  !> next step not planned yet.
-  subroutine write_files(model, wanted, state, monitor, memory, error)
-    type(model_t), intent(in) :: model
-    logical, intent(in) :: wanted(:)   !! numbered_file, running_file
-    type(state_t), intent(inout) :: state
-    type(monitor_t), intent(inout) :: monitor
-    type(implicit_memory_t), intent(inout) :: memory
-    type(error_t), allocatable, intent(out) :: error
-
-    if (any(wanted)) call cut_sections(model, memory%trial, state)
-    call write_restarts(wanted, state, monitor, error, memory)
-  end subroutine write_files
-
-  !> Read it from a restart file; the first thing that is wrong is an error of the archive.
-  subroutine read_memory(model, state, source, memory)
-    type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: state
-    type(archive_t), intent(inout) :: source
-    type(implicit_memory_t), intent(inout) :: memory
-
-    call start_trial(model, state, memory%trial)
-    call source%part('driver', memory)
-  end subroutine read_memory
-
   !> What is remembered up to the first report, and the plan of the first step.
   subroutine begin_steps(model, state, monitor, memory, last, error)
     type(model_t), intent(in) :: model
@@ -94,7 +182,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(step_control_t) :: planned
     real(wp), allocatable :: changes(:)
-    logical :: ends
+    logical :: ends, wanted(2) !! numbered_file, running_file
 
     call list_changes(model, changes)
     memory%control = start_step_control(model%controls, changes)
@@ -108,7 +196,8 @@ contains
     if (memory%step%is_dynamic) call set_lags(model, state)
     last = .false.
     if (monitor%restarts%goes_on) then
-      call read_memory(model, state, monitor%restarts%source, memory)
+      call start_trial(model, state, memory%trial)
+      call monitor%restarts%source%part('driver', memory)
       call close_restart(monitor%restarts%source, error)
       if (allocated(error)) return
       memory%step%old_force = net_force(memory%trial)
@@ -116,15 +205,26 @@ contains
       memory%control%target = min(memory%control%target, memory%control%end_time)
       last = has_ended(model, state, memory%control)
     else
-      call log_method(model, memory%control, monitor%log)
+      associate (implicit => model%controls%implicit)
+        if (abs(memory%control%dt - implicit%dt) > 0.0_wp) call warn(monitor%log, &
+          'the first step '//to_text(implicit%dt)//' does not lie between DTMIN and DTMAX of ' &
+          //'*CONTROL_IMPLICIT_AUTO; it is '//to_text(memory%control%dt))
+        call write_log(monitor%log, 'implicit method: '//trim(merge('dynamic', 'static ', &
+          implicit%is_dynamic))//', first step '//to_text(implicit%dt))
+        if (implicit%is_dynamic) call write_log(monitor%log, '  '//implicit%scheme//': alpha_m ' &
+          //to_text(implicit%alpha_m)//', alpha_f '//to_text(implicit%alpha_f)//', gamma ' &
+          //to_text(implicit%gamma)//', beta '//to_text(implicit%beta))
+      end associate
     end if
     planned = memory%control
     call plan_next(model, last, state, planned, ends)
     if (.not. monitor%restarts%goes_on) then
       call start_implicit(model, planned%next, state, monitor, memory, error)
       if (.not. allocated(error)) call report_contact_start(model, state, monitor%log)
-      if (.not. allocated(error)) call write_files(model, wanted_files(monitor%restarts, &
-        state%cycle, .false., ends, .false.), state, monitor, memory, error)
+      if (allocated(error)) return
+      wanted = wanted_files(monitor%restarts, state%cycle, .false., ends, .false.)
+      if (any(wanted)) call cut_sections(model, memory%trial, state)
+      call write_restarts(wanted, state, monitor, error, memory)
     end if
     memory%control = planned
   end subroutine begin_steps
@@ -177,24 +277,6 @@ contains
     end do
   end subroutine set_lags
 
-  !> Tell the log of the method.
-  subroutine log_method(model, control, log)
-    type(model_t), intent(in) :: model
-    type(step_control_t), intent(in) :: control
-    type(log_t), intent(inout) :: log
-
-    associate (implicit => model%controls%implicit)
-      if (abs(control%dt - implicit%dt) > 0.0_wp) call warn(log, 'the first step ' &
-        //to_text(implicit%dt)//' does not lie between DTMIN and DTMAX of ' &
-        //'*CONTROL_IMPLICIT_AUTO; it is '//to_text(control%dt))
-      call write_log(log, 'implicit method: '//trim(merge('dynamic', 'static ', &
-        implicit%is_dynamic))//', first step '//to_text(implicit%dt))
-      if (implicit%is_dynamic) call write_log(log, '  '//implicit%scheme//': alpha_m ' &
-        //to_text(implicit%alpha_m)//', alpha_f '//to_text(implicit%alpha_f)//', gamma ' &
-        //to_text(implicit%gamma)//', beta '//to_text(implicit%beta))
-    end associate
-  end subroutine log_method
-
   !> Forces and acceleration at time zero.
   subroutine start_implicit(model, dt, state, monitor, memory, error)
     type(model_t), intent(in) :: model
@@ -221,8 +303,8 @@ contains
       call measure_springs(state%contacts(i))
       state%contacts(i)%energy = state%contacts(i)%watch%stored
     end do
-    if (allocated(memory%trial%damping)) memory%trial%damping = damping_force(model, 0.0_wp, &
-      state%motion(3:4, :))
+    if (allocated(memory%trial%damping)) memory%trial%damping = mass_times(model, &
+      state%motion(3:4, :), damping_rates(model, 0.0_wp))
     memory%step%old_force = net_force(memory%trial)
     if (memory%step%is_dynamic) call find_first_acceleration(model, monitor, memory%step, state, &
       error)
@@ -241,7 +323,6 @@ contains
     type(sparse_t) :: matrix
     type(report_t) :: report
     real(wp), allocatable :: x(:)
-    integer :: i, k
 
     call number_equations(model, state, 0.0_wp, equations)
     call start_matrix(matrix, equations%n)
@@ -258,12 +339,8 @@ contains
     end if
     call write_log(monitor%log, '  equations: '//to_text(equations%n_free)//' free, ' &
       //to_text(equations%n - equations%n_free)//' prescribed; mass solved by '//report%method)
-    do i = 1, model%mesh%n_node
-      do k = 1, 2
-        if (equations%number(k, i) > 0 .and. equations%number(k, i) <= equations%n_free) &
-          state%acceleration(k, i) = x(equations%number(k, i))
-      end do
-    end do
+    state%acceleration = unpack(x, equations%number > 0 .and. equations%number <= &
+      equations%n_free, state%acceleration)
   end subroutine find_first_acceleration
 
 end module implicit_start_m

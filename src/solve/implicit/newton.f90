@@ -9,10 +9,10 @@ module newton_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : told_as
   use controls_m, only : implicit_t
-  use equations_m, only : take_free, move_prescribed, find_equation
+  use equations_m, only : take_free, move_prescribed
   use friction_m, only : let_stick
-  use implicit_forces_m, only : trial_t, assemble_forces, trouble_of
-  use implicit_tangent_m, only : step_t, assemble_tangent, assemble_residual
+  use implicit_forces_m, only : trial_t, assemble_forces, trouble_of, step_t, assemble_tangent, &
+    assemble_residual
   use kinds_m, only : wp
   use law_state_m, only : slips
   use linear_solver_m, only : report_t, solve_linear
@@ -96,7 +96,7 @@ contains
     type(way_t) :: way
     type(report_t) :: report
     type(slip_cycle_t) :: slip_cycle
-    integer :: iteration, node, direction
+    integer :: iteration, place(2) !! direction and node
 
     trial%motion(1:2, :) = state%motion(1:2, :)
     call assemble_forces(model, state, step%time, .true., clock, trial)
@@ -122,20 +122,24 @@ contains
       now%factor = way%factor
       call measure_residual(model, state, step, trial, matrix, now)
       if (iteration == 1) first = now
-      call write_log(log, iteration_line(step, iteration, first, now, report))
+      call write_log(log, 'step to '//to_text(step%time)//' iteration '//to_text(iteration) &
+        //': energy ratio '//to_text(now%energy/max(first%energy, tiny(1.0_wp)))//', |R| ' &
+        //to_text(now%residual)//' (round-off '//to_text(now%floor)//'), |dU| ' &
+        //to_text(now%step)//', factor '//to_text(now%factor)//', '//report%method &
+        //', residual of the solution '//to_text(report%residual))
       outcome%converged = is_converged(model%controls%implicit, first, now, &
         norm2(trial%motion(3:4, :)))
       if (outcome%converged) return
       call watch_slips(trial%contacts, now%residual, slip_cycle)
       if (slip_cycle%is_found) exit
     end do
-    call find_equation(step%equations, now%worst, node, direction)
+    place = max(1, findloc(step%equations%number, now%worst))
     outcome%reason = 'no equilibrium after '//to_text(outcome%iterations)//' iterations'
     if (slip_cycle%is_found) outcome%reason = outcome%reason &
       //', the last of which cycle between the same states of stick and slip'
     outcome%reason = outcome%reason//', most force out of balance at node ' &
-      //to_text(model%mesh%node_id(max(node, 1)))//' in '//merge('x', 'y', direction == 1) &
-      //contacts_of(model, max(node, 1))
+      //to_text(model%mesh%node_id(place(2)))//' in '//merge('x', 'y', place(1) == 1) &
+      //contacts_of(model, place(2))
   end subroutine find_equilibrium
 
   !> The interfaces that a node belongs to, in words; empty where there are none.
@@ -230,21 +234,6 @@ contains
       <= implicit%residual_tolerance*first%start
   end function is_converged
 
-  !> One line of the account.
-  function iteration_line(step, iteration, first, now, report) result(line)
-    type(step_t), intent(in) :: step
-    integer, intent(in) :: iteration
-    type(measure_t), intent(in) :: first, now
-    type(report_t), intent(in) :: report
-    character(:), allocatable :: line
-
-    line = 'step to '//to_text(step%time)//' iteration '//to_text(iteration)//': energy ratio ' &
-      //to_text(now%energy/max(first%energy, tiny(1.0_wp)))//', |R| '//to_text(now%residual) &
-      //' (round-off '//to_text(now%floor)//'), |dU| '//to_text(now%step)//', factor ' &
-      //to_text(now%factor)//', '//report%method//', residual of the solution ' &
-      //to_text(report%residual)
-  end function iteration_line
-
   !> Move the trial by `way%x`, shortened where elements would turn inside out or where the residual
   !> along x would not fall. The first iteration of a step, which moves prescribed degrees of
   !> freedom, is gone to its end.
@@ -273,18 +262,12 @@ contains
 
     !> The trial at `way%factor`, and whether it is sound.
     subroutine go_part()
-      integer :: j, k, n
+      real(wp), allocatable :: steps(:) !! by the numbers of the equations from 0 on
+      integer :: j
 
+      steps = [0.0_wp, way%factor*way%x, way%moved]
       do j = 1, size(start, 2)
-        do k = 1, 2
-          n = step%equations%number(k, j)
-          if (n == 0) cycle
-          if (n <= step%equations%n_free) then
-            trial%motion(k, j) = start(k, j) + way%factor*way%x(n)
-          else
-            trial%motion(k, j) = start(k, j) + way%moved(n - step%equations%n_free)
-          end if
-        end do
+        trial%motion(1:2, j) = start(:, j) + steps(step%equations%number(:, j) + 1)
       end do
       call assemble_forces(model, state, step%time, .false., clock, trial)
       way%trouble = trouble_of(trial)

@@ -21,7 +21,7 @@ module automatic_penalty_m
   use log_m, only : log_t, warn, write_log, to_text
   use mass_scaling_m, only : refine_limits, needs_refinement
   use model_m, only : model_t
-  use scaled_step_m, only : scaled_step
+  use loads_m, only : scaled_step
   use state_m, only : state_t
   implicit none
   private

@@ -1,30 +1,35 @@
 ! SPDX-License-Identifier: MIT
-!> From a model to its state at time zero.
+!> From a model to its state at time zero. Rigid bodies and nodes that move alike
+!> (*CONSTRAINED_NODE_SET): mass, centre and inertia from the lumped masses of their nodes, velocity
+!> from the momentum of these; the mass that contact feels, and the inverse masses that its energy
+!> law sees (doc/theory/contact.md, section 6.1). The log tells of masses what d3hsp does.
 module start_m
-  use interface_m, only : start_contact, resume_contact
-  use kinds_m, only : wp
-  use behind_ties_m, only : hear_tie
   use automatic_penalty_m, only : set_automatic_penalties
-  use rigid_start_m, only : start_common, weigh_contacts, start_rigids
-  use constraints_m, only : start_motion, fix_nodes, update_activity
-  use element_log_m, only : log_elements
-  use element_mass_m, only : lump_mass
-  use element_start_m, only : start_elements
-  use element_steps_m, only : start_retardation
+  use behind_ties_m, only : hear_tie
+  use block_state_m, only : block_state_t
+  use conditions_m, only : motion_velocity
   use contact_log_m, only : log_softness
   use contacts_m, only : is_tied, n_told, told_as
-  use controls_m, only : is_asked, group_nodes, n_cut
-  use errors_m, only : error_t, raise, status_input
+  use controls_m, only : is_asked, group_nodes
+  use curves_m, only : curve_value
+  use element_log_m, only : log_elements
+  use element_mass_m, only : element_volume, lump_mass
+  use element_start_m, only : start_elements
+  use element_steps_m, only : start_retardation
+  use errors_m, only : error_t, raise, status_input, status_run
   use history_tables_m, only : table_nodfor
-  use others_memory_m, only : answers_t, others_t, known_nodes, known_slots
-  use log_m, only : log_t, to_text
-  use model_log_m, only : log_added_mass, log_masses
-  use mass_scaling_m, only : scales_masses, start_mass_scaling
+  use interface_m, only : start_contact, resume_contact
+  use kinds_m, only : wp
+  use loads_m, only : start_motion, fix_nodes, update_activity, is_active
+  use log_m, only : log_t, to_text, write_log
+  use mass_scaling_m, only : added_masses, scales_masses, start_mass_scaling
   use model_m, only : model_t
+  use others_memory_m, only : answers_t, others_t, known_nodes, known_slots
+  use rigid_state_m, only : rigid_state_t, velocity_of
   use state_m, only : state_t
   implicit none
   private
-  public :: start_state, resume_contacts
+  public :: start_state, resume_contacts, start_rigids, weigh_body, weigh_contacts, check_added_mass
 
 contains
 
@@ -52,7 +57,7 @@ contains
       call start_retardation(model, state%motion, state%elements)
     if (scales_masses(model)) then
       call start_mass_scaling(model, state%motion, state%elements, state%mass)
-      call log_added_mass(model, state%elements, log, error)
+      call check_added_mass(model, state%elements, error, log)
       if (allocated(error)) return
     end if
     call start_common(model, state)
@@ -162,8 +167,9 @@ contains
         n = size(output%boundaries%where)
         allocate (state%boundary_force(3, n), state%boundary_work(n), source=0.0_wp)
       end if
-      if (allocated(output%cross_sections)) &
-        allocate (state%cut_force(8, n_cut(output%cross_sections)), source=0.0_wp)
+      if (allocated(output%cross_sections)) allocate (state%cut_force(8, &
+        sum([(size(output%cross_sections(i)%elements), i=1, size(output%cross_sections))])), &
+        source=0.0_wp)
       if (.not. allocated(output%force_groups)) return
       if (.not. is_asked(output%histories(table_nodfor))) return
       n = size(group_nodes(output%force_groups))
@@ -184,5 +190,273 @@ contains
       if (k < i) call hear_tie(state%contacts(k), state%contacts(i))
     end do
   end subroutine resume_contacts
+
+  !> Set up all bodies; nodal masses and initial velocities are there already.
+  subroutine start_rigids(model, log, state)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    type(state_t), intent(inout) :: state
+    integer :: i, k
+
+    state%contact_mass = state%mass(:model%layout%n_special)
+    allocate (state%rigids(size(model%rigids)))
+    do i = 1, size(model%rigids)
+      associate (body => model%rigids(i), rigid => state%rigids(i))
+        call weigh_body(model%mesh%coordinates(:, body%nodes), state%mass(body%nodes), rigid)
+        ! The velocity that keeps momentum, exactly where all nodes have one, and angular momentum.
+        associate (mass => state%mass(body%nodes), v => state%motion(3:4, body%nodes))
+          do k = 1, 2
+            rigid%velocity(k) = v(k, 1) + sum(mass*(v(k, :) - v(k, 1)))/rigid%inertia(1)
+          end do
+          rigid%velocity(3) = sum(mass*(rigid%arms(1, :)*(v(2, :) - rigid%velocity(2)) &
+            - rigid%arms(2, :)*(v(1, :) - rigid%velocity(1))))/rigid%inertia(3)
+        end associate
+        if (body%has_velocity) rigid%velocity = body%velocity
+        ! What is fixed rests; what has a prescribed velocity from the start has its first value.
+        where (body%is_fixed) rigid%velocity = 0.0_wp
+        do k = 1, size(model%conditions%rigid_motions)
+          associate (motion => model%conditions%rigid_motions(k))
+            if (motion%node == i .and. motion%kind == motion_velocity &
+              .and. is_active(motion, 0.0_wp)) rigid%velocity(motion%direction) = motion%scale &
+              *curve_value(model%curves(motion%curve), 0.0_wp)
+          end associate
+        end do
+        do k = 1, size(body%nodes)
+          state%motion(3:4, body%nodes(k)) = velocity_of(rigid%velocity, rigid%arms(:, k))
+        end do
+        state%inverse_mass(:, body%nodes) = 0.0_wp
+        call write_log(log, 'rigid part '//to_text(model%parts(body%part)%id)//': mass ' &
+          //to_text(rigid%inertia(1))//', moment of inertia '//to_text(rigid%inertia(3)) &
+          //' about its centre of mass '//to_text(rigid%centre(1))//', '//to_text(rigid%centre(2)))
+      end associate
+    end do
+    call share_contact_mass(model, state)
+  end subroutine start_rigids
+
+  !> Mass, centre and second moments of lumped masses.
+  pure subroutine weigh_body(places, mass, rigid)
+    real(wp), intent(in) :: places(:, :) !! (2, n) at time zero
+    real(wp), intent(in) :: mass(:)      !! (n)
+    type(rigid_state_t), intent(inout) :: rigid
+    integer :: k
+
+    rigid%inertia(1:2) = sum(mass)
+    do k = 1, 2
+      ! From the first node, so that digits are kept far from the origin.
+      rigid%centre(k) = places(k, 1) + sum(mass*(places(k, :) - places(k, 1)))/rigid%inertia(1)
+    end do
+    rigid%arms = places - spread(rigid%centre, 2, size(mass))
+    rigid%second = [sum(mass*rigid%arms(1, :)**2), sum(mass*rigid%arms(2, :)**2), &
+      sum(mass*rigid%arms(1, :)*rigid%arms(2, :))]
+    rigid%inertia(3) = rigid%second(1) + rigid%second(2)
+  end subroutine weigh_body
+
+  !> The mass of a body is shared among its nodes that contact can touch, in proportion to their
+  !> lumped masses and so that no motion of the body gives these nodes more kinetic energy than the
+  !> body has, by the largest eigenvalue of their inertia over the body's: limits of the step found
+  !> with these masses hold for the body (doc/theory/rigid_bodies.md, section 4). A body held in one
+  !> direction counts as free in both.
+  subroutine share_contact_mass(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    real(wp), parameter :: as_good_as_none = 1.0e-30_wp
+    logical, allocatable :: touched(:)
+    integer, allocatable :: list(:)
+    real(wp), allocatable :: mass(:), arms(:, :) !! of the nodes that can be touched
+    real(wp) :: shift, turn, mixed, share
+    logical :: held(3)
+    integer :: i, k, n
+
+    allocate (touched(model%layout%n_special), source=.false.)
+    do i = 1, size(model%contacts)
+      touched(model%contacts(i)%slave%nodes) = .true.
+      touched(model%contacts(i)%master%nodes) = .true.
+    end do
+    do i = 1, size(model%rigids)
+      associate (nodes => model%rigids(i)%nodes)
+        n = count(nodes <= size(touched)) ! they rise
+        list = pack([(k, k=1, n)], touched(nodes(:n)))
+        if (size(list) == 0) cycle
+        held = is_held(model, i)
+        mass = state%mass(nodes(list))
+        arms = state%rigids(i)%arms(:, list)
+      end associate
+      associate (inertia => state%rigids(i)%inertia)
+        shift = merge(0.0_wp, sum(mass)/inertia(1), all(held(1:2)))
+        turn = merge(0.0_wp, sum(mass*(arms(1, :)**2 + arms(2, :)**2))/inertia(3), held(3))
+        mixed = norm2([sum(mass*arms(1, :)), sum(mass*arms(2, :))])/sqrt(inertia(1)*inertia(3))
+        if (all(held(1:2)) .or. held(3)) mixed = 0.0_wp
+        share = 0.5_wp*(shift + turn + sqrt((shift - turn)**2 + 4.0_wp*mixed**2))
+        state%contact_mass(model%rigids(i)%nodes(list)) = mass/max(as_good_as_none, share)
+      end associate
+    end do
+  end subroutine share_contact_mass
+
+  !> Degrees of freedom of a body that no force moves during the whole run.
+  pure function is_held(model, i_body) result(held)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i_body
+    logical :: held(3)
+    integer :: i
+
+    held = model%rigids(i_body)%is_fixed
+    do i = 1, size(model%conditions%rigid_motions)
+      associate (motion => model%conditions%rigid_motions(i))
+        if (motion%node == i_body .and. motion%birth <= 0.0_wp &
+          .and. motion%death >= model%controls%end_time) held(motion%direction) = .true.
+      end associate
+    end do
+  end function is_held
+
+  !> Nodes that move alike: their mean over the masses, so that momentum stays.
+  subroutine start_common(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    real(wp) :: first
+    integer :: i, k
+
+    if (.not. allocated(model%conditions%common_motions)) return
+    do i = 1, size(model%conditions%common_motions)
+      associate (common => model%conditions%common_motions(i))
+        do k = 1, 2
+          if (.not. common%along(k)) cycle
+          first = state%motion(2 + k, common%nodes(1))
+          state%motion(2 + k, common%nodes) = first + sum(state%mass(common%nodes) &
+            *(state%motion(2 + k, common%nodes) - first))/sum(state%mass(common%nodes))
+        end do
+      end associate
+    end do
+  end subroutine start_common
+
+  !> 1/m of the nodes of all interfaces, 0 where the motion is held or prescribed. A node of a rigid
+  !> body has the mass that contact feels there, with which no force does more to it than to the
+  !> body; 0 where the body can not turn and does not move in that direction during the whole run.
+  subroutine weigh_contacts(model, state)
+    type(model_t), intent(in) :: model
+    type(state_t), intent(inout) :: state
+    real(wp), allocatable :: inverse(:, :)
+    logical :: held(3)
+    integer :: i, k
+
+    if (size(state%contacts) == 0) return
+    allocate (inverse(2, model%layout%n_special))
+    inverse = state%inverse_mass(:, :model%layout%n_special)
+    ! Nodes that move alike: their own mass, the least that a force on one of them moves. Nodes that
+    ! have lost theirs with their last element have no contact any more.
+    if (allocated(model%conditions%common_motions)) then
+      do i = 1, size(model%conditions%common_motions)
+        associate (common => model%conditions%common_motions(i))
+          do k = 1, size(common%nodes)
+            associate (node => common%nodes(k))
+              if (state%mass(node) > 0.0_wp) inverse(:, node) = merge(1.0_wp/state%mass(node), &
+                inverse(:, node), common%along)
+            end associate
+          end do
+        end associate
+      end do
+    end if
+    do i = 1, size(model%rigids)
+      held = is_held(model, i)
+      do k = 1, size(model%rigids(i)%nodes)
+        associate (node => model%rigids(i)%nodes(k))
+          if (node > model%layout%n_special) exit
+          inverse(:, node) = merge(0.0_wp, 1.0_wp/state%contact_mass(node), &
+            held(1:2) .and. held(3))
+        end associate
+      end do
+    end do
+    do i = 1, size(state%contacts)
+      if (.not. allocated(state%contacts(i)%limit%inverse_mass)) cycle
+      associate (limit => state%contacts(i)%limit)
+        ! The bound of the forces before was formed with the masses of before.
+        if (any(abs(limit%inverse_mass - inverse(:, state%contacts(i)%nodes)) > 0.0_wp)) &
+          limit%recoil = huge(1.0_wp)
+        limit%inverse_mass = inverse(:, state%contacts(i)%nodes)
+      end associate
+    end do
+  end subroutine weigh_contacts
+
+  !> Elements, mass and centre of mass of each part and of the whole, per unit depth or per radian.
+  subroutine log_masses(model, log)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    real(wp), allocatable :: sums(:, :) !! (3, n_part) mass and its first moments
+    integer, allocatable :: counts(:)
+    real(wp) :: share
+    integer :: i, k
+
+    allocate (sums(3, size(model%parts)), source=0.0_wp)
+    allocate (counts(size(model%parts)), source=0)
+    do i = 1, model%mesh%n_element
+      k = model%mesh%element_part(i)
+      counts(k) = counts(k) + 1
+      associate (nodes => model%mesh%element_nodes(:, i))
+        associate (x => model%mesh%coordinates(:, nodes), &
+          corners => merge(3, 4, nodes(4) == nodes(3)))
+          if (model%is_round) then
+            sums(:, k) = sums(:, k) + model%materials(model%parts(k)%material)%density &
+              *element_volume(model%mesh, i)
+            cycle
+          end if
+          share = 0.5_wp*model%materials(model%parts(k)%material)%density*((x(1, 3) - x(1, 1)) &
+            *(x(2, 4) - x(2, 2)) - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+          sums(:, k) = sums(:, k) + share*[1.0_wp, sum(x(1, :corners))/corners, &
+            sum(x(2, :corners))/corners]
+        end associate
+      end associate
+    end do
+    do k = 1, size(model%parts)
+      call write_log(log, 'part '//to_text(model%parts(k)%id)//': ' &
+        //mass_text(counts(k), sums(:, k)))
+    end do
+    call write_log(log, 'all parts: '//mass_text(sum(counts), sum(sums, 2))//'; ' &
+      //to_text(count(model%mesh%element_nodes(4, :) == model%mesh%element_nodes(3, :))) &
+      //' of the elements are triangles')
+  end subroutine log_masses
+
+  !> Elements, mass and centre in words.
+  pure function mass_text(n, sums) result(text)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: sums(3)
+    character(:), allocatable :: text
+
+    text = to_text(n)//' elements, mass '//to_text(sums(1))
+    if (sums(1) > 0.0_wp) text = text//', centre of mass '//to_text(sums(2)/sums(1))//', ' &
+      //to_text(sums(3)/sums(1))
+  end function mass_text
+
+  !> An error where the added mass is more than ENDMAS allows; the log, if given, is told of it.
+  subroutine check_added_mass(model, elements, error, log)
+    type(model_t), intent(in) :: model
+    type(block_state_t), intent(in) :: elements
+    type(error_t), allocatable, intent(out) :: error
+    type(log_t), intent(inout), optional :: log
+    real(wp) :: added(size(model%parts)), own(size(model%parts))
+    integer :: i
+
+    if (.not. (present(log) .or. model%controls%most_added > 0.0_wp)) return
+    call added_masses(model, elements, added, own)
+    if (present(log)) then
+      call write_log(log, 'mass scaling (DT2MS '//to_text(model%controls%mass_step) &
+        //'): added mass '//share_text(sum(added), sum(own)))
+      do i = 1, size(added)
+        if (abs(added(i)) > 0.0_wp) call write_log(log, 'part '//to_text(model%parts(i)%id) &
+          //': added mass '//share_text(added(i), own(i)))
+      end do
+      if (.not. model%controls%most_added > 0.0_wp) return
+    end if
+    if (100.0_wp*sum(added) > model%controls%most_added*sum(own)) call raise(error, 'mass ' &
+      //'scaling has added '//share_text(sum(added), sum(own))//', more than the ' &
+      //to_text(model%controls%most_added)//' per cent of ENDMAS', status_run)
+  end subroutine check_added_mass
+
+  !> An amount and its share in words.
+  pure function share_text(added, own) result(text)
+    real(wp), intent(in) :: added, own
+    character(:), allocatable :: text
+
+    text = to_text(added)
+    if (own > 0.0_wp) text = text//' ('//to_text(100.0_wp*added/own)//' per cent)'
+  end function share_text
 
 end module start_m

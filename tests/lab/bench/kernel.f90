@@ -17,7 +17,7 @@ program bench_kernel
   use layout_m, only : chunk_size
   use log_m, only : log_t
   use model_m, only : model_t
-  use quad_one_point_m, only : advance_one_point
+  use quad_m, only : advance_chunk
   use renumber_m, only : renumber_model
   use start_m, only : start_state
   use state_m, only : state_t
@@ -70,13 +70,13 @@ contains
     real(wp) :: dt, start, finish
     integer :: i_round, i
 
-    call advance_one_point(model, 1, model%layout%slot_nodes(1, 1), state%motion, 0.0_wp, state%elements, chunk)
+    call advance_chunk(model, 1, model%layout%slot_nodes(1, 1), state%motion, 0.0_wp, state%elements, chunk)
     dt = 0.1_wp*state%elements%time_limit(1)
     best = huge(1.0_wp)
     do i_round = 1, n_round
       call cpu_time(start)
       do i = 1, n_call
-        call advance_one_point(model, 1, model%layout%slot_nodes(1, 1), state%motion, dt, state%elements, chunk)
+        call advance_chunk(model, 1, model%layout%slot_nodes(1, 1), state%motion, dt, state%elements, chunk)
       end do
       call cpu_time(finish)
       best = min(best, 1.0e9_wp*(finish - start)/n_call/chunk_size)

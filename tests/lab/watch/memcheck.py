@@ -34,10 +34,10 @@ VALGRIND = ("valgrind", "--quiet", "--leak-check=full", "--errors-for-leak-kinds
 PLANTS = (
     Plant("forces that nobody set", "element/element_dispatch.f90",
           "    force = 0.0_wp\n    do i_chunk", "    do i_chunk", "uninitialised"),
-    Plant("a write behind the force slots", "element/tile_forces.f90",
+    Plant("a write behind the force slots", "element/element_dispatch.f90",
           "do i = tile%first_special, tile%last_special\n", "do i = tile%first_special, tile%last_special + 1\n",
           "Invalid write"),
-    Plant("a read behind the list of chunks", "element/element_dispatch.f90",
+    Plant("a read behind the list of chunks", "element/quad.f90",
           "model%parts(model%layout%chunk_part(i_chunk))",
           "model%parts(min(1, model%layout%chunk_part(i_chunk + 1)))", "Invalid read"),
     Plant("factors of UMFPACK that are not given back", "linear/with_umfpack/umfpack.f90",

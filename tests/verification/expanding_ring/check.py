@@ -69,7 +69,8 @@ def check(run):
             run.check(f"{job}: radius while it swings", middle["x"][~flies], exact_r[~flies])
             run.check(f"{job}: plastic strain", result.cells("plastic_strain")[-1].mean(), exact.p[-1])
             stress = result.cells("stress")[:, :, 2].mean(axis=1)
-            run.check(f"{job}: hoop stress while it flows", stress[3:stopped - 2], exact.sigma[3:stopped - 2])
+            # Once the flow is as slow as the waves through the ring its elements go apart, whichever way round-off has them.
+            run.check(f"{job}: hoop stress while it flows", stress[3:stopped - 4], exact.sigma[3:stopped - 4])
             start = 0.5 * RHO * RADIUS * WIDTH ** 2 * SPEED ** 2
             run.check(f"{job}: kinetic energy at the start", table["kinetic"][0], start)
             run.check(f"{job}: kinetic energy", table["kinetic"] / start, (exact_v / SPEED) ** 2)
