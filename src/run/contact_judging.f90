@@ -14,7 +14,7 @@ module contact_judging_m
   use layout_m, only : slot_part
   use model_m, only : model_t
   use rows_behind_m, only : face_rows_t, find_rows, face_pressure, face_inertia, &
-    elastic_energy, has_stress, others_t, find_others, face_share, present_contact
+    elastic_energy, has_stress, others_t, find_others, face_share
   use snapshot_filling_m, only : fill_slaves, join_slaves
   use snapshot_m, only : snapshot_t, interface_result_t, part_result_t
   use state_m, only : state_t
@@ -56,7 +56,7 @@ contains
     allocate (others(2*n_told(model%contacts)))
     if (rows%are_shared) call find_others(model, state, snapshot%slaves, others)
     do i = 1, n_told(model%contacts)
-      contact = present_contact(state, i)
+      contact = state%outlines(i)
       ! What interfaces that share nodes allow together takes too long to find for every row.
       if (.not. model%controls%implicit%is_on) then
         scale = merge(0.0_wp, 1.0_wp, model%contacts(i)%penalty_unit == penalty_implicit)

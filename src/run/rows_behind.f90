@@ -3,7 +3,7 @@
 !> face; and faces that several interfaces press on: what the others put there, for the pressure
 !> that stands against that stress is that of all (doc/theory/contact.md, section 8.1).
 module rows_behind_m
-  use contacts_m, only : contact_t, n_told
+  use contacts_m, only : n_told
   use element_mass_m, only : element_shares
   use element_state_m, only : is_gone, stress_of_slot
   use kinds_m, only : wp
@@ -15,7 +15,7 @@ module rows_behind_m
   implicit none
   private
   public :: face_rows_t, find_rows, face_pressure, face_inertia, elastic_energy, has_stress, &
-    place_of, others_t, present_contact, find_others, face_share
+    place_of, others_t, find_others, face_share
 
   !> Corners, and edges, of an element; a triangle repeats its third node.
   integer, parameter :: n_corner = 4
@@ -300,15 +300,6 @@ contains
     place = model%mesh%coordinates(:, node) + state%motion(1:2, node)
   end function place_of
 
-  !> An interface between the surfaces that it has now.
-  function present_contact(state, i) result(contact)
-    type(state_t), intent(in) :: state
-    integer, intent(in) :: i
-    type(contact_t) :: contact
-
-    contact = state%outlines(i)
-  end function present_contact
-
   !> What other interfaces put on the faces of each side. The pressure of a node acts on all of its
   !> faces in an interface alike.
   subroutine find_others(model, state, slaves, others)
@@ -318,17 +309,15 @@ contains
     type(others_t), intent(inout) :: others(:) !! (2, interfaces that are told), empty before
     type(surface_t) :: surfaces(size(others))
     type(face_t), allocatable :: faces(:)
-    type(contact_t) :: contact
     integer, allocatable :: first(:), next(:) !! faces by the node that they start at
     real(wp) :: pressure(2)
     integer :: i, k, m, s
 
     do i = 1, size(others)/2
-      contact = present_contact(state, i)
-      surfaces(2*i - 1) = contact%slave
-      surfaces(2*i) = contact%master
+      surfaces(2*i - 1) = state%outlines(i)%slave
+      surfaces(2*i) = state%outlines(i)%master
       ! Of a surface with itself all is on the slave.
-      if (contact%is_self) surfaces(2*i)%n_segment = 0
+      if (state%outlines(i)%is_self) surfaces(2*i)%n_segment = 0
     end do
     allocate (faces(sum(surfaces%n_segment)), next(sum(surfaces%n_segment)))
     allocate (first(model%mesh%n_node), source=0)
