@@ -40,8 +40,8 @@ extern "C" void scientific_text(double value, int width, int n_digit, char *text
     const auto form = std::chars_format::scientific;
     end_at(digits, std::to_chars(digits, digits + 24, value, form, n_digit).ptr, &n);
   }
-  std::memset(text, ' ', width - n);
-  std::memcpy(text + width - n, digits, n);
+  std::memset(text, n > width ? '*' : ' ', width); // as Fortran does where a field is too narrow
+  if (n <= width) std::memcpy(text + width - n, digits, n);
 }
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }

@@ -105,7 +105,8 @@ static void *granted(void *place, std::size_t n) {
 extern "C" void *__wrap_malloc(std::size_t n) { return granted(__real_malloc(n), n); }
 
 extern "C" void *__wrap_calloc(std::size_t n, std::size_t size) {
-  return granted(__real_calloc(n, size), n * size);
+  const bool is_too_much = n != 0 && size > SIZE_MAX / n;
+  return granted(__real_calloc(n, size), is_too_much ? SIZE_MAX : n * size);
 }
 
 extern "C" void *__wrap_realloc(void *old, std::size_t n) {

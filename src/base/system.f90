@@ -87,7 +87,7 @@ module system_m
     end subroutine give_back_memory
 
     !> Hand back the pages that lie within a part of an array whose values nobody asks for any more.
-    !> The part stays allocated: it reads zero, and takes memory again where it is written to.
+    !> The part stays allocated, without values, and takes memory again where it is written to.
     subroutine give_back_pages(start, n_byte) bind(c)
       import :: c_ptr, c_size_t
       type(c_ptr), value :: start        !! of the part

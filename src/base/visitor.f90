@@ -283,7 +283,8 @@ contains
     if (allocated(values)) place = c_loc(values)
     call visitor%pass(item, place)
     if (.not. visitor%judges .or. .not. (allocated(values) .and. present(what))) return
-    call visitor%expect(name, all(values >= lowest .and. values <= highest), what)
+    if (present(lowest)) call visitor%expect(name, all(values >= lowest), what)
+    if (present(highest)) call visitor%expect(name, all(values <= highest), what)
   end subroutine visit_integers
 
   !> An array of reals.

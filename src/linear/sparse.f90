@@ -233,12 +233,14 @@ contains
     integer :: order(matrix%n)
     type(sparse_t) :: pattern
     integer :: level(matrix%n) !! 0: not reached yet
-    integer, allocatable :: rows(:)
-    integer :: root, start, n_done, n_found, i, k
+    integer :: rows(size(matrix%column))
+    integer :: root, start, n_done, n_found, i
 
     ! The matrix and its transpose together, values zero: contact fills some entries on one side of
     ! the diagonal alone, and a walk along rows would pass by such neighbours.
-    rows = [((i, k=matrix%first(i), matrix%first(i + 1) - 1), i=1, matrix%n)]
+    do i = 1, matrix%n
+      rows(matrix%first(i):matrix%first(i + 1) - 1) = i
+    end do
     pattern%n = matrix%n
     pattern%n_entry = 2*size(rows)
     pattern%rows = [rows, matrix%column]

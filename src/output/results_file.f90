@@ -292,6 +292,7 @@ contains
     if (file%id < 0 .or. file%is_broken) return
     call check_untouched(file, tree%error)
     tree%id = file%id
+    tree%folder = ''
     call write_histories(tree, histories)
     call move_alloc(tree%error, error)
     call flush_file(file, error)
