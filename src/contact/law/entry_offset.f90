@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Entry offsets: a point that has come behind a face without coming through it starts without force,
-!> with the gap g + offset. The offset is never more than the depth, and fades with the slip over half
-!> of the segment, small ones as over a ramp of 1 to 20; the work of its fading is admissible energy (doc/theory/contact.md, section 6.4).
+!> Entry offsets: a point that has come behind a face without coming through it starts without
+!> force, with the gap g + offset. The offset is never more than the depth, and fades with the slip
+!> over half of the segment, small ones as over a ramp of 1 to 20; the work of its fading is
+!> admissible energy (doc/theory/contact.md, section 6.4).
 module entry_offset_m
   use contact_state_m, only : contact_state_t, tracking_t
   use contacts_m, only : contact_t
@@ -88,8 +89,8 @@ contains
     end if
   end function motion_of
 
-  !> Entry offset of a contact point on the list, m: that of its virtual node or Gauss point where the
-  !> search follows these, else of its slave nodes by their weights.
+  !> Entry offset of a contact point on the list, m: that of its virtual node or Gauss point where
+  !> the search follows these, else of its slave nodes by their weights.
   pure function offset_at(memory, p) result(offset)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: p
