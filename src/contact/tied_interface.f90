@@ -20,8 +20,8 @@ module tied_interface_m
 
 contains
 
-  !> After the first search, which takes gaps within reach as closed: generate the contact points and
-  !> freeze them.
+  !> After the first search, which takes gaps within reach as closed: generate the contact points
+  !> and freeze them.
   subroutine start_ties(contact, model, memory)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model

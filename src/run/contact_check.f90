@@ -36,8 +36,8 @@ module contact_check_m
 
 contains
 
-  !> Initial penetrations, and in explicit runs where the penalty demands a smaller step than `state%dt`: a warning, unless it is the built-in penalty
-  !> and the step need not be too large.
+  !> Initial penetrations, and in explicit runs where the penalty demands a smaller step than
+  !> `state%dt`: a warning, unless it is the built-in penalty and the step need not be too large.
   subroutine report_contact_start(model, state, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state

@@ -13,9 +13,9 @@
 !> axisymmetry X is the radius itself.
 !>
 !> Contact is looked for among candidate pairs alone: master segments near each slave segment. A
-!> separated point at distance d from all of its candidates is skipped until `travel` has grown by d:
-!> the sum over all steps of a bound on how far any two nodes of the interface have moved relative to
-!> each other.
+!> separated point at distance d from all of its candidates is skipped until `travel` has grown by
+!> d: the sum over all steps of a bound on how far any two nodes of the interface have moved
+!> relative to each other.
 module contact_state_m
   use law_state_m, only : contact_watch_t, energy_limit_t, friction_memory_t, &
     interference_memory_t, tie_memory_t
@@ -26,8 +26,8 @@ module contact_state_m
   private
   public :: contact_state_t, contact_points_t, tracking_t, bucket_grid_t, candidates_t, pass_t, &
     contact_scratch_t, allocate_points, allocate_loads, allocate_tractions, make_room, &
-    allocate_tracking, allocate_grid, allocate_scratch, n_side, n_load, places_of_segment, is_free, &
-    is_touching
+    allocate_tracking, allocate_grid, allocate_scratch, n_side, n_load, places_of_segment, &
+    is_free, is_touching
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
@@ -290,8 +290,8 @@ contains
     allocate (tracking%wake(n), source=-huge(1.0_wp))
   end subroutine allocate_tracking
 
-  !> Allocate a grid for so many segments. A segment lies in few cells: cells are at least as long as
-  !> the mean segment, so that all together fill at most 8 items per segment.
+  !> Allocate a grid for so many segments. A segment lies in few cells: cells are at least as long
+  !> as the mean segment, so that all together fill at most 8 items per segment.
   pure subroutine allocate_grid(grid, n_segment)
     type(bucket_grid_t), intent(inout) :: grid
     integer, intent(in) :: n_segment

@@ -26,9 +26,9 @@ module foot_m
   !> surfaces). From there to `side_on` the share falls smoothly: a jump would create energy when a
   !> body turns.
   real(wp), parameter :: face_on = -0.5_wp
-  !> By how much the cosine of the more opposed of both segments at a vertex exceeds that of the other
-  !> where all of the other counts, and from where on nothing of it does: a side that stands at 70
-  !> degrees on a face is no part of a contact that the next one is in at 20.
+  !> By how much the cosine of the more opposed of both segments at a vertex exceeds that of the
+  !> other where all of the other counts, and from where on nothing of it does: a side that stands
+  !> at 70 degrees on a face is no part of a contact that the next one is in at 20.
   real(wp), parameter :: least_excess = 0.1_wp, most_excess = 0.5_wp
   !> Part of a segment next to its ends where round-off decides on which side of a node a place is.
   real(wp), parameter :: round_off = 1.0e-12_wp
@@ -416,8 +416,8 @@ contains
     mark%xi = max(0.0_wp, min(1.0_wp, mark%xi))
   end function walk_to_mark
 
-  !> How much of the side next to a vertex counts, 0 to 1, where the segment on the other side of the
-  !> vertex is opposed to the same face by a cosine that is so much larger.
+  !> How much of the side next to a vertex counts, 0 to 1, where the segment on the other side of
+  !> the vertex is opposed to the same face by a cosine that is so much larger.
   pure function side_share(excess) result(share)
     real(wp), intent(in) :: excess
     real(wp) :: share

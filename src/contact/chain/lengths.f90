@@ -56,8 +56,8 @@ contains
 
   !> Tributary length of a node of a closed boundary, m: half of each of its segments as far as that
   !> is opposed to the face below the node; of the side at a corner less than that, or nothing (see
-  !> `side_share`). Where the face stands between both normals of a convex vertex, what is missing to the larger share counts too.
-  !> In axisymmetry the integral of the radius, m^2 per radian.
+  !> `side_share`). Where the face stands between both normals of a convex vertex, what is missing
+  !> to the larger share counts too. In axisymmetry the integral of the radius, m^2 per radian.
   pure function tributary_area(surface, places, is_round, i_node, normal) result(area)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface

@@ -40,10 +40,10 @@ contains
   end function segments_of
 
   !> Whether a face is opposed to a point: its outward normal is opposite to that of one of the
-  !> point's segments within 60 degrees (points between nodes: 84 degrees), or lies opposite between both of them at a convex vertex, by
-  !> 10 degrees at least: else the nodes of a body that slides on over a ramp would be held by the
-  !> end face in front of it. At an end of an open surface the tangent that leads out of it takes the
-  !> place of the missing normal there.
+  !> point's segments within 60 degrees (points between nodes: 84 degrees), or lies opposite between
+  !> both of them at a convex vertex, by 10 degrees at least: else the nodes of a body that slides
+  !> on over a ramp would be held by the end face in front of it. At an end of an open surface the
+  !> tangent that leads out of it takes the place of the missing normal there.
   pure function is_opposed(own, places, segments, normal) result(opposed)
     type(surface_t), intent(in) :: own
     real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
@@ -69,7 +69,8 @@ contains
       opposed = dot_product(normals(:, k), normal) < limit
       if (opposed) return
     end do
-    ! The opposite of the normal turns counter-clockwise from the first to the second of the normals.
+    ! The opposite of the normal turns counter-clockwise from the first to the second of the
+    ! normals.
     opposed = cross(normals(:, 1), normals(:, 2)) > 0.0_wp .and. &
       cross(normals(:, 1), -normal) > well_between .and. &
       cross(-normal, normals(:, 2)) > well_between

@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Entry offsets: a point that has come behind a face without coming through it starts without force,
-!> with the gap g + offset. The offset is never more than the depth, and fades with the slip over half
-!> of the segment; the work of its fading is admissible energy (doc/theory/contact.md, section 6.4).
+!> Entry offsets: a point that has come behind a face without coming through it starts without
+!> force, with the gap g + offset. The offset is never more than the depth, and fades with the slip
+!> over half of the segment, small ones as over a ramp of 1 to 20; the work of its fading is
+!> admissible energy (doc/theory/contact.md, section 6.4).
 module entry_offset_m
   use contact_state_m, only : contact_state_t, tracking_t
   use contacts_m, only : contact_t
@@ -13,6 +14,9 @@ module entry_offset_m
   implicit none
   private
   public :: has_offsets, update_offsets, offset_at, average_with_offsets, faded_work
+
+  !> Least slope by which an offset fades with the slip.
+  real(wp), parameter :: ramp = 0.05_wp
 
 contains
 
@@ -58,8 +62,8 @@ contains
         slip = dot_product(motion_of(tracking, own, increments, i) - (1.0_wp - xi) &
           *increments(:, ends(1)) - xi*increments(:, ends(2)), t)/length
       end associate
-      if (.not. tracking%pass%has_history .or. tracking%pass%is_trial) slip = 0.0_wp
-      tracking%offset(i) = limited*max(0.0_wp, 1.0_wp - 2.0_wp*abs(slip)/length)
+      if (.not. tracking%pass%has_history) slip = 0.0_wp
+      tracking%offset(i) = max(0.0_wp, limited - abs(slip)*max(2.0_wp*limited/length, ramp))
       tracking%faded(i) = limited - tracking%offset(i)
       tracking%has_offset = tracking%has_offset .or. limited > 0.0_wp
     end do
@@ -85,8 +89,8 @@ contains
     end if
   end function motion_of
 
-  !> Entry offset of a contact point on the list, m: that of its virtual node or Gauss point where the
-  !> search follows these, else of its slave nodes by their weights.
+  !> Entry offset of a contact point on the list, m: that of its virtual node or Gauss point where
+  !> the search follows these, else of its slave nodes by their weights.
   pure function offset_at(memory, p) result(offset)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: p

@@ -78,9 +78,9 @@ contains
     end do
   end subroutine list_candidate_overlaps
 
-  !> Master segment on which the k-th end of a slave segment has its projection: of an active end that
-  !> of its status, else the closest of the candidates if it is over that; 0: none. Of two that meet
-  !> where the projection is the outer one, so that their node lies between both ends.
+  !> Master segment on which the k-th end of a slave segment has its projection: of an active end
+  !> that of its status, else the closest of the candidates if it is over that; 0: none. Of two that
+  !> meet where the projection is the outer one, so that their node lies between both ends.
   pure function segment_below(contact, memory, s, ends, k) result(segment)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -171,8 +171,8 @@ contains
     end do
   end function closest_opposed
 
-  !> Whether a slave segment is the side next to a sharp convex vertex whose other segment is opposed
-  !> to a master segment so much more that nothing of the side counts.
+  !> Whether a slave segment is the side next to a sharp convex vertex whose other segment is
+  !> opposed to a master segment so much more that nothing of the side counts.
   pure function is_side_of_corner(contact, memory, s, m) result(is)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory

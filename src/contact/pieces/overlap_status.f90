@@ -75,9 +75,9 @@ contains
     memory%segment_gap(segment) = deepest
   end subroutine judge_segment
 
-  !> A segment neither end of which is active, behind which points have come: in contact if these have
-  !> come through it since the last look, and no deeper than a first contact may be unless the step is
-  !> an implicit one.
+  !> A segment neither end of which is active, behind which points have come: in contact if these
+  !> have come through it since the last look, and no deeper than a first contact may be unless the
+  !> step is an implicit one.
   pure subroutine begin_contact(memory, segment, ends, depth, status)
     type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: segment, ends(2)

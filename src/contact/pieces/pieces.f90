@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Overlaps of slave and master segments (doc/theory/contact.md, section 3.5). Between two ends that
 !> are active on one surface they follow from the projections of the master nodes in between; all
-!> others come from the candidate pairs of the slave segment (candidate_overlaps). Some slave segments
-!> at a time are listed, then all are cut together.
+!> others come from the candidate pairs of the slave segment (candidate_overlaps). Some slave
+!> segments at a time are listed, then all are cut together.
 module pieces_m
   use candidate_overlaps_m, only : list_candidate_overlaps
   use contact_state_m, only : contact_state_t, is_touching

@@ -3,7 +3,8 @@
 !> the skin (doc/theory/contact.md, section 4). The lists are wide enough that no result depends on
 !> when they were made.
 module candidates_m
-  use contact_state_m, only : contact_state_t, candidates_t, tracking_t, bucket_grid_t, allocate_grid
+  use contact_state_m, only : contact_state_t, candidates_t, tracking_t, bucket_grid_t, &
+    allocate_grid
   use contacts_m, only : contact_t
   use foot_m, only : face_on
   use geometry_m, only : separation
@@ -22,8 +23,8 @@ module candidates_m
 
 contains
 
-  !> List the candidate pairs anew when the bodies have moved through the skin, or when FREQ asks for
-  !> it; then every separated point is looked at.
+  !> List the candidate pairs anew when the bodies have moved through the skin, or when FREQ asks
+  !> for it; then every separated point is looked at.
   pure subroutine update_candidates(contact, cycle, memory)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: cycle
@@ -135,8 +136,8 @@ contains
     end do
   end subroutine find_box
 
-  !> Fill the rows: for each slave segment the master segments whose boxes lie within a radius of its
-  !> own, by rising number.
+  !> Fill the rows: for each slave segment the master segments whose boxes lie within a radius of
+  !> its own, by rising number.
   pure subroutine list_pairs(contact, places, radius, candidates)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: places(:, :) !! (4, n_slave + n_master)

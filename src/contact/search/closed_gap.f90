@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Gaps below which points are contact although they are not penetrated: touching bodies at the first
-!> tangent of an implicit step, and what may touch before the step ahead ends, for springs that push
-!> by the gaps of the end of the step (doc/theory/contact.md, sections 6.6 and 9.6).
+!> Gaps below which points are contact although they are not penetrated: touching bodies at the
+!> first tangent of an implicit step, and what may touch before the step ahead ends, for springs
+!> that push by the gaps of the end of the step (doc/theory/contact.md, sections 6.6 and 9.6).
 module closed_gap_m
   use candidates_m, only : mean_length
   use contact_state_m, only : contact_state_t
@@ -13,8 +13,8 @@ module closed_gap_m
 
   !> Gaps smaller than this part of the mean slave segment are closed.
   real(wp), parameter :: closed_part = 1.0e-8_wp
-  !> Largest gap that counts for the step ahead, as a part of the mean slave segment: a node moves by
-  !> less in a stable step.
+  !> Largest gap that counts for the step ahead, as a part of the mean slave segment: a node moves
+  !> by less in a stable step.
   real(wp), parameter :: most_ahead = 0.5_wp
   !> Least: a strain of that much in one step.
   real(wp), parameter :: least_ahead = 0.02_wp

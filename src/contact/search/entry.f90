@@ -257,8 +257,8 @@ contains
 
   end function former_sight
 
-  !> Whether a point on a surface in contact with itself may be followed to a segment: a candidate, or
-  !> none that shares a node or the element behind with the point's own.
+  !> Whether a point on a surface in contact with itself may be followed to a segment: a candidate,
+  !> or none that shares a node or the element behind with the point's own.
   pure function is_pair(pass, own, pairs, i, segment) result(is)
     type(pass_t), intent(in) :: pass
     type(surface_t), intent(in) :: own

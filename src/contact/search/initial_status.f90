@@ -4,8 +4,7 @@
 !> behind the segments: points beyond the far side of a body are no penetrations
 !> (doc/theory/contact.md, section 3.4).
 module initial_status_m
-  use contact_state_m, only : contact_state_t, tracking_t, candidates_t, allocate_tracking, is_free, &
-    is_touching
+  use contact_state_m, only : contact_state_t, tracking_t, allocate_tracking, is_free, is_touching
   use contact_status_m, only : list_touching, measure_depths
   use contacts_m, only : contact_t, is_tied
   use element_finder_m, only : element_finder_t, start_finder, is_inside_body
