@@ -155,7 +155,6 @@ contains
       tracking%touching(:tracking%n_touching)) == is_touching), 'spots that do not touch')
     call archive%expect(folder//'n_touching', count(tracking%status == is_touching) &
       == tracking%n_touching, 'another number than there are spots in contact')
-    call archive%expect(folder//'reach', tracking%reach >= 0.0_wp, 'a distance below zero')
   end subroutine check_tracking
 
   !> Whether numbers are from 1 to n, each at most once.
