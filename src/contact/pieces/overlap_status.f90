@@ -62,7 +62,10 @@ contains
     if (deepest >= memory%closed_gap) then
       memory%segment_status(segment) = is_free
       memory%segment_gap(segment) = deepest
-      memory%segment_wake(segment) = memory%travel + distance_to_candidates(contact, memory, &
+      memory%segment_wake(segment) = memory%travel
+      ! With an active end it is due in any case.
+      if (.not. any(memory%slave_tracking%status(ends) == is_touching)) &
+        memory%segment_wake(segment) = memory%travel + distance_to_candidates(contact, memory, &
         segment)
       return
     end if
