@@ -313,7 +313,6 @@ contains
     is_listed(tracking%touching(:tracking%n_touching)) = .true.
     call archive%expect(folder//'touching', all(is_listed(1:) .eqv. tracking%status &
       == is_touching), 'spots that are not those in contact, each once')
-    call archive%expect(folder//'reach', tracking%reach >= 0.0_wp, 'a distance below zero')
   end subroutine check_tracking
 
 end module restart_m

@@ -368,7 +368,6 @@ contains
     call visitor%visit('n', self%n)
     call visitor%visit('n_touching', self%n_touching)
     call visitor%visit('next_wake', self%next_wake)
-    call visitor%visit('reach', self%reach)
     call visitor%visit('touching', self%touching, whole, 0, length(self%touching), &
       'numbers that no spot has')
     call visitor%visit('segment', self%segment)

@@ -53,8 +53,6 @@ LIES = {
     "state/contacts/1/slave_tracking/segment": (lambda old: old * 0 + 10**6, "no segment has"),
     "state/contacts/1/slave_tracking/touching": (lambda old: old * 0 + 2**30, "no spot has"),
     "state/contacts/1/slave_tracking/n_touching": (lambda old: old + 1, "spots"),
-    "state/contacts/1/slave_tracking/grid/first": (lambda old: old[::-1].copy(), "list"),
-    "state/contacts/1/slave_tracking/reach": (lambda old: old * 0 + 1.0e300, "distance"),
     "state/contacts/1/master_tracking/n": (lambda old: old + 2, "than there are"),
     "state/estimates/1/penetration": (lambda old: old - 1.0, "below zero"),
     "state/contacts/1/points/n": (lambda old: old * 0 + (2**31 - 1), "list"),

@@ -224,12 +224,16 @@ contains
     real(wp), intent(in) :: from_node(2) !! from the node in common to the place, m
     real(wp), intent(in) :: way          !! 1: the neighbour lies before, -1: behind
     logical :: stays
-    real(wp) :: t(2), square, along, across
+    real(wp) :: t(2), square, along, across, product
 
     t = neighbour(1:2) + neighbour(3:4)
     square = t(1)*t(1) + t(2)*t(2)
     along = way*(from_node(1)*t(1) + from_node(2)*t(2))
     stays = along >= -round_off*(from_node(1)**2 + from_node(2)**2 + square)
+    if (stays) return
+    ! At a sharp corner a place stays on its face until that ends (follow_contact).
+    product = own%t(1)*t(1) + own%t(2)*t(2)
+    stays = product < 0.0_wp .or. product**2 < gentle_turn**2*(own%square*square)
     if (stays) return
     across = from_node(1)*t(2) - from_node(2)*t(1)
     stays = across**2*own%square >= own%across**2*square

@@ -76,7 +76,7 @@ contains
       if (segments(k) == 0) cycle
       associate (ends => surface%segments(:, segments(k)))
         t(:, k) = separation(places(:, ends(2)), places(:, ends(1)))
-        halves(k) = 0.5_wp*norm2(t(:, k))
+        halves(k) = 0.5_wp*sqrt(t(1, k)**2 + t(2, k)**2)
         cosines(k) = (t(2, k)*normal(1) - t(1, k)*normal(2)) &
           /max(2.0_wp*halves(k), tiny(1.0_wp))
         shares(k) = facing_share(cosines(k))

@@ -60,9 +60,9 @@ contains
     n = 0
     do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
       associate (m => memory%candidates%items(j))
-        if (is_beyond(contact%master, anchors, m, size(overlaps))) cycle
         call cut_by(contact, memory, ends, anchors, m, overlaps(n + 1))
         if (.not. overlaps(n + 1)%high > overlaps(n + 1)%low) cycle
+        if (is_beyond(contact%master, anchors, m, size(overlaps))) cycle
         if (memory%slave_tracking%pass%is_closed) then
           if (is_side_of_corner(contact, memory, s, m)) cycle
         end if

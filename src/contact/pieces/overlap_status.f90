@@ -4,12 +4,15 @@
 module overlap_status_m
   use contact_state_m, only : contact_state_t, is_free, is_touching
   use contacts_m, only : contact_t
-  use foot_m, only : side_on
   use geometry_m, only : sight_t, sight_of_segment, closest_distance
   use kinds_m, only : wp
   implicit none
   private
   public :: none_due, is_due, keep_segment, judge_segment, note_next_wake
+
+  !> Cosine between outward normals from which on segments can not come to be opposed before new
+  !> lists are made.
+  real(wp), parameter :: averted = 0.25_wp
 
 contains
 
@@ -59,7 +62,10 @@ contains
     if (deepest >= memory%closed_gap) then
       memory%segment_status(segment) = is_free
       memory%segment_gap(segment) = deepest
-      memory%segment_wake(segment) = memory%travel + distance_to_candidates(contact, memory, &
+      memory%segment_wake(segment) = memory%travel
+      ! With an active end it is due in any case.
+      if (.not. any(memory%slave_tracking%status(ends) == is_touching)) &
+        memory%segment_wake(segment) = memory%travel + distance_to_candidates(contact, memory, &
         segment)
       return
     end if
@@ -113,8 +119,8 @@ contains
     end do
   end function deepest_first_contact
 
-  !> Distance from a slave segment to the candidates that are opposed to it, m: two segments that do
-  !> not cross are nearest to each other at a node of one of them.
+  !> Distance from a slave segment to the candidates that are opposed to it or may come to be, m:
+  !> two segments that do not cross are nearest to each other at a node of one of them.
   pure function distance_to_candidates(contact, memory, s) result(distance)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -135,7 +141,7 @@ contains
               places(:, own(2)))
           end do
         end associate
-        if (.not. dot_product(of_slave(1)%t, of_master(1)%t) < side_on*sqrt(of_slave(1)%square &
+        if (.not. dot_product(of_slave(1)%t, of_master(1)%t) < averted*sqrt(of_slave(1)%square &
           *of_master(1)%square)) cycle
         do k = 1, 2
           square = min(square, closest_distance(of_slave(k)), closest_distance(of_master(k)))

@@ -178,7 +178,9 @@ contains
         end if
         limit = depth_limit(tracking, i, foot%segment)
         found%is_active = -foot%gap <= limit
-        found%is_released = .not. found%is_active
+        ! Beyond the first row of elements it may as well be the far side of a body.
+        found%is_released = .not. found%is_active &
+          .and. -foot%gap < 2.0_wp*tracking%segment_depth(foot%segment)
         if (.not. pass%has_history) return
         former = former_sight(pass, own, other, places, increments, i, foot%segment)
         if (found%is_active) found%offset = max(0.0_wp, min(-foot%gap, -sight_gap(former)))
