@@ -20,7 +20,6 @@ module contact_state_m
   use law_state_m, only : contact_watch_t, energy_limit_t, friction_memory_t, &
     interference_memory_t, tie_memory_t
   use kinds_m, only : wp
-  use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
   use visitor_m, only : visited_t, visitor_t, any_length, length, whole
   implicit none
   private
@@ -156,7 +155,6 @@ module contact_state_m
     logical :: had_force = .false.          !! the call before had some
     logical :: is_born = .false.            !! contact begins in this call, after time zero; these
                                             !! three only of implicit penalties
-    type(piece_table_t), allocatable :: pieces !! lent to the placement while it works
   end type contact_scratch_t
 
   !> Memory of one interface.
@@ -323,8 +321,6 @@ contains
       end if
       if (.not. allocated(memory%segment_status)) return
       allocate (scratch%is_placed(size(memory%segment_status)), source=.false.)
-      allocate (scratch%pieces)
-      call allocate_pieces(scratch%pieces, n_piece_block)
     end associate
   end subroutine allocate_scratch
 

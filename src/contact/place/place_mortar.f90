@@ -8,7 +8,7 @@ module place_mortar_m
   use foot_m, only : foot_t, near_foot, facing_share, face_on
   use geometry_m, only : separation
   use kinds_m, only : wp
-  use candidate_overlaps_m, only : closest_candidate
+  use overlaps_m, only : closest_candidate
   use point_list_m, only : place_block_t, append_points, drop_places, weigh_points
   use tips_m, only : has_folds, belongs_to
   implicit none
@@ -226,7 +226,7 @@ contains
         block%area(k) = memory%spot_share(q)*length
         feet%segment(k) = tracking%segment(i)
         if (tracking%status(i) /= is_touching) &
-          feet%segment(k) = closest_candidate(contact%master, memory, s, memory%spots(:, i))
+          feet%segment(k) = closest_candidate(contact, memory, s, memory%spots(:, i), .false.)
         is_lost(k) = feet%segment(k) == 0
         if (is_lost(k)) feet%segment(k) = near
         associate (nodes => contact%master%segments(:, feet%segment(k)))

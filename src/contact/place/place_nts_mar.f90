@@ -3,18 +3,17 @@
 !> between the feet of the two ends of a slave segment, projected on that segment
 !> (doc/theory/contact.md, section 5.5).
 module place_nts_mar_m
-  use contact_state_m, only : contact_state_t, contact_points_t
+  use contact_state_m, only : contact_state_t, contact_points_t, is_touching
   use contacts_m, only : contact_t
   use foot_block_m, only : n_block
   use foot_m, only : see_segment, facing_share
-  use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal
+  use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal, segment_length
   use kinds_m, only : wp
   use lengths_m, only : competence_area
-  use piece_table_m, only : piece_table_t, is_last_piece
-  use pieces_m, only : clear_pieces, list_due, cut_pieces
+  use overlaps_m, only : overlap_t, find_overlaps, n_most_overlaps
   use radii_m, only : end_radius, radius_between
   use point_list_m, only : place_block_t, append_points, append_touching, add_length
-  use overlap_status_m, only : none_due, keep_segment, judge_segment, note_next_wake
+  use overlap_status_m, only : none_due, is_due, keep_segment, judge_segment, note_next_wake
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -27,7 +26,7 @@ contains
   pure subroutine place_nts_mar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    type(piece_table_t), allocatable :: table
+    type(place_block_t) :: cuts
     integer :: s, n, k
 
     if (none_due(memory)) return
@@ -37,265 +36,142 @@ contains
     do k = 1, n
       memory%scratch%point_at(memory%slave_tracking%touching(k)) = k
     end do
-    call move_alloc(memory%scratch%pieces, table)
-    s = 1
-    do while (s <= contact%slave%n_segment)
-      call clear_pieces(table)
-      call list_due(contact, memory, contact%strict, s, table)
-      call cut_pieces(contact, memory, table)
-      call share_pieces(contact, table, memory)
+    cuts%n = 0
+    do s = 1, contact%slave%n_segment
+      if (is_due(memory, s, contact%slave%segments(:, s))) &
+        call place_segment(contact, s, memory, cuts)
     end do
-    call move_alloc(table, memory%scratch%pieces)
+    call append_points(cuts, memory%slave_penalty, memory%points)
     call note_next_wake(memory)
     call finish_nodes(contact, memory, n)
     memory%scratch%point_at = 0
   end subroutine place_nts_mar
 
-  !> Divide the segments of a table among their ends and the master nodes that cut them: half of
-  !> each piece to either of its ends, as far as it counts; in axisymmetry weighted with the radius.
-  !> With the strict rule all of it counts.
-  pure subroutine share_pieces(contact, table, memory)
+  !> Divide a slave segment among its ends and the master nodes at its breakpoints, and judge it.
+  pure subroutine place_segment(contact, s, memory, cuts)
     type(contact_t), intent(in) :: contact
-    type(piece_table_t), intent(inout) :: table
+    integer, intent(in) :: s
     type(contact_state_t), intent(inout) :: memory
-
-    call halve_pieces(table%n, table%low, table%high, table%length, table%half)
-    if (.not. contact%strict) table%half(:table%n) = table%half(:table%n)*table%share(:table%n)
-    if (contact%is_round) then
-      call share_weighted(contact, table, memory)
-    else
-      call share_halves(contact, table, table%half, table%half, memory)
-    end if
-  end subroutine share_pieces
-
-  !> The same in axisymmetry: what either end of a piece gets differs.
-  pure subroutine share_weighted(contact, table, memory)
-    type(contact_t), intent(in) :: contact
-    type(piece_table_t), intent(inout) :: table
-    type(contact_state_t), intent(inout) :: memory
-    real(wp), dimension(table%n) :: to_first, to_last
-    real(wp) :: low, high
-    integer :: k
-
-    do k = 1, table%n
-      associate (a => memory%places(:, table%ends(1, k)), b => memory%places(:, table%ends(2, k)))
-        low = radius_between(a, b, table%low(k))
-        high = radius_between(a, b, table%high(k))
-      end associate
-      to_first(k) = table%half(k)*end_radius(low, high)
-      to_last(k) = table%half(k)*end_radius(high, low)
-    end do
-    call share_halves(contact, table, to_first, to_last, memory)
-  end subroutine share_weighted
-
-  !> Give the areas of all pieces to what stands at their ends.
-  pure subroutine share_halves(contact, table, to_first, to_last, memory)
-    type(contact_t), intent(in) :: contact
-    type(piece_table_t), intent(inout) :: table
-    real(wp), intent(in) :: to_first(*), to_last(*) !! where a piece starts, and where it ends
-    type(contact_state_t), intent(inout) :: memory
-    type(place_block_t) :: cuts
-    real(wp) :: deepest
-    integer :: i, n_before, n_points, n
+    type(place_block_t), intent(inout) :: cuts
+    type(overlap_t) :: overlaps(n_most_overlaps(memory, s))
+    real(wp) :: halves(2, size(overlaps)), deepest
+    integer :: ends(2), n, n_before, n_points
     logical :: counts
 
-    n = 0
-    cuts%n = 0
-    do i = 1, table%n_segment
-      associate (first => table%last(i - 1) + 1, last => table%last(i), s => table%slave(i))
-        if (table%touches(i) .and. is_plain(table%kind, to_first, first, last)) then
-          n_before = n
-          call add_ends(first, last, table%ends, to_first, to_last, memory%scratch%point_at, &
-            memory%points%area)
-          call list_cuts(first, last, table%node_gap, memory%closed_gap, n, table%rows)
-          call keep_segment(n > n_before, memory%travel, memory%segment_status(s), &
-            memory%segment_wake(s))
-          cycle
-        end if
-        if (cuts%n + last - first >= n_block) &
-          call append_points(cuts, memory%slave_penalty, memory%points)
-        n_before = cuts%n
-        n_points = memory%points%n
-        call share_segment(table, first, last, to_first, to_last, memory, cuts, deepest)
-        if (table%touches(i)) then
-          call keep_segment(deepest < memory%closed_gap, memory%travel, memory%segment_status(s), &
-            memory%segment_wake(s))
-        else
-          call judge_segment(contact, memory, s, contact%slave%segments(:, s), deepest, counts)
-          if (.not. counts) call drop_last(n_points, n_before, memory%points, cuts)
-        end if
-      end associate
-    end do
-    call append_points(cuts, memory%slave_penalty, memory%points)
-    do i = 1, n, n_block
-      cuts%n = min(n_block, n - i + 1)
-      call put_cuts(cuts%n, table%rows(i), to_first, to_last, table%ends, table%nodes, table%cut, &
-        table%node_gap, table%normal, cuts)
-      call append_points(cuts, memory%slave_penalty, memory%points)
-    end do
-  end subroutine share_halves
+    ends = contact%slave%segments(:, s)
+    call find_overlaps(contact, memory, s, contact%strict, overlaps, n)
+    call halve_overlaps(contact, memory%places(:, ends(1)), memory%places(:, ends(2)), &
+      overlaps(:n), halves)
+    if (cuts%n + n > n_block) call append_points(cuts, memory%slave_penalty, memory%points)
+    n_before = cuts%n
+    n_points = memory%points%n
+    call share_halves(ends, overlaps(:n), halves, memory, cuts, deepest)
+    if (all(memory%slave_tracking%status(ends) == is_touching)) then
+      call keep_segment(deepest < memory%closed_gap, memory%travel, memory%segment_status(s), &
+        memory%segment_wake(s))
+    else
+      call judge_segment(contact, memory, s, ends, deepest, counts)
+      if (.not. counts) call drop_last(n_points, n_before, memory%points, cuts)
+    end if
+  end subroutine place_segment
 
-  !> Half the length of each piece, m.
-  pure subroutine halve_pieces(n, low, high, length, half)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: low(n), high(n), length(n)
-    real(wp), intent(inout) :: half(n)
-
-    half = 0.5_wp*(high - low)*length
-  end subroutine halve_pieces
-
-  !> Whether the pieces of a segment are listed from one end to the other, none of them empty.
-  pure function is_plain(kind, areas, first, last)
-    integer, intent(in) :: kind(*), first, last
-    real(wp), intent(in) :: areas(*)
-    logical :: is_plain
+  !> Half of each overlap, as far as it counts, for either of its ends; in axisymmetry weighted with
+  !> the radius, so that they differ. With the strict rule all of it counts.
+  pure subroutine halve_overlaps(contact, a, b, overlaps, halves)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in) :: a(4), b(4)     !! ends of the slave segment
+    type(overlap_t), intent(in) :: overlaps(:)
+    real(wp), intent(out) :: halves(:, :)  !! (2, overlaps) m
+    real(wp) :: length, low, high
     integer :: k
 
-    is_plain = .false.
-    if (last < first) return
-    if (kind(last) /= is_last_piece) return
-    do k = first, last
-      if (.not. areas(k) > 0.0_wp) return
+    length = segment_length(a, b)
+    do k = 1, size(overlaps)
+      halves(:, k) = 0.5_wp*(overlaps(k)%high - overlaps(k)%low)*length
+      if (.not. contact%strict) halves(:, k) = halves(:, k)*overlaps(k)%share
+      if (.not. contact%is_round) cycle
+      low = radius_between(a, b, overlaps(k)%low)
+      high = radius_between(a, b, overlaps(k)%high)
+      halves(1, k) = halves(1, k)*end_radius(low, high)
+      halves(2, k) = halves(2, k)*end_radius(high, low)
     end do
-    is_plain = .true.
-  end function is_plain
+  end subroutine halve_overlaps
 
-  !> The slave nodes at the ends of such a segment get their parts.
-  pure subroutine add_ends(first, last, ends, to_first, to_last, point_at, area)
-    integer, intent(in) :: first, last     !! pieces
-    integer, intent(in) :: ends(2, *)      !! of all pieces, as those that follow
-    real(wp), intent(in) :: to_first(*), to_last(*) !! m
-    integer, intent(in) :: point_at(*)     !! at each slave node, 0: none
-    real(wp), intent(inout) :: area(*)     !! of the points, m
-    integer :: p
-
-    p = point_at(ends(1, first))
-    if (p > 0) area(p) = area(p) + to_first(first)
-    p = point_at(ends(2, first))
-    if (p > 0) area(p) = area(p) + to_last(last)
-  end subroutine add_ends
-
-  !> Its master nodes in contact go on a list of pieces that end there.
-  pure subroutine list_cuts(first, last, node_gap, closed_gap, n, rows)
-    integer, intent(in) :: first, last     !! pieces
-    real(wp), intent(in) :: node_gap(*), closed_gap !! m
-    integer, intent(inout) :: n, rows(*)
-    integer :: k
-
-    do k = first, last - 1
-      if (.not. node_gap(k) < closed_gap) cycle
-      n = n + 1
-      rows(n) = k
-    end do
-  end subroutine list_cuts
-
-  !> Points at the master nodes where some pieces end: these and the next pieces are halved there.
-  pure subroutine put_cuts(n, rows, to_first, to_last, ends, nodes, cut, node_gap, normal, cuts)
-    integer, intent(in) :: n, rows(n), ends(2, *), nodes(2, *)
-    real(wp), intent(in) :: to_first(*), to_last(*), cut(*), node_gap(*), normal(2, *)
-    type(place_block_t), intent(inout) :: cuts
-    integer :: k, row
-
-    !GCC$ NOVECTOR
-    do k = 1, n
-      row = rows(k)
-      cuts%ends(:, k) = ends(:, row)
-      cuts%nodes(1, k) = nodes(1, row)
-      cuts%nodes(2, k) = nodes(1, row)
-      cuts%xi(k) = cut(row)
-      cuts%feet%xi(k) = 0.0_wp
-      cuts%feet%gap(k) = node_gap(row)
-      cuts%feet%normal(:, k) = -normal(:, row)
-      cuts%area(k) = to_last(row) + to_first(row + 1)
-    end do
-  end subroutine put_cuts
-
-  !> The pieces of one segment. What stands at the end of a piece has half of it and half of the
-  !> next; between two chains of the master two nodes may stand there.
-  pure subroutine share_segment(table, first, last, to_first, to_last, memory, cuts, deepest)
-    type(piece_table_t), intent(in) :: table
-    integer, intent(in) :: first, last   !! pieces
-    real(wp), intent(in) :: to_first(*), to_last(*) !! of all pieces, m
+  !> What stands at the end of an overlap has half of it and half of the next; between overlaps with
+  !> two bodies two nodes may stand there.
+  pure subroutine share_halves(ends, overlaps, halves, memory, cuts, deepest)
+    integer, intent(in) :: ends(2)       !! nodes of the slave segment
+    type(overlap_t), intent(in) :: overlaps(:)
+    real(wp), intent(in) :: halves(:, :) !! (2, overlaps) m
     type(contact_state_t), intent(inout) :: memory
     type(place_block_t), intent(inout) :: cuts
     real(wp), intent(out) :: deepest     !! smallest gap of its master nodes, m
     real(wp) :: length
-    integer :: k, node, before
+    integer :: k, node
+    logical :: is_first
 
     deepest = huge(1.0_wp)
-    if (last < first) return
-    node = table%first_cut(first)
-    before = 0
+    if (size(overlaps) == 0) return
+    node = overlaps(1)%first
+    is_first = .true.
     length = 0.0_wp
-    do k = first, last
-      if (.not. table%high(k) > table%low(k)) cycle
-      if (table%first_cut(k) /= node) then
-        if (node > 0) call add_cut(table, before, k, node, length, memory, cuts, deepest)
-        node = table%first_cut(k)
+    do k = 1, size(overlaps)
+      if (.not. overlaps(k)%high > overlaps(k)%low) cycle
+      if (overlaps(k)%first /= node) then
+        if (node > 0) call add_cut(ends, node, length, memory, cuts, deepest)
+        node = overlaps(k)%first
         length = 0.0_wp
-        before = 0
+        is_first = .true.
       end if
-      if (node == 0 .and. before > 0) then
-        ! No node stands between two pieces: either belongs to its own end.
-        call add_length(memory%points, memory%scratch%point_at(table%ends(1, k)), length)
-        node = table%last_cut(k)
-        length = to_first(k) + to_last(k)
-        before = k
+      if (node == 0 .and. .not. is_first) then
+        ! No node stands between two overlaps: either belongs to its own end.
+        call add_length(memory%points, memory%scratch%point_at(ends(1)), length)
+        node = overlaps(k)%last
+        length = sum(halves(:, k))
         cycle
       end if
-      length = length + to_first(k)
+      length = length + halves(1, k)
       if (node > 0) then
-        call add_cut(table, before, k, node, length, memory, cuts, deepest)
+        call add_cut(ends, node, length, memory, cuts, deepest)
       else
-        call add_length(memory%points, memory%scratch%point_at(table%ends(1, k)), length)
+        call add_length(memory%points, memory%scratch%point_at(ends(1)), length)
       end if
-      node = table%last_cut(k)
-      length = to_last(k)
-      before = k
+      node = overlaps(k)%last
+      length = halves(2, k)
+      is_first = .false.
     end do
     if (node > 0) then
-      call add_cut(table, before, last, node, length, memory, cuts, deepest)
+      call add_cut(ends, node, length, memory, cuts, deepest)
     else
-      call add_length(memory%points, memory%scratch%point_at(table%ends(2, last)), length)
+      call add_length(memory%points, memory%scratch%point_at(ends(2)), length)
     end if
-  end subroutine share_segment
+  end subroutine share_halves
 
-  !> A point at a master node behind a slave segment, with the normal of that.
-  pure subroutine add_cut(table, before, k, node, area, memory, cuts, deepest)
-    type(piece_table_t), intent(in) :: table
-    integer, intent(in) :: before   !! piece behind which the node stands, 0: it starts the chain
-    integer, intent(in) :: k        !! a piece of the same slave segment
-    integer, intent(in) :: node     !! of the master surface
-    real(wp), intent(in) :: area    !! m
+  !> Add a point at a master node with a gap that is closed.
+  pure subroutine add_cut(ends, node, area, memory, cuts, deepest)
+    integer, intent(in) :: ends(2)     !! nodes of the slave segment
+    integer, intent(in) :: node        !! of the master
+    real(wp), intent(in) :: area       !! m
     type(contact_state_t), intent(inout) :: memory
     type(place_block_t), intent(inout) :: cuts
     real(wp), intent(inout) :: deepest !! m
     type(sight_t) :: sight
-    real(wp) :: gap, xi
-    logical :: is_its_end
+    real(wp) :: gap
 
-    is_its_end = before > 0
-    if (is_its_end) is_its_end = table%nodes(1, before) == memory%n_slave + node
-    if (is_its_end) then
-      gap = table%node_gap(before)
-      xi = table%cut(before)
-    else
-      sight = sight_of_segment(memory%places(:, memory%n_slave + node), &
-        memory%places(:, table%ends(1, k)), memory%places(:, table%ends(2, k)))
-      gap = sight_gap(sight)
-      xi = sight%along/sight%square
-    end if
+    sight = sight_of_segment(memory%places(:, memory%n_slave + node), memory%places(:, ends(1)), &
+      memory%places(:, ends(2)))
+    gap = sight_gap(sight)
     if (gap >= memory%closed_gap .or. .not. area > 0.0_wp) return
     if (cuts%n == n_block) call append_points(cuts, memory%slave_penalty, memory%points)
     deepest = min(deepest, gap)
     associate (n => cuts%n)
       n = n + 1
-      cuts%ends(:, n) = table%ends(:, k)
-      cuts%xi(n) = xi
+      cuts%ends(:, n) = ends
+      cuts%xi(n) = sight%along/sight%square
       cuts%nodes(:, n) = memory%n_slave + node
       cuts%feet%xi(n) = 0.0_wp
       cuts%feet%gap(n) = gap
-      cuts%feet%normal(:, n) = -table%normal(:, k)
+      cuts%feet%normal(:, n) = -sight_normal(sight)
       cuts%area(n) = area
     end associate
   end subroutine add_cut

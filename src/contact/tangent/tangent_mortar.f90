@@ -10,13 +10,12 @@ module tangent_mortar_m
   use nodal_grip_m, only : add_nodal_grip
   use nodal_tangent_m, only : varied_list_t, start_list, append_point, add_nodal_tangent, &
     nodal_share
-  use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
-  use pieces_m, only : clear_pieces, list_segment, cut_pieces
-  use place_segmented_mortar_m, only : gauss_xi, least_cut
+  use overlaps_m, only : overlap_t, find_overlaps, n_most_overlaps
+  use place_segmented_mortar_m, only : gauss_xi
   use sparse_m, only : sparse_t
   use tips_m, only : has_folds
-  use variation_m, only : varied_point_t, spot_foot, put_foot, length_between, take_piece, &
-    piece_ends, vary_share, vary_radius
+  use variation_m, only : varied_point_t, spot_foot, put_foot, length_between, take_overlap, &
+    overlap_ends, vary_share, vary_radius
   implicit none
   private
   public :: add_mortar_tangent, add_segmented_mortar_tangent
@@ -60,23 +59,15 @@ contains
     integer, intent(in), contiguous :: equations(:, :)
     type(sparse_t), intent(inout) :: matrix
     type(varied_list_t) :: list
-    type(piece_table_t) :: table
     logical :: is_placed(contact%slave%n_segment)
-    integer :: s, k
+    integer :: s
 
     is_placed = .false.
     is_placed(contact%slave%outgoing(memory%points%slave_nodes(1, :memory%points%n))) = .true.
     call start_list(list, contact%slave%n_segment, memory%points%n)
-    call allocate_pieces(table, n_piece_block)
     do s = 1, contact%slave%n_segment
       if (.not. is_placed(s)) cycle
-      call clear_pieces(table, least_cut)
-      call list_segment(contact, memory, s, .false., table)
-      call cut_pieces(contact, memory, table)
-      do k = 1, table%n
-        if (table%high(k) > table%low(k) .and. table%share(k) > 0.0_wp) &
-          call vary_piece(contact, memory, table, s, k, list)
-      end do
+      call vary_segment(contact, memory, s, list)
       if (has_folds(contact)) call vary_ends(memory, contact%slave%segments(:, s), s, list)
     end do
     call add_nodal_tangent(contact, memory, list, equations, matrix)
@@ -84,26 +75,42 @@ contains
       call add_nodal_grip(contact, memory, list, equations, matrix)
   end subroutine add_segmented_mortar_tangent
 
-  !> Append the points of one piece that counts (share above 0).
-  pure subroutine vary_piece(contact, memory, table, s, k, list)
+  !> Append the points of the overlaps of a slave segment that count (share above 0).
+  pure subroutine vary_segment(contact, memory, s, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    type(piece_table_t), intent(in) :: table
-    integer, intent(in) :: s, k !! slave segment, piece
+    integer, intent(in) :: s !! slave segment
+    type(varied_list_t), intent(inout) :: list
+    type(overlap_t) :: overlaps(n_most_overlaps(memory, s))
+    integer :: n, k
+
+    call find_overlaps(contact, memory, s, .false., overlaps, n)
+    do k = 1, n
+      if (overlaps(k)%share > 0.0_wp) call vary_overlap(contact, memory, overlaps(:n), s, k, list)
+    end do
+  end subroutine vary_segment
+
+  !> Append the points of one overlap.
+  pure subroutine vary_overlap(contact, memory, overlaps, s, k, list)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(overlap_t), intent(in) :: overlaps(:)
+    integer, intent(in) :: s, k !! slave segment, overlap
     type(varied_list_t), intent(inout) :: list
     type(varied_point_t) :: point
     type(dual_t) :: xi(2), share, length
     type(foot_t) :: foot
-    integer :: q
+    integer :: ends(2), q
 
-    call take_piece(memory, table, k, .true., point)
-    xi = piece_ends(memory%places, point%nodes, [table%low(k), table%high(k)])
+    ends = contact%slave%segments(:, s)
+    call take_overlap(memory, ends, overlaps, k, .true., point)
+    xi = overlap_ends(memory%places, point%nodes, [overlaps(k)%low, overlaps(k)%high])
     length = (xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2)
     do q = 1, size(gauss_xi)
-      associate (at => table%low(k) + gauss_xi(q)*(table%high(k) - table%low(k)))
+      associate (at => overlaps(k)%low + gauss_xi(q)*(overlaps(k)%high - overlaps(k)%low))
         foot = near_foot(contact%master, memory%places(:, memory%n_slave + 1:), &
-          (1.0_wp - at)*memory%places(:, table%ends(1, k)) &
-          + at*memory%places(:, table%ends(2, k)), table%master(k))
+          (1.0_wp - at)*memory%places(:, ends(1)) &
+          + at*memory%places(:, ends(2)), overlaps(k)%master)
       end associate
       if (.not. foot%is_on) cycle
       point%nodes(3:4) = memory%n_slave + contact%master%segments(:, foot%segment)
@@ -117,7 +124,7 @@ contains
         *vary_radius(memory%places, point%nodes, 1, 2, point%slave_xi)
       call append_point(list, s, point)
     end do
-  end subroutine vary_piece
+  end subroutine vary_overlap
 
   !> The points at the nodes of a segment at the tip of a fold, one for each point that gives way
   !> to them. How much does is held, and so is what the area of such a point owes to its own foot.

@@ -8,13 +8,12 @@ module tangent_nts_mar_m
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
   use kinds_m, only : wp
-  use piece_table_m, only : piece_table_t, allocate_pieces, n_piece_block
-  use pieces_m, only : clear_pieces, list_segment, cut_pieces
+  use overlaps_m, only : overlap_t, find_overlaps, n_most_overlaps
   use place_nts_mar_m, only : is_tip
   use sparse_m, only : sparse_t
   use tangent_nts_m, only : vary_node, vary_competence
   use variation_m, only : varied_point_t, varied_foot_t, apart, length_between, project, &
-    spot_foot, put_foot, take_piece, piece_ends, vary_share, vary_end_radius
+    spot_foot, put_foot, take_overlap, overlap_ends, vary_share, vary_end_radius
   implicit none
   private
   public :: add_nts_mar_tangent
@@ -27,17 +26,15 @@ contains
     type(contact_state_t), intent(in) :: memory
     integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
     type(sparse_t), intent(inout) :: matrix
-    type(piece_table_t) :: table
     type(varied_point_t) :: point
     logical :: has_area(memory%n_slave)
     integer :: s, p
 
     has_area = .false.
-    call allocate_pieces(table, n_piece_block)
     do s = 1, contact%slave%n_segment
       if (memory%segment_status(s) == is_touching .or. any(memory%slave_tracking%status( &
         contact%slave%segments(:, s)) == is_touching)) &
-        call add_segment(contact, memory, s, table, equations, matrix, has_area)
+        call add_segment(contact, memory, s, equations, matrix, has_area)
     end do
     do p = 1, memory%slave_tracking%n_touching
       if (has_area(memory%slave_tracking%touching(p))) cycle
@@ -51,48 +48,46 @@ contains
   end subroutine add_nts_mar_tangent
 
   !> The pieces of one slave segment, as the placement divides it.
-  pure subroutine add_segment(contact, memory, s, table, equations, matrix, has_area)
+  pure subroutine add_segment(contact, memory, s, equations, matrix, has_area)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
-    type(piece_table_t), intent(inout) :: table
     integer, intent(in), contiguous :: equations(:, :)
     type(sparse_t), intent(inout) :: matrix
     logical, intent(inout) :: has_area(:)
+    type(overlap_t) :: overlaps(n_most_overlaps(memory, s))
     type(varied_point_t) :: point
     type(dual_t) :: halves(2)
-    integer :: k
+    integer :: n, k
 
-    call clear_pieces(table)
-    call list_segment(contact, memory, s, contact%strict, table)
-    call cut_pieces(contact, memory, table)
-    do k = 1, table%n
-      if (.not. table%high(k) > table%low(k)) cycle
-      if (table%share(k) < 0.0_wp) cycle
-      if (.not. contact%strict .and. .not. table%share(k) > 0.0_wp) cycle
-      call vary_halves(contact, memory, table, k, point, halves)
-      call add_both_ends(contact, memory, table, k, point, halves, equations, matrix, has_area)
+    call find_overlaps(contact, memory, s, contact%strict, overlaps, n)
+    do k = 1, n
+      if (.not. overlaps(k)%high > overlaps(k)%low) cycle
+      if (.not. contact%strict .and. .not. overlaps(k)%share > 0.0_wp) cycle
+      call vary_halves(contact, memory, s, overlaps(:n), k, point, halves)
+      call add_both_ends(contact, memory, s, overlaps(k), point, halves, equations, matrix, has_area)
     end do
   end subroutine add_segment
 
   !> Halves of a piece as areas: slave segment in slots 1, 2, cuts in slots 5, 6, and the master
   !> segment in slots 7, 8 where the share that faces it is not all of the piece.
-  pure subroutine vary_halves(contact, memory, table, k, point, halves)
+  pure subroutine vary_halves(contact, memory, s, overlaps, k, point, halves)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    type(piece_table_t), intent(in) :: table
-    integer, intent(in) :: k
+    integer, intent(in) :: s   !! slave segment
+    type(overlap_t), intent(in) :: overlaps(:)
+    integer, intent(in) :: k   !! overlap
     type(varied_point_t), intent(out) :: point
     type(dual_t), intent(out) :: halves(2) !! what its start gets, and its end
     type(dual_t) :: xi(2), t(2), length, half
     logical :: is_whole
 
-    is_whole = contact%strict .or. table%share(k) >= 1.0_wp
-    call take_piece(memory, table, k, is_whole, point)
-    xi = piece_ends(memory%places, point%nodes, [table%low(k), table%high(k)])
+    is_whole = contact%strict .or. overlaps(k)%share >= 1.0_wp
+    call take_overlap(memory, contact%slave%segments(:, s), overlaps, k, is_whole, point)
+    xi = overlap_ends(memory%places, point%nodes, [overlaps(k)%low, overlaps(k)%high])
     half = 0.5_wp*((xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2))
     if (.not. is_whole) then
-      point%nodes(7:8) = memory%n_slave + contact%master%segments(:, table%master(k))
+      point%nodes(7:8) = memory%n_slave + contact%master%segments(:, overlaps(k)%master)
       t = apart(memory%places, point%nodes, 8, 7)
       length = sqrt(t(1)*t(1) + t(2)*t(2))
       half = half*vary_share(memory%places, point%nodes, 1, [t(2)/length, -(t(1)/length)])
@@ -104,12 +99,12 @@ contains
   end subroutine vary_halves
 
   !> Give its half to whatever stands at either end of a piece.
-  pure subroutine add_both_ends(contact, memory, table, k, origin, halves, equations, matrix, &
+  pure subroutine add_both_ends(contact, memory, s, overlap, origin, halves, equations, matrix, &
       has_area)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    type(piece_table_t), intent(in) :: table
-    integer, intent(in) :: k
+    integer, intent(in) :: s   !! slave segment
+    type(overlap_t), intent(in) :: overlap
     type(varied_point_t), intent(in) :: origin
     type(dual_t), intent(in) :: halves(2)
     integer, intent(in), contiguous :: equations(:, :)
@@ -118,13 +113,13 @@ contains
     type(varied_point_t) :: point
     integer :: i, cuts(2), ends(2), place
 
-    cuts = [table%first_cut(k), table%last_cut(k)]
-    ends = table%ends(:, k)
+    cuts = [overlap%first, overlap%last]
+    ends = contact%slave%segments(:, s)
     point = origin
     do i = 1, 2
       point%area = halves(i)
       if (cuts(i) > 0) then
-        if (memory%segment_status(table%slave(1)) /= is_touching) cycle
+        if (memory%segment_status(s) /= is_touching) cycle
         place = memory%n_slave + cuts(i)
         call stand_at_master_node(memory, place, point)
       else

@@ -10,12 +10,12 @@ module variation_m
   use foot_m, only : side_on, face_on, least_excess, most_excess
   use geometry_m, only : separation
   use kinds_m, only : wp
-  use piece_table_m, only : piece_table_t
+  use overlaps_m, only : overlap_t
   use radii_m, only : radius_of
   implicit none
   private
   public :: varied_point_t, varied_foot_t, n_slot, round_off, apart, length_between, project, &
-    spot_foot, put_foot, see_from, take_piece, piece_ends, vary_share, share_of, &
+    spot_foot, put_foot, see_from, take_overlap, overlap_ends, vary_share, share_of, &
     side_share_of, cosine_of, &
     vary_radius, vary_end_radius, vary_centroid
 
@@ -141,36 +141,37 @@ contains
     point%normal = foot%normal
   end subroutine put_foot
 
-  !> Put a slave segment into slots 1, 2 and the nodes that cut off a piece of it into slots 5 and
-  !> 6; where there is room, those that the pieces before and behind it have there into 7 and 8.
-  pure subroutine take_piece(memory, table, k, has_room, point)
+  !> Put a slave segment into slots 1, 2 and the nodes at the breakpoints of an overlap of it into
+  !> slots 5 and 6; where there is room, those that the overlaps before and behind it have there into
+  !> 7 and 8.
+  pure subroutine take_overlap(memory, ends, overlaps, k, has_room, point)
     type(contact_state_t), intent(in) :: memory
-    type(piece_table_t), intent(in) :: table
-    integer, intent(in) :: k        !! piece
+    integer, intent(in) :: ends(2)  !! nodes of the slave segment
+    type(overlap_t), intent(in) :: overlaps(:)
+    integer, intent(in) :: k        !! overlap
     logical, intent(in) :: has_room !! nothing else stands in slots 7 and 8
     type(varied_point_t), intent(out) :: point
     integer :: cuts(4)
 
-    cuts = [table%first_cut(k), table%last_cut(k), 0, 0]
-    if (has_room) cuts(3:4) = [cut_beside(table, k, -1), cut_beside(table, k, 1)]
-    point%nodes(1:2) = table%ends(:, k)
+    cuts = [overlaps(k)%first, overlaps(k)%last, 0, 0]
+    if (has_room) cuts(3:4) = [cut_beside(overlaps, k, -1), cut_beside(overlaps, k, 1)]
+    point%nodes(1:2) = ends
     where (cuts > 0) point%nodes(5:8) = memory%n_slave + cuts
-  end subroutine take_piece
+  end subroutine take_overlap
 
-  !> Master node that cuts the near end of the next piece of a slave segment that is not empty, one
-  !> way or the other; 0: none.
-  pure function cut_beside(table, k, way) result(cut)
-    type(piece_table_t), intent(in) :: table
-    integer, intent(in) :: k   !! piece
+  !> Master node at the near end of the next overlap that is not empty, one way or the other; 0:
+  !> none.
+  pure function cut_beside(overlaps, k, way) result(cut)
+    type(overlap_t), intent(in) :: overlaps(:)
+    integer, intent(in) :: k   !! overlap
     integer, intent(in) :: way !! -1: before it, 1: behind it
     integer :: cut, i
 
     cut = 0
     i = k + way
-    do while (i >= 1 .and. i <= table%n)
-      if (any(table%ends(:, i) /= table%ends(:, k))) return
-      if (table%high(i) > table%low(i)) then
-        cut = merge(table%last_cut(i), table%first_cut(i), way < 0)
+    do while (i >= 1 .and. i <= size(overlaps))
+      if (overlaps(i)%high > overlaps(i)%low) then
+        cut = merge(overlaps(i)%last, overlaps(i)%first, way < 0)
         return
       end if
       i = i + way
@@ -180,7 +181,7 @@ contains
   !> Where a piece of the slave segment in slots 1, 2 starts and ends on it; its cuts are the nodes
   !> in slots 5 and 6, where there are any. Where another chain begins before one ends that is half
   !> way between both nodes, if that of the other piece has a slot; else it is held.
-  pure function piece_ends(places, nodes, range) result(xi)
+  pure function overlap_ends(places, nodes, range) result(xi)
     real(wp), intent(in), contiguous :: places(:, :)
     integer, intent(in) :: nodes(n_slot)
     real(wp), intent(in) :: range(2) !! the same, without derivatives
@@ -201,7 +202,7 @@ contains
         xi(k) = 0.5_wp*(cut%xi + other%xi)
       end if
     end do
-  end function piece_ends
+  end function overlap_ends
 
   !> Share of the slave segment in slots i, i + 1 that counts as facing a foot with the given
   !> normal.

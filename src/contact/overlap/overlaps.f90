@@ -1,82 +1,163 @@
 ! SPDX-License-Identifier: MIT
-!> Overlaps of a slave segment with its candidates: both nodes of each opposed master segment are
-!> projected on the slave segment and clipped to it. Segments beyond the projection of an end are
-!> left out, and the overlap there is extended to the end. Where overlaps of different bodies lie
-!> over each other the nearest penetrated one wins (doc/theory/contact.md, section 3.5).
-module candidate_overlaps_m
+!> Overlaps of a slave segment with master segments. Between two active ends on one surface these are
+!> the segments from below the one to below the other; else its candidates that are opposed to it.
+!> The nodes of each master segment are projected on the slave segment and clipped to it; where
+!> overlaps of different bodies lie over each other the nearest penetrated one wins
+!> (doc/theory/contact.md, section 3.5).
+module overlaps_m
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
-  use foot_m, only : foot_t, closest_foot, side_on, face_on, side_share, round_off
+  use foot_m, only : foot_t, closest_foot, side_on, face_on, side_share, facing_share, round_off
   use geometry_m, only : sight_t, sight_of_segment, separation, closest_distance
   use kinds_m, only : wp
-  use piece_table_m, only : piece_table_t, grow_pieces, is_walked_piece
   use opposed_m, only : turns_sharply
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: list_candidate_overlaps, closest_candidate
+  public :: overlap_t, find_overlaps, n_most_overlaps, closest_candidate
 
+  !> Most segments between two active ends that are taken without a look at the candidates, and
+  !> number of segments of a closed master up to which the way forwards may be the shorter one.
+  integer, parameter :: n_between = 6, short_surface = 2*n_between + 2
   !> Deepest middle of an overlap with a master segment that no end of the slave segment is active
   !> on, by the depth of a first contact: deeper ones are the far side of something, or the back of
   !> the own wall.
   real(wp), parameter :: deep = 1.5_wp
   !> Part of a segment within which a projection is on its node.
   real(wp), parameter :: near_node = 1.0e-9_wp
-  !> One overlap.
+
+  !> One overlap. Without default values, which would be written before each use.
   type :: overlap_t
-    integer :: master = 0
-    real(wp) :: low = 0.0_wp, high = 0.0_wp !! range of the slave segment, 0 to 1
-    integer :: first = 0, last = 0          !! master nodes at its breakpoints, 0: a slave node
-    real(wp) :: gap(2) = 0.0_wp             !! of the master at both ends of the slave segment, over
-                                            !! that, m
+    integer :: master        !! segment; 0: none
+    real(wp) :: low, high    !! range of the slave segment, 0 to 1; not above `low`: empty
+    integer :: first, last   !! master nodes at its breakpoints, 0: a slave node
+    real(wp) :: gap(2)       !! of the master segment at both ends of the slave segment, m
+    real(wp) :: share        !! how much of it counts: 0 where the segments are not opposed
   end type overlap_t
 
 contains
 
-  !> Append the overlaps of a slave segment to a table.
-  pure subroutine list_candidate_overlaps(contact, memory, s, is_strict, table)
+  !> Room for the overlaps of a slave segment.
+  pure function n_most_overlaps(memory, s) result(n)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s !! slave segment
+    integer :: n
+
+    n = max(n_between, 2*(memory%candidates%first(s + 1) - memory%candidates%first(s)) + 1)
+  end function n_most_overlaps
+
+  !> Overlaps of a slave segment, in order along it.
+  pure subroutine find_overlaps(contact, memory, s, is_strict, overlaps, n)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s         !! slave segment
     logical, intent(in) :: is_strict !! with an end beyond the master it has one without a master
-    type(piece_table_t), intent(inout) :: table
-    type(overlap_t) :: overlaps(2*(memory%candidates%first(s + 1) - memory%candidates%first(s)) + 1)
-    integer :: ends(2), anchors(2), j, k, n
-    logical :: is_active(2), may_be_deep
+    type(overlap_t), intent(out) :: overlaps(:) !! with room for `n_most_overlaps`
+    integer, intent(out) :: n
+    integer :: ends(2), anchors(2), k
 
     ends = contact%slave%segments(:, s)
+    n = 0
     do k = 1, 2
       anchors(k) = segment_below(contact, memory, s, ends, k)
     end do
     if (is_strict .and. any(anchors == 0)) then
-      if (is_opposed_to_contact(contact%slave, memory, s)) &
-        call append_overlap(ends, overlap_t(high=1.0_wp), table)
+      if (.not. is_opposed_to_contact(contact%slave, memory, s)) return
+      n = 1
+      overlaps(1) = overlap_t(0, 0.0_wp, 1.0_wp, 0, 0, [0.0_wp, 0.0_wp], 1.0_wp)
       return
     end if
+    if (contact%master%n_segment > short_surface .and. &
+      all(memory%slave_tracking%status(ends) == is_touching)) &
+      call take_between(contact, memory, ends, anchors, overlaps, n)
+    if (n == 0) call take_candidates(contact, memory, s, anchors, overlaps, n)
+    do k = 1, n
+      overlaps(k)%share = 0.0_wp
+      if (overlaps(k)%high > overlaps(k)%low) overlaps(k)%share = share_of(contact, memory, ends, &
+        overlaps(k)%master)
+    end do
+  end subroutine find_overlaps
+
+  !> Overlaps with the master segments from below one active end to below the other; none where
+  !> these are too many or do not follow each other.
+  pure subroutine take_between(contact, memory, ends, anchors, overlaps, n)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2), anchors(2)
+    type(overlap_t), intent(inout) :: overlaps(:)
+    integer, intent(out) :: n
+    real(wp) :: t(2), d(2), inverse, xi
+    integer :: k
+
+    n = 0
+    do k = 1, n_between
+      overlaps(k)%master = anchors(1)
+      if (k > 1) overlaps(k)%master = contact%master%previous(overlaps(k - 1)%master)
+      if (overlaps(k)%master == 0) return
+      if (overlaps(k)%master == anchors(2)) exit
+    end do
+    if (k > n_between) return
+    n = k
+    overlaps(1)%low = 0.0_wp
+    overlaps(1)%first = 0
+    associate (places => memory%places)
+      t = separation(places(:, ends(2)), places(:, ends(1)))
+      inverse = 1.0_wp/(t(1)*t(1) + t(2)*t(2))
+      do k = 1, n - 1
+        associate (node => contact%master%segments(1, overlaps(k)%master))
+          d = separation(places(:, memory%n_slave + node), places(:, ends(1)))
+          xi = (d(1)*t(1) + d(2)*t(2))*inverse
+          overlaps(k)%high = overlaps(k)%low
+          overlaps(k)%last = overlaps(k)%first
+          if (xi >= 1.0_wp) then
+            overlaps(k)%high = 1.0_wp
+            overlaps(k)%last = 0
+          else if (xi > overlaps(k)%low) then
+            overlaps(k)%high = xi
+            overlaps(k)%last = node
+          end if
+        end associate
+        overlaps(k + 1)%low = overlaps(k)%high
+        overlaps(k + 1)%first = overlaps(k)%last
+      end do
+    end associate
+    overlaps(n)%high = 1.0_wp
+    overlaps(n)%last = 0
+  end subroutine take_between
+
+  !> Overlaps with the candidates of a slave segment.
+  pure subroutine take_candidates(contact, memory, s, anchors, overlaps, n)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s, anchors(2)
+    type(overlap_t), intent(inout) :: overlaps(:)
+    integer, intent(out) :: n
+    integer :: ends(2), j
+    logical :: is_active(2), may_be_deep
+
+    ends = contact%slave%segments(:, s)
     is_active = memory%slave_tracking%status(ends) == is_touching
     ! From the start a master node may lie deep behind a segment both ends of which are beside it.
     may_be_deep = .not. contact%is_self .and. .not. any(is_active) &
       .and. memory%segment_status(s) == is_touching
     n = 0
     do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
-      associate (m => memory%candidates%items(j))
-        call cut_by(contact, memory, ends, anchors, m, overlaps(n + 1))
-        if (.not. overlaps(n + 1)%high > overlaps(n + 1)%low) cycle
+      associate (m => memory%candidates%items(j), overlap => overlaps(n + 1))
+        call cut_by(contact, memory, ends, anchors, m, overlap)
+        if (.not. overlap%high > overlap%low) cycle
         if (is_beyond(contact%master, anchors, m, size(overlaps))) cycle
         if (memory%slave_tracking%pass%is_closed) then
           if (is_side_of_corner(contact, memory, s, m)) cycle
         end if
         if (.not. (may_be_deep .or. any(is_active .and. anchors == m)) .and. &
-          middle_gap(overlaps(n + 1)) < -deep*memory%slave_tracking%segment_depth(m)) cycle
+          gap_at(overlap, 0.5_wp*(overlap%low + overlap%high)) &
+          < -deep*memory%slave_tracking%segment_depth(m)) cycle
         n = n + 1
       end associate
     end do
     call sort_overlaps(overlaps(:n))
     if (any(overlaps(2:n)%low < overlaps(:n - 1)%high)) call resolve_overlaps(overlaps, n)
-    do k = 1, n
-      call append_overlap(ends, overlaps(k), table)
-    end do
-  end subroutine list_candidate_overlaps
+  end subroutine take_candidates
 
   !> Master segment on which the k-th end of a slave segment has its projection: of an active end
   !> that of its status, else the closest of the candidates if it is over that; 0: none. Of two that
@@ -111,7 +192,7 @@ contains
     type(foot_t) :: foot
 
     at = 0.5_wp
-    segment = closest_opposed(contact, memory, s, memory%places(:, node))
+    segment = closest_candidate(contact, memory, s, memory%places(:, node), .true.)
     if (segment == 0) return
     associate (chain => memory%places(:, memory%n_slave + 1:), point => memory%places(:, node))
       foot = closest_foot(contact%master, chain, point, segment)
@@ -143,12 +224,13 @@ contains
     if (.not. goes_on) goes_on = .not. turns_sharply(surface, chain, before, behind)
   end function goes_on
 
-  !> The candidate that is opposed to a slave segment and closest to a position on it; 0: none.
-  pure function closest_opposed(contact, memory, s, point) result(closest)
+  !> The candidate of a slave segment that is closest to a position on it; 0: none.
+  pure function closest_candidate(contact, memory, s, point, is_opposed) result(closest)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
     real(wp), intent(in) :: point(4)
+    logical, intent(in) :: is_opposed !! only those that are opposed to the segment
     integer :: closest
     real(wp) :: own(2), square, least
     type(sight_t) :: sight
@@ -163,13 +245,26 @@ contains
       associate (nodes => memory%n_slave + contact%master%segments(:, memory%candidates%items(j)))
         sight = sight_of_segment(point, memory%places(:, nodes(1)), memory%places(:, nodes(2)))
       end associate
-      if (.not. dot_product(own, sight%t) < side_on*norm2(own)*sqrt(sight%square)) cycle
       square = closest_distance(sight)
       if (square >= least) cycle
+      if (is_opposed) then
+        if (.not. looks_against(own, sight%t)) cycle
+      end if
       least = square
       closest = memory%candidates%items(j)
     end do
-  end function closest_opposed
+  end function closest_candidate
+
+  !> Whether two segments are opposed: their vectors have the cosine of their normals.
+  pure function looks_against(own, other) result(opposed)
+    real(wp), intent(in) :: own(2), other(2) !! m
+    logical :: opposed
+    real(wp) :: product
+
+    product = own(1)*other(1) + own(2)*other(2)
+    opposed = product < 0.0_wp .and. product*product > side_on**2*((own(1)*own(1) &
+      + own(2)*own(2))*(other(1)*other(1) + other(2)*other(2)))
+  end function looks_against
 
   !> Whether a slave segment is the side next to a sharp convex vertex whose other segment is
   !> opposed to a master segment so much more that nothing of the side counts.
@@ -228,29 +323,6 @@ contains
     end associate
   end function is_opposed_to_contact
 
-  !> The candidate of a slave segment that is closest to a position on it; 0: none.
-  pure function closest_candidate(master, memory, s, point) result(closest)
-    type(surface_t), intent(in) :: master
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: s
-    real(wp), intent(in) :: point(4)
-    integer :: closest
-    real(wp) :: square, least
-    integer :: j
-
-    closest = 0
-    least = huge(1.0_wp)
-    do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
-      associate (ends => memory%n_slave + master%segments(:, memory%candidates%items(j)))
-        square = closest_distance(sight_of_segment(point, memory%places(:, ends(1)), &
-          memory%places(:, ends(2))))
-      end associate
-      if (square >= least) cycle
-      least = square
-      closest = memory%candidates%items(j)
-    end do
-  end function closest_candidate
-
   !> Whether a master segment lies beyond the projection of an end of the slave segment: the slave
   !> runs against the master, so that its first end is followed by what comes before.
   pure function is_beyond(master, anchors, segment, n_most) result(beyond)
@@ -283,26 +355,28 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2), anchors(2), m
-    type(overlap_t), intent(out) :: overlap
-    type(sight_t) :: sights(2)
-    real(wp) :: other(2), xi(2), gaps(2)
+    type(overlap_t), intent(inout) :: overlap
+    real(wp) :: t(2), d(2, 2), square, xi(2), gaps(2)
     integer :: nodes(2), k
 
+    overlap%low = 0.0_wp
+    overlap%high = 0.0_wp
     nodes = [contact%master%segments(2, m), contact%master%segments(1, m)]
+    t = separation(memory%places(:, ends(2)), memory%places(:, ends(1)))
+    square = max(t(1)**2 + t(2)**2, tiny(1.0_wp))
     do k = 1, 2
-      sights(k) = sight_of_segment(memory%places(:, memory%n_slave + nodes(k)), &
-        memory%places(:, ends(1)), memory%places(:, ends(2)))
-      xi(k) = sights(k)%along/sights(k)%square
-      gaps(k) = sights(k)%across/sqrt(sights(k)%square)
+      d(:, k) = separation(memory%places(:, memory%n_slave + nodes(k)), memory%places(:, ends(1)))
+      xi(k) = (d(1, k)*t(1) + d(2, k)*t(2))/square
     end do
-    other = sights(1)%d - sights(2)%d
-    ! Opposed: the tangents have the cosine of the normals.
-    if (.not. dot_product(sights(1)%t, other) < side_on*norm2(other)*sqrt(sights(1)%square)) return
+    ! Most candidates lie beyond an end.
+    if (.not. any(anchors == m) .and. (xi(2) <= 0.0_wp .or. xi(1) >= 1.0_wp)) return
+    if (.not. looks_against(t, d(:, 1) - d(:, 2))) return
+    gaps = (d(1, :)*t(2) - d(2, :)*t(1))/sqrt(square)
     overlap%master = m
-    overlap%low = clipped(xi(1))
-    overlap%high = clipped(xi(2))
-    if (overlap%low > 0.0_wp .and. overlap%low < 1.0_wp) overlap%first = nodes(1)
-    if (overlap%high > 0.0_wp .and. overlap%high < 1.0_wp) overlap%last = nodes(2)
+    overlap%low = min(max(xi(1), 0.0_wp), 1.0_wp)
+    overlap%high = min(max(xi(2), 0.0_wp), 1.0_wp)
+    overlap%first = merge(nodes(1), 0, overlap%low > 0.0_wp .and. overlap%low < 1.0_wp)
+    overlap%last = merge(nodes(2), 0, overlap%high > 0.0_wp .and. overlap%high < 1.0_wp)
     if (anchors(1) == m) then
       overlap%low = 0.0_wp
       overlap%first = 0
@@ -316,25 +390,29 @@ contains
     else if (anchors(2) > 0 .and. abs(xi(2) - 1.0_wp) <= near_node) then
       if (contact%master%previous(m) /= anchors(2)) overlap%last = nodes(2)
     end if
+    overlap%gap = 0.0_wp
     if (abs(xi(2) - xi(1)) > round_off) overlap%gap = gaps(1) + (gaps(2) - gaps(1)) &
       *([0.0_wp, 1.0_wp] - xi(1))/(xi(2) - xi(1))
   end subroutine cut_by
 
-  !> A projection within the slave segment; neighbours share one, whatever round-off is in it.
-  pure function clipped(xi) result(at)
-    real(wp), intent(in) :: xi
-    real(wp) :: at
+  !> How much of an overlap counts: all up to a certain angle between the two segments, none from a
+  !> larger one on.
+  pure function share_of(contact, memory, ends, m) result(share)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2) !! nodes of the slave segment
+    integer, intent(in) :: m       !! master segment
+    real(wp) :: share
+    real(wp) :: own(2), other(2), product, squares
 
-    at = min(max(xi, 0.0_wp), 1.0_wp)
-  end function clipped
-
-  !> Gap in the middle of an overlap, m.
-  pure function middle_gap(overlap) result(gap)
-    type(overlap_t), intent(in) :: overlap
-    real(wp) :: gap
-
-    gap = gap_at(overlap, 0.5_wp*(overlap%low + overlap%high))
-  end function middle_gap
+    own = separation(memory%places(:, ends(2)), memory%places(:, ends(1)))
+    other = vector(contact%master, memory%places(:, memory%n_slave + 1:), m)
+    product = own(1)*other(1) + own(2)*other(2)
+    squares = (own(1)**2 + own(2)**2)*(other(1)**2 + other(2)**2)
+    share = 1.0_wp
+    if (product < 0.0_wp .and. product*product >= face_on**2*squares) return
+    share = facing_share(product/sqrt(max(squares, tiny(1.0_wp))))
+  end function share_of
 
   !> Gap of the master segment over the slave segment at a local coordinate of that, m.
   pure function gap_at(overlap, xi) result(gap)
@@ -447,23 +525,4 @@ contains
     end do
   end function nearest_penetrated
 
-  !> Append an overlap to the table.
-  pure subroutine append_overlap(ends, overlap, table)
-    integer, intent(in) :: ends(2) !! nodes of the slave segment
-    type(overlap_t), intent(in) :: overlap
-    type(piece_table_t), intent(inout) :: table
-
-    if (table%n + 1 >= size(table%master)) call grow_pieces(table)
-    associate (k => table%n + 1)
-      table%ends(:, k) = ends
-      table%master(k) = overlap%master
-      table%low(k) = overlap%low
-      table%high(k) = overlap%high
-      table%first_cut(k) = overlap%first
-      table%last_cut(k) = overlap%last
-      table%kind(k) = is_walked_piece
-    end associate
-    table%n = table%n + 1
-  end subroutine append_overlap
-
-end module candidate_overlaps_m
+end module overlaps_m
