@@ -47,11 +47,13 @@ contains
   end function n_most_overlaps
 
   !> Overlaps of a slave segment, in order along it.
-  pure subroutine find_overlaps(contact, memory, s, is_strict, overlaps, n)
+  pure subroutine find_overlaps(contact, memory, s, is_strict, least_cut, overlaps, n)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s         !! slave segment
     logical, intent(in) :: is_strict !! with an end beyond the master it has one without a master
+    real(wp), intent(in) :: least_cut !! part of the segment next to its active ends where master
+                                      !! nodes are no breakpoints
     type(overlap_t), intent(out) :: overlaps(:) !! with room for `n_most_overlaps`
     integer, intent(out) :: n
     integer :: ends(2), anchors(2), k
@@ -69,7 +71,7 @@ contains
     end if
     if (contact%master%n_segment > short_surface .and. &
       all(memory%slave_tracking%status(ends) == is_touching)) &
-      call take_between(contact, memory, ends, anchors, overlaps, n)
+      call take_between(contact, memory, ends, anchors, least_cut, overlaps, n)
     if (n == 0) call take_candidates(contact, memory, s, anchors, overlaps, n)
     do k = 1, n
       overlaps(k)%share = 0.0_wp
@@ -80,10 +82,11 @@ contains
 
   !> Overlaps with the master segments from below one active end to below the other; none where
   !> these are too many or do not follow each other.
-  pure subroutine take_between(contact, memory, ends, anchors, overlaps, n)
+  pure subroutine take_between(contact, memory, ends, anchors, least_cut, overlaps, n)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2), anchors(2)
+    real(wp), intent(in) :: least_cut
     type(overlap_t), intent(inout) :: overlaps(:)
     integer, intent(out) :: n
     real(wp) :: t(2), d(2), inverse, xi
@@ -109,10 +112,10 @@ contains
           xi = (d(1)*t(1) + d(2)*t(2))*inverse
           overlaps(k)%high = overlaps(k)%low
           overlaps(k)%last = overlaps(k)%first
-          if (xi >= 1.0_wp) then
+          if (xi >= 1.0_wp - least_cut) then
             overlaps(k)%high = 1.0_wp
             overlaps(k)%last = 0
-          else if (xi > overlaps(k)%low) then
+          else if (xi > max(overlaps(k)%low, least_cut)) then
             overlaps(k)%high = xi
             overlaps(k)%last = node
           end if

@@ -6,7 +6,7 @@ module place_nts_mar_m
   use contact_state_m, only : contact_state_t, contact_points_t, is_touching
   use contacts_m, only : contact_t
   use foot_block_m, only : n_block
-  use foot_m, only : see_segment, facing_share
+  use foot_m, only : see_segment, facing_share, round_off
   use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal, segment_length
   use kinds_m, only : wp
   use lengths_m, only : competence_area
@@ -59,7 +59,7 @@ contains
     logical :: counts
 
     ends = contact%slave%segments(:, s)
-    call find_overlaps(contact, memory, s, contact%strict, overlaps, n)
+    call find_overlaps(contact, memory, s, contact%strict, round_off, overlaps, n)
     call halve_overlaps(contact, memory%places(:, ends(1)), memory%places(:, ends(2)), &
       overlaps(:n), halves)
     if (cuts%n + n > n_block) call append_points(cuts, memory%slave_penalty, memory%points)

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Type 7, segmented mortar: two Gauss points on each piece of slave segment that faces one master
+!> Type 7, segmented mortar: two Gauss points on each overlap of a slave segment with a master
 !> segment, pressure from the slave nodes (doc/theory/contact.md, section 5.7).
 module place_segmented_mortar_m
   use contact_state_m, only : contact_points_t, contact_state_t, is_touching
@@ -14,14 +14,17 @@ module place_segmented_mortar_m
   use tips_m, only : has_folds, sharpen_tips
   implicit none
   private
-  public :: place_segmented_mortar, n_gauss, gauss_xi
+  public :: place_segmented_mortar, n_gauss, gauss_xi, least_cut
 
-  !> Gauss points of a piece.
+  !> Gauss points of an overlap.
   integer, parameter :: n_gauss = 2
   !> Where they are on 0 .. 1; both have weight one half. They integrate the product of shape
   !> functions and a linear gap exactly up to the curvature of the chain.
   real(wp), parameter :: gauss_xi(n_gauss) = [0.5_wp - sqrt(1.0_wp/12.0_wp), &
     0.5_wp + sqrt(1.0_wp/12.0_wp)]
+  !> Part of a slave segment next to its ends where master nodes do not cut it: the points of an
+  !> overlap integrate a kink this close to its end to the square of this part, round-off.
+  real(wp), parameter :: least_cut = 1.0e-6_wp
 
 contains
 
@@ -80,7 +83,7 @@ contains
     logical :: counts
 
     ends = contact%slave%segments(:, s)
-    call find_overlaps(contact, memory, s, .false., overlaps, n)
+    call find_overlaps(contact, memory, s, .false., least_cut, overlaps, n)
     n_before = memory%points%n
     deepest = huge(1.0_wp)
     do first = 1, n, n_block/n_gauss

@@ -11,7 +11,7 @@ module tangent_mortar_m
   use nodal_tangent_m, only : varied_list_t, start_list, append_point, add_nodal_tangent, &
     nodal_share
   use overlaps_m, only : overlap_t, find_overlaps, n_most_overlaps
-  use place_segmented_mortar_m, only : gauss_xi
+  use place_segmented_mortar_m, only : gauss_xi, least_cut
   use sparse_m, only : sparse_t
   use tips_m, only : has_folds
   use variation_m, only : varied_point_t, spot_foot, put_foot, length_between, take_overlap, &
@@ -84,7 +84,7 @@ contains
     type(overlap_t) :: overlaps(n_most_overlaps(memory, s))
     integer :: n, k
 
-    call find_overlaps(contact, memory, s, .false., overlaps, n)
+    call find_overlaps(contact, memory, s, .false., least_cut, overlaps, n)
     do k = 1, n
       if (overlaps(k)%share > 0.0_wp) call vary_overlap(contact, memory, overlaps(:n), s, k, list)
     end do

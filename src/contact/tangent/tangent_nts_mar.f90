@@ -1,12 +1,13 @@
 ! SPDX-License-Identifier: MIT
-!> Tangent of type 5: half of each piece of slave segment is the area of a point of its own at
-!> either of the piece's ends, so that each depends on few nodes (doc/theory/contact.md, section
+!> Tangent of type 5: half of each overlap is the area of a point of its own at either of its
+!> ends, so that each depends on few nodes (doc/theory/contact.md, section
 !> 9.4).
 module tangent_nts_mar_m
   use assembly_m, only : add_pressed_point
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
+  use foot_m, only : round_off
   use kinds_m, only : wp
   use overlaps_m, only : overlap_t, find_overlaps, n_most_overlaps
   use place_nts_mar_m, only : is_tip
@@ -20,7 +21,7 @@ module tangent_nts_mar_m
 
 contains
 
-  !> All pieces; then the nodes at a tip, which have none.
+  !> All overlaps; then the nodes at a tip, which have none.
   pure subroutine add_nts_mar_tangent(contact, memory, equations, matrix)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -47,7 +48,7 @@ contains
     end do
   end subroutine add_nts_mar_tangent
 
-  !> The pieces of one slave segment, as the placement divides it.
+  !> The overlaps of one slave segment, as the placement divides it.
   pure subroutine add_segment(contact, memory, s, equations, matrix, has_area)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -60,7 +61,7 @@ contains
     type(dual_t) :: halves(2)
     integer :: n, k
 
-    call find_overlaps(contact, memory, s, contact%strict, overlaps, n)
+    call find_overlaps(contact, memory, s, contact%strict, round_off, overlaps, n)
     do k = 1, n
       if (.not. overlaps(k)%high > overlaps(k)%low) cycle
       if (.not. contact%strict .and. .not. overlaps(k)%share > 0.0_wp) cycle
@@ -69,8 +70,8 @@ contains
     end do
   end subroutine add_segment
 
-  !> Halves of a piece as areas: slave segment in slots 1, 2, cuts in slots 5, 6, and the master
-  !> segment in slots 7, 8 where the share that faces it is not all of the piece.
+  !> Halves of an overlap as areas: slave segment in slots 1, 2, cuts in slots 5, 6, and the master
+  !> segment in slots 7, 8 where the share that faces it is not all of the overlap.
   pure subroutine vary_halves(contact, memory, s, overlaps, k, point, halves)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -98,7 +99,7 @@ contains
     halves(2) = half*vary_end_radius(memory%places, point%nodes, 1, 2, xi(2), xi(1))
   end subroutine vary_halves
 
-  !> Give its half to whatever stands at either end of a piece.
+  !> Give its half to whatever stands at either end of an overlap.
   pure subroutine add_both_ends(contact, memory, s, overlap, origin, halves, equations, matrix, &
       has_area)
     type(contact_t), intent(in) :: contact
