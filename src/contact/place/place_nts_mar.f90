@@ -10,7 +10,8 @@ module place_nts_mar_m
   use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal, segment_length
   use kinds_m, only : wp
   use lengths_m, only : competence_area
-  use overlaps_m, only : overlap_t, find_overlaps, n_most_overlaps
+  use overlap_m, only : overlap_t
+  use overlaps_m, only : find_overlaps, n_most_overlaps
   use radii_m, only : end_radius, radius_between
   use point_list_m, only : place_block_t, append_points, append_touching, add_length
   use overlap_status_m, only : none_due, is_due, keep_segment, judge_segment, note_next_wake

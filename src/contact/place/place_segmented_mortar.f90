@@ -8,7 +8,8 @@ module place_segmented_mortar_m
   use foot_m, only : foot_t, near_foot, facing_share
   use geometry_m, only : separation
   use kinds_m, only : wp
-  use overlaps_m, only : overlap_t, find_overlaps, n_most_overlaps
+  use overlap_m, only : overlap_t
+  use overlaps_m, only : find_overlaps, n_most_overlaps
   use point_list_m, only : place_block_t, append_points, drop_places, weigh_points
   use overlap_status_m, only : none_due, is_due, keep_segment, judge_segment, note_next_wake
   use tips_m, only : has_folds, sharpen_tips

@@ -10,7 +10,8 @@ module tangent_mortar_m
   use nodal_grip_m, only : add_nodal_grip
   use nodal_tangent_m, only : varied_list_t, start_list, append_point, add_nodal_tangent, &
     nodal_share
-  use overlaps_m, only : overlap_t, find_overlaps, n_most_overlaps
+  use overlap_m, only : overlap_t
+  use overlaps_m, only : find_overlaps, n_most_overlaps
   use place_segmented_mortar_m, only : gauss_xi, least_cut
   use sparse_m, only : sparse_t
   use tips_m, only : has_folds

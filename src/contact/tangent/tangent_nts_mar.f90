@@ -9,7 +9,8 @@ module tangent_nts_mar_m
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
   use foot_m, only : round_off
   use kinds_m, only : wp
-  use overlaps_m, only : overlap_t, find_overlaps, n_most_overlaps
+  use overlap_m, only : overlap_t
+  use overlaps_m, only : find_overlaps, n_most_overlaps
   use place_nts_mar_m, only : is_tip
   use sparse_m, only : sparse_t
   use tangent_nts_m, only : vary_node, vary_competence
@@ -66,7 +67,8 @@ contains
       if (.not. overlaps(k)%high > overlaps(k)%low) cycle
       if (.not. contact%strict .and. .not. overlaps(k)%share > 0.0_wp) cycle
       call vary_halves(contact, memory, s, overlaps(:n), k, point, halves)
-      call add_both_ends(contact, memory, s, overlaps(k), point, halves, equations, matrix, has_area)
+      call add_both_ends(contact, memory, s, overlaps(k), point, halves, equations, matrix, &
+        has_area)
     end do
   end subroutine add_segment
 

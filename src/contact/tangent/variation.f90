@@ -10,7 +10,7 @@ module variation_m
   use foot_m, only : side_on, face_on, least_excess, most_excess
   use geometry_m, only : separation
   use kinds_m, only : wp
-  use overlaps_m, only : overlap_t
+  use overlap_m, only : overlap_t
   use radii_m, only : radius_of
   implicit none
   private
@@ -142,8 +142,8 @@ contains
   end subroutine put_foot
 
   !> Put a slave segment into slots 1, 2 and the nodes at the breakpoints of an overlap of it into
-  !> slots 5 and 6; where there is room, those that the overlaps before and behind it have there into
-  !> 7 and 8.
+  !> slots 5 and 6; where there is room, those that the overlaps before and behind it have there
+  !> into 7 and 8.
   pure subroutine take_overlap(memory, ends, overlaps, k, has_room, point)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2)  !! nodes of the slave segment
