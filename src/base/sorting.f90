@@ -1,10 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> Sorting by key.
+!> Sorting by key, and looking for keys among sorted ones.
 module sorting_m
   use kinds_m, only : long
   implicit none
   private
-  public :: sorted_order
+  public :: sorted_order, distinct, place_among
 
 contains
 
@@ -56,5 +56,47 @@ contains
       end if
     end do
   end subroutine merge_runs
+
+  !> The values of a list, each once, in rising order.
+  pure function distinct(values) result(rising)
+    integer, intent(in) :: values(:)
+    integer, allocatable :: rising(:)
+    integer, allocatable :: order(:)
+    integer :: i, n
+
+    order = sorted_order(int(values, long))
+    allocate (rising(size(values)))
+    n = 0
+    do i = 1, size(values)
+      if (i > 1) then
+        if (values(order(i)) == values(order(i - 1))) cycle
+      end if
+      n = n + 1
+      rising(n) = values(order(i))
+    end do
+    rising = rising(:n)
+  end function distinct
+
+  !> Where a value stands on a list, 0: nowhere. `order` sorts the list.
+  pure function place_among(values, order, value) result(place)
+    integer, intent(in) :: values(:), order(:)
+    integer, intent(in) :: value
+    integer :: place
+    integer :: low, high, middle
+
+    low = 1
+    high = size(values)
+    do while (low < high)
+      middle = (low + high)/2
+      if (values(order(middle)) < value) then
+        low = middle + 1
+      else
+        high = middle
+      end if
+    end do
+    place = 0
+    if (high < 1) return
+    if (values(order(low)) == value) place = order(low)
+  end function place_among
 
 end module sorting_m

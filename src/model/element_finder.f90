@@ -6,7 +6,7 @@
 module element_finder_m
   use kinds_m, only : wp, long
   use model_m, only : model_t
-  use sorting_m, only : sorted_order
+  use sorting_m, only : place_among, sorted_order
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -39,25 +39,31 @@ module element_finder_m
   !> A surface and the bodies behind it.
   type :: body_view_t
     type(element_finder_t) :: finder
-    integer, allocatable :: local(:) !! (n_node of the mesh) number on the surface, 0: not on it
+    integer, allocatable :: order(:) !! (n_node of the surface) that sorts its nodes
   end type body_view_t
 
 contains
 
   !> Sort the elements of those parts that hold any of `members`, as far as they come near the
   !> places that will be asked about.
-  pure subroutine start_finder(model, members, nodes, finder)
+  pure subroutine start_finder(model, members, nodes, finder, behind)
     type(model_t), intent(in) :: model
     integer, intent(in) :: members(:) !! element indices
     integer, intent(in) :: nodes(:)   !! places lie between these
     type(element_finder_t), intent(out) :: finder
+    integer, intent(in), optional :: behind(:) !! the elements of those parts, where they are known
     logical, allocatable :: is_wanted(:)
     integer, allocatable :: elements(:)
     real(wp) :: size_of_box(2), low(2), high(2), box(2, 2)
     integer :: i, n
 
-    allocate (is_wanted(size(model%parts)), source=.false.)
-    is_wanted(model%mesh%element_part(members)) = .true.
+    if (present(behind)) then
+      elements = behind
+    else
+      allocate (is_wanted(size(model%parts)), source=.false.)
+      is_wanted(model%mesh%element_part(members)) = .true.
+      elements = pack([(i, i=1, model%mesh%n_element)], is_wanted(model%mesh%element_part))
+    end if
     low = minval(model%mesh%coordinates(:, nodes), 2)
     high = maxval(model%mesh%coordinates(:, nodes), 2)
     size_of_box = beside*maxval(high - low)
@@ -65,14 +71,12 @@ contains
     high = high + size_of_box
     finder%low = huge(1.0_wp)
     finder%high = -huge(1.0_wp)
-    allocate (elements(model%mesh%n_element))
     n = 0
-    do i = 1, model%mesh%n_element
-      if (.not. is_wanted(model%mesh%element_part(i))) cycle
-      box = box_of(model, i)
+    do i = 1, size(elements)
+      box = box_of(model, elements(i))
       if (any(box(:, 2) < low .or. box(:, 1) > high)) cycle
       n = n + 1
-      elements(n) = i
+      elements(n) = elements(i)
       finder%low = min(finder%low, box(:, 1))
       finder%high = max(finder%high, box(:, 2))
     end do
@@ -194,15 +198,15 @@ contains
   end function is_in_element
 
   !> Know the bodies behind a surface, for looks at it and at another one. It must have a segment.
-  pure subroutine view_body(model, surface, other, view)
+  pure subroutine view_body(model, surface, other, view, behind)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: surface, other
     type(body_view_t), intent(out) :: view
-    integer :: i
+    integer, intent(in), optional :: behind(:) !! elements of these bodies, where they are known
 
-    call start_finder(model, surface%segment_element, [surface%nodes, other%nodes], view%finder)
-    allocate (view%local(model%mesh%n_node), source=0)
-    view%local(surface%nodes) = [(i, i=1, surface%n_node)]
+    call start_finder(model, surface%segment_element, [surface%nodes, other%nodes], view%finder, &
+      behind)
+    view%order = sorted_order(int(surface%nodes, long))
   end subroutine view_body
 
   !> Half of the thickness of the element behind a segment, m.
@@ -245,7 +249,7 @@ contains
         do i = view%finder%first(cell) + 1, view%finder%first(cell + 1)
           associate (element => view%finder%items(i))
             do k = 1, 4
-              t = view%local(model%mesh%element_nodes(k, element))
+              t = place_among(surface%nodes, view%order, model%mesh%element_nodes(k, element))
               if (t > 0) t = surface%outgoing(t)
               if (t == 0) cycle
               if (surface%segment_element(t) /= element) cycle

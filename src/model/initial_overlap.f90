@@ -8,6 +8,7 @@ module initial_overlap_m
   use geometry_m, only : sight_t, sight_of_segment, closest_distance
   use kinds_m, only : wp
   use model_m, only : model_t
+  use sorting_m, only : place_among
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -121,7 +122,7 @@ contains
       element_at(view%finder, model, place%x, place%nodes)))
       do k = 1, 4
         near(2*k - 1:2*k) = 0
-        node = view%local(corners(k))
+        node = place_among(other%nodes, view%order, corners(k))
         if (node > 0) near(2*k - 1:2*k) = [other%incoming(node), other%outgoing(node)]
       end do
     end associate

@@ -19,9 +19,10 @@ module deck_contact_sides_m
   use deck_cards_m, only : reject_field
   use deck_contact_m, only : contact_cards_t, side_fields
   use deck_values_m, only : resolve_id, place_of
+  use sorting_m, only : distinct, place_among
   implicit none
   private
-  public :: outline_t, find_side, set_nodes, mark_surface, find_surface, check_overlap
+  public :: outline_t, elements_of, find_side, set_nodes, mark_surface, find_surface, check_overlap
 
   !> Where surfaces are looked for. Of a mesh some elements of which are refused those are made that
   !> have no nodes of them: mistakes that do not follow from theirs are told in the same pass.
@@ -30,6 +31,8 @@ module deck_contact_sides_m
     logical :: is_sound = .true.        !! no element is refused
     logical, allocatable :: in_doubt(:) !! (n_node) refused elements have them
     logical, allocatable :: is_whole(:) !! of each node set: all its nodes exist
+    integer, allocatable :: elements(:) !! (n_element) by their parts, and in rising order
+    integer, allocatable :: ends(:)     !! (0:parts) where those of each part end
   end type outline_t
 
   !> What a side is given by.
@@ -38,6 +41,24 @@ module deck_contact_sides_m
   character(6), parameter :: side_names(2) = ['slave ', 'master']
 
 contains
+
+  !> The elements of some parts, in rising order.
+  pure function elements_of(body, parts) result(elements)
+    type(outline_t), intent(in) :: body
+    integer, intent(in) :: parts(:)
+    integer, allocatable :: elements(:)
+    integer :: i, n
+
+    allocate (elements(sum(body%ends(parts) - body%ends(parts - 1))))
+    n = 0
+    do i = 1, size(parts)
+      associate (first => body%ends(parts(i) - 1) + 1, last => body%ends(parts(i)))
+        elements(n + 1:n + last - first + 1) = body%elements(first:last)
+        n = n + last - first + 1
+      end associate
+    end do
+    elements = distinct(elements)
+  end function elements_of
 
   !> The set of one side: a part set (more than 0) or a node set (less than 0), or the segment set
   !> where the deck has no such set of that number.
@@ -138,13 +159,14 @@ contains
     else if (is_certain(body, model, kind, found)) then
       select case (kind)
       case (side_parts)
-        call surface_of_parts(deck, model%part_sets(found)%parts, place, model, surface)
+        call surface_of_parts(deck, model%part_sets(found)%parts, place, body, model, surface)
       case (side_nodes)
         if (body%is_whole(found)) call surface_of_nodes(deck, model%node_sets(found)%nodes, side, &
           place, body%outside, model, surface)
       case (side_segments)
         if (allocated(model%segment_sets(found)%parts)) then
-          call surface_of_parts(deck, model%segment_sets(found)%parts, place, model, surface)
+          call surface_of_parts(deck, model%segment_sets(found)%parts, place, body, model, &
+            surface)
         else
           call surface_of_segments(deck, model%segment_sets(found), place, body%outside, model, &
             surface)
@@ -203,35 +225,29 @@ contains
   end subroutine surface_of_segments
 
   !> Exterior boundary of a set of parts, found in a mesh of these parts alone.
-  subroutine surface_of_parts(deck, parts, place, model, surface)
+  subroutine surface_of_parts(deck, parts, place, body, model, surface)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: parts(:)
     type(place_t), intent(in) :: place
+    type(outline_t), intent(in) :: body
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
     type(boundary_t) :: boundary
-    logical :: chosen_part(size(model%parts))
-    integer, allocatable :: elements(:), element_nodes(:, :), nodes(:), local(:)
+    integer, allocatable :: elements(:), element_nodes(:, :), nodes(:), order(:)
     integer :: crossing, i, k
 
-    chosen_part = .false.
-    chosen_part(parts) = .true.
-    elements = pack([(i, i=1, model%mesh%n_element)], chosen_part(model%mesh%element_part))
+    elements = elements_of(body, parts)
     if (size(elements) == 0) then
       call reject_field(deck, place, 'has no boundary: its parts have no elements')
       return
     end if
     element_nodes = model%mesh%element_nodes(:, elements)
-    allocate (local(model%mesh%n_node), source=0)
+    nodes = distinct(reshape(element_nodes, [size(element_nodes)]))
+    order = [(i, i=1, size(nodes))]
     do i = 1, size(elements)
       do k = 1, 4
-        local(element_nodes(k, i)) = 1
+        element_nodes(k, i) = place_among(nodes, order, element_nodes(k, i))
       end do
-    end do
-    nodes = pack([(i, i=1, model%mesh%n_node)], local > 0)
-    local(nodes) = [(i, i=1, size(nodes))]
-    do i = 1, size(elements)
-      element_nodes(:, i) = local(element_nodes(:, i))
     end do
     call find_boundary(element_nodes, spread(.true., 1, size(elements)), &
       spread(.true., 1, size(nodes)), boundary)
@@ -282,10 +298,11 @@ contains
 
   !> Check one interface. With a birth time after zero bodies may be anywhere before it; between
   !> open chains penetrations are taken as they are, however deep.
-  subroutine check_overlap(deck, entry, sides, model)
+  subroutine check_overlap(deck, entry, sides, body, model)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
     type(surface_t), intent(in) :: sides(2)
+    type(outline_t), intent(in) :: body
     type(model_t), intent(in) :: model
     type(body_view_t) :: views(2)
     type(overlap_t) :: found(2)
@@ -296,7 +313,8 @@ contains
     crosses = .false.
     n_side = merge(1, 2, entry%contact%is_self)
     do k = 1, n_side
-      call view_body(model, sides(k), sides(3 - k), views(k))
+      call view_body(model, sides(k), sides(3 - k), views(k), elements_of(body, &
+        distinct(model%mesh%element_part(sides(k)%segment_element))))
       call find_crossing(model, sides(k), views(k), pair)
       if (pair(1) == 0) cycle
       crosses = .true.

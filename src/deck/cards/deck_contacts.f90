@@ -3,7 +3,7 @@
 !> not go with: the implicit method, elements that leave the mesh, and what implicit penalties do
 !> not have.
 module deck_contacts_m
-  use kinds_m, only : wp
+  use kinds_m, only : long, wp
   use log_m, only : to_text
   use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, is_tied, breaks, tie_none, &
     penalty_implicit, penalty_share
@@ -22,6 +22,7 @@ module deck_contacts_m
   use deck_loads_m, only : settle_pressures
   use deck_overrides_m, only : check_words
   use deck_values_m, only : integer_of, real_of, has_field, place_of, refuse_again
+  use sorting_m, only : place_among, sorted_order
   implicit none
   private
   public :: read_contacts
@@ -144,7 +145,30 @@ contains
       end do
     end do
     call find_boundary(model%mesh%element_nodes, is_sound, among, body%outside)
+    call sort_by_part(model, body)
   end subroutine look_outside
+
+  !> The elements of each part, so that an interface looks at its own alone. Part 0: not there.
+  subroutine sort_by_part(model, body)
+    type(model_t), intent(in) :: model
+    type(outline_t), intent(inout) :: body
+    integer :: i
+
+    allocate (body%ends(0:size(model%parts)), source=0)
+    if (model%mesh%n_element == 0) then
+      allocate (body%elements(0))
+      return
+    end if
+    body%elements = sorted_order(int(model%mesh%element_part, long))
+    do i = 1, model%mesh%n_element
+      associate (n => body%ends(model%mesh%element_part(i)))
+        n = n + 1
+      end associate
+    end do
+    do i = 1, size(model%parts)
+      body%ends(i) = body%ends(i) + body%ends(i - 1)
+    end do
+  end subroutine sort_by_part
 
   !> Give an interface its surfaces, with what is wrong with them and the type that the program
   !> chooses.
@@ -169,7 +193,7 @@ contains
     entry%contact%slave = sides(1)
     entry%contact%master = sides(2)
     if (deck%report%n_error > n_error) return
-    call check_overlap(deck, entry, sides, model)
+    call check_overlap(deck, entry, sides, body, model)
     ! The choice looks at conditions and materials: they have to be sound as well.
     if (deck%report%n_error == 0) call choose_type(deck, entry%block, model, entry%contact)
   end subroutine take_surfaces
@@ -200,15 +224,14 @@ contains
     type(contact_cards_t), intent(in) :: entry
     type(surface_t), intent(in) :: sides(2)
     type(model_t), intent(in) :: model
-    logical, allocatable :: on_slave(:)
-    integer, allocatable :: shared(:)
+    integer, allocatable :: shared(:), order(:)
     character(:), allocatable :: names
     integer :: i, n
 
     if (size(sides(1)%nodes) == 0 .or. size(sides(2)%nodes) == 0) return
-    allocate (on_slave(model%mesh%n_node), source=.false.)
-    on_slave(sides(1)%nodes) = .true.
-    shared = pack(sides(2)%nodes, on_slave(sides(2)%nodes))
+    order = sorted_order(int(sides(1)%nodes, long))
+    shared = pack(sides(2)%nodes, [(place_among(sides(1)%nodes, order, sides(2)%nodes(i)) > 0, &
+      i=1, size(sides(2)%nodes))])
     n = size(shared)
     names = ''
     do i = 1, min(n, 5)
