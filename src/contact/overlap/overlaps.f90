@@ -34,6 +34,7 @@ module overlaps_m
     integer :: ends(2)       !! nodes
     logical :: is_active(2)  !! its ends
     integer :: below(2)      !! master segments that its ends have their projections on, 0: none
+    real(wp) :: start(4)     !! position of its first end
     real(wp) :: t(2), square !! its vector, m, and the square of that
   end type slave_segment_t
 
@@ -68,7 +69,8 @@ contains
     logical, intent(in) :: is_strict !! with an end beyond the master it has one without a master
     real(wp), intent(in) :: least_cut !! part of the segment next to its active ends where master
                                       !! nodes are no breakpoints
-    type(overlap_t), intent(inout) :: overlaps(:) !! with room for `n_most_overlaps`
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! with room for
+                                      !! `n_most_overlaps`
     integer, intent(out) :: n
     type(slave_segment_t) :: own
     integer :: k
@@ -76,7 +78,8 @@ contains
     own%number = s
     own%ends = contact%slave%segments(:, s)
     own%is_active = memory%slave_tracking%status(own%ends) == is_touching
-    own%t = separation(memory%places(:, own%ends(2)), memory%places(:, own%ends(1)))
+    own%start = memory%places(:, own%ends(1))
+    own%t = way_to(own%ends(2), own, memory%places)
     own%square = max(own%t(1)**2 + own%t(2)**2, tiny(1.0_wp))
     do k = 1, 2
       own%below(k) = segment_below(contact, memory, own, k)
@@ -89,21 +92,23 @@ contains
       return
     end if
     if (contact%master%n_segment > short_surface .and. all(own%is_active)) &
-      call take_between(contact%master, memory, own, least_cut, overlaps, n)
+      call take_between(own, contact%master%previous, &
+      contact%master%segments, memory%n_slave, memory%places, least_cut, overlaps, n)
     if (n == 0) call take_candidates(contact, memory, own, overlaps, n)
   end subroutine find_overlaps
 
   !> Overlaps with the master segments from below one active end to below the other; none where
   !> these are too many or do not follow each other.
-  pure subroutine take_between(master, memory, own, least_cut, overlaps, n)
-    type(surface_t), intent(in) :: master
-    type(contact_state_t), intent(in) :: memory
+  pure subroutine take_between(own, previous, segments, n_slave, places, least_cut, overlaps, n)
     type(slave_segment_t), intent(in) :: own
+    integer, intent(in) :: previous(*), segments(2, *) !! of the master
+    integer, intent(in) :: n_slave       !! local number before the first master node
+    real(wp), intent(in) :: places(4, *) !! of the interface
     real(wp), intent(in) :: least_cut
-    type(overlap_t), intent(inout) :: overlaps(:)
+    type(overlap_t), intent(inout) :: overlaps(*)
     integer, intent(out) :: n
-    real(wp) :: d(2), former(2), inverse, xi
-    integer :: k, m
+    real(wp) :: d(2), former(2), inverse, xi, low
+    integer :: k, m, node, first
 
     n = 0
     m = own%below(1)
@@ -111,47 +116,46 @@ contains
       if (m == 0) return
       overlaps(k)%master = m
       if (m == own%below(2)) exit
-      m = master%previous(m)
+      m = previous(m)
     end do
     if (k > n_between) return
     n = k
-    overlaps(1)%low = 0.0_wp
-    overlaps(1)%first = 0
+    low = 0.0_wp
+    first = 0
     inverse = 1.0_wp/own%square
-    former = way_to(memory, own, master%segments(2, own%below(1)))
+    former = way_to(n_slave + segments(2, own%below(1)), own, places)
     do k = 1, n
-      associate (node => master%segments(1, overlaps(k)%master))
-        d = way_to(memory, own, node)
-        xi = (d(1)*own%t(1) + d(2)*own%t(2))*inverse
-        overlaps(k)%high = overlaps(k)%low
-        overlaps(k)%last = overlaps(k)%first
-        if (k == n .or. xi >= 1.0_wp - least_cut) then
-          overlaps(k)%high = 1.0_wp
-          overlaps(k)%last = 0
-        else if (xi > max(overlaps(k)%low, least_cut)) then
-          overlaps(k)%high = xi
-          overlaps(k)%last = node
-        end if
-      end associate
+      node = segments(1, overlaps(k)%master)
+      d = way_to(n_slave + node, own, places)
+      xi = (d(1)*own%t(1) + d(2)*own%t(2))*inverse
+      overlaps(k)%low = low
+      overlaps(k)%first = first
       overlaps(k)%share = 0.0_wp
-      if (overlaps(k)%high > overlaps(k)%low) overlaps(k)%share = share_of(own, former - d)
+      if (k == n .or. xi >= 1.0_wp - least_cut) then
+        xi = 1.0_wp
+        node = 0
+      else if (xi <= max(low, least_cut)) then
+        xi = low
+        node = first
+      end if
+      overlaps(k)%high = xi
+      overlaps(k)%last = node
+      if (xi > low) overlaps(k)%share = share_of(own, former - d)
       former = d
-      if (k == n) return
-      overlaps(k + 1)%low = overlaps(k)%high
-      overlaps(k + 1)%first = overlaps(k)%last
+      low = xi
+      first = node
     end do
   end subroutine take_between
 
-  !> Vector from the first end of a slave segment to a node of the master, m.
-  pure function way_to(memory, own, node) result(d)
-    type(contact_state_t), intent(in) :: memory
+  !> Vector from the first end of a slave segment to a node, m.
+  pure function way_to(node, own, places) result(d)
+    integer, intent(in) :: node          !! local number
     type(slave_segment_t), intent(in) :: own
-    integer, intent(in) :: node
+    real(wp), intent(in) :: places(4, *) !! of the interface
     real(wp) :: d(2)
 
-    associate (places => memory%places, i => memory%n_slave + node, j => own%ends(1))
-      d = (places(1:2, i) - places(1:2, j)) + (places(3:4, i) - places(3:4, j))
-    end associate
+    d(1) = (places(1, node) - own%start(1)) + (places(3, node) - own%start(3))
+    d(2) = (places(2, node) - own%start(2)) + (places(4, node) - own%start(4))
   end function way_to
 
   !> Overlaps with the candidates of a slave segment.
@@ -385,7 +389,7 @@ contains
     overlap%high = 0.0_wp
     nodes = [master%segments(2, m), master%segments(1, m)]
     do k = 1, 2
-      d(:, k) = way_to(memory, own, nodes(k))
+      d(:, k) = way_to(memory%n_slave + nodes(k), own, memory%places)
       xi(k) = (d(1, k)*own%t(1) + d(2, k)*own%t(2))/own%square
     end do
     ! Most candidates lie beyond an end.

@@ -58,7 +58,7 @@ contains
     integer, intent(in) :: s
     type(contact_state_t), intent(inout) :: memory
     type(place_block_t), intent(inout) :: cuts
-    type(overlap_t), intent(inout) :: overlaps(:) !! room
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
     real(wp) :: deepest
     integer :: ends(2), n, n_before, n_points
     logical :: counts

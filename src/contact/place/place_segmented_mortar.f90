@@ -61,7 +61,7 @@ contains
   pure subroutine place_neighbours(contact, memory, overlaps)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    type(overlap_t), intent(inout) :: overlaps(:) !! room
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
     integer :: neighbours(2), s, k
 
     do s = 1, contact%slave%n_segment
@@ -82,7 +82,7 @@ contains
     integer, intent(in) :: s
     logical, intent(in) :: may_touch
     type(contact_state_t), intent(inout) :: memory
-    type(overlap_t), intent(inout) :: overlaps(:) !! room
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
     type(place_block_t) :: block
     real(wp) :: deepest
     integer :: ends(2), n_before, n, first
