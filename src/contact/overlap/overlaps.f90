@@ -8,10 +8,9 @@ module overlaps_m
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
   use foot_m, only : foot_t, closest_foot, side_on, face_on, side_share, &
-    facing_share, see_segment, round_off
-  use geometry_m, only : sight_t, separation, closest_distance
+    facing_share, see_segment, vector_of, turns_gently, round_off
+  use geometry_m, only : sight_t, closest_distance
   use kinds_m, only : wp
-  use opposed_m, only : turns_sharply
   use overlap_m, only : overlap_t, gap_at, order_overlaps
   use surfaces_m, only : surface_t
   implicit none
@@ -253,7 +252,8 @@ contains
       behind = foot%segment
     end if
     goes_on = min(before, behind) == 0
-    if (.not. goes_on) goes_on = .not. turns_sharply(surface, chain, before, behind)
+    if (.not. goes_on) goes_on = turns_gently(vector_of(surface, chain, before), &
+      vector_of(surface, chain, behind))
   end function goes_on
 
   !> The candidate of a slave segment that is closest to a position on it; 0: none.
@@ -270,7 +270,7 @@ contains
 
     closest = 0
     least = huge(1.0_wp)
-    own = vector(contact%slave, memory%places, s)
+    own = vector_of(contact%slave, memory%places, s)
     do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
       m = memory%candidates%items(j)
       sight = see_segment(contact%master, memory%places(:, memory%n_slave + 1:), point, m)
@@ -307,30 +307,19 @@ contains
     integer :: k, next
 
     is = .false.
-    other = vector(contact%master, memory%places(:, memory%n_slave + 1:), m)
+    other = vector_of(contact%master, memory%places(:, memory%n_slave + 1:), m)
     other = other/sqrt(other(1)**2 + other(2)**2)
     cosine = dot_product(own%t, other)/sqrt(own%square)
     if (cosine <= face_on) return
     do k = 1, 2
       next = merge(contact%slave%previous(own%number), contact%slave%next(own%number), k == 1)
       if (next == 0) cycle
-      beside = vector(contact%slave, memory%places, next)
+      beside = vector_of(contact%slave, memory%places, next)
       if (merge(-1.0_wp, 1.0_wp, k == 1)*(own%t(1)*beside(2) - own%t(2)*beside(1)) <= 0.0_wp) cycle
       is = is .or. .not. side_share(cosine - dot_product(beside, other) &
         /sqrt(beside(1)**2 + beside(2)**2)) > 0.0_wp
     end do
   end function is_side_of_corner
-
-  !> Vector of a segment, m.
-  pure function vector(surface, places, segment) result(t)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, at least n_node) from this surface on
-    integer, intent(in) :: segment
-    real(wp) :: t(2)
-
-    t = separation(places(:, surface%segments(2, segment)), &
-      places(:, surface%segments(1, segment)))
-  end function vector
 
   !> Whether a slave segment is opposed to the face that one of its ends is active on.
   pure function is_opposed_to_contact(memory, own) result(opposed)

@@ -5,7 +5,7 @@ module place_segmented_mortar_m
   use contact_state_m, only : contact_points_t, contact_state_t, is_touching
   use contacts_m, only : contact_t
   use foot_block_m, only : n_block, project_block, settle_odd
-  use foot_m, only : foot_t, near_foot, facing_share
+  use foot_m, only : foot_t, near_foot, stays_over, facing_share
   use geometry_m, only : separation
   use kinds_m, only : wp
   use overlap_m, only : overlap_t
@@ -176,8 +176,7 @@ contains
     end do
   end subroutine put_points
 
-  !> Points whose projection needs a decision, or whose normal is not that of the master segment of
-  !> their overlap.
+  !> Points whose projection needs a decision.
   pure subroutine place_odd(contact, memory, ends, overlaps, block)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -191,22 +190,22 @@ contains
     own = separation(memory%places(:, ends(2)), memory%places(:, ends(1)))
     length = sqrt(own(1)*own(1) + own(2)*own(2))
     do p = 1, block%n
-      if (.not. abs(block%feet%odd(p)) > 0.0_wp) cycle
+      if (.not. block%feet%odd(p)*block%area(p) > 0.0_wp) cycle
+      if (block%feet%gap(p) >= 0.0_wp) then
+        if (stays_over(contact%master, memory%places(:, memory%n_slave + 1:), block%feet%t(:, p), &
+          block%feet%d(:, p), block%feet%segment(p))) cycle
+      end if
       associate (feet => block%feet, overlap => overlaps(1 + (p - 1)/n_gauss))
-        if (feet%odd(p) > 0.0_wp .and. block%area(p) > 0.0_wp) then
-          foot = near_foot(contact%master, memory%places(:, memory%n_slave + 1:), &
-            (1.0_wp - block%xi(p))*memory%places(:, ends(1)) &
-            + block%xi(p)*memory%places(:, ends(2)), overlap%master)
-          block%nodes(:, p) = memory%n_slave + contact%master%segments(:, foot%segment)
-          feet%xi(p) = foot%xi
-          feet%gap(p) = foot%gap
-          feet%normal(:, p) = foot%normal
-          if (.not. foot%is_on) block%area(p) = 0.0_wp
-        else if (feet%segment(p) /= overlap%master) then
-          block%nodes(:, p) = memory%n_slave + contact%master%segments(:, feet%segment(p))
-        end if
-        if (block%area(p) > 0.0_wp) block%area(p) = 0.5_wp*(overlap%high - overlap%low)*length &
-          *facing_share((own(2)*feet%normal(1, p) - own(1)*feet%normal(2, p))/length)
+        foot = near_foot(contact%master, memory%places(:, memory%n_slave + 1:), &
+          (1.0_wp - block%xi(p))*memory%places(:, ends(1)) &
+          + block%xi(p)*memory%places(:, ends(2)), overlap%master)
+        block%nodes(:, p) = memory%n_slave + contact%master%segments(:, foot%segment)
+        feet%xi(p) = foot%xi
+        feet%gap(p) = foot%gap
+        feet%normal(:, p) = foot%normal
+        block%area(p) = 0.0_wp
+        if (foot%is_on) block%area(p) = 0.5_wp*(overlap%high - overlap%low)*length &
+          *facing_share((own(2)*foot%normal(1) - own(1)*foot%normal(2))/length)
       end associate
     end do
   end subroutine place_odd
