@@ -30,47 +30,42 @@ def entries(points, starts, ends):
     return found
 
 
-def histories(points, own, chains):
+def histories(points, own, other):
     """Offsets of points (step, point, 2) over all steps; own(step, point): normals of their own surface;
-    chains: the other surface in each step."""
+    other: nodes of the open surface that they come upon (step, node, 2)."""
     offsets = np.zeros(points.shape[:2])
-    starts, ends = (np.array([chain.x[chain.nodes[:, side]] for chain in chains]) for side in (0, 1))
-    for n, i, offset in entries(points, starts, ends):
-        while n < len(points):
-            chain = chains[n]
+    for n, i, offset in entries(points, other[:, :-1], other[:, 1:]):
+        for n in range(n, len(points)):
+            chain = Chain(other[n])
             foot = project([points[n, i]], chain, [own(n, i)])[0]
             if not foot or foot.gap >= 0.0:
                 break
             limited = min(offset, -foot.gap)
-            first, second = (chain.x[node] - chains[n - 1].x[node] for node in chain.nodes[foot.segment])
+            first, second = (other[n, node] - other[n - 1, node] for node in chain.nodes[foot.segment])
             motion = points[n, i] - points[n - 1, i] - (1.0 - foot.at) * first - foot.at * second
             slip = abs(motion @ chain.tangent[foot.segment])
             offset = max(0.0, limited - slip * max(2.0 * limited / chain.length[foot.segment], RAMP))
             if offset <= 0.0:
                 break
             offsets[n, i] = offset
-            n += 1
     return offsets
 
 
-def entry_offsets(rule, slave_path, master):
+def entry_offsets(rule, slave, master):
     """Offsets (Offsets) in each step, of a slave surface with these nodes (step, node, 2) on a fixed
     master (nodes, 2)."""
-    slaves, still = [Chain(x) for x in slave_path], Chain(master)
-    masters = [still] * len(slaves)
-    n = slave_path.shape[1] - 1
-    of_slave, of_master = np.zeros(slave_path.shape[:2]), np.zeros((len(slaves), len(master)))
-    between = np.zeros((len(slaves), n, MOST_POINTS))
+    n_step, n = len(slave), slave.shape[1] - 1
+    still = np.broadcast_to(master, (n_step, *master.shape))
+    of_slave, of_master = np.zeros(slave.shape[:2]), np.zeros(still.shape[:2])
+    between = np.zeros((n_step, n, MOST_POINTS))
     places = {4: np.array([0.25, 0.75]), 6: gauss(rule.gauss)[0]}.get(rule.kind)
     if places is None:
-        of_slave = histories(slave_path, lambda step, i: of_node(slaves[step], i), masters)
+        of_slave = histories(slave, lambda step, i: of_node(Chain(slave[step]), i), still)
     else:
-        first, second = slave_path[:, :-1, None, :], slave_path[:, 1:, None, :]
-        points = first + places[:, None] * (second - first)
-        of_points = histories(points.reshape(len(slaves), -1, 2), lambda step, i: of_segment(
-            slaves[step], i // len(places)), masters)
-        between[:, :, :len(places)] = of_points.reshape(len(slaves), n, -1)
+        points = slave[:, :-1, None, :] + places[:, None] * np.diff(slave, axis=1)[:, :, None, :]
+        of_points = histories(points.reshape(n_step, -1, 2), lambda step, i: of_segment(
+            Chain(slave[step]), i // len(places)), still)
+        between[:, :, :len(places)] = of_points.reshape(n_step, n, -1)
     if rule.kind == 3:
-        of_master = histories(np.broadcast_to(still.x, (len(slaves), *still.x.shape)),
-                              lambda _, i: of_node(still, i), slaves)
+        of_master = histories(still, lambda step, i: of_node(Chain(master), i), slave)
     return [Offsets(*both) for both in zip(zip(of_slave, of_master), between)]

@@ -145,9 +145,12 @@ class Own:
     normals: list        # before and after
     is_node: bool = True
 
+    def cosines(self, normals):
+        """Of the segment that is most opposed to each of some faces."""
+        return np.min(normals @ np.array([own for own in self.normals if own is not None]).T, axis=1)
+
     def cosine(self, normal):
-        """Of the segment that is most opposed to a face."""
-        return min(np.dot(own, normal) for own in self.normals if own is not None)
+        return self.cosines(normal[None])[0]
 
     def is_opposed(self, normal):
         """To a face: within 60 degrees (between nodes: 84) of one of the segments, or between both of a
@@ -181,7 +184,7 @@ def project(points, chain, owns, averted=AVERTED):
         height = np.sum(away * chain.normal, axis=1)
         beyond = (at - np.clip(at, 0.0, 1.0)) * chain.length
         far = np.hypot(beyond, height)
-        far[[own.cosine(normal) >= averted for normal in chain.normal]] = np.inf
+        far[own.cosines(chain.normal) >= averted] = np.inf
         if not np.isfinite(far).any():
             feet.append(None)
             continue
