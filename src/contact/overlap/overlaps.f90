@@ -64,7 +64,7 @@ contains
     if (contact%master%n_segment > short_surface .and. &
       all(memory%slave_tracking%status(ends) == is_touching)) &
       call take_between(contact, memory, ends, anchors, least_cut, overlaps, n)
-    if (n == 0) call take_candidates(contact, memory, s, anchors, overlaps, n)
+    if (n == 0) call take_candidates(contact, memory, s, anchors, least_cut, overlaps, n)
     do k = 1, n
       overlaps(k)%share = 0.0_wp
       if (overlaps(k)%high > overlaps(k)%low) overlaps(k)%share = share_of(contact, memory, ends, &
@@ -121,24 +121,27 @@ contains
   end subroutine take_between
 
   !> Overlaps with the candidates of a slave segment.
-  pure subroutine take_candidates(contact, memory, s, anchors, overlaps, n)
+  pure subroutine take_candidates(contact, memory, s, anchors, least_cut, overlaps, n)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s, anchors(2)
+    real(wp), intent(in) :: least_cut
     type(overlap_t), intent(inout) :: overlaps(:)
     integer, intent(out) :: n
+    real(wp) :: margins(2)
     integer :: ends(2), j
     logical :: is_active(2), may_be_deep
 
     ends = contact%slave%segments(:, s)
     is_active = memory%slave_tracking%status(ends) == is_touching
+    margins = merge(least_cut, 0.0_wp, is_active)
     ! From the start a master node may lie deep behind a segment both ends of which are beside it.
     may_be_deep = .not. contact%is_self .and. .not. any(is_active) &
       .and. memory%segment_status(s) == is_touching
     n = 0
     do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
       associate (m => memory%candidates%items(j), overlap => overlaps(n + 1))
-        call cut_by(contact, memory, ends, anchors, m, overlap)
+        call cut_by(contact, memory, ends, anchors, margins, m, overlap)
         if (.not. overlap%high > overlap%low) cycle
         if (is_beyond(contact%master, anchors, m, size(overlaps))) cycle
         if (memory%slave_tracking%pass%is_closed) then
@@ -345,10 +348,13 @@ contains
   end function is_beyond
 
   !> The overlap with one master segment; empty where they are not opposed.
-  pure subroutine cut_by(contact, memory, ends, anchors, m, overlap)
+  pure subroutine cut_by(contact, memory, ends, anchors, margins, m, overlap)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: ends(2), anchors(2), m
+    integer, intent(in) :: ends(2), anchors(2)
+    real(wp), intent(in) :: margins(2) !! part of the slave segment next to its ends where master
+                                       !! nodes are no breakpoints
+    integer, intent(in) :: m
     type(overlap_t), intent(inout) :: overlap
     real(wp) :: t(2), d(2, 2), square, xi(2), gaps(2)
     integer :: nodes(2), k
@@ -363,12 +369,13 @@ contains
       xi(k) = (d(1, k)*t(1) + d(2, k)*t(2))/square
     end do
     ! Most candidates lie beyond an end.
-    if (.not. any(anchors == m) .and. (xi(2) <= 0.0_wp .or. xi(1) >= 1.0_wp)) return
+    if (.not. any(anchors == m) .and. (xi(2) <= margins(1) .or. xi(1) >= 1.0_wp - margins(2))) &
+      return
     if (.not. looks_against(t, d(:, 1) - d(:, 2))) return
     gaps = (d(1, :)*t(2) - d(2, :)*t(1))/sqrt(square)
     overlap%master = m
-    overlap%low = min(max(xi(1), 0.0_wp), 1.0_wp)
-    overlap%high = min(max(xi(2), 0.0_wp), 1.0_wp)
+    overlap%low = merge(0.0_wp, min(xi(1), 1.0_wp), xi(1) <= margins(1))
+    overlap%high = merge(1.0_wp, max(xi(2), 0.0_wp), xi(2) >= 1.0_wp - margins(2))
     overlap%first = merge(nodes(1), 0, overlap%low > 0.0_wp .and. overlap%low < 1.0_wp)
     overlap%last = merge(nodes(2), 0, overlap%high > 0.0_wp .and. overlap%high < 1.0_wp)
     if (anchors(1) == m) then
@@ -384,6 +391,7 @@ contains
     else if (anchors(2) > 0 .and. abs(xi(2) - 1.0_wp) <= near_node) then
       if (contact%master%previous(m) /= anchors(2)) overlap%last = nodes(2)
     end if
+    if (overlap%high <= margins(1) .or. overlap%low >= 1.0_wp - margins(2)) overlap%high = overlap%low
     overlap%gap = 0.0_wp
     if (abs(xi(2) - xi(1)) > round_off) overlap%gap = gaps(1) + (gaps(2) - gaps(1)) &
       *([0.0_wp, 1.0_wp] - xi(1))/(xi(2) - xi(1))

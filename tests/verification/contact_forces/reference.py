@@ -6,7 +6,7 @@ looking at all of them, nothing is tracked, ordered or kept. Positions are hande
 point near the interface, so that they carry no large common part.
 
 A surface is walked with its body on the left; the outward normal of a segment is (t_y, -t_x).
-Whole outlines are in contact by runs of segments that face each other (runs.py).
+Closed boundaries are in contact where they are opposed; entry offsets come from history.py.
 """
 import functools
 from dataclasses import dataclass
