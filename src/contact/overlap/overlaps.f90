@@ -20,9 +20,9 @@ module overlaps_m
   !> Most segments between two active ends that are taken without a look at the candidates, and
   !> number of segments of a closed master up to which the way forwards may be the shorter one.
   integer, parameter :: n_between = 6, short_surface = 2*n_between + 2
-  !> Deepest middle of an overlap with a master segment that no end of the slave segment is active
-  !> on, by the depth of a first contact: deeper ones are the far side of something, or the back of
-  !> the own wall.
+  !> Deepest middle of an overlap with a master segment that is not reached from an active end of
+  !> the slave segment, by the depth of a first contact: deeper ones are the far side of something,
+  !> or the back of the own wall.
   real(wp), parameter :: deep = 1.5_wp
   !> Part of a segment within which a projection is on its node.
   real(wp), parameter :: near_node = 1.0e-9_wp
@@ -147,14 +147,41 @@ contains
         if (memory%slave_tracking%pass%is_closed) then
           if (is_side_of_corner(contact, memory, s, m)) cycle
         end if
-        if (.not. (may_be_deep .or. any(is_active .and. anchors == m)) .and. &
-          gap_at(overlap, 0.5_wp*(overlap%low + overlap%high)) &
-          < -deep*memory%slave_tracking%segment_depth(m)) cycle
+        if (.not. may_be_deep .and. gap_at(overlap, 0.5_wp*(overlap%low + overlap%high)) &
+          < -deep*memory%slave_tracking%segment_depth(m)) then
+          if (.not. any(is_active .and. anchors == m) .and. .not. is_reached(contact, memory, ends, &
+            m, size(overlaps))) cycle
+        end if
         n = n + 1
       end associate
     end do
     call order_overlaps(overlaps, n)
   end subroutine take_candidates
+
+  !> Whether a master segment is the one that an end of a slave segment is active on, or follows it
+  !> towards the other end without a sharp turn (a surface in contact with itself: the back of the
+  !> own wall may follow).
+  pure function is_reached(contact, memory, ends, m, n_most) result(reached)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2), m
+    integer, intent(in) :: n_most !! steps along the surface
+    logical :: reached
+    integer :: k, i, segment, next
+
+    reached = .false.
+    do k = 1, 2
+      if (memory%slave_tracking%status(ends(k)) /= is_touching) cycle
+      segment = memory%slave_tracking%segment(ends(k))
+      do i = 1, n_most
+        reached = reached .or. segment == m
+        next = merge(contact%master%previous(segment), contact%master%next(segment), k == 1)
+        if (reached .or. next == 0 .or. contact%is_self) exit
+        if (turns_sharply(contact%master, memory%places(:, memory%n_slave + 1:), segment, next)) exit
+        segment = next
+      end do
+    end do
+  end function is_reached
 
   !> Master segment on which the k-th end of a slave segment has its projection: of an active end
   !> that of its status, else the closest of the candidates if it is over that; 0: none. Of two that
