@@ -49,7 +49,7 @@ class Chain:
         n = len(self.x)
         first = np.arange(n if closed else n - 1)
         self.nodes = np.stack([first, (first + 1) % n], axis=1)
-        self.deepest = np.full(len(first), np.inf) if thick is None else 0.5 * np.asarray(thick)
+        self.thick = np.full(len(first), np.inf) if thick is None else np.asarray(thick)
         self.start = self.x[self.nodes[:, 0]]
         edge = self.x[self.nodes[:, 1]] - self.start
         self.length = np.hypot(edge[:, 0], edge[:, 1])
@@ -197,9 +197,9 @@ def project_one(point, chain, own, k, at, height):
     foot = Foot(edge, at[edge], height[edge], chain.normal[edge]) if edge is not None else \
         one_foot(point, chain, k, at, height)
     if foot and foot.gap < 0.0 and not (own.is_opposed(foot.normal) and
-                                        foot.gap > -chain.deepest[foot.segment]):
+                                        foot.gap > -chain.thick[foot.segment]):
         behind = [s for s in range(len(chain)) if 0.0 <= at[s] <= 1.0 and own.is_opposed(chain.normal[s])
-                  and -chain.deepest[s] < height[s] < 0.0]
+                  and -chain.thick[s] < height[s] < 0.0]
         best = max(behind, key=lambda s: height[s], default=None)
         return None if best is None else Foot(best, at[best], height[best], chain.normal[best])
     return foot
@@ -429,7 +429,7 @@ def overlaps(slave, master, k, feet, strict=False):
         if not low < high:
             continue
         middle = np.interp(0.5 * (low + high), at, gap) if at[0] < at[1] else np.mean(gap)
-        if middle < -1.5 * master.deepest[m] and m not in touched:
+        if middle < -0.75 * master.thick[m] and m not in touched:
             continue
         found.append((low, high, left, right, m))
     return sorted(found, key=lambda overlap: overlap[:2])
