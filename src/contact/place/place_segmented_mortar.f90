@@ -12,7 +12,7 @@ module place_segmented_mortar_m
   use overlaps_m, only : find_overlaps, n_most_overlaps
   use point_list_m, only : place_block_t, append_points, drop_places, weigh_points
   use overlap_status_m, only : none_due, is_due, keep_segment, judge_segment, note_next_wake
-  use tips_m, only : has_folds, sharpen_tips
+  use tips_m, only : has_folds, find_tips, sharpen_tips
   implicit none
   private
   public :: place_segmented_mortar, n_gauss, gauss_xi, least_cut
@@ -37,6 +37,7 @@ contains
     integer :: s
 
     if (none_due(memory)) return
+    if (has_folds(contact)) call find_tips(contact%slave, memory)
     memory%scratch%is_placed = .false.
     do s = 1, contact%slave%n_segment
       if (is_due(memory, s, contact%slave%segments(:, s))) &
