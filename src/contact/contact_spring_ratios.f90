@@ -35,7 +35,8 @@ contains
 
     formulation = formulation_of(contact)
     is_round = contact%is_round
-    overhang = merge(0.0_wp, beyond_ends, formulation%covers_segments .and. .not. is_strict(contact))
+    overhang = beyond_ends
+    if (formulation%covers_segments .and. .not. is_strict(contact)) overhang = 0.0_wp
     is_lonely = .false.
     if (is_round .and. allocated(memory%spot_xi)) is_lonely = size(memory%spot_xi) == 1
     associate (n => memory%n_slave, slave => memory%places(:, :memory%n_slave), &

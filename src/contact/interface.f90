@@ -52,13 +52,11 @@ contains
     type(log_t), intent(inout) :: log
     type(contact_state_t), intent(out) :: memory
     type(answers_t), intent(inout), optional :: answers
-    type(formulation_t) :: formulation
 
-    formulation = formulation_of(contact)
     call prepare_contact(contact, model, memory)
     call start_search(contact, model, memory, answers)
     if (is_tied(contact)) call start_ties(contact, model, memory)
-    call log_contact(contact, model, formulation%kind, memory, log)
+    call log_contact(contact, model, memory, log)
   end subroutine start_contact
 
   !> Who touches whom at time zero; ties take gaps within their reach as closed.
