@@ -10,7 +10,7 @@ module place_mortar_m
   use kinds_m, only : wp
   use overlaps_m, only : closest_candidate
   use point_list_m, only : place_block_t, append_points, drop_places, weigh_points
-  use tips_m, only : has_folds, belongs_to
+  use tips_m, only : has_folds, find_tips, belongs_to
   implicit none
   private
   public :: place_mortar
@@ -27,6 +27,7 @@ contains
 
     if (memory%slave_tracking%n_touching == 0) return
     m = size(memory%spot_xi)
+    if (has_folds(contact)) call find_tips(contact%slave, memory)
     call mark_ends(memory%slave_tracking, m, contact%slave%segments, memory%scratch%point_at)
     block%n = 0
     others%n = 0

@@ -13,7 +13,7 @@ module place_segmented_mortar_m
   use point_list_m, only : place_block_t, append_points, drop_places, weigh_points
   use overlap_status_m, only : none_due, look_at_segment, keep_segment, judge_segment, &
     note_next_wake
-  use tips_m, only : has_folds, sharpen_tips
+  use tips_m, only : has_folds, find_tips, sharpen_tips
   implicit none
   private
   public :: place_segmented_mortar, n_gauss, gauss_xi, least_cut
@@ -41,6 +41,7 @@ contains
 
     if (none_due(memory)) return
     allocate (overlaps(room_for_overlaps(memory)))
+    if (has_folds(contact)) call find_tips(contact%slave, memory)
     memory%scratch%is_placed = .false.
     do s = 1, contact%slave%n_segment
       call look_at_segment(contact, memory, s, is_due)
