@@ -4,7 +4,7 @@ module contact_preparation_m
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_law_m, only : pressed_at_slave_nodes
   use contact_penalty_m, only : set_penalties
-  use contact_state_m, only : contact_state_t, allocate_points, allocate_loads, &
+  use contact_state_m, only : contact_state_t, allocate_points, allocate_damping, &
     allocate_tractions, allocate_scratch, places_of_segment
   use contacts_m, only : contact_t, has_friction, is_tied, penalty_implicit
   use law_state_m, only : allocate_limit, allocate_friction, allocate_interference
@@ -53,7 +53,7 @@ contains
     if (formulation%where_pressed == pressed_at_slave_nodes) &
       allocate (memory%node_pressure(n_slave), source=0.0_wp)
     if (contact%damping > 0.0_wp) then
-      call allocate_loads(memory%points)
+      call allocate_damping(memory%points)
       allocate (memory%damping_force(2, n_slave + n_master), source=0.0_wp)
     end if
     ! Forces of the end of the step have a limit of their own, which has to know them apart from

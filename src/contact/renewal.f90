@@ -259,7 +259,7 @@ contains
         to%area(q) = from%area(p)
         to%stiffness(q) = from%stiffness(p)
         to%pressure(q) = from%pressure(p)
-        if (allocated(from%load)) to%load(:, q) = from%load(:, p)
+        if (allocated(from%damping)) to%damping(q) = from%damping(p)
         if (allocated(from%traction)) to%traction(q) = from%traction(p)
       end do
     end associate

@@ -243,7 +243,7 @@ contains
       if (fits) fits = all([size(points%slave_nodes, 2), size(points%master_nodes, 2), &
         size(points%slave_weights, 2), size(points%master_weights, 2), size(points%normal, 2), &
         size(points%area), size(points%stiffness), size(points%pressure)] == size(points%gap))
-      if (fits .and. allocated(points%load)) fits = size(points%load, 2) == size(points%gap)
+      if (fits .and. allocated(points%damping)) fits = size(points%damping) == size(points%gap)
       if (fits .and. allocated(points%traction)) fits = size(points%traction) == size(points%gap)
       call archive%expect(folder//'gap', fits, 'not as many values as the arrays beside it')
       if (allocated(archive%error)) return

@@ -24,14 +24,12 @@ module contact_state_m
   implicit none
   private
   public :: contact_state_t, contact_points_t, tracking_t, bucket_grid_t, candidates_t, pass_t, &
-    contact_scratch_t, allocate_points, allocate_loads, allocate_tractions, make_room, &
-    allocate_tracking, allocate_grid, allocate_scratch, n_side, n_load, places_of_segment, &
+    contact_scratch_t, allocate_points, allocate_damping, allocate_tractions, make_room, &
+    allocate_tracking, allocate_grid, allocate_scratch, n_side, places_of_segment, &
     is_free, is_touching
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
-  !> What a point loads its nodes with: force, and the part of it that nodes have apart as well.
-  integer, parameter :: n_load = 4
   !> Status of a contact point: separated or active.
   integer, parameter :: is_free = 0, is_touching = 1
 
@@ -47,9 +45,8 @@ module contact_state_m
     real(wp), allocatable :: area(:)           !! m (1 for type 1)
     real(wp), allocatable :: stiffness(:)      !! N/m^2 (N/m for type 1)
     real(wp), allocatable :: pressure(:)       !! N/m (N for type 1): what acts; >= 0 but in ties
-    real(wp), allocatable :: load(:, :)        !! (n_load, capacity) force on the slave side, and
-                                               !! the part of it that damping has, N/m; only where
-                                               !! there is damping
+    real(wp), allocatable :: damping(:)        !! the part of the pressure that damping has; only
+                                               !! where there is damping
     real(wp), allocatable :: traction(:)       !! as pressure, along -(-n_y, n_x) on the slave side;
                                                !! only where there is friction or a tie
   contains
@@ -228,12 +225,12 @@ contains
       points%pressure(capacity), source=0.0_wp)
   end subroutine allocate_points
 
-  !> The column of loads, for a list that is allocated.
-  pure subroutine allocate_loads(points)
+  !> The column of damping, for a list that is allocated.
+  pure subroutine allocate_damping(points)
     type(contact_points_t), intent(inout) :: points
 
-    allocate (points%load(n_load, size(points%gap)), source=0.0_wp)
-  end subroutine allocate_loads
+    allocate (points%damping(size(points%gap)), source=0.0_wp)
+  end subroutine allocate_damping
 
   !> The column of tractions, for a list that is allocated.
   pure subroutine allocate_tractions(points)
@@ -263,9 +260,9 @@ contains
     larger%area(:n) = points%area(:n)
     larger%stiffness(:n) = points%stiffness(:n)
     larger%pressure(:n) = points%pressure(:n)
-    if (allocated(points%load)) then
-      call allocate_loads(larger)
-      larger%load(:, :n) = points%load(:, :n)
+    if (allocated(points%damping)) then
+      call allocate_damping(larger)
+      larger%damping(:n) = points%damping(:n)
     end if
     if (allocated(points%traction)) then
       call allocate_tractions(larger)
@@ -349,7 +346,7 @@ contains
     call visitor%visit('area', self%area, any_length)
     call visitor%visit('stiffness', self%stiffness, any_length)
     call visitor%visit('pressure', self%pressure, any_length)
-    call visitor%visit('load', self%load, any_length)
+    call visitor%visit('damping', self%damping, any_length)
     has_traction = allocated(self%traction) ! from the start, where the deck has friction or ties
     call visitor%visit('traction', self%traction, any_length)
     call visitor%expect('traction', allocated(self%traction) .eqv. has_traction, &

@@ -243,7 +243,7 @@ contains
     memory%force = factor*memory%force
     associate (points => memory%points)
       points%pressure(:points%n) = factor*points%pressure(:points%n)
-      if (allocated(points%load)) points%load(:, :points%n) = factor*points%load(:, :points%n)
+      if (allocated(points%damping)) points%damping(:points%n) = factor*points%damping(:points%n)
       if (allocated(points%traction)) &
         points%traction(:points%n) = factor*points%traction(:points%n)
     end associate

@@ -7,6 +7,7 @@
 !> k w (b d.n - a d.t) on the segment that n and t turn with, so that the net moment vanishes.
 module ties_m
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
+  use contact_scatter_m, only : scatter, scatter_tractions
   use contacts_m, only : contact_t
   use geometry_m, only : separation
   use kinds_m, only : wp
@@ -203,12 +204,7 @@ contains
       call let_go(memory)
     end if
     call share_nodal(memory)
-    memory%n_active = 0
-    do s = 1, size(springs)
-      if (.not. holds(memory, s)) cycle
-      memory%n_active = memory%n_active + memory%ties%first(s + 1) - memory%ties%first(s)
-      call scatter_spring(springs(s), s, memory)
-    end do
+    call scatter_ties(springs, memory)
   end subroutine hold_ties
 
   !> Break what reaches its strength under the loads in the memory; what its springs hold is spent.
@@ -260,32 +256,43 @@ contains
     end associate
   end subroutine share_nodal
 
-  !> Forces of one spring: those of its points, and the couple.
-  pure subroutine scatter_spring(spring, s, memory)
+  !> Forces of all springs: those of their points, and the couples.
+  pure subroutine scatter_ties(springs, memory)
+    type(tie_spring_t), intent(in) :: springs(:)
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: part(2, size(memory%force, 2))
+    integer :: s
+
+    part = 0.0_wp
+    call scatter(memory%points, memory%points%pressure, memory%force)
+    call scatter_tractions(memory%points, part, memory%force)
+    memory%n_active = 0
+    do s = 1, size(springs)
+      if (.not. holds(memory, s)) cycle
+      memory%n_active = memory%n_active + memory%ties%first(s + 1) - memory%ties%first(s)
+      call add_couple(springs(s), s, memory)
+    end do
+  end subroutine scatter_ties
+
+  !> The moment d x load of the pair of forces of a spring is taken up by its segment.
+  pure subroutine add_couple(spring, s, memory)
     type(tie_spring_t), intent(in) :: spring
     integer, intent(in) :: s
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: load(2), total(2), couple(2)
-    integer :: p, k
+    real(wp) :: total(2), couple(2)
+    integer :: p
 
     total = 0.0_wp
     associate (points => memory%points, ties => memory%ties, force => memory%force)
       do p = ties%first(s), ties%first(s + 1) - 1
-        load = points%area(p)*(points%pressure(p)*spring%n - points%traction(p)*spring%t)
-        total = total + load
-        do k = 1, n_side
-          associate (i => points%slave_nodes(k, p), j => points%master_nodes(k, p))
-            force(:, i) = force(:, i) + points%slave_weights(k, p)*load
-            force(:, j) = force(:, j) - points%master_weights(k, p)*load
-          end associate
-        end do
+        total = total &
+          + points%area(p)*(points%pressure(p)*spring%n - points%traction(p)*spring%t)
       end do
-      ! The moment of the pair of forces, d x load, is taken up by the segment.
       couple = ties%side(s)*(spring%d(1)*total(2) - spring%d(2)*total(1))/spring%length*spring%n
       force(:, ties%owner(1, s)) = force(:, ties%owner(1, s)) - couple
       force(:, ties%owner(2, s)) = force(:, ties%owner(2, s)) + couple
     end associate
-  end subroutine scatter_spring
+  end subroutine add_couple
 
   !> What all springs store, J/m, and where the largest force is.
   pure subroutine tie_energy(memory, energy, load, node)
