@@ -7,7 +7,7 @@ module interface_m
   use closed_gap_m, only : closed_gap_of, gap_ahead
   use contact_dispatch_m, only : formulation_t, formulation_of, place_points
   use behind_ties_m, only : leave_to_tie, take_over
-  use contact_law_m, only : press_places, pressed_at_slave_nodes
+  use contact_law_m, only : press_places
   use contact_log_m, only : log_contact
   use contact_preparation_m, only : prepare_contact
   use contact_scatter_m, only : scatter_forces, join_passes
@@ -64,7 +64,7 @@ contains
     if (is_tied(contact)) memory%closed_gap = tie_reach(contact, model)
     call search_pairs(contact, 0, .false., memory)
     associate (n => memory%n_slave)
-      if (allocated(memory%spots)) then
+      if (memory%has%spots) then
         call activate_deep_points(memory%slave_tracking, model, contact%slave, contact%master, &
           memory%places, memory%spots, answers)
       else
@@ -74,7 +74,7 @@ contains
       if (memory%master_tracking%n > 0) call activate_deep_points(memory%master_tracking, model, &
         contact%master, contact%slave, memory%places, memory%places(:, n + 1:), answers)
     end associate
-    if (allocated(memory%segment_status)) &
+    if (memory%has%overlaps) &
       call activate_deep_segments(contact, model, memory, answers)
     ! Points that lie deep need pairs as deep.
     memory%listed_until = -huge(1.0_wp)
@@ -93,7 +93,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
 
-    if (allocated(memory%interference%depth)) call begin_growth(contact, time, memory)
+    if (memory%has%interference) call begin_growth(contact, time, memory)
     if (is_suspended(contact, time)) then
       call suspend_contact(motion, dt, memory)
     else if (is_tied(contact)) then
@@ -126,13 +126,13 @@ contains
     is_born = memory%is_stale .and. cycle > 0
     call find_contacts(contact, motion, cycle, memory)
     call lap(clock, phase_contact_search)
-    if (has_folds(contact) .and. formulation%where_pressed == pressed_at_slave_nodes) &
+    if (has_folds(contact) .and. memory%has%nodal_pressure) &
       call find_tips(contact%slave, memory)
     call set_forces_aside(motion, had_force, memory, apart)
     call place_points(contact, memory)
     call lap(clock, phase_contact_pairing)
     if (memory%points%n > 0) then
-      call press_places(memory%contact_law, formulation%where_pressed, memory)
+      call press_places(memory)
       if (contact%behind > 0) then
         call leave_to_tie(memory)
         call take_over(memory)
@@ -143,7 +143,7 @@ contains
       if (has_offsets(memory)) call lend(faded_work(memory), memory%limit)
       if (has_decay(contact%friction) .and. times(2) > 0.0_wp) call find_lag(memory%points, &
         memory%nodes, mass, contact%is_self, times(2), memory%scratch%nodal, memory%scratch%lag)
-      if (allocated(memory%friction%force)) &
+      if (memory%has%friction) &
         call rub_places(contact, formulation%has_unit_area, times(2), memory)
       if (contact%damping > 0.0_wp) call damp_points(memory%points, contact%damping, &
         memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
@@ -222,13 +222,13 @@ contains
       call evaluate_ties(motion, memory, force)
       return
     end if
-    if (allocated(memory%interference%depth)) call begin_growth(contact, time, memory)
+    if (memory%has%interference) call begin_growth(contact, time, memory)
     memory%is_stale = memory%is_stale .or. is_suspended(contact, time)
     memory%points%n = 0
     memory%n_active = 0
     memory%force = 0.0_wp
     memory%closed_gap = 0.0_wp
-    if (allocated(memory%friction%force)) call start_trial_slip(dt, memory)
+    if (memory%has%friction) call start_trial_slip(dt, memory)
     if (is_suspended(contact, time)) return
     call evaluate_between(contact, motion, is_first, memory, force)
   end subroutine evaluate_contact
@@ -248,18 +248,18 @@ contains
     formulation = formulation_of(contact)
     was_stale = memory%is_stale
     call gather_points(contact, motion, memory)
-    if (allocated(memory%friction%force)) call take_trial_motion(motion, memory)
+    if (memory%has%friction) call take_trial_motion(motion, memory)
     if (is_first) memory%closed_gap = closed_gap_of(contact, memory)
     memory%slave_tracking%pass%is_trial = .true.
     memory%master_tracking%pass%is_trial = .true.
     call search_pairs(contact, 0, .not. was_stale, memory)
-    if (has_folds(contact) .and. formulation%where_pressed == pressed_at_slave_nodes) &
+    if (has_folds(contact) .and. memory%has%nodal_pressure) &
       call find_tips(contact%slave, memory, motion)
     call place_points(contact, memory)
     if (memory%points%n == 0) return
-    call press_places(memory%contact_law, formulation%where_pressed, memory)
+    call press_places(memory)
     if (contact%behind > 0) call leave_to_tie(memory)
-    if (allocated(memory%friction%force)) &
+    if (memory%has%friction) &
       call rub_places(contact, formulation%has_unit_area, memory%scratch%dt, memory)
     call scatter_forces(memory)
     if (contact%is_self) call join_passes(memory)
@@ -335,7 +335,7 @@ contains
 
     if (memory%is_stale) call refresh_memory(motion, memory)
     call gather_places(motion, memory)
-    if (allocated(memory%spots)) call move_spots(contact%slave, memory%places, memory%spot_xi, &
+    if (memory%has%spots) call move_spots(contact%slave, memory%places, memory%spot_xi, &
       memory%spot_spread, memory%spots, memory%travel)
   end subroutine gather_points
 
@@ -348,7 +348,7 @@ contains
     memory%listed_until = -huge(1.0_wp)
     call forget_pairs(memory%slave_tracking)
     call forget_pairs(memory%master_tracking)
-    if (allocated(memory%segment_status)) then
+    if (memory%has%overlaps) then
       memory%segment_status = is_free
       memory%segment_gap = huge(1.0_wp)
     end if
@@ -367,7 +367,7 @@ contains
     call start_pass(memory%slave_tracking%pass)
     call start_pass(memory%master_tracking%pass)
     associate (n => memory%n_slave, increments => memory%scratch%increment)
-      if (allocated(memory%spots)) then
+      if (memory%has%spots) then
         call update_status(memory%slave_tracking, contact%slave, contact%master, &
           memory%candidates, memory%places, increments, memory%spots)
       else

@@ -45,7 +45,7 @@ contains
     memory%places(3:4, :) = motion(1:2, memory%nodes)
     call carry_scalars(old, memory)
     call carry_nodes([sides(1)%node, shifted(sides(2)%node, memory%n_slave)], old, memory)
-    if (allocated(old%friction%force)) call carry_places(sides, old, memory)
+    if (old%has%friction) call carry_places(sides, old, memory)
     call carry_points([sides(1)%node, shifted(sides(2)%node, memory%n_slave)], contact, old, memory)
     call carry_trackings(sides(1)%segment, sides(2)%segment, sides, old, memory)
     call list_touching(memory%slave_tracking)
@@ -195,10 +195,10 @@ contains
       if (k == 0) cycle
       memory%places(3:4, k) = old%places(3:4, i)
       memory%force(:, k) = old%force(:, i)
-      if (allocated(old%damping_force)) memory%damping_force(:, k) = old%damping_force(:, i)
-      if (allocated(old%friction%force)) memory%friction%force(:, k) = old%friction%force(:, i)
-      if (allocated(old%limit%velocity)) memory%limit%velocity(:, k) = old%limit%velocity(:, i)
-      if (allocated(old%node_pressure) .and. i <= old%n_slave) &
+      if (old%has%damping) memory%damping_force(:, k) = old%damping_force(:, i)
+      if (old%has%friction) memory%friction%force(:, k) = old%friction%force(:, i)
+      if (old%has%limit) memory%limit%velocity(:, k) = old%limit%velocity(:, i)
+      if (old%has%nodal_pressure .and. i <= old%n_slave) &
         memory%node_pressure(k) = old%node_pressure(i)
     end do
   end subroutine carry_nodes
@@ -315,7 +315,7 @@ contains
     call carry_tracking(old%slave_tracking, spots, master, memory%slave_tracking)
     if (memory%master_tracking%n > 0) call carry_tracking(old%master_tracking, sides(2)%node, &
       slave, memory%master_tracking)
-    if (.not. allocated(old%segment_status)) return
+    if (.not. old%has%overlaps) return
     do k = 1, size(slave)
       if (slave(k) == 0) cycle
       memory%segment_status(slave(k)) = old%segment_status(k)

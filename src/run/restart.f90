@@ -217,7 +217,7 @@ contains
     integer :: n_segments(2), n_spot
 
     call check_points(memory, folder//'points/', archive)
-    if (allocated(memory%ties%side)) call check_ties(memory, folder//'ties/', archive)
+    if (memory%has%ties) call check_ties(memory, folder//'ties/', archive)
     n_segments = [contact%slave%n_segment, contact%master%n_segment]
     n_spot = memory%n_slave
     if (allocated(memory%spot_xi)) n_spot = size(memory%spot_xi)*n_segments(1)
@@ -268,12 +268,12 @@ contains
     associate (ties => memory%ties)
       n = size(ties%side)
       n_place = memory%n_master + memory%n_slave
-      if (allocated(memory%spots)) n_place = memory%n_master + size(memory%spot_xi)*memory%n_slave
-      if (allocated(ties%state)) then
+      if (memory%has%spots) n_place = memory%n_master + size(memory%spot_xi)*memory%n_slave
+      if (memory%has%breaks) then
         call archive%expect(folder//'state', all(ties%state == is_open .or. ties%state &
           == is_held .or. ties%state == is_broken), 'numbers that mean nothing')
         call archive%expect(folder//'place', all(ties%place >= merge(0, 1, &
-          allocated(memory%node_pressure)) .and. ties%place <= n_place), &
+          memory%has%nodal_pressure) .and. ties%place <= n_place), &
           'numbers that no place of the interface has')
       end if
       call archive%expect(folder//'first', ties%first(1) == 1 &

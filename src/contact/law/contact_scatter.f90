@@ -18,9 +18,9 @@ contains
     associate (points => memory%points, n => memory%points%n)
       call scatter(points, points%pressure, memory%force)
       memory%n_active = count(points%pressure(:n) > 0.0_wp)
-      if (allocated(memory%damping_force)) &
+      if (memory%has%damping) &
         call scatter(points, points%damping, memory%damping_force)
-      if (.not. allocated(memory%friction%force)) return
+      if (.not. memory%has%friction) return
       call scatter_tractions(points, memory%friction%force, memory%force)
       memory%n_active = count(points%pressure(:n) > 0.0_wp .or. abs(points%traction(:n)) > 0.0_wp)
     end associate
@@ -79,8 +79,8 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     call join(memory%force)
-    if (allocated(memory%damping_force)) call join(memory%damping_force)
-    if (allocated(memory%friction%force)) call join(memory%friction%force)
+    if (memory%has%damping) call join(memory%damping_force)
+    if (memory%has%friction) call join(memory%friction%force)
 
   contains
 

@@ -55,7 +55,7 @@ contains
       spring = tie_spring(memory, s)
       memory%ties%offset(:, s) = [dot_product(spring%d, spring%n), dot_product(spring%d, spring%t)]
     end do
-    if (allocated(memory%node_pressure)) &
+    if (memory%has%nodal_pressure) &
       allocate (memory%ties%traction(memory%n_slave), source=0.0_wp)
   end subroutine freeze_ties
 
@@ -111,7 +111,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     logical :: has
 
-    has = allocated(memory%spots) .and. .not. allocated(memory%node_pressure)
+    has = memory%has%spots .and. .not. memory%has%nodal_pressure
   end function has_virtual_nodes
 
   !> The segment that the normal of a spring belongs to: the master's, for a virtual node the one
@@ -199,7 +199,7 @@ contains
       end do
     end associate
     call load_stretches(memory)
-    if (allocated(memory%ties%state)) then
+    if (memory%has%breaks) then
       if (strength(1) > 0.0_wp) call break_ties(strength, time, memory, n_new)
       call let_go(memory)
     end if
@@ -231,7 +231,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     associate (points => memory%points, nodal => memory%scratch%nodal, n => memory%n_slave)
-      if (.not. allocated(memory%node_pressure)) then
+      if (.not. memory%has%nodal_pressure) then
         points%pressure(:points%n) = -points%stiffness(:points%n)*points%pressure(:points%n)
         points%traction(:points%n) = points%stiffness(:points%n)*points%traction(:points%n)
         return
@@ -247,7 +247,7 @@ contains
   pure subroutine share_nodal(memory)
     type(contact_state_t), intent(inout) :: memory
 
-    if (.not. allocated(memory%node_pressure)) return
+    if (.not. memory%has%nodal_pressure) return
     associate (points => memory%points)
       call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
         points%pressure)
@@ -314,7 +314,7 @@ contains
           load = points%area(p)*sqrt(square)
           node = memory%nodes(points%slave_nodes(maxloc(points%slave_weights(:, p), 1), p))
         end if
-        if (.not. allocated(memory%node_pressure)) then
+        if (.not. memory%has%nodal_pressure) then
           energy = energy + points%area(p)*square/(2.0_wp*points%stiffness(p))
           cycle
         end if
@@ -324,7 +324,7 @@ contains
         end do
       end do
     end associate
-    if (allocated(memory%node_pressure)) energy = sum(area*(memory%node_pressure**2 &
+    if (memory%has%nodal_pressure) energy = sum(area*(memory%node_pressure**2 &
       + memory%ties%traction**2))/(2.0_wp*memory%slave_penalty)
   end subroutine tie_energy
 
