@@ -16,7 +16,7 @@ module overlaps_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: find_overlaps, n_most_overlaps, room_for_overlaps, closest_candidate
+  public :: find_overlaps, n_most_overlaps, closest_candidate
 
   !> Most segments between two active ends that are taken without a look at the candidates, and
   !> number of segments of a closed master up to which the way forwards may be the shorter one.
@@ -48,18 +48,6 @@ contains
 
     n = max(n_between, 2*(memory%candidates%first(s + 1) - memory%candidates%first(s)) + 1)
   end function n_most_overlaps
-
-  !> The same for any of them.
-  pure function room_for_overlaps(memory) result(n)
-    type(contact_state_t), intent(in) :: memory
-    integer :: n
-    integer :: s
-
-    n = 0
-    do s = 1, size(memory%candidates%first) - 1
-      n = max(n, n_most_overlaps(memory, s))
-    end do
-  end function room_for_overlaps
 
   !> Overlaps of a slave segment, in order along it.
   pure subroutine find_overlaps(contact, memory, s, is_strict, least_cut, overlaps, n)
