@@ -5,7 +5,7 @@ module tangent_mortar_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
-  use entry_offset_m, only : has_offsets, offset_at
+  use entry_offset_m, only : has_offsets, add_offsets
   use foot_m, only : foot_t, near_foot
   use kinds_m, only : wp
   use nodal_grip_m, only : add_nodal_grip
@@ -32,8 +32,11 @@ contains
     type(sparse_t), intent(inout) :: matrix
     type(varied_list_t) :: list
     type(varied_point_t) :: point
+    real(wp) :: offsets(memory%points%n)
     integer :: p
 
+    offsets = 0.0_wp
+    if (has_offsets(memory)) call add_offsets(memory, offsets)
     call start_list(list, contact%slave%n_segment, memory%points%n)
     do p = 1, memory%points%n
       associate (points => memory%points)
@@ -41,7 +44,7 @@ contains
         point%slave_xi = constant(points%slave_weights(2, p))
         call put_foot(point, spot_foot(memory%places, point, 3, points%master_weights(2, p), &
           points%gap(p), memory%closed_gap))
-        if (has_offsets(memory)) point%left = constant(offset_at(memory, p))
+        point%left = constant(offsets(p))
         point%area = length_between(memory%places, point%nodes, 1, 2) &
           *vary_share(memory%places, point%nodes, 1, point%normal)
         if (contact%is_round) point%area = point%area &
