@@ -83,7 +83,7 @@ contains
     end if
     if (contact%damping > 0.0_wp) call write_log(log, '  damping: ' &
       //to_text(contact%damping)//' of critical')
-    if (allocated(memory%friction%state)) call write_log(log, '  friction: ' &
+    if (memory%has%friction) call write_log(log, '  friction: ' &
       //friction_text(contact%friction, model%controls%units))
     if (is_tied(contact)) then
       call log_ties(contact, model, memory, log)
@@ -136,7 +136,7 @@ contains
       //': contact under the same penalty'
     if (contact%damping > 0.0_wp) text = text//', damping '//to_text(contact%damping) &
       //' of critical'
-    if (allocated(memory%friction%state)) text = text//', friction ' &
+    if (memory%has%friction) text = text//', friction ' &
       //friction_text(contact%friction, units)
     call write_log(log, text)
   end subroutine log_behind
@@ -170,7 +170,7 @@ contains
       //'stiff as one')
     is_held = tied_nodes(memory, .true.)
     n = 0
-    if (allocated(memory%ties%side)) n = size(memory%ties%side)
+    if (memory%has%ties) n = size(memory%ties%side)
     call write_log(log, '  tied: '//to_text(count(is_held(:memory%n_slave)))//' of ' &
       //to_text(memory%n_slave)//' slave nodes, '//to_text(n) &
       //' springs of area '//to_text(sum(memory%points%area(:memory%points%n))) &

@@ -8,7 +8,7 @@ module contact_results_m
   use kinds_m, only : wp
   use law_state_m, only : is_open, is_held, is_broken
   use lengths_m, only : competence_area
-  use nodal_average_m, only : average_gaps
+  use nodal_average_m, only : average_values
   use snapshot_m, only : interface_result_t, slave_result_t, rubbed_t
   use surfaces_m, only : surface_t
   use ties_m, only : tie_spring_t, tie_spring, tied_nodes
@@ -48,7 +48,7 @@ contains
       rows%node = contact%slave%nodes
       allocate (rows%arc_length(n), rows%gap(n), rows%pressure(n), rows%force(2, n), &
         rows%length(n), rows%master_pressure(memory%n_master))
-      if (allocated(memory%points%traction)) allocate (rows%rubbed(n + memory%n_master))
+      if (memory%has%friction .or. memory%has%ties) allocate (rows%rubbed(n + memory%n_master))
     end if
     allocate (places, source=memory%places)
     allocate (share(n + memory%n_master))
@@ -65,14 +65,14 @@ contains
       rows%pressure(i) = share(i)/max(rows%length(i), tiny(1.0_wp))
       rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i)
     end do
-    if (.not. allocated(memory%points%traction)) return
+    if (.not. (memory%has%friction .or. memory%has%ties)) return
     allocate (pull(n + memory%n_master))
     pull = nodal_sums(contact%is_self, memory, memory%points%traction)
     call fill_rubbed(contact%slave, 0, places(:, :n), contact%is_round, pull(:n), memory, &
       rows%rubbed(:n))
     call fill_rubbed(contact%master, n, places(:, n + 1:), contact%is_round, pull(n + 1:), memory, &
       rows%rubbed(n + 1:))
-    if (allocated(memory%ties%side)) call fill_ties(memory, rows)
+    if (memory%has%ties) call fill_ties(memory, rows)
   end subroutine slave_rows
 
   !> What ties have besides: gaps and slips of nodes as means of their springs, by area, and states.
@@ -84,7 +84,7 @@ contains
 
     rows%gap = 0.0_wp
     if (memory%points%n > 0) then
-      call average_gaps(memory%points, size(nodal, 2), nodal)
+      call average_values(memory%points, memory%points%gap, size(nodal, 2), nodal)
       rows%gap = nodal(1, :memory%n_slave)
     end if
     rows%rubbed%slip = mean_slips(memory)
@@ -187,7 +187,7 @@ contains
     integer :: near(2), n
 
     near = offset + i
-    if (allocated(memory%spots) .and. .not. allocated(memory%node_pressure)) then
+    if (memory%has%spots .and. .not. memory%has%nodal_pressure) then
       slip = 0.0_wp
       state = is_open
       if (offset > 0 .or. max(surface%incoming(i), surface%outgoing(i)) == 0) return
@@ -196,7 +196,7 @@ contains
       if (surface%incoming(i) > 0) near(2) = n*surface%segments(1, surface%incoming(i))
       if (surface%outgoing(i) == 0) near(1) = near(2)
     end if
-    if (.not. allocated(memory%friction%state)) then
+    if (.not. memory%has%friction) then
       slip = 0.0_wp
       state = is_open
       return
@@ -260,7 +260,7 @@ contains
         foot = closest_foot(contact%master, chain, place, &
           walk_to_closest(contact%master, chain, place, segment))
         if (foot%distance > tracking%reach) return
-      else if (allocated(memory%spots)) then
+      else if (memory%has%spots) then
         foot = follow_contact(contact%master, chain, place, segment)
       else
         gap = tracking%gap(spot)
@@ -279,7 +279,7 @@ contains
     integer :: spot, n, other
 
     spot = i
-    if (.not. allocated(memory%spots)) return
+    if (.not. memory%has%spots) return
     n = size(memory%spot_xi)
     other = n*slave%incoming(i)
     spot = n*(slave%outgoing(i) - 1) + 1

@@ -70,7 +70,7 @@ contains
     if (is_tied(contact)) memory%closed_gap = tie_reach(contact, model)
     call search_pairs(contact, 0, .false., memory)
     associate (n => memory%n_slave)
-      if (allocated(memory%spots)) then
+      if (memory%has%spots) then
         call activate_deep_points(memory%slave_tracking, model, contact%slave, contact%master, &
           memory%places, memory%spots, answers)
       else
@@ -80,7 +80,7 @@ contains
       if (memory%master_tracking%n > 0) call activate_deep_points(memory%master_tracking, model, &
         contact%master, contact%slave, memory%places, memory%places(:, n + 1:), answers)
     end associate
-    if (allocated(memory%segment_status)) &
+    if (memory%has%overlaps) &
       call activate_deep_segments(contact, model, memory, answers)
     ! Points that lie deep need pairs as deep.
     memory%listed_until = -huge(1.0_wp)
@@ -99,7 +99,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
 
-    if (allocated(memory%interference%depth)) call begin_growth(contact, time, memory)
+    if (memory%has%interference) call begin_growth(contact, time, memory)
     if (is_tied(contact) .and. is_alive(contact, time)) then
       call apply_ties(contact, motion, [time, dt], cycle, clock, memory, force)
     else
@@ -125,12 +125,12 @@ contains
       call evaluate_ties(motion, memory, force)
       return
     end if
-    if (allocated(memory%interference%depth)) call begin_growth(contact, time, memory)
+    if (memory%has%interference) call begin_growth(contact, time, memory)
     memory%points%n = 0
     memory%n_active = 0
     memory%force = 0.0_wp
     memory%closed_gap = 0.0_wp
-    if (allocated(memory%friction%force)) call start_trial_slip(dt, memory)
+    if (memory%has%friction) call start_trial_slip(dt, memory)
     call step_contact(contact, instant_t(time, dt, is_trial=.true., closes=is_first), motion, &
       [real(wp) ::], memory, force)
   end subroutine evaluate_contact
@@ -170,15 +170,15 @@ contains
     if (memory%scratch%waits) return
 
     if (memory%points%n > 0) then
-      call press_places(memory%contact_law, formulation%where_pressed, memory)
-      if (contact%behind > 0) call leave_to_tie(memory)
+      call press_places(memory)
+      if (memory%has%former_tie) call leave_to_tie(memory)
       if (.not. now%is_trial) call book_springs(contact, now%cycle, begins, memory)
       if (has_decay(contact%friction) .and. size(mass) > 0 .and. now%dt > 0.0_wp) &
         call find_lag(memory%points, memory%nodes, mass, contact%is_self, now%dt, &
         memory%scratch%nodal, memory%scratch%lag)
-      if (allocated(memory%friction%force)) &
+      if (memory%has%friction) &
         call rub_places(contact, formulation%has_unit_area, now%dt, memory)
-      if (contact%damping > 0.0_wp .and. .not. now%is_trial) call damp_points(memory%points, &
+      if (memory%has%damping .and. .not. now%is_trial) call damp_points(memory%points, &
         contact%damping, memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
       call scatter_forces(memory)
       if (contact%is_self) call join_passes(memory)
@@ -207,10 +207,10 @@ contains
     was_stale = memory%is_stale
     if (was_stale) call refresh_memory(motion, memory)
     call gather_places(motion, memory)
-    if (allocated(memory%spots)) call move_spots(contact%slave, memory%places, memory%spot_xi, &
+    if (memory%has%spots) call move_spots(contact%slave, memory%places, memory%spot_xi, &
       memory%spot_spread, memory%spots, memory%travel)
     if (now%is_trial) then
-      if (allocated(memory%friction%force)) call take_trial_motion(motion, memory)
+      if (memory%has%friction) call take_trial_motion(motion, memory)
       if (now%closes) memory%closed_gap = closed_gap_of(contact, memory)
     else if (contact%penalty_unit == penalty_implicit) then
       memory%closed_gap = gap_ahead(contact, now%cycle == 0 .or. was_stale, memory)
@@ -252,7 +252,7 @@ contains
     logical, intent(in) :: begins
     type(contact_state_t), intent(inout) :: memory
 
-    if (contact%behind > 0) call take_over(memory)
+    if (memory%has%former_tie) call take_over(memory)
     if (memory%watch%is_due .or. cycle == 0) call measure_springs(memory)
     if (cycle == 0) memory%energy = memory%watch%stored
     if (begins) memory%limit%credit = memory%limit%credit + memory%watch%stored
@@ -309,7 +309,7 @@ contains
     memory%listed_until = -huge(1.0_wp)
     call forget_pairs(memory%slave_tracking)
     call forget_pairs(memory%master_tracking)
-    if (allocated(memory%segment_status)) then
+    if (memory%has%overlaps) then
       memory%segment_status = is_free
       memory%segment_gap = huge(1.0_wp)
     end if
@@ -328,7 +328,7 @@ contains
     call start_pass(memory%slave_tracking%pass)
     call start_pass(memory%master_tracking%pass)
     associate (n => memory%n_slave, increments => memory%scratch%increment)
-      if (allocated(memory%spots)) then
+      if (memory%has%spots) then
         call update_status(memory%slave_tracking, contact%slave, contact%master, &
           memory%candidates, memory%places, increments, memory%spots)
       else

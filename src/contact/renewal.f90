@@ -45,7 +45,7 @@ contains
     memory%places(3:4, :) = motion(1:2, memory%nodes)
     call carry_scalars(old, memory)
     call carry_nodes([sides(1)%node, shifted(sides(2)%node, memory%n_slave)], old, memory)
-    if (allocated(old%friction%force)) call carry_places(sides, old, memory)
+    if (old%has%friction) call carry_places(sides, old, memory)
     call carry_points([sides(1)%node, shifted(sides(2)%node, memory%n_slave)], contact, old, memory)
     call carry_trackings(sides(1)%segment, sides(2)%segment, sides, old, memory)
     call form_springs(memory)
@@ -184,10 +184,10 @@ contains
     to = now(from)
     memory%places(3:4, to) = old%places(3:4, from)
     memory%force(:, to) = old%force(:, from)
-    if (allocated(old%damping_force)) memory%damping_force(:, to) = old%damping_force(:, from)
-    if (allocated(old%friction%force)) memory%friction%force(:, to) = old%friction%force(:, from)
-    if (allocated(old%limit%velocity)) memory%limit%velocity(:, to) = old%limit%velocity(:, from)
-    if (.not. allocated(old%node_pressure)) return
+    if (old%has%damping) memory%damping_force(:, to) = old%damping_force(:, from)
+    if (old%has%friction) memory%friction%force(:, to) = old%friction%force(:, from)
+    if (old%has%limit) memory%limit%velocity(:, to) = old%limit%velocity(:, from)
+    if (.not. old%has%nodal_pressure) return
     from = pack(from, from <= old%n_slave)
     memory%node_pressure(now(from)) = old%node_pressure(from)
   end subroutine carry_nodes
@@ -240,7 +240,7 @@ contains
         to%area(q) = from%area(p)
         to%stiffness(q) = from%stiffness(p)
         to%pressure(q) = from%pressure(p)
-        if (allocated(from%load)) to%load(:, q) = from%load(:, p)
+        if (allocated(from%damping)) to%damping(q) = from%damping(p)
         if (allocated(from%traction)) to%traction(q) = from%traction(p)
       end do
     end associate
@@ -285,14 +285,14 @@ contains
     integer :: k, q, n
 
     spots = sides(1)%node
-    if (allocated(old%spot_xi)) then
+    if (old%has%spots) then
       n = size(old%spot_xi)
       spots = [((merge((slave(k) - 1)*n + q, 0, slave(k) > 0), q=1, n), k=1, size(slave))]
     end if
     call carry_tracking(old%slave_tracking, spots, master, memory%slave_tracking)
     if (memory%master_tracking%n > 0) call carry_tracking(old%master_tracking, sides(2)%node, &
       slave, memory%master_tracking)
-    if (.not. allocated(old%segment_status)) return
+    if (.not. old%has%overlaps) return
     from = pack([(k, k=1, size(slave))], slave > 0)
     memory%segment_status(slave(from)) = old%segment_status(from)
     memory%segment_gap(slave(from)) = old%segment_gap(from)

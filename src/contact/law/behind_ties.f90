@@ -3,11 +3,10 @@
 !> (doc/theory/contact.md, section 6.4). The tie tells it its places before each call.
 module behind_ties_m
   use contact_law_m, only : density_of
-  use contact_state_m, only : contact_state_t, n_side
-  use friction_m, only : place_at
+  use contact_state_m, only : contact_state_t, place_at, n_side
   use law_state_m, only : is_held, is_broken
   use kinds_m, only : wp
-  use nodal_average_m, only : average_gaps, share_out
+  use nodal_average_m, only : average_values, share_out
   implicit none
   private
   public :: hear_tie, leave_to_tie, take_over, settle_with_tie, is_left_to_tie
@@ -46,7 +45,7 @@ contains
     integer :: s, p, k
 
     is_left = tie%ties%state == is_held
-    if (allocated(tie%spots) .or. allocated(tie%node_pressure)) return
+    if (tie%has%spots .or. tie%has%nodal_pressure) return
     associate (ties => tie%ties, points => tie%points)
       do s = 1, size(ties%side)
         if (ties%state(ties%place(s)) /= is_held) cycle
@@ -67,7 +66,7 @@ contains
     integer :: p
 
     associate (points => memory%points)
-      if (allocated(memory%node_pressure)) then
+      if (memory%has%nodal_pressure) then
         where (memory%scratch%is_left(:memory%n_slave)) memory%node_pressure = 0.0_wp
         call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
           points%pressure)
@@ -88,8 +87,8 @@ contains
 
     associate (scratch => memory%scratch, points => memory%points)
       if (.not. scratch%has_freed) return
-      if (allocated(memory%node_pressure)) then
-        call average_gaps(points, memory%n_slave, nodal)
+      if (memory%has%nodal_pressure) then
+        call average_values(points, points%gap, memory%n_slave, nodal)
         do p = 1, memory%n_slave
           if (scratch%is_freed(p)) scratch%taken = scratch%taken + nodal(2, p) &
             *density_of(memory%contact_law, memory%slave_penalty, nodal(1, p))
@@ -128,7 +127,7 @@ contains
     logical :: is_left
 
     is_left = .false.
-    if (allocated(memory%scratch%is_left)) is_left = memory%scratch%is_left(place)
+    if (memory%has%former_tie) is_left = memory%scratch%is_left(place)
   end function is_left_to_tie
 
 end module behind_ties_m

@@ -2,12 +2,9 @@
 !> Energy of the springs of an interface, of those whose points are on the list.
 module contact_springs_m
   use behind_ties_m, only : is_left_to_tie
-  use entry_offset_m, only : has_offsets, average_with_offsets
-  use contact_law_m, only : density_of
-  use contact_state_m, only : contact_state_t
+  use contact_law_m, only : find_gaps, density_of
+  use contact_state_m, only : contact_state_t, place_at
   use law_state_m, only : contact_watch_t
-  use friction_m, only : place_at
-  use interference_m, only : eased_gap, ease_nodes
   use kinds_m, only : wp
   use ties_m, only : tie_energy
   implicit none
@@ -29,36 +26,29 @@ contains
   !> largest force is. What broken ties held counts as theirs.
   pure subroutine measure_springs(memory)
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: gap
+    real(wp) :: gaps(max(memory%points%n, memory%n_slave))
     integer :: i
 
     memory%watch%stored = 0.0_wp
     memory%watch%load = 0.0_wp
-    if (allocated(memory%ties%side)) then
+    if (memory%has%ties) then
       call tie_energy(memory, memory%watch%stored, memory%watch%load, memory%watch%node)
       memory%watch%stored = memory%watch%stored + memory%ties%spent
       return
     end if
+    call find_gaps(memory, gaps)
     associate (watch => memory%watch, points => memory%points, nodal => memory%scratch%nodal)
-      if (allocated(memory%node_pressure)) then
-        call average_with_offsets(memory, nodal)
-        if (allocated(memory%interference%depth)) &
-          call ease_nodes(memory%interference, memory%n_slave, nodal)
+      if (memory%has%nodal_pressure) then
         do i = 1, memory%n_slave
           if (is_left_to_tie(memory, i)) cycle
           call add_spring(nodal(2, i)*density_of(memory%contact_law, memory%slave_penalty, &
-            nodal(1, i)), nodal(2, i)*memory%node_pressure(i), memory%nodes(i), watch)
+            gaps(i)), nodal(2, i)*memory%node_pressure(i), memory%nodes(i), watch)
         end do
       else
         do i = 1, points%n
-          if (allocated(memory%scratch%is_left)) then
-            if (memory%scratch%is_left(place_at(memory, i))) cycle
-          end if
-          gap = points%gap(i)
-          if (allocated(memory%interference%depth) .or. has_offsets(memory)) &
-            gap = eased_gap(memory, i)
+          if (is_left_to_tie(memory, place_at(memory, i))) cycle
           call add_spring(points%area(i)*density_of(memory%contact_law, points%stiffness(i), &
-            gap), points%area(i)*points%pressure(i), &
+            gaps(i)), points%area(i)*points%pressure(i), &
             memory%nodes(points%slave_nodes(maxloc(points%slave_weights(:, i), 1), i)), watch)
         end do
       end if

@@ -157,7 +157,7 @@ contains
     integer :: node, nearest
 
     node = memory%points%slave_nodes(k, first)
-    if (.not. allocated(memory%spots)) then
+    if (.not. memory%has%spots) then
       associate (tracking => memory%slave_tracking)
         if (tracking%status(node) == is_touching) then
           foot%segment = tracking%segment(node)

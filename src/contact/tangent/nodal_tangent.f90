@@ -110,7 +110,7 @@ contains
     real(wp) :: eased(size(moment))
 
     eased = moment
-    if (allocated(memory%interference%depth)) eased = moment + memory%interference%left &
+    if (memory%has%interference) eased = moment + memory%interference%left &
       *memory%interference%depth(:size(moment))*content
   end function eased_moment
 

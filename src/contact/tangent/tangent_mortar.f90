@@ -49,7 +49,7 @@ contains
       end associate
     end do
     call add_nodal_tangent(contact, memory, list, equations, matrix)
-    if (allocated(memory%friction%force)) &
+    if (memory%has%friction) &
       call add_nodal_grip(contact, memory, list, equations, matrix)
   end subroutine add_mortar_tangent
 
@@ -72,7 +72,7 @@ contains
       if (has_folds(contact)) call vary_ends(memory, contact%slave%segments(:, s), s, list)
     end do
     call add_nodal_tangent(contact, memory, list, equations, matrix)
-    if (allocated(memory%friction%force)) &
+    if (memory%has%friction) &
       call add_nodal_grip(contact, memory, list, equations, matrix)
   end subroutine add_segmented_mortar_tangent
 
