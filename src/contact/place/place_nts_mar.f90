@@ -11,10 +11,11 @@ module place_nts_mar_m
   use kinds_m, only : wp
   use lengths_m, only : competence_area
   use overlap_m, only : overlap_t
-  use overlaps_m, only : find_overlaps, n_most_overlaps
+  use overlaps_m, only : find_overlaps, room_for_overlaps
   use radii_m, only : end_radius, radius_between
   use point_list_m, only : place_block_t, append_points, append_touching, add_length
-  use overlap_status_m, only : none_due, is_due, keep_segment, judge_segment, note_next_wake
+  use overlap_status_m, only : none_due, look_at_segment, keep_segment, judge_segment, &
+    note_next_wake
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -28,9 +29,12 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(place_block_t) :: cuts
+    type(overlap_t), allocatable :: overlaps(:)
     integer :: s, n, k
+    logical :: is_due
 
     if (none_due(memory)) return
+    allocate (overlaps(room_for_overlaps(memory)))
     call append_touching(memory%slave_tracking, contact%master, [0, memory%n_slave], 0.0_wp, &
       memory%slave_penalty, memory%points)
     n = memory%points%n
@@ -39,8 +43,8 @@ contains
     end do
     cuts%n = 0
     do s = 1, contact%slave%n_segment
-      if (is_due(memory, s, contact%slave%segments(:, s))) &
-        call place_segment(contact, s, memory, cuts)
+      call look_at_segment(contact, memory, s, is_due)
+      if (is_due) call place_segment(contact, s, memory, cuts, overlaps)
     end do
     call append_points(cuts, memory%slave_penalty, memory%points)
     call note_next_wake(memory)
@@ -49,75 +53,73 @@ contains
   end subroutine place_nts_mar
 
   !> Divide a slave segment among its ends and the master nodes at its breakpoints, and judge it.
-  pure subroutine place_segment(contact, s, memory, cuts)
+  pure subroutine place_segment(contact, s, memory, cuts, overlaps)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: s
     type(contact_state_t), intent(inout) :: memory
     type(place_block_t), intent(inout) :: cuts
-    type(overlap_t) :: overlaps(n_most_overlaps(memory, s))
-    real(wp) :: halves(2, size(overlaps)), deepest
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
+    real(wp) :: deepest
     integer :: ends(2), n, n_before, n_points
     logical :: counts
 
     ends = contact%slave%segments(:, s)
     call find_overlaps(contact, memory, s, contact%strict, round_off, overlaps, n)
-    call halve_overlaps(contact, memory%places(:, ends(1)), memory%places(:, ends(2)), &
-      overlaps(:n), halves)
     if (cuts%n + n > n_block) call append_points(cuts, memory%slave_penalty, memory%points)
     n_before = cuts%n
     n_points = memory%points%n
-    call share_halves(ends, overlaps(:n), halves, memory, cuts, deepest)
+    call share_halves(contact, ends, overlaps(:n), memory, cuts, deepest)
     if (all(memory%slave_tracking%status(ends) == is_touching)) then
       call keep_segment(deepest < memory%closed_gap, memory%travel, memory%segment_status(s), &
         memory%segment_wake(s))
     else
-      call judge_segment(contact, memory, s, ends, deepest, counts)
+      call judge_segment(memory, s, ends, deepest, counts)
       if (.not. counts) call drop_last(n_points, n_before, memory%points, cuts)
     end if
   end subroutine place_segment
 
-  !> Half of each overlap, as far as it counts, for either of its ends; in axisymmetry weighted with
+  !> Half of an overlap, as far as it counts, for either of its ends, m; in axisymmetry weighted with
   !> the radius, so that they differ. With the strict rule all of it counts.
-  pure subroutine halve_overlaps(contact, a, b, overlaps, halves)
+  pure function halves_of(contact, a, b, length, overlap) result(halves)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in) :: a(4), b(4)     !! ends of the slave segment
-    type(overlap_t), intent(in) :: overlaps(:)
-    real(wp), intent(out) :: halves(:, :)  !! (2, overlaps) m
-    real(wp) :: length, low, high
-    integer :: k
+    real(wp), intent(in) :: length         !! of that, m
+    type(overlap_t), intent(in) :: overlap
+    real(wp) :: halves(2)
+    real(wp) :: low, high
 
-    length = segment_length(a, b)
-    do k = 1, size(overlaps)
-      halves(:, k) = 0.5_wp*(overlaps(k)%high - overlaps(k)%low)*length
-      if (.not. contact%strict) halves(:, k) = halves(:, k)*overlaps(k)%share
-      if (.not. contact%is_round) cycle
-      low = radius_between(a, b, overlaps(k)%low)
-      high = radius_between(a, b, overlaps(k)%high)
-      halves(1, k) = halves(1, k)*end_radius(low, high)
-      halves(2, k) = halves(2, k)*end_radius(high, low)
-    end do
-  end subroutine halve_overlaps
+    halves = 0.5_wp*(overlap%high - overlap%low)*length
+    halves = halves*merge(overlap%part, overlap%share, contact%strict)
+    if (.not. contact%is_round) return
+    low = radius_between(a, b, overlap%low)
+    high = radius_between(a, b, overlap%high)
+    halves(1) = halves(1)*end_radius(low, high)
+    halves(2) = halves(2)*end_radius(high, low)
+  end function halves_of
 
   !> What stands at the end of an overlap has half of it and half of the next; between overlaps with
   !> two bodies two nodes may stand there.
-  pure subroutine share_halves(ends, overlaps, halves, memory, cuts, deepest)
+  pure subroutine share_halves(contact, ends, overlaps, memory, cuts, deepest)
+    type(contact_t), intent(in) :: contact
     integer, intent(in) :: ends(2)       !! nodes of the slave segment
     type(overlap_t), intent(in) :: overlaps(:)
-    real(wp), intent(in) :: halves(:, :) !! (2, overlaps) m
     type(contact_state_t), intent(inout) :: memory
     type(place_block_t), intent(inout) :: cuts
     real(wp), intent(out) :: deepest     !! smallest gap of its master nodes, m
-    real(wp) :: length
+    real(wp) :: length, whole, halves(2)
     integer :: k, node
     logical :: is_first
 
     deepest = huge(1.0_wp)
     if (size(overlaps) == 0) return
+    whole = segment_length(memory%places(:, ends(1)), memory%places(:, ends(2)))
     node = overlaps(1)%first
     is_first = .true.
     length = 0.0_wp
     do k = 1, size(overlaps)
       if (.not. overlaps(k)%high > overlaps(k)%low) cycle
+      halves = halves_of(contact, memory%places(:, ends(1)), memory%places(:, ends(2)), whole, &
+        overlaps(k))
       if (overlaps(k)%first /= node) then
         if (node > 0) call add_cut(ends, node, length, memory, cuts, deepest)
         node = overlaps(k)%first
@@ -128,17 +130,17 @@ contains
         ! No node stands between two overlaps: either belongs to its own end.
         call add_length(memory%points, memory%scratch%point_at(ends(1)), length)
         node = overlaps(k)%last
-        length = sum(halves(:, k))
+        length = sum(halves)
         cycle
       end if
-      length = length + halves(1, k)
+      length = length + halves(1)
       if (node > 0) then
         call add_cut(ends, node, length, memory, cuts, deepest)
       else
         call add_length(memory%points, memory%scratch%point_at(ends(1)), length)
       end if
       node = overlaps(k)%last
-      length = halves(2, k)
+      length = halves(2)
       is_first = .false.
     end do
     if (node > 0) then

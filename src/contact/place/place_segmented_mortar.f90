@@ -9,9 +9,10 @@ module place_segmented_mortar_m
   use geometry_m, only : separation
   use kinds_m, only : wp
   use overlap_m, only : overlap_t
-  use overlaps_m, only : find_overlaps, n_most_overlaps
+  use overlaps_m, only : find_overlaps, room_for_overlaps
   use point_list_m, only : place_block_t, append_points, drop_places, weigh_points
-  use overlap_status_m, only : none_due, is_due, keep_segment, judge_segment, note_next_wake
+  use overlap_status_m, only : none_due, look_at_segment, keep_segment, judge_segment, &
+    note_next_wake
   use tips_m, only : has_folds, sharpen_tips
   implicit none
   private
@@ -34,18 +35,21 @@ contains
   pure subroutine place_segmented_mortar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
+    type(overlap_t), allocatable :: overlaps(:)
     integer :: s
+    logical :: is_due
 
     if (none_due(memory)) return
+    allocate (overlaps(room_for_overlaps(memory)))
     memory%scratch%is_placed = .false.
     do s = 1, contact%slave%n_segment
-      if (is_due(memory, s, contact%slave%segments(:, s))) &
-        call place_segment(contact, s, .true., memory)
+      call look_at_segment(contact, memory, s, is_due)
+      if (is_due) call place_segment(contact, s, .true., memory, overlaps)
     end do
     call note_next_wake(memory)
     if (any(memory%points%gap(:memory%points%n) < memory%closed_gap) &
       .or. (has_folds(contact) .and. memory%slave_tracking%n_touching > 0)) then
-      call place_neighbours(contact, memory)
+      call place_neighbours(contact, memory, overlaps)
     else
       memory%points%n = 0
     end if
@@ -54,9 +58,10 @@ contains
   end subroutine place_segmented_mortar
 
   !> Neighbours of segments in contact that have not been placed.
-  pure subroutine place_neighbours(contact, memory)
+  pure subroutine place_neighbours(contact, memory, overlaps)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
     integer :: neighbours(2), s, k
 
     do s = 1, contact%slave%n_segment
@@ -66,18 +71,18 @@ contains
         if (neighbours(k) == 0) cycle
         if (memory%scratch%is_placed(neighbours(k))) cycle
         memory%scratch%is_placed(neighbours(k)) = .true.
-        call place_segment(contact, neighbours(k), .false., memory)
+        call place_segment(contact, neighbours(k), .false., memory, overlaps)
       end do
     end do
   end subroutine place_neighbours
 
   !> The points of one slave segment; one that may touch is judged by them.
-  pure subroutine place_segment(contact, s, may_touch, memory)
+  pure subroutine place_segment(contact, s, may_touch, memory, overlaps)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: s
     logical, intent(in) :: may_touch
     type(contact_state_t), intent(inout) :: memory
-    type(overlap_t) :: overlaps(n_most_overlaps(memory, s))
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
     type(place_block_t) :: block
     real(wp) :: deepest
     integer :: ends(2), n_before, n, first
@@ -94,35 +99,30 @@ contains
       call append_points(block, memory%slave_penalty, memory%points)
     end do
     if (.not. may_touch) return
-    call judge_points(contact, memory, s, all(memory%slave_tracking%status(ends) == is_touching), &
-      deepest, counts)
+    call judge_points(memory, s, ends, deepest, counts)
     if (.not. counts) memory%points%n = n_before
   end subroutine place_segment
 
   !> Whether the points of a segment count. Where neither they nor an end of it is in contact they
   !> are left to the neighbours, like those of a segment that sleeps: so sums over the points of a
   !> node do not depend on who sleeps.
-  pure subroutine judge_points(contact, memory, s, touches, deepest, counts)
-    type(contact_t), intent(in) :: contact
+  pure subroutine judge_points(memory, s, ends, deepest, counts)
     type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: s
-    logical, intent(in) :: touches  !! both ends are in contact
-    real(wp), intent(in) :: deepest !! smallest gap of its points, m
+    integer, intent(in) :: s, ends(2) !! segment, its nodes
+    real(wp), intent(in) :: deepest   !! smallest gap of its points, m
     logical, intent(out) :: counts
 
     counts = .true.
     memory%scratch%is_placed(s) = .true.
-    if (touches) then
+    if (all(memory%slave_tracking%status(ends) == is_touching)) then
       call keep_segment(deepest < memory%closed_gap, memory%travel, memory%segment_status(s), &
         memory%segment_wake(s))
       return
     end if
-    associate (ends => contact%slave%segments(:, s))
-      call judge_segment(contact, memory, s, ends, deepest, counts)
-      if (.not. counts .or. deepest < memory%closed_gap) return
-      counts = any(memory%slave_tracking%status(ends) == is_touching)
-      memory%scratch%is_placed(s) = counts
-    end associate
+    call judge_segment(memory, s, ends, deepest, counts)
+    if (.not. counts .or. deepest < memory%closed_gap) return
+    counts = any(memory%slave_tracking%status(ends) == is_touching)
+    memory%scratch%is_placed(s) = counts
   end subroutine judge_points
 
   !> Gauss points of some overlaps of a slave segment, each over its master segment or whatever is
@@ -206,7 +206,7 @@ contains
           block%nodes(:, p) = memory%n_slave + contact%master%segments(:, feet%segment(p))
         end if
         if (block%area(p) > 0.0_wp) block%area(p) = 0.5_wp*(overlap%high - overlap%low)*length &
-          *facing_share((own(2)*feet%normal(1, p) - own(1)*feet%normal(2, p))/length)
+          *overlap%part*facing_share((own(2)*feet%normal(1, p) - own(1)*feet%normal(2, p))/length)
       end associate
     end do
   end subroutine place_odd

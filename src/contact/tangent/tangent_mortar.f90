@@ -120,7 +120,7 @@ contains
         memory%closed_gap))
       share = vary_share(memory%places, point%nodes, 1, point%normal)
       if (.not. share%value > 0.0_wp) cycle
-      point%area = 0.5_wp*share*length
+      point%area = (0.5_wp*overlaps(k)%part)*(share*length)
       if (contact%is_round) point%area = point%area &
         *vary_radius(memory%places, point%nodes, 1, 2, point%slave_xi)
       call append_point(list, s, point)
