@@ -127,7 +127,7 @@ contains
         point%slave_xi)
       share = vary_share(memory%places, point%nodes, 1, point%normal)
       if (.not. share%value > 0.0_wp) cycle
-      point%area = 0.5_wp*share*length
+      point%area = (0.5_wp*overlaps(k)%part)*(share*length)
       if (contact%is_round) point%area = point%area &
         *vary_radius(memory%places, point%nodes, 1, 2, point%slave_xi)
       call append_point(list, s, point)
