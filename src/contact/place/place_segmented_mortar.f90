@@ -9,9 +9,9 @@ module place_segmented_mortar_m
   use geometry_m, only : separation
   use kinds_m, only : wp
   use overlap_m, only : overlap_t
-  use overlaps_m, only : find_overlaps, n_most_overlaps
+  use overlaps_m, only : find_overlaps, room_for_overlaps
   use point_list_m, only : place_block_t, append_points, finish_segment_points
-  use overlap_status_m, only : none_due, is_due, note_next_wake
+  use overlap_status_m, only : none_due, look_at_segment, note_next_wake
   use segment_points_m, only : judge_segments
   use tips_m, only : has_folds, sharpen_tips
   implicit none
@@ -35,15 +35,18 @@ contains
   pure subroutine place_segmented_mortar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
+    type(overlap_t), allocatable :: overlaps(:)
     type(place_block_t) :: block
     integer :: s, n
+    logical :: is_due
 
     if (none_due(memory)) return
+    allocate (overlaps(room_for_overlaps(memory)))
     memory%scratch%is_placed = .false.
     block%n = 0
     do s = 1, contact%slave%n_segment
-      if (is_due(memory, s, contact%slave%segments(:, s))) &
-        call place_segment(contact, s, memory, block)
+      call look_at_segment(contact, memory, s, is_due)
+      if (is_due) call place_segment(contact, s, memory, overlaps, block)
     end do
     call finish_block(contact, memory, block)
     call judge_segments(contact, 0, memory)
@@ -51,7 +54,7 @@ contains
     n = memory%points%n
     if (any(memory%points%gap(:n) < memory%closed_gap .and. memory%points%area(:n) > 0.0_wp) &
       .or. (has_folds(contact) .and. memory%slave_tracking%n_touching > 0)) then
-      call place_neighbours(contact, memory, block)
+      call place_neighbours(contact, memory, overlaps, block)
     else
       memory%points%n = 0
     end if
@@ -60,9 +63,10 @@ contains
   end subroutine place_segmented_mortar
 
   !> Neighbours of segments in contact that have not been placed.
-  pure subroutine place_neighbours(contact, memory, block)
+  pure subroutine place_neighbours(contact, memory, overlaps, block)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
     type(place_block_t), intent(inout) :: block !! empty
     integer :: neighbours(2), s, k
 
@@ -72,19 +76,19 @@ contains
       do k = 1, 2
         if (neighbours(k) == 0) cycle
         if (.not. memory%scratch%is_placed(neighbours(k))) &
-          call place_segment(contact, neighbours(k), memory, block)
+          call place_segment(contact, neighbours(k), memory, overlaps, block)
       end do
     end do
     call finish_block(contact, memory, block)
   end subroutine place_neighbours
 
   !> The points of one slave segment, with areas as if they were opposed to the master entirely.
-  pure subroutine place_segment(contact, s, memory, block)
+  pure subroutine place_segment(contact, s, memory, overlaps, block)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: s
     type(contact_state_t), intent(inout) :: memory
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
     type(place_block_t), intent(inout) :: block
-    type(overlap_t) :: overlaps(n_most_overlaps(memory, s))
     real(wp) :: own(2), other(2), way(2), length
     integer :: ends(2), nodes(2), n, k, q, p
 

@@ -39,7 +39,7 @@ contains
             memory%segment_wake(s))
           cycle
         end if
-        call judge_segment(contact, memory, s, ends, deepest, counts)
+        call judge_segment(memory, s, ends, deepest, counts)
         if (counts .and. .not. deepest < memory%closed_gap) then
           counts = any(memory%slave_tracking%status(ends) == is_touching)
           memory%scratch%is_placed(s) = counts
