@@ -9,8 +9,8 @@ module foot_m
   use surfaces_m, only : surface_t, meets_axis
   implicit none
   private
-  public :: foot_t, mark_t, see_segment, closest_foot, near_foot, stays_over, vector_of, face_foot, &
-    follow_contact, walk_to_closest, walk_to_mark, is_over_segment, turns_gently, &
+  public :: foot_t, mark_t, see_segment, closest_foot, near_foot, stays_over, vector_of, &
+    face_foot, follow_contact, walk_to_closest, walk_to_mark, is_over_segment, turns_gently, &
     facing_share, side_share, end_tolerance, gentle_turn, side_on, face_on, least_excess, &
     most_excess, round_off
 

@@ -105,8 +105,8 @@ contains
 
   !> Odd places behind their segments that stay: over them, and no nearer to the neighbour at the
   !> one end that is nearer than the place is deep. Most feet on nodes of a chain that turns
-  !> gently are such. A decision as a number: with `.and.` and `.or.` of all its parts the loop would
-  !> not be vectorised.
+  !> gently are such. A decision as a number: with `.and.` and `.or.` of all its parts the loop
+  !> would not be vectorised.
   pure subroutine keep_near_nodes(n, t, d, xi, beside, odd, n_odd)
     integer, intent(in) :: n
     real(wp), intent(in) :: t(2, n), d(2, n), xi(n), beside(2, n)
