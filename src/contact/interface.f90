@@ -29,7 +29,7 @@ module interface_m
   use model_m, only : model_t
   use spots_m, only : move_spots
   use tied_interface_m, only : start_ties, apply_ties, evaluate_ties, tie_reach
-  use contact_status_m, only : update_status, forget_pairs, measure_depths
+  use contact_status_m, only : update_status, forget_pairs
   implicit none
   private
   public :: start_contact, resume_contact, apply_contact, evaluate_contact
@@ -277,8 +277,6 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     call list_candidates(contact, memory)
-    call measure_depths(memory%slave_tracking)
-    call measure_depths(memory%master_tracking)
     call form_springs(memory)
   end subroutine resume_contact
 

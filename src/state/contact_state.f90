@@ -97,7 +97,6 @@ module contact_state_m
     integer :: n_released = 0                !! first contacts deeper than the limit so far
     real(wp), allocatable :: spot_depth(:)   !! (n) deepest first contact of a point, m
     real(wp), allocatable :: segment_depth(:) !! (n_segment) deepest first contact of a segment, m
-    real(wp) :: deepest = huge(1.0_wp)       !! largest of these, m
     real(wp) :: shallowest = huge(1.0_wp)    !! smallest of both, m
     type(pass_t) :: pass                     !! of the present call
   contains
@@ -391,6 +390,7 @@ contains
     call visitor%visit('wake', self%wake)
     call visitor%visit('spot_depth', self%spot_depth)
     call visitor%visit('segment_depth', self%segment_depth)
+    call visitor%visit('shallowest', self%shallowest)
   end subroutine visit_tracking
 
   !> Its components.

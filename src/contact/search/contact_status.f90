@@ -11,7 +11,7 @@ module contact_status_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: update_status, list_touching, measure_depths, forget_pairs
+  public :: update_status, list_touching, forget_pairs
 
 contains
 
@@ -213,16 +213,6 @@ contains
     tracking%gap(i) = foot%gap
     tracking%normal(:, i) = foot%normal
   end subroutine store_foot
-
-  !> Largest and smallest depth of first contacts.
-  pure subroutine measure_depths(tracking)
-    type(tracking_t), intent(inout) :: tracking
-
-    if (allocated(tracking%segment_depth)) tracking%deepest = maxval([0.0_wp, &
-      tracking%segment_depth], mask=[0.0_wp, tracking%segment_depth] < huge(1.0_wp))
-    if (allocated(tracking%spot_depth)) tracking%shallowest = minval([tracking%spot_depth, &
-      tracking%segment_depth])
-  end subroutine measure_depths
 
   !> Start anew: all points are separated and looked at in the next call.
   pure subroutine forget_pairs(tracking)

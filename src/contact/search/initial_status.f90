@@ -5,7 +5,7 @@
 !> (doc/theory/contact.md, section 3.4).
 module initial_status_m
   use contact_state_m, only : contact_state_t, tracking_t, allocate_tracking, is_free, is_touching
-  use contact_status_m, only : list_touching, measure_depths
+  use contact_status_m, only : list_touching
   use contacts_m, only : contact_t, is_tied
   use element_finder_m, only : element_finder_t, start_finder, is_inside_body
   use foot_m, only : foot_t, closest_foot, see_segment
@@ -108,7 +108,7 @@ contains
       tracking%spot_depth = tracking%reach
       tracking%segment_depth = tracking%reach
     end if
-    call measure_depths(tracking)
+    tracking%shallowest = min(minval(tracking%spot_depth), minval(tracking%segment_depth))
   end subroutine set_depths
 
   !> Initial length of a segment, m.
