@@ -2,7 +2,7 @@
 !> Tangent of ties: the second derivative of what their springs store (doc/theory/contact.md,
 !> section 9.9).
 module tangent_ties_m
-  use assembly_m, only : pattern_t, start_pattern, use_node, add_product
+  use assembly_m, only : product_t, start_product, add_to_row, add_to_column, finish_product
   use contact_state_m, only : contact_state_t, n_side
   use kinds_m, only : wp
   use sparse_m, only : sparse_t
@@ -22,23 +22,23 @@ contains
     type(contact_state_t), intent(in) :: memory
     integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
     type(sparse_t), intent(inout) :: matrix
-    type(pattern_t) :: pattern
+    type(product_t) :: product
     integer :: s
 
-    call start_pattern(pattern, memory%n_slave + memory%n_master)
+    call start_product(product, memory%n_slave + memory%n_master)
     do s = 1, size(memory%ties%side)
-      call add_turns(memory, s, pattern, equations, matrix)
+      call add_turns(memory, s, product, equations, matrix)
       if (memory%has%nodal_pressure .or. .not. holds(memory, s)) cycle
-      call add_stretches(memory, s, pattern, equations, matrix)
+      call add_stretches(memory, s, product, equations, matrix)
     end do
-    if (memory%has%nodal_pressure) call add_nodal(memory, pattern, equations, matrix)
+    if (memory%has%nodal_pressure) call add_nodal(memory, product, equations, matrix)
   end subroutine add_tie_tangent
 
   !> Both stretches of a spring: k w (grad a grad a^T + grad b grad b^T).
-  pure subroutine add_stretches(memory, s, pattern, equations, matrix)
+  pure subroutine add_stretches(memory, s, product, equations, matrix)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
-    type(pattern_t), intent(inout) :: pattern
+    type(product_t), intent(inout) :: product
     integer, intent(in), contiguous :: equations(:, :)
     type(sparse_t), intent(inout) :: matrix
     type(tie_spring_t) :: spring
@@ -47,16 +47,16 @@ contains
     spring = tie_spring(memory, s)
     do i = 1, 2
       do k = to_row, to_column
-        call add_stretch(memory, spring, s, i, 1.0_wp, k, pattern)
+        call add_stretch(memory, spring, s, i, 1.0_wp, k, product)
       end do
-      call add_product(pattern, tie_stiffness(memory, s), equations, matrix)
+      call finish_product(product, tie_stiffness(memory, s), equations, matrix)
     end do
   end subroutine add_stretches
 
   !> Types 6 and 7: the same of the averages at slave nodes.
-  pure subroutine add_nodal(memory, pattern, equations, matrix)
+  pure subroutine add_nodal(memory, product, equations, matrix)
     type(contact_state_t), intent(in) :: memory
-    type(pattern_t), intent(inout) :: pattern
+    type(product_t), intent(inout) :: product
     integer, intent(in), contiguous :: equations(:, :)
     type(sparse_t), intent(inout) :: matrix
     type(tie_spring_t) :: spring
@@ -75,10 +75,10 @@ contains
             if (.not. abs(share) > 0.0_wp) cycle
             spring = tie_spring(memory, at(m))
             do k = to_row, to_column
-              call add_stretch(memory, spring, at(m), j, share, k, pattern)
+              call add_stretch(memory, spring, at(m), j, share, k, product)
             end do
           end do
-          call add_product(pattern, memory%slave_penalty*area(i), equations, matrix)
+          call finish_product(product, memory%slave_penalty*area(i), equations, matrix)
         end do
       end do
     end associate
@@ -122,10 +122,10 @@ contains
   !> fn a + fs b is grad theta h^T + h grad theta^T with h = fn grad(d.t) - fs grad(d.n)
   !> - (fn d.t - fs d.n) grad(stretch of the segment) - (fn d.n + fs d.t)/2 grad theta, n and t held
   !> in the first two.
-  pure subroutine add_turns(memory, s, pattern, equations, matrix)
+  pure subroutine add_turns(memory, s, product, equations, matrix)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
-    type(pattern_t), intent(inout) :: pattern
+    type(product_t), intent(inout) :: product
     integer, intent(in), contiguous :: equations(:, :)
     type(sparse_t), intent(inout) :: matrix
     type(tie_spring_t) :: spring
@@ -141,42 +141,42 @@ contains
     gap = dot_product(spring%d, spring%n)
     shift = dot_product(spring%d, spring%t)
     do k = 1, 2
-      call add_turn(memory, spring, s, 1.0_wp, k, pattern)
-      call add_distance(memory, s, fn*spring%t - fs*spring%n, 3 - k, pattern)
+      call add_turn(memory, spring, s, 1.0_wp, k, product)
+      call add_distance(memory, s, fn*spring%t - fs*spring%n, 3 - k, product)
       call add_pair(memory, s, -(fn*shift - fs*gap)*memory%ties%side(s)/spring%length*spring%t, &
-        3 - k, pattern)
-      call add_turn(memory, spring, s, -0.5_wp*(fn*gap + fs*shift), 3 - k, pattern)
-      call add_product(pattern, 1.0_wp, equations, matrix)
+        3 - k, product)
+      call add_turn(memory, spring, s, -0.5_wp*(fn*gap + fs*shift), 3 - k, product)
+      call finish_product(product, 1.0_wp, equations, matrix)
     end do
   end subroutine add_turns
 
   !> Add factor times the gradient of a stretch: along n with grad d.n + d.t grad theta, along t
   !> with grad d.t - d.n grad theta.
-  pure subroutine add_stretch(memory, spring, s, i, factor, k, pattern)
+  pure subroutine add_stretch(memory, spring, s, i, factor, k, product)
     type(contact_state_t), intent(in) :: memory
     type(tie_spring_t), intent(in) :: spring
     integer, intent(in) :: s
     integer, intent(in) :: i !! 1 along n, 2 along t
     real(wp), intent(in) :: factor
     integer, intent(in) :: k !! to_row or to_column
-    type(pattern_t), intent(inout) :: pattern
+    type(product_t), intent(inout) :: product
 
     if (i == 1) then
-      call add_distance(memory, s, factor*spring%n, k, pattern)
-      call add_turn(memory, spring, s, factor*dot_product(spring%d, spring%t), k, pattern)
+      call add_distance(memory, s, factor*spring%n, k, product)
+      call add_turn(memory, spring, s, factor*dot_product(spring%d, spring%t), k, product)
     else
-      call add_distance(memory, s, factor*spring%t, k, pattern)
-      call add_turn(memory, spring, s, -factor*dot_product(spring%d, spring%n), k, pattern)
+      call add_distance(memory, s, factor*spring%t, k, product)
+      call add_turn(memory, spring, s, -factor*dot_product(spring%d, spring%n), k, product)
     end if
   end subroutine add_stretch
 
   !> Add the gradient of d.direction, the direction held.
-  pure subroutine add_distance(memory, s, direction, k, pattern)
+  pure subroutine add_distance(memory, s, direction, k, product)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
     real(wp), intent(in) :: direction(2)
     integer, intent(in) :: k
-    type(pattern_t), intent(inout) :: pattern
+    type(product_t), intent(inout) :: product
     real(wp) :: share
     integer :: p, i
 
@@ -186,48 +186,47 @@ contains
         share = points%area(p)/sum(points%area(first:last))
         do i = 1, n_side
           call add_to_node(points%slave_nodes(i, p), &
-            share*points%slave_weights(i, p)*direction, k, pattern)
+            share*points%slave_weights(i, p)*direction, k, product)
           call add_to_node(points%master_nodes(i, p), &
-            -share*points%master_weights(i, p)*direction, k, pattern)
+            -share*points%master_weights(i, p)*direction, k, product)
         end do
       end do
     end associate
   end subroutine add_distance
 
   !> Add factor times the gradient of the angle of the segment.
-  pure subroutine add_turn(memory, spring, s, factor, k, pattern)
+  pure subroutine add_turn(memory, spring, s, factor, k, product)
     type(contact_state_t), intent(in) :: memory
     type(tie_spring_t), intent(in) :: spring
     integer, intent(in) :: s
     real(wp), intent(in) :: factor
     integer, intent(in) :: k
-    type(pattern_t), intent(inout) :: pattern
+    type(product_t), intent(inout) :: product
 
-    call add_pair(memory, s, -factor*memory%ties%side(s)/spring%length*spring%n, k, pattern)
+    call add_pair(memory, s, -factor*memory%ties%side(s)/spring%length*spring%n, k, product)
   end subroutine add_turn
 
   !> Add a vector at the second node of the segment and its opposite at the first.
-  pure subroutine add_pair(memory, s, vector, k, pattern)
+  pure subroutine add_pair(memory, s, vector, k, product)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
     real(wp), intent(in) :: vector(2)
     integer, intent(in) :: k
-    type(pattern_t), intent(inout) :: pattern
+    type(product_t), intent(inout) :: product
 
-    call add_to_node(memory%ties%owner(2, s), vector, k, pattern)
-    call add_to_node(memory%ties%owner(1, s), -vector, k, pattern)
+    call add_to_node(memory%ties%owner(2, s), vector, k, product)
+    call add_to_node(memory%ties%owner(1, s), -vector, k, product)
   end subroutine add_pair
 
   !> Add to one node.
-  pure subroutine add_to_node(node, vector, k, pattern)
+  pure subroutine add_to_node(node, vector, k, product)
     integer, intent(in) :: node
     real(wp), intent(in) :: vector(2)
     integer, intent(in) :: k
-    type(pattern_t), intent(inout) :: pattern
+    type(product_t), intent(inout) :: product
 
-    call use_node(pattern, node)
-    if (k == to_row) pattern%row(:, node) = pattern%row(:, node) + vector
-    if (k == to_column) pattern%column(:, node) = pattern%column(:, node) + vector
+    if (k == to_row) call add_to_row(product, node, vector)
+    if (k == to_column) call add_to_column(product, node, vector)
   end subroutine add_to_node
 
 end module tangent_ties_m
