@@ -171,14 +171,14 @@ contains
 
     if (memory%points%n > 0) then
       call press_places(memory)
-      if (contact%behind > 0) call leave_to_tie(memory)
+      if (memory%has%former_tie) call leave_to_tie(memory)
       if (.not. now%is_trial) call book_springs(contact, now%cycle, begins, memory)
       if (has_decay(contact%friction) .and. size(mass) > 0 .and. now%dt > 0.0_wp) &
         call find_lag(memory%points, memory%nodes, mass, contact%is_self, now%dt, &
         memory%scratch%nodal, memory%scratch%lag)
       if (memory%has%friction) &
         call rub_places(contact, formulation%has_unit_area, now%dt, memory)
-      if (contact%damping > 0.0_wp .and. .not. now%is_trial) call damp_points(memory%points, &
+      if (memory%has%damping .and. .not. now%is_trial) call damp_points(memory%points, &
         contact%damping, memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
       call scatter_forces(memory)
       if (contact%is_self) call join_passes(memory)
@@ -252,7 +252,7 @@ contains
     logical, intent(in) :: begins
     type(contact_state_t), intent(inout) :: memory
 
-    if (contact%behind > 0) call take_over(memory)
+    if (memory%has%former_tie) call take_over(memory)
     if (memory%watch%is_due .or. cycle == 0) call measure_springs(memory)
     if (cycle == 0) memory%energy = memory%watch%stored
     if (begins) memory%limit%credit = memory%limit%credit + memory%watch%stored

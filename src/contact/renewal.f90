@@ -285,7 +285,7 @@ contains
     integer :: k, q, n
 
     spots = sides(1)%node
-    if (allocated(old%spot_xi)) then
+    if (old%has%spots) then
       n = size(old%spot_xi)
       spots = [((merge((slave(k) - 1)*n + q, 0, slave(k) > 0), q=1, n), k=1, size(slave))]
     end if

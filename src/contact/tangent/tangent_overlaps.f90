@@ -5,16 +5,18 @@
 module tangent_overlaps_m
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
-  use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
+  use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
   use foot_m, only : foot_t, near_foot, round_off
   use kinds_m, only : wp
   use linearisation_m, only : varied_point_t, varied_list_t, varied_projection_t, append_point, &
-    apart, length_between, project, project_point, between, share_of, radius_at, end_radius_at
+    apart, length_between, project, project_point, between, share_of, side_share_of, &
+    radius_at, end_radius_at
   use nodal_tangent_m, only : nodal_share
   use overlap_m, only : overlap_t
   use overlaps_m, only : find_overlaps, n_most_overlaps
   use place_nts_mar_m, only : is_tip
   use place_segmented_mortar_m, only : gauss_xi, least_cut
+  use surfaces_m, only : surface_t
   use tangent_nts_m, only : vary_node, vary_length
   use tips_m, only : has_folds
   implicit none
@@ -50,8 +52,7 @@ contains
     end do
   end subroutine vary_overlap_ends
 
-  !> Type 5: the points of one slave segment. Where not all of an overlap counts the master segment
-  !> goes into slots 7 and 8.
+  !> Type 5: the points of one slave segment.
   pure subroutine vary_ends_on(contact, memory, s, has_area, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -60,24 +61,15 @@ contains
     type(varied_list_t), intent(inout) :: list
     type(overlap_t) :: overlaps(n_most_overlaps(memory, s))
     type(varied_point_t) :: point
-    type(varied_projection_t) :: projection
-    type(dual_t) :: xi(2), half, way(2)
+    type(dual_t) :: xi(2), half
     integer :: breakpoints(2), n, k, i
-    logical :: is_whole
 
     call find_overlaps(contact, memory, s, contact%strict, round_off, overlaps, n)
     do k = 1, n
       if (.not. overlaps(k)%high > overlaps(k)%low) cycle
       if (.not. contact%strict .and. .not. overlaps(k)%share > 0.0_wp) cycle
-      is_whole = contact%strict .or. overlaps(k)%share >= 1.0_wp
-      call start_on_overlap(contact, memory, s, overlaps(:n), k, is_whole, point, xi)
-      way = apart(memory%places, point%nodes, 2, 1)
+      call start_on_overlap(contact, memory, s, overlaps(:n), k, point, xi)
       half = 0.5_wp*(xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2)
-      if (.not. is_whole) then
-        point%nodes(7:8) = memory%n_slave + contact%master%segments(:, overlaps(k)%master)
-        projection = project(way, apart(memory%places, point%nodes, 8, 7))
-        half = half*share_of(way, projection%normal)
-      end if
       breakpoints = [overlaps(k)%first, overlaps(k)%last]
       do i = 1, 2
         point%area = half
@@ -93,7 +85,11 @@ contains
             has_area(node) = .true.
           end if
         end associate
-        call append_point(list, point)
+        if (merge(overlaps(k)%part, overlaps(k)%share, contact%strict) >= 1.0_wp) then
+          call append_point(list, point)
+        else
+          call append_share(contact, memory, s, overlaps(k), .not. contact%strict, point, list)
+        end if
       end do
     end do
   end subroutine vary_ends_on
@@ -186,7 +182,7 @@ contains
     call find_overlaps(contact, memory, s, .false., least_cut, overlaps, n)
     do k = 1, n
       if (.not. overlaps(k)%share > 0.0_wp) cycle
-      call start_on_overlap(contact, memory, s, overlaps(:n), k, .true., point, xi)
+      call start_on_overlap(contact, memory, s, overlaps(:n), k, point, xi)
       length = (xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2)
       do q = 1, size(gauss_xi)
         point%slave_xi = xi(1) + gauss_xi(q)*(xi(2) - xi(1))
@@ -204,7 +200,11 @@ contains
         point%area = 0.5_wp*share*length
         if (contact%is_round) point%area = point%area &
           *radius_at(memory%places, point%nodes, 1, 2, point%slave_xi)
-        call append_point(list, point)
+        if (overlaps(k)%part >= 1.0_wp) then
+          call append_point(list, point)
+        else
+          call append_share(contact, memory, s, overlaps(k), .false., point, list)
+        end if
       end do
     end do
   end subroutine vary_gauss_points_on
@@ -268,25 +268,99 @@ contains
     end do
   end function points_at_ends
 
+  !> Append a point of whose area a share counts: itself at a constant share, and the change of the
+  !> share at a constant area as a point without area, for it depends on further nodes. The master
+  !> segment goes into slots 5, 6, the segments next to both at convex vertices into 7 and 8.
+  pure subroutine append_share(contact, memory, s, overlap, is_by_master, point, list)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s              !! slave segment
+    type(overlap_t), intent(in) :: overlap
+    logical, intent(in) :: is_by_master   !! opposed to the master segment, not at the point itself
+    type(varied_point_t), intent(in) :: point
+    type(varied_list_t), intent(inout) :: list
+    type(varied_point_t) :: change
+    type(varied_projection_t) :: projection
+    type(dual_t) :: share, own(2), other(2)
+
+    change = point
+    change%nodes(5:8) = [memory%n_slave + contact%master%segments(:, overlap%master), 0, 0]
+    own = apart(memory%places, change%nodes, 2, 1)
+    other = apart(memory%places, change%nodes, 6, 5)
+    share = constant(1.0_wp)
+    projection = project(own, other)
+    if (is_by_master) share = share_of(own, projection%normal)
+    if (overlap%part < 1.0_wp) then
+      call vary_side(contact%slave, s, [0, 1, 7], memory, other, change, share)
+      call vary_side(contact%master, overlap%master, [memory%n_slave, 5, 8], memory, own, change, &
+        share)
+    end if
+    change%area%value = 0.0_wp
+    change%area%slope = point%area%value*share%slope
+    call append_point(list, change)
+    change = point
+    change%area = share%value*point%area
+    call append_point(list, change)
+  end subroutine append_share
+
+  !> Reduce a share by what segments next to a segment take at convex vertices.
+  pure subroutine vary_side(surface, segment, at, memory, other, point, share)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: segment
+    integer, intent(in) :: at(3)         !! local number before the surface's first node; slots: of
+                                         !! the segment's first node, of a node next to it
+    type(contact_state_t), intent(in) :: memory
+    type(dual_t), intent(in) :: other(2) !! segment of the other surface
+    type(varied_point_t), intent(inout) :: point
+    type(dual_t), intent(inout) :: share
+    type(dual_t) :: own(2), beside(2), part
+    integer :: next, held, k
+
+    own = apart(memory%places, point%nodes, at(2) + 1, at(2))
+    do k = 1, 2
+      next = merge(surface%previous(segment), surface%next(segment), k == 1)
+      if (next == 0) cycle
+      held = point%nodes(at(3))
+      point%nodes(at(3)) = at(1) + surface%segments(k, next)
+      beside = apart(memory%places, point%nodes, merge(at(2), at(3), k == 1), &
+        merge(at(3), at(2) + 1, k == 1))
+      part = constant(1.0_wp)
+      if (merge(-1.0_wp, 1.0_wp, k == 1)*(own(1)%value*beside(2)%value &
+        - own(2)%value*beside(1)%value) > 0.0_wp) &
+        part = side_share_of(cosine_between(own, other), cosine_between(beside, other))
+      ! One slot: of two such nodes, at both ends, the second is held.
+      if (held > 0) part%slope(2*at(3) - 1:2*at(3)) = 0.0_wp
+      if (held > 0 .or. part%value >= 1.0_wp) point%nodes(at(3)) = held
+      share = share*part
+    end do
+  end subroutine vary_side
+
+  !> Cosine between two vectors.
+  pure function cosine_between(a, b) result(cosine)
+    type(dual_t), intent(in) :: a(2), b(2)
+    type(dual_t) :: cosine
+
+    cosine = (a(1)*b(1) + a(2)*b(2))/sqrt((a(1)*a(1) + a(2)*a(2))*(b(1)*b(1) + b(2)*b(2)))
+  end function cosine_between
+
   !> A point on an overlap of a slave segment, which goes into slots 1, 2; the master nodes at the
-  !> breakpoints go into slots 5 and 6; where there is room, those that the overlaps before and
-  !> behind it have there into 7 and 8. Where another chain begins before one ends the breakpoint
-  !> is half way between both nodes, if that of the other overlap has a slot; else it is held.
-  pure subroutine start_on_overlap(contact, memory, s, overlaps, k, has_room, point, xi)
+  !> breakpoints go into slots 5 and 6, those that the overlaps before and behind it have there into
+  !> 7 and 8. Where another chain begins before one ends the breakpoint is half way between both
+  !> nodes.
+  pure subroutine start_on_overlap(contact, memory, s, overlaps, k, point, xi)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s        !! slave segment
     type(overlap_t), intent(in) :: overlaps(:)
     integer, intent(in) :: k        !! overlap
-    logical, intent(in) :: has_room !! nothing else stands in slots 7 and 8
     type(varied_point_t), intent(out) :: point
     type(dual_t), intent(out) :: xi(2) !! where it starts and ends
     type(varied_projection_t) :: own, other
     integer :: breakpoints(4), i
     real(wp) :: range(2)
 
-    breakpoints = [overlaps(k)%first, overlaps(k)%last, 0, 0]
-    if (has_room) breakpoints(3:4) = [beside(overlaps, k, -1), beside(overlaps, k, 1)]
+    breakpoints = [overlaps(k)%first, overlaps(k)%last, beside(overlaps, k, -1), &
+      beside(overlaps, k, 1)]
     point%nodes(1:2) = contact%slave%segments(:, s)
     point%stiffness = memory%slave_penalty
     where (breakpoints > 0) point%nodes(5:8) = memory%n_slave + breakpoints
