@@ -64,8 +64,8 @@ contains
     end do
   end function has_slipped
 
-  !> All places that slip or slipped hold on in the next tangent, wherever round-off puts them beside
-  !> the limit: a body all of whose places slip meets no stiffness along the face.
+  !> All places that slip or slipped hold on in the next tangent, wherever round-off puts them
+  !> beside the limit: a body all of whose places slip meets no stiffness along the face.
   pure subroutine let_hold(contacts)
     type(contact_state_t), intent(inout) :: contacts(:)
     integer :: i
