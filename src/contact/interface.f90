@@ -356,7 +356,9 @@ contains
         contact%master, contact%slave, memory%reversed, memory%places, increments, &
         memory%places(:, n + 1:))
     end associate
-    if (has_offsets(memory)) call update_offsets(contact, memory)
+    ! In a trial of an implicit step they stay: they are no part of the tangent.
+    if (has_offsets(memory) .and. .not. memory%slave_tracking%pass%is_trial) &
+      call update_offsets(contact, memory)
 
   contains
 

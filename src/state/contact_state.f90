@@ -129,10 +129,8 @@ module contact_state_m
     integer, allocatable :: point_at(:)     !! (n_slave) point at each slave node, 0 between steps
     logical, allocatable :: is_placed(:)    !! (slave segments) have their points
     logical, allocatable :: is_left(:)      !! (n_place) to the tie that holds it; this and the next
-                                            !! four only of contact behind a tie
+                                            !! two only of contact behind a tie
     logical, allocatable :: is_freed(:)     !! (n_place) it has broken in this cycle
-    logical :: has_freed = .false.          !! any
-    integer :: n_held = 0                   !! places that the tie holds
     real(wp) :: taken = 0.0_wp              !! what springs hold that were freed pressed, J/m
     logical :: waits = .false.              !! points are placed, forces follow once all others are
                                             !! known

@@ -4,7 +4,7 @@
 !> pressure of every point is kept on the list. Adding a law is a file law_*.f90, a row of `laws` and
 !> its `case` (doc/add_a_law.md).
 module contact_law_m
-  use contact_state_m, only : contact_state_t
+  use contact_state_m, only : contact_state_t, place_at
   use dual_m, only : dual_t
   use entry_offset_m, only : has_offsets, add_offsets
   use interference_m, only : take_overlaps, ease_gaps, gather_moment
@@ -13,13 +13,22 @@ module contact_law_m
   use nodal_average_m, only : average_values, share_out
   implicit none
   private
-  public :: law_t, laws, law_penalty, press_places, find_gaps, vary_pressure, density_of
+  public :: law_t, laws, law_penalty, press_places, find_gaps, spring_t, n_springs, spring_at, &
+    vary_pressure, density_of
 
   !> A law.
   type :: law_t
     integer :: number
     character(20) :: name
   end type law_t
+
+  !> A spring, where pressure is formed.
+  type :: spring_t
+    integer :: place    !! on the lists of what laws remember
+    integer :: node     !! slave node next to it
+    real(wp) :: energy  !! J/m
+    real(wp) :: load    !! N/m
+  end type spring_t
 
   integer, parameter :: law_penalty = 1
   !> All laws.
@@ -77,6 +86,34 @@ contains
       if (memory%has%interference) call ease_gaps(memory, gaps)
     end associate
   end subroutine find_gaps
+
+  !> Springs: points or slave nodes.
+  pure function n_springs(memory) result(n)
+    type(contact_state_t), intent(in) :: memory
+    integer :: n
+
+    n = merge(memory%n_slave, memory%points%n, memory%has%nodal_pressure)
+  end function n_springs
+
+  !> A spring with the gap that find_gaps has found, without what damping adds to its pressure.
+  pure function spring_at(memory, gap, i) result(spring)
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in) :: gap !! m
+    integer, intent(in) :: i    !! point or slave node
+    type(spring_t) :: spring
+
+    associate (points => memory%points, law => memory%contact_law, nodal => memory%scratch%nodal)
+      if (memory%has%nodal_pressure) then
+        spring = spring_t(i, i, nodal(2, i)*density_of(law, memory%slave_penalty, gap), &
+          nodal(2, i)*memory%node_pressure(i))
+      else
+        spring = spring_t(place_at(memory, i), points%slave_nodes( &
+          maxloc(points%slave_weights(:, i), 1), i), &
+          points%area(i)*density_of(law, points%stiffness(i), gap), &
+          points%area(i)*points%pressure(i))
+      end if
+    end associate
+  end function spring_at
 
   !> Pressure of a place in contact with its derivatives.
   pure function vary_pressure(contact_law, stiffness, gap) result(pressure)

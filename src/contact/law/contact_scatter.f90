@@ -31,12 +31,16 @@ contains
   pure subroutine scatter_tractions(points, part, force)
     type(contact_points_t), intent(in) :: points
     real(wp), intent(inout), contiguous :: part(:, :), force(:, :) !! (2, nodes) N/m
+    real(wp) :: along_n
     integer :: i
 
     call scatter(points, points%traction, part)
     do i = 1, size(part, 2)
-      part(:, i) = [part(2, i), -part(1, i)]
-      force(:, i) = force(:, i) + part(:, i)
+      along_n = part(1, i)
+      part(1, i) = part(2, i)
+      part(2, i) = -along_n
+      force(1, i) = force(1, i) + part(1, i)
+      force(2, i) = force(2, i) + part(2, i)
     end do
   end subroutine scatter_tractions
 

@@ -2,8 +2,8 @@
 !> Energy of the springs of an interface, of those whose points are on the list.
 module contact_springs_m
   use behind_ties_m, only : is_left_to_tie
-  use contact_law_m, only : find_gaps, density_of
-  use contact_state_m, only : contact_state_t, place_at
+  use contact_law_m, only : find_gaps, spring_t, n_springs, spring_at
+  use contact_state_m, only : contact_state_t
   use law_state_m, only : contact_watch_t
   use kinds_m, only : wp
   use ties_m, only : tie_energy
@@ -27,6 +27,7 @@ contains
   pure subroutine measure_springs(memory)
     type(contact_state_t), intent(inout) :: memory
     real(wp) :: gaps(max(memory%points%n, memory%n_slave))
+    type(spring_t) :: spring
     integer :: i
 
     memory%watch%stored = 0.0_wp
@@ -37,36 +38,17 @@ contains
       return
     end if
     call find_gaps(memory, gaps)
-    associate (watch => memory%watch, points => memory%points, nodal => memory%scratch%nodal)
-      if (memory%has%nodal_pressure) then
-        do i = 1, memory%n_slave
-          if (is_left_to_tie(memory, i)) cycle
-          call add_spring(nodal(2, i)*density_of(memory%contact_law, memory%slave_penalty, &
-            gaps(i)), nodal(2, i)*memory%node_pressure(i), memory%nodes(i), watch)
-        end do
-      else
-        do i = 1, points%n
-          if (is_left_to_tie(memory, place_at(memory, i))) cycle
-          call add_spring(points%area(i)*density_of(memory%contact_law, points%stiffness(i), &
-            gaps(i)), points%area(i)*points%pressure(i), &
-            memory%nodes(points%slave_nodes(maxloc(points%slave_weights(:, i), 1), i)), watch)
-        end do
-      end if
+    associate (watch => memory%watch)
+      do i = 1, n_springs(memory)
+        spring = spring_at(memory, gaps(i), i)
+        if (is_left_to_tie(memory, spring%place)) cycle
+        watch%stored = watch%stored + spring%energy
+        if (.not. spring%load > watch%load) cycle
+        watch%load = spring%load
+        watch%node = memory%nodes(spring%node)
+      end do
     end associate
   end subroutine measure_springs
-
-  !> One spring.
-  pure subroutine add_spring(energy, load, node, watch)
-    real(wp), intent(in) :: energy !! J/m
-    real(wp), intent(in) :: load   !! N/m
-    integer, intent(in) :: node    !! at it, by place in the mesh
-    type(contact_watch_t), intent(inout) :: watch
-
-    watch%stored = watch%stored + energy
-    if (.not. load > watch%load) return
-    watch%load = load
-    watch%node = node
-  end subroutine add_spring
 
   !> After the forces are known: whether there has been a look. Contact that has opened stores
   !> nothing.

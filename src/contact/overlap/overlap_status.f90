@@ -4,7 +4,7 @@
 module overlap_status_m
   use contact_state_m, only : contact_state_t, is_free, is_touching
   use contacts_m, only : contact_t
-  use geometry_m, only : sight_t, sight_of_segment, closest_distance
+  use geometry_m, only : separation
   use kinds_m, only : wp
   implicit none
   private
@@ -135,33 +135,53 @@ contains
     integer, intent(in) :: s
     real(wp), intent(out) :: distance
     logical, intent(out) :: is_behind
-    type(sight_t) :: sights(4)
-    real(wp) :: square
-    integer :: own(2), other(2), j, k
+    real(wp) :: a(2), b(2), own(2), other(2), squares(2), across(4), product, least
+    integer :: ends(2), nodes(2), j
 
-    square = memory%slave_tracking%reach**2
+    least = memory%slave_tracking%reach**2
     is_behind = .false.
-    own = contact%slave%segments(:, s)
+    ends = contact%slave%segments(:, s)
     associate (places => memory%places)
+      own = separation(places(:, ends(2)), places(:, ends(1)))
+      squares(1) = max(own(1)**2 + own(2)**2, tiny(1.0_wp))
       do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
-        other = memory%n_slave + contact%master%segments(:, memory%candidates%items(j))
-        do k = 1, 2
-          sights(k) = sight_of_segment(places(:, own(k)), places(:, other(1)), places(:, other(2)))
-          sights(2 + k) = sight_of_segment(places(:, other(k)), places(:, own(1)), &
-            places(:, own(2)))
-        end do
-        if (.not. dot_product(sights(1)%t, sights(3)%t) < averted*sqrt(sights(1)%square &
-          *sights(3)%square)) cycle
-        do k = 1, 4
-          square = min(square, closest_distance(sights(k)))
-        end do
-        is_behind = is_behind .or. any(sights%across < 0.0_wp)
-        if (sights(1)%across*sights(2)%across <= 0.0_wp .and. sights(3)%across &
-          *sights(4)%across <= 0.0_wp) square = 0.0_wp
+        nodes = memory%n_slave + contact%master%segments(:, memory%candidates%items(j))
+        other = separation(places(:, nodes(2)), places(:, nodes(1)))
+        squares(2) = max(other(1)**2 + other(2)**2, tiny(1.0_wp))
+        product = own(1)*other(1) + own(2)*other(2)
+        if (product > 0.0_wp .and. product**2 >= averted**2*(squares(1)*squares(2))) cycle
+        a = separation(places(:, ends(1)), places(:, nodes(1)))
+        b = separation(places(:, ends(2)), places(:, nodes(1)))
+        call see_node(a, other, squares(2), least, across(1))
+        call see_node(b, other, squares(2), least, across(2))
+        b = separation(places(:, nodes(2)), places(:, ends(1)))
+        call see_node(-a, own, squares(1), least, across(3))
+        call see_node(b, own, squares(1), least, across(4))
+        is_behind = is_behind .or. minval(across) < 0.0_wp
+        if (max(across(1)*across(2), across(3)*across(4)) <= 0.0_wp) least = 0.0_wp
       end do
     end associate
-    distance = sqrt(square)
+    distance = sqrt(least)
   end subroutine see_candidates
+
+  !> A node of one segment from the other: which side it is on, and its distance to that.
+  pure subroutine see_node(d, t, square, least, across)
+    real(wp), intent(in) :: d(2), t(2) !! from the first node of the segment, and its vector, m
+    real(wp), intent(in) :: square     !! of its length, m^2
+    real(wp), intent(inout) :: least   !! square of the smallest distance so far, m^2
+    real(wp), intent(out) :: across    !! gap times length
+    real(wp) :: along
+
+    along = d(1)*t(1) + d(2)*t(2)
+    across = d(1)*t(2) - d(2)*t(1)
+    if (along < 0.0_wp) then
+      least = min(least, d(1)**2 + d(2)**2)
+    else if (along > square) then
+      least = min(least, (d(1) - t(1))**2 + (d(2) - t(2))**2)
+    else
+      least = min(least, across**2/square)
+    end if
+  end subroutine see_node
 
   !> After all segments have been looked at. Not asked for as long as something is active.
   pure subroutine note_next_wake(memory)

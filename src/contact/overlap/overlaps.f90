@@ -8,7 +8,7 @@ module overlaps_m
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
   use foot_m, only : foot_t, closest_foot, side_on, face_on, side_share, &
-    facing_share, see_segment, round_off
+    least_excess, facing_share, see_segment, round_off
   use geometry_m, only : sight_t, separation, closest_distance
   use kinds_m, only : wp
   use opposed_m, only : turns_sharply
@@ -16,7 +16,7 @@ module overlaps_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: find_overlaps, n_most_overlaps, closest_candidate
+  public :: find_overlaps, n_most_overlaps, room_for_overlaps, closest_candidate
 
   !> Most segments between two active ends that are taken without a look at the candidates, and
   !> number of segments of a closed master up to which the way forwards may be the shorter one.
@@ -33,8 +33,9 @@ module overlaps_m
     integer :: number
     integer :: ends(2)       !! nodes
     logical :: is_active(2)  !! its ends
+    real(wp) :: margins(2)   !! parts of it next to its ends where master nodes are no breakpoints
     integer :: below(2)      !! master segments that its ends have their projections on, 0: none
-    real(wp) :: margins(2)   !! parts next to its ends where master nodes are no breakpoints
+    real(wp) :: start(4)     !! position of its first end
     real(wp) :: t(2), square !! its vector, m, and the square of that
   end type slave_segment_t
 
@@ -49,6 +50,18 @@ contains
     n = max(n_between, 2*(memory%candidates%first(s + 1) - memory%candidates%first(s)) + 1)
   end function n_most_overlaps
 
+  !> The same for any of them.
+  pure function room_for_overlaps(memory) result(n)
+    type(contact_state_t), intent(in) :: memory
+    integer :: n
+    integer :: s
+
+    n = 0
+    do s = 1, size(memory%candidates%first) - 1
+      n = max(n, n_most_overlaps(memory, s))
+    end do
+  end function room_for_overlaps
+
   !> Overlaps of a slave segment, in order along it.
   pure subroutine find_overlaps(contact, memory, s, is_strict, least_cut, overlaps, n)
     type(contact_t), intent(in) :: contact
@@ -57,7 +70,8 @@ contains
     logical, intent(in) :: is_strict !! with an end beyond the master it has one without a master
     real(wp), intent(in) :: least_cut !! part of the segment next to its active ends where master
                                       !! nodes are no breakpoints
-    type(overlap_t), intent(inout) :: overlaps(:) !! with room for `n_most_overlaps`
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! with room for
+                                      !! `n_most_overlaps`
     integer, intent(out) :: n
     type(slave_segment_t) :: own
     integer :: k
@@ -66,7 +80,8 @@ contains
     own%ends = contact%slave%segments(:, s)
     own%is_active = memory%slave_tracking%status(own%ends) == is_touching
     own%margins = merge(least_cut, 0.0_wp, own%is_active)
-    own%t = separation(memory%places(:, own%ends(2)), memory%places(:, own%ends(1)))
+    own%start = memory%places(:, own%ends(1))
+    own%t = way_to(own%ends(2), own, memory%places)
     own%square = max(own%t(1)**2 + own%t(2)**2, tiny(1.0_wp))
     do k = 1, 2
       own%below(k) = segment_below(contact, memory, own, k)
@@ -75,24 +90,28 @@ contains
     if (is_strict .and. any(own%below == 0)) then
       if (.not. is_opposed_to_contact(memory, own)) return
       n = 1
-      overlaps(1) = overlap_t(0, 0.0_wp, 1.0_wp, 0, 0, [0.0_wp, 0.0_wp], 1.0_wp)
+      overlaps(1) = overlap_t(0, 0.0_wp, 1.0_wp, 0, 0, [0.0_wp, 0.0_wp], 1.0_wp, 1.0_wp)
       return
     end if
     if (contact%master%n_segment > short_surface .and. all(own%is_active)) &
-      call take_between(contact%master, memory, own, overlaps, n)
+      call take_between(own, contact%master%previous, &
+      contact%master%segments, memory%n_slave, memory%places, least_cut, overlaps, n)
     if (n == 0) call take_candidates(contact, memory, own, overlaps, n)
+    if (memory%slave_tracking%pass%is_closed) call weigh_sides(contact, memory, own, overlaps(:n))
   end subroutine find_overlaps
 
   !> Overlaps with the master segments from below one active end to below the other; none where
   !> these are too many or do not follow each other.
-  pure subroutine take_between(master, memory, own, overlaps, n)
-    type(surface_t), intent(in) :: master
-    type(contact_state_t), intent(in) :: memory
+  pure subroutine take_between(own, previous, segments, n_slave, places, least_cut, overlaps, n)
     type(slave_segment_t), intent(in) :: own
-    type(overlap_t), intent(inout) :: overlaps(:)
+    integer, intent(in) :: previous(*), segments(2, *) !! of the master
+    integer, intent(in) :: n_slave       !! local number before the first master node
+    real(wp), intent(in) :: places(4, *) !! of the interface
+    real(wp), intent(in) :: least_cut
+    type(overlap_t), intent(inout) :: overlaps(*)
     integer, intent(out) :: n
-    real(wp) :: d(2), former(2), inverse, xi
-    integer :: k, m
+    real(wp) :: d(2), former(2), inverse, xi, low
+    integer :: k, m, node, first
 
     n = 0
     m = own%below(1)
@@ -100,47 +119,47 @@ contains
       if (m == 0) return
       overlaps(k)%master = m
       if (m == own%below(2)) exit
-      m = master%previous(m)
+      m = previous(m)
     end do
     if (k > n_between) return
     n = k
-    overlaps(1)%low = 0.0_wp
-    overlaps(1)%first = 0
+    low = 0.0_wp
+    first = 0
     inverse = 1.0_wp/own%square
-    former = way_to(memory, own, master%segments(2, own%below(1)))
+    former = way_to(n_slave + segments(2, own%below(1)), own, places)
     do k = 1, n
-      associate (node => master%segments(1, overlaps(k)%master))
-        d = way_to(memory, own, node)
-        xi = (d(1)*own%t(1) + d(2)*own%t(2))*inverse
-        overlaps(k)%high = overlaps(k)%low
-        overlaps(k)%last = overlaps(k)%first
-        if (k == n .or. xi >= 1.0_wp - own%margins(2)) then
-          overlaps(k)%high = 1.0_wp
-          overlaps(k)%last = 0
-        else if (xi > max(overlaps(k)%low, own%margins(1))) then
-          overlaps(k)%high = xi
-          overlaps(k)%last = node
-        end if
-      end associate
+      node = segments(1, overlaps(k)%master)
+      d = way_to(n_slave + node, own, places)
+      xi = (d(1)*own%t(1) + d(2)*own%t(2))*inverse
+      overlaps(k)%low = low
+      overlaps(k)%first = first
       overlaps(k)%share = 0.0_wp
-      if (overlaps(k)%high > overlaps(k)%low) overlaps(k)%share = share_of(own, former - d)
+      overlaps(k)%part = 1.0_wp
+      if (k == n .or. xi >= 1.0_wp - least_cut) then
+        xi = 1.0_wp
+        node = 0
+      else if (xi <= max(low, least_cut)) then
+        xi = low
+        node = first
+      end if
+      overlaps(k)%high = xi
+      overlaps(k)%last = node
+      if (xi > low) overlaps(k)%share = share_of(own, former - d)
       former = d
-      if (k == n) return
-      overlaps(k + 1)%low = overlaps(k)%high
-      overlaps(k + 1)%first = overlaps(k)%last
+      low = xi
+      first = node
     end do
   end subroutine take_between
 
-  !> Vector from the first end of a slave segment to a node of the master, m.
-  pure function way_to(memory, own, node) result(d)
-    type(contact_state_t), intent(in) :: memory
+  !> Vector from the first end of a slave segment to a node, m.
+  pure function way_to(node, own, places) result(d)
+    integer, intent(in) :: node          !! local number
     type(slave_segment_t), intent(in) :: own
-    integer, intent(in) :: node
+    real(wp), intent(in) :: places(4, *) !! of the interface
     real(wp) :: d(2)
 
-    associate (places => memory%places, i => memory%n_slave + node, j => own%ends(1))
-      d = (places(1:2, i) - places(1:2, j)) + (places(3:4, i) - places(3:4, j))
-    end associate
+    d(1) = (places(1, node) - own%start(1)) + (places(3, node) - own%start(3))
+    d(2) = (places(2, node) - own%start(2)) + (places(4, node) - own%start(4))
   end function way_to
 
   !> Overlaps with the candidates of a slave segment.
@@ -163,12 +182,10 @@ contains
         call cut_by(contact%master, memory, own, m, overlap)
         if (.not. overlap%high > overlap%low) cycle
         if (is_beyond(contact%master, own%below, m, n_most)) cycle
-        if (memory%slave_tracking%pass%is_closed) then
-          if (is_side_of_corner(contact, memory, own, m)) cycle
-        end if
         if (.not. may_be_deep .and. gap_at(overlap, 0.5_wp*(overlap%low + overlap%high)) &
           < -deep*memory%slave_tracking%segment_depth(m)) then
-          if (.not. is_reached(contact, memory, own, m, n_most)) cycle
+          if (.not. any(own%is_active .and. own%below == m) .and. .not. is_reached(contact, memory, &
+            own, m, n_most)) cycle
         end if
         n = n + 1
       end associate
@@ -188,7 +205,7 @@ contains
     logical :: reached
     integer :: k, i, segment, next
 
-    reached = any(own%is_active .and. own%below == m)
+    reached = .false.
     do k = 1, 2
       if (.not. own%is_active(k)) cycle
       segment = memory%slave_tracking%segment(own%ends(k))
@@ -307,31 +324,54 @@ contains
       + own(2)*own(2))*(other(1)*other(1) + other(2)*other(2)))
   end function looks_against
 
-  !> Whether a slave segment is the side next to a sharp convex vertex whose other segment is
-  !> opposed to a master segment so much more that nothing of the side counts.
-  pure function is_side_of_corner(contact, memory, own, m) result(is)
+  !> Let overlaps of closed boundaries with the side next to a convex vertex count less, or not, on
+  !> the slave as on the master.
+  pure subroutine weigh_sides(contact, memory, own, overlaps)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(slave_segment_t), intent(in) :: own
-    integer, intent(in) :: m
-    logical :: is
-    real(wp) :: beside(2), other(2), cosine
+    type(overlap_t), intent(inout) :: overlaps(:)
+    real(wp) :: other(2)
+    integer :: k
+
+    associate (master => memory%places(:, memory%n_slave + 1:))
+      do k = 1, size(overlaps)
+        if (.not. overlaps(k)%share > 0.0_wp) cycle
+        other = vector(contact%master, master, overlaps(k)%master)
+        overlaps(k)%part = side_part(contact%slave, memory%places, own%number, other)
+        if (overlaps(k)%part > 0.0_wp) overlaps(k)%part = overlaps(k)%part &
+          *side_part(contact%master, master, overlaps(k)%master, own%t)
+        overlaps(k)%share = overlaps(k)%share*overlaps(k)%part
+      end do
+    end associate
+  end subroutine weigh_sides
+
+  !> How much of a segment counts, 0 to 1: less the more a segment next to it at a convex vertex is
+  !> opposed to the segment of the other surface than it is itself (see `side_share`).
+  pure function side_part(surface, places, segment, other) result(part)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, at least n_node) from this surface on
+    integer, intent(in) :: segment
+    real(wp), intent(in) :: other(2)                 !! segment of the other surface, m
+    real(wp) :: part
+    real(wp) :: own(2), beside(2), product, squares
     integer :: k, next
 
-    is = .false.
-    other = vector(contact%master, memory%places(:, memory%n_slave + 1:), m)
-    other = other/sqrt(other(1)**2 + other(2)**2)
-    cosine = dot_product(own%t, other)/sqrt(own%square)
-    if (cosine <= face_on) return
+    part = 1.0_wp
+    own = vector(surface, places, segment)
+    product = own(1)*other(1) + own(2)*other(2)
+    squares = (own(1)**2 + own(2)**2)*(other(1)**2 + other(2)**2)
+    ! No segment can be opposed so much more.
+    if (product**2 >= (1.0_wp - least_excess)**2*squares) return
     do k = 1, 2
-      next = merge(contact%slave%previous(own%number), contact%slave%next(own%number), k == 1)
+      next = merge(surface%previous(segment), surface%next(segment), k == 1)
       if (next == 0) cycle
-      beside = vector(contact%slave, memory%places, next)
-      if (merge(-1.0_wp, 1.0_wp, k == 1)*(own%t(1)*beside(2) - own%t(2)*beside(1)) <= 0.0_wp) cycle
-      is = is .or. .not. side_share(cosine - dot_product(beside, other) &
-        /sqrt(beside(1)**2 + beside(2)**2)) > 0.0_wp
+      beside = vector(surface, places, next)
+      if (merge(-1.0_wp, 1.0_wp, k == 1)*(own(1)*beside(2) - own(2)*beside(1)) <= 0.0_wp) cycle
+      part = part*side_share(product/sqrt(squares) - (beside(1)*other(1) + beside(2)*other(2)) &
+        /sqrt((beside(1)**2 + beside(2)**2)*(other(1)**2 + other(2)**2)))
     end do
-  end function is_side_of_corner
+  end function side_part
 
   !> Vector of a segment, m.
   pure function vector(surface, places, segment) result(t)
@@ -401,12 +441,12 @@ contains
     overlap%high = 0.0_wp
     nodes = [master%segments(2, m), master%segments(1, m)]
     do k = 1, 2
-      d(:, k) = way_to(memory, own, nodes(k))
+      d(:, k) = way_to(memory%n_slave + nodes(k), own, memory%places)
       xi(k) = (d(1, k)*own%t(1) + d(2, k)*own%t(2))/own%square
     end do
     ! Most candidates lie beyond an end.
-    if (.not. any(own%below == m) .and. (xi(2) <= own%margins(1) .or. &
-      xi(1) >= 1.0_wp - own%margins(2))) return
+    if (.not. any(own%below == m) .and. (xi(2) <= own%margins(1) &
+      .or. xi(1) >= 1.0_wp - own%margins(2))) return
     if (.not. looks_against(own%t, d(:, 1) - d(:, 2))) return
     gaps = (d(1, :)*own%t(2) - d(2, :)*own%t(1))/sqrt(own%square)
     overlap%master = m
@@ -433,6 +473,7 @@ contains
     if (abs(xi(2) - xi(1)) > round_off) overlap%gap = gaps(1) + (gaps(2) - gaps(1)) &
       *([0.0_wp, 1.0_wp] - xi(1))/(xi(2) - xi(1))
     overlap%share = share_of(own, d(:, 1) - d(:, 2))
+    overlap%part = 1.0_wp
   end subroutine cut_by
 
   !> How much of an overlap counts: all up to a certain angle between the two segments, none from a

@@ -28,7 +28,8 @@ contains
     call mark_ends(memory%slave_tracking, size(memory%spot_xi), contact%slave%segments, &
       memory%scratch%point_at)
     do s = 1, contact%slave%n_segment
-      near = maxval(memory%scratch%point_at(contact%slave%segments(:, s)))
+      near = max(memory%scratch%point_at(contact%slave%segments(1, s)), &
+        memory%scratch%point_at(contact%slave%segments(2, s)))
       if (near == 0) cycle
       first = memory%points%n + 1
       call add_segment(contact, s, near, memory)
@@ -66,7 +67,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(foot_t) :: foot
     real(wp) :: length
-    integer :: ends(2), q, i
+    integer :: ends(2), nodes(2), q, i
 
     ends = contact%slave%segments(:, s)
     length = segment_length(memory%places(:, ends(1)), memory%places(:, ends(2)))
@@ -74,15 +75,18 @@ contains
       i = (s - 1)*size(memory%spot_xi) + q
       associate (tracking => memory%slave_tracking)
         if (tracking%status(i) == is_touching) then
-          foot = foot_t(tracking%segment(i), .true., tracking%xi(i), tracking%gap(i), &
-            tracking%normal(:, i))
+          foot%segment = tracking%segment(i)
+          foot%is_on = .true.
+          foot%xi = tracking%xi(i)
+          foot%gap = tracking%gap(i)
+          foot%normal = tracking%normal(:, i)
         else
           foot = find_foot(contact, memory, s, near, memory%spots(:, i))
         end if
       end associate
-      call add_point(memory%points, ends, memory%spot_xi(q), memory%n_slave &
-        + contact%master%segments(:, foot%segment), foot, merge(memory%spot_share(q)*length, &
-        -1.0_wp, foot%is_on), memory%slave_penalty)
+      nodes = memory%n_slave + contact%master%segments(:, foot%segment)
+      call add_point(memory%points, ends, memory%spot_xi(q), nodes, foot, &
+        merge(memory%spot_share(q)*length, -1.0_wp, foot%is_on), memory%slave_penalty)
     end do
   end subroutine add_segment
 

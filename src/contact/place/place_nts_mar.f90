@@ -11,7 +11,7 @@ module place_nts_mar_m
   use lengths_m, only : competence_area
   use overlap_m, only : overlap_t
   use overlap_status_m, only : none_due, look_at_segment, note_next_wake
-  use overlaps_m, only : find_overlaps, n_most_overlaps
+  use overlaps_m, only : find_overlaps, room_for_overlaps
   use point_list_m, only : add_point, append_touching, add_length, finish_segment_points
   use radii_m, only : end_radius, radius_between
   use segment_points_m, only : judge_segments
@@ -27,9 +27,12 @@ contains
   pure subroutine place_nts_mar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
+    type(overlap_t), allocatable :: overlaps(:)
     integer :: s, n, k
+    logical :: is_due
 
     if (none_due(memory)) return
+    allocate (overlaps(room_for_overlaps(memory)))
     call append_touching(memory%slave_tracking, contact%master, [0, memory%n_slave], 0.0_wp, &
       memory%slave_penalty, memory%points)
     n = memory%points%n
@@ -37,8 +40,9 @@ contains
       memory%scratch%point_at(memory%slave_tracking%touching(k)) = k
     end do
     do s = 1, contact%slave%n_segment
-      call look_at_segment(contact, memory, s, memory%scratch%is_placed(s))
-      if (memory%scratch%is_placed(s)) call place_segment(contact, s, memory)
+      call look_at_segment(contact, memory, s, is_due)
+      memory%scratch%is_placed(s) = is_due
+      if (is_due) call place_segment(contact, s, memory, overlaps)
     end do
     call judge_segments(contact, n, memory)
     call note_next_wake(memory)
@@ -49,11 +53,11 @@ contains
 
   !> Divide a slave segment among its ends and the master nodes at its breakpoints: each has half of
   !> the overlap before it and half of the one behind it.
-  pure subroutine place_segment(contact, s, memory)
+  pure subroutine place_segment(contact, s, memory, overlaps)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: s
     type(contact_state_t), intent(inout) :: memory
-    type(overlap_t) :: overlaps(n_most_overlaps(memory, s))
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
     real(wp) :: halves(2), area, length
     integer :: ends(2), at(2), node, n, k, i
 
@@ -93,7 +97,7 @@ contains
     real(wp) :: low, high
 
     halves = 0.5_wp*(overlap%high - overlap%low)*length
-    if (.not. contact%strict) halves = halves*overlap%share
+    halves = halves*merge(overlap%part, overlap%share, contact%strict)
     if (.not. contact%is_round) return
     low = radius_between(a, b, overlap%low)
     high = radius_between(a, b, overlap%high)

@@ -4,13 +4,13 @@
 module place_segmented_mortar_m
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
-  use foot_block_m, only : foot_block_t, n_block, project_block, settle_odd
+  use foot_block_m, only : n_block, project_block, settle_odd
   use foot_m, only : foot_t, near_foot
   use geometry_m, only : separation
   use kinds_m, only : wp
   use overlap_m, only : overlap_t
-  use overlaps_m, only : find_overlaps, n_most_overlaps
-  use point_list_m, only : add_point, finish_segment_points
+  use overlaps_m, only : find_overlaps, room_for_overlaps
+  use point_list_m, only : place_block_t, append_points, finish_segment_points
   use overlap_status_m, only : none_due, look_at_segment, note_next_wake
   use segment_points_m, only : judge_segments
   use tips_m, only : has_folds, find_tips, sharpen_tips
@@ -28,15 +28,6 @@ module place_segmented_mortar_m
   !> overlap integrate a kink this close to its end to the square of this part, round-off.
   real(wp), parameter :: least_cut = 1.0e-6_wp
 
-  !> Gauss points before they are projected, so that many are together. Without default values,
-  !> which would be written before each use.
-  type :: gauss_block_t
-    integer :: ends(2, n_block)    !! nodes of the slave segment
-    real(wp) :: xi(n_block)        !! place on that, 0 to 1
-    real(wp) :: area(n_block)      !! m
-    type(foot_block_t) :: feet
-  end type gauss_block_t
-
 contains
 
   !> Place the points: of all segments that may touch, then of their neighbours that can not, since
@@ -44,17 +35,19 @@ contains
   pure subroutine place_segmented_mortar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    type(gauss_block_t) :: block
+    type(overlap_t), allocatable :: overlaps(:)
+    type(place_block_t) :: block
     integer :: s, n
     logical :: is_due
 
     if (none_due(memory)) return
+    allocate (overlaps(room_for_overlaps(memory)))
     if (has_folds(contact)) call find_tips(contact%slave, memory)
     memory%scratch%is_placed = .false.
-    block%feet%n = 0
+    block%n = 0
     do s = 1, contact%slave%n_segment
       call look_at_segment(contact, memory, s, is_due)
-      if (is_due) call place_segment(contact, s, memory, block)
+      if (is_due) call place_segment(contact, s, memory, overlaps, block)
     end do
     call finish_block(contact, memory, block)
     call judge_segments(contact, 0, memory)
@@ -62,7 +55,7 @@ contains
     n = memory%points%n
     if (any(memory%points%gap(:n) < memory%closed_gap .and. memory%points%area(:n) > 0.0_wp) &
       .or. (has_folds(contact) .and. memory%slave_tracking%n_touching > 0)) then
-      call place_neighbours(contact, memory, block)
+      call place_neighbours(contact, memory, overlaps, block)
     else
       memory%points%n = 0
     end if
@@ -71,10 +64,11 @@ contains
   end subroutine place_segmented_mortar
 
   !> Neighbours of segments in contact that have not been placed.
-  pure subroutine place_neighbours(contact, memory, block)
+  pure subroutine place_neighbours(contact, memory, overlaps, block)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    type(gauss_block_t), intent(inout) :: block !! empty
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
+    type(place_block_t), intent(inout) :: block !! empty
     integer :: neighbours(2), s, k
 
     do s = 1, contact%slave%n_segment
@@ -83,19 +77,19 @@ contains
       do k = 1, 2
         if (neighbours(k) == 0) cycle
         if (.not. memory%scratch%is_placed(neighbours(k))) &
-          call place_segment(contact, neighbours(k), memory, block)
+          call place_segment(contact, neighbours(k), memory, overlaps, block)
       end do
     end do
     call finish_block(contact, memory, block)
   end subroutine place_neighbours
 
   !> The points of one slave segment, with areas as if they were opposed to the master entirely.
-  pure subroutine place_segment(contact, s, memory, block)
+  pure subroutine place_segment(contact, s, memory, overlaps, block)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: s
     type(contact_state_t), intent(inout) :: memory
-    type(gauss_block_t), intent(inout) :: block
-    type(overlap_t) :: overlaps(n_most_overlaps(memory, s))
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
+    type(place_block_t), intent(inout) :: block
     real(wp) :: own(2), other(2), way(2), length
     integer :: ends(2), nodes(2), n, k, q, p
 
@@ -106,22 +100,23 @@ contains
     length = sqrt(own(1)*own(1) + own(2)*own(2))
     do k = 1, n
       if (.not. overlaps(k)%share > 0.0_wp) cycle
-      if (block%feet%n + n_gauss > n_block) call finish_block(contact, memory, block)
+      if (block%n + n_gauss > n_block) call finish_block(contact, memory, block)
       nodes = memory%n_slave + contact%master%segments(:, overlaps(k)%master)
       other = separation(memory%places(:, nodes(2)), memory%places(:, nodes(1)))
       way = separation(memory%places(:, ends(1)), memory%places(:, nodes(1)))
       do q = 1, n_gauss
-        p = block%feet%n + q
+        p = block%n + q
         associate (xi => block%xi(p), part => overlaps(k)%high - overlaps(k)%low)
           xi = overlaps(k)%low + gauss_xi(q)*part
-          block%area(p) = 0.5_wp*part*length
+          block%area(p) = 0.5_wp*part*length*overlaps(k)%part
           block%ends(:, p) = ends
+          block%nodes(:, p) = nodes
           block%feet%segment(p) = overlaps(k)%master
           block%feet%t(:, p) = other
           block%feet%d(:, p) = way + xi*own
         end associate
       end do
-      block%feet%n = block%feet%n + n_gauss
+      block%n = block%n + n_gauss
     end do
   end subroutine place_segment
 
@@ -130,30 +125,30 @@ contains
   pure subroutine finish_block(contact, memory, block)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    type(gauss_block_t), intent(inout) :: block
+    type(place_block_t), intent(inout) :: block
     type(foot_t) :: foot
-    integer :: p
+    integer :: i, p
 
+    block%feet%n = block%n
     call project_block(block%feet)
     if (block%feet%n_odd > 0) call settle_odd(contact%master, &
       memory%places(:, memory%n_slave + 1:), block%feet)
-    do p = 1, block%feet%n
+    do i = 1, block%feet%n_moved
+      p = block%feet%moved(i)
       associate (feet => block%feet, ends => block%ends(:, p), xi => block%xi(p))
         if (feet%odd(p) > 0.0_wp) then
           foot = near_foot(contact%master, memory%places(:, memory%n_slave + 1:), &
             (1.0_wp - xi)*memory%places(:, ends(1)) + xi*memory%places(:, ends(2)), feet%segment(p))
+          feet%segment(p) = foot%segment
+          feet%xi(p) = foot%xi
+          feet%gap(p) = foot%gap
+          feet%normal(:, p) = foot%normal
           if (.not. foot%is_on) block%area(p) = 0.0_wp
-        else
-          foot%segment = feet%segment(p)
-          foot%xi = feet%xi(p)
-          foot%gap = feet%gap(p)
-          foot%normal = feet%normal(:, p)
         end if
-        call add_point(memory%points, ends, xi, memory%n_slave &
-          + contact%master%segments(:, foot%segment), foot, block%area(p), memory%slave_penalty)
+        block%nodes(:, p) = memory%n_slave + contact%master%segments(:, feet%segment(p))
       end associate
     end do
-    block%feet%n = 0
+    call append_points(block, memory%slave_penalty, memory%points)
   end subroutine finish_block
 
 end module place_segmented_mortar_m

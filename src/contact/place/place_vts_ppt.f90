@@ -7,8 +7,8 @@
 module place_vts_ppt_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
-  use foot_m, only : foot_t, mark_t, walk_to_mark, round_off
-  use geometry_m, only : segment_length
+  use foot_m, only : foot_t, mark_t, see_segment, walk_to_mark, round_off
+  use geometry_m, only : sight_t, segment_length, separation
   use kinds_m, only : wp
   use point_list_m, only : add_point
   use radii_m, only : centroid, radius_between
@@ -37,66 +37,95 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(mark_t) :: marks(2)
     type(foot_t) :: foot
-    real(wp) :: half, xi
+    real(wp) :: a(4), b(4), at, xi, half
     integer :: ends(2), segment, first, i
 
     ends = contact%slave%segments(:, (spot + 1)/2)
-    associate (tracking => memory%slave_tracking, at => memory%spot_xi(2 - mod(spot, 2)), &
-      a => memory%places(:, ends(1)), b => memory%places(:, ends(2)), points => memory%points)
-      do i = 1, 2
-        xi = end_of_half(at, i)
-        marks(i) = walk_to_mark(contact%master, memory%places(:, memory%n_slave + 1:), &
-          (1.0_wp - xi)*a + xi*b, tracking%segment(spot))
-      end do
-      xi = at
-      half = 0.5_wp*segment_length(a, b)
-      if (contact%is_round) then
-        xi = centroid(a, b, end_of_half(at, 2), end_of_half(at, 1))
-        half = half*radius_between(a, b, at)
-      end if
-      foot%gap = tracking%gap(spot)
-      foot%normal = tracking%normal(:, spot)
-      first = points%n + 1
-      segment = marks(1)%segment
-      do i = marks(1)%n_step, marks(2)%n_step
-        call add_portion(contact, ends, xi, segment, merge(marks(1)%xi, 0.0_wp, &
-          i == marks(1)%n_step), merge(marks(2)%xi, 1.0_wp, i == marks(2)%n_step), foot, memory)
-        segment = contact%master%next(segment)
-        ! Marks of displacements beyond all bounds need not lie on one chain.
-        if (segment == 0) exit
-      end do
+    a = memory%places(:, ends(1))
+    b = memory%places(:, ends(2))
+    at = memory%spot_xi(2 - mod(spot, 2))
+    marks = marks_of_half(contact, memory, spot, a, b, at)
+    xi = at
+    half = 0.5_wp*segment_length(a, b)
+    if (contact%is_round) then
+      xi = centroid(a, b, end_of_half(at, 2), end_of_half(at, 1))
+      half = half*radius_between(a, b, at)
+    end if
+    foot%gap = memory%slave_tracking%gap(spot)
+    foot%normal = memory%slave_tracking%normal(:, spot)
+    first = memory%points%n + 1
+    segment = marks(1)%segment
+    do i = marks(1)%n_step, marks(2)%n_step
+      call add_portion(contact, ends, xi, segment, [merge(marks(1)%xi, 0.0_wp, &
+        i == marks(1)%n_step), merge(marks(2)%xi, 1.0_wp, i == marks(2)%n_step)], foot, memory)
+      segment = contact%master%next(segment)
+      ! Marks of displacements beyond all bounds need not lie on one chain.
+      if (segment == 0) exit
+    end do
+    associate (points => memory%points)
       if (points%n < first) then
-        foot%xi = tracking%xi(spot)
-        call add_point(points, ends, xi, memory%n_slave &
-          + contact%master%segments(:, tracking%segment(spot)), foot, half, memory%slave_penalty)
+        foot%xi = memory%slave_tracking%xi(spot)
+        call add_point(points, ends, xi, memory%n_slave + contact%master%segments(:, &
+          memory%slave_tracking%segment(spot)), foot, half, memory%slave_penalty)
       else
         half = half/sum(points%area(first:points%n))
-        points%area(first:points%n) = half*points%area(first:points%n)
+        do i = first, points%n
+          points%area(i) = half*points%area(i)
+        end do
       end if
     end associate
   end subroutine add_portions
 
+  !> Where both ends of the half of a virtual node are on the master: on the segment below the
+  !> virtual node, or where a walk from there leads.
+  pure function marks_of_half(contact, memory, spot, a, b, at) result(marks)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: spot
+    real(wp), intent(in) :: a(4), b(4) !! ends of the slave segment
+    real(wp), intent(in) :: at         !! where the virtual node is on that
+    type(mark_t) :: marks(2)
+    type(sight_t) :: sight
+    real(wp) :: slope
+    integer :: k
+
+    associate (segment => memory%slave_tracking%segment(spot), &
+      chain => memory%places(:, memory%n_slave + 1:))
+      sight = see_segment(contact%master, chain, (1.0_wp - at)*a + at*b, segment)
+      slope = dot_product(separation(b, a), sight%t)
+      do k = 1, 2
+        marks(k)%segment = segment
+        marks(k)%xi = (sight%along + (end_of_half(at, k) - at)*slope)/sight%square
+      end do
+      if (all(abs(marks%xi - 0.5_wp) <= 0.5_wp)) return
+      do k = 1, 2
+        slope = end_of_half(at, k)
+        marks(k) = walk_to_mark(contact%master, chain, (1.0_wp - slope)*a + slope*b, segment)
+      end do
+    end associate
+  end function marks_of_half
+
   !> Append a portion of a half with its own length as area: it has the gap and the normal of the
   !> virtual node, and its place on the master is its centre, in axisymmetry by radius.
-  pure subroutine add_portion(contact, ends, xi, segment, low, high, foot, memory)
+  pure subroutine add_portion(contact, ends, xi, segment, range, foot, memory)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: ends(2)        !! nodes of the slave segment
     real(wp), intent(in) :: xi            !! place of the virtual node on that
     integer, intent(in) :: segment        !! of the master
-    real(wp), intent(in) :: low, high     !! range of that
+    real(wp), intent(in) :: range(2)      !! of that
     type(foot_t), intent(inout) :: foot   !! gap and normal
     type(contact_state_t), intent(inout) :: memory
     real(wp) :: length
     integer :: nodes(2)
 
-    if (.not. high - low > round_off) return
+    if (.not. range(2) - range(1) > round_off) return
     nodes = memory%n_slave + contact%master%segments(:, segment)
     associate (a => memory%places(:, nodes(1)), b => memory%places(:, nodes(2)))
-      foot%xi = 0.5_wp*(low + high)
-      length = (high - low)*segment_length(a, b)
+      foot%xi = 0.5_wp*(range(1) + range(2))
+      length = (range(2) - range(1))*segment_length(a, b)
       if (contact%is_round) then
         length = length*radius_between(a, b, foot%xi)
-        foot%xi = centroid(a, b, low, high)
+        foot%xi = centroid(a, b, range(1), range(2))
       end if
     end associate
     call add_point(memory%points, ends, xi, nodes, foot, length, memory%slave_penalty)

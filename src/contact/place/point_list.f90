@@ -1,18 +1,50 @@
 ! SPDX-License-Identifier: MIT
-!> The list of contact points and its only writer: points on slave segments one by one, points at
-!> the active nodes of a surface all together.
+!> The list of contact points and its only writer: points on slave segments one by one or in blocks,
+!> points at the active nodes of a surface all together.
 module point_list_m
   use contact_state_m, only : contact_points_t, tracking_t, make_room, n_side
+  use foot_block_m, only : foot_block_t, n_block
   use foot_m, only : foot_t, facing_share, face_on
-  use geometry_m, only : separation
   use kinds_m, only : wp
   use radii_m, only : radius_between
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: add_point, append_touching, add_length, finish_segment_points
+  public :: place_block_t, append_points, add_point, append_touching, add_length, &
+    finish_segment_points
+
+  !> Places on slave segments that are to be points, with their projections on the master: many at a
+  !> time, so that these are formed together. Without default values, which would be written before
+  !> each use.
+  type :: place_block_t
+    integer :: n
+    integer :: ends(n_side, n_block)  !! nodes of the slave segment
+    integer :: nodes(n_side, n_block) !! of the master segment, local numbers
+    real(wp) :: xi(n_block)           !! place on the slave segment, 0 to 1
+    real(wp) :: area(n_block)         !! m
+    type(foot_block_t) :: feet
+  end type place_block_t
 
 contains
+
+  !> Append the places of a block and empty it.
+  pure subroutine append_points(block, stiffness, points)
+    type(place_block_t), intent(inout) :: block
+    real(wp), intent(in) :: stiffness !! of all, N/m^2
+    type(contact_points_t), intent(inout) :: points
+
+    if (block%n == 0) return
+    call make_room(points, block%n)
+    associate (p => points%n + 1, n => block%n, feet => block%feet)
+      call put_side(n, block%ends, block%xi, points%slave_nodes(1, p), points%slave_weights(1, p))
+      call put_side(n, block%nodes, feet%xi, points%master_nodes(1, p), points%master_weights(1, p))
+      call put_springs(n, feet%gap, feet%normal, block%area, points%gap(p), points%normal(1, p), &
+        points%area(p))
+      points%stiffness(p:p + n - 1) = stiffness
+    end associate
+    points%n = points%n + block%n
+    block%n = 0
+  end subroutine append_points
 
   !> Append a point on a slave segment, or at an end of it.
   pure subroutine add_point(points, ends, xi, nodes, foot, area, stiffness)
@@ -80,27 +112,48 @@ contains
     logical, intent(in) :: is_round
     integer, intent(in) :: first                     !! of these points
     type(contact_points_t), intent(inout) :: points
-    real(wp) :: t(2), across, square
     integer :: p, n
 
+    n = points%n - first + 1
+    if (n < 1) return
+    call reduce_areas(n, points%slave_nodes(1, first), points%normal(1, first), places, &
+      points%area(first))
+    if (is_round) then
+      do p = first, points%n
+        associate (nodes => points%slave_nodes(:, p))
+          points%area(p) = points%area(p)*radius_between(places(:, nodes(1)), places(:, nodes(2)), &
+            points%slave_weights(2, p))
+        end associate
+      end do
+    end if
+    if (all(points%area(first:points%n) > 0.0_wp)) return
     n = first - 1
     do p = first, points%n
-      if (.not. points%area(p) > 0.0_wp) cycle
-      associate (nodes => points%slave_nodes(:, p), normal => points%normal(:, p))
-        t = separation(places(:, nodes(2)), places(:, nodes(1)))
-        across = t(2)*normal(1) - t(1)*normal(2)
-        square = t(1)*t(1) + t(2)*t(2)
-        if (across > 0.0_wp .or. across*across < face_on**2*square) &
-          points%area(p) = points%area(p)*facing_share(across/sqrt(square))
-        if (is_round) points%area(p) = points%area(p)*radius_between(places(:, nodes(1)), &
-          places(:, nodes(2)), points%slave_weights(2, p))
-      end associate
       if (.not. points%area(p) > 0.0_wp) cycle
       n = n + 1
       if (n < p) call move_point(p, n, points)
     end do
     points%n = n
   end subroutine finish_segment_points
+
+  !> Reduce areas to what is opposed to the master.
+  pure subroutine reduce_areas(n, ends, normal, places, area)
+    integer, intent(in) :: n, ends(n_side, n)       !! of the slave segments
+    real(wp), intent(in) :: normal(2, n)            !! outward, of the master
+    real(wp), intent(in) :: places(4, *)
+    real(wp), intent(inout) :: area(n)              !! m
+    real(wp) :: along(4), across, square
+    integer :: p
+
+    !GCC$ NOVECTOR
+    do p = 1, n
+      along = places(:, ends(2, p)) - places(:, ends(1, p))
+      across = (along(2) + along(4))*normal(1, p) - (along(1) + along(3))*normal(2, p)
+      square = (along(1) + along(3))**2 + (along(2) + along(4))**2
+      if (across > 0.0_wp .or. across*across < face_on**2*square) &
+        area(p) = area(p)*facing_share(across/sqrt(square))
+    end do
+  end subroutine reduce_areas
 
   !> Move a point on the list.
   pure subroutine move_point(from, to, points)
@@ -116,6 +169,32 @@ contains
     points%area(to) = points%area(from)
     points%stiffness(to) = points%stiffness(from)
   end subroutine move_point
+
+  !> Nodes and weights of one side of some points.
+  pure subroutine put_side(n, nodes, xi, point_nodes, weights)
+    integer, intent(in) :: n, nodes(n_side, n)
+    real(wp), intent(in) :: xi(n)
+    integer, intent(inout) :: point_nodes(n_side, n)
+    real(wp), intent(inout) :: weights(n_side, n)
+    integer :: k
+
+    point_nodes = nodes
+    do k = 1, n
+      weights(1, k) = 1.0_wp - xi(k)
+      weights(2, k) = xi(k)
+    end do
+  end subroutine put_side
+
+  !> Gaps, normals and areas of some points.
+  pure subroutine put_springs(n, gap, normal, area, point_gap, point_normal, point_area)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: gap(n), normal(2, n), area(n)
+    real(wp), intent(inout) :: point_gap(n), point_normal(2, n), point_area(n)
+
+    point_gap = gap
+    point_normal = normal
+    point_area = area
+  end subroutine put_springs
 
   !> Tracked nodes, and the nodes of the segments that they are in contact with.
   pure subroutine put_nodes(n, touching, segment, segments, offsets, slave_nodes, master_nodes)

@@ -401,21 +401,21 @@ def overlaps(slave, master, k, feet, strict=False):
 
     Nothing beyond the master segments that its ends are projected on; these reach to its ends. An
     end whose projection is a master node has this node between it and the other end. Returns (left,
-    right, master node at the left or None, at the right or None, master segment).
+    right, master node at the left or None, at the right or None, master segment, part that counts of
+    sides of corners).
     """
     ends = [end_foot(slave, master, k, node, feet[node]) for node in slave.nodes[k]]
     if strict and None in ends:
         faces = [foot.normal for foot in (feet[node] for node in slave.nodes[k]) if foot and foot.gap < 0.0]
         is_opposed = any(np.dot(slave.normal[k], normal) < SIDE_ON for normal in faces)
-        return [(0.0, 1.0, None, None, None)] if is_opposed else []
+        return [(0.0, 1.0, None, None, None, 1.0)] if is_opposed else []
     first, last = ends[0] and ends[0].after(master), ends[1] and ends[1].before(master)
     touched = {foot.segment for foot in (feet[node] for node in slave.nodes[k]) if foot and foot.gap < 0.0}
     found = []
     for m in range(len(master)):
         if np.dot(slave.normal[k], master.normal[m]) >= SIDE_ON and m not in (first, last):
             continue
-        if is_past(master, first, m, 1) or is_past(master, last, m, -1) or \
-                is_side(slave, k, master.normal[m]):
+        if is_past(master, first, m, 1) or is_past(master, last, m, -1):
             continue
         nodes = master.nodes[m, ::-1]
         away = master.x[nodes] - slave.start[k]
@@ -431,19 +431,21 @@ def overlaps(slave, master, k, feet, strict=False):
         middle = np.interp(0.5 * (low + high), at, gap) if at[0] < at[1] else np.mean(gap)
         if middle < -0.75 * master.thick[m] and m not in touched:
             continue
-        found.append((low, high, left, right, m))
+        part = side_part(slave, k, master.normal[m]) * side_part(master, m, slave.normal[k])
+        if part > 0.0:
+            found.append((low, high, left, right, m, part))
     return sorted(found, key=lambda overlap: overlap[:2])
 
 
-def is_side(slave, k, normal):
-    """Whether segment k of a closed boundary is the side next to a convex corner whose other segment
-    is opposed to a face so much more that nothing of it counts."""
-    cosine = np.dot(slave.normal[k], normal)
-    if not slave.closed or cosine <= FACE_ON:
-        return False
-    return any(cosine - np.dot(slave.normal[other], normal) >= MUCH_LESS
-               and cross(slave.normal[k], slave.normal[other]) * step > 0.0
-               for step in (-1, 1) for other in [slave.next(k, step)])
+def side_part(chain, k, normal):
+    """How much of segment k of a closed boundary counts beside segments next to it at convex corners
+    that are opposed to a face so much more."""
+    part = 1.0
+    for way in (-1, 1) if chain.closed else ():
+        other = chain.next(k, way)
+        if cross(chain.normal[k], chain.normal[other]) * way > 0.0:
+            part *= 1.0 - step((chain.normal[k] - chain.normal[other]) @ normal, LESS, MUCH_LESS)
+    return part
 
 
 def end_foot(slave, master, k, node, foot):
@@ -477,8 +479,8 @@ def nts_mar(slave, master, penalty, strict=False, offsets=None):
     weight = np.zeros(len(slave.x))
     extra = {}
     for k in range(len(slave)):
-        for left, right, left_node, right_node, segment in overlaps(slave, master, k, feet, strict):
-            share = 1.0 if strict else facing(slave.normal[k], master.normal[segment])
+        for left, right, left_node, right_node, segment, part in overlaps(slave, master, k, feet, strict):
+            share = part * (1.0 if strict else facing(slave.normal[k], master.normal[segment]))
             shares = slave.shares(k, left, right)
             for end, node in enumerate((left_node, right_node)):
                 if node is not None:
@@ -561,9 +563,9 @@ def segmented_mortar(slave, master, penalty, offsets=None):
     feet = project(slave.x, master, [of_node(slave, node) for node in range(len(slave.x))])
     spots = []
     for k in range(len(slave)):
-        for left, right, _, _, segment in overlaps(slave, master, k, feet):
+        for left, right, _, _, segment, part in overlaps(slave, master, k, feet):
             if facing(slave.normal[k], master.normal[segment]) > 0.0:
-                size = (right - left) * slave.length[k]
+                size = part * (right - left) * slave.length[k]
                 places = [(left + at * (right - left), w) for at, w in zip(*gauss(2))]
                 spots += [(k, at, w * size * slave.radius(k, at), segment) for at, w in places]
     return nodal_pressure(slave, master, penalty, spots, offsets)
