@@ -181,8 +181,8 @@ contains
     else
       if (memory%points%n > 0 .or. had_force) &
         call hand_over(now%dt, motion, former, memory, force)
-      call end_look(had_force, memory%n_active > 0 .or. (memory%has%ties .and. memory%points%n > 0), &
-        memory%watch)
+      call end_look(had_force, memory%n_active > 0 &
+        .or. (memory%has%ties .and. memory%points%n > 0), memory%watch)
     end if
     if (present(clock)) call lap(clock, phase_contact_force)
   end subroutine step_contact
@@ -252,7 +252,7 @@ contains
     if (has_offsets(memory)) call lend(faded_work(memory), memory%limit)
   end subroutine book_springs
 
-  !> Friction tractions; where the coefficient decays, those that stick are damped in explicit steps.
+  !> Friction tractions. Where the coefficient decays, explicit steps damp those that stick.
   pure subroutine rub_points(contact, now, mass, memory)
     type(contact_t), intent(in) :: contact
     type(instant_t), intent(in) :: now
