@@ -126,7 +126,7 @@ contains
     area = dot_product(halves, shares)
     if (maxval(shares) >= 1.0_wp .or. .not. minval(halves) > 0.0_wp) return
     ! The opposite of the normal turns from the first of both normals to the second.
-    if (dot_product(t(:, 1), normal) > 0.0_wp .and. dot_product(t(:, 2), normal) < 0.0_wp) &
+    if (dot_product(t(:, 1), normal) < 0.0_wp .and. dot_product(t(:, 2), normal) > 0.0_wp) &
       area = area + (1.0_wp - maxval(shares))*sum(halves)
   end function opposed_part
 

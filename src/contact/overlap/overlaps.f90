@@ -8,7 +8,7 @@ module overlaps_m
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
   use foot_m, only : foot_t, closest_foot, side_on, face_on, side_share, &
-    facing_share, see_segment, round_off
+    least_excess, facing_share, see_segment, round_off
   use geometry_m, only : sight_t, separation, closest_distance
   use kinds_m, only : wp
   use opposed_m, only : turns_sharply
@@ -21,9 +21,9 @@ module overlaps_m
   !> Most segments between two active ends that are taken without a look at the candidates, and
   !> number of segments of a closed master up to which the way forwards may be the shorter one.
   integer, parameter :: n_between = 6, short_surface = 2*n_between + 2
-  !> Deepest middle of an overlap with a master segment that no end of the slave segment is active
-  !> on, by the depth of a first contact: deeper ones are the far side of something, or the back of
-  !> the own wall.
+  !> Deepest middle of an overlap with a master segment that is not reached from an active end of
+  !> the slave segment, by the depth of a first contact: deeper ones are the far side of something,
+  !> or the back of the own wall.
   real(wp), parameter :: deep = 1.5_wp
   !> Part of a segment within which a projection is on its node.
   real(wp), parameter :: near_node = 1.0e-9_wp
@@ -33,6 +33,7 @@ module overlaps_m
     integer :: number
     integer :: ends(2)       !! nodes
     logical :: is_active(2)  !! its ends
+    real(wp) :: margins(2)   !! parts of it next to its ends where master nodes are no breakpoints
     integer :: below(2)      !! master segments that its ends have their projections on, 0: none
     real(wp) :: start(4)     !! position of its first end
     real(wp) :: t(2), square !! its vector, m, and the square of that
@@ -78,6 +79,7 @@ contains
     own%number = s
     own%ends = contact%slave%segments(:, s)
     own%is_active = memory%slave_tracking%status(own%ends) == is_touching
+    own%margins = merge(least_cut, 0.0_wp, own%is_active)
     own%start = memory%places(:, own%ends(1))
     own%t = way_to(own%ends(2), own, memory%places)
     own%square = max(own%t(1)**2 + own%t(2)**2, tiny(1.0_wp))
@@ -88,13 +90,14 @@ contains
     if (is_strict .and. any(own%below == 0)) then
       if (.not. is_opposed_to_contact(memory, own)) return
       n = 1
-      overlaps(1) = overlap_t(0, 0.0_wp, 1.0_wp, 0, 0, [0.0_wp, 0.0_wp], 1.0_wp)
+      overlaps(1) = overlap_t(0, 0.0_wp, 1.0_wp, 0, 0, [0.0_wp, 0.0_wp], 1.0_wp, 1.0_wp)
       return
     end if
     if (contact%master%n_segment > short_surface .and. all(own%is_active)) &
       call take_between(own, contact%master%previous, &
       contact%master%segments, memory%n_slave, memory%places, least_cut, overlaps, n)
     if (n == 0) call take_candidates(contact, memory, own, overlaps, n)
+    if (memory%slave_tracking%pass%is_closed) call weigh_sides(contact, memory, own, overlaps(:n))
   end subroutine find_overlaps
 
   !> Overlaps with the master segments from below one active end to below the other; none where
@@ -131,6 +134,7 @@ contains
       overlaps(k)%low = low
       overlaps(k)%first = first
       overlaps(k)%share = 0.0_wp
+      overlaps(k)%part = 1.0_wp
       if (k == n .or. xi >= 1.0_wp - least_cut) then
         xi = 1.0_wp
         node = 0
@@ -178,17 +182,42 @@ contains
         call cut_by(contact%master, memory, own, m, overlap)
         if (.not. overlap%high > overlap%low) cycle
         if (is_beyond(contact%master, own%below, m, n_most)) cycle
-        if (memory%slave_tracking%pass%is_closed) then
-          if (is_side_of_corner(contact, memory, own, m)) cycle
+        if (.not. may_be_deep .and. gap_at(overlap, 0.5_wp*(overlap%low + overlap%high)) &
+          < -deep*memory%slave_tracking%segment_depth(m)) then
+          if (.not. any(own%is_active .and. own%below == m) .and. .not. is_reached(contact, memory, &
+            own, m, n_most)) cycle
         end if
-        if (.not. (may_be_deep .or. any(own%is_active .and. own%below == m)) .and. &
-          gap_at(overlap, 0.5_wp*(overlap%low + overlap%high)) &
-          < -deep*memory%slave_tracking%segment_depth(m)) cycle
         n = n + 1
       end associate
     end do
     call order_overlaps(overlaps, n)
   end subroutine take_candidates
+
+  !> Whether a master segment is the one that an end of a slave segment is active on, or follows it
+  !> towards the other end without a sharp turn (a surface in contact with itself: the back of the
+  !> own wall may follow).
+  pure function is_reached(contact, memory, own, m, n_most) result(reached)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(slave_segment_t), intent(in) :: own
+    integer, intent(in) :: m
+    integer, intent(in) :: n_most !! steps along the surface
+    logical :: reached
+    integer :: k, i, segment, next
+
+    reached = .false.
+    do k = 1, 2
+      if (.not. own%is_active(k)) cycle
+      segment = memory%slave_tracking%segment(own%ends(k))
+      do i = 1, n_most
+        reached = reached .or. segment == m
+        next = merge(contact%master%previous(segment), contact%master%next(segment), k == 1)
+        if (reached .or. next == 0 .or. contact%is_self) exit
+        if (turns_sharply(contact%master, memory%places(:, memory%n_slave + 1:), segment, next)) exit
+        segment = next
+      end do
+    end do
+  end function is_reached
 
   !> Master segment on which the k-th end of a slave segment has its projection: of an active end
   !> that of its status, else the closest of the candidates if it is over that; 0: none. Of two that
@@ -295,31 +324,54 @@ contains
       + own(2)*own(2))*(other(1)*other(1) + other(2)*other(2)))
   end function looks_against
 
-  !> Whether a slave segment is the side next to a sharp convex vertex whose other segment is
-  !> opposed to a master segment so much more that nothing of the side counts.
-  pure function is_side_of_corner(contact, memory, own, m) result(is)
+  !> Let overlaps of closed boundaries with the side next to a convex vertex count less, or not, on
+  !> the slave as on the master.
+  pure subroutine weigh_sides(contact, memory, own, overlaps)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(slave_segment_t), intent(in) :: own
-    integer, intent(in) :: m
-    logical :: is
-    real(wp) :: beside(2), other(2), cosine
+    type(overlap_t), intent(inout) :: overlaps(:)
+    real(wp) :: other(2)
+    integer :: k
+
+    associate (master => memory%places(:, memory%n_slave + 1:))
+      do k = 1, size(overlaps)
+        if (.not. overlaps(k)%share > 0.0_wp) cycle
+        other = vector(contact%master, master, overlaps(k)%master)
+        overlaps(k)%part = side_part(contact%slave, memory%places, own%number, other)
+        if (overlaps(k)%part > 0.0_wp) overlaps(k)%part = overlaps(k)%part &
+          *side_part(contact%master, master, overlaps(k)%master, own%t)
+        overlaps(k)%share = overlaps(k)%share*overlaps(k)%part
+      end do
+    end associate
+  end subroutine weigh_sides
+
+  !> How much of a segment counts, 0 to 1: less the more a segment next to it at a convex vertex is
+  !> opposed to the segment of the other surface than it is itself (see `side_share`).
+  pure function side_part(surface, places, segment, other) result(part)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, at least n_node) from this surface on
+    integer, intent(in) :: segment
+    real(wp), intent(in) :: other(2)                 !! segment of the other surface, m
+    real(wp) :: part
+    real(wp) :: own(2), beside(2), product, squares
     integer :: k, next
 
-    is = .false.
-    other = vector(contact%master, memory%places(:, memory%n_slave + 1:), m)
-    other = other/sqrt(other(1)**2 + other(2)**2)
-    cosine = dot_product(own%t, other)/sqrt(own%square)
-    if (cosine <= face_on) return
+    part = 1.0_wp
+    own = vector(surface, places, segment)
+    product = own(1)*other(1) + own(2)*other(2)
+    squares = (own(1)**2 + own(2)**2)*(other(1)**2 + other(2)**2)
+    ! No segment can be opposed so much more.
+    if (product**2 >= (1.0_wp - least_excess)**2*squares) return
     do k = 1, 2
-      next = merge(contact%slave%previous(own%number), contact%slave%next(own%number), k == 1)
+      next = merge(surface%previous(segment), surface%next(segment), k == 1)
       if (next == 0) cycle
-      beside = vector(contact%slave, memory%places, next)
-      if (merge(-1.0_wp, 1.0_wp, k == 1)*(own%t(1)*beside(2) - own%t(2)*beside(1)) <= 0.0_wp) cycle
-      is = is .or. .not. side_share(cosine - dot_product(beside, other) &
-        /sqrt(beside(1)**2 + beside(2)**2)) > 0.0_wp
+      beside = vector(surface, places, next)
+      if (merge(-1.0_wp, 1.0_wp, k == 1)*(own(1)*beside(2) - own(2)*beside(1)) <= 0.0_wp) cycle
+      part = part*side_share(product/sqrt(squares) - (beside(1)*other(1) + beside(2)*other(2)) &
+        /sqrt((beside(1)**2 + beside(2)**2)*(other(1)**2 + other(2)**2)))
     end do
-  end function is_side_of_corner
+  end function side_part
 
   !> Vector of a segment, m.
   pure function vector(surface, places, segment) result(t)
@@ -393,12 +445,13 @@ contains
       xi(k) = (d(1, k)*own%t(1) + d(2, k)*own%t(2))/own%square
     end do
     ! Most candidates lie beyond an end.
-    if (.not. any(own%below == m) .and. (xi(2) <= 0.0_wp .or. xi(1) >= 1.0_wp)) return
+    if (.not. any(own%below == m) .and. (xi(2) <= own%margins(1) &
+      .or. xi(1) >= 1.0_wp - own%margins(2))) return
     if (.not. looks_against(own%t, d(:, 1) - d(:, 2))) return
     gaps = (d(1, :)*own%t(2) - d(2, :)*own%t(1))/sqrt(own%square)
     overlap%master = m
-    overlap%low = min(max(xi(1), 0.0_wp), 1.0_wp)
-    overlap%high = min(max(xi(2), 0.0_wp), 1.0_wp)
+    overlap%low = merge(0.0_wp, min(xi(1), 1.0_wp), xi(1) <= own%margins(1))
+    overlap%high = merge(1.0_wp, max(xi(2), 0.0_wp), xi(2) >= 1.0_wp - own%margins(2))
     overlap%first = merge(nodes(1), 0, overlap%low > 0.0_wp .and. overlap%low < 1.0_wp)
     overlap%last = merge(nodes(2), 0, overlap%high > 0.0_wp .and. overlap%high < 1.0_wp)
     if (own%below(1) == m) then
@@ -414,10 +467,13 @@ contains
     else if (own%below(2) > 0 .and. abs(xi(2) - 1.0_wp) <= near_node) then
       if (master%previous(m) /= own%below(2)) overlap%last = nodes(2)
     end if
+    if (overlap%high <= own%margins(1) .or. overlap%low >= 1.0_wp - own%margins(2)) &
+      overlap%high = overlap%low
     overlap%gap = 0.0_wp
     if (abs(xi(2) - xi(1)) > round_off) overlap%gap = gaps(1) + (gaps(2) - gaps(1)) &
       *([0.0_wp, 1.0_wp] - xi(1))/(xi(2) - xi(1))
     overlap%share = share_of(own, d(:, 1) - d(:, 2))
+    overlap%part = 1.0_wp
   end subroutine cut_by
 
   !> How much of an overlap counts: all up to a certain angle between the two segments, none from a

@@ -9,7 +9,7 @@ module place_mortar_m
   use kinds_m, only : wp
   use overlaps_m, only : closest_candidate
   use point_list_m, only : add_point, finish_segment_points
-  use tips_m, only : has_folds, belongs_to
+  use tips_m, only : has_folds, find_tips, belongs_to
   implicit none
   private
   public :: place_mortar
@@ -24,6 +24,7 @@ contains
     integer :: s, near, first
 
     if (memory%slave_tracking%n_touching == 0) return
+    if (has_folds(contact)) call find_tips(contact%slave, memory)
     call mark_ends(memory%slave_tracking, size(memory%spot_xi), contact%slave%segments, &
       memory%scratch%segment_near)
     do s = 1, contact%slave%n_segment

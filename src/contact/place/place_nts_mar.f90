@@ -99,7 +99,7 @@ contains
     real(wp) :: low, high
 
     halves = 0.5_wp*(overlap%high - overlap%low)*length
-    if (.not. contact%strict) halves = halves*overlap%share
+    halves = halves*merge(overlap%part, overlap%share, contact%strict)
     if (.not. contact%is_round) return
     low = radius_between(a, b, overlap%low)
     high = radius_between(a, b, overlap%high)

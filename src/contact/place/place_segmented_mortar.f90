@@ -13,7 +13,7 @@ module place_segmented_mortar_m
   use point_list_m, only : place_block_t, append_points, finish_segment_points
   use overlap_status_m, only : none_due, look_at_segment, note_next_wake
   use segment_points_m, only : judge_segments
-  use tips_m, only : has_folds, sharpen_tips
+  use tips_m, only : has_folds, find_tips, sharpen_tips
   implicit none
   private
   public :: place_segmented_mortar, n_gauss, gauss_xi, least_cut
@@ -42,6 +42,7 @@ contains
 
     if (none_due(memory)) return
     allocate (overlaps(room_for_overlaps(memory)))
+    if (has_folds(contact)) call find_tips(contact%slave, memory)
     memory%scratch%is_placed = .false.
     block%n = 0
     do s = 1, contact%slave%n_segment
@@ -107,7 +108,7 @@ contains
         p = block%n + q
         associate (xi => block%xi(p), part => overlaps(k)%high - overlaps(k)%low)
           xi = overlaps(k)%low + gauss_xi(q)*part
-          block%area(p) = 0.5_wp*part*length
+          block%area(p) = 0.5_wp*part*length*overlaps(k)%part
           block%ends(:, p) = ends
           block%nodes(:, p) = nodes
           block%feet%segment(p) = overlaps(k)%master
