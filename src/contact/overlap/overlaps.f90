@@ -184,8 +184,8 @@ contains
         if (is_beyond(contact%master, own%below, m, n_most)) cycle
         if (.not. may_be_deep .and. gap_at(overlap, 0.5_wp*(overlap%low + overlap%high)) &
           < -deep*memory%slave_tracking%segment_depth(m)) then
-          if (.not. any(own%is_active .and. own%below == m) .and. .not. is_reached(contact, memory, &
-            own, m, n_most)) cycle
+          if (.not. (any(own%is_active .and. own%below == m) .or. is_reached(contact, memory, own, &
+            m, n_most))) cycle
         end if
         n = n + 1
       end associate
@@ -213,7 +213,8 @@ contains
         reached = reached .or. segment == m
         next = merge(contact%master%previous(segment), contact%master%next(segment), k == 1)
         if (reached .or. next == 0 .or. contact%is_self) exit
-        if (turns_sharply(contact%master, memory%places(:, memory%n_slave + 1:), segment, next)) exit
+        if (turns_sharply(contact%master, memory%places(:, memory%n_slave + 1:), segment, &
+          next)) exit
         segment = next
       end do
     end do
