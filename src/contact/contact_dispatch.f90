@@ -3,7 +3,7 @@
 !> one is a number in `contacts_m`, a row of `formulations`, and a `use` and a `case` for
 !> either (doc/add_a_formulation.md).
 module contact_dispatch_m
-  use contact_law_m, only : law_penalty, pressed_at_points, pressed_at_slave_nodes
+  use contact_law_m, only : law_penalty
   use contact_state_m, only : contact_state_t
   use contacts_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_vts_ppt, &
     type_nts_mar, type_mortar, type_segmented_mortar, contact_t, contact_kind_t
@@ -31,7 +31,7 @@ module contact_dispatch_m
     logical :: has_two_passes = .false.   !! master nodes are tracked over the slave chain too
     logical :: has_unit_area = .false.    !! the penalty is N/m per node
     logical :: covers_segments = .false.  !! goes along both chains, slave segment by slave segment
-    integer :: where_pressed = pressed_at_points !! where pressure is formed and kept
+    logical :: has_nodal_pressure = .false. !! it is formed at slave nodes, not at points
     integer :: contact_law = law_penalty  !! from the gap there to the pressure
     integer :: points_per_slave = 1       !! usual most of points for each spot, for the allocation
     integer :: points_per_master = 0      !! and for each master node
@@ -50,10 +50,10 @@ module contact_dispatch_m
     formulation_t(contact_kind_t(type_nts_mar, 'NTS-mAR', has_strict_rule=.true.), &
       covers_segments=.true., points_per_master=1), &
     formulation_t(contact_kind_t(type_mortar, 'mortar', uses_gauss_points=.true.), &
-      spots=spots_at_gauss_points, where_pressed=pressed_at_slave_nodes), &
+      spots=spots_at_gauss_points, has_nodal_pressure=.true.), &
     formulation_t(contact_kind_t(type_segmented_mortar, 'segmented mortar', &
       has_implicit_springs=.true.), &
-      covers_segments=.true., where_pressed=pressed_at_slave_nodes, points_per_slave=2, &
+      covers_segments=.true., has_nodal_pressure=.true., points_per_slave=2, &
       points_per_master=2)]
 
   !> The same as the deck layer wants them.

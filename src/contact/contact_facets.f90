@@ -51,7 +51,7 @@ contains
       do p = 1, points%n
         if (.not. points%gap(p) < 0.0_wp) cycle
         ! Those of an overlap that grows have no pressure at first.
-        if (points%pressure(p) > 0.0_wp .or. allocated(memory%interference%depth)) &
+        if (points%pressure(p) > 0.0_wp .or. memory%has%interference) &
           call look_at_point(contact, points, p, arcs, deepest, estimate)
       end do
     end associate

@@ -2,16 +2,15 @@
 !> The memory of an interface before it has looked at anything: shapes and penalties.
 module contact_preparation_m
   use contact_dispatch_m, only : formulation_t, formulation_of
-  use contact_law_m, only : pressed_at_slave_nodes
   use contact_penalty_m, only : set_penalties
-  use contact_state_m, only : contact_state_t, allocate_points, allocate_loads, &
+  use contact_state_m, only : contact_state_t, features_t, allocate_points, allocate_damping, &
     allocate_tractions, allocate_scratch, places_of_segment
-  use contacts_m, only : contact_t, has_friction, is_tied, penalty_implicit
+  use contacts_m, only : contact_t, has_friction, is_tied, breaks, penalty_implicit
   use law_state_m, only : allocate_limit, allocate_friction, allocate_interference
   use initial_status_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments
   use kinds_m, only : wp
   use model_m, only : model_t
-  use spots_m, only : start_spots
+  use spots_m, only : start_spots, spots_at_nodes
   use tips_m, only : has_folds
   implicit none
   private
@@ -42,33 +41,50 @@ contains
     end do
     formulation = formulation_of(contact)
     memory%contact_law = formulation%contact_law
+    memory%has = features_of(contact, formulation, model%controls%implicit%is_on)
     call set_penalties(contact, model, formulation%self_share, memory)
     call start_spots(formulation%spots, contact%n_gauss, contact%is_round, has_folds(contact), &
       contact%slave, memory)
     call allocate_slave_tracking(contact, model, memory)
     if (formulation%has_two_passes) call allocate_master_tracking(contact, model, memory)
-    if (formulation%covers_segments) call allocate_segments(contact, memory)
+    if (memory%has%overlaps) call allocate_segments(contact, memory)
     call allocate_points(memory%points, formulation%points_per_slave*memory%slave_tracking%n &
       + formulation%points_per_master*n_master)
-    if (formulation%where_pressed == pressed_at_slave_nodes) &
-      allocate (memory%node_pressure(n_slave), source=0.0_wp)
-    if (contact%damping > 0.0_wp) then
-      call allocate_loads(memory%points)
+    if (memory%has%nodal_pressure) allocate (memory%node_pressure(n_slave), source=0.0_wp)
+    if (memory%has%damping) then
+      call allocate_damping(memory%points)
       allocate (memory%damping_force(2, n_slave + n_master), source=0.0_wp)
     end if
-    ! Forces of the end of the step have a limit of their own, which has to know them apart from
-    ! those of friction.
-    if (.not. (model%controls%implicit%is_on .or. is_tied(contact) &
-      .or. contact%penalty_unit == penalty_implicit .and. .not. has_friction(contact))) &
-      call allocate_limit(memory%limit, n_slave + n_master)
-    if (has_friction(contact)) then
+    if (memory%has%limit) call allocate_limit(memory%limit, n_slave + n_master)
+    if (memory%has%friction) then
       call allocate_tractions(memory%points)
       call allocate_friction(memory%friction, places_of_segment(memory)*n_slave + n_master, &
         n_slave + n_master)
     end if
-    if (allocated(contact%interference)) call allocate_interference(memory%interference, &
+    if (memory%has%interference) call allocate_interference(memory%interference, &
       places_of_segment(memory)*n_slave, n_master)
     call allocate_scratch(memory)
   end subroutine prepare_contact
+
+  !> What an interface has by its formulation and by the deck. Forces of the end of the step have an
+  !> energy limit of their own, which has to know them apart from those of friction.
+  pure function features_of(contact, formulation, is_implicit) result(has)
+    type(contact_t), intent(in) :: contact
+    type(formulation_t), intent(in) :: formulation
+    logical, intent(in) :: is_implicit !! the whole run
+    type(features_t) :: has
+
+    has%spots = formulation%spots /= spots_at_nodes
+    has%overlaps = formulation%covers_segments
+    has%nodal_pressure = formulation%has_nodal_pressure
+    has%damping = contact%damping > 0.0_wp
+    has%friction = has_friction(contact)
+    has%interference = allocated(contact%interference)
+    has%ties = is_tied(contact)
+    has%breaks = breaks(contact)
+    has%former_tie = contact%behind > 0
+    has%limit = .not. (is_implicit .or. has%ties &
+      .or. contact%penalty_unit == penalty_implicit .and. .not. has%friction)
+  end function features_of
 
 end module contact_preparation_m

@@ -8,7 +8,7 @@ module contact_results_m
   use kinds_m, only : wp
   use law_state_m, only : is_open, is_held, is_broken
   use lengths_m, only : competence_area
-  use nodal_average_m, only : average_gaps
+  use nodal_average_m, only : average_values
   use snapshot_m, only : interface_result_t, slave_result_t, rubbed_t
   use surfaces_m, only : surface_t
   use ties_m, only : tie_spring_t, tie_spring, tied_nodes
@@ -18,7 +18,7 @@ module contact_results_m
 
 contains
 
-  !> Resultants of both sides.
+  !> Resultants of both sides and energies.
   pure subroutine interface_resultants(memory, resultants)
     type(contact_state_t), intent(in) :: memory
     type(interface_result_t), intent(out) :: resultants
@@ -26,6 +26,12 @@ contains
     resultants%slave_force = sum(memory%force(:, :memory%n_slave), 2)
     resultants%master_force = sum(memory%force(:, memory%n_slave + 1:), 2)
     resultants%n_active = memory%n_active
+    associate (friction => memory%friction)
+      resultants%energy = memory%energy + friction%stored
+      resultants%friction = friction%work - friction%stored
+      resultants%damping = memory%damping_work
+      resultants%stored = memory%watch%stored - memory%ties%spent + friction%stored
+    end associate
   end subroutine interface_resultants
 
   !> Rows of all slave nodes in walking order.
@@ -42,7 +48,7 @@ contains
       rows%node = contact%slave%nodes
       allocate (rows%arc_length(n), rows%gap(n), rows%pressure(n), rows%force(2, n), &
         rows%length(n), rows%master_pressure(memory%n_master))
-      if (allocated(memory%points%traction)) allocate (rows%rubbed(n + memory%n_master))
+      if (memory%has%friction .or. memory%has%ties) allocate (rows%rubbed(n + memory%n_master))
     end if
     allocate (places, source=memory%places)
     allocate (share(n + memory%n_master))
@@ -59,14 +65,14 @@ contains
       rows%pressure(i) = share(i)/max(rows%length(i), tiny(1.0_wp))
       rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i)
     end do
-    if (.not. allocated(memory%points%traction)) return
+    if (.not. (memory%has%friction .or. memory%has%ties)) return
     allocate (pull(n + memory%n_master))
     pull = nodal_sums(contact%is_self, memory, memory%points%traction)
     call fill_rubbed(contact%slave, 0, places(:, :n), contact%is_round, pull(:n), memory, &
       rows%rubbed(:n))
     call fill_rubbed(contact%master, n, places(:, n + 1:), contact%is_round, pull(n + 1:), memory, &
       rows%rubbed(n + 1:))
-    if (allocated(memory%ties%side)) call fill_ties(memory, rows)
+    if (memory%has%ties) call fill_ties(memory, rows)
   end subroutine slave_rows
 
   !> What ties have besides: gaps and slips of nodes as means of their springs, by area, and states.
@@ -78,7 +84,7 @@ contains
 
     rows%gap = 0.0_wp
     if (memory%points%n > 0) then
-      call average_gaps(memory%points, size(nodal, 2), nodal)
+      call average_values(memory%points, memory%points%gap, size(nodal, 2), nodal)
       rows%gap = nodal(1, :memory%n_slave)
     end if
     rows%rubbed%slip = mean_slips(memory)
@@ -96,38 +102,20 @@ contains
   pure function mean_slips(memory) result(slip)
     type(contact_state_t), intent(in) :: memory
     real(wp) :: slip(memory%n_slave + memory%n_master)
-    real(wp) :: area(memory%n_slave + memory%n_master), along
+    real(wp) :: area(memory%n_slave + memory%n_master), along(memory%points%n)
     type(tie_spring_t) :: spring
-    integer :: s, p, k
+    integer :: s
 
     slip = 0.0_wp
-    area = 0.0_wp
     if (memory%points%n == 0) return
-    associate (points => memory%points)
-      do s = 1, size(memory%ties%side)
-        spring = tie_spring(memory, s)
-        along = memory%ties%offset(2, s) - dot_product(spring%d, spring%t)
-        do p = memory%ties%first(s), memory%ties%first(s + 1) - 1
-          do k = 1, n_side
-            call add_weighted(points%slave_weights(k, p)*points%area(p), along, &
-              slip(points%slave_nodes(k, p)), area(points%slave_nodes(k, p)))
-            call add_weighted(points%master_weights(k, p)*points%area(p), along, &
-              slip(points%master_nodes(k, p)), area(points%master_nodes(k, p)))
-          end do
-        end do
-      end do
-    end associate
-    where (area > 0.0_wp) slip = slip/area
+    do s = 1, size(memory%ties%side)
+      spring = tie_spring(memory, s)
+      along(memory%ties%first(s):memory%ties%first(s + 1) - 1) = memory%ties%offset(2, s) &
+        - dot_product(spring%d, spring%t)
+    end do
+    area = nodal_sums(.false., memory, spread(1.0_wp, 1, memory%points%n))
+    where (area > 0.0_wp) slip = nodal_sums(.false., memory, along)/area
   end function mean_slips
-
-  !> Add a value and its weight to two sums.
-  pure subroutine add_weighted(weight, value, total, weights)
-    real(wp), intent(in) :: weight, value
-    real(wp), intent(inout) :: total, weights
-
-    total = total + weight*value
-    weights = weights + weight
-  end subroutine add_weighted
 
   !> The rows of a tie with those of the contact behind it: sums of forces; where the tie does not
   !> hold, the gap of contact and, if it never did, slip and state of contact.
@@ -199,7 +187,7 @@ contains
     integer :: near(2), n
 
     near = offset + i
-    if (allocated(memory%spots) .and. .not. allocated(memory%node_pressure)) then
+    if (memory%has%spots .and. .not. memory%has%nodal_pressure) then
       slip = 0.0_wp
       state = is_open
       if (offset > 0 .or. max(surface%incoming(i), surface%outgoing(i)) == 0) return
@@ -208,7 +196,7 @@ contains
       if (surface%incoming(i) > 0) near(2) = n*surface%segments(1, surface%incoming(i))
       if (surface%outgoing(i) == 0) near(1) = near(2)
     end if
-    if (.not. allocated(memory%friction%state)) then
+    if (.not. memory%has%friction) then
       slip = 0.0_wp
       state = is_open
       return
@@ -260,7 +248,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: i                        !! node of the slave surface
     real(wp) :: gap
-    type(foot_t) :: foot, spot_foot
+    type(foot_t) :: foot
     integer :: spot
 
     gap = 0.0_wp
@@ -269,12 +257,10 @@ contains
     associate (tracking => memory%slave_tracking, segment => memory%slave_tracking%segment(spot))
       if (memory%is_stale .or. segment == 0) return
       if (tracking%status(spot) /= is_touching) then
-        foot = nearest_foot(contact%master, chain, place, segment)
-        spot_foot = foot
-        if (allocated(memory%spots)) &
-          spot_foot = nearest_foot(contact%master, chain, memory%spots(:, spot), segment)
-        if (spot_foot%distance > tracking%reach) return
-      else if (allocated(memory%spots)) then
+        foot = closest_foot(contact%master, chain, place, &
+          walk_to_closest(contact%master, chain, place, segment))
+        if (foot%distance > tracking%reach) return
+      else if (memory%has%spots) then
         foot = follow_contact(contact%master, chain, place, segment)
       else
         gap = tracking%gap(spot)
@@ -283,17 +269,6 @@ contains
       if (foot%is_on) gap = foot%gap
     end associate
   end function present_gap
-
-  !> Foot of a place by walking from a segment that it was on or near.
-  pure function nearest_foot(surface, chain, place, segment) result(foot)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :)
-    real(wp), intent(in) :: place(4)
-    integer, intent(in) :: segment
-    type(foot_t) :: foot
-
-    foot = closest_foot(surface, chain, place, walk_to_closest(surface, chain, place, segment))
-  end function nearest_foot
 
   !> The spot at a slave node, or of those on its segments the one next to it that is in contact, if
   !> any.
@@ -304,7 +279,7 @@ contains
     integer :: spot, n, other
 
     spot = i
-    if (.not. allocated(memory%spots)) return
+    if (.not. memory%has%spots) return
     n = size(memory%spot_xi)
     other = n*slave%incoming(i)
     spot = n*(slave%outgoing(i) - 1) + 1

@@ -32,9 +32,9 @@ contains
     type(apart_t), intent(out) :: apart
     real(wp), allocatable :: spare(:, :)
 
-    if (allocated(memory%damping_force)) &
+    if (memory%has%damping) &
       call take_force(memory%nodes, motion, memory%damping_force, apart%damping)
-    if (.not. allocated(memory%friction%force)) return
+    if (.not. memory%has%friction) return
     call move_alloc(memory%scratch%former_rub, spare)
     call move_alloc(memory%friction%force, memory%scratch%former_rub)
     call move_alloc(spare, memory%friction%force)
@@ -98,12 +98,12 @@ contains
     type(apart_t) :: apart
 
     apart = former
-    if (allocated(memory%damping_force)) apart%damping = apart%damping &
+    if (memory%has%damping) apart%damping = apart%damping &
       + power_of(memory%nodes, motion, memory%damping_force)
-    if (allocated(memory%friction%force)) call take_friction(motion, memory, apart%friction)
+    if (memory%has%friction) call take_friction(motion, memory, apart%friction)
     memory%energy = memory%energy - 0.5_wp*dt*(power - apart%damping - apart%friction)
     memory%damping_work = memory%damping_work - 0.5_wp*dt*apart%damping
-    if (.not. allocated(memory%friction%force)) return
+    if (.not. memory%has%friction) return
     memory%friction%work = memory%friction%work - 0.5_wp*dt*apart%friction
     call keep_dissipated(apart%dissipated, memory%friction)
   end subroutine count_work
@@ -127,11 +127,11 @@ contains
 
     work = sum((before%force + after%force)*motion(3:4, after%nodes))
     rubbed = 0.0_wp
-    if (allocated(after%friction%force)) rubbed = sum((before%friction%force &
+    if (after%has%friction) rubbed = sum((before%friction%force &
       + after%friction%force)*motion(3:4, after%nodes))
     after%energy = before%energy + (after%interference%work - before%interference%work) &
       - 0.5_wp*(work - rubbed)
-    if (.not. allocated(after%friction%force)) return
+    if (.not. after%has%friction) return
     after%friction%work = before%friction%work - 0.5_wp*rubbed
     call keep_dissipated(before%friction%work - before%friction%stored, after%friction)
   end subroutine count_step

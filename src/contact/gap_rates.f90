@@ -24,30 +24,21 @@ contains
     integer, intent(in) :: direction                   !! along_normal or along_tangent
     real(wp), intent(in), contiguous :: velocity(:, :) !! (2, nodes) m/s
     real(wp), intent(inout) :: rate(rows%n + n_spare)  !! m/s
+    real(wp) :: x, y
+    integer :: i, k, at
 
     rate = 0.0_wp
-    call add_rates(rows%n_node, rows%node, rows%share_x, rows%share_y, direction, velocity, rate)
-  end subroutine find_rates
-
-  !> The parts of all nodes.
-  pure subroutine add_rates(n, node, share_x, share_y, direction, velocity, rate)
-    integer, intent(in) :: n, node(4, n), direction
-    real(wp), intent(in) :: share_x(*), share_y(*), velocity(2, *)
-    real(wp), intent(inout) :: rate(*)
-    real(wp) :: x, y, way
-    integer :: i, k
-
-    way = merge(-1.0_wp, 1.0_wp, direction == along_tangent)
-    do i = 1, n
-      x = velocity(direction, node(node_of, i))
-      y = way*velocity(3 - direction, node(node_of, i))
+    do i = 1, rows%n_node
+      x = velocity(direction, rows%node(node_of, i))
+      y = merge(-1.0_wp, 1.0_wp, direction == along_tangent) &
+        *velocity(3 - direction, rows%node(node_of, i))
+      at = rows%node(share_at, i)
       !GCC$ UNROLL 1
-      do k = node(first_row, i), node(last_row, i), n_lane
-        call add_shares(x, y, share_x(node(share_at, i) + k), share_y(node(share_at, i) + k), &
-          rate(k))
+      do k = rows%node(first_row, i), rows%node(last_row, i), n_lane
+        call add_shares(x, y, rows%share_x(at + k), rows%share_y(at + k), rate(k))
       end do
     end do
-  end subroutine add_rates
+  end subroutine find_rates
 
   !> Some shares times what they act on.
   pure subroutine add_shares(x, y, share_x, share_y, total)
@@ -64,37 +55,20 @@ contains
     type(contact_points_t), intent(in) :: points
     real(wp), intent(in) :: places(4, *), velocity(2, *) !! of the nodes; velocity in m/s
     real(wp), intent(inout) :: rate(*)                   !! (rows%n) m/s
-    real(wp) :: moment(n_side)
-    integer :: g, k
+    real(wp) :: moment
+    integer :: p, k
 
-    do g = 1, rows%n_group
-      associate (group => rows%groups(g))
-        call sum_moments(group%first, group%last, points%slave_weights, points%area, points%gap, &
-          moment)
-        moment = moment*turn_of(rows%node(node_of, group%nodes(3)), &
-          rows%node(node_of, group%nodes(4)), places, velocity)
-        do k = 1, n_side
-          if (group%rows(k) == 0) cycle
-          rate(group%rows(k)) = rate(group%rows(k)) + rows%inverse(group%rows(k))*moment(k)
-        end do
-      end associate
+    do p = 1, points%n
+      if (all(rows%place(points%slave_nodes(:, p)) == 0)) cycle
+      moment = points%area(p)*points%gap(p)*turn_of(points%master_nodes(1, p), &
+        points%master_nodes(2, p), places, velocity)
+      do k = 1, n_side
+        associate (row => rows%place(points%slave_nodes(k, p)))
+          if (row > 0) rate(row) = rate(row) + rows%inverse(row)*points%slave_weights(k, p)*moment
+        end associate
+      end do
     end do
   end subroutine add_turns
-
-  !> Sums of area times weight times gap of some points.
-  pure subroutine sum_moments(first, last, slave_weights, area, gap, moment)
-    integer, intent(in) :: first, last
-    real(wp), intent(in) :: slave_weights(n_side, *), area(*), gap(*)
-    real(wp), intent(out) :: moment(n_side)
-    integer :: p
-
-    moment = 0.0_wp
-    !GCC$ NOVECTOR
-    !GCC$ UNROLL 1
-    do p = first, last
-      moment = moment + slave_weights(:, p)*(area(p)*gap(p))
-    end do
-  end subroutine sum_moments
 
   !> How fast a segment turns, clockwise.
   pure function turn_of(a, b, places, velocity) result(turn)
@@ -115,32 +89,22 @@ contains
     real(wp), intent(in), contiguous :: mobility(:, :), velocity(:, :) !! (2, nodes)
     real(wp), intent(in) :: x(rows%n)                                  !! N/m
     real(wp), intent(inout), contiguous :: pressed(:, :)               !! (2, nodes) m/s
-
-    call press_listed(rows%n_node, rows%node, rows%share_x, rows%share_y, x, mobility, velocity, &
-      pressed)
-  end subroutine press_nodes
-
-  !> The same on arrays of known shape.
-  pure subroutine press_listed(n, node, share_x, share_y, x, mobility, velocity, pressed)
-    integer, intent(in) :: n, node(4, n)
-    real(wp), intent(in) :: share_x(*), share_y(*), x(*), mobility(2, *), velocity(2, *)
-    real(wp), intent(inout) :: pressed(2, *)
     real(wp) :: force(2)
-    integer :: i, k
+    integer :: i, k, at
 
-    do i = 1, n
+    do i = 1, rows%n_node
+      at = rows%node(share_at, i)
       force = 0.0_wp
       !GCC$ NOVECTOR
       !GCC$ UNROLL 1
-      do k = node(first_row, i), node(last_row, i)
-        force(1) = force(1) + share_x(node(share_at, i) + k)*x(k)
-        force(2) = force(2) + share_y(node(share_at, i) + k)*x(k)
+      do k = rows%node(first_row, i), rows%node(last_row, i)
+        force = force + x(k)*[rows%share_x(at + k), rows%share_y(at + k)]
       end do
-      associate (j => node(node_of, i))
+      associate (j => rows%node(node_of, i))
         pressed(:, j) = velocity(:, j) + mobility(:, j)*force
       end associate
     end do
-  end subroutine press_listed
+  end subroutine press_nodes
 
   !> Whether forces along tangents change rates along these as forces along normals do those along
   !> normals: no node that has rows is moved more easily in one direction.
@@ -156,41 +120,34 @@ contains
     turns_alike = .true.
   end function turns_alike
 
-  !> What the forces along rows change in the rates of rows.
+  !> What the forces along rows change in the rates of rows. What runs over the end of a column adds
+  !> zeros to the next one.
   pure subroutine fill_band(rows, direction, mobility, band)
     type(rows_t), intent(in) :: rows
     integer, intent(in) :: direction                   !! along_normal or along_tangent
     real(wp), intent(in), contiguous :: mobility(:, :) !! (2, nodes) velocity from a force of 1
-    real(wp), intent(inout) :: band((rows%width + 1)*rows%n + n_spare) !! (0:width, n) W(j + i, j)
-                                                                       !! in row i of column j
-
-    band = 0.0_wp
-    call fill_nodes(rows%n_node, rows%node, rows%share_x, rows%share_y, direction, mobility, &
-      rows%width, band)
-  end subroutine fill_band
-
-  !> The parts of all nodes. What runs over the end of a column adds zeros to the next one.
-  pure subroutine fill_nodes(n, node, share_x, share_y, direction, mobility, width, band)
-    integer, intent(in) :: n, node(4, n), direction, width
-    real(wp), intent(in) :: share_x(*), share_y(*), mobility(2, *)
-    real(wp), intent(inout) :: band(0:*)
-    real(wp) :: mobility_x, mobility_y
+    real(wp), intent(inout) :: band(0:(rows%width + 1)*rows%n + n_spare - 1) !! (0:width, n)
+                                                       !! W(j + i, j) in row i of column j
+    real(wp) :: x, y
     integer :: i, k, m, at, last
 
-    do i = 1, n
-      mobility_x = mobility(direction, node(node_of, i))
-      mobility_y = mobility(3 - direction, node(node_of, i))
-      last = node(share_at, i) + node(last_row, i)
-      at = (width + 1)*(node(first_row, i) - 1)
-      do k = node(share_at, i) + node(first_row, i), last
-        !GCC$ UNROLL 1
-        do m = k, last, n_lane
-          call add_shares(mobility_x*share_x(k), mobility_y*share_y(k), share_x(m), share_y(m), &
-            band(at + m - k))
+    band = 0.0_wp
+    do i = 1, rows%n_node
+      associate (first => rows%node(share_at, i) + rows%node(first_row, i), &
+        node => rows%node(node_of, i))
+        last = rows%node(share_at, i) + rows%node(last_row, i)
+        at = (rows%width + 1)*(rows%node(first_row, i) - 1)
+        do k = first, last
+          x = mobility(direction, node)*rows%share_x(k)
+          y = mobility(3 - direction, node)*rows%share_y(k)
+          !GCC$ UNROLL 1
+          do m = k, last, n_lane
+            call add_shares(x, y, rows%share_x(m), rows%share_y(m), band(at + m - k))
+          end do
+          at = at + rows%width + 1
         end do
-        at = at + width + 1
-      end do
+      end associate
     end do
-  end subroutine fill_nodes
+  end subroutine fill_band
 
 end module gap_rates_m

@@ -9,7 +9,7 @@ module implicit_friction_m
   use law_state_m, only : sticks, slips
   use gap_rates_m, only : find_rates, add_turns, press_nodes, turns_alike, fill_band, along_tangent
   use kinds_m, only : wp
-  use law_friction_m, only : coefficient_of, has_decay, find_limits
+  use law_friction_m, only : coefficient_of, has_decay
   use nodal_average_m, only : share_out
   use pressing_m, only : pressing_t, take_diagonal, set_diagonal, fill_columns
   use weighted_gaps_m, only : rows_t, node_of
@@ -49,7 +49,7 @@ contains
     integer :: i
 
     associate (n => step%rows%n, problem => step%problem)
-      call find_limits(rule, n, problem%x, problem%high)
+      problem%high(:n) = coefficient_of(rule, 0.0_wp)*problem%x(:n)
       if (has_decay(rule) .and. step%dt_before > 0.0_wp) then
         call find_slips(step%rows, memory%points, memory%places, memory%scratch%increment, &
           problem%r)

@@ -16,7 +16,7 @@ module implicit_penalty_m
   use gap_rates_m, only : find_rates, fill_band, along_normal
   use implicit_friction_m, only : rub_ahead
   use kinds_m, only : wp
-  use nodal_average_m, only : average_gaps, share_out
+  use nodal_average_m, only : average_values, share_out
   use pressing_m, only : pressing_t, take_diagonal, set_diagonal, fill_columns
   use weighted_gaps_m, only : choose_rows, form_shares
   implicit none
@@ -37,7 +37,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     associate (nodal => memory%scratch%nodal)
-      call average_gaps(memory%points, memory%n_slave, nodal)
+      call average_values(memory%points, memory%points%gap, memory%n_slave, nodal)
       step%gap = nodal(1, :memory%n_slave)
       call choose_rows(memory%n_slave, nodal, memory%node_pressure, memory%closed_gap, step%rows)
       if (step%rows%n > 0) call form_shares(memory%points, step%rows)
@@ -68,7 +68,7 @@ contains
       ! Loaded at time zero they hold energy that no force has put in.
       if (step%cycle == 0) memory%energy = memory%watch%stored
       call give_credit(step, memory)
-      if (allocated(memory%friction%force)) then
+      if (memory%has%friction) then
         call take_velocities(memory%nodes, motion, memory%limit%velocity)
         memory%points%traction(:memory%points%n) = 0.0_wp
         if (step%rows%n > 0) call rub_ahead(rule, step, memory)
@@ -136,7 +136,7 @@ contains
     type(returned_t) :: returned
     real(wp) :: before, bound, factor
 
-    if (allocated(memory%scratch%spring)) then
+    if (memory%has%friction) then
       call sum_returns(size(memory%force), memory%limit%velocity, memory%scratch%spring, &
         memory%scratch%former_spring, step%velocity, step%mobility, returned, before)
       returned%recoil = returned%recoil + sum_modes(memory%scratch%spring)

@@ -50,7 +50,7 @@ contains
     associate (n_node => memory%n_slave + memory%n_master, n_slave => memory%n_slave)
       allocate (step%velocity(2, n_node), step%mobility(2, n_node), source=0.0_wp)
       allocate (step%gap(n_slave), step%diagonal(n_slave))
-      if (allocated(memory%friction%force)) then
+      if (memory%has%friction) then
         allocate (step%pressed(2, n_node))
       else
         allocate (step%behind(2, n_node))

@@ -87,7 +87,7 @@ contains
     logical :: has_broken
 
     has_broken = .false.
-    if (allocated(memory%ties%state)) has_broken = .not. any(memory%ties%state == is_held)
+    if (memory%has%breaks) has_broken = .not. any(memory%ties%state == is_held)
   end function has_broken
 
   !> The same in a trial of an implicit step, where forces are a function of u alone: what breaks

@@ -217,7 +217,7 @@ contains
     integer :: n_segments(2), n_spot
 
     call check_points(memory, folder//'points/', archive)
-    if (allocated(memory%ties%side)) call check_ties(memory, folder//'ties/', archive)
+    if (memory%has%ties) call check_ties(memory, folder//'ties/', archive)
     n_segments = [contact%slave%n_segment, contact%master%n_segment]
     n_spot = memory%n_slave
     if (allocated(memory%spot_xi)) n_spot = size(memory%spot_xi)*n_segments(1)
@@ -243,7 +243,7 @@ contains
       if (fits) fits = all([size(points%slave_nodes, 2), size(points%master_nodes, 2), &
         size(points%slave_weights, 2), size(points%master_weights, 2), size(points%normal, 2), &
         size(points%area), size(points%stiffness), size(points%pressure)] == size(points%gap))
-      if (fits .and. allocated(points%load)) fits = size(points%load, 2) == size(points%gap)
+      if (fits .and. allocated(points%damping)) fits = size(points%damping) == size(points%gap)
       if (fits .and. allocated(points%traction)) fits = size(points%traction) == size(points%gap)
       call archive%expect(folder//'gap', fits, 'not as many values as the arrays beside it')
       if (allocated(archive%error)) return
@@ -268,12 +268,12 @@ contains
     associate (ties => memory%ties)
       n = size(ties%side)
       n_place = memory%n_master + memory%n_slave
-      if (allocated(memory%spots)) n_place = memory%n_master + size(memory%spot_xi)*memory%n_slave
-      if (allocated(ties%state)) then
+      if (memory%has%spots) n_place = memory%n_master + size(memory%spot_xi)*memory%n_slave
+      if (memory%has%breaks) then
         call archive%expect(folder//'state', all(ties%state == is_open .or. ties%state &
           == is_held .or. ties%state == is_broken), 'numbers that mean nothing')
         call archive%expect(folder//'place', all(ties%place >= merge(0, 1, &
-          allocated(memory%node_pressure)) .and. ties%place <= n_place), &
+          memory%has%nodal_pressure) .and. ties%place <= n_place), &
           'numbers that no place of the interface has')
       end if
       call archive%expect(folder//'first', ties%first(1) == 1 &

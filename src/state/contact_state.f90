@@ -24,14 +24,12 @@ module contact_state_m
   implicit none
   private
   public :: contact_state_t, contact_points_t, tracking_t, candidates_t, pass_t, &
-    contact_scratch_t, allocate_points, allocate_loads, allocate_tractions, make_room, &
-    allocate_tracking, allocate_scratch, n_side, n_load, places_of_segment, &
-    is_free, is_touching
+    contact_scratch_t, allocate_points, allocate_damping, allocate_tractions, make_room, &
+    allocate_tracking, allocate_scratch, n_side, places_of_segment, &
+    place_at, spot_at, features_t, is_free, is_touching
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
-  !> What a point loads its nodes with: force, and the part of it that nodes have apart as well.
-  integer, parameter :: n_load = 4
   !> Status of a contact point: separated or active.
   integer, parameter :: is_free = 0, is_touching = 1
 
@@ -47,9 +45,8 @@ module contact_state_m
     real(wp), allocatable :: area(:)           !! m (1 for type 1)
     real(wp), allocatable :: stiffness(:)      !! N/m^2 (N/m for type 1)
     real(wp), allocatable :: pressure(:)       !! N/m (N for type 1): what acts; >= 0 but in ties
-    real(wp), allocatable :: load(:, :)        !! (n_load, capacity) force on the slave side, and
-                                               !! the part of it that damping has, N/m; only where
-                                               !! there is damping
+    real(wp), allocatable :: damping(:)        !! the part of the pressure that damping has; only
+                                               !! where there is damping
     real(wp), allocatable :: traction(:)       !! as pressure, along -(-n_y, n_x) on the slave side;
                                                !! only where there is friction or a tie
   contains
@@ -134,10 +131,8 @@ module contact_state_m
     integer, allocatable :: point_at(:)     !! (n_slave) point at each slave node, 0 between steps
     logical, allocatable :: is_placed(:)    !! (slave segments) have their points
     logical, allocatable :: is_left(:)      !! (n_place) to the tie that holds it; this and the next
-                                            !! four only of contact behind a tie
+                                            !! two only of contact behind a tie
     logical, allocatable :: is_freed(:)     !! (n_place) it has broken in this cycle
-    logical :: has_freed = .false.          !! any
-    integer :: n_held = 0                   !! places that the tie holds
     real(wp) :: taken = 0.0_wp              !! what springs hold that were freed pressed, J/m
     logical :: waits = .false.              !! points are placed, forces follow once all others are
                                             !! known
@@ -146,8 +141,24 @@ module contact_state_m
                                             !! three only of implicit penalties
   end type contact_scratch_t
 
+  !> What an interface has beside springs along the normal at its points: by its formulation and by
+  !> the deck.
+  type :: features_t
+    logical :: spots = .false.          !! points between nodes are followed
+    logical :: overlaps = .false.       !! points are made of overlaps of segments
+    logical :: nodal_pressure = .false. !! pressure is formed at slave nodes
+    logical :: damping = .false.
+    logical :: friction = .false.
+    logical :: interference = .false.   !! initial overlaps grow
+    logical :: ties = .false.           !! it is tied
+    logical :: breaks = .false.         !! ties break
+    logical :: former_tie = .false.     !! it takes over what a tie has lost
+    logical :: limit = .false.          !! its energy is limited
+  end type features_t
+
   !> Memory of one interface.
   type, extends(visited_t) :: contact_state_t
+    type(features_t) :: has
     integer :: n_slave = 0, n_master = 0
     integer, allocatable :: nodes(:)        !! (n_slave + n_master) node indices in the mesh
     real(wp), allocatable :: places(:, :)   !! (4, n_slave + n_master) X, Y, u_x, u_y of the last
@@ -217,12 +228,12 @@ contains
       points%pressure(capacity), source=0.0_wp)
   end subroutine allocate_points
 
-  !> The column of loads, for a list that is allocated.
-  pure subroutine allocate_loads(points)
+  !> The column of damping, for a list that is allocated.
+  pure subroutine allocate_damping(points)
     type(contact_points_t), intent(inout) :: points
 
-    allocate (points%load(n_load, size(points%gap)), source=0.0_wp)
-  end subroutine allocate_loads
+    allocate (points%damping(size(points%gap)), source=0.0_wp)
+  end subroutine allocate_damping
 
   !> The column of tractions, for a list that is allocated.
   pure subroutine allocate_tractions(points)
@@ -252,9 +263,9 @@ contains
     larger%area(:n) = points%area(:n)
     larger%stiffness(:n) = points%stiffness(:n)
     larger%pressure(:n) = points%pressure(:n)
-    if (allocated(points%load)) then
-      call allocate_loads(larger)
-      larger%load(:, :n) = points%load(:, :n)
+    if (allocated(points%damping)) then
+      call allocate_damping(larger)
+      larger%damping(:n) = points%damping(:n)
     end if
     if (allocated(points%traction)) then
       call allocate_tractions(larger)
@@ -285,16 +296,15 @@ contains
       allocate (scratch%former_force(2, n), scratch%nodal(2, n), scratch%increment(2, n), &
         source=0.0_wp)
       allocate (scratch%point_at(memory%n_slave), source=0)
-      if (allocated(memory%limit%velocity)) allocate (scratch%velocity(2, n), source=0.0_wp)
-      if (allocated(memory%limit%velocity) .and. (allocated(memory%damping_force) &
-        .or. allocated(memory%friction%force))) &
+      if (memory%has%limit) allocate (scratch%velocity(2, n), source=0.0_wp)
+      if (memory%has%limit .and. (memory%has%damping .or. memory%has%friction)) &
         allocate (scratch%spring(2, n), scratch%former_spring(2, n), source=0.0_wp)
-      if (allocated(memory%friction%force)) then
+      if (memory%has%friction) then
         allocate (scratch%former_rub(2, n), &
           scratch%former_traction(size(memory%friction%state)), source=0.0_wp)
         allocate (scratch%former_state(size(memory%friction%state)), source=0)
       end if
-      if (.not. allocated(memory%segment_status)) return
+      if (.not. memory%has%overlaps) return
       allocate (scratch%is_placed(size(memory%segment_status)), source=.false.)
     end associate
   end subroutine allocate_scratch
@@ -305,8 +315,36 @@ contains
     integer :: n
 
     n = 1
-    if (allocated(memory%spots)) n = size(memory%spot_xi)
+    if (memory%has%spots) n = size(memory%spot_xi)
   end function places_of_segment
+
+  !> The place of a point at a node, slave or master, or between nodes.
+  pure function place_at(memory, p) result(place)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: p
+    integer :: place
+
+    associate (points => memory%points)
+      place = points%slave_nodes(1, p)
+      if (memory%has%spots) then
+        place = size(memory%spot_xi)*(place - 1) &
+          + spot_at(points%slave_weights(2, p), memory%spot_xi)
+      else if (place /= points%slave_nodes(2, p)) then
+        place = points%master_nodes(1, p)
+      end if
+    end associate
+  end function place_at
+
+  !> Which of the spots of a segment stands at xi.
+  pure function spot_at(xi, spot_xi) result(q)
+    real(wp), intent(in) :: xi, spot_xi(:)
+    integer :: q, i
+
+    q = 1
+    do i = 2, size(spot_xi)
+      if (abs(spot_xi(i) - xi) < abs(spot_xi(q) - xi)) q = i
+    end do
+  end function spot_at
 
   !> Its components.
   subroutine visit_points(self, visitor)
@@ -324,7 +362,7 @@ contains
     call visitor%visit('area', self%area, any_length)
     call visitor%visit('stiffness', self%stiffness, any_length)
     call visitor%visit('pressure', self%pressure, any_length)
-    call visitor%visit('load', self%load, any_length)
+    call visitor%visit('damping', self%damping, any_length)
     has_traction = allocated(self%traction) ! from the start, where the deck has friction or ties
     call visitor%visit('traction', self%traction, any_length)
     call visitor%expect('traction', allocated(self%traction) .eqv. has_traction, &

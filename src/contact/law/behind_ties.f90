@@ -2,12 +2,11 @@
 !> Contact behind ties that break: between the same surfaces, of all places that no tie holds
 !> (doc/theory/contact.md, section 6.4). The tie tells it its places before each call.
 module behind_ties_m
-  use contact_law_m, only : density_of
-  use contact_state_m, only : contact_state_t, n_side
-  use friction_m, only : place_at
+  use contact_law_m, only : find_gaps, spring_t, n_springs, spring_at
+  use contact_state_m, only : contact_state_t, place_at, n_side
   use law_state_m, only : is_held, is_broken
   use kinds_m, only : wp
-  use nodal_average_m, only : average_gaps, share_out
+  use nodal_average_m, only : share_out
   implicit none
   private
   public :: hear_tie, leave_to_tie, take_over, settle_with_tie, is_left_to_tie
@@ -18,23 +17,12 @@ contains
   pure subroutine hear_tie(tie, memory)
     type(contact_state_t), intent(in) :: tie
     type(contact_state_t), intent(inout) :: memory
-    logical :: is_first
-
-    associate (scratch => memory%scratch, n_held => count(tie%ties%state == is_held))
-      is_first = .not. allocated(scratch%is_left)
-      if (is_first) then
-        allocate (scratch%is_left(size(tie%ties%state)), &
-          scratch%is_freed(size(tie%ties%state)), source=.false.)
-      else if (n_held == scratch%n_held) then
-        if (scratch%has_freed) scratch%is_freed = .false.
-        scratch%has_freed = .false.
-        return
-      end if
-      scratch%n_held = n_held
-      scratch%is_freed = scratch%is_left .and. .not. is_first
+    associate (scratch => memory%scratch)
+      if (.not. allocated(scratch%is_left)) &
+        allocate (scratch%is_left(size(tie%ties%state)), source=.false.)
+      scratch%is_freed = scratch%is_left
       scratch%is_left = held_places(tie)
       scratch%is_freed = scratch%is_freed .and. .not. scratch%is_left
-      scratch%has_freed = any(scratch%is_freed)
     end associate
   end subroutine hear_tie
 
@@ -46,7 +34,7 @@ contains
     integer :: s, p, k
 
     is_left = tie%ties%state == is_held
-    if (allocated(tie%spots) .or. allocated(tie%node_pressure)) return
+    if (tie%has%spots .or. tie%has%nodal_pressure) return
     associate (ties => tie%ties, points => tie%points)
       do s = 1, size(ties%side)
         if (ties%state(ties%place(s)) /= is_held) cycle
@@ -67,7 +55,7 @@ contains
     integer :: p
 
     associate (points => memory%points)
-      if (allocated(memory%node_pressure)) then
+      if (memory%has%nodal_pressure) then
         where (memory%scratch%is_left(:memory%n_slave)) memory%node_pressure = 0.0_wp
         call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
           points%pressure)
@@ -83,23 +71,17 @@ contains
   !> in, and gives it up (settle_with_tie).
   pure subroutine take_over(memory)
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: nodal(2, memory%n_slave)
-    integer :: p
+    type(spring_t) :: spring
+    real(wp) :: gaps(max(memory%points%n, memory%n_slave))
+    integer :: i
 
-    associate (scratch => memory%scratch, points => memory%points)
-      if (.not. scratch%has_freed) return
-      if (allocated(memory%node_pressure)) then
-        call average_gaps(points, memory%n_slave, nodal)
-        do p = 1, memory%n_slave
-          if (scratch%is_freed(p)) scratch%taken = scratch%taken + nodal(2, p) &
-            *density_of(memory%contact_law, memory%slave_penalty, nodal(1, p))
-        end do
-      else
-        do p = 1, points%n
-          if (scratch%is_freed(place_at(memory, p))) scratch%taken = scratch%taken &
-            + points%area(p)*density_of(memory%contact_law, points%stiffness(p), points%gap(p))
-        end do
-      end if
+    associate (scratch => memory%scratch)
+      if (.not. any(scratch%is_freed)) return
+      call find_gaps(memory, gaps)
+      do i = 1, n_springs(memory)
+        spring = spring_at(memory, gaps(i), i)
+        if (scratch%is_freed(spring%place)) scratch%taken = scratch%taken + spring%energy
+      end do
       memory%energy = memory%energy + scratch%taken
     end associate
   end subroutine take_over
@@ -128,7 +110,7 @@ contains
     logical :: is_left
 
     is_left = .false.
-    if (allocated(memory%scratch%is_left)) is_left = memory%scratch%is_left(place)
+    if (memory%has%former_tie) is_left = memory%scratch%is_left(place)
   end function is_left_to_tie
 
 end module behind_ties_m

@@ -1,23 +1,20 @@
 ! SPDX-License-Identifier: MIT
 !> The one place that knows the contact laws: from the gap of a place to the pressure there. Where
 !> these places are, at the points or at the slave nodes, the row of the formulation says; the
-!> pressure of every point is kept on the list. Adding a law is a row of `laws`, a file law_*.f90,
-!> and a `case` for its pressure, its derivative and its energy (doc/add_a_law.md).
+!> pressure of every point is kept on the list. Adding a law is a file law_*.f90, a row of `laws` and
+!> its `case` (doc/add_a_law.md).
 module contact_law_m
-  use contact_state_m, only : contact_state_t
+  use contact_state_m, only : contact_state_t, place_at
   use dual_m, only : dual_t
-  use entry_offset_m, only : has_offsets, average_with_offsets
-  use interference_m, only : take_overlaps, ease_gaps, ease_nodes, gather_moment
+  use entry_offset_m, only : has_offsets, add_offsets
+  use interference_m, only : take_overlaps, ease_gaps, gather_moment
   use kinds_m, only : wp
-  use law_penalty_m, only : press_penalty, vary_penalty, energy_penalty
-  use nodal_average_m, only : share_out
+  use law_penalty_m, only : apply_penalty
+  use nodal_average_m, only : average_values, share_out
   implicit none
   private
-  public :: law_t, laws, law_penalty, pressed_at_points, pressed_at_slave_nodes, press_places, &
+  public :: law_t, laws, law_penalty, press_places, find_gaps, spring_t, n_springs, spring_at, &
     vary_pressure, density_of
-
-  !> Where pressure is formed and kept.
-  integer, parameter :: pressed_at_points = 1, pressed_at_slave_nodes = 2
 
   !> A law.
   type :: law_t
@@ -25,82 +22,98 @@ module contact_law_m
     character(20) :: name
   end type law_t
 
+  !> A spring, where pressure is formed.
+  type :: spring_t
+    integer :: place    !! on the lists of what laws remember
+    integer :: node     !! slave node next to it
+    real(wp) :: energy  !! J/m
+    real(wp) :: load    !! N/m
+  end type spring_t
+
   integer, parameter :: law_penalty = 1
-  !> Slave nodes pressed together.
-  integer, parameter :: n_block = 64
   !> All laws.
   type(law_t), parameter :: laws(*) = [law_t(law_penalty, 'penalty')]
 
 contains
 
-  !> Pressures of all points on the list, before damping.
-  pure subroutine press_places(contact_law, where_pressed, memory)
-    integer, intent(in) :: contact_law   !! a number of `laws`
-    integer, intent(in) :: where_pressed !! one of the constants above
-    type(contact_state_t), intent(inout) :: memory
-    integer :: n
-
-    if (allocated(memory%interference%depth) .and. memory%scratch%is_start) &
-      call take_overlaps(memory)
-    associate (points => memory%points, nodal => memory%scratch%nodal)
-      select case (where_pressed)
-      case (pressed_at_points)
-        if (allocated(memory%interference%depth) .or. has_offsets(memory)) then
-          call press_eased(contact_law, memory)
-        else
-          call press(contact_law, points%n, points%stiffness, points%gap, points%pressure)
-        end if
-      case (pressed_at_slave_nodes)
-        n = memory%n_slave
-        call average_with_offsets(memory, nodal)
-        if (allocated(memory%interference%depth)) call ease_nodes(memory%interference, n, nodal)
-        call press_nodes(contact_law, n, memory%slave_penalty, nodal, memory%node_pressure)
-        call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
-          points%pressure)
-      end select
-    end associate
-    if (allocated(memory%interference%depth)) call gather_moment(memory)
-  end subroutine press_places
-
-  !> Pressures of all points where an initial overlap grows or points have entry offsets.
-  pure subroutine press_eased(contact_law, memory)
-    integer, intent(in) :: contact_law
-    type(contact_state_t), intent(inout) :: memory
-    real(wp) :: gaps(memory%points%n)
-
-    call ease_gaps(memory, gaps)
-    associate (points => memory%points)
-      call press(contact_law, points%n, points%stiffness, gaps, points%pressure)
-    end associate
-  end subroutine press_eased
-
-  !> Pressures of slave nodes, which have one stiffness.
-  pure subroutine press_nodes(contact_law, n, stiffness, nodal, pressure)
-    integer, intent(in) :: contact_law, n
-    real(wp), intent(in) :: stiffness       !! N/m^2
-    real(wp), intent(inout) :: nodal(2, n)  !! (1, :) averaged gaps, m
-    real(wp), intent(inout) :: pressure(n)  !! N/m
-    real(wp) :: stiffnesses(n_block), gaps(n_block)
-    integer :: first, m
-
-    stiffnesses = stiffness
-    do first = 1, n, n_block
-      m = min(n_block, n - first + 1)
-      gaps(:m) = nodal(1, first:first + m - 1)
-      call press(contact_law, m, stiffnesses, gaps, pressure(first:first + m - 1))
-    end do
-  end subroutine press_nodes
-
-  !> Pressures of some places.
-  pure subroutine press(contact_law, n, stiffness, gap, pressure)
-    integer, intent(in) :: contact_law, n
-    real(wp), intent(in) :: stiffness(n), gap(n)
-    real(wp), intent(inout) :: pressure(n)
+  !> Pressures of some places, their slopes by the gap in contact, and what the places store.
+  pure subroutine apply_law(contact_law, n, stiffness, gap, pressure, slope, energy)
+    integer, intent(in) :: contact_law !! a number of `laws`
+    integer, intent(in) :: n
+    real(wp), intent(in) :: stiffness(n), gap(n) !! N/m^2, m
+    real(wp), intent(inout) :: pressure(n)       !! N/m
+    real(wp), intent(inout) :: slope(n)          !! N/m^2
+    real(wp), intent(inout) :: energy(n)         !! J/m^2
 
     select case (contact_law)
-    case (law_penalty); call press_penalty(n, stiffness, gap, pressure)
+    case (law_penalty); call apply_penalty(n, stiffness, gap, pressure, slope, energy)
     end select
-  end subroutine press
+  end subroutine apply_law
+
+  !> Pressures of all points on the list, before damping.
+  pure subroutine press_places(memory)
+    type(contact_state_t), intent(inout) :: memory
+    real(wp), dimension(max(memory%points%n, memory%n_slave)) :: gaps, stiffness, slope, energy
+
+    if (memory%has%interference .and. memory%scratch%is_start) call take_overlaps(memory)
+    call find_gaps(memory, gaps)
+    associate (points => memory%points, law => memory%contact_law)
+      if (memory%has%nodal_pressure) then
+        stiffness(:memory%n_slave) = memory%slave_penalty
+        call apply_law(law, memory%n_slave, stiffness, gaps, memory%node_pressure, slope, energy)
+        call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
+          points%pressure)
+      else
+        call apply_law(law, points%n, points%stiffness, gaps, points%pressure, slope, energy)
+      end if
+    end associate
+    if (memory%has%interference) call gather_moment(memory)
+  end subroutine press_places
+
+  !> Gaps that springs feel, of points or averaged at slave nodes: with entry offsets, and with the
+  !> part of initial overlaps that does not act yet.
+  pure subroutine find_gaps(memory, gaps)
+    type(contact_state_t), intent(inout) :: memory !! out: (2, :) of scratch%nodal areas of nodes, m
+    real(wp), intent(inout) :: gaps(:)             !! (points or slave nodes, or more) m
+
+    associate (n => memory%points%n, n_slave => memory%n_slave)
+      gaps(:n) = memory%points%gap(:n)
+      if (has_offsets(memory)) call add_offsets(memory, gaps)
+      if (memory%has%nodal_pressure) then
+        call average_values(memory%points, gaps, n_slave, memory%scratch%nodal)
+        gaps(:n_slave) = memory%scratch%nodal(1, :n_slave)
+      end if
+      if (memory%has%interference) call ease_gaps(memory, gaps)
+    end associate
+  end subroutine find_gaps
+
+  !> Springs: points or slave nodes.
+  pure function n_springs(memory) result(n)
+    type(contact_state_t), intent(in) :: memory
+    integer :: n
+
+    n = merge(memory%n_slave, memory%points%n, memory%has%nodal_pressure)
+  end function n_springs
+
+  !> A spring with the gap that find_gaps has found, without what damping adds to its pressure.
+  pure function spring_at(memory, gap, i) result(spring)
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in) :: gap !! m
+    integer, intent(in) :: i    !! point or slave node
+    type(spring_t) :: spring
+
+    associate (points => memory%points, law => memory%contact_law, nodal => memory%scratch%nodal)
+      if (memory%has%nodal_pressure) then
+        spring = spring_t(i, i, nodal(2, i)*density_of(law, memory%slave_penalty, gap), &
+          nodal(2, i)*memory%node_pressure(i))
+      else
+        spring = spring_t(place_at(memory, i), points%slave_nodes( &
+          maxloc(points%slave_weights(:, i), 1), i), &
+          points%area(i)*density_of(law, points%stiffness(i), gap), &
+          points%area(i)*points%pressure(i))
+      end if
+    end associate
+  end function spring_at
 
   !> Pressure of a place in contact with its derivatives.
   pure function vary_pressure(contact_law, stiffness, gap) result(pressure)
@@ -108,10 +121,11 @@ contains
     real(wp), intent(in) :: stiffness
     type(dual_t), intent(in) :: gap
     type(dual_t) :: pressure
+    real(wp), dimension(1) :: value, slope, energy
 
-    select case (contact_law)
-    case (law_penalty); pressure = vary_penalty(stiffness, gap)
-    end select
+    call apply_law(contact_law, 1, [stiffness], [gap%value], value, slope, energy)
+    pressure%value = value(1)
+    pressure%slope = slope(1)*gap%slope
   end function vary_pressure
 
   !> Energy that a place stores per unit of its area.
@@ -119,10 +133,10 @@ contains
     integer, intent(in) :: contact_law
     real(wp), intent(in) :: stiffness, gap
     real(wp) :: density !! J/m^2
+    real(wp), dimension(1) :: pressure, slope, energy
 
-    select case (contact_law)
-    case (law_penalty); density = energy_penalty(stiffness, gap)
-    end select
+    call apply_law(contact_law, 1, [stiffness], [gap], pressure, slope, energy)
+    density = energy(1)
   end function density_of
 
 end module contact_law_m

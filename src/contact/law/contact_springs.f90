@@ -2,12 +2,9 @@
 !> Energy of the springs of an interface, of those whose points are on the list.
 module contact_springs_m
   use behind_ties_m, only : is_left_to_tie
-  use entry_offset_m, only : has_offsets, average_with_offsets
-  use contact_law_m, only : density_of
+  use contact_law_m, only : find_gaps, spring_t, n_springs, spring_at
   use contact_state_m, only : contact_state_t
   use law_state_m, only : contact_watch_t
-  use friction_m, only : place_at
-  use interference_m, only : eased_gap, ease_nodes
   use kinds_m, only : wp
   use ties_m, only : tie_energy
   implicit none
@@ -29,54 +26,29 @@ contains
   !> largest force is. What broken ties held counts as theirs.
   pure subroutine measure_springs(memory)
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: gap
+    real(wp) :: gaps(max(memory%points%n, memory%n_slave))
+    type(spring_t) :: spring
     integer :: i
 
     memory%watch%stored = 0.0_wp
     memory%watch%load = 0.0_wp
-    if (allocated(memory%ties%side)) then
+    if (memory%has%ties) then
       call tie_energy(memory, memory%watch%stored, memory%watch%load, memory%watch%node)
       memory%watch%stored = memory%watch%stored + memory%ties%spent
       return
     end if
-    associate (watch => memory%watch, points => memory%points, nodal => memory%scratch%nodal)
-      if (allocated(memory%node_pressure)) then
-        call average_with_offsets(memory, nodal)
-        if (allocated(memory%interference%depth)) &
-          call ease_nodes(memory%interference, memory%n_slave, nodal)
-        do i = 1, memory%n_slave
-          if (is_left_to_tie(memory, i)) cycle
-          call add_spring(nodal(2, i)*density_of(memory%contact_law, memory%slave_penalty, &
-            nodal(1, i)), nodal(2, i)*memory%node_pressure(i), memory%nodes(i), watch)
-        end do
-      else
-        do i = 1, points%n
-          if (allocated(memory%scratch%is_left)) then
-            if (memory%scratch%is_left(place_at(memory, i))) cycle
-          end if
-          gap = points%gap(i)
-          if (allocated(memory%interference%depth) .or. has_offsets(memory)) &
-            gap = eased_gap(memory, i)
-          call add_spring(points%area(i)*density_of(memory%contact_law, points%stiffness(i), &
-            gap), points%area(i)*points%pressure(i), &
-            memory%nodes(points%slave_nodes(maxloc(points%slave_weights(:, i), 1), i)), watch)
-        end do
-      end if
+    call find_gaps(memory, gaps)
+    associate (watch => memory%watch)
+      do i = 1, n_springs(memory)
+        spring = spring_at(memory, gaps(i), i)
+        if (is_left_to_tie(memory, spring%place)) cycle
+        watch%stored = watch%stored + spring%energy
+        if (.not. spring%load > watch%load) cycle
+        watch%load = spring%load
+        watch%node = memory%nodes(spring%node)
+      end do
     end associate
   end subroutine measure_springs
-
-  !> One spring.
-  pure subroutine add_spring(energy, load, node, watch)
-    real(wp), intent(in) :: energy !! J/m
-    real(wp), intent(in) :: load   !! N/m
-    integer, intent(in) :: node    !! at it, by place in the mesh
-    type(contact_watch_t), intent(inout) :: watch
-
-    watch%stored = watch%stored + energy
-    if (.not. load > watch%load) return
-    watch%load = load
-    watch%node = node
-  end subroutine add_spring
 
   !> After the forces are known: whether there has been a look. Contact that has opened stores
   !> nothing.

@@ -29,7 +29,7 @@ contains
     integer :: p, k, local
 
     call sum_springs(points, is_self, nodal)
-    points%load(:, :points%n) = 0.0_wp
+    points%damping(:points%n) = 0.0_wp
     do p = 1, points%n
       if (.not. points%pressure(p)*points%area(p) > 0.0_wp) cycle
       rate = 0.0_wp
@@ -43,7 +43,7 @@ contains
       end do
       damped = max(0.0_wp, points%pressure(p) &
         - 2.0_wp*fraction*rate*points%stiffness(p)/frequency(points, p, nodes, mass, nodal))
-      points%load(3:4, p) = (damped - points%pressure(p))*points%area(p)*points%normal(:, p)
+      points%damping(p) = damped - points%pressure(p)
       points%pressure(p) = damped
     end do
   end subroutine damp_points

@@ -46,7 +46,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), allocatable :: spare(:, :)
 
-    if (.not. allocated(memory%scratch%former_spring)) return
+    if (.not. has_other_forces(memory)) return
     call move_alloc(memory%scratch%former_spring, spare)
     call move_alloc(memory%scratch%spring, memory%scratch%former_spring)
     call move_alloc(spare, memory%scratch%spring)
@@ -57,23 +57,24 @@ contains
   pure subroutine form_springs(memory)
     type(contact_state_t), intent(inout) :: memory
 
-    if (allocated(memory%scratch%spring)) call take_springs(memory%force, memory%damping_force, &
-      memory%friction%force, memory%scratch%spring)
+    if (.not. has_other_forces(memory)) return
+    associate (spring => memory%scratch%spring, n => size(memory%force))
+      if (.not. memory%has%damping) then
+        call subtract(n, memory%force, memory%friction%force, spring)
+      else
+        call subtract(n, memory%force, memory%damping_force, spring)
+        if (memory%has%friction) call subtract(n, (spring), memory%friction%force, spring)
+      end if
+    end associate
   end subroutine form_springs
 
-  !> Forces without the parts that damping and friction have.
-  pure subroutine take_springs(force, damping, friction, spring)
-    real(wp), intent(in), contiguous :: force(:, :)
-    real(wp), intent(in), allocatable :: damping(:, :), friction(:, :)
-    real(wp), intent(inout), contiguous :: spring(:, :)
+  !> Whether springs along the normal are limited among other forces.
+  pure function has_other_forces(memory) result(has)
+    type(contact_state_t), intent(in) :: memory
+    logical :: has
 
-    if (allocated(damping)) then
-      call subtract(size(spring), force, damping, spring)
-      if (allocated(friction)) call take_part(size(spring), friction, spring)
-    else
-      call subtract(size(spring), force, friction, spring)
-    end if
-  end subroutine take_springs
+    has = memory%has%limit .and. (memory%has%damping .or. memory%has%friction)
+  end function has_other_forces
 
   !> Both components of all nodes in one loop: column by column it takes twenty times as long.
   pure subroutine subtract(n, force, part, spring)
@@ -83,15 +84,6 @@ contains
 
     spring = force - part
   end subroutine subtract
-
-  !> The same from what there is.
-  pure subroutine take_part(n, part, spring)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: part(n)
-    real(wp), intent(inout) :: spring(n)
-
-    spring = spring - part
-  end subroutine take_part
 
   !> Scale the forces of the interface, with the pressures and the part of damping, by what the
   !> springs may return; before they are added to those of the mesh and their work is counted.
@@ -105,8 +97,8 @@ contains
 
     call form_springs(memory)
     associate (limit => memory%limit, scratch => memory%scratch)
-      if (.not. allocated(limit%velocity)) return
-      if (allocated(scratch%former_spring)) then
+      if (.not. memory%has%limit) return
+      if (has_other_forces(memory)) then
         call find_factor(memory%energy, memory%nodes, motion, dt, scratch%former_spring, &
           scratch%spring, scratch%velocity, limit, factor)
       else
@@ -121,7 +113,7 @@ contains
     if (.not. factor < 1.0_wp) return
     call scale_forces(factor, memory)
     call form_springs(memory)
-    if (allocated(memory%interference%depth)) call limit_moment(factor, memory)
+    if (memory%has%interference) call limit_moment(factor, memory)
   end subroutine limit_forces
 
   !> The factor of this cycle. The sums that are formed in each cycle bound what may be returned;
@@ -243,13 +235,16 @@ contains
     memory%force = factor*memory%force
     associate (points => memory%points)
       points%pressure(:points%n) = factor*points%pressure(:points%n)
-      if (allocated(points%load)) points%load(:, :points%n) = factor*points%load(:, :points%n)
-      if (allocated(points%traction)) &
+      if (memory%has%damping) then
+        points%damping(:points%n) = factor*points%damping(:points%n)
+        memory%damping_force = factor*memory%damping_force
+      end if
+      if (memory%has%friction) then
         points%traction(:points%n) = factor*points%traction(:points%n)
+        memory%friction%force = factor*memory%friction%force
+      end if
     end associate
-    if (allocated(memory%node_pressure)) memory%node_pressure = factor*memory%node_pressure
-    if (allocated(memory%damping_force)) memory%damping_force = factor*memory%damping_force
-    if (allocated(memory%friction%force)) memory%friction%force = factor*memory%friction%force
+    if (memory%has%nodal_pressure) memory%node_pressure = factor*memory%node_pressure
   end subroutine scale_forces
 
   !> Count a cycle with force. Cycle zero has no step to come and is not limited.

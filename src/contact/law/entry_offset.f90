@@ -4,16 +4,14 @@
 !> over half of the segment, small ones as over a ramp of 1 to 20; the work of its fading is
 !> admissible energy (doc/theory/contact.md, section 6.4).
 module entry_offset_m
-  use contact_state_m, only : contact_state_t, tracking_t
+  use contact_state_m, only : contact_state_t, tracking_t, is_free, spot_at
   use contacts_m, only : contact_t
-  use friction_m, only : spot_at
   use geometry_m, only : separation
   use kinds_m, only : wp
-  use nodal_average_m, only : average_gaps, average_values
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: has_offsets, update_offsets, offset_at, average_with_offsets, faded_work
+  public :: has_offsets, update_offsets, add_offsets, faded_work
 
   !> Least slope by which an offset fades with the slip.
   real(wp), parameter :: ramp = 0.05_wp
@@ -28,7 +26,8 @@ contains
     has = memory%slave_tracking%has_offset .or. memory%master_tracking%has_offset
   end function has_offsets
 
-  !> After the search: limit all offsets by the present depths, and let them fade.
+  !> Limit all offsets by the present depths, and let them fade: after the search; in implicit runs
+  !> at the end of a step.
   pure subroutine update_offsets(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -51,6 +50,7 @@ contains
     if (.not. allocated(tracking%faded)) allocate (tracking%faded(tracking%n), source=0.0_wp)
     tracking%faded = 0.0_wp
     tracking%has_offset = .false.
+    where (tracking%status == is_free) tracking%offset = 0.0_wp
     do k = 1, tracking%n_touching
       i = tracking%touching(k)
       if (.not. tracking%offset(i) > 0.0_wp) cycle
@@ -89,17 +89,8 @@ contains
     end if
   end function motion_of
 
-  !> Entry offset of a contact point on the list, m: that of its virtual node or Gauss point where
-  !> the search follows these, else of its slave nodes by their weights.
-  pure function offset_at(memory, p) result(offset)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: p
-    real(wp) :: offset
-
-    offset = value_at(memory, memory%slave_tracking%offset, memory%master_tracking%offset, p)
-  end function offset_at
-
-  !> A value of the points that are followed, at a contact point on the list.
+  !> A value of the points that are followed, at a contact point on the list: that of its virtual
+  !> node or Gauss point where the search follows these, else of its slave nodes by their weights.
   pure function value_at(memory, of_slave, of_master, p) result(value)
     type(contact_state_t), intent(in) :: memory
     real(wp), intent(in), allocatable :: of_slave(:), of_master(:)
@@ -113,7 +104,7 @@ contains
         if (allocated(of_master)) value = of_master(nodes(1) - memory%n_slave)
       else if (.not. allocated(of_slave)) then
         value = 0.0_wp
-      else if (allocated(memory%spots)) then
+      else if (memory%has%spots) then
         n = size(memory%spot_xi)
         value = of_slave(n*(memory%slave_tracking%pass%segment_at(nodes(1)) - 1) &
           + spot_at(points%slave_weights(2, p), memory%spot_xi))
@@ -123,23 +114,17 @@ contains
     end associate
   end function value_at
 
-  !> Averaged gaps of the slave nodes, entry offsets included.
-  pure subroutine average_with_offsets(memory, nodal)
+  !> Add the entry offsets of all contact points on the list to their gaps.
+  pure subroutine add_offsets(memory, gaps)
     type(contact_state_t), intent(in) :: memory
-    real(wp), intent(inout) :: nodal(2, *)
-    real(wp), allocatable :: gaps(:)
+    real(wp), intent(inout) :: gaps(:) !! (points%n or more) m
     integer :: p
 
-    if (.not. has_offsets(memory)) then
-      call average_gaps(memory%points, memory%n_slave, nodal)
-      return
-    end if
-    gaps = memory%points%gap
     do p = 1, memory%points%n
-      gaps(p) = gaps(p) + offset_at(memory, p)
+      gaps(p) = gaps(p) + value_at(memory, memory%slave_tracking%offset, &
+        memory%master_tracking%offset, p)
     end do
-    call average_values(memory%points, gaps, memory%n_slave, nodal)
-  end subroutine average_with_offsets
+  end subroutine add_offsets
 
   !> Work of the fading of this call, with the points pressed, J/m: the springs have been given it.
   pure function faded_work(memory) result(work)

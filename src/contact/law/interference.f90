@@ -3,18 +3,14 @@
 !> has the gap g + (1 - s) d, where the curve s leads from 0 to 1. So a press fit starts without
 !> force, and at the end the overlap acts as it is. What the curve does is external work.
 module interference_m
-  use contact_state_m, only : contact_state_t
+  use contact_state_m, only : contact_state_t, place_at
   use contacts_m, only : contact_t
   use curves_m, only : curve_value
-  use entry_offset_m, only : has_offsets, offset_at
-  use friction_m, only : place_of_point, spot_at
-  use law_state_m, only : interference_memory_t
   use kinds_m, only : wp
-  use nodal_average_m, only : average_gaps
+  use nodal_average_m, only : average_values
   implicit none
   private
-  public :: begin_growth, take_overlaps, eased_gap, ease_gaps, ease_nodes, gather_moment, &
-    limit_moment
+  public :: begin_growth, take_overlaps, ease_gaps, gather_moment, limit_moment
 
 contains
 
@@ -43,50 +39,35 @@ contains
     integer :: p, place
 
     associate (depth => memory%interference%depth, points => memory%points)
-      if (allocated(memory%node_pressure)) then
-        call average_gaps(points, memory%n_slave, memory%scratch%nodal)
+      if (memory%has%nodal_pressure) then
+        call average_values(points, points%gap, memory%n_slave, memory%scratch%nodal)
         depth(:memory%n_slave) = max(0.0_wp, -memory%scratch%nodal(1, :memory%n_slave))
         return
       end if
       do p = 1, points%n
         if (.not. points%gap(p) < 0.0_wp) cycle
-        place = place_of(memory, p)
+        place = place_at(memory, p)
         depth(place) = max(depth(place), -points%gap(p))
       end do
     end associate
   end subroutine take_overlaps
 
-  !> The gaps that the springs of all points feel.
+  !> Add what does not act yet to the gaps of points or slave nodes.
   pure subroutine ease_gaps(memory, gaps)
     type(contact_state_t), intent(in) :: memory
-    real(wp), intent(inout) :: gaps(:) !! (points%n or more) m
+    real(wp), intent(inout) :: gaps(:) !! (points or slave nodes, or more) m
     integer :: p
 
-    do p = 1, memory%points%n
-      gaps(p) = eased_gap(memory, p)
-    end do
+    associate (n => memory%n_slave, left => memory%interference%left)
+      if (memory%has%nodal_pressure) then
+        gaps(:n) = gaps(:n) + left*memory%interference%depth(:n)
+      else
+        do p = 1, memory%points%n
+          gaps(p) = gaps(p) + left*depth_at(memory, p)
+        end do
+      end if
+    end associate
   end subroutine ease_gaps
-
-  !> The same of one point.
-  pure function eased_gap(memory, p) result(gap)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: p
-    real(wp) :: gap
-
-    gap = memory%points%gap(p)
-    if (has_offsets(memory)) gap = gap + offset_at(memory, p)
-    if (allocated(memory%interference%depth)) &
-      gap = gap + memory%interference%left*depth_at(memory, p)
-  end function eased_gap
-
-  !> The averaged gaps that the springs of slave nodes feel, from averages of the gaps.
-  pure subroutine ease_nodes(interference, n, nodal)
-    type(interference_memory_t), intent(in) :: interference
-    integer, intent(in) :: n
-    real(wp), intent(inout) :: nodal(2, n) !! (1, :) m
-
-    nodal(1, :) = nodal(1, :) + interference%left*interference%depth(:n)
-  end subroutine ease_nodes
 
   !> The overlap of a point at time zero. A master node that was no place then has what the ends of
   !> its slave segment had.
@@ -96,26 +77,10 @@ contains
     real(wp) :: depth
 
     associate (depths => memory%interference%depth, nodes => memory%points%slave_nodes(:, p))
-      depth = depths(place_of(memory, p))
+      depth = depths(place_at(memory, p))
       if (depth < 0.0_wp) depth = sum(memory%points%slave_weights(:, p)*max(0.0_wp, depths(nodes)))
     end associate
   end function depth_at
-
-  !> The place where the pressure of a point is formed, where that is no slave node.
-  pure function place_of(memory, p) result(place)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: p
-    integer :: place
-
-    if (allocated(memory%spots)) then
-      associate (n => size(memory%spot_xi), points => memory%points)
-        place = n*(points%slave_nodes(1, p) - 1) &
-          + spot_at(points%slave_weights(2, p), memory%spot_xi)
-      end associate
-    else
-      place = place_of_point(memory%points, p)
-    end if
-  end function place_of
 
   !> The sum of p w depth, and what the curve does to the springs of this call: before the energy
   !> law, which may count on it.
@@ -126,8 +91,7 @@ contains
 
     moment = 0.0_wp
     associate (points => memory%points)
-      if (allocated(memory%node_pressure)) then
-        call average_gaps(points, memory%n_slave, memory%scratch%nodal)
+      if (memory%has%nodal_pressure) then
         do i = 1, memory%n_slave
           moment = moment + memory%node_pressure(i)*memory%scratch%nodal(2, i) &
             *memory%interference%depth(i)

@@ -8,8 +8,7 @@ module law_friction_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: coefficient_of, has_decay, find_limits, sliding_speed, return_traction, &
-    return_tractions, vary_traction, goes_on
+  public :: coefficient_of, has_decay, sliding_speed, return_traction, vary_traction, goes_on
 
   !> What slips on in the first tangent of a step, in which nothing has moved yet.
   integer, parameter :: goes_on = -1
@@ -39,16 +38,6 @@ contains
 
     has_decay = rule%decay > 0.0_wp .and. abs(rule%at_rest - rule%sliding) > 0.0_wp
   end function has_decay
-
-  !> Largest tractions of some places that stick.
-  pure subroutine find_limits(rule, n, pressure, limit)
-    type(friction_rule_t), intent(in) :: rule
-    integer, intent(in) :: n
-    real(wp), intent(in) :: pressure(n)     !! N/m^2
-    real(wp), intent(inout) :: limit(n)     !! N/m^2
-
-    limit = coefficient_of(rule, 0.0_wp)*pressure
-  end subroutine find_limits
 
   !> Speed of sliding of a place, m/s: that of the slip that does not come back, by v = (trial -
   !> limit(v))/stiffness with limit(v) = min(mu(v) p, most); 0 where it sticks
@@ -88,21 +77,6 @@ contains
     end do
     speed = max(x, 0.0_wp)/rule%decay
   end function sliding_speed
-
-  !> Tractions of some places: springs over their slips, no more than the limits.
-  pure subroutine return_tractions(n, former, stiffness, slip, limit, traction, state)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: former(n)       !! traction before, N/m^2
-    real(wp), intent(in) :: stiffness(n)    !! tangential, N/m^3
-    real(wp), intent(in) :: slip(n), limit(n)
-    real(wp), intent(inout) :: traction(n)
-    integer, intent(inout) :: state(n)
-    integer :: i
-
-    do i = 1, n
-      call return_traction(former(i) + stiffness(i)*slip(i), limit(i), traction(i), state(i))
-    end do
-  end subroutine return_tractions
 
   !> Return of a trial traction to the limit.
   elemental subroutine return_traction(trial, limit, traction, state)

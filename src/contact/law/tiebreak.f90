@@ -3,9 +3,8 @@
 !> (s_t/SFLS)^2 >= 1, s_n the tension and s_t the shear of a place, it is free for good. Places are
 !> those at which pressure is formed (law_state_m).
 module tiebreak_m
-  use contact_state_m, only : contact_state_t
+  use contact_state_m, only : contact_state_t, places_of_segment, place_at
   use contacts_m, only : contact_t
-  use friction_m, only : place_at
   use law_state_m, only : is_open, is_held, is_broken
   use kinds_m, only : wp
   use lengths_m, only : competence_area
@@ -22,17 +21,15 @@ contains
     type(contact_t), intent(in) :: contact
     logical, intent(in) :: has_unit_area, has_two_passes !! of the formulation
     type(contact_state_t), intent(inout) :: memory
-    integer :: s, p, n_each
+    integer :: s, p
 
-    n_each = 1
-    if (allocated(memory%spots)) n_each = size(memory%spot_xi)
     associate (ties => memory%ties, points => memory%points)
-      allocate (ties%state(n_each*memory%n_slave + memory%n_master), source=is_open)
+      allocate (ties%state(places_of_segment(memory)*memory%n_slave + memory%n_master), source=is_open)
       allocate (ties%place(size(ties%side)), source=0)
       allocate (ties%to_stress(size(ties%side)), source=1.0_wp)
       do s = 1, size(ties%side)
         p = ties%first(s)
-        if (allocated(memory%node_pressure)) then
+        if (memory%has%nodal_pressure) then
           where (points%slave_weights(:, p) > 0.0_wp) ties%state(points%slave_nodes(:, p)) = is_held
         else
           ties%place(s) = place_at(memory, p)
@@ -56,7 +53,7 @@ contains
 
     n_new = 0
     associate (ties => memory%ties, points => memory%points)
-      if (allocated(memory%node_pressure)) then
+      if (memory%has%nodal_pressure) then
         do s = 1, memory%n_slave
           call mark(strength, memory%node_pressure(s), ties%traction(s), ties%state(s), n_new)
         end do
@@ -89,7 +86,7 @@ contains
     integer :: s
 
     associate (ties => memory%ties, points => memory%points)
-      if (allocated(memory%node_pressure)) then
+      if (memory%has%nodal_pressure) then
         where (ties%state(:memory%n_slave) /= is_held)
           memory%node_pressure = 0.0_wp
           ties%traction = 0.0_wp
@@ -112,8 +109,8 @@ contains
 
     yes = .true.
     associate (ties => memory%ties)
-      if (.not. allocated(ties%state)) return
-      if (allocated(memory%node_pressure)) then
+      if (.not. memory%has%breaks) return
+      if (memory%has%nodal_pressure) then
         yes = any(ties%state(memory%points%slave_nodes(:, ties%first(s))) == is_held)
       else
         yes = ties%state(ties%place(s)) == is_held
@@ -128,7 +125,7 @@ contains
     logical :: yes
 
     yes = .true.
-    if (allocated(memory%ties%state)) yes = memory%ties%state(node) == is_held
+    if (memory%has%breaks) yes = memory%ties%state(node) == is_held
   end function holds_node
 
 end module tiebreak_m

@@ -7,6 +7,7 @@
 !> k w (b d.n - a d.t) on the segment that n and t turn with, so that the net moment vanishes.
 module ties_m
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
+  use contact_scatter_m, only : scatter, scatter_tractions
   use contacts_m, only : contact_t
   use geometry_m, only : separation
   use kinds_m, only : wp
@@ -54,7 +55,7 @@ contains
       spring = tie_spring(memory, s)
       memory%ties%offset(:, s) = [dot_product(spring%d, spring%n), dot_product(spring%d, spring%t)]
     end do
-    if (allocated(memory%node_pressure)) &
+    if (memory%has%nodal_pressure) &
       allocate (memory%ties%traction(memory%n_slave), source=0.0_wp)
   end subroutine freeze_ties
 
@@ -110,7 +111,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     logical :: has
 
-    has = allocated(memory%spots) .and. .not. allocated(memory%node_pressure)
+    has = memory%has%spots .and. .not. memory%has%nodal_pressure
   end function has_virtual_nodes
 
   !> The segment that the normal of a spring belongs to: the master's, for a virtual node the one
@@ -198,17 +199,12 @@ contains
       end do
     end associate
     call load_stretches(memory)
-    if (allocated(memory%ties%state)) then
+    if (memory%has%breaks) then
       if (strength(1) > 0.0_wp) call break_ties(strength, time, memory, n_new)
       call let_go(memory)
     end if
     call share_nodal(memory)
-    memory%n_active = 0
-    do s = 1, size(springs)
-      if (.not. holds(memory, s)) cycle
-      memory%n_active = memory%n_active + memory%ties%first(s + 1) - memory%ties%first(s)
-      call scatter_spring(springs(s), s, memory)
-    end do
+    call scatter_ties(springs, memory)
   end subroutine hold_ties
 
   !> Break what reaches its strength under the loads in the memory; what its springs hold is spent.
@@ -235,7 +231,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     associate (points => memory%points, nodal => memory%scratch%nodal, n => memory%n_slave)
-      if (.not. allocated(memory%node_pressure)) then
+      if (.not. memory%has%nodal_pressure) then
         points%pressure(:points%n) = -points%stiffness(:points%n)*points%pressure(:points%n)
         points%traction(:points%n) = points%stiffness(:points%n)*points%traction(:points%n)
         return
@@ -251,7 +247,7 @@ contains
   pure subroutine share_nodal(memory)
     type(contact_state_t), intent(inout) :: memory
 
-    if (.not. allocated(memory%node_pressure)) return
+    if (.not. memory%has%nodal_pressure) return
     associate (points => memory%points)
       call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
         points%pressure)
@@ -260,32 +256,43 @@ contains
     end associate
   end subroutine share_nodal
 
-  !> Forces of one spring: those of its points, and the couple.
-  pure subroutine scatter_spring(spring, s, memory)
+  !> Forces of all springs: those of their points, and the couples.
+  pure subroutine scatter_ties(springs, memory)
+    type(tie_spring_t), intent(in) :: springs(:)
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: part(2, size(memory%force, 2))
+    integer :: s
+
+    part = 0.0_wp
+    call scatter(memory%points, memory%points%pressure, memory%force)
+    call scatter_tractions(memory%points, part, memory%force)
+    memory%n_active = 0
+    do s = 1, size(springs)
+      if (.not. holds(memory, s)) cycle
+      memory%n_active = memory%n_active + memory%ties%first(s + 1) - memory%ties%first(s)
+      call add_couple(springs(s), s, memory)
+    end do
+  end subroutine scatter_ties
+
+  !> The moment d x load of the pair of forces of a spring is taken up by its segment.
+  pure subroutine add_couple(spring, s, memory)
     type(tie_spring_t), intent(in) :: spring
     integer, intent(in) :: s
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: load(2), total(2), couple(2)
-    integer :: p, k
+    real(wp) :: total(2), couple(2)
+    integer :: p
 
     total = 0.0_wp
     associate (points => memory%points, ties => memory%ties, force => memory%force)
       do p = ties%first(s), ties%first(s + 1) - 1
-        load = points%area(p)*(points%pressure(p)*spring%n - points%traction(p)*spring%t)
-        total = total + load
-        do k = 1, n_side
-          associate (i => points%slave_nodes(k, p), j => points%master_nodes(k, p))
-            force(:, i) = force(:, i) + points%slave_weights(k, p)*load
-            force(:, j) = force(:, j) - points%master_weights(k, p)*load
-          end associate
-        end do
+        total = total &
+          + points%area(p)*(points%pressure(p)*spring%n - points%traction(p)*spring%t)
       end do
-      ! The moment of the pair of forces, d x load, is taken up by the segment.
       couple = ties%side(s)*(spring%d(1)*total(2) - spring%d(2)*total(1))/spring%length*spring%n
       force(:, ties%owner(1, s)) = force(:, ties%owner(1, s)) - couple
       force(:, ties%owner(2, s)) = force(:, ties%owner(2, s)) + couple
     end associate
-  end subroutine scatter_spring
+  end subroutine add_couple
 
   !> What all springs store, J/m, and where the largest force is.
   pure subroutine tie_energy(memory, energy, load, node)
@@ -307,7 +314,7 @@ contains
           load = points%area(p)*sqrt(square)
           node = memory%nodes(points%slave_nodes(maxloc(points%slave_weights(:, p), 1), p))
         end if
-        if (.not. allocated(memory%node_pressure)) then
+        if (.not. memory%has%nodal_pressure) then
           energy = energy + points%area(p)*square/(2.0_wp*points%stiffness(p))
           cycle
         end if
@@ -317,7 +324,7 @@ contains
         end do
       end do
     end associate
-    if (allocated(memory%node_pressure)) energy = sum(area*(memory%node_pressure**2 &
+    if (memory%has%nodal_pressure) energy = sum(area*(memory%node_pressure**2 &
       + memory%ties%traction**2))/(2.0_wp*memory%slave_penalty)
   end subroutine tie_energy
 

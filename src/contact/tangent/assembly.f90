@@ -83,11 +83,11 @@ contains
 
     if (is_left_to_tie(memory, place)) return
     gap = point%gap
-    if (allocated(memory%interference%depth)) gap = gap + vary_left(memory, place, point)
+    if (memory%has%interference) gap = gap + vary_left(memory, place, point)
     if (has_offsets(memory)) gap = gap + vary_offset(memory, place, point)
     if (.not. gap%value < memory%closed_gap) return
     pressure = vary_pressure(memory%contact_law, stiffness, gap)
-    if (allocated(memory%friction%force)) then
+    if (memory%has%friction) then
       call add_varied_point(point, pressure*point%area, equations, matrix, &
         vary_grip(rule, memory, place, point, pressure, stiffness, length)*point%area)
     else

@@ -28,10 +28,10 @@ contains
     call start_pattern(pattern, memory%n_slave + memory%n_master)
     do s = 1, size(memory%ties%side)
       call add_turns(memory, s, pattern, equations, matrix)
-      if (allocated(memory%node_pressure) .or. .not. holds(memory, s)) cycle
+      if (memory%has%nodal_pressure .or. .not. holds(memory, s)) cycle
       call add_stretches(memory, s, pattern, equations, matrix)
     end do
-    if (allocated(memory%node_pressure)) call add_nodal(memory, pattern, equations, matrix)
+    if (memory%has%nodal_pressure) call add_nodal(memory, pattern, equations, matrix)
   end subroutine add_tie_tangent
 
   !> Both stretches of a spring: k w (grad a grad a^T + grad b grad b^T).

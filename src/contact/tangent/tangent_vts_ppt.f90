@@ -190,12 +190,12 @@ contains
       constant(memory%spot_xi(2 - mod(spot, 2))))
     pressure = vary_pressure(memory%contact_law, memory%slave_penalty, portions(1)%gap &
       + left_at(contact, memory, spot))
-    if (allocated(memory%friction%force)) grip = vary_grip(contact, memory, spot, portions(1), &
+    if (memory%has%friction) grip = vary_grip(contact, memory, spot, portions(1), &
       pressure)
     do k = 1, size(portions)
       load = (1.0_wp/total)*(pressure*half*portions(k)%area)
       call add_to_row(pattern, portions(k), portions(k)%area%slope)
-      if (allocated(memory%friction%force)) then
+      if (memory%has%friction) then
         shear = (1.0_wp/total)*(grip*half*portions(k)%area)
         call add_varied_point(portions(k), load, equations, matrix, shear)
         call add_to_column(pattern, portions(k), load%value, shear%value)
@@ -215,7 +215,7 @@ contains
     real(wp) :: left
 
     left = memory%slave_tracking%offset(spot)
-    if (.not. allocated(memory%interference%depth)) return
+    if (.not. memory%has%interference) return
     left = left + memory%interference%left*memory%interference%depth(2*contact%slave%segments(1, &
       1 + (spot - 1)/2) - mod(spot, 2))
   end function left_at

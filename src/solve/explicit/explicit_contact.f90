@@ -101,7 +101,7 @@ contains
       if (watch%changes(sign_of)%warned .or. abs(watch%balance) <= &
         noticed_share*max(state%largest_energy, contact%energy)) return
       ! While an overlap grows there is nothing yet to hold it against.
-      if (allocated(contact%interference%depth) .and. contact%interference%left > 0.0_wp) return
+      if (contact%has%interference .and. contact%interference%left > 0.0_wp) return
       ! What impacts take of implicit springs is no fault of theirs; the end tells it.
       if (sign_of == has_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) return
       watch%changes(sign_of)%warned = .true.

@@ -308,7 +308,7 @@ contains
 
     allocate (states(0))
     do i = 1, size(contacts)
-      if (.not. allocated(contacts(i)%friction%state)) cycle
+      if (.not. contacts(i)%has%friction) cycle
       ! Those that slip backwards are another state.
       associate (friction => contacts(i)%friction)
         states = [states, merge(-friction%state, friction%state, &

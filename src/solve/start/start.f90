@@ -366,7 +366,7 @@ contains
       end do
     end do
     do i = 1, size(state%contacts)
-      if (.not. allocated(state%contacts(i)%limit%inverse_mass)) cycle
+      if (.not. state%contacts(i)%has%limit) cycle
       associate (limit => state%contacts(i)%limit)
         ! The bound of the forces before was formed with the masses of before.
         if (any(abs(limit%inverse_mass - inverse(:, state%contacts(i)%nodes)) > 0.0_wp)) &
