@@ -88,8 +88,8 @@ contains
     call add_breakpoint(ends, node, area, memory)
   end subroutine place_segment
 
-  !> Half of an overlap, as far as it counts, for either of its ends, m; in axisymmetry weighted by
-  !> the radius, so that they differ. With the strict rule all of it counts.
+  !> Half of an overlap, as far as it counts, for either of its ends, m; in axisymmetry weighted
+  !> by the radius, so that they differ. With the strict rule all but sides of corners counts.
   pure function halves_of(contact, a, b, length, overlap) result(halves)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in) :: a(4), b(4)     !! ends of the slave segment
