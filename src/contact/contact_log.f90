@@ -1,10 +1,10 @@
 ! SPDX-License-Identifier: MIT
 !> What the log says about an interface.
 module contact_log_m
-  use contact_dispatch_m, only : formulation_t, formulation_of
+  use contact_dispatch_m, only : formulation_t, formulation_of, is_strict
   use contact_penalty_m, only : rigid_factor, mean_length, built_in_penalty, side_stiffness
   use contact_state_m, only : contact_state_t
-  use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, is_tied, breaks, kind_text, &
+  use contacts_m, only : contact_t, friction_rule_t, is_tied, breaks, kind_text, &
     penalty_share, penalty_implicit
   use law_state_m, only : is_open, is_broken
   use kinds_m, only : wp
@@ -35,27 +35,32 @@ module contact_log_m
 contains
 
   !> Type, surfaces, all equivalents of the penalty and what the search will catch.
-  subroutine log_contact(contact, model, kind, memory, log)
+  subroutine log_contact(contact, model, memory, log)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
-    type(contact_kind_t), intent(in) :: kind
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
     character(:), allocatable :: title
+    type(formulation_t) :: formulation
 
     if (contact%behind > 0) then
       call log_behind(contact, model%controls%units, memory, log)
       return
     end if
+    formulation = formulation_of(contact)
     title = ''
     if (allocated(contact%title)) title = contact%title
     if (len(title) > 0) title = ' "'//title//'"'
-    call write_log(log, 'interface '//to_text(contact%id)//title//': '//kind_text(kind) &
-      //trim(merge(', chosen by keyword', '                   ', contact%chosen_by_keyword)) &
-      //choice_text(contact))
+    title = 'interface '//to_text(contact%id)//title//': '//kind_text(formulation%kind)
+    if (contact%chosen_by_keyword) title = title//', chosen by keyword'
+    if (allocated(contact%reason)) title = title//', chosen by the program (CTYPE 0): ' &
+      //contact%reason
+    if (contact%target > 0.0_wp) title = title//'; its estimate is to stay at or below ' &
+      //to_text(contact%target)
+    call write_log(log, title)
     if (contact%is_self) then
       call write_log(log, '  a surface with itself: '//surface_text(contact%slave, model) &
-        //', met from either side by '//self_share_text(contact)//' of the penalty')
+        //', met from either side by '//to_text(formulation%self_share)//' of the penalty')
     else
       call write_log(log, '  slave: '//surface_text(contact%slave, model))
       call write_log(log, '  master: '//surface_text(contact%master, model))
@@ -67,9 +72,15 @@ contains
     else
       call write_log(log, '  penalty: '//penalty_text(contact, model, memory))
     end if
-    if (kind%uses_gauss_points) call write_log(log, '  Gauss points of a slave segment: ' &
-      //to_text(contact%n_gauss))
-    if (kind%has_strict_rule) call write_log(log, '  '//overhang_text(contact%strict))
+    if (formulation%kind%uses_gauss_points) call write_log(log, &
+      '  Gauss points of a slave segment: '//to_text(contact%n_gauss))
+    if (is_strict(contact)) then
+      call write_log(log, '  strict rule where a slave segment hangs over the end of the master ' &
+        //'(IPF = 1)')
+    else if (formulation%kind%has_strict_rule) then
+      call write_log(log, '  where a slave segment hangs over the end of the master, the master ' &
+        //'nodes inside it count too and the rest carries nothing (default, IPF = 0)')
+    end if
     if (contact%damping > 0.0_wp) call write_log(log, '  damping: ' &
       //to_text(contact%damping)//' of critical')
     if (memory%has%friction) call write_log(log, '  friction: ' &
@@ -140,16 +151,6 @@ contains
       //' segments of mean length '//to_text(mean_length(surface, model)) &
       //in_units(model%controls%units, 'L')
   end function surface_text
-
-  !> Part of the penalty that either pass of a surface with itself has.
-  pure function self_share_text(contact) result(text)
-    type(contact_t), intent(in) :: contact
-    character(:), allocatable :: text
-    type(formulation_t) :: formulation
-
-    formulation = formulation_of(contact)
-    text = to_text(formulation%self_share)
-  end function self_share_text
 
   !> How much is tied, and which slave nodes have nothing within reach. That is a warning where the
   !> surface was given node by node; whole outlines have far sides.
@@ -266,16 +267,6 @@ contains
     text = text//'; tangential penalty '//to_text(rule%stiffness)//' of the normal one'
   end function friction_text
 
-  !> What counts of a slave segment that hangs over the end of the master.
-  pure function overhang_text(is_strict) result(text)
-    logical, intent(in) :: is_strict
-    character(:), allocatable :: text
-
-    text = 'strict rule where a slave segment hangs over the end of the master (IPF = 1)'
-    if (.not. is_strict) text = 'where a slave segment hangs over the end of the master, the ' &
-      //'master nodes inside it count too and the rest carries nothing (default, IPF = 0)'
-  end function overhang_text
-
   !> All equivalents of the penalty, of the passes that the formulation has.
   function penalty_text(contact, model, memory) result(text)
     type(contact_t), intent(in) :: contact
@@ -379,16 +370,5 @@ contains
     call warn(log, 'interface '//to_text(contact%id)//': '//to_text(n) &
       //' first contacts were deeper than the limit and were released; SRCH sets the limit')
   end subroutine report_released
-
-  !> Why the program chose the type of an interface, where it did.
-  pure function choice_text(contact) result(text)
-    type(contact_t), intent(in) :: contact
-    character(:), allocatable :: text
-
-    text = ''
-    if (allocated(contact%reason)) text = ', chosen by the program (CTYPE 0): '//contact%reason
-    if (contact%target > 0.0_wp) text = text//'; its estimate is to stay at or below ' &
-      //to_text(contact%target)
-  end function choice_text
 
 end module contact_log_m

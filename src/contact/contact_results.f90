@@ -18,7 +18,7 @@ module contact_results_m
 
 contains
 
-  !> Resultants of both sides.
+  !> Resultants of both sides and energies.
   pure subroutine interface_resultants(memory, resultants)
     type(contact_state_t), intent(in) :: memory
     type(interface_result_t), intent(out) :: resultants
@@ -26,6 +26,12 @@ contains
     resultants%slave_force = sum(memory%force(:, :memory%n_slave), 2)
     resultants%master_force = sum(memory%force(:, memory%n_slave + 1:), 2)
     resultants%n_active = memory%n_active
+    associate (friction => memory%friction)
+      resultants%energy = memory%energy + friction%stored
+      resultants%friction = friction%work - friction%stored
+      resultants%damping = memory%damping_work
+      resultants%stored = memory%watch%stored - memory%ties%spent + friction%stored
+    end associate
   end subroutine interface_resultants
 
   !> Rows of all slave nodes in walking order.
@@ -96,38 +102,20 @@ contains
   pure function mean_slips(memory) result(slip)
     type(contact_state_t), intent(in) :: memory
     real(wp) :: slip(memory%n_slave + memory%n_master)
-    real(wp) :: area(memory%n_slave + memory%n_master), along
+    real(wp) :: area(memory%n_slave + memory%n_master), along(memory%points%n)
     type(tie_spring_t) :: spring
-    integer :: s, p, k
+    integer :: s
 
     slip = 0.0_wp
-    area = 0.0_wp
     if (memory%points%n == 0) return
-    associate (points => memory%points)
-      do s = 1, size(memory%ties%side)
-        spring = tie_spring(memory, s)
-        along = memory%ties%offset(2, s) - dot_product(spring%d, spring%t)
-        do p = memory%ties%first(s), memory%ties%first(s + 1) - 1
-          do k = 1, n_side
-            call add_weighted(points%slave_weights(k, p)*points%area(p), along, &
-              slip(points%slave_nodes(k, p)), area(points%slave_nodes(k, p)))
-            call add_weighted(points%master_weights(k, p)*points%area(p), along, &
-              slip(points%master_nodes(k, p)), area(points%master_nodes(k, p)))
-          end do
-        end do
-      end do
-    end associate
-    where (area > 0.0_wp) slip = slip/area
+    do s = 1, size(memory%ties%side)
+      spring = tie_spring(memory, s)
+      along(memory%ties%first(s):memory%ties%first(s + 1) - 1) = memory%ties%offset(2, s) &
+        - dot_product(spring%d, spring%t)
+    end do
+    area = nodal_sums(.false., memory, spread(1.0_wp, 1, memory%points%n))
+    where (area > 0.0_wp) slip = nodal_sums(.false., memory, along)/area
   end function mean_slips
-
-  !> Add a value and its weight to two sums.
-  pure subroutine add_weighted(weight, value, total, weights)
-    real(wp), intent(in) :: weight, value
-    real(wp), intent(inout) :: total, weights
-
-    total = total + weight*value
-    weights = weights + weight
-  end subroutine add_weighted
 
   !> The rows of a tie with those of the contact behind it: sums of forces; where the tie does not
   !> hold, the gap of contact and, if it never did, slip and state of contact.
@@ -260,7 +248,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: i                        !! node of the slave surface
     real(wp) :: gap
-    type(foot_t) :: foot, spot_foot
+    type(foot_t) :: foot
     integer :: spot
 
     gap = 0.0_wp
@@ -269,11 +257,9 @@ contains
     associate (tracking => memory%slave_tracking, segment => memory%slave_tracking%segment(spot))
       if (memory%is_stale .or. segment == 0) return
       if (tracking%status(spot) /= is_touching) then
-        foot = nearest_foot(contact%master, chain, place, segment)
-        spot_foot = foot
-        if (memory%has%spots) &
-          spot_foot = nearest_foot(contact%master, chain, memory%spots(:, spot), segment)
-        if (spot_foot%distance > tracking%reach) return
+        foot = closest_foot(contact%master, chain, place, &
+          walk_to_closest(contact%master, chain, place, segment))
+        if (foot%distance > tracking%reach) return
       else if (memory%has%spots) then
         foot = follow_contact(contact%master, chain, place, segment)
       else
@@ -283,17 +269,6 @@ contains
       if (foot%is_on) gap = foot%gap
     end associate
   end function present_gap
-
-  !> Foot of a place by walking from a segment that it was on or near.
-  pure function nearest_foot(surface, chain, place, segment) result(foot)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :)
-    real(wp), intent(in) :: place(4)
-    integer, intent(in) :: segment
-    type(foot_t) :: foot
-
-    foot = closest_foot(surface, chain, place, walk_to_closest(surface, chain, place, segment))
-  end function nearest_foot
 
   !> The spot at a slave node, or of those on its segments the one next to it that is in contact, if
   !> any.

@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> How stiff the penalty springs of an interface can hold each of its nodes. A node of the tracked
 !> side carries at most its competence length in all formulations, for a node of the other side see
-!> `most_on_nodes` (doc/theory/contact.md, section 7).
+!> `most_on_nodes` (doc/theory/contact.md, section 7). In axisymmetry lengths weigh with their
+!> radius: m^2 per radian.
 module contact_spring_ratios_m
   use contact_dispatch_m, only : formulation_t, formulation_of, is_strict
   use contact_state_m, only : contact_state_t
@@ -16,6 +17,9 @@ module contact_spring_ratios_m
   private
   public :: spring_ratios
 
+  !> Part of a slave segment that points at the end of a master may stand for beyond it.
+  real(wp), parameter :: beyond_ends = 0.5_wp
+
 contains
 
   !> Most K/m of each node, K being the sum of spring stiffness times weight, 1/s^2. `places` are
@@ -26,107 +30,84 @@ contains
     type(contact_state_t), intent(in) :: memory
     real(wp) :: ratio(memory%n_slave + memory%n_master) !! slave nodes, then master nodes
     type(formulation_t) :: formulation
-    real(wp), allocatable :: slave_spring(:), master_spring(:)
-    real(wp) :: spacing, overhang
-    integer :: n
+    real(wp) :: overhang
+    logical :: is_lonely, is_round
 
-    n = memory%n_slave
-    if (is_tied(contact)) then
-      ratio = stiffness_of_nodes(memory)/mass(memory%nodes)
-      return
-    end if
-    if (contact%is_round) then
-      ratio = round_springs(contact, memory)/mass(memory%nodes)
-      return
-    end if
     formulation = formulation_of(contact)
-    overhang = merge(0.0_wp, 0.5_wp, formulation%covers_segments .and. .not. is_strict(contact))
-    associate (slave => memory%places(:, :n), master => memory%places(:, n + 1:))
-      slave_spring = memory%slave_penalty*areas(contact%slave, slave, .false.)
-      master_spring = memory%slave_penalty*most_on_nodes(contact%master, master, &
-        maxval(lengths(contact%slave, slave)), overhang, .false.)
-      if (formulation%has_unit_area) then
-        slave_spring = memory%node_penalty
-        spacing = minval(lengths(contact%slave, slave))
-        master_spring = memory%node_penalty/spacing &
-          *most_on_nodes(contact%master, master, spacing, overhang, .true.)
-      end if
-      if (formulation%has_two_passes) then
-        master_spring = master_spring + memory%master_penalty*areas(contact%master, master, &
-          .false.)
-        slave_spring = slave_spring + memory%master_penalty*most_on_nodes(contact%slave, slave, &
-          maxval(lengths(contact%master, master)), overhang, .false.)
+    is_round = contact%is_round
+    overhang = beyond_ends
+    if (formulation%covers_segments .and. .not. is_strict(contact)) overhang = 0.0_wp
+    is_lonely = .false.
+    if (is_round .and. allocated(memory%spot_xi)) is_lonely = size(memory%spot_xi) == 1
+    associate (n => memory%n_slave, slave => memory%places(:, :memory%n_slave), &
+      master => memory%places(:, memory%n_slave + 1:))
+      if (is_tied(contact)) then
+        ratio = stiffness_of_nodes(memory)
+      else if (formulation%has_unit_area) then
+        ratio = memory%node_penalty*node_shares(contact, slave, master)
+      else
+        ratio(:n) = memory%slave_penalty*areas(contact%slave, slave, is_round, is_lonely)
+        ratio(n + 1:) = memory%slave_penalty*most_on_nodes(contact%master, master, is_round, &
+          longest_of(contact%slave, slave), overhang, is_lonely)
+        if (formulation%has_two_passes) then
+          ratio(:n) = ratio(:n) + memory%master_penalty*most_on_nodes(contact%slave, slave, &
+            is_round, longest_of(contact%master, master), overhang, .false.)
+          ratio(n + 1:) = ratio(n + 1:) + memory%master_penalty*areas(contact%master, master, &
+            is_round, .false.)
+        end if
       end if
     end associate
-    ratio = [slave_spring, master_spring]/mass(memory%nodes)
+    ratio = ratio/mass(memory%nodes)
   end function spring_ratios
 
-  !> In axisymmetry: the springs of all nodes, N/m per radian. The same bounds, with weights by
-  !> radius; points of type 1 weigh with the mean radius of their node, one Gauss point alone on a
-  !> segment with the radius of its middle.
-  pure function round_springs(contact, memory) result(spring)
+  !> Type 1, where each slave node has the same spring: how much of it each node of both sides can
+  !> get, by its hat function over segments of length h with slave nodes at equal distances s and
+  !> one at the node itself: s/2 and sum(s (1 - i s/h), i s < h) for each neighbouring segment, and
+  !> at ends what lies beyond, over s. In axisymmetry slave nodes weigh with their mean radius, m.
+  pure function node_shares(contact, slave, master) result(share)
     type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
-    real(wp) :: spring(memory%n_slave + memory%n_master)
-    type(formulation_t) :: formulation
-    real(wp) :: overhang, longest, shortest
-    integer :: i, n
-    logical :: is_lonely
+    real(wp), intent(in), contiguous :: slave(:, :), master(:, :) !! (4, n_node) positions
+    real(wp) :: share(size(slave, 2) + size(master, 2))
+    real(wp) :: s, h(contact%master%n_segment)
+    integer :: i, n, n_slave, nodes(2)
 
-    n = memory%n_slave
-    formulation = formulation_of(contact)
-    overhang = merge(0.0_wp, 0.5_wp, formulation%covers_segments .and. .not. is_strict(contact))
-    is_lonely = .false.
-    if (allocated(memory%spot_xi)) is_lonely = size(memory%spot_xi) == 1
-    associate (slave => memory%places(:, :n), master => memory%places(:, n + 1:))
-      longest = maxval(lengths(contact%slave, slave))
-      if (formulation%has_unit_area) then
-        shortest = minval(lengths(contact%slave, slave))
-        spring(:n) = memory%node_penalty*[(mean_radius(contact%slave, slave, i), i=1, n)]
-        spring(n + 1:) = memory%node_penalty/shortest*(radii_near(contact%master, master) &
-          + longest/3.0_wp)*most_on_nodes(contact%master, master, shortest, overhang, .true.)
-        return
-      end if
-      spring(:n) = memory%slave_penalty*areas(contact%slave, slave, .true.)
-      if (is_lonely) spring(:n) = max(spring(:n), &
-        memory%slave_penalty*middle_areas(contact%slave, slave))
-      spring(n + 1:) = memory%slave_penalty &
-        *most_by_radius(contact%master, master, longest, overhang, is_lonely)
-      if (.not. formulation%has_two_passes) return
-      spring(n + 1:) = spring(n + 1:) + memory%master_penalty*areas(contact%master, master, .true.)
-      spring(:n) = spring(:n) + memory%master_penalty*most_by_radius(contact%slave, slave, &
-        maxval(lengths(contact%master, master)), overhang, .false.)
-    end associate
-  end function round_springs
-
-  !> Competence lengths of all nodes of a surface, m, or areas, m^2 per radian.
-  pure function areas(surface, places, is_round)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :)
-    logical, intent(in) :: is_round
-    real(wp) :: areas(surface%n_node)
-    integer :: i
-
-    do i = 1, surface%n_node
-      areas(i) = competence_area(surface, places, is_round, i)
+    n_slave = size(slave, 2)
+    share(:n_slave) = 1.0_wp
+    if (contact%is_round) share(:n_slave) = [(mean_radius(contact%slave, slave, i), i=1, n_slave)]
+    share(n_slave + 1:) = beyond_ends*(merge(1, 0, contact%master%incoming == 0) &
+      + merge(1, 0, contact%master%outgoing == 0))
+    s = minval(lengths(contact%slave, slave))
+    h = lengths(contact%master, master)
+    do i = 1, contact%master%n_segment
+      n = int(h(i)/s)
+      nodes = n_slave + contact%master%segments(:, i)
+      share(nodes) = share(nodes) + (0.5_wp + n*(1.0_wp - 0.5_wp*(n + 1)*s/h(i)))
     end do
-  end function areas
+    if (contact%is_round) share(n_slave + 1:) = share(n_slave + 1:)*(radii_near(contact%master, &
+      master) + longest_of(contact%slave, slave)/3.0_wp)
+  end function node_shares
 
-  !> Half of each neighbouring segment times the radius of its middle, m^2 per radian.
-  pure function middle_areas(surface, places) result(areas)
+  !> Competence areas of all nodes of a surface; where one Gauss point stands alone on a segment no
+  !> less than half of each neighbouring segment by the radius of its middle.
+  pure function areas(surface, places, is_round, is_lonely)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: places(:, :)
+    logical, intent(in) :: is_round, is_lonely
     real(wp) :: areas(surface%n_node)
+    real(wp) :: middle(surface%n_node)
     integer :: i
 
-    areas = 0.0_wp
+    areas = [(competence_area(surface, places, is_round, i), i=1, surface%n_node)]
+    if (.not. is_lonely) return
+    middle = 0.0_wp
     do i = 1, surface%n_segment
       associate (a => places(:, surface%segments(1, i)), b => places(:, surface%segments(2, i)))
-        areas(surface%segments(:, i)) = areas(surface%segments(:, i)) &
+        middle(surface%segments(:, i)) = middle(surface%segments(:, i)) &
           + 0.25_wp*segment_length(a, b)*(radius_of(a) + radius_of(b))
       end associate
     end do
-  end function middle_areas
+    areas = max(areas, middle)
+  end function areas
 
   !> Largest radius on the segments beside each node, m.
   pure function radii_near(surface, places) result(radii)
@@ -157,70 +138,55 @@ contains
     end do
   end function lengths
 
-  !> Most length that points of the other side can put on each node, by its hat function over
-  !> segments of length h. At equal distances s, each with the length s: with a point at the node,
-  !> s/2 and sum(s (1 - i s/h), i s < h) for each neighbouring segment. At distances up to s, or
-  !> integrating segments of up to s: h/2, and the largest error of the trapezoidal rule at the foot
-  !> of the hat, s^2/(8h), or (s - h)/2 when s > 2h (the midpoint rule errs as much at the top,
-  !> Gauss rules less). Points at a chain's end may stand for a part `overhang` of s beyond it.
-  pure function most_on_nodes(surface, places, s, overhang, at_equal_distances) result(most)
+  !> Length of the longest segment of a surface, m.
+  pure real(wp) function longest_of(surface, places)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: places(:, :)
-    real(wp), intent(in) :: s        !! m
-    real(wp), intent(in) :: overhang
-    logical, intent(in) :: at_equal_distances
-    real(wp) :: most(surface%n_node)
-    real(wp) :: h(surface%n_segment), share
-    integer :: i, n
 
-    most = overhang*s*(merge(1, 0, surface%incoming == 0) + merge(1, 0, surface%outgoing == 0))
-    h = lengths(surface, places)
-    do i = 1, surface%n_segment
-      if (at_equal_distances) then
-        n = int(h(i)/s)
-        share = s*(0.5_wp + n*(1.0_wp - 0.5_wp*(n + 1)*s/h(i)))
-      else
-        share = 0.5_wp*h(i) &
-          + merge(s**2/(8.0_wp*h(i)), 0.5_wp*(s - h(i)), s <= 2.0_wp*h(i))
-      end if
-      most(surface%segments(:, i)) = most(surface%segments(:, i)) + share
-    end do
-  end function most_on_nodes
+    longest_of = maxval(lengths(surface, places))
+  end function longest_of
 
-  !> The same weighted with the radius, m^2 per radian, at distances up to s: the integral of the
-  !> hat function by radius, h (2 r_i + r_j)/6, and the error at its foot with the mean radius
-  !> there, at most s/6 above that of the foot. One Gauss point on a segment errs at the top of the
-  !> hat instead, and by s^2/12 since radius times hat function is curved.
-  pure function most_by_radius(surface, places, s, overhang, is_lonely) result(most)
+  !> Most length, or area by radius, that points of the other side can put on each node by its hat
+  !> function over segments of length h, at distances up to s or integrating segments of up to s:
+  !> the integral of the hat, h/2 or h (2 r_i + r_j)/6, and the largest error of the trapezoidal
+  !> rule at its foot, s^2/(8h) times the mean radius there, at most s/6 above that of the foot; or,
+  !> where s > 2h, s/2 in all (the midpoint rule errs as much at the top, Gauss rules less). One
+  !> Gauss point on a segment errs at the top of the hat, by s^2/12 more since radius times hat is
+  !> curved. Points at a chain's end may stand for a part `overhang` of s beyond it.
+  pure function most_on_nodes(surface, places, is_round, s, overhang, is_lonely) result(most)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: places(:, :)
+    logical, intent(in) :: is_round
     real(wp), intent(in) :: s         !! m
-    real(wp), intent(in) :: overhang  !! see above
+    real(wp), intent(in) :: overhang
     logical, intent(in) :: is_lonely  !! one Gauss point on each segment of the other side
     real(wp) :: most(surface%n_node)
-    real(wp) :: h(surface%n_segment), share, near, far
+    real(wp) :: h(surface%n_segment), share, near, far, rise
     integer :: i, k, other
 
     h = lengths(surface, places)
+    rise = merge(1.0_wp, 0.0_wp, is_round)
+    near = 1.0_wp
+    far = 1.0_wp
     most = 0.0_wp
     do i = 1, surface%n_segment
       do k = 1, 2
         associate (node => surface%segments(k, i))
-          near = radius_of(places(:, node))
-          far = radius_of(places(:, surface%segments(3 - k, i)))
+          if (is_round) near = radius_of(places(:, node))
+          if (is_round) far = radius_of(places(:, surface%segments(3 - k, i)))
           if (s <= 2.0_wp*h(i)) then
             share = 0.5_wp*h(i)*end_radius(near, far) &
-              + s**2/(8.0_wp*h(i))*(merge(max(near, far), far, is_lonely) + s/6.0_wp)
+              + s**2/(8.0_wp*h(i))*(merge(max(near, far), far, is_lonely) + rise*s/6.0_wp)
           else
-            share = 0.5_wp*s*(max(near, far) + s/3.0_wp)
+            share = 0.5_wp*s*(max(near, far) + rise*s/3.0_wp)
           end if
           if (is_lonely) share = share + s**2/12.0_wp
           other = merge(surface%incoming(node), surface%outgoing(node), k == 1)
-          if (other == 0) share = share + overhang*s*(near + s/3.0_wp)
+          if (other == 0) share = share + overhang*s*(near + rise*s/3.0_wp)
           most(node) = most(node) + share
         end associate
       end do
     end do
-  end function most_by_radius
+  end function most_on_nodes
 
 end module contact_spring_ratios_m

@@ -21,7 +21,7 @@ module contact_step_limit_m
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: spring_bound_t, bound_springs, stable_step, closed_step, opening_step, &
+  public :: spring_bound_t, bound_springs, bound_each, stable_step, closed_step, opening_step, &
     binding_bound, fitting_scale, approach_step, sharpness
 
   !> What is known of the springs at the nodes of one interface, those of other interfaces there
@@ -54,92 +54,151 @@ module contact_step_limit_m
 
 contains
 
-  !> Bounds of all interfaces, each penalty times its `scale`.
+  !> Bounds of all interfaces together, each penalty times its `scale`.
   pure subroutine bound_springs(contacts, mass, memories, scale, bounds)
     type(contact_t), intent(in) :: contacts(:)
     real(wp), intent(in) :: mass(:)                      !! (n_node) kg/m
     type(contact_state_t), intent(in) :: memories(:)
     real(wp), intent(in) :: scale(:)                     !! (n_interface) 0 or more
     type(spring_bound_t), intent(out) :: bounds(:)       !! (n_interface)
-    type(ratios_t) :: ratios(size(contacts))
-    integer :: users(size(mass)), i, n, worst(2)
-    logical :: is_self(size(contacts))
+    integer :: number(size(mass))
 
-    users = 0
-    is_self = contacts%is_self
+    number = 0
+    call bound_group(contacts, mass, memories, scale, number, bounds)
+  end subroutine bound_springs
+
+  !> Bounds of all interfaces, of each as if there were no other one.
+  pure subroutine bound_each(contacts, mass, memories, scale, bounds)
+    type(contact_t), intent(in) :: contacts(:)
+    real(wp), intent(in) :: mass(:)
+    type(contact_state_t), intent(in) :: memories(:)
+    real(wp), intent(in) :: scale(:)
+    type(spring_bound_t), intent(out) :: bounds(:)
+    integer :: number(size(mass)), i
+
+    number = 0
+    do i = 1, size(contacts)
+      call bound_group(contacts(i:i), mass, memories(i:i), scale(i:i), number, bounds(i:i))
+    end do
+  end subroutine bound_each
+
+  !> Bounds of some interfaces together.
+  pure subroutine bound_group(contacts, mass, memories, scale, number, bounds)
+    type(contact_t), intent(in) :: contacts(:)
+    real(wp), intent(in) :: mass(:)
+    type(contact_state_t), intent(in) :: memories(:)
+    real(wp), intent(in) :: scale(:)
+    integer, intent(inout) :: number(:) !! (n_node) room of the nodes' numbers in the group, 0
+                                        !! between calls
+    type(spring_bound_t), intent(inout) :: bounds(:)
+    type(ratios_t) :: ratios(size(contacts))
+    integer :: i, n, n_node, worst(2)
+    logical :: are_joined
+
+    n_node = 0
+    are_joined = .false.
     do i = 1, size(contacts)
       n = memories(i)%n_slave
       ratios(i)%at = scale(i)*spring_ratios(contacts(i), mass, memories(i))
       worst = [maxloc(ratios(i)%at(:n), 1), n + maxloc(ratios(i)%at(n + 1:), 1)]
-      associate (most => ratios(i)%at(worst))
+      associate (most => ratios(i)%at(worst), nodes => memories(i)%nodes)
         bounds(i)%rate = sum(most)
         if (is_tied(contacts(i))) bounds(i)%closed_rate = bounds(i)%rate
         bounds(i)%damping = contacts(i)%damping*sqrt(bounds(i)%rate*merge(2.0_wp, 1.0_wp, &
           contacts(i)%is_self))
-        bounds(i)%node = memories(i)%nodes(worst(merge(1, 2, most(1) >= most(2))))
+        bounds(i)%node = nodes(worst(merge(1, 2, most(1) >= most(2))))
         if (all(most > 0.0_wp) .and. .not. contacts(i)%is_self) ratios(i)%c = most(2)/most(1)
+        if (.not. scale(i) > 0.0_wp) cycle
+        call number_nodes(nodes(:n), number, n_node, are_joined)
+        call number_nodes(nodes(n + 1:), number, n_node, are_joined)
       end associate
-      if (.not. scale(i) > 0.0_wp) cycle
-      users(memories(i)%nodes(:n)) = users(memories(i)%nodes(:n)) + 1
-      users(memories(i)%nodes(n + 1:)) = users(memories(i)%nodes(n + 1:)) + 1
     end do
-    if (any(users > 1)) &
-      call join_interfaces(is_tied(contacts), is_self, memories, ratios, bounds, size(mass))
-  end subroutine bound_springs
+    if (are_joined) then
+      do i = 1, size(contacts)
+        call number_nodes(memories(i)%nodes, number, n_node, are_joined)
+      end do
+      call join_interfaces(contacts, memories, number, n_node, ratios, bounds)
+    end if
+    do i = 1, size(contacts)
+      number(memories(i)%nodes) = 0
+    end do
+  end subroutine bound_group
+
+  !> Number the nodes of a side that have no number yet.
+  pure subroutine number_nodes(nodes, number, n, are_shared)
+    integer, intent(in) :: nodes(:)
+    integer, intent(inout) :: number(:)    !! (n_node of the mesh)
+    integer, intent(inout) :: n            !! numbers so far
+    logical, intent(inout) :: are_shared   !! some node has a number from another side
+    integer :: k, before
+
+    before = n
+    do k = 1, size(nodes)
+      associate (at => number(nodes(k)))
+        are_shared = are_shared .or. (at > 0 .and. at <= before)
+        if (at > 0) cycle
+        n = n + 1
+        at = n
+      end associate
+    end do
+  end subroutine number_nodes
 
   !> Interfaces that share nodes: the c of each in turn evens out its sides, as the others stand.
   !> A surface with itself has each node on both sides, evenly.
-  pure subroutine join_interfaces(is_tie, is_self, memories, ratios, bounds, n_node)
-    logical, intent(in) :: is_tie(:), is_self(:) !! (n_interface)
+  pure subroutine join_interfaces(contacts, memories, number, n_node, ratios, bounds)
+    type(contact_t), intent(in) :: contacts(:)
     type(contact_state_t), intent(in) :: memories(:)
+    integer, intent(in) :: number(:) !! (n_node of the mesh) 1 to n_node where they have any
+    integer, intent(in) :: n_node
     type(ratios_t), intent(inout) :: ratios(:)
     type(spring_bound_t), intent(inout) :: bounds(:)
-    integer, intent(in) :: n_node
     real(wp) :: total(n_node), opening(n_node), damping(n_node)
     integer :: i, round
 
     total = 0.0_wp
     damping = 0.0_wp
     do i = 1, size(memories)
-      call add_sides(memories(i), 1.0_wp, ratios(i), total)
-      call add_damping(memories(i)%nodes, bounds(i)%damping, damping)
+      call add_sides(number(memories(i)%nodes), memories(i)%n_slave, 1.0_wp, ratios(i), total)
+      call add_damping(number(memories(i)%nodes), bounds(i)%damping, damping)
     end do
     do round = 1, n_round
       do i = 1, size(memories)
-        if (is_self(i)) cycle
-        call add_sides(memories(i), -1.0_wp, ratios(i), total)
-        ratios(i)%c = even_share(ratios(i), memories(i)%n_slave, &
-          max(total(memories(i)%nodes), 0.0_wp))
-        call add_sides(memories(i), 1.0_wp, ratios(i), total)
+        if (contacts(i)%is_self) cycle
+        associate (nodes => number(memories(i)%nodes), n_slave => memories(i)%n_slave)
+          call add_sides(nodes, n_slave, -1.0_wp, ratios(i), total)
+          ratios(i)%c = even_share(ratios(i), n_slave, max(total(nodes), 0.0_wp))
+          call add_sides(nodes, n_slave, 1.0_wp, ratios(i), total)
+        end associate
       end do
     end do
     opening = total
     do i = 1, size(memories)
-      if (is_tie(i)) call add_sides(memories(i), -1.0_wp, ratios(i), opening)
+      if (is_tied(contacts(i))) call add_sides(number(memories(i)%nodes), memories(i)%n_slave, &
+        -1.0_wp, ratios(i), opening)
     end do
     do i = 1, size(memories)
-      associate (nodes => memories(i)%nodes)
+      associate (nodes => number(memories(i)%nodes))
         bounds(i)%rate = maxval(total(nodes))
         bounds(i)%closed_rate = merge(bounds(i)%rate, bounds(i)%rate - maxval(opening(nodes)), &
-          is_tie(i))
-        bounds(i)%node = nodes(maxloc(total(nodes), 1))
+          is_tied(contacts(i)))
+        bounds(i)%node = memories(i)%nodes(maxloc(total(nodes), 1))
         bounds(i)%damping = maxval(damping(nodes))
       end associate
     end do
   end subroutine join_interfaces
 
   !> What an interface puts on its nodes, times `sign`.
-  pure subroutine add_sides(memory, sign, ratios, total)
-    type(contact_state_t), intent(in) :: memory
+  pure subroutine add_sides(nodes, n_slave, sign, ratios, total)
+    integer, intent(in) :: nodes(:), n_slave
     real(wp), intent(in) :: sign
     type(ratios_t), intent(in) :: ratios
-    real(wp), intent(inout) :: total(:) !! by node of the mesh
-    real(wp) :: load(size(memory%nodes))
+    real(wp), intent(inout) :: total(:) !! by number of the node
+    real(wp) :: load(size(nodes))
     integer :: k
 
-    load = weighted(ratios, memory%n_slave, ratios%c)
-    do k = 1, size(memory%nodes)
-      total(memory%nodes(k)) = total(memory%nodes(k)) + sign*load(k)
+    load = weighted(ratios, n_slave, ratios%c)
+    do k = 1, size(nodes)
+      total(nodes(k)) = total(nodes(k)) + sign*load(k)
     end do
   end subroutine add_sides
 
@@ -147,14 +206,13 @@ contains
   pure subroutine add_damping(nodes, damping, total)
     integer, intent(in) :: nodes(:)
     real(wp), intent(in) :: damping
-    real(wp), intent(inout) :: total(:) !! by node of the mesh
-    logical :: is_done(size(total))
+    real(wp), intent(inout) :: total(:) !! by number of the node
+    real(wp) :: before(size(nodes))
     integer :: k
 
-    is_done = .false.
+    before = total(nodes)
     do k = 1, size(nodes)
-      if (.not. is_done(nodes(k))) total(nodes(k)) = total(nodes(k)) + damping
-      is_done(nodes(k)) = .true.
+      total(nodes(k)) = before(k) + damping
     end do
   end subroutine add_damping
 

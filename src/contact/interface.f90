@@ -12,7 +12,7 @@ module interface_m
   use contact_preparation_m, only : prepare_contact
   use contact_scatter_m, only : scatter_forces, join_passes
   use contact_springs_m, only : begin_look, measure_springs, end_look
-  use contact_work_m, only : apart_t, take_apart, hand_over, count_work
+  use contact_work_m, only : apart_t, take_apart, hand_over
   use contact_state_m, only : contact_state_t, pass_t, is_free
   use contacts_m, only : contact_t, is_tied, penalty_implicit
   use damping_m, only : damp_points, find_lag
@@ -20,7 +20,7 @@ module interface_m
   use energy_limit_m, only : keep_former_springs, form_springs, limit_forces, lend
   use friction_m, only : start_trial_slip, take_trial_motion, rub_places
   use initial_status_m, only : activate_deep_points, activate_deep_segments
-  use gather_m, only : gather_places, take_force, keep_former
+  use gather_m, only : gather_places, keep_former
   use others_memory_m, only : answers_t
   use interference_m, only : begin_growth
   use kinds_m, only : wp
@@ -28,12 +28,20 @@ module interface_m
   use log_m, only : log_t
   use model_m, only : model_t
   use spots_m, only : move_spots
-  use tips_m, only : has_folds, find_tips
   use tied_interface_m, only : start_ties, apply_ties, evaluate_ties, tie_reach
   use contact_status_m, only : update_status, forget_pairs, measure_depths
   implicit none
   private
   public :: start_contact, resume_contact, apply_contact, evaluate_contact
+
+  !> When a call is, and what it asks for.
+  type :: instant_t
+    real(wp) :: time = 0.0_wp     !! of u, s
+    real(wp) :: dt = 0.0_wp       !! step that led to u, s
+    integer :: cycle = 0
+    logical :: is_trial = .false. !! of an implicit step: no damping, no energy
+    logical :: closes = .false.   !! gaps of zero count as contact
+  end type instant_t
 
 contains
 
@@ -44,13 +52,11 @@ contains
     type(log_t), intent(inout) :: log
     type(contact_state_t), intent(out) :: memory
     type(answers_t), intent(inout), optional :: answers
-    type(formulation_t) :: formulation
 
-    formulation = formulation_of(contact)
     call prepare_contact(contact, model, memory)
     call start_search(contact, model, memory, answers)
     if (is_tied(contact)) call start_ties(contact, model, memory)
-    call log_contact(contact, model, formulation%kind, memory, log)
+    call log_contact(contact, model, memory, log)
   end subroutine start_contact
 
   !> Who touches whom at time zero; ties take gaps within their reach as closed.
@@ -94,120 +100,17 @@ contains
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
 
     if (memory%has%interference) call begin_growth(contact, time, memory)
-    if (is_suspended(contact, time)) then
-      call suspend_contact(motion, dt, memory)
-    else if (is_tied(contact)) then
+    if (is_tied(contact) .and. is_alive(contact, time)) then
       call apply_ties(contact, motion, [time, dt], cycle, clock, memory, force)
     else
-      call apply_between(contact, motion, mass, [time, dt], cycle, clock, memory, force)
+      call step_contact(contact, instant_t(time, dt, cycle), motion, mass, memory, force, clock)
     end if
   end subroutine apply_contact
-
-  !> The same within birth .. death, of an interface that is not tied.
-  subroutine apply_between(contact, motion, mass, times, cycle, clock, memory, force)
-    type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: motion(:, :)      !! (4, n_node) u(n), v(n-1/2)
-    real(wp), intent(in), contiguous :: mass(:)           !! (n_node) kg/m
-    real(wp), intent(in) :: times(2)                      !! of u, and the step that led to it, s
-    integer, intent(in) :: cycle
-    type(clock_t), intent(inout) :: clock
-    type(contact_state_t), intent(inout) :: memory
-    real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
-    type(formulation_t) :: formulation
-    type(apart_t) :: apart
-    logical :: had_force, is_born
-
-    if (contact%penalty_unit == penalty_implicit) then
-      call place_ahead(contact, motion, cycle, clock, memory)
-      return
-    end if
-    formulation = formulation_of(contact)
-    had_force = memory%n_active > 0
-    is_born = memory%is_stale .and. cycle > 0
-    call find_contacts(contact, motion, cycle, memory)
-    call lap(clock, phase_contact_search)
-    if (has_folds(contact) .and. memory%has%nodal_pressure) &
-      call find_tips(contact%slave, memory)
-    call set_forces_aside(motion, had_force, memory, apart)
-    call place_points(contact, memory)
-    call lap(clock, phase_contact_pairing)
-    if (memory%points%n > 0) then
-      call press_places(memory)
-      if (contact%behind > 0) then
-        call leave_to_tie(memory)
-        call take_over(memory)
-      end if
-      call look_at_springs(cycle, memory)
-      ! Springs born loaded make what they hold: that is reported, and may be returned.
-      if (is_born) memory%limit%credit = memory%limit%credit + memory%watch%stored
-      if (has_offsets(memory)) call lend(faded_work(memory), memory%limit)
-      if (has_decay(contact%friction) .and. times(2) > 0.0_wp) call find_lag(memory%points, &
-        memory%nodes, mass, contact%is_self, times(2), memory%scratch%nodal, memory%scratch%lag)
-      if (memory%has%friction) &
-        call rub_places(contact, formulation%has_unit_area, times(2), memory)
-      if (contact%damping > 0.0_wp) call damp_points(memory%points, contact%damping, &
-        memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
-      call scatter_forces(memory)
-      if (contact%is_self) call join_passes(memory)
-      if (had_force .or. memory%n_active > 0) call limit_forces(motion, times(1), times(2), memory)
-    end if
-    if (memory%points%n > 0 .or. had_force) &
-      call hand_over(times(2), motion, apart, memory, force)
-    call end_look(had_force, memory%n_active > 0, memory%watch)
-    call lap(clock, phase_contact_force)
-  end subroutine apply_between
-
-  !> Implicit penalties: the points, of all that may touch in the step ahead. Their forces follow
-  !> (implicit_penalty).
-  subroutine place_ahead(contact, motion, cycle, clock, memory)
-    type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: motion(:, :)
-    integer, intent(in) :: cycle
-    type(clock_t), intent(inout) :: clock
-    type(contact_state_t), intent(inout) :: memory
-
-    memory%scratch%had_force = memory%n_active > 0
-    memory%scratch%waits = .true.
-    memory%scratch%is_born = memory%is_stale .and. cycle > 0
-    call find_contacts(contact, motion, cycle, memory)
-    call lap(clock, phase_contact_search)
-    memory%n_active = 0
-    memory%watch%has_looked = .false.
-    call begin_look(memory%scratch%had_force, memory%watch)
-    if (memory%scratch%had_force) call keep_former(memory)
-    call place_points(contact, memory)
-    call lap(clock, phase_contact_pairing)
-  end subroutine place_ahead
-
-  !> Before the points are placed: the forces of the last call stand aside, for their half of the
-  !> work of the step.
-  pure subroutine set_forces_aside(motion, had_force, memory, apart)
-    real(wp), intent(in), contiguous :: motion(:, :)
-    logical, intent(in) :: had_force              !! that call had some
-    type(contact_state_t), intent(inout) :: memory
-    type(apart_t), intent(out) :: apart
-
-    memory%n_active = 0
-    call begin_look(had_force, memory%watch)
-    if (had_force) call keep_former(memory)
-    call keep_former_springs(had_force, memory)
-    call take_apart(motion, had_force, memory, apart)
-  end subroutine set_forces_aside
-
-  !> The springs as pressed, in calls that look at them. Those loaded at time zero hold energy that
-  !> no force has put in.
-  pure subroutine look_at_springs(cycle, memory)
-    integer, intent(in) :: cycle
-    type(contact_state_t), intent(inout) :: memory
-
-    if (memory%watch%is_due .or. cycle == 0) call measure_springs(memory)
-    if (cycle == 0) memory%energy = memory%watch%stored
-  end subroutine look_at_springs
 
   !> Contact forces of one interface at the given u, added to `force`; no damping, no energy, no
   !> clock. The memory is taken from the last converged step: give a copy of it to each trial, so
   !> that forces are a function of u.
-  pure subroutine evaluate_contact(contact, motion, time, dt, is_first, memory, force)
+  subroutine evaluate_contact(contact, motion, time, dt, is_first, memory, force)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node) u, and u minus that of the
                                                        !! start of the step
@@ -218,57 +121,155 @@ contains
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, at least the interface's nodes)
 
     if (is_tied(contact)) then
-      if (is_suspended(contact, time)) memory%points%n = 0
+      if (.not. is_alive(contact, time)) memory%points%n = 0
       call evaluate_ties(motion, memory, force)
       return
     end if
     if (memory%has%interference) call begin_growth(contact, time, memory)
-    memory%is_stale = memory%is_stale .or. is_suspended(contact, time)
     memory%points%n = 0
     memory%n_active = 0
     memory%force = 0.0_wp
     memory%closed_gap = 0.0_wp
     if (memory%has%friction) call start_trial_slip(dt, memory)
-    if (is_suspended(contact, time)) return
-    call evaluate_between(contact, motion, is_first, memory, force)
+    call step_contact(contact, instant_t(time, dt, is_trial=.true., closes=is_first), motion, &
+      [real(wp) ::], memory, force)
   end subroutine evaluate_contact
 
-  !> The same within birth .. death, of an interface that is not tied.
-  pure subroutine evaluate_between(contact, motion, is_first, memory, force)
+  !> One interface that is not tied, in an explicit step or a trial of an implicit one: positions,
+  !> candidate pairs and status, contact points, laws, nodal forces, energy. Outside birth .. death
+  !> the forces of the last call do their last half step of work. Implicit penalties
+  !> (PUNIT 4) form their forces after those of all other interfaces (`implicit_penalty_m`).
+  subroutine step_contact(contact, now, motion, mass, memory, force, clock)
     type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node) u, and u minus that of the
-                                                       !! start of the step
-    logical, intent(in) :: is_first                    !! of a step: gaps of zero count as contact
+    type(instant_t), intent(in) :: now
+    real(wp), intent(in), contiguous :: motion(:, :)      !! (4, n_node) u; v, or u minus that of
+                                                          !! the start of the step in a trial
+    real(wp), intent(in), contiguous :: mass(:)           !! (n_node) kg/m; none in a trial
     type(contact_state_t), intent(inout) :: memory
-    real(wp), intent(inout), contiguous :: force(:, :) !! (2, at least the interface's nodes)
+    real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
+    type(clock_t), intent(inout), optional :: clock
     type(formulation_t) :: formulation
-    logical :: was_stale
-    integer :: i
+    type(apart_t) :: former
+    logical :: had_force, begins
 
     formulation = formulation_of(contact)
+    had_force = memory%n_active > 0
+    begins = memory%is_stale .and. now%cycle > 0
+    if (is_alive(contact, now%time)) then
+      call find_contacts(contact, now, motion, memory)
+    else
+      call suspend_contact(memory)
+      if (.not. had_force) return
+    end if
+    if (present(clock)) call lap(clock, phase_contact_search)
+
+    if (.not. now%is_trial) call keep_previous(contact, motion, begins, memory, former)
+    memory%points%n = 0
+    if (.not. memory%is_stale) call place_points(contact, memory)
+    if (present(clock)) call lap(clock, phase_contact_pairing)
+    if (memory%scratch%waits) return
+
+    if (memory%points%n > 0) then
+      call press_places(memory)
+      if (memory%has%former_tie) call leave_to_tie(memory)
+      if (.not. now%is_trial) call book_springs(contact, now%cycle, begins, memory)
+      if (has_decay(contact%friction) .and. size(mass) > 0 .and. now%dt > 0.0_wp) &
+        call find_lag(memory%points, memory%nodes, mass, contact%is_self, now%dt, &
+        memory%scratch%nodal, memory%scratch%lag)
+      if (memory%has%friction) &
+        call rub_places(contact, formulation%has_unit_area, now%dt, memory)
+      if (memory%has%damping .and. .not. now%is_trial) call damp_points(memory%points, &
+        contact%damping, memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
+      call scatter_forces(memory)
+      if (contact%is_self) call join_passes(memory)
+      if (had_force .or. memory%n_active > 0) call limit_forces(motion, now%time, now%dt, memory)
+    end if
+
+    if (now%is_trial) then
+      call add_trial_force(memory%nodes, memory%force, force)
+    else
+      if (memory%points%n > 0 .or. had_force) &
+        call hand_over(now%dt, motion, former, memory, force)
+      call end_look(had_force, memory%n_active > 0, memory%watch)
+    end if
+    if (present(clock)) call lap(clock, phase_contact_force)
+  end subroutine step_contact
+
+  !> Positions and status of all points. Implicit penalties take what may touch in the step ahead as
+  !> closed.
+  pure subroutine find_contacts(contact, now, motion, memory)
+    type(contact_t), intent(in) :: contact
+    type(instant_t), intent(in) :: now
+    real(wp), intent(in), contiguous :: motion(:, :)
+    type(contact_state_t), intent(inout) :: memory
+    logical :: was_stale
+
     was_stale = memory%is_stale
-    call gather_points(contact, motion, memory)
-    if (memory%has%friction) call take_trial_motion(motion, memory)
-    if (is_first) memory%closed_gap = closed_gap_of(contact, memory)
-    memory%slave_tracking%pass%is_trial = .true.
-    memory%master_tracking%pass%is_trial = .true.
-    call search_pairs(contact, 0, .not. was_stale, memory)
-    if (has_folds(contact) .and. memory%has%nodal_pressure) &
-      call find_tips(contact%slave, memory, motion)
-    call place_points(contact, memory)
-    if (memory%points%n == 0) return
-    call press_places(memory)
-    if (contact%behind > 0) call leave_to_tie(memory)
-    if (memory%has%friction) &
-      call rub_places(contact, formulation%has_unit_area, memory%scratch%dt, memory)
-    call scatter_forces(memory)
-    if (contact%is_self) call join_passes(memory)
-    do i = 1, size(memory%nodes)
-      associate (node => memory%nodes(i))
-        force(:, node) = force(:, node) + memory%force(:, i)
-      end associate
+    if (was_stale) call refresh_memory(motion, memory)
+    call gather_places(motion, memory)
+    if (memory%has%spots) call move_spots(contact%slave, memory%places, memory%spot_xi, &
+      memory%spot_spread, memory%spots, memory%travel)
+    if (now%is_trial) then
+      if (memory%has%friction) call take_trial_motion(motion, memory)
+      if (now%closes) memory%closed_gap = closed_gap_of(contact, memory)
+    else if (contact%penalty_unit == penalty_implicit) then
+      memory%closed_gap = gap_ahead(contact, now%cycle == 0 .or. was_stale, memory)
+    end if
+    memory%slave_tracking%pass%is_trial = now%is_trial
+    memory%master_tracking%pass%is_trial = now%is_trial
+    call search_pairs(contact, now%cycle, .not. was_stale .and. (now%is_trial .or. now%cycle > 0), &
+      memory)
+  end subroutine find_contacts
+
+  !> Before contact points are generated: the forces of the last call are kept for their half of the
+  !> work of the step.
+  pure subroutine keep_previous(contact, motion, begins, memory, former)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in), contiguous :: motion(:, :)
+    logical, intent(in) :: begins !! contact is born in this call
+    type(contact_state_t), intent(inout) :: memory
+    type(apart_t), intent(out) :: former
+
+    associate (scratch => memory%scratch)
+      scratch%had_force = memory%n_active > 0
+      scratch%is_born = begins
+      scratch%waits = contact%penalty_unit == penalty_implicit .and. .not. memory%is_stale
+      memory%n_active = 0
+      memory%watch%has_looked = .false.
+      call begin_look(scratch%had_force, memory%watch)
+      if (scratch%had_force) call keep_former(memory)
+      if (scratch%waits) return
+      call keep_former_springs(scratch%had_force, memory)
+      call take_apart(motion, scratch%had_force, memory, former)
+    end associate
+  end subroutine keep_previous
+
+  !> What the springs hold as pressed: those loaded at time zero hold energy that no force has put
+  !> in; those born loaded may return what they hold; the work of fading offsets is lent.
+  pure subroutine book_springs(contact, cycle, begins, memory)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: cycle
+    logical, intent(in) :: begins
+    type(contact_state_t), intent(inout) :: memory
+
+    if (memory%has%former_tie) call take_over(memory)
+    if (memory%watch%is_due .or. cycle == 0) call measure_springs(memory)
+    if (cycle == 0) memory%energy = memory%watch%stored
+    if (begins) memory%limit%credit = memory%limit%credit + memory%watch%stored
+    if (has_offsets(memory)) call lend(faded_work(memory), memory%limit)
+  end subroutine book_springs
+
+  !> Add the forces of a trial to those of the mesh.
+  pure subroutine add_trial_force(nodes, contact_force, force)
+    integer, intent(in) :: nodes(:)
+    real(wp), intent(in) :: contact_force(:, :)        !! (2, nodes)
+    real(wp), intent(inout), contiguous :: force(:, :) !! (2, n_node)
+    integer :: i
+
+    do i = 1, size(nodes)
+      force(:, nodes(i)) = force(:, nodes(i)) + contact_force(:, i)
     end do
-  end subroutine evaluate_between
+  end subroutine add_trial_force
 
   !> After a restart: what follows from the memory of an interface that has been read.
   pure subroutine resume_contact(contact, memory)
@@ -281,63 +282,23 @@ contains
     call form_springs(memory)
   end subroutine resume_contact
 
-  !> Whether a time is outside birth .. death.
-  pure function is_suspended(contact, time)
+  !> Whether a time is within birth .. death.
+  pure function is_alive(contact, time)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in) :: time
-    logical :: is_suspended
+    logical :: is_alive
 
-    is_suspended = time < contact%birth .or. time > contact%death
-  end function is_suspended
+    is_alive = .not. (time < contact%birth .or. time > contact%death)
+  end function is_alive
 
-  !> Outside birth .. death: no forces; those of the last call have done their last half step of
-  !> work.
-  pure subroutine suspend_contact(motion, dt, memory)
-    real(wp), intent(in), contiguous :: motion(:, :)
-    real(wp), intent(in) :: dt
+  !> Outside birth .. death: what is known of pairs is out of date.
+  pure subroutine suspend_contact(memory)
     type(contact_state_t), intent(inout) :: memory
-    type(apart_t) :: apart
-    real(wp) :: power
 
     memory%is_stale = .true.
     memory%advance = 0.0_wp
     memory%watch%has_looked = .false.
-    if (memory%n_active == 0) return
-    call take_force(memory%nodes, motion, memory%force, power)
-    call take_apart(motion, .true., memory, apart)
-    memory%points%n = 0
-    call count_work(dt, motion, power, apart, memory)
-    call end_look(.true., .false., memory%watch)
-    memory%n_active = 0
   end subroutine suspend_contact
-
-  !> Positions and status of all points in an explicit step; implicit penalties take what may touch
-  !> in the step ahead as closed.
-  pure subroutine find_contacts(contact, motion, cycle, memory)
-    type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: motion(:, :)
-    integer, intent(in) :: cycle
-    type(contact_state_t), intent(inout) :: memory
-    logical :: was_stale
-
-    was_stale = memory%is_stale
-    call gather_points(contact, motion, memory)
-    if (contact%penalty_unit == penalty_implicit) &
-      memory%closed_gap = gap_ahead(contact, cycle == 0 .or. was_stale, memory)
-    call search_pairs(contact, cycle, .not. was_stale .and. cycle > 0, memory)
-  end subroutine find_contacts
-
-  !> The present positions of nodes and of points between them.
-  pure subroutine gather_points(contact, motion, memory)
-    type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: motion(:, :)
-    type(contact_state_t), intent(inout) :: memory
-
-    if (memory%is_stale) call refresh_memory(motion, memory)
-    call gather_places(motion, memory)
-    if (memory%has%spots) call move_spots(contact%slave, memory%places, memory%spot_xi, &
-      memory%spot_spread, memory%spots, memory%travel)
-  end subroutine gather_points
 
   !> After a time without contact: take the present places and search all anew.
   pure subroutine refresh_memory(motion, memory)
@@ -378,7 +339,9 @@ contains
         contact%master, contact%slave, memory%reversed, memory%places, increments, &
         memory%places(:, n + 1:))
     end associate
-    if (has_offsets(memory)) call update_offsets(contact, memory)
+    ! In a trial of an implicit step they stay: they are no part of the tangent.
+    if (has_offsets(memory) .and. .not. memory%slave_tracking%pass%is_trial) &
+      call update_offsets(contact, memory)
 
   contains
 

@@ -15,7 +15,7 @@ module renewal_m
   use contact_status_m, only : list_touching
   implicit none
   private
-  public :: renew_contact, close_contact, reshape_contact
+  public :: renew_contact, close_contact
 
   !> Where the nodes and segments of a surface have gone, 0: not there any more.
   type :: passage_t
@@ -48,8 +48,6 @@ contains
     if (old%has%friction) call carry_places(sides, old, memory)
     call carry_points([sides(1)%node, shifted(sides(2)%node, memory%n_slave)], contact, old, memory)
     call carry_trackings(sides(1)%segment, sides(2)%segment, sides, old, memory)
-    call list_touching(memory%slave_tracking)
-    if (memory%master_tracking%n > 0) call list_touching(memory%master_tracking)
     call form_springs(memory)
     stored_at = old%watch%node
     call measure_springs(old)
@@ -77,20 +75,11 @@ contains
       memory%force)
     damping = memory%damping_work
     friction = memory%friction%work
-    call reshape_contact(contact, model, memory)
+    call prepare_contact(contact, model, memory)
     memory%is_stale = .true.
     memory%damping_work = damping
     memory%friction%work = friction
   end subroutine close_contact
-
-  !> A memory of the shapes that the surfaces ask for; it knows nothing.
-  subroutine reshape_contact(contact, model, memory)
-    type(contact_t), intent(in) :: contact
-    type(model_t), intent(in) :: model
-    type(contact_state_t), intent(inout) :: memory
-
-    call prepare_contact(contact, model, memory)
-  end subroutine reshape_contact
 
   !> Numbers moved by an offset; 0 stays.
   pure function shifted(numbers, offset)
@@ -188,51 +177,43 @@ contains
     integer, intent(in) :: now(:) !! (n_slave + n_master) of the former memory
     type(contact_state_t), intent(in) :: old
     type(contact_state_t), intent(inout) :: memory
-    integer :: i, k
+    integer, allocatable :: from(:), to(:)
+    integer :: k
 
-    do i = 1, size(now)
-      k = now(i)
-      if (k == 0) cycle
-      memory%places(3:4, k) = old%places(3:4, i)
-      memory%force(:, k) = old%force(:, i)
-      if (old%has%damping) memory%damping_force(:, k) = old%damping_force(:, i)
-      if (old%has%friction) memory%friction%force(:, k) = old%friction%force(:, i)
-      if (old%has%limit) memory%limit%velocity(:, k) = old%limit%velocity(:, i)
-      if (old%has%nodal_pressure .and. i <= old%n_slave) &
-        memory%node_pressure(k) = old%node_pressure(i)
-    end do
+    from = pack([(k, k=1, size(now))], now > 0)
+    to = now(from)
+    memory%places(3:4, to) = old%places(3:4, from)
+    memory%force(:, to) = old%force(:, from)
+    if (old%has%damping) memory%damping_force(:, to) = old%damping_force(:, from)
+    if (old%has%friction) memory%friction%force(:, to) = old%friction%force(:, from)
+    if (old%has%limit) memory%limit%velocity(:, to) = old%limit%velocity(:, from)
+    if (.not. old%has%nodal_pressure) return
+    from = pack(from, from <= old%n_slave)
+    memory%node_pressure(now(from)) = old%node_pressure(from)
   end subroutine carry_nodes
 
-  !> What friction remembers: at nodes, or at the spots of the segment that starts at a node.
+  !> What friction remembers: at nodes, or at the virtual nodes of the segment that starts at a
+  !> node.
   pure subroutine carry_places(sides, old, memory)
     type(passage_t), intent(in) :: sides(2)
     type(contact_state_t), intent(in) :: old
     type(contact_state_t), intent(inout) :: memory
-    integer :: i, n, q
+    integer :: now(size(old%friction%state)), i, n, q
+    integer, allocatable :: from(:), to(:)
 
     n = places_of_segment(old)
+    now = 0
     do i = 1, old%n_slave
       if (sides(1)%node(i) == 0 .or. (n > 1 .and. .not. sides(1)%keeps(i))) cycle
-      do q = 1, n
-        call carry_place(n*(i - 1) + q, n*(sides(1)%node(i) - 1) + q, old, memory)
-      end do
+      now(n*(i - 1) + 1:n*i) = [(n*(sides(1)%node(i) - 1) + q, q=1, n)]
     end do
-    do i = 1, old%n_master
-      if (sides(2)%node(i) > 0) call carry_place(n*old%n_slave + i, n*memory%n_slave &
-        + sides(2)%node(i), old, memory)
-    end do
-  end subroutine carry_places
-
-  !> One place.
-  pure subroutine carry_place(from, to, old, memory)
-    integer, intent(in) :: from, to
-    type(contact_state_t), intent(in) :: old
-    type(contact_state_t), intent(inout) :: memory
-
+    now(n*old%n_slave + 1:) = shifted(sides(2)%node, n*memory%n_slave)
+    from = pack([(i, i=1, size(now))], now > 0)
+    to = now(from)
     memory%friction%traction(to) = old%friction%traction(from)
     memory%friction%state(to) = old%friction%state(from)
     memory%friction%slip(to) = old%friction%slip(from)
-  end subroutine carry_place
+  end subroutine carry_places
 
   !> Points of the last call, but for those whose nodes or segments have gone.
   pure subroutine carry_points(now, contact, old, memory)
@@ -294,55 +275,49 @@ contains
     if (follows) follows = surface%segments(2, s) == nodes(2)
   end function follows
 
-  !> Both trackings, and the memory of slave segments.
+  !> Status of both passes, and the memory of slave segments.
   pure subroutine carry_trackings(slave, master, sides, old, memory)
     integer, intent(in) :: slave(:), master(:) !! present numbers of the segments
     type(passage_t), intent(in) :: sides(2)
     type(contact_state_t), intent(in) :: old
     type(contact_state_t), intent(inout) :: memory
-    integer, allocatable :: spots(:)
+    integer, allocatable :: spots(:), from(:)
     integer :: k, q, n
 
-    if (allocated(old%spot_xi)) then
+    spots = sides(1)%node
+    if (old%has%spots) then
       n = size(old%spot_xi)
-      allocate (spots(n*size(slave)))
-      do k = 1, size(slave)
-        spots((k - 1)*n + 1:k*n) = [(merge((slave(k) - 1)*n + q, 0, slave(k) > 0), q=1, n)]
-      end do
-    else
-      spots = sides(1)%node
+      spots = [((merge((slave(k) - 1)*n + q, 0, slave(k) > 0), q=1, n), k=1, size(slave))]
     end if
     call carry_tracking(old%slave_tracking, spots, master, memory%slave_tracking)
     if (memory%master_tracking%n > 0) call carry_tracking(old%master_tracking, sides(2)%node, &
       slave, memory%master_tracking)
     if (.not. old%has%overlaps) return
-    do k = 1, size(slave)
-      if (slave(k) == 0) cycle
-      memory%segment_status(slave(k)) = old%segment_status(k)
-      memory%segment_gap(slave(k)) = old%segment_gap(k)
-    end do
+    from = pack([(k, k=1, size(slave))], slave > 0)
+    memory%segment_status(slave(from)) = old%segment_status(from)
+    memory%segment_gap(slave(from)) = old%segment_gap(from)
   end subroutine carry_trackings
 
-  !> Spots that are still there keep their segments if these are; all look round anew.
-  pure subroutine carry_tracking(old, spots, segments, tracking)
+  !> Points that are still there keep their segments if these are; all are looked at anew.
+  pure subroutine carry_tracking(old, points, segments, tracking)
     type(tracking_t), intent(in) :: old
-    integer, intent(in) :: spots(:), segments(:) !! present numbers
+    integer, intent(in) :: points(:), segments(:) !! present numbers
     type(tracking_t), intent(inout) :: tracking
-    integer :: i, k
+    integer, allocatable :: from(:), to(:)
+    integer :: i
 
+    from = pack([(i, i=1, old%n)], points > 0 .and. old%segment > 0)
+    from = pack(from, segments(old%segment(from)) > 0)
+    to = points(from)
+    tracking%segment(to) = segments(old%segment(from))
+    tracking%status(to) = old%status(from)
+    tracking%xi(to) = old%xi(from)
+    tracking%gap(to) = old%gap(from)
+    tracking%normal(:, to) = old%normal(:, from)
+    tracking%offset(to) = old%offset(from)
+    tracking%wake(to) = merge(huge(1.0_wp), -huge(1.0_wp), old%status(from) == is_touching)
     tracking%has_offset = old%has_offset
-    do i = 1, min(old%n, size(spots))
-      k = spots(i)
-      if (k == 0 .or. old%segment(i) == 0) cycle
-      if (segments(old%segment(i)) == 0) cycle
-      tracking%segment(k) = segments(old%segment(i))
-      tracking%status(k) = old%status(i)
-      tracking%xi(k) = old%xi(i)
-      tracking%gap(k) = old%gap(i)
-      tracking%normal(:, k) = old%normal(:, i)
-      tracking%offset(k) = old%offset(i)
-      tracking%wake(k) = merge(huge(1.0_wp), -huge(1.0_wp), old%status(i) == is_touching)
-    end do
+    call list_touching(tracking)
   end subroutine carry_tracking
 
 end module renewal_m

@@ -276,13 +276,7 @@ contains
     integer :: i, j, k
 
     do i = 1, size(model%contacts)
-      associate (contact => state%contacts(i), friction => state%contacts(i)%friction)
-        call interface_resultants(contact, result)
-        result%energy = contact%energy + friction%stored
-        result%friction = friction%work - friction%stored
-        result%damping = contact%damping_work
-        result%stored = contact%watch%stored - contact%ties%spent + friction%stored
-      end associate
+      call interface_resultants(state%contacts(i), result)
       if (told_as(model%contacts, i) == i) then
         snapshot%interfaces(i) = result
       else

@@ -23,9 +23,9 @@ module contact_state_m
   use visitor_m, only : visited_t, visitor_t, any_length, length, whole
   implicit none
   private
-  public :: contact_state_t, contact_points_t, tracking_t, bucket_grid_t, candidates_t, pass_t, &
+  public :: contact_state_t, contact_points_t, tracking_t, candidates_t, pass_t, &
     contact_scratch_t, allocate_points, allocate_damping, allocate_tractions, make_room, &
-    allocate_tracking, allocate_grid, allocate_scratch, n_side, places_of_segment, &
+    allocate_tracking, allocate_scratch, n_side, places_of_segment, &
     place_at, spot_at, features_t, is_free, is_touching
 
   !> Nodes of a side of a contact point (2-node segments).
@@ -52,17 +52,6 @@ module contact_state_m
   contains
     procedure :: visit => visit_points
   end type contact_points_t
-
-  !> Segments sorted into square cells by hashing: which segments are near a position.
-  type :: bucket_grid_t
-    real(wp) :: cell = 0.0_wp         !! side of a cell, m; 0 = never filled
-    real(wp) :: least_cell = 0.0_wp   !! smallest side, m: cells that much smaller than the search
-                                      !! radius cost more
-    real(wp) :: low(2) = 0.0_wp       !! corners of the box of the chain, relative to its first node
-    real(wp) :: high(2) = 0.0_wp
-    integer, allocatable :: first(:)  !! (n_bucket + 1) where each bucket starts ...
-    integer, allocatable :: items(:)  !! ... in this list of segments
-  end type bucket_grid_t
 
   !> Candidate pairs: for each segment of one surface the segments of the other that it may touch
   !> before the lists are made anew. No result depends on them; a restart makes them again.
@@ -298,20 +287,6 @@ contains
     allocate (tracking%offset(n), tracking%faded(n), source=0.0_wp)
     allocate (tracking%wake(n), source=-huge(1.0_wp))
   end subroutine allocate_tracking
-
-  !> Allocate a grid for so many segments. A segment lies in few cells: cells are at least as long
-  !> as the mean segment, so that all together fill at most 8 items per segment.
-  pure subroutine allocate_grid(grid, n_segment)
-    type(bucket_grid_t), intent(inout) :: grid
-    integer, intent(in) :: n_segment
-    integer :: n_bucket
-
-    n_bucket = 16
-    do while (n_bucket < 2*n_segment)
-      n_bucket = 2*n_bucket
-    end do
-    allocate (grid%first(n_bucket + 1), grid%items(8*n_segment + 8), source=0)
-  end subroutine allocate_grid
 
   !> Allocate the room of an interface; after a restart too.
   pure subroutine allocate_scratch(memory)

@@ -33,6 +33,19 @@ def test_a_million_elements_with_one_bad_card(exe, tmp_path):
     assert len(done.stderr) < 5000, "one bad card is not a thousand messages"
 
 
+def pairs(n):
+    """Pairs of squares, one upon the other, with a penalty from the step (PUNIT 3) each."""
+    rows = []
+    for k in range(n):
+        for part in (2 * k + 1000, 2 * k + 1001):
+            y = part % 2
+            rows += [f"*PART\nx\n{part},1,1\n*SET_PART_LIST\n{part}\n{part}\n*NODE"]
+            rows += [f"{4 * part + i},{3 * k + x}.0,{y + up}.0" for i, (x, up) in enumerate(((0, 0), (1, 0), (1, 1), (0, 1)))]
+            rows += ["*ELEMENT_SHELL", ",".join(str(i) for i in (part, part, *range(4 * part, 4 * part + 4)))]
+        rows += ["*CONTACT_2D_SLIDELINE", f"{2 * k + 1000},{2 * k + 1001},2,2,0.5", "0.0,0.0,3"]
+    return "\n".join(rows) + "\n"
+
+
 #: cards of one kind, `n` of them; those that need it have what they refer to
 MANY = {
     "parameters": lambda n: "*PARAMETER\n" + "".join(f"R p{k},{k}\n" for k in range(n)) + "*DEFINE_CURVE\n8\n" + "".join(
@@ -52,6 +65,7 @@ MANY = {
     "ends": lambda n: "*TERMINATION_NODE\n" + "1,1,1.0e9,-1.0e9\n" * n,
     "cross sections": lambda n: "*SET_NODE_LIST\n900\n1,2\n*SET_SHELL_LIST\n900\n1\n" + "*DATABASE_CROSS_SECTION_SET\n900,0,0,900\n" * n,
     "force groups": lambda n: "".join(f"*SET_NODE_LIST\n{1000 + k}\n1\n*DATABASE_NODAL_FORCE_GROUP\n{1000 + k}\n" for k in range(n)),
+    "contacts": lambda n: pairs(n // 4),
     "masses": lambda n: "*ELEMENT_MASS\n" + f"{1:8d}{1:8d}{1.0e-9:16.3e}\n" * n,
 }
 

@@ -4,7 +4,7 @@
 !> over half of the segment, small ones as over a ramp of 1 to 20; the work of its fading is
 !> admissible energy (doc/theory/contact.md, section 6.4).
 module entry_offset_m
-  use contact_state_m, only : contact_state_t, tracking_t, spot_at
+  use contact_state_m, only : contact_state_t, tracking_t, is_free, spot_at
   use contacts_m, only : contact_t
   use geometry_m, only : separation
   use kinds_m, only : wp
@@ -26,7 +26,8 @@ contains
     has = memory%slave_tracking%has_offset .or. memory%master_tracking%has_offset
   end function has_offsets
 
-  !> After the search: limit all offsets by the present depths, and let them fade.
+  !> Limit all offsets by the present depths, and let them fade: after the search; in implicit runs
+  !> at the end of a step.
   pure subroutine update_offsets(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -48,6 +49,7 @@ contains
 
     tracking%faded = 0.0_wp
     tracking%has_offset = .false.
+    where (tracking%status == is_free) tracking%offset = 0.0_wp
     do k = 1, tracking%n_touching
       i = tracking%touching(k)
       if (.not. tracking%offset(i) > 0.0_wp) cycle

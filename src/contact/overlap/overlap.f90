@@ -14,6 +14,7 @@ module overlap_m
     integer :: first, last   !! master nodes at its breakpoints, 0: a slave node
     real(wp) :: gap(2)       !! of the master segment at both ends of the slave segment, m
     real(wp) :: share        !! how much of it counts: 0 where the segments are not opposed
+    real(wp) :: part         !! how much of it the sides at vertices leave; in `share` too
   end type overlap_t
 
 contains

@@ -4,11 +4,11 @@
 module overlap_status_m
   use contact_state_m, only : contact_state_t, is_free, is_touching
   use contacts_m, only : contact_t
-  use geometry_m, only : sight_t, sight_of_segment, closest_distance
+  use geometry_m, only : separation
   use kinds_m, only : wp
   implicit none
   private
-  public :: none_due, is_due, keep_segment, judge_segment, note_next_wake
+  public :: none_due, look_at_segment, keep_segment, judge_segment, note_next_wake
 
   !> Cosine between outward normals from which on segments can not come to be opposed before new
   !> lists are made.
@@ -25,16 +25,26 @@ contains
       .and. memory%travel + memory%closed_gap < memory%next_segment_wake
   end function none_due
 
-  !> Whether a slave segment may touch: its next search time has come, or an end of it is active.
-  pure function is_due(memory, segment, ends) result(due)
-    type(contact_state_t), intent(in) :: memory
+  !> Whether a slave segment may touch: an end of it is active, or its next search time has come and
+  !> something is behind it or behind what it is opposed to. Else that time is put off.
+  pure subroutine look_at_segment(contact, memory, segment, is_due)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: segment
-    integer, intent(in) :: ends(2) !! its nodes
-    logical :: due
+    logical, intent(out) :: is_due
+    real(wp) :: distance
 
-    due = .not. memory%travel + memory%closed_gap < memory%segment_wake(segment)
-    if (.not. due) due = any(memory%slave_tracking%status(ends) == is_touching)
-  end function is_due
+    associate (status => memory%slave_tracking%status, ends => contact%slave%segments(:, segment))
+      is_due = status(ends(1)) == is_touching .or. status(ends(2)) == is_touching
+    end associate
+    if (is_due .or. memory%travel + memory%closed_gap < memory%segment_wake(segment)) return
+    call see_candidates(contact, memory, segment, distance, is_due)
+    is_due = is_due .or. distance < memory%closed_gap
+    memory%segment_wake(segment) = memory%travel + distance
+    if (is_due) return
+    memory%segment_status(segment) = is_free
+    memory%segment_gap(segment) = distance
+  end subroutine look_at_segment
 
   !> Note a segment with both ends active: it stays, whatever its gaps. Of one in contact nothing is
   !> written again.
@@ -50,33 +60,30 @@ contains
   end subroutine keep_segment
 
   !> Whether the points on a segment count. One that is in contact, or has an active end, stays.
-  pure subroutine judge_segment(contact, memory, segment, ends, deepest, counts)
-    type(contact_t), intent(in) :: contact
+  pure subroutine judge_segment(memory, segment, ends, deepest, counts)
     type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: segment
     integer, intent(in) :: ends(2)     !! its nodes
     real(wp), intent(in) :: deepest    !! smallest gap of its points, m
     logical, intent(out) :: counts
+    logical :: has_active_end
 
     counts = .true.
-    if (deepest >= memory%closed_gap) then
-      memory%segment_status(segment) = is_free
-      memory%segment_gap(segment) = deepest
-      memory%segment_wake(segment) = memory%travel
-      ! With an active end it is due in any case.
-      if (.not. any(memory%slave_tracking%status(ends) == is_touching)) &
-        memory%segment_wake(segment) = memory%travel + distance_to_candidates(contact, memory, &
-        segment)
-      return
-    end if
-    memory%segment_wake(segment) = -huge(1.0_wp)
-    associate (status => memory%segment_status(segment))
-      if (any(memory%slave_tracking%status(ends) == is_touching)) then
-        status = is_touching
-      else if (status == is_free) then
-        call begin_contact(memory, segment, ends, -deepest, status)
+    has_active_end = any(memory%slave_tracking%status(ends) == is_touching)
+    associate (status => memory%segment_status(segment), wake => memory%segment_wake(segment))
+      if (deepest >= memory%closed_gap) then
+        status = is_free
+        ! It is due as long as an end is active; without one `look_at_segment` has set the time.
+        if (has_active_end) wake = memory%travel
+      else
+        wake = -huge(1.0_wp)
+        if (has_active_end) then
+          status = is_touching
+        else if (status == is_free) then
+          call begin_contact(memory, segment, ends, -deepest, status)
+        end if
+        counts = status == is_touching
       end if
-      counts = status == is_touching
     end associate
     memory%segment_gap(segment) = deepest
   end subroutine judge_segment
@@ -119,39 +126,62 @@ contains
     end do
   end function deepest_first_contact
 
-  !> Distance from a slave segment to the candidates that are opposed to it or may come to be, m:
-  !> two segments that do not cross are nearest to each other at a node of one of them.
-  pure function distance_to_candidates(contact, memory, s) result(distance)
+  !> Distance from a slave segment to the candidates that are opposed to it or may come to be, m,
+  !> and whether it lies behind the line of one of them, or that behind its own, in part: two
+  !> segments that do not cross are nearest to each other at a node of one of them.
+  pure subroutine see_candidates(contact, memory, s, distance, is_behind)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
-    real(wp) :: distance
-    type(sight_t) :: of_master(2), of_slave(2)
-    real(wp) :: square
-    integer :: j, k
+    real(wp), intent(out) :: distance
+    logical, intent(out) :: is_behind
+    real(wp) :: a(2), b(2), own(2), other(2), squares(2), across(4), product, least
+    integer :: ends(2), nodes(2), j
 
-    square = memory%slave_tracking%reach**2
-    associate (own => contact%slave%segments(:, s), places => memory%places)
+    least = memory%slave_tracking%reach**2
+    is_behind = .false.
+    ends = contact%slave%segments(:, s)
+    associate (places => memory%places)
+      own = separation(places(:, ends(2)), places(:, ends(1)))
+      squares(1) = max(own(1)**2 + own(2)**2, tiny(1.0_wp))
       do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
-        associate (other => memory%n_slave + contact%master%segments(:, memory%candidates%items(j)))
-          do k = 1, 2
-            of_slave(k) = sight_of_segment(places(:, own(k)), places(:, other(1)), &
-              places(:, other(2)))
-            of_master(k) = sight_of_segment(places(:, other(k)), places(:, own(1)), &
-              places(:, own(2)))
-          end do
-        end associate
-        if (.not. dot_product(of_slave(1)%t, of_master(1)%t) < averted*sqrt(of_slave(1)%square &
-          *of_master(1)%square)) cycle
-        do k = 1, 2
-          square = min(square, closest_distance(of_slave(k)), closest_distance(of_master(k)))
-        end do
-        if (of_slave(1)%across*of_slave(2)%across <= 0.0_wp .and. of_master(1)%across &
-          *of_master(2)%across <= 0.0_wp) square = 0.0_wp
+        nodes = memory%n_slave + contact%master%segments(:, memory%candidates%items(j))
+        other = separation(places(:, nodes(2)), places(:, nodes(1)))
+        squares(2) = max(other(1)**2 + other(2)**2, tiny(1.0_wp))
+        product = own(1)*other(1) + own(2)*other(2)
+        if (product > 0.0_wp .and. product**2 >= averted**2*(squares(1)*squares(2))) cycle
+        a = separation(places(:, ends(1)), places(:, nodes(1)))
+        b = separation(places(:, ends(2)), places(:, nodes(1)))
+        call see_node(a, other, squares(2), least, across(1))
+        call see_node(b, other, squares(2), least, across(2))
+        b = separation(places(:, nodes(2)), places(:, ends(1)))
+        call see_node(-a, own, squares(1), least, across(3))
+        call see_node(b, own, squares(1), least, across(4))
+        is_behind = is_behind .or. minval(across) < 0.0_wp
+        if (max(across(1)*across(2), across(3)*across(4)) <= 0.0_wp) least = 0.0_wp
       end do
     end associate
-    distance = sqrt(square)
-  end function distance_to_candidates
+    distance = sqrt(least)
+  end subroutine see_candidates
+
+  !> A node of one segment from the other: which side it is on, and its distance to that.
+  pure subroutine see_node(d, t, square, least, across)
+    real(wp), intent(in) :: d(2), t(2) !! from the first node of the segment, and its vector, m
+    real(wp), intent(in) :: square     !! of its length, m^2
+    real(wp), intent(inout) :: least   !! square of the smallest distance so far, m^2
+    real(wp), intent(out) :: across    !! gap times length
+    real(wp) :: along
+
+    along = d(1)*t(1) + d(2)*t(2)
+    across = d(1)*t(2) - d(2)*t(1)
+    if (along < 0.0_wp) then
+      least = min(least, d(1)**2 + d(2)**2)
+    else if (along > square) then
+      least = min(least, (d(1) - t(1))**2 + (d(2) - t(2))**2)
+    else
+      least = min(least, across**2/square)
+    end if
+  end subroutine see_node
 
   !> After all segments have been looked at. Not asked for as long as something is active.
   pure subroutine note_next_wake(memory)

@@ -7,25 +7,37 @@
 module overlaps_m
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
-  use foot_m, only : foot_t, closest_foot, side_on, face_on, side_share, facing_share, round_off
-  use geometry_m, only : sight_t, sight_of_segment, separation, closest_distance
+  use foot_m, only : foot_t, closest_foot, side_on, face_on, side_share, &
+    least_excess, facing_share, see_segment, round_off
+  use geometry_m, only : sight_t, separation, closest_distance
   use kinds_m, only : wp
   use opposed_m, only : turns_sharply
   use overlap_m, only : overlap_t, gap_at, order_overlaps
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: find_overlaps, n_most_overlaps, closest_candidate
+  public :: find_overlaps, n_most_overlaps, room_for_overlaps, closest_candidate
 
   !> Most segments between two active ends that are taken without a look at the candidates, and
   !> number of segments of a closed master up to which the way forwards may be the shorter one.
   integer, parameter :: n_between = 6, short_surface = 2*n_between + 2
-  !> Deepest middle of an overlap with a master segment that no end of the slave segment is active
-  !> on, by the depth of a first contact: deeper ones are the far side of something, or the back of
-  !> the own wall.
+  !> Deepest middle of an overlap with a master segment that is not reached from an active end of
+  !> the slave segment, by the depth of a first contact: deeper ones are the far side of something,
+  !> or the back of the own wall.
   real(wp), parameter :: deep = 1.5_wp
   !> Part of a segment within which a projection is on its node.
   real(wp), parameter :: near_node = 1.0e-9_wp
+
+  !> A slave segment. Without default values, which would be written before each use.
+  type :: slave_segment_t
+    integer :: number
+    integer :: ends(2)       !! nodes
+    logical :: is_active(2)  !! its ends
+    real(wp) :: margins(2)   !! parts of it next to its ends where master nodes are no breakpoints
+    integer :: below(2)      !! master segments that its ends have their projections on, 0: none
+    real(wp) :: start(4)     !! position of its first end
+    real(wp) :: t(2), square !! its vector, m, and the square of that
+  end type slave_segment_t
 
 contains
 
@@ -38,6 +50,18 @@ contains
     n = max(n_between, 2*(memory%candidates%first(s + 1) - memory%candidates%first(s)) + 1)
   end function n_most_overlaps
 
+  !> The same for any of them.
+  pure function room_for_overlaps(memory) result(n)
+    type(contact_state_t), intent(in) :: memory
+    integer :: n
+    integer :: s
+
+    n = 0
+    do s = 1, size(memory%candidates%first) - 1
+      n = max(n, n_most_overlaps(memory, s))
+    end do
+  end function room_for_overlaps
+
   !> Overlaps of a slave segment, in order along it.
   pure subroutine find_overlaps(contact, memory, s, is_strict, least_cut, overlaps, n)
     type(contact_t), intent(in) :: contact
@@ -46,128 +70,171 @@ contains
     logical, intent(in) :: is_strict !! with an end beyond the master it has one without a master
     real(wp), intent(in) :: least_cut !! part of the segment next to its active ends where master
                                       !! nodes are no breakpoints
-    type(overlap_t), intent(out) :: overlaps(:) !! with room for `n_most_overlaps`
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! with room for
+                                      !! `n_most_overlaps`
     integer, intent(out) :: n
-    integer :: ends(2), anchors(2), k
+    type(slave_segment_t) :: own
+    integer :: k
 
-    ends = contact%slave%segments(:, s)
-    n = 0
+    own%number = s
+    own%ends = contact%slave%segments(:, s)
+    own%is_active = memory%slave_tracking%status(own%ends) == is_touching
+    own%margins = merge(least_cut, 0.0_wp, own%is_active)
+    own%start = memory%places(:, own%ends(1))
+    own%t = way_to(own%ends(2), own, memory%places)
+    own%square = max(own%t(1)**2 + own%t(2)**2, tiny(1.0_wp))
     do k = 1, 2
-      anchors(k) = segment_below(contact, memory, s, ends, k)
+      own%below(k) = segment_below(contact, memory, own, k)
     end do
-    if (is_strict .and. any(anchors == 0)) then
-      if (.not. is_opposed_to_contact(contact%slave, memory, s)) return
+    n = 0
+    if (is_strict .and. any(own%below == 0)) then
+      if (.not. is_opposed_to_contact(memory, own)) return
       n = 1
-      overlaps(1) = overlap_t(0, 0.0_wp, 1.0_wp, 0, 0, [0.0_wp, 0.0_wp], 1.0_wp)
+      overlaps(1) = overlap_t(0, 0.0_wp, 1.0_wp, 0, 0, [0.0_wp, 0.0_wp], 1.0_wp, 1.0_wp)
       return
     end if
-    if (contact%master%n_segment > short_surface .and. &
-      all(memory%slave_tracking%status(ends) == is_touching)) &
-      call take_between(contact, memory, ends, anchors, least_cut, overlaps, n)
-    if (n == 0) call take_candidates(contact, memory, s, anchors, overlaps, n)
-    do k = 1, n
-      overlaps(k)%share = 0.0_wp
-      if (overlaps(k)%high > overlaps(k)%low) overlaps(k)%share = share_of(contact, memory, ends, &
-        overlaps(k)%master)
-    end do
+    if (contact%master%n_segment > short_surface .and. all(own%is_active)) &
+      call take_between(own, contact%master%previous, &
+      contact%master%segments, memory%n_slave, memory%places, least_cut, overlaps, n)
+    if (n == 0) call take_candidates(contact, memory, own, overlaps, n)
+    if (memory%slave_tracking%pass%is_closed) call weigh_sides(contact, memory, own, overlaps(:n))
   end subroutine find_overlaps
 
   !> Overlaps with the master segments from below one active end to below the other; none where
   !> these are too many or do not follow each other.
-  pure subroutine take_between(contact, memory, ends, anchors, least_cut, overlaps, n)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: ends(2), anchors(2)
+  pure subroutine take_between(own, previous, segments, n_slave, places, least_cut, overlaps, n)
+    type(slave_segment_t), intent(in) :: own
+    integer, intent(in) :: previous(*), segments(2, *) !! of the master
+    integer, intent(in) :: n_slave       !! local number before the first master node
+    real(wp), intent(in) :: places(4, *) !! of the interface
     real(wp), intent(in) :: least_cut
-    type(overlap_t), intent(inout) :: overlaps(:)
+    type(overlap_t), intent(inout) :: overlaps(*)
     integer, intent(out) :: n
-    real(wp) :: t(2), d(2), inverse, xi
-    integer :: k
+    real(wp) :: d(2), former(2), inverse, xi, low
+    integer :: k, m, node, first
 
     n = 0
+    m = own%below(1)
     do k = 1, n_between
-      overlaps(k)%master = anchors(1)
-      if (k > 1) overlaps(k)%master = contact%master%previous(overlaps(k - 1)%master)
-      if (overlaps(k)%master == 0) return
-      if (overlaps(k)%master == anchors(2)) exit
+      if (m == 0) return
+      overlaps(k)%master = m
+      if (m == own%below(2)) exit
+      m = previous(m)
     end do
     if (k > n_between) return
     n = k
-    overlaps(1)%low = 0.0_wp
-    overlaps(1)%first = 0
-    associate (places => memory%places)
-      t = separation(places(:, ends(2)), places(:, ends(1)))
-      inverse = 1.0_wp/(t(1)*t(1) + t(2)*t(2))
-      do k = 1, n - 1
-        associate (node => contact%master%segments(1, overlaps(k)%master))
-          d = separation(places(:, memory%n_slave + node), places(:, ends(1)))
-          xi = (d(1)*t(1) + d(2)*t(2))*inverse
-          overlaps(k)%high = overlaps(k)%low
-          overlaps(k)%last = overlaps(k)%first
-          if (xi >= 1.0_wp - least_cut) then
-            overlaps(k)%high = 1.0_wp
-            overlaps(k)%last = 0
-          else if (xi > max(overlaps(k)%low, least_cut)) then
-            overlaps(k)%high = xi
-            overlaps(k)%last = node
-          end if
-        end associate
-        overlaps(k + 1)%low = overlaps(k)%high
-        overlaps(k + 1)%first = overlaps(k)%last
-      end do
-    end associate
-    overlaps(n)%high = 1.0_wp
-    overlaps(n)%last = 0
+    low = 0.0_wp
+    first = 0
+    inverse = 1.0_wp/own%square
+    former = way_to(n_slave + segments(2, own%below(1)), own, places)
+    do k = 1, n
+      node = segments(1, overlaps(k)%master)
+      d = way_to(n_slave + node, own, places)
+      xi = (d(1)*own%t(1) + d(2)*own%t(2))*inverse
+      overlaps(k)%low = low
+      overlaps(k)%first = first
+      overlaps(k)%share = 0.0_wp
+      overlaps(k)%part = 1.0_wp
+      if (k == n .or. xi >= 1.0_wp - least_cut) then
+        xi = 1.0_wp
+        node = 0
+      else if (xi <= max(low, least_cut)) then
+        xi = low
+        node = first
+      end if
+      overlaps(k)%high = xi
+      overlaps(k)%last = node
+      if (xi > low) overlaps(k)%share = share_of(own, former - d)
+      former = d
+      low = xi
+      first = node
+    end do
   end subroutine take_between
 
+  !> Vector from the first end of a slave segment to a node, m.
+  pure function way_to(node, own, places) result(d)
+    integer, intent(in) :: node          !! local number
+    type(slave_segment_t), intent(in) :: own
+    real(wp), intent(in) :: places(4, *) !! of the interface
+    real(wp) :: d(2)
+
+    d(1) = (places(1, node) - own%start(1)) + (places(3, node) - own%start(3))
+    d(2) = (places(2, node) - own%start(2)) + (places(4, node) - own%start(4))
+  end function way_to
+
   !> Overlaps with the candidates of a slave segment.
-  pure subroutine take_candidates(contact, memory, s, anchors, overlaps, n)
+  pure subroutine take_candidates(contact, memory, own, overlaps, n)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: s, anchors(2)
+    type(slave_segment_t), intent(in) :: own
     type(overlap_t), intent(inout) :: overlaps(:)
     integer, intent(out) :: n
-    integer :: ends(2), j
-    logical :: is_active(2), may_be_deep
+    integer :: j, n_most
+    logical :: may_be_deep
 
-    ends = contact%slave%segments(:, s)
-    is_active = memory%slave_tracking%status(ends) == is_touching
     ! From the start a master node may lie deep behind a segment both ends of which are beside it.
-    may_be_deep = .not. contact%is_self .and. .not. any(is_active) &
-      .and. memory%segment_status(s) == is_touching
+    may_be_deep = .not. contact%is_self .and. .not. any(own%is_active) &
+      .and. memory%segment_status(own%number) == is_touching
+    n_most = n_most_overlaps(memory, own%number)
     n = 0
-    do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
+    do j = memory%candidates%first(own%number), memory%candidates%first(own%number + 1) - 1
       associate (m => memory%candidates%items(j), overlap => overlaps(n + 1))
-        call cut_by(contact, memory, ends, anchors, m, overlap)
+        call cut_by(contact%master, memory, own, m, overlap)
         if (.not. overlap%high > overlap%low) cycle
-        if (is_beyond(contact%master, anchors, m, size(overlaps))) cycle
-        if (memory%slave_tracking%pass%is_closed) then
-          if (is_side_of_corner(contact, memory, s, m)) cycle
+        if (is_beyond(contact%master, own%below, m, n_most)) cycle
+        if (.not. may_be_deep .and. gap_at(overlap, 0.5_wp*(overlap%low + overlap%high)) &
+          < -deep*memory%slave_tracking%segment_depth(m)) then
+          if (.not. any(own%is_active .and. own%below == m) .and. .not. is_reached(contact, memory, &
+            own, m, n_most)) cycle
         end if
-        if (.not. (may_be_deep .or. any(is_active .and. anchors == m)) .and. &
-          gap_at(overlap, 0.5_wp*(overlap%low + overlap%high)) &
-          < -deep*memory%slave_tracking%segment_depth(m)) cycle
         n = n + 1
       end associate
     end do
     call order_overlaps(overlaps, n)
   end subroutine take_candidates
 
+  !> Whether a master segment is the one that an end of a slave segment is active on, or follows it
+  !> towards the other end without a sharp turn (a surface in contact with itself: the back of the
+  !> own wall may follow).
+  pure function is_reached(contact, memory, own, m, n_most) result(reached)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(slave_segment_t), intent(in) :: own
+    integer, intent(in) :: m
+    integer, intent(in) :: n_most !! steps along the surface
+    logical :: reached
+    integer :: k, i, segment, next
+
+    reached = .false.
+    do k = 1, 2
+      if (.not. own%is_active(k)) cycle
+      segment = memory%slave_tracking%segment(own%ends(k))
+      do i = 1, n_most
+        reached = reached .or. segment == m
+        next = merge(contact%master%previous(segment), contact%master%next(segment), k == 1)
+        if (reached .or. next == 0 .or. contact%is_self) exit
+        if (turns_sharply(contact%master, memory%places(:, memory%n_slave + 1:), segment, next)) exit
+        segment = next
+      end do
+    end do
+  end function is_reached
+
   !> Master segment on which the k-th end of a slave segment has its projection: of an active end
   !> that of its status, else the closest of the candidates if it is over that; 0: none. Of two that
   !> meet where the projection is the outer one, so that their node lies between both ends.
-  pure function segment_below(contact, memory, s, ends, k) result(segment)
+  pure function segment_below(contact, memory, own, k) result(segment)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: s, ends(2), k
+    type(slave_segment_t), intent(in) :: own
+    integer, intent(in) :: k
     integer :: segment, outer
     real(wp) :: at
 
-    if (memory%slave_tracking%status(ends(k)) == is_touching) then
-      segment = memory%slave_tracking%segment(ends(k))
-      at = memory%slave_tracking%xi(ends(k))
+    if (own%is_active(k)) then
+      segment = memory%slave_tracking%segment(own%ends(k))
+      at = memory%slave_tracking%xi(own%ends(k))
     else
-      call look_below(contact, memory, s, ends(k), segment, at)
+      call look_below(contact, memory, own%number, own%ends(k), segment, at)
     end if
     if (segment == 0) return
     outer = 0
@@ -228,24 +295,21 @@ contains
     integer :: closest
     real(wp) :: own(2), square, least
     type(sight_t) :: sight
-    integer :: j
+    integer :: j, m
 
     closest = 0
     least = huge(1.0_wp)
-    associate (ends => contact%slave%segments(:, s))
-      own = separation(memory%places(:, ends(2)), memory%places(:, ends(1)))
-    end associate
+    own = vector(contact%slave, memory%places, s)
     do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
-      associate (nodes => memory%n_slave + contact%master%segments(:, memory%candidates%items(j)))
-        sight = sight_of_segment(point, memory%places(:, nodes(1)), memory%places(:, nodes(2)))
-      end associate
+      m = memory%candidates%items(j)
+      sight = see_segment(contact%master, memory%places(:, memory%n_slave + 1:), point, m)
       square = closest_distance(sight)
       if (square >= least) cycle
       if (is_opposed) then
         if (.not. looks_against(own, sight%t)) cycle
       end if
       least = square
-      closest = memory%candidates%items(j)
+      closest = m
     end do
   end function closest_candidate
 
@@ -260,35 +324,59 @@ contains
       + own(2)*own(2))*(other(1)*other(1) + other(2)*other(2)))
   end function looks_against
 
-  !> Whether a slave segment is the side next to a sharp convex vertex whose other segment is
-  !> opposed to a master segment so much more that nothing of the side counts.
-  pure function is_side_of_corner(contact, memory, s, m) result(is)
+  !> Let overlaps of closed boundaries with the side next to a convex vertex count less, or not, on
+  !> the slave as on the master.
+  pure subroutine weigh_sides(contact, memory, own, overlaps)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: s, m
-    logical :: is
-    real(wp) :: own(2), beside(2), other(2), cosine
+    type(slave_segment_t), intent(in) :: own
+    type(overlap_t), intent(inout) :: overlaps(:)
+    real(wp) :: other(2)
+    integer :: k
+
+    associate (master => memory%places(:, memory%n_slave + 1:))
+      do k = 1, size(overlaps)
+        if (.not. overlaps(k)%share > 0.0_wp) cycle
+        other = vector(contact%master, master, overlaps(k)%master)
+        overlaps(k)%part = side_part(contact%slave, memory%places, own%number, other)
+        if (overlaps(k)%part > 0.0_wp) overlaps(k)%part = overlaps(k)%part &
+          *side_part(contact%master, master, overlaps(k)%master, own%t)
+        overlaps(k)%share = overlaps(k)%share*overlaps(k)%part
+      end do
+    end associate
+  end subroutine weigh_sides
+
+  !> How much of a segment counts, 0 to 1: less the more a segment next to it at a convex vertex is
+  !> opposed to the segment of the other surface than it is itself (see `side_share`).
+  pure function side_part(surface, places, segment, other) result(part)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, at least n_node) from this surface on
+    integer, intent(in) :: segment
+    real(wp), intent(in) :: other(2)                 !! segment of the other surface, m
+    real(wp) :: part
+    real(wp) :: own(2), beside(2), product, squares
     integer :: k, next
 
-    is = .false.
-    other = vector(contact%master, memory%places(:, memory%n_slave + 1:), m)
-    own = vector(contact%slave, memory%places(:, :memory%n_slave), s)
-    cosine = dot_product(own, other)/(norm2(own)*norm2(other))
-    if (cosine <= face_on) return
+    part = 1.0_wp
+    own = vector(surface, places, segment)
+    product = own(1)*other(1) + own(2)*other(2)
+    squares = (own(1)**2 + own(2)**2)*(other(1)**2 + other(2)**2)
+    ! No segment can be opposed so much more.
+    if (product**2 >= (1.0_wp - least_excess)**2*squares) return
     do k = 1, 2
-      next = merge(contact%slave%previous(s), contact%slave%next(s), k == 1)
+      next = merge(surface%previous(segment), surface%next(segment), k == 1)
       if (next == 0) cycle
-      beside = vector(contact%slave, memory%places(:, :memory%n_slave), next)
+      beside = vector(surface, places, next)
       if (merge(-1.0_wp, 1.0_wp, k == 1)*(own(1)*beside(2) - own(2)*beside(1)) <= 0.0_wp) cycle
-      is = is .or. .not. side_share(cosine - dot_product(beside, other) &
-        /(norm2(beside)*norm2(other))) > 0.0_wp
+      part = part*side_share(product/sqrt(squares) - (beside(1)*other(1) + beside(2)*other(2)) &
+        /sqrt((beside(1)**2 + beside(2)**2)*(other(1)**2 + other(2)**2)))
     end do
-  end function is_side_of_corner
+  end function side_part
 
   !> Vector of a segment, m.
   pure function vector(surface, places, segment) result(t)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, at least n_node) from this surface on
     integer, intent(in) :: segment
     real(wp) :: t(2)
 
@@ -297,31 +385,26 @@ contains
   end function vector
 
   !> Whether a slave segment is opposed to the face that one of its ends is active on.
-  pure function is_opposed_to_contact(slave, memory, s) result(opposed)
-    type(surface_t), intent(in) :: slave
+  pure function is_opposed_to_contact(memory, own) result(opposed)
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: s
+    type(slave_segment_t), intent(in) :: own
     logical :: opposed
-    real(wp) :: t(2)
     integer :: k
 
     opposed = .false.
-    associate (ends => slave%segments(:, s), tracking => memory%slave_tracking)
-      t = separation(memory%places(:, ends(2)), memory%places(:, ends(1)))
-      do k = 1, 2
-        if (tracking%status(ends(k)) /= is_touching) cycle
-        associate (normal => tracking%normal(:, ends(k)))
-          opposed = opposed .or. t(2)*normal(1) - t(1)*normal(2) < side_on*norm2(t)
-        end associate
-      end do
-    end associate
+    do k = 1, 2
+      if (.not. own%is_active(k)) cycle
+      associate (normal => memory%slave_tracking%normal(:, own%ends(k)))
+        opposed = opposed .or. own%t(2)*normal(1) - own%t(1)*normal(2) < side_on*sqrt(own%square)
+      end associate
+    end do
   end function is_opposed_to_contact
 
   !> Whether a master segment lies beyond the projection of an end of the slave segment: the slave
   !> runs against the master, so that its first end is followed by what comes before.
-  pure function is_beyond(master, anchors, segment, n_most) result(beyond)
+  pure function is_beyond(master, below, segment, n_most) result(beyond)
     type(surface_t), intent(in) :: master
-    integer, intent(in) :: anchors(2) !! below the first end and the second, 0: none
+    integer, intent(in) :: below(2) !! below the first end and the second, 0: none
     integer, intent(in) :: segment
     integer, intent(in) :: n_most     !! steps along the surface
     logical :: beyond
@@ -329,10 +412,10 @@ contains
 
     beyond = .false.
     do k = 1, 2
-      if (anchors(k) == 0 .or. anchors(k) == segment) cycle
-      if (master%chain(anchors(k)) /= master%chain(segment)) cycle
-      up = anchors(k)
-      down = anchors(k)
+      if (below(k) == 0 .or. below(k) == segment) cycle
+      if (master%chain(below(k)) /= master%chain(segment)) cycle
+      up = below(k)
+      down = below(k)
       do i = 1, n_most
         if (up > 0) up = master%next(up)
         if (down > 0) down = master%previous(down)
@@ -345,64 +428,64 @@ contains
   end function is_beyond
 
   !> The overlap with one master segment; empty where they are not opposed.
-  pure subroutine cut_by(contact, memory, ends, anchors, m, overlap)
-    type(contact_t), intent(in) :: contact
+  pure subroutine cut_by(master, memory, own, m, overlap)
+    type(surface_t), intent(in) :: master
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: ends(2), anchors(2), m
+    type(slave_segment_t), intent(in) :: own
+    integer, intent(in) :: m
     type(overlap_t), intent(inout) :: overlap
-    real(wp) :: t(2), d(2, 2), square, xi(2), gaps(2)
+    real(wp) :: d(2, 2), xi(2), gaps(2)
     integer :: nodes(2), k
 
     overlap%low = 0.0_wp
     overlap%high = 0.0_wp
-    nodes = [contact%master%segments(2, m), contact%master%segments(1, m)]
-    t = separation(memory%places(:, ends(2)), memory%places(:, ends(1)))
-    square = max(t(1)**2 + t(2)**2, tiny(1.0_wp))
+    nodes = [master%segments(2, m), master%segments(1, m)]
     do k = 1, 2
-      d(:, k) = separation(memory%places(:, memory%n_slave + nodes(k)), memory%places(:, ends(1)))
-      xi(k) = (d(1, k)*t(1) + d(2, k)*t(2))/square
+      d(:, k) = way_to(memory%n_slave + nodes(k), own, memory%places)
+      xi(k) = (d(1, k)*own%t(1) + d(2, k)*own%t(2))/own%square
     end do
     ! Most candidates lie beyond an end.
-    if (.not. any(anchors == m) .and. (xi(2) <= 0.0_wp .or. xi(1) >= 1.0_wp)) return
-    if (.not. looks_against(t, d(:, 1) - d(:, 2))) return
-    gaps = (d(1, :)*t(2) - d(2, :)*t(1))/sqrt(square)
+    if (.not. any(own%below == m) .and. (xi(2) <= own%margins(1) &
+      .or. xi(1) >= 1.0_wp - own%margins(2))) return
+    if (.not. looks_against(own%t, d(:, 1) - d(:, 2))) return
+    gaps = (d(1, :)*own%t(2) - d(2, :)*own%t(1))/sqrt(own%square)
     overlap%master = m
-    overlap%low = min(max(xi(1), 0.0_wp), 1.0_wp)
-    overlap%high = min(max(xi(2), 0.0_wp), 1.0_wp)
+    overlap%low = merge(0.0_wp, min(xi(1), 1.0_wp), xi(1) <= own%margins(1))
+    overlap%high = merge(1.0_wp, max(xi(2), 0.0_wp), xi(2) >= 1.0_wp - own%margins(2))
     overlap%first = merge(nodes(1), 0, overlap%low > 0.0_wp .and. overlap%low < 1.0_wp)
     overlap%last = merge(nodes(2), 0, overlap%high > 0.0_wp .and. overlap%high < 1.0_wp)
-    if (anchors(1) == m) then
+    if (own%below(1) == m) then
       overlap%low = 0.0_wp
       overlap%first = 0
-    else if (anchors(1) > 0 .and. abs(xi(1)) <= near_node) then
+    else if (own%below(1) > 0 .and. abs(xi(1)) <= near_node) then
       ! A corner right below an end that is active on another body has a point of its own.
-      if (contact%master%next(m) /= anchors(1)) overlap%first = nodes(1)
+      if (master%next(m) /= own%below(1)) overlap%first = nodes(1)
     end if
-    if (anchors(2) == m) then
+    if (own%below(2) == m) then
       overlap%high = 1.0_wp
       overlap%last = 0
-    else if (anchors(2) > 0 .and. abs(xi(2) - 1.0_wp) <= near_node) then
-      if (contact%master%previous(m) /= anchors(2)) overlap%last = nodes(2)
+    else if (own%below(2) > 0 .and. abs(xi(2) - 1.0_wp) <= near_node) then
+      if (master%previous(m) /= own%below(2)) overlap%last = nodes(2)
     end if
+    if (overlap%high <= own%margins(1) .or. overlap%low >= 1.0_wp - own%margins(2)) &
+      overlap%high = overlap%low
     overlap%gap = 0.0_wp
     if (abs(xi(2) - xi(1)) > round_off) overlap%gap = gaps(1) + (gaps(2) - gaps(1)) &
       *([0.0_wp, 1.0_wp] - xi(1))/(xi(2) - xi(1))
+    overlap%share = share_of(own, d(:, 1) - d(:, 2))
+    overlap%part = 1.0_wp
   end subroutine cut_by
 
   !> How much of an overlap counts: all up to a certain angle between the two segments, none from a
   !> larger one on.
-  pure function share_of(contact, memory, ends, m) result(share)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: ends(2) !! nodes of the slave segment
-    integer, intent(in) :: m       !! master segment
+  pure function share_of(own, other) result(share)
+    type(slave_segment_t), intent(in) :: own
+    real(wp), intent(in) :: other(2) !! vector of the master segment, m
     real(wp) :: share
-    real(wp) :: own(2), other(2), product, squares
+    real(wp) :: product, squares
 
-    own = separation(memory%places(:, ends(2)), memory%places(:, ends(1)))
-    other = vector(contact%master, memory%places(:, memory%n_slave + 1:), m)
-    product = own(1)*other(1) + own(2)*other(2)
-    squares = (own(1)**2 + own(2)**2)*(other(1)**2 + other(2)**2)
+    product = own%t(1)*other(1) + own%t(2)*other(2)
+    squares = own%square*(other(1)**2 + other(2)**2)
     share = 1.0_wp
     if (product < 0.0_wp .and. product*product >= face_on**2*squares) return
     share = facing_share(product/sqrt(max(squares, tiny(1.0_wp))))

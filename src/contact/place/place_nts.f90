@@ -6,43 +6,41 @@ module place_nts_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use kinds_m, only : wp
-  use point_list_m, only : append_touching, set_lengths, weigh_nodes
+  use lengths_m, only : put_lengths
+  use point_list_m, only : append_touching
   implicit none
   private
   public :: place_nts, place_nts_ar, place_two_pass_ar
 
 contains
 
-  !> Type 1: a spring of eps [N/m] at each node, whatever the mesh.
+  !> Type 1: a spring of eps [N/m] at each node, whatever the mesh; in axisymmetry times the mean
+  !> radius of its tributary length.
   pure subroutine place_nts(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
+    real(wp) :: lengths(memory%slave_tracking%n_touching)
 
     call append_touching(memory%slave_tracking, contact%master, [0, memory%n_slave], 1.0_wp, &
       memory%node_penalty, memory%points)
-    if (contact%is_round) call weigh_slaves(contact, memory)
+    if (.not. contact%is_round) return
+    associate (slave_places => memory%places(:, :memory%n_slave), &
+      areas => memory%points%area(:memory%points%n))
+      call put_lengths(contact%slave, slave_places, .true., memory%slave_tracking, areas)
+      call put_lengths(contact%slave, slave_places, .false., memory%slave_tracking, lengths)
+      areas = areas/max(lengths, tiny(1.0_wp))
+    end associate
   end subroutine place_nts
 
-  !> In axisymmetry: the points at slave nodes, which are the first.
-  pure subroutine weigh_slaves(contact, memory)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-
-    call weigh_nodes(memory%slave_tracking, contact%slave, memory%places(:, :memory%n_slave), 1, &
-      memory%points)
-  end subroutine weigh_slaves
-
-  !> Type 2: the competence length of the node as area.
+  !> Type 2: the tributary length of the node as area.
   pure subroutine place_nts_ar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
 
     call append_touching(memory%slave_tracking, contact%master, [0, memory%n_slave], 0.0_wp, &
       memory%slave_penalty, memory%points)
-    call set_lengths(memory%slave_tracking, contact%slave, memory%places(:, :memory%n_slave), &
-      contact%is_round, 1, memory%points)
-    if (contact%is_round .and. .not. memory%slave_tracking%pass%is_closed) &
-      call weigh_slaves(contact, memory)
+    call put_lengths(contact%slave, memory%places(:, :memory%n_slave), contact%is_round, &
+      memory%slave_tracking, memory%points%area(:memory%points%n))
   end subroutine place_nts_ar
 
   !> Type 3: type 2, and again with the roles of slave and master exchanged; nothing is halved.
@@ -55,11 +53,8 @@ contains
     first = memory%points%n + 1
     call append_touching(memory%master_tracking, contact%slave, [memory%n_slave, 0], 0.0_wp, &
       memory%master_penalty, memory%points)
-    call set_lengths(memory%master_tracking, contact%master, &
-      memory%places(:, memory%n_slave + 1:), contact%is_round, first, memory%points)
-    if (contact%is_round .and. .not. memory%master_tracking%pass%is_closed) &
-      call weigh_nodes(memory%master_tracking, contact%master, &
-      memory%places(:, memory%n_slave + 1:), first, memory%points)
+    call put_lengths(contact%master, memory%places(:, memory%n_slave + 1:), contact%is_round, &
+      memory%master_tracking, memory%points%area(first:memory%points%n))
   end subroutine place_two_pass_ar
 
 end module place_nts_m

@@ -59,10 +59,9 @@ contains
 
   !> How much gives way at each slave node, 0 to 1: kept where averages come later. In a trial of an
   !> implicit step that of the start of the step, so that it is no part of the tangent.
-  pure subroutine find_tips(slave, memory, motion)
+  pure subroutine find_tips(slave, memory)
     type(surface_t), intent(in) :: slave
     type(contact_state_t), intent(inout) :: memory
-    real(wp), intent(in), contiguous, optional :: motion(:, :) !! rows 3, 4: u of the step
     real(wp) :: former(2, 2), moved(2, 2)
     integer :: node, ends(3), k
 
@@ -74,8 +73,8 @@ contains
       do k = 1, 2
         former(:, k) = memory%places(1:2, ends(k + 1)) - memory%places(1:2, ends(k))
         moved(:, k) = memory%places(3:4, ends(k + 1)) - memory%places(3:4, ends(k))
-        if (present(motion)) moved(:, k) = moved(:, k) &
-          - (motion(3:4, memory%nodes(ends(k + 1))) - motion(3:4, memory%nodes(ends(k))))
+        if (memory%slave_tracking%pass%is_trial) moved(:, k) = moved(:, k) &
+          - (memory%scratch%increment(:, ends(k + 1)) - memory%scratch%increment(:, ends(k)))
       end do
       memory%scratch%nodal(1, node) = sharpness(former, former + moved)
     end do

@@ -3,13 +3,11 @@
 !> the skin (doc/theory/contact.md, section 4). The lists are wide enough that no result depends on
 !> when they were made.
 module candidates_m
-  use contact_state_m, only : contact_state_t, candidates_t, tracking_t, bucket_grid_t, &
-    allocate_grid
+  use contact_state_m, only : contact_state_t, candidates_t, tracking_t
   use contacts_m, only : contact_t
   use foot_m, only : face_on
   use geometry_m, only : separation
-  use grid_m, only : fill_grid, cell_of, bucket_of
-  use kinds_m, only : wp
+  use kinds_m, only : wp, long
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -20,6 +18,17 @@ module candidates_m
   !> Cosine between outward normals from which on segments look the same way (30 degrees). While a
   !> list holds each of them turns by 30 degrees at most, and none comes to be opposed (96 degrees).
   real(wp), parameter :: same_way = 0.866_wp
+  !> Cells are numbered within this range; beyond it they share the outermost number.
+  real(wp), parameter :: widest = 1.0e8_wp
+
+  !> Segments sorted into square cells by hashing. Positions are relative to the first node.
+  type :: cells_t
+    real(wp) :: side                  !! of a cell, m
+    real(wp), allocatable :: t(:, :)  !! (2, n_segment) vector of each segment, m
+    real(wp), allocatable :: low(:, :), high(:, :) !! (2, n_segment) corners of its box, m
+    integer, allocatable :: first(:)  !! (n_bucket + 1) where each bucket starts, less 1 ...
+    integer, allocatable :: items(:)  !! ... on this list of segments
+  end type cells_t
 
 contains
 
@@ -143,7 +152,7 @@ contains
     real(wp), intent(in), contiguous :: places(:, :) !! (4, n_slave + n_master)
     real(wp), intent(in) :: radius                   !! m; below 0: no pair
     type(candidates_t), intent(inout) :: candidates
-    type(bucket_grid_t) :: grid
+    type(cells_t) :: cells
     integer, allocatable :: listed_for(:)
     integer :: n, s
 
@@ -151,12 +160,12 @@ contains
     if (radius < 0.0_wp) return
     n = size(contact%slave%nodes)
     allocate (listed_for(contact%master%n_segment), source=0)
-    call allocate_grid(grid, contact%master%n_segment)
-    grid%least_cell = max(radius, tiny(1.0_wp))
-    call fill_grid(grid, contact%master, places(:, n + 1:))
+    call fill_cells(contact%master, places(:, n + 1:), radius, cells)
     do s = 1, contact%slave%n_segment
-      call fill_row(contact, places(:, :n), places(:, n + 1:), radius, grid, s, listed_for, &
-        candidates)
+      associate (ends => contact%slave%segments(:, s))
+        call fill_row(contact, s, separation(places(:, ends(1)), places(:, n + 1)), &
+          separation(places(:, ends(2)), places(:, ends(1))), radius, cells, listed_for, candidates)
+      end associate
     end do
   end subroutine list_pairs
 
@@ -173,57 +182,138 @@ contains
     if (.not. allocated(candidates%items)) allocate (candidates%items(16*n + 16), source=0)
   end subroutine start_rows
 
+  !> Sort segments into cells (counting sort over hashed cells), so long that each of them lies in
+  !> four at most.
+  pure subroutine fill_cells(surface, places, least, cells)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    real(wp), intent(in) :: least                    !! side of a cell, m
+    type(cells_t), intent(out) :: cells
+    real(wp) :: a(2), b(2)
+    integer :: i, n_bucket
+
+    associate (n => surface%n_segment)
+      allocate (cells%t(2, n), cells%low(2, n), cells%high(2, n))
+      do i = 1, n
+        a = separation(places(:, surface%segments(1, i)), places(:, 1))
+        b = separation(places(:, surface%segments(2, i)), places(:, 1))
+        cells%t(:, i) = b - a
+        cells%low(:, i) = min(a, b)
+        cells%high(:, i) = max(a, b)
+      end do
+      n_bucket = 16
+      do while (n_bucket < 2*n)
+        n_bucket = 2*n_bucket
+      end do
+      allocate (cells%first(n_bucket + 1), source=0)
+      allocate (cells%items(4*n))
+      cells%side = max(least, maxval(cells%high - cells%low), tiny(1.0_wp))
+      if (.not. cells%side <= huge(1.0_wp)) cells%side = max(least, tiny(1.0_wp))
+      do i = 1, n
+        call visit_cells(i, .true., cells)
+      end do
+      do i = 2, n_bucket + 1
+        cells%first(i) = cells%first(i) + cells%first(i - 1)
+      end do
+      do i = n, 1, -1
+        call visit_cells(i, .false., cells)
+      end do
+    end associate
+  end subroutine fill_cells
+
+  !> Count a segment in the cells of its box, or enter it; that moves each bucket's end down to its
+  !> start.
+  pure subroutine visit_cells(segment, counts, cells)
+    integer, intent(in) :: segment
+    logical, intent(in) :: counts !! count only
+    type(cells_t), intent(inout) :: cells
+    integer :: low(2), high(2), ix, iy, bucket
+
+    low = cell_of(cells, cells%low(:, segment))
+    high = min(cell_of(cells, cells%high(:, segment)), low + 1)
+    do iy = low(2), high(2)
+      do ix = low(1), high(1)
+        bucket = bucket_of(cells, ix, iy)
+        if (counts) then
+          cells%first(bucket) = cells%first(bucket) + 1
+        else
+          cells%items(cells%first(bucket)) = segment
+          cells%first(bucket) = cells%first(bucket) - 1
+        end if
+      end do
+    end do
+  end subroutine visit_cells
+
+  !> Cell that holds a position.
+  pure function cell_of(cells, y) result(cell)
+    type(cells_t), intent(in) :: cells
+    real(wp), intent(in) :: y(2)
+    integer :: cell(2)
+
+    cell = floor(max(-widest, min(widest, y/cells%side)))
+  end function cell_of
+
+  !> Bucket of a cell (the usual hash of two primes).
+  pure function bucket_of(cells, ix, iy) result(bucket)
+    type(cells_t), intent(in) :: cells
+    integer, intent(in) :: ix, iy
+    integer :: bucket
+
+    bucket = 1 + int(iand(ieor(73856093_long*ix, 19349663_long*iy), &
+      int(size(cells%first) - 2, long)))
+  end function bucket_of
+
   !> One row, from the buckets that the box of the segment reaches.
-  pure subroutine fill_row(contact, slave, master, radius, grid, s, listed_for, candidates)
+  pure subroutine fill_row(contact, s, start, t, radius, cells, listed_for, candidates)
     type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: slave(:, :), master(:, :) !! (4, n_node) positions
-    real(wp), intent(in) :: radius
-    type(bucket_grid_t), intent(in) :: grid
     integer, intent(in) :: s                   !! slave segment
+    real(wp), intent(in) :: start(2), t(2)     !! its first node from the master's first, its vector
+    real(wp), intent(in) :: radius
+    type(cells_t), intent(in) :: cells
     integer, intent(inout) :: listed_for(:)    !! (master segments) row that has had it last
     type(candidates_t), intent(inout) :: candidates
-    real(wp) :: a(2), b(2), low(2), high(2)
-    integer :: cells(2, 2), ix, iy, bucket, i, m
+    real(wp) :: box(4)
+    integer :: first(2), last(2), ix, iy, bucket, i, m
 
     candidates%first(s + 1) = candidates%first(s)
-    a = separation(slave(:, contact%slave%segments(1, s)), master(:, 1))
-    b = separation(slave(:, contact%slave%segments(2, s)), master(:, 1))
-    low = min(a, b) - radius
-    high = max(a, b) + radius
-    cells(:, 1) = cell_of(grid, max(low, grid%low))
-    cells(:, 2) = cell_of(grid, min(high, grid%high))
-    if (product(real(cells(:, 2) - cells(:, 1) + 1, wp)) > contact%master%n_segment) then
+    box = [min(start, start + t) - radius, max(start, start + t) + radius]
+    first = cell_of(cells, box(1:2))
+    last = cell_of(cells, box(3:4))
+    if (product(real(last - first + 1, wp)) > contact%master%n_segment) then
       ! The cells of a segment that long, or gone astray, are more than there are segments.
       do m = 1, contact%master%n_segment
-        call enter_pair(contact, slave, master, [low, high], s, m, candidates)
+        call enter_pair(contact, cells, s, t, box, m, candidates)
       end do
       return
     end if
-    do iy = cells(2, 1), cells(2, 2)
-      do ix = cells(1, 1), cells(1, 2)
-        bucket = bucket_of(grid, ix, iy)
-        do i = grid%first(bucket) + 1, grid%first(bucket + 1)
-          m = grid%items(i)
+    do iy = first(2), last(2)
+      do ix = first(1), last(1)
+        bucket = bucket_of(cells, ix, iy)
+        do i = cells%first(bucket) + 1, cells%first(bucket + 1)
+          m = cells%items(i)
           if (listed_for(m) == s) cycle
           listed_for(m) = s
-          call enter_pair(contact, slave, master, [low, high], s, m, candidates)
+          call enter_pair(contact, cells, s, t, box, m, candidates)
         end do
       end do
     end do
   end subroutine fill_row
 
-  !> Enter a master segment in the row of a slave segment, by rising number, if they may touch.
-  pure subroutine enter_pair(contact, slave, master, box, s, m, candidates)
+  !> Enter a master segment in the row of a slave segment, by rising number, if its box reaches into
+  !> the given one and they may touch.
+  pure subroutine enter_pair(contact, cells, s, t, box, m, candidates)
     type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: slave(:, :), master(:, :)
-    real(wp), intent(in) :: box(4) !! low x, low y, high x, high y, relative to the first master
-                                   !! node, m
+    type(cells_t), intent(in) :: cells
     integer, intent(in) :: s, m
+    real(wp), intent(in) :: t(2)   !! vector of the slave segment, m
+    real(wp), intent(in) :: box(4) !! low x, low y, high x, high y, m
     type(candidates_t), intent(inout) :: candidates
     integer, allocatable :: longer(:)
     integer :: n, k
 
-    if (.not. is_candidate(contact, slave, master, s, m, box)) return
+    if (max(cells%low(1, m) - box(3), cells%low(2, m) - box(4), box(1) - cells%high(1, m), &
+      box(2) - cells%high(2, m)) > 0.0_wp) return
+    if (.not. is_candidate(contact, s, t, m, cells%t(:, m))) return
     n = candidates%first(s + 1) - 1
     if (n == size(candidates%items)) then
       allocate (longer(2*n), source=0)
@@ -242,39 +332,34 @@ contains
     candidates%first(s + 1) = n + 2
   end subroutine enter_pair
 
-  !> Whether a master segment may touch a slave segment: its box reaches into the given one, it does
-  !> not look the same way, and it is not part of the same side of the body, nor its back.
-  pure function is_candidate(contact, slave, master, s, m, box) result(is)
+  !> Whether a master segment may touch a slave segment: it does not look the same way, and it is
+  !> not part of the same side of the body, nor its back.
+  pure function is_candidate(contact, s, own, m, other) result(is)
     type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: slave(:, :), master(:, :)
     integer, intent(in) :: s, m
-    real(wp), intent(in) :: box(4) !! see `enter_pair`
+    real(wp), intent(in) :: own(2), other(2) !! their vectors, m
     logical :: is
-    real(wp) :: a(2), b(2), own(2), other(2), product
+    real(wp) :: product
+    integer :: own_first, own_last, first, last
 
     is = .false.
-    associate (ends => contact%master%segments(:, m), own_ends => contact%slave%segments(:, s))
-      a = separation(master(:, ends(1)), master(:, 1))
-      b = separation(master(:, ends(2)), master(:, 1))
-      if (any(min(a, b) > box(3:4)) .or. any(max(a, b) < box(1:2))) return
-      other = b - a
-      own = separation(slave(:, own_ends(2)), slave(:, own_ends(1)))
-      product = dot_product(own, other)
-      if (product > 0.0_wp) then
-        if (product**2 > same_way**2*sum(own**2)*sum(other**2)) return
-      end if
-      if (contact%slave%segment_element(s) == contact%master%segment_element(m)) return
-      associate (nodes => contact%master%nodes(ends), own_nodes => contact%slave%nodes(own_ends))
-        is = .true.
-        if (own_nodes(2) == nodes(1)) then
-          is = folds(own, other)
-        else if (own_nodes(1) == nodes(2)) then
-          is = folds(other, own)
-        else
-          is = own_nodes(1) /= nodes(1) .and. own_nodes(2) /= nodes(2)
-        end if
-      end associate
-    end associate
+    product = own(1)*other(1) + own(2)*other(2)
+    if (product > 0.0_wp) then
+      if (product**2 > same_way**2*((own(1)**2 + own(2)**2)*(other(1)**2 + other(2)**2))) return
+    end if
+    if (contact%slave%segment_element(s) == contact%master%segment_element(m)) return
+    own_first = contact%slave%nodes(contact%slave%segments(1, s))
+    own_last = contact%slave%nodes(contact%slave%segments(2, s))
+    first = contact%master%nodes(contact%master%segments(1, m))
+    last = contact%master%nodes(contact%master%segments(2, m))
+    is = .true.
+    if (own_last == first) then
+      is = folds(own, other)
+    else if (own_first == last) then
+      is = folds(other, own)
+    else
+      is = own_first /= first .and. own_last /= last
+    end if
   end function is_candidate
 
   !> Whether a side folds upon itself from one segment to the next: they open towards each other by

@@ -181,7 +181,7 @@ contains
       call store_foot(tracking, i, foot)
     else
       tracking%status(i) = is_free
-      tracking%offset(i) = 0.0_wp
+      if (.not. tracking%pass%is_trial) tracking%offset(i) = 0.0_wp
     end if
   end subroutine follow_point
 
@@ -198,7 +198,7 @@ contains
     found = find_contact(tracking, own, other, pairs, places, increments, point, i)
     call store_foot(tracking, i, found%foot)
     if (found%is_released) tracking%n_released = tracking%n_released + 1
-    tracking%offset(i) = found%offset
+    if (found%is_active .or. .not. tracking%pass%is_trial) tracking%offset(i) = found%offset
     tracking%has_offset = tracking%has_offset .or. found%offset > 0.0_wp
     if (found%is_active) then
       tracking%status(i) = is_touching

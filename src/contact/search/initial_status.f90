@@ -9,7 +9,7 @@ module initial_status_m
   use contacts_m, only : contact_t, is_tied
   use element_finder_m, only : element_finder_t, start_finder, is_inside_body
   use foot_m, only : foot_t, closest_foot, see_segment
-  use geometry_m, only : sight_t, closest_distance, sight_normal
+  use geometry_m, only : sight_t, closest_distance, sight_gap, sight_normal
   use entry_m, only : is_opposed_at
   use kinds_m, only : wp
   use model_m, only : model_t
@@ -138,7 +138,8 @@ contains
   end function area_behind
 
   !> Points deeper than a first contact may be that lie inside an element behind the other surface
-  !> are active on the closest face that is opposed to them.
+  !> are active on the closest face that is opposed to them; on a closed boundary no deeper than the
+  !> element behind that face is thick, else it is the far side of the body.
   subroutine activate_deep_points(tracking, model, own, other, places, points, answers)
     type(tracking_t), intent(inout) :: tracking
     type(model_t), intent(in) :: model
@@ -160,7 +161,7 @@ contains
         + (points(1:2, i) - places(1:2, at + 1)), own%nodes(carriers(own, segments)), inside, &
         answers)
       if (.not. inside) cycle
-      foot = closest_opposed(tracking, own, other, places, points(:, i), i)
+      foot = closest_opposed(tracking, model, own, other, places, points(:, i), i)
       if (foot%segment == 0) cycle
       tracking%segment(i) = foot%segment
       tracking%xi(i) = foot%xi
@@ -174,8 +175,9 @@ contains
 
   !> Projection of a point on the closest of all segments that it is behind and that are opposed to
   !> it; segment 0: none.
-  pure function closest_opposed(tracking, own, other, places, point, i) result(foot)
+  pure function closest_opposed(tracking, model, own, other, places, point, i) result(foot)
     type(tracking_t), intent(in) :: tracking
+    type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: own, other
     real(wp), intent(in), contiguous :: places(:, :)
     real(wp), intent(in) :: point(4)
@@ -184,9 +186,11 @@ contains
     type(sight_t) :: sight
     real(wp) :: square, least
     integer :: m, closest
+    logical :: is_closed
 
     closest = 0
     least = huge(1.0_wp)
+    is_closed = has_closed_chain(other)
     associate (chain => places(:, tracking%pass%other_at + 1:))
       do m = 1, other%n_segment
         if (tracking%pass%is_self .and. tracking%pass%n_on_segment == 0) then
@@ -196,6 +200,8 @@ contains
         square = closest_distance(sight)
         if (sight%across >= 0.0_wp .or. square >= least) cycle
         if (.not. is_opposed_at(tracking%pass, own, places, i, sight_normal(sight))) cycle
+        if (is_closed .and. -sight_gap(sight)*initial_length(model, other, m) &
+          > area_behind(model, other, m)) cycle
         closest = m
         least = square
       end do

@@ -45,7 +45,7 @@ contains
 
     do p = 1, list%n
       slips(p) = vary_slip(memory, list%points(p), 3, list%points(p)%master_xi)
-      at_points(1, p) = list%points(p)%gap%value
+      at_points(1, p) = list%points(p)%gap%value + list%points(p)%left%value
       at_points(2, p) = slips(p)%value
     end do
     call grip_nodes(contact, memory, list, at_points, grips)
@@ -114,7 +114,8 @@ contains
       do p = list%first(segments(k)), list%last(segments(k))
         associate (point => list%points(p), slope => grip%traction%slope)
           share = nodal_share(point, k)
-          change = share*(slope(1)*(point%gap + (-grip%gap)) + slope(2)*(slips(p) + (-grip%slip)))
+          change = share*(slope(1)*(point%gap + point%left + (-grip%gap)) &
+            + slope(2)*(slips(p) + (-grip%slip)))
           call add_to_row(pattern, point, change%slope)
           call add_to_column(pattern, point, 0.0_wp, share%value)
         end associate

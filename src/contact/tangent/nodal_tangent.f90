@@ -72,7 +72,7 @@ contains
     integer :: p, node
 
     do p = 1, list%n
-      gaps(p) = list%points(p)%gap%value
+      gaps(p) = list%points(p)%gap%value + list%points(p)%left%value
     end do
     call average(memory, list, gaps, moment, content)
     eased = eased_moment(memory, moment, content)
@@ -164,7 +164,7 @@ contains
       do p = list%first(segments(k)), list%last(segments(k))
         associate (point => list%points(p))
           share = nodal_share(point, k)
-          change = share*(point%gap + (-gap))
+          change = share*(point%gap + point%left + (-gap))
           call add_to_row(pattern, point, change%slope)
           call add_to_column(pattern, point, share%value, 0.0_wp)
         end associate

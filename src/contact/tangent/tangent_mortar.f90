@@ -5,6 +5,7 @@ module tangent_mortar_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
+  use entry_offset_m, only : has_offsets, add_offsets
   use foot_m, only : foot_t, near_foot
   use kinds_m, only : wp
   use nodal_grip_m, only : add_nodal_grip
@@ -15,7 +16,7 @@ module tangent_mortar_m
   use place_segmented_mortar_m, only : gauss_xi, least_cut
   use sparse_m, only : sparse_t
   use tips_m, only : has_folds
-  use variation_m, only : varied_point_t, spot_foot, put_foot, length_between, take_overlap, &
+  use variation_m, only : varied_point_t, between, spot_foot, put_foot, length_between, take_overlap, &
     overlap_ends, vary_share, vary_radius
   implicit none
   private
@@ -31,8 +32,11 @@ contains
     type(sparse_t), intent(inout) :: matrix
     type(varied_list_t) :: list
     type(varied_point_t) :: point
+    real(wp) :: offsets(memory%points%n)
     integer :: p
 
+    offsets = 0.0_wp
+    if (has_offsets(memory)) call add_offsets(memory, offsets)
     call start_list(list, contact%slave%n_segment, memory%points%n)
     do p = 1, memory%points%n
       associate (points => memory%points)
@@ -40,6 +44,7 @@ contains
         point%slave_xi = constant(points%slave_weights(2, p))
         call put_foot(point, spot_foot(memory%places, point, 3, points%master_weights(2, p), &
           points%gap(p), memory%closed_gap))
+        point%left = constant(offsets(p))
         point%area = length_between(memory%places, point%nodes, 1, 2) &
           *vary_share(memory%places, point%nodes, 1, point%normal)
         if (contact%is_round) point%area = point%area &
@@ -118,9 +123,11 @@ contains
       point%slave_xi = xi(1) + gauss_xi(q)*(xi(2) - xi(1))
       call put_foot(point, spot_foot(memory%places, point, 3, foot%xi, foot%gap, &
         memory%closed_gap))
+      if (has_offsets(memory)) point%left = between(memory%slave_tracking%offset(ends), &
+        point%slave_xi)
       share = vary_share(memory%places, point%nodes, 1, point%normal)
       if (.not. share%value > 0.0_wp) cycle
-      point%area = 0.5_wp*share*length
+      point%area = (0.5_wp*overlaps(k)%part)*(share*length)
       if (contact%is_round) point%area = point%area &
         *vary_radius(memory%places, point%nodes, 1, 2, point%slave_xi)
       call append_point(list, s, point)
@@ -164,6 +171,8 @@ contains
         call put_foot(point, spot_foot(memory%places, point, 3, &
           memory%points%master_weights(2, at_end(k)), memory%points%gap(at_end(k)), &
           memory%closed_gap))
+        if (has_offsets(memory)) &
+          point%left = constant(memory%slave_tracking%offset(ends(k)))
         call append_point(list, s, point)
       end do
       point = list%points(p)

@@ -113,7 +113,7 @@ contains
     point%area = halves(1)*shares(1) + halves(2)*shares(2)
     if (max(shares(1)%value, shares(2)%value) >= 1.0_wp .or. any(point%nodes(5:6) == 0)) return
     k = merge(1, 2, shares(1)%value >= shares(2)%value)
-    if (along(1)%value > 0.0_wp .and. along(2)%value < 0.0_wp) &
+    if (along(1)%value < 0.0_wp .and. along(2)%value > 0.0_wp) &
       point%area = point%area + (1.0_wp - shares(k))*(halves(1) + halves(2))
   end subroutine vary_tributary
 

@@ -88,7 +88,8 @@ contains
     is_whole = contact%strict .or. overlaps(k)%share >= 1.0_wp
     call take_overlap(memory, contact%slave%segments(:, s), overlaps, k, is_whole, point)
     xi = overlap_ends(memory%places, point%nodes, [overlaps(k)%low, overlaps(k)%high])
-    half = 0.5_wp*((xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2))
+    half = (0.5_wp*overlaps(k)%part)*((xi(2) - xi(1))*length_between(memory%places, point%nodes, &
+      1, 2))
     if (.not. is_whole) then
       point%nodes(7:8) = memory%n_slave + contact%master%segments(:, overlaps(k)%master)
       t = apart(memory%places, point%nodes, 8, 7)

@@ -14,7 +14,7 @@ module variation_m
   use radii_m, only : radius_of
   implicit none
   private
-  public :: varied_point_t, varied_foot_t, n_slot, round_off, apart, length_between, project, &
+  public :: between, varied_point_t, varied_foot_t, n_slot, round_off, apart, length_between, project, &
     spot_foot, put_foot, see_from, take_overlap, overlap_ends, vary_share, share_of, &
     side_share_of, cosine_of, &
     vary_radius, vary_end_radius, vary_centroid
@@ -34,6 +34,7 @@ module variation_m
     type(dual_t) :: master_xi      !! the same of slots 3, 4
     type(dual_t) :: normal(2)
     type(dual_t) :: gap
+    type(dual_t) :: left           !! added to the gap before a law sees it: entry offset, m
     type(dual_t) :: area
   end type varied_point_t
 
@@ -138,8 +139,18 @@ contains
 
     point%master_xi = foot%xi
     point%gap = foot%gap
+    point%left = constant(0.0_wp)
     point%normal = foot%normal
   end subroutine put_foot
+
+  !> A value at xi between those of both nodes of a segment.
+  pure function between(ends, xi) result(value)
+    real(wp), intent(in) :: ends(2)
+    type(dual_t), intent(in) :: xi
+    type(dual_t) :: value
+
+    value = (ends(2) - ends(1))*xi + ends(1)
+  end function between
 
   !> Put a slave segment into slots 1, 2 and the nodes at the breakpoints of an overlap of it into
   !> slots 5 and 6; where there is room, those that the overlaps before and behind it have there

@@ -5,6 +5,7 @@
 !> models whose points may fail.
 module element_losses_m
   use block_state_m, only : stays
+  use contact_preparation_m, only : prepare_contact
   use contacts_m, only : contact_t
   use element_state_m, only : settle_erosion, count_points, first_failed
   use exposed_quads_m, only : find_exposed
@@ -14,7 +15,7 @@ module element_losses_m
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
   use node_motion_m, only : leap_t, find_factors
-  use renewal_m, only : renew_contact, close_contact, reshape_contact
+  use renewal_m, only : renew_contact, close_contact
   use start_m, only : weigh_contacts
   use state_m, only : state_t
   use surface_building_m, only : surface_left
@@ -268,7 +269,7 @@ contains
     call expose_elements(model, is_left, state)
     do i = 1, size(state%outlines)
       call take_left(model, i, is_left, state%outlines(i))
-      call reshape_contact(state%outlines(i), model, state%contacts(i))
+      call prepare_contact(state%outlines(i), model, state%contacts(i))
     end do
   end subroutine resume_outlines
 

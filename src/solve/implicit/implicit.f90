@@ -11,6 +11,7 @@ module implicit_m
   use contacts_m, only : breaks
   use controls_m, only : boundary_motion, group_nodes
   use cut_forces_m, only : keep_cut_chunks
+  use entry_offset_m, only : has_offsets, update_offsets
   use element_mass_m, only : mass_times, sum_part_motion
   use element_state_m, only : add_part_energies
   use equations_m, only : number_equations, prescribe_step, equations_t
@@ -231,6 +232,8 @@ contains
     do i = 1, size(model%contacts)
       call count_step(attempt%motion, state%contacts(i), attempt%contacts(i))
       call measure_springs(attempt%contacts(i))
+      if (has_offsets(attempt%contacts(i))) &
+        call update_offsets(model%contacts(i), attempt%contacts(i))
     end do
     if (step%is_dynamic) then
       acceleration = new_acceleration(state, step, attempt)

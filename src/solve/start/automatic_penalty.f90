@@ -10,8 +10,8 @@
 module automatic_penalty_m
   use contact_log_m, only : penalty_text
   use contact_penalty_m, only : spread_of_stiffness, has_default_penalty
-  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
-    binding_bound, fitting_scale
+  use contact_step_limit_m, only : spring_bound_t, bound_springs, bound_each, stable_step, &
+    closed_step, binding_bound, fitting_scale
   use contact_state_m, only : contact_state_t
   use contacts_m, only : is_tied, penalty_factor, penalty_share
   use controls_m, only : contact_step_free, contact_step_warns
@@ -155,18 +155,15 @@ contains
     real(wp), intent(in) :: share(:)
     real(wp), intent(out) :: factor(:)
     type(spring_bound_t) :: bounds(size(factor))
-    real(wp) :: alone(size(factor)), low, high
+    real(wp) :: whole(size(factor)), low, high
     integer :: i
 
+    whole = 0.0_wp
+    where (share > 0.0_wp) whole = 1.0_wp/share
+    call bound_each(model%contacts, state%contact_mass, state%contacts, whole, bounds)
     factor = 1.0_wp
-    do i = 1, size(factor)
-      if (.not. share(i) > 0.0_wp) cycle
-      alone = 0.0_wp
-      alone(i) = 1.0_wp/share(i)
-      call bound_springs(model%contacts, state%contact_mass, state%contacts, alone, bounds)
-      factor(i) = fitting_scale(steps(1), steps(2), bounds(i))
-      if (model%contacts(i)%penalty_unit == penalty_factor) factor(i) = min(factor(i), 1.0_wp)
-    end do
+    where (share > 0.0_wp) factor = fitting_scale(steps(1), steps(2), bounds)
+    where (model%contacts%penalty_unit == penalty_factor) factor = min(factor, 1.0_wp)
     if (fits(factor)) return
     low = 0.0_wp
     high = 1.0_wp

@@ -7,12 +7,13 @@ module contact_tangents_m
   use surfaces_m, only : surface_t, link_segments
   implicit none
   private
-  public :: n_place, places, make_place, valley, needle, solve_dense
+  public :: n_place, first_closed, places, make_place, valley, needle, solve_dense
 
-  integer, parameter :: n_place = 13, valley = 1, needle = 6
+  integer, parameter :: n_place = 20, valley = 1, needle = 6, first_closed = 14
   character(16), parameter :: places(n_place) = [character(16) :: 'valley', 'ridge', 'overhang', &
     'one end', 'steep tip', 'needle', 'disc on plane', 'plane on disc', 'disc in ring', 'two chains', &
-    'overlapped', 'chain at end', 'backwards']
+    'overlapped', 'chain at end', 'backwards', 'block on block', 'block at 30', 'block at 45', 'face on tip', &
+    'over an edge', 'two blocks', 'wedge']
 
 contains
 
@@ -80,15 +81,60 @@ contains
       ! The last slave segment runs as the master does and faces away from it, below its surface for a part.
       slave = reshape([0.1_wp, 0.0_wp, 0.5_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.7_wp, 0.03_wp], [2, 4])
       master = line([1.3_wp, 0.0_wp], [-0.3_wp, 0.0_wp], 7)
+    case ('block on block')
+      slave = block([0.5_wp, 0.5_wp], 1.0_wp, 0.03_wp, 3)
+      master = block([0.45_wp, -0.75_wp], 1.5_wp, 0.0_wp, 5)
+    case ('block at 30')
+      slave = block([0.5_wp, 0.683_wp], 1.0_wp, 0.53_wp, 3)
+      master = block([0.45_wp, -0.75_wp], 1.5_wp, 0.0_wp, 5)
+      down = 0.11_wp
+    case ('block at 45')
+      slave = block([0.5_wp, 0.7071_wp], 1.0_wp, 0.8_wp, 3)
+      master = block([0.45_wp, -0.75_wp], 1.5_wp, 0.0_wp, 5)
+      down = 0.14_wp
+    case ('face on tip')
+      slave = block([0.64_wp, 0.75_wp], 1.5_wp, 0.0_wp, 5)
+      master = block([0.5_wp, -0.7071_wp], 1.0_wp, 0.75_wp, 3)
+      down = 0.14_wp
+    case ('over an edge')
+      slave = block([0.0_wp, 0.5_wp], 1.0_wp, 0.0_wp, 3)
+      master = block([0.83_wp, -0.75_wp], 1.5_wp, 0.02_wp, 4)
+    case ('two blocks')
+      slave = block([0.5_wp, 0.5_wp], 1.0_wp, 0.0_wp, 2)
+      master = block([-0.07_wp, -0.5_wp], 1.0_wp, 0.0_wp, 3)
+    case ('wedge')
+      slave = reshape([0.52_wp, 0.0_wp, 0.67_wp, 0.34_wp, 0.8_wp, 0.66_wp, 0.5_wp, 0.7_wp, 0.22_wp, 0.66_wp, &
+        0.36_wp, 0.31_wp], [2, 6])
+      master = block([0.45_wp, -0.75_wp], 1.5_wp, 0.0_wp, 5)
+      down = 0.14_wp
     end select
-    call make_problem(problem, slave, master, 0.3_wp, slave_is_closed=k == 7 .or. k == 9, &
-      master_is_closed=k == 8 .or. k == 9)
+    call make_problem(problem, slave, master, 0.3_wp, slave_is_closed=k == 7 .or. k == 9 .or. k >= first_closed, &
+      master_is_closed=k == 8 .or. k == 9 .or. k >= first_closed)
     if (k > 9 .and. k < 13) call cut_chain(problem%contact%master, 4)
     n = size(slave, 2)
     do i = 1, n
       problem%motion(1:2, i) = [0.0_wp, -down] + 0.05_wp*down*[sin(3.0_wp*i), cos(5.0_wp*i)]
     end do
   end subroutine make_place
+
+  !> Nodes of a square block, counter-clockwise from its lower left corner, turned by an angle about its centre.
+  pure function block(centre, side, angle, n) result(x)
+    real(wp), intent(in) :: centre(2), side, angle
+    integer, intent(in) :: n !! segments of a side
+    real(wp) :: x(2, 4*n)
+    real(wp) :: along, part(2), swap
+    integer :: i, k
+
+    do i = 1, n
+      along = (i - 1.0_wp)/n - 0.5_wp
+      part = [along, -0.5_wp]
+      do k = 0, 3
+        x(:, k*n + i) = centre + side*[cos(angle)*part(1) - sin(angle)*part(2), sin(angle)*part(1) + cos(angle)*part(2)]
+        swap = part(1)
+        part = [-part(2), swap]
+      end do
+    end do
+  end function block
 
   !> Take a segment out of a surface.
   subroutine cut_chain(surface, segment)

@@ -7,9 +7,10 @@ import re
 import numpy as np
 
 from contact_types import TYPES
+from history import entry_offsets
 from reference import Rule
 from scenes import Pair, Scene, random_pair, random_wedge
-from sliding import STRETCHES, largest_jump, masters, rigid_line, sliding_scene
+from sliding import STRETCHES, TIME_STEP, largest_jump, masters, paths, rigid_line, sliding_scene
 
 PENALTY = 1.0e5
 POINTS = range(1, 11)
@@ -84,6 +85,10 @@ def designed_pairs():
              closed=True),
         Pair("closed, slave slides on by one segment", line(np.linspace(0.8, 1.8, 6), -0.002),
              line(seven, 0.0), 2.5, closed=True),
+        Pair("closed, as deep as two segments", line(np.linspace(0.02, 0.93, 4), -0.1),
+             line(np.linspace(0, 1, 21), 0.0), 1.7, closed=True),
+        Pair("closed, overhanging, as deep as two segments", line(np.linspace(-0.3, 1.4, 5), -0.1),
+             line(np.linspace(0, 1, 21), 0.0), -0.7, closed=True),
         Pair("closed, blunt wedge on a plate", line(np.linspace(0, 1, 7), wedge(0.9)), line(seven, 0.0),
              0.9, closed=True),
         Pair("closed, sharp wedge on a plate", line(np.linspace(0, 1, 7), wedge(2.2)), line(seven, 0.0),
@@ -224,9 +229,12 @@ def sliding(run):
     result = run.program(scene.deck, name="sliding")
     found, moved = (result.points(name)[..., :2] for name in ("contact_force", "displacement"))
     verdicts = Verdicts()
-    for state, time in list(enumerate(result.times))[::1 if run.is_full else 3]:
-        for interface in scene.interfaces:
-            error, size, _ = interface.compare(scene.nodes, found[state], moved[state])
+    states = list(enumerate(result.times))[::1 if run.is_full else 3]
+    for interface in scene.interfaces:
+        offsets = entry_offsets(interface.rule, *paths(interface.pair))
+        for state, time in states:
+            error, size, _ = interface.compare(scene.nodes, found[state], moved[state],
+                                               offsets[round(time / TIME_STEP)])
             if error > TOLERANCE:
                 print(f"      differs: {interface.pair.name}: {label(interface.rule)} "
                       f"at {time:.4g}: {error:.3g}")

@@ -6,44 +6,50 @@ looking at all of them, nothing is tracked, ordered or kept. Positions are hande
 point near the interface, so that they carry no large common part.
 
 A surface is walked with its body on the left; the outward normal of a segment is (t_y, -t_x).
-Whole outlines are in contact by runs of segments that face each other (runs.py).
+Closed boundaries are in contact where they are opposed; entry offsets come from history.py.
 """
 import functools
 from dataclasses import dataclass
 
 import numpy as np
 
-OVERSHOOT = 0.01      # of the end segment of an open chain: still projected, not clamped
-SIDE_ON, FACE_ON = -0.1, -0.5  # slave normal . master normal: no facing above, full facing below
+OVERSHOOT = 0.01      # of the end segment of an open surface: still projected, not clamped
+SIDE_ON, FACE_ON = -0.1, -0.5  # slave normal . master normal: not opposed above, fully below
+LESS, MUCH_LESS = 0.1, 0.5     # cosine of a side less the one of its neighbour at a corner
+AVERTED = 0.25        # cosine of normals from which on a segment is no candidate
+BETWEEN = 0.17        # sine of the angle between a direction and those that it lies between
 SHALLOW = 0.25        # of the segment: how deep a point may be to change sides at a sharp corner
-ON_NODE = 1.0e-9     # of the segment: a foot this close to a node stands on it
+ON_NODE = 1.0e-9     # of the segment: a projection this close to a node stands on it
 TINY = 1.0e-300
+MOST_POINTS = 10     # of a segment
 SHARP = np.cos(np.radians(60.0))  # a projection does not walk across corners that turn more
+
+
+def cross(a, b):
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def step(value, low, high):
+    """Cubic step from 0 at `low` to 1 at `high`."""
+    share = np.clip((value - low) / (high - low), 0.0, 1.0)
+    return share * share * (3.0 - 2.0 * share)
 
 
 class Chain:
     """Nodes (n, 2) in walking order and whether the last is joined to the first.
 
-    `taken`: the segments that take part, of all; `cuts`: those of them that the one before does not
-    go on to. Together they are runs: chains of their own, with the nodes of the whole.
-    `is_round`: axisymmetric, x is the radius: lengths weigh with it.
+    `thick`: of the body behind each segment (closed boundaries). `is_round`: axisymmetric, x is the
+    radius: lengths weigh with it.
     """
 
-    def __init__(self, x, closed=False, taken=None, cuts=(), is_round=False):
+    def __init__(self, x, closed=False, thick=None, is_round=False):
         self.x = np.asarray(x, dtype=float)
         self.closed = closed
         self.is_round = is_round
         n = len(self.x)
         first = np.arange(n if closed else n - 1)
-        taken = first if taken is None else np.asarray(taken, dtype=int)
-        self.nodes = np.stack([taken, (taken + 1) % n], axis=1)
-        at = {int(segment): k for k, segment in enumerate(taken)}
-        follows = [at.get((s + 1) % n if closed else s + 1) for s in taken.tolist()]
-        self.after = [None if k is None or taken[k] in cuts else k for k in follows]
-        self.behind = [None] * len(taken)
-        for k, other in enumerate(self.after):
-            if other is not None:
-                self.behind[other] = k
+        self.nodes = np.stack([first, (first + 1) % n], axis=1)
+        self.thick = np.full(len(first), np.inf) if thick is None else np.asarray(thick)
         self.start = self.x[self.nodes[:, 0]]
         edge = self.x[self.nodes[:, 1]] - self.start
         self.length = np.hypot(edge[:, 0], edge[:, 1])
@@ -55,36 +61,23 @@ class Chain:
 
     def next(self, segment, step):
         """The neighbour segment in the walking sense (step 1) or against it (-1), or None."""
-        return self.after[segment] if step > 0 else self.behind[segment]
+        other = segment + step
+        return other % len(self) if self.closed else other if 0 <= other < len(self) else None
 
-    def run(self, segment):
-        """The segments of the run that this one is of, in walking order; a closed one from it on."""
-        first = segment
-        while self.behind[first] is not None and self.behind[first] != segment:
-            first = self.behind[first]
-        if self.behind[first] == segment:
-            first = segment
-        found = [first]
-        while self.after[found[-1]] not in (None, first):
-            found.append(self.after[found[-1]])
-        return found
+    def sides(self, node):
+        """The segments before and after a node; None at an open end."""
+        after = node if node < len(self) else None
+        before = node - 1 if node > 0 else len(self) - 1 if self.closed else None
+        return before, after
+
+    def is_sharp(self, one, two):
+        return np.dot(self.tangent[one], self.tangent[two]) < SHARP
 
     def nearest(self, point):
         """The segment nearest to a point."""
         away = point - self.start
         at = np.clip(np.sum(away * self.tangent, axis=1), 0.0, self.length)
         return int(np.argmin(np.linalg.norm(away - at[:, None] * self.tangent, axis=1)))
-
-    def used(self):
-        """The nodes that take part."""
-        return np.unique(self.nodes)
-
-    def chords(self):
-        """Direction of the surface at each node: from the node before to the node after."""
-        chord = np.zeros(self.x.shape)
-        for side in (0, 1):
-            np.add.at(chord, self.nodes[:, side], self.length[:, None] * self.tangent)
-        return chord / np.maximum(np.hypot(chord[:, 0], chord[:, 1]), TINY)[:, None]
 
     def radius(self, k, at):
         """In axisymmetry; 1 in the plane."""
@@ -146,72 +139,130 @@ class Foot:
         return self.segment if other is None else other
 
 
-def project(points, chain, along):
-    """Closest-point projections (Foot or None) of all points, each on the whole chain.
+@dataclass
+class Own:
+    """Normals of the surface that a point is on: of its segment, or of both at a node."""
+    normals: list        # before and after
+    is_node: bool = True
 
-    along: direction of the points' own surface, one for all or one per point.
-    """
-    points = np.atleast_2d(points)
-    along = np.asarray(along)
-    if along.ndim == 1:
-        along = [along] * len(points)
-    if not len(chain):
-        return [None] * len(points)
-    away = points[:, None, :] - chain.start[None, :, :]
-    at = np.sum(away * chain.tangent, axis=2) / chain.length
-    height = np.sum(away * chain.normal, axis=2)
-    beyond = (at - np.minimum(np.maximum(at, 0.0), 1.0)) * chain.length
-    nearest = np.argmin(np.hypot(beyond, height), axis=1)
+    def cosines(self, normals):
+        """Of the segment that is most opposed to each of some faces."""
+        return np.min(normals @ np.array([own for own in self.normals if own is not None]).T, axis=1)
+
+    def cosine(self, normal):
+        return self.cosines(normal[None])[0]
+
+    def is_opposed(self, normal):
+        """To a face: within 60 degrees (between nodes: 84) of one of the segments, or between both of a
+        convex vertex; at an open end the tangent stands for the missing normal."""
+        if self.cosine(normal) < (FACE_ON if self.is_node else SIDE_ON):
+            return True
+        if not self.is_node:
+            return False
+        one, two = self.normals
+        one = np.array([-two[1], two[0]]) * -1.0 if one is None else one
+        two = np.array([-one[1], one[0]]) if two is None else two
+        return (cross(one, two) > 0.0 and cross(one, -normal) > BETWEEN
+                and cross(-normal, two) > BETWEEN)
+
+
+def of_node(chain, node):
+    return Own([None if s is None else chain.normal[s] for s in chain.sides(node)])
+
+
+def of_segment(chain, k):
+    return Own([chain.normal[k]], is_node=False)
+
+
+def project(points, chain, owns, averted=AVERTED):
+    """Closest-point projections (Foot or None) of all points, each on all segments that its own
+    surface (one Own for each point) may face."""
     feet = []
-    for i, k in enumerate(nearest):
-        edge = facing_edge(chain, int(k), at[i], height[i], along[i])
-        feet.append(one_foot(points[i], chain, int(k), at[i], height[i]) if edge is None else
-                    Foot(edge, at[i, edge], height[i, edge], chain.normal[edge]))
+    for point, own in zip(np.atleast_2d(points), owns):
+        away = point - chain.start
+        at = np.sum(away * chain.tangent, axis=1) / chain.length
+        height = np.sum(away * chain.normal, axis=1)
+        beyond = (at - np.clip(at, 0.0, 1.0)) * chain.length
+        far = np.hypot(beyond, height)
+        far[own.cosines(chain.normal) >= averted] = np.inf
+        if not np.isfinite(far).any():
+            feet.append(None)
+            continue
+        feet.append(project_one(point, chain, own, int(np.argmin(far)), at, height))
     return feet
 
 
-def facing_edge(chain, k, at, height, along):
+def project_one(point, chain, own, k, at, height):
+    edge = opposed_edge(chain, k, at, height, own)
+    foot = Foot(edge, at[edge], height[edge], chain.normal[edge]) if edge is not None else \
+        one_foot(point, chain, k, at, height)
+    if foot and foot.gap < 0.0 and not (own.is_opposed(foot.normal) and
+                                        foot.gap > -chain.thick[foot.segment]):
+        behind = [s for s in range(len(chain)) if 0.0 <= at[s] <= 1.0 and own.is_opposed(chain.normal[s])
+                  and -chain.thick[s] < height[s] < 0.0]
+        best = max(behind, key=lambda s: height[s], default=None)
+        return None if best is None else Foot(best, at[best], height[best], chain.normal[best])
+    return foot
+
+
+def opposed_edge(chain, k, at, height, own):
     """At a sharp corner (the edge of a block): the segment, other than the closest one, that the
     point is under and that its own surface faces more; or None. Without this a corner that lies
     flush on a corner would belong to the side of the block by a hair."""
-    if OVERSHOOT < at[k] < 1.0 - OVERSHOOT and np.dot(along, chain.tangent[k]) < 0.0:
+    if OVERSHOOT < at[k] < 1.0 - OVERSHOOT and own.is_opposed(chain.normal[k]):
         return None
     found = [other for other in (chain.next(k, -1), chain.next(k, 1)) if other is not None
-             and np.dot(chain.tangent[k], chain.tangent[other]) < SHARP
-             and np.dot(along, chain.tangent[other]) <= SIDE_ON]
+             and chain.is_sharp(k, other) and own.is_opposed(chain.normal[other])]
     found = [s for s in (k, *found) if -OVERSHOOT <= at[s] <= 1.0 + OVERSHOOT]
-    best = min(found, key=lambda s: np.dot(along, chain.tangent[s]), default=k)
+    best = min(found, key=lambda s: own.cosine(chain.normal[s]), default=k)
     if not (0.0 <= at[best] <= 1.0 or 0.0 <= at[k] <= 1.0):  # over neither: at the vertex
         return None
     return best if best != k and -SHALLOW * chain.length[best] < height[best] < 0.0 else None
 
 
 def one_foot(point, chain, k, at, height):
-    """The foot on segment k or its vertex, given coordinates and heights over all segments."""
+    """The projection on segment k or its vertex, given coordinates and heights over all segments."""
     if 0.0 <= at[k] <= 1.0:
         return Foot(k, at[k], height[k], chain.normal[k])
     step = 1 if at[k] > 1.0 else -1
     other = chain.next(k, step)
-    if other is None:
-        if -OVERSHOOT <= at[k] <= 1.0 + OVERSHOOT:
+    is_inside = other is not None and height[k] < 0.0 and height[other] < 0.0
+    if other is None or (chain.is_sharp(k, other) and height[k] < 0.0 and not is_inside):
+        if -OVERSHOOT <= at[k] <= 1.0 + OVERSHOOT:  # the face ends here
             return Foot(k, at[k], height[k], chain.normal[k])
-        return None
+        if other is None:
+            return None
     vertex = chain.x[chain.nodes[k, 1 if step == 1 else 0]]
     radius = point - vertex
     distance = np.hypot(*radius)
     if height[other] > height[k]:
         k, other, step = other, k, -step
-    inside = height[k] < 0.0 and height[other] < 0.0
-    gap = -distance if inside else distance
+    gap = -distance if is_inside else distance
     normal = radius / gap if distance > 0.0 else chain.normal[k]
     return Foot(k, 1.0 if step == 1 else 0.0, gap, normal)
+
+
+@dataclass
+class Offsets:
+    """Entry offsets: of the nodes of both sides, and of points between nodes, segment by segment."""
+    nodes: tuple
+    between: np.ndarray
+
+    def on_segment(self, chain, k, at):
+        first, second = self.nodes[0][chain.nodes[k]]
+        return (1.0 - at) * first + at * second
+
+
+def no_offsets(slave, master):
+    return Offsets((np.zeros(len(slave.x)), np.zeros(len(master.x))), np.zeros((len(slave), MOST_POINTS)))
 
 
 class Forces:
     """Sums of nodal forces on both sides."""
 
-    def __init__(self, slave, master):
+    def __init__(self, slave, master, offsets=None):
         self.chains = slave, master
+        self.offsets = offsets or no_offsets(slave, master)
         self.sides = np.zeros(slave.x.shape), np.zeros(master.x.shape)
 
     def at_node(self, side, node, force):
@@ -230,53 +281,79 @@ def gauss(n):
     return 0.5 * (points + 1.0), 0.5 * weights
 
 
+def facing(slave_normal, master_normal):
+    """Share of a slave segment that counts as opposed."""
+    return step(-np.dot(slave_normal, master_normal), -SIDE_ON, -FACE_ON)
+
+
+def tributary(chain, node, normal):
+    """Length (axisymmetric: its integral by the radius) of a node on a face: half of its segments; of a
+    closed boundary as far as they are opposed to the face, of the side at a corner less the more
+    its neighbour is opposed than the side itself. Where the face stands between both normals what the
+    larger share leaves of both counts too."""
+    sides = chain.sides(node)
+    halves = np.array([0.0 if s is None else chain.shares(s, 0.0, 1.0)[1 - side]
+                       for side, s in enumerate(sides)])
+    if not chain.closed:
+        return np.sum(halves)
+    normals = chain.normal[list(sides)]
+    cosines = normals @ normal
+    shares = np.array([facing(own, normal) for own in normals])
+    shares[np.argmax(cosines)] *= 1.0 - step(np.ptp(cosines), LESS, MUCH_LESS)
+    area = halves @ shares
+    if cross(normals[0], -normal) > 0.0 and cross(-normal, normals[1]) > 0.0 and np.max(shares) < 1.0:
+        area += (1.0 - np.max(shares)) * np.sum(halves)
+    return area
+
+
 def push_nodes(forces, side, stiffness):
-    """Nodes of one side on their closest segment of the other; stiffness per node."""
+    """Nodes of one side on their closest segment of the other; stiffness(node, normal)."""
     chain, other = forces.chains[side], forces.chains[1 - side]
-    used = chain.used()
-    for node, foot in zip(used, project(chain.x[used], other, chain.chords()[used])):
+    nodes = range(len(chain.x))
+    for node, foot in zip(nodes, project(chain.x, other, [of_node(chain, node) for node in nodes])):
         if foot and foot.gap < 0.0:
-            force = -stiffness[node] * foot.gap * foot.normal
+            gap = foot.gap + forces.offsets.nodes[side][node]
+            force = -stiffness(node, foot.normal) * gap * foot.normal
             forces.at_node(side, node, force)
             forces.on_segment(1 - side, foot.segment, foot.at, -force)
 
 
-def nts(slave, master, penalty):
+def nts(slave, master, penalty, offsets=None):
     """Type 1; penalty in N/m."""
-    forces = Forces(slave, master)
-    plane = Chain(slave.x, slave.closed, slave.nodes[:, 0]).competence()
-    share = np.divide(slave.competence(), plane, out=np.ones_like(plane), where=plane > 0.0)
-    push_nodes(forces, 0, penalty * share)
+    forces = Forces(slave, master, offsets)
+    plane = Chain(slave.x, slave.closed)
+    push_nodes(forces, 0, lambda *face: penalty * tributary(slave, *face) / tributary(plane, *face))
     return forces.sides
 
 
-def nts_ar(slave, master, penalty):
+def nts_ar(slave, master, penalty, offsets=None):
     """Type 2; penalty in N/m2, as in all the following."""
-    forces = Forces(slave, master)
-    push_nodes(forces, 0, penalty * slave.competence())
+    forces = Forces(slave, master, offsets)
+    push_nodes(forces, 0, lambda *face: penalty * tributary(slave, *face))
     return forces.sides
 
 
-def two_pass_ar(slave, master, penalty, penalty_back):
+def two_pass_ar(slave, master, penalty, penalty_back, offsets=None):
     """Type 3."""
-    forces = Forces(slave, master)
-    push_nodes(forces, 0, penalty * slave.competence())
-    push_nodes(forces, 1, penalty_back * master.competence())
+    forces = Forces(slave, master, offsets)
+    push_nodes(forces, 0, lambda *face: penalty * tributary(slave, *face))
+    push_nodes(forces, 1, lambda *face: penalty_back * tributary(master, *face))
     return forces.sides
 
 
-def vts_ppt(slave, master, penalty):
+def vts_ppt(slave, master, penalty, offsets=None):
     """Type 4."""
-    forces = Forces(slave, master)
+    forces = Forces(slave, master, offsets)
     for k in range(len(slave)):
         def position(at, k=k):
             return slave.start[k] + at * slave.length[k] * slave.tangent[k]
-        for half in ((0.0, 0.5), (0.5, 1.0)):
+        for q, half in enumerate(((0.0, 0.5), (0.5, 1.0))):
             at = slave.centre(k, *half)
-            foot = project(position(at), master, slave.tangent[k])[0]
+            foot = project(position(at), master, [of_segment(slave, k)])[0]
             if not foot or foot.gap >= 0.0:
                 continue
-            force = -penalty * slave.weight(k, *half) * foot.gap * foot.normal
+            gap = foot.gap + forces.offsets.between[k, q]
+            force = -penalty * slave.weight(k, *half) * gap * foot.normal
             forces.on_segment(0, k, at, force)
             ends = [walk(position(end), foot.segment, master) for end in half]
             parts = portions(master, *ends) or [(foot.segment, foot.at, 1.0)]
@@ -298,9 +375,10 @@ def walk(point, segment, chain):
         if direction and wanted != direction:  # between two neighbours: on the vertex
             return steps, segment, 0.0 if wanted == -1 else 1.0
         other = chain.next(segment, wanted)
-        if other is None and -OVERSHOOT <= at <= 1.0 + OVERSHOOT:
+        is_end = other is None or chain.is_sharp(segment, other)
+        if is_end and -OVERSHOOT <= at <= 1.0 + OVERSHOOT:
             return steps, segment, at
-        if other is None or np.dot(chain.tangent[segment], chain.tangent[other]) <= SHARP:
+        if is_end:
             return steps, segment, 1.0 if wanted == 1 else 0.0
         segment, direction, steps = other, wanted, steps + wanted
 
@@ -317,125 +395,115 @@ def portions(chain, one, two):
     return found
 
 
-def pieces(slave, master, k, feet, strict=False):
-    """Cuts of slave segment k by the master nodes between the feet of its two ends.
+def overlaps(slave, master, k, feet, strict=False):
+    """Overlaps of slave segment k with the master segments that are opposed to it: both nodes of each
+    projected on it and clipped.
 
-    The two chains are walked in opposite senses. An end whose foot is a master node has this node
-    between it and the other end. Beyond the end of a master chain there is no piece; where the two
-    ends are nearest to two chains those of either count. Returns (left, right, master node at the left or None, at the
-    right or None, master segment).
+    Nothing beyond the master segments that its ends are projected on; these reach to its ends. An
+    end whose projection is a master node has this node between it and the other end. Returns (left,
+    right, master node at the left or None, at the right or None, master segment, part that counts of
+    sides of corners).
     """
-    first, second = (feet[node] for node in slave.nodes[k])
-    if strict and not (first and second):
-        return [(0.0, 1.0, None, None, None)]
-    if not len(master):
-        return []
-    high, low = first.after(master) if first else None, second.before(master) if second else None
-    if high is None:
-        high = master.nearest(slave.x[slave.nodes[k, 0]])
-    if low is None:
-        low = master.nearest(slave.x[slave.nodes[k, 1]])
-    run, far = master.run(high), master.run(low)
-    starts, ends = first is not None, second is not None
-    cuts = Cuts(slave, master, k)
-    if low in run:
-        cuts.walk(way_back(master, run, high if starts else None, low if ends else None), starts, ends)
-    else:
-        cuts.walk(way_back(master, run, high if starts else None, None), starts, False)
-        cuts.walk(way_back(master, far, None, low if ends else None), False, ends)
-    return cuts.found
+    ends = [end_foot(slave, master, k, node, feet[node]) for node in slave.nodes[k]]
+    if strict and None in ends:
+        faces = [foot.normal for foot in (feet[node] for node in slave.nodes[k]) if foot and foot.gap < 0.0]
+        is_opposed = any(np.dot(slave.normal[k], normal) < SIDE_ON for normal in faces)
+        return [(0.0, 1.0, None, None, None, 1.0)] if is_opposed else []
+    first, last = ends[0] and ends[0].after(master), ends[1] and ends[1].before(master)
+    touched = {foot.segment for foot in (feet[node] for node in slave.nodes[k]) if foot and foot.gap < 0.0}
+    found = []
+    for m in range(len(master)):
+        if np.dot(slave.normal[k], master.normal[m]) >= SIDE_ON and m not in (first, last):
+            continue
+        if is_past(master, first, m, 1) or is_past(master, last, m, -1):
+            continue
+        nodes = master.nodes[m, ::-1]
+        away = master.x[nodes] - slave.start[k]
+        at, gap = away @ slave.tangent[k] / slave.length[k], away @ slave.normal[k]
+        low, high = np.clip(at, 0.0, 1.0)
+        left, right = nodes[0] if 0.0 < low else None, nodes[1] if high < 1.0 else None
+        if m == first:
+            low, left = 0.0, None
+        if m == last:
+            high, right = 1.0, None
+        if not low < high:
+            continue
+        middle = np.interp(0.5 * (low + high), at, gap) if at[0] < at[1] else np.mean(gap)
+        if middle < -0.75 * master.thick[m] and m not in touched:
+            continue
+        part = side_part(slave, k, master.normal[m]) * side_part(master, m, slave.normal[k])
+        if part > 0.0:
+            found.append((low, high, left, right, m, part))
+    return sorted(found, key=lambda overlap: overlap[:2])
 
 
-def way_back(master, run, high, low):
-    """Segments of a run from `high` back to `low` (None: its end), of a closed one the shorter way;
-    none where slave and master run along with each other."""
-    closed = master.next(run[-1], 1) == run[0] and len(run) > 1
-    high = len(run) - 1 if high is None else run.index(high)
-    low = 0 if low is None else run.index(low)
-    if closed and high - low < -0.5 * len(run):
-        high += len(run)
-    if closed and high - low > 0.5 * len(run):
-        low += len(run)
-    return [run[index % len(run)] for index in range(high, low - 1, -1)]
+def side_part(chain, k, normal):
+    """How much of segment k of a closed boundary counts beside segments next to it at convex corners
+    that are opposed to a face so much more."""
+    part = 1.0
+    for way in (-1, 1) if chain.closed else ():
+        other = chain.next(k, way)
+        if cross(chain.normal[k], chain.normal[other]) * way > 0.0:
+            part *= 1.0 - step((chain.normal[k] - chain.normal[other]) @ normal, LESS, MUCH_LESS)
+    return part
 
 
-class Cuts:
-    """Pieces of slave segment k, met on the way back along a master chain."""
-
-    def __init__(self, slave, master, k):
-        self.slave, self.master, self.k = slave, master, k
-        self.left, self.left_node, self.found = 0.0, None, []
-
-    def at(self, node):
-        away = self.master.x[node] - self.slave.start[self.k]
-        return np.dot(away, self.slave.tangent[self.k]) / self.slave.length[self.k]
-
-    def cut(self, at, node):
-        if at > self.left:
-            self.left, self.left_node = at, node
-
-    def walk(self, way, starts, ends):
-        """`starts`, `ends`: the first foot is on the first segment of the way, the second one on
-        the last; otherwise the chain ends there."""
-        if way and not starts:
-            node = self.master.nodes[way[0], 1]
-            if self.at(node) >= 1.0:
-                return
-            self.cut(self.at(node), node)
-        for segment in way:
-            if ends and segment == way[-1]:
-                self.found.append((self.left, 1.0, self.left_node, None, segment))
-                return
-            node = self.master.nodes[segment, 0]
-            at = self.at(node)
-            if at > self.left:
-                self.found.append((self.left, min(at, 1.0), self.left_node,
-                                   node if at < 1.0 else None, segment))
-            if at >= 1.0:
-                return
-            self.cut(at, node)
+def end_foot(slave, master, k, node, foot):
+    """Projection of an end of slave segment k: the one that it is in contact with, or the closest on
+    what is opposed to the segment; or None, which it is beside a sharp corner."""
+    if foot and foot.gap < 0.0:
+        return foot
+    foot = project(slave.x[node], master, [of_segment(slave, k)], SIDE_ON)[0]
+    if foot and foot.at in (0.0, 1.0):
+        other = master.next(foot.segment, 1 if foot.at else -1)
+        if other is not None and master.is_sharp(foot.segment, other):
+            return None
+    return foot
 
 
-def facing(slave_normal, master_normal):
-    """Share of a slave segment that counts as facing: a cubic step between the two cosines."""
-    share = np.clip((SIDE_ON - np.dot(slave_normal, master_normal)) / (SIDE_ON - FACE_ON), 0.0, 1.0)
-    return share * share * (3.0 - 2.0 * share)
+def is_past(master, end, m, step):
+    """Whether segment m lies beyond the segment that an end of a slave segment is projected on, in
+    walking order or against it, the shorter way round."""
+    if end is None or end == m:
+        return False
+    if not master.closed:
+        return (m - end) * step > 0
+    n = len(master)
+    return (m - end) * step % n < (end - m) * step % n
 
 
-def nts_mar(slave, master, penalty, strict=False):
-    """Type 5, with the extension for slave chains that overhang the master unless strict."""
-    forces = Forces(slave, master)
-    feet = project(slave.x, master, slave.chords())
+def nts_mar(slave, master, penalty, strict=False, offsets=None):
+    """Type 5, with the extension for slave surfaces that overhang the master unless strict."""
+    forces = Forces(slave, master, offsets)
+    feet = project(slave.x, master, [of_node(slave, node) for node in range(len(slave.x))])
     weight = np.zeros(len(slave.x))
     extra = {}
     for k in range(len(slave)):
-        for left, right, left_node, right_node, segment in pieces(slave, master, k, feet, strict):
-            share = 1.0 if strict else facing(slave.normal[k], master.normal[segment])
+        for left, right, left_node, right_node, segment, part in overlaps(slave, master, k, feet, strict):
+            share = part * (1.0 if strict else facing(slave.normal[k], master.normal[segment]))
             shares = slave.shares(k, left, right)
             for end, node in enumerate((left_node, right_node)):
                 if node is not None:
                     extra[k, node] = extra.get((k, node), 0.0) + share * shares[end]
                 else:
                     weight[slave.nodes[k, end]] += share * shares[end]
-    used = set(slave.used().tolist())
     for node, foot in enumerate(feet):
-        if node not in used:
+        if not foot or foot.gap >= 0.0:
             continue
-        beside = [k for k in range(len(slave)) if node in slave.nodes[k]]
-        if foot and weight[node] == 0.0 and not any(facing(slave.normal[k], foot.normal) > 0.0
-                                                    for k in beside):
+        if weight[node] == 0.0 and not any(s is not None and facing(slave.normal[s], foot.normal) > 0.0
+                                           for s in slave.sides(node)):
             weight[node] = slave.competence()[node]
-        if foot and foot.gap < 0.0:
-            force = -penalty * weight[node] * foot.gap * foot.normal
-            forces.at_node(0, node, force)
-            forces.on_segment(1, foot.segment, foot.at, -force)
+        gap = foot.gap + forces.offsets.nodes[0][node]
+        force = -penalty * weight[node] * gap * foot.normal
+        forces.at_node(0, node, force)
+        forces.on_segment(1, foot.segment, foot.at, -force)
     for (k, node), w in extra.items():
         away = master.x[node] - slave.start[k]
         gap = np.dot(away, slave.normal[k])
+        at = np.dot(away, slave.tangent[k]) / slave.length[k]
         if gap < 0.0:
-            force = -penalty * w * gap * slave.normal[k]
+            force = -penalty * w * min(0.0, gap + forces.offsets.on_segment(slave, k, at)) * slave.normal[k]
             forces.at_node(1, node, force)
-            at = np.dot(away, slave.tangent[k]) / slave.length[k]
             forces.on_segment(0, k, at, -force)
     return forces.sides
 
@@ -454,21 +522,25 @@ def piece_foot(point, chain, piece, foot):
     return foot
 
 
-def nodal_pressure(slave, master, penalty, spots):
+def nodal_pressure(slave, master, penalty, spots, offsets=None):
     """Types 6 and 7 from integration points: slave segment, coordinate, length weight, and the
-    master segment of the piece for type 7 (None for type 6)."""
-    forces = Forces(slave, master)
+    master segment of the overlap for type 7 (None for type 6)."""
+    forces = Forces(slave, master, offsets)
     where = [slave.start[k] + at * slave.length[k] * slave.tangent[k] for k, at, _, _ in spots]
-    feet = project(where, master, [slave.tangent[k] for k, _, _, _ in spots]) if spots else []
+    feet = project(where, master, [of_segment(slave, k) for k, _, _, _ in spots]) if spots else []
     feet = [piece_foot(point, master, piece, foot)
             for point, (_, _, _, piece), foot in zip(where, spots, feet)]
     kept = [(k, at, w * facing(slave.normal[k], foot.normal), foot)
             for (k, at, w, _), foot in zip(spots, feet) if foot]
+    of_spots = [forces.offsets.on_segment(slave, k, at) if piece is not None else
+                forces.offsets.between[k, i % (len(spots) // len(slave))]
+                for i, (k, at, _, piece) in enumerate(spots)]
+    of_spots = [offset for offset, foot in zip(of_spots, feet) if foot]
     area, volume = np.zeros(len(slave.x)), np.zeros(len(slave.x))
-    for k, at, w, foot in kept:
+    for (k, at, w, foot), offset in zip(kept, of_spots):
         for node, shape in zip(slave.nodes[k], (1.0 - at, at)):
             area[node] += shape * w
-            volume[node] += shape * w * foot.gap
+            volume[node] += shape * w * (foot.gap + offset)
     gap = np.divide(volume, area, out=np.zeros_like(area), where=area > 0.0)
     pressure = penalty * np.maximum(0.0, -gap)
     for k, at, w, foot in kept:
@@ -479,24 +551,24 @@ def nodal_pressure(slave, master, penalty, spots):
     return forces.sides
 
 
-def mortar(slave, master, penalty, n_gauss):
+def mortar(slave, master, penalty, n_gauss, offsets=None):
     """Type 6."""
     spots = [(k, at, w * slave.length[k] * slave.radius(k, at), None)
              for k in range(len(slave)) for at, w in zip(*gauss(n_gauss))]
-    return nodal_pressure(slave, master, penalty, spots)
+    return nodal_pressure(slave, master, penalty, spots, offsets)
 
 
-def segmented_mortar(slave, master, penalty):
+def segmented_mortar(slave, master, penalty, offsets=None):
     """Type 7."""
-    feet = project(slave.x, master, slave.chords())
+    feet = project(slave.x, master, [of_node(slave, node) for node in range(len(slave.x))])
     spots = []
     for k in range(len(slave)):
-        for left, right, _, _, segment in pieces(slave, master, k, feet):
+        for left, right, _, _, segment, part in overlaps(slave, master, k, feet):
             if facing(slave.normal[k], master.normal[segment]) > 0.0:
-                size = (right - left) * slave.length[k]
+                size = part * (right - left) * slave.length[k]
                 places = [(left + at * (right - left), w) for at, w in zip(*gauss(2))]
                 spots += [(k, at, w * size * slave.radius(k, at), segment) for at, w in places]
-    return nodal_pressure(slave, master, penalty, spots)
+    return nodal_pressure(slave, master, penalty, spots, offsets)
 
 
 @dataclass
@@ -522,21 +594,21 @@ def distributed(rule, initial, estimate):
     return [value * (estimate if rule.unit == 2 else 1.0) for value in given]
 
 
-def contact_forces(rule, slave, master, initial, estimate=None):
-    """Nodal forces (slave, master) of one interface; initial = both chains at time zero."""
+def contact_forces(rule, slave, master, initial, estimate=None, offsets=None):
+    """Nodal forces (slave, master) of one interface; initial = both surfaces at time zero."""
     penalty, back = distributed(rule, initial, estimate)
     if rule.kind == 1:
-        return nts(slave, master, penalty * np.mean(initial[0].length))
+        return nts(slave, master, penalty * np.mean(initial[0].length), offsets)
     if rule.kind == 2:
-        return nts_ar(slave, master, penalty)
+        return nts_ar(slave, master, penalty, offsets)
     if rule.kind == 3:
-        return two_pass_ar(slave, master, penalty, back)
+        return two_pass_ar(slave, master, penalty, back, offsets)
     if rule.kind == 4:
-        return vts_ppt(slave, master, penalty)
+        return vts_ppt(slave, master, penalty, offsets)
     if rule.kind == 5:
-        return nts_mar(slave, master, penalty, rule.strict)
+        return nts_mar(slave, master, penalty, rule.strict, offsets)
     if rule.kind == 6:
-        return mortar(slave, master, penalty, rule.gauss)
+        return mortar(slave, master, penalty, rule.gauss, offsets)
     if rule.kind == 7:
-        return segmented_mortar(slave, master, penalty)
+        return segmented_mortar(slave, master, penalty, offsets)
     raise ValueError(f"no reference for type {rule.kind}")

@@ -6,7 +6,6 @@ import numpy as np
 
 from meshes import Deck
 from reference import Chain, Rule, contact_forces
-from runs import Outline, facing_runs
 
 YOUNG, POISSON, RHO = 2.0e6, 0.3, 1000.0
 DEPTH = 0.4  # of a body's row of quads
@@ -51,19 +50,16 @@ class Interface:
         near = initial[self.slave[0]] * [0.0 if self.is_round else 1.0, 1.0]
         start = [Chain(initial[side] - near, self.pair.closed, is_round=self.is_round)
                  for side in (self.slave, self.master)]
-        now = start
-        if displacement is not None:
-            now = [Chain(chain.x + displacement[side], self.pair.closed, is_round=self.is_round)
-                   for chain, side in zip(start, (self.slave, self.master))]
-        if self.pair.closed:
-            now = facing_runs(*(Outline(chain, thickness(first)) for chain, first in zip(now, start)))
+        moved = displacement if displacement is not None else np.zeros_like(initial)
+        now = [Chain(chain.x + moved[side], self.pair.closed, thickness(chain) if self.pair.closed else None,
+                     self.is_round) for chain, side in zip(start, (self.slave, self.master))]
         return start, now
 
-    def compare(self, initial, found, displacement=None):
+    def compare(self, initial, found, displacement=None, offsets=None):
         """Difference to the reference over the largest nodal force, that force, and the reference
         forces of slave and master nodes; found: forces of all nodes of the deck."""
         start, now = self.chains(initial, displacement)
-        forces = contact_forces(self.rule, *now, start, self.estimate)
+        forces = contact_forces(self.rule, *now, start, self.estimate, offsets)
         size = max(np.max(np.abs(force)) for force in forces)
         error = max(np.max(np.abs(force - found[side]))
                     for force, side in zip(forces, (self.slave, self.master)))

@@ -6,6 +6,8 @@ from reference import Chain, contact_forces
 from scenes import Pair, Scene
 
 END, STEPS, STATES = 0.2, 2000, 50
+TIME_STEP = END / STEPS
+CURVE = np.linspace(0.0, END, 401)  # points of the curves of motion
 DEPTH = 0.003
 LENGTH = 0.45  # of the slave chain; the master reaches from 0 to 1
 BEGIN, BEYOND, BACK = 0.12, 1.07, -0.2  # travel of the left end of the slave chain
@@ -40,22 +42,35 @@ def travel(times):
     return np.interp(times, [0.0, 0.45 * END, END], [BEGIN, BEYOND, BACK])
 
 
+def curve_path(master, n):
+    """Slave lines at the points of the curves."""
+    return np.stack([slave_line(master, n, left) for left in travel(CURVE)])
+
+
+def paths(pair):
+    """Slave nodes in each step (step, node, 2) and master nodes in walking order."""
+    path = curve_path(pair.master, len(pair.slave) - 1)
+    times = np.arange(STEPS + 1) * TIME_STEP
+    moved = np.stack([[np.interp(times, CURVE, path[:, i, axis]) for axis in (0, 1)]
+                      for i in range(path.shape[1])])
+    return np.moveaxis(moved, 2, 0), pair.master[::-1]
+
+
 def sliding_scene(rules):
     """All rules on all masters, slave finer and coarser."""
-    scene = Scene("sliding", END, END / STEPS)
+    scene = Scene("sliding", END, TIME_STEP)
     scene.deck.lines.remove("*DATABASE_BINARY_D3PLOT")
     scene.deck.output(plot=END / STATES)
-    times = np.linspace(0.0, END, 401)
     curve = 0
     for name, master in masters().items():
         for n in (3, 9):
             start = slave_line(master, n, BEGIN)
-            path = np.stack([slave_line(master, n, left) for left in travel(times)]) - start
+            path = curve_path(master, n) - start
             curves = curve + 1 + np.arange(2 * (n + 1)).reshape(n + 1, 2)
             curve += 2 * (n + 1)
             for i in range(n + 1):
                 for axis in (0, 1):
-                    scene.deck.curve(int(curves[i, axis]), zip(times, path[:, i, axis]))
+                    scene.deck.curve(int(curves[i, axis]), zip(CURVE, path[:, i, axis]))
             pair = Pair(f"{name}, {n} slave segments", start, master)
             for rule in rules:
                 add_moving(scene, pair, rule, curves)
