@@ -231,8 +231,8 @@ contains
     memory%ties%spent = memory%ties%spent + (before - after)
   end subroutine break_ties
 
-  !> Loads of bonds, which are springs or slave nodes where pressure is formed, from the stretches of
-  !> springs in one direction, N/m^2.
+  !> Loads of bonds, which are springs or slave nodes where pressure is formed, from the stretches
+  !> of springs in one direction, N/m^2.
   pure function bond_loads(memory, stretches) result(loads)
     type(contact_state_t), intent(in) :: memory
     real(wp), intent(in), contiguous :: stretches(:) !! m
