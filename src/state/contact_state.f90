@@ -281,7 +281,7 @@ contains
       source=0)
     allocate (tracking%xi(n), tracking%gap(n), tracking%normal(2, n), tracking%spot_depth(n), &
       tracking%segment_depth(n_segment), source=0.0_wp)
-    allocate (tracking%offset(n), source=0.0_wp)
+    allocate (tracking%offset(n), tracking%faded(n), source=0.0_wp)
     allocate (tracking%wake(n), source=-huge(1.0_wp))
   end subroutine allocate_tracking
 
