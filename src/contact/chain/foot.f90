@@ -28,8 +28,8 @@ module foot_m
   real(wp), parameter :: face_on = -0.5_wp
   !> By how much the cosine of the more opposed of both segments at a vertex exceeds that of the
   !> other where all of the other counts, and from where on nothing of it does: a side that stands
-  !> at 70 degrees on a face is no part of a contact that the next one is in at 20.
-  real(wp), parameter :: least_excess = 0.1_wp, most_excess = 0.5_wp
+  !> at 70 degrees on a face is no part of a contact that the next one is in at 20 (0.598).
+  real(wp), parameter :: least_excess = 0.1_wp, most_excess = 0.59_wp
   !> Part of a segment next to its ends where round-off decides on which side of a node a place is.
   real(wp), parameter :: round_off = 1.0e-12_wp
 
