@@ -11,102 +11,59 @@ module contact_work_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: apart_t, take_apart, hand_over, count_work, count_step
+  public :: apart_t, take_apart, hand_over, count_step
 
   !> Of the former forces, what is kept apart from the springs.
   type :: apart_t
     real(wp) :: damping = 0.0_wp    !! power, W/m
-    real(wp) :: friction = 0.0_wp   !! power, W/m; 0 until the work is counted
+    real(wp) :: friction = 0.0_wp   !! power, W/m
     real(wp) :: dissipated = 0.0_wp !! by friction so far, J/m
   end type apart_t
 
 contains
 
-  !> Power of the former forces of damping, which are zero then; forces of friction trade places
-  !> with those of the call before, which are zero, and nothing is left of the tractions but what
-  !> friction goes on from.
+  !> Power of the former forces of damping and of friction, which are zero then; nothing is left of
+  !> the tractions but what friction goes on from.
   pure subroutine take_apart(motion, had_force, memory, apart)
     real(wp), intent(in), contiguous :: motion(:, :)
     logical, intent(in) :: had_force !! the former call
     type(contact_state_t), intent(inout) :: memory
     type(apart_t), intent(out) :: apart
-    real(wp), allocatable :: spare(:, :)
 
     if (memory%has%damping) &
       call take_force(memory%nodes, motion, memory%damping_force, apart%damping)
     if (.not. memory%has%friction) return
-    call move_alloc(memory%scratch%former_rub, spare)
-    call move_alloc(memory%friction%force, memory%scratch%former_rub)
-    call move_alloc(spare, memory%friction%force)
+    call take_force(memory%nodes, motion, memory%friction%force, apart%friction)
     apart%dissipated = memory%friction%work - memory%friction%stored
     call set_tractions_aside(memory)
     if (.not. had_force) call keep_dissipated(apart%dissipated, memory%friction)
   end subroutine take_apart
 
-  !> Power of the former and of the present forces of friction; the former ones are zero then. The
-  !> energy law has gathered the velocities, unless there are no points.
-  pure subroutine take_friction(motion, memory, power)
-    real(wp), intent(in), contiguous :: motion(:, :)
-    type(contact_state_t), intent(inout) :: memory
-    real(wp), intent(out) :: power !! W/m
-
-    associate (velocity => memory%limit%velocity)
-      if (memory%points%n == 0) velocity = motion(3:4, memory%nodes)
-      call take_power(size(velocity), velocity, memory%friction%force, memory%scratch%former_rub, &
-        power)
-    end associate
-  end subroutine take_friction
-
-  !> Both components of all nodes in one loop.
-  pure subroutine take_power(n, velocity, present, former, power)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: velocity(n), present(n)
-    real(wp), intent(inout) :: former(n)
-    real(wp), intent(out) :: power
-    integer :: i
-
-    power = 0.0_wp
-    !$omp simd reduction(+:power)
-    do i = 1, n
-      power = power + velocity(i)*(former(i) + present(i))
-      former(i) = 0.0_wp
-    end do
-  end subroutine take_power
-
-  !> Add the forces to those of the mesh and count the work of a step: half of it was done by the
-  !> former forces.
+  !> Add the forces to those of the mesh and count the work of a step, that of damping and of
+  !> friction apart: half of it was done by the former forces.
   pure subroutine hand_over(dt, motion, former, memory, force)
     real(wp), intent(in) :: dt
     real(wp), intent(in), contiguous :: motion(:, :)
     type(apart_t), intent(in) :: former
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)
-    real(wp) :: power
+    real(wp) :: power, damping, friction !! of former and present forces, W/m
 
     call add_force(memory%nodes, memory%scratch%former_force, memory%force, motion, force, power)
-    call count_work(dt, motion, power, former, memory)
+    damping = former%damping
+    if (memory%has%damping) damping = damping &
+      + power_of(memory%nodes, motion, memory%damping_force)
+    friction = former%friction
+    if (memory%has%friction) friction = friction &
+      + power_of(memory%nodes, motion, memory%friction%force)
+    memory%energy = memory%energy - 0.5_wp*dt*(power - damping - friction)
+    memory%damping_work = memory%damping_work - 0.5_wp*dt*damping
+    if (memory%has%friction) then
+      memory%friction%work = memory%friction%work - 0.5_wp*dt*friction
+      call keep_dissipated(former%dissipated, memory%friction)
+    end if
     call follow_largest(memory%energy, memory%limit)
   end subroutine hand_over
-
-  !> Work of a step, that of damping and of friction apart.
-  pure subroutine count_work(dt, motion, power, former, memory)
-    real(wp), intent(in) :: dt
-    real(wp), intent(in), contiguous :: motion(:, :)
-    real(wp), intent(in) :: power        !! of all former and present contact forces, W/m
-    type(apart_t), intent(in) :: former
-    type(contact_state_t), intent(inout) :: memory
-    type(apart_t) :: apart
-
-    apart = former
-    if (memory%has%damping) apart%damping = apart%damping &
-      + power_of(memory%nodes, motion, memory%damping_force)
-    if (memory%has%friction) call take_friction(motion, memory, apart%friction)
-    memory%energy = memory%energy - 0.5_wp*dt*(power - apart%damping - apart%friction)
-    memory%damping_work = memory%damping_work - 0.5_wp*dt*apart%damping
-    if (.not. memory%has%friction) return
-    memory%friction%work = memory%friction%work - 0.5_wp*dt*apart%friction
-    call keep_dissipated(apart%dissipated, memory%friction)
-  end subroutine count_work
 
   !> What is dissipated does not come back: tangential springs hold no more than the work that has
   !> been done on them. Where forces are limited or areas change while places stick, the tractions

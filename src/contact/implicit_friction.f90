@@ -32,7 +32,6 @@ contains
     call find_slips(step%rows, memory%points, memory%places, step%pressed, step%problem%r)
     call set_up(rule, step, memory)
     call solve_complementarity(step%problem, outcome)
-    if (outcome%n_sweep > 0) memory%n_swept = memory%n_swept + 1
     call leave_tractions(rule, step, memory)
     associate (points => memory%points)
       call share_out(points%n, points%slave_nodes, points%slave_weights, &

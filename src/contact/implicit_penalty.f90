@@ -237,8 +237,6 @@ contains
         memory%node_pressure(rows%slave(i)) = problem%x(i)*rows%inverse(i)
       end do
     end associate
-    if (outcome%n_sweep > 0) memory%n_swept = memory%n_swept + 1
-    if (outcome%n_dropped > 0) memory%n_dropped = memory%n_dropped + 1
   end subroutine find_pressures
 
   !> What would be left of the mean gaps without pressures, over the step, and what is guessed to

@@ -24,11 +24,13 @@ module interface_m
   use others_memory_m, only : answers_t
   use interference_m, only : begin_growth
   use kinds_m, only : wp
+  use law_state_m, only : is_held
   use law_friction_m, only : has_decay
   use log_m, only : log_t
   use model_m, only : model_t
   use spots_m, only : move_spots
-  use tied_interface_m, only : start_ties, apply_ties, evaluate_ties, tie_reach
+  use tied_interface_m, only : start_ties, tie_reach
+  use ties_m, only : hold_ties
   use contact_status_m, only : update_status, forget_pairs, measure_depths
   implicit none
   private
@@ -99,12 +101,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
 
-    if (memory%has%interference) call begin_growth(contact, time, memory)
-    if (is_tied(contact) .and. is_alive(contact, time)) then
-      call apply_ties(contact, motion, [time, dt], cycle, clock, memory, force)
-    else
-      call step_contact(contact, instant_t(time, dt, cycle), motion, mass, memory, force, clock)
-    end if
+    call step_contact(contact, instant_t(time, dt, cycle), motion, mass, memory, force, clock)
   end subroutine apply_contact
 
   !> Contact forces of one interface at the given u, added to `force`; no damping, no energy, no
@@ -120,13 +117,6 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, at least the interface's nodes)
 
-    if (is_tied(contact)) then
-      if (.not. is_alive(contact, time)) memory%points%n = 0
-      call evaluate_ties(motion, memory, force)
-      return
-    end if
-    if (memory%has%interference) call begin_growth(contact, time, memory)
-    memory%points%n = 0
     memory%n_active = 0
     memory%force = 0.0_wp
     memory%closed_gap = 0.0_wp
@@ -135,10 +125,11 @@ contains
       [real(wp) ::], memory, force)
   end subroutine evaluate_contact
 
-  !> One interface that is not tied, in an explicit step or a trial of an implicit one: positions,
-  !> candidate pairs and status, contact points, laws, nodal forces, energy. Outside birth .. death
-  !> the forces of the last call do their last half step of work. Implicit penalties
-  !> (PUNIT 4) form their forces after those of all other interfaces (`implicit_penalty_m`).
+  !> One interface in an explicit step or a trial of an implicit one: positions, candidate pairs and
+  !> status, contact points, laws, nodal forces, energy. Ties have their points from the start.
+  !> Outside birth .. death the forces of the last call do their last half step of work. Implicit
+  !> penalties (PUNIT 4) form their forces after those of all other interfaces
+  !> (`implicit_penalty_m`).
   subroutine step_contact(contact, now, motion, mass, memory, force, clock)
     type(contact_t), intent(in) :: contact
     type(instant_t), intent(in) :: now
@@ -148,40 +139,40 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
     type(clock_t), intent(inout), optional :: clock
-    type(formulation_t) :: formulation
     type(apart_t) :: former
     logical :: had_force, begins
 
-    formulation = formulation_of(contact)
     had_force = memory%n_active > 0
     begins = memory%is_stale .and. now%cycle > 0
+    memory%watch%has_looked = .false.
+    if (memory%has%interference) call begin_growth(contact, now%time, memory)
     if (is_alive(contact, now%time)) then
       call find_contacts(contact, now, motion, memory)
     else
       call suspend_contact(memory)
-      if (.not. had_force) return
     end if
     if (present(clock)) call lap(clock, phase_contact_search)
+    if (.not. had_force .and. (memory%is_stale .or. has_broken(memory))) return
 
     if (.not. now%is_trial) call keep_previous(contact, motion, begins, memory, former)
-    memory%points%n = 0
-    if (.not. memory%is_stale) call place_points(contact, memory)
+    if (.not. (memory%is_stale .or. memory%has%ties)) call place_points(contact, memory)
     if (present(clock)) call lap(clock, phase_contact_pairing)
     if (memory%scratch%waits) return
 
     if (memory%points%n > 0) then
-      call press_places(memory)
-      if (memory%has%former_tie) call leave_to_tie(memory)
-      if (.not. now%is_trial) call book_springs(contact, now%cycle, begins, memory)
-      if (has_decay(contact%friction) .and. size(mass) > 0 .and. now%dt > 0.0_wp) &
-        call find_lag(memory%points, memory%nodes, mass, contact%is_self, now%dt, &
-        memory%scratch%nodal, memory%scratch%lag)
-      if (memory%has%friction) &
-        call rub_places(contact, formulation%has_unit_area, now%dt, memory)
-      if (memory%has%damping .and. .not. now%is_trial) call damp_points(memory%points, &
-        contact%damping, memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
-      call scatter_forces(memory)
-      if (contact%is_self) call join_passes(memory)
+      if (memory%has%ties) then
+        call hold_ties(memory, merge(0.0_wp, contact%strength, now%is_trial), now%time)
+        if (.not. now%is_trial) call book_springs(now%cycle, begins, memory)
+      else
+        call press_places(memory)
+        if (memory%has%former_tie) call leave_to_tie(memory)
+        if (.not. now%is_trial) call book_springs(now%cycle, begins, memory)
+        if (memory%has%friction) call rub_points(contact, now, mass, memory)
+        if (memory%has%damping .and. .not. now%is_trial) call damp_points(memory%points, &
+          contact%damping, memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
+        call scatter_forces(memory)
+        if (contact%is_self) call join_passes(memory)
+      end if
       if (had_force .or. memory%n_active > 0) call limit_forces(motion, now%time, now%dt, memory)
     end if
 
@@ -190,7 +181,8 @@ contains
     else
       if (memory%points%n > 0 .or. had_force) &
         call hand_over(now%dt, motion, former, memory, force)
-      call end_look(had_force, memory%n_active > 0, memory%watch)
+      call end_look(had_force, memory%n_active > 0 &
+        .or. (memory%has%ties .and. memory%points%n > 0), memory%watch)
     end if
     if (present(clock)) call lap(clock, phase_contact_force)
   end subroutine step_contact
@@ -207,6 +199,7 @@ contains
     was_stale = memory%is_stale
     if (was_stale) call refresh_memory(motion, memory)
     call gather_places(motion, memory)
+    if (memory%has%ties) return
     if (memory%has%spots) call move_spots(contact%slave, memory%places, memory%spot_xi, &
       memory%spot_spread, memory%spots, memory%travel)
     if (now%is_trial) then
@@ -235,7 +228,6 @@ contains
       scratch%is_born = begins
       scratch%waits = contact%penalty_unit == penalty_implicit .and. .not. memory%is_stale
       memory%n_active = 0
-      memory%watch%has_looked = .false.
       call begin_look(scratch%had_force, memory%watch)
       if (scratch%had_force) call keep_former(memory)
       if (scratch%waits) return
@@ -245,19 +237,44 @@ contains
   end subroutine keep_previous
 
   !> What the springs hold as pressed: those loaded at time zero hold energy that no force has put
-  !> in; those born loaded may return what they hold; the work of fading offsets is lent.
-  pure subroutine book_springs(contact, cycle, begins, memory)
-    type(contact_t), intent(in) :: contact
+  !> in; those born loaded may return what they hold; the work of fading offsets is lent. When the
+  !> last tie breaks there is no later look.
+  pure subroutine book_springs(cycle, begins, memory)
     integer, intent(in) :: cycle
     logical, intent(in) :: begins
     type(contact_state_t), intent(inout) :: memory
 
     if (memory%has%former_tie) call take_over(memory)
-    if (memory%watch%is_due .or. cycle == 0) call measure_springs(memory)
+    if (memory%watch%is_due .or. cycle == 0 .or. memory%has%ties .and. memory%n_active == 0) &
+      call measure_springs(memory)
     if (cycle == 0) memory%energy = memory%watch%stored
     if (begins) memory%limit%credit = memory%limit%credit + memory%watch%stored
     if (has_offsets(memory)) call lend(faded_work(memory), memory%limit)
   end subroutine book_springs
+
+  !> Friction tractions. Where the coefficient decays, explicit steps damp those that stick.
+  pure subroutine rub_points(contact, now, mass, memory)
+    type(contact_t), intent(in) :: contact
+    type(instant_t), intent(in) :: now
+    real(wp), intent(in), contiguous :: mass(:)
+    type(contact_state_t), intent(inout) :: memory
+    type(formulation_t) :: formulation
+
+    if (has_decay(contact%friction) .and. now%dt > 0.0_wp .and. .not. now%is_trial) &
+      call find_lag(memory%points, memory%nodes, mass, contact%is_self, now%dt, &
+      memory%scratch%nodal, memory%scratch%lag)
+    formulation = formulation_of(contact)
+    call rub_places(contact, formulation%has_unit_area, now%dt, memory)
+  end subroutine rub_points
+
+  !> Whether it is a tie all of which has broken.
+  pure function has_broken(memory)
+    type(contact_state_t), intent(in) :: memory
+    logical :: has_broken
+
+    has_broken = .false.
+    if (memory%has%breaks) has_broken = .not. any(memory%ties%state == is_held)
+  end function has_broken
 
   !> Add the forces of a trial to those of the mesh.
   pure subroutine add_trial_force(nodes, contact_force, force)
@@ -291,13 +308,13 @@ contains
     is_alive = .not. (time < contact%birth .or. time > contact%death)
   end function is_alive
 
-  !> Outside birth .. death: what is known of pairs is out of date.
+  !> Outside birth .. death there are no points, and what is known of pairs is out of date.
   pure subroutine suspend_contact(memory)
     type(contact_state_t), intent(inout) :: memory
 
     memory%is_stale = .true.
     memory%advance = 0.0_wp
-    memory%watch%has_looked = .false.
+    memory%points%n = 0
   end subroutine suspend_contact
 
   !> After a time without contact: take the present places and search all anew.

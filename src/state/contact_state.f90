@@ -121,14 +121,13 @@ module contact_state_m
     real(wp) :: lag = 0.0_wp                !! damping of tangential springs that stick over their
                                             !! stiffness, s
     real(wp), allocatable :: former_traction(:) !! (n_place) of the call before; this and the next
-                                            !! two only where there is friction
+                                            !! only where there is friction
     integer, allocatable :: former_state(:) !! (n_place) the same
-    real(wp), allocatable :: former_rub(:, :) !! (2, n_slave + n_master) forces of friction of the
-                                            !! call before, 0 between calls
     real(wp) :: growth = 0.0_wp             !! of an initial overlap in this step, as a part of it
     logical :: is_start = .false.           !! this call is that of time zero; both only where such
                                             !! overlaps grow
-    integer, allocatable :: point_at(:)     !! (n_slave) point at each slave node, 0 between steps
+    integer, allocatable :: segment_near(:) !! (n_slave) master segment near a slave node, 0 between
+                                            !! steps; only where points are at fixed places
     logical, allocatable :: is_placed(:)    !! (slave segments) have their points
     logical, allocatable :: is_left(:)      !! (n_place) to the tie that holds it; this and the next
                                             !! two only of contact behind a tie
@@ -207,8 +206,6 @@ module contact_state_m
     type(energy_limit_t) :: limit           !! that they give back no more
     integer :: n_active = 0                 !! points that carry pressure
     logical :: rules_step = .false.         !! the step obeys the springs, which nobody has chosen
-    integer :: n_swept = 0                  !! calls in which sweeps had to settle which nodes press
-    integer :: n_dropped = 0                !! calls in which some pressures depended on others
     type(contact_scratch_t) :: scratch
   contains
     procedure :: visit => visit_contact
@@ -295,13 +292,12 @@ contains
     associate (scratch => memory%scratch, n => memory%n_slave + memory%n_master)
       allocate (scratch%former_force(2, n), scratch%nodal(2, n), scratch%increment(2, n), &
         source=0.0_wp)
-      allocate (scratch%point_at(memory%n_slave), source=0)
+      allocate (scratch%segment_near(memory%n_slave), source=0)
       if (memory%has%limit) allocate (scratch%velocity(2, n), source=0.0_wp)
       if (memory%has%limit .and. (memory%has%damping .or. memory%has%friction)) &
         allocate (scratch%spring(2, n), scratch%former_spring(2, n), source=0.0_wp)
       if (memory%has%friction) then
-        allocate (scratch%former_rub(2, n), &
-          scratch%former_traction(size(memory%friction%state)), source=0.0_wp)
+        allocate (scratch%former_traction(size(memory%friction%state)), source=0.0_wp)
         allocate (scratch%former_state(size(memory%friction%state)), source=0)
       end if
       if (.not. memory%has%overlaps) return
@@ -436,8 +432,6 @@ contains
     call visitor%part('limit', self%limit)
     call visitor%visit('n_active', self%n_active, 0, huge(1), 'a number below zero')
     call visitor%visit('rules_step', self%rules_step)
-    call visitor%visit('n_swept', self%n_swept)
-    call visitor%visit('n_dropped', self%n_dropped)
   end subroutine visit_contact
 
 end module contact_state_m

@@ -13,7 +13,7 @@ EXEMPT = {
     "state_t": {"boundary_since": "of this run, where the file has no works",
                 "outlines": "made of the deck and the status of elements"},
     "block_state_t": {"mass_shares": "made of the deck and the status of elements"},
-    "contact_state_t": {"scratch": "nothing in it lasts to the next step", "has": OF_THE_DECK, "candidates": "no result depends on them",
+    "contact_state_t": {"has": OF_THE_DECK, "scratch": "nothing in it lasts to the next step", "candidates": "no result depends on them",
                         "reversed": "no result depends on them"},
     "tracking_t": {"due": EACH_CYCLE, "faded": EACH_CYCLE, "pass": OF_THE_DECK, "reach": OF_THE_DECK,
                    "shallowest": "of the depths (measure_depths)", "deepest": "of segment_depth"},

@@ -6,13 +6,14 @@ module friction_m
   use contacts_m, only : contact_t, friction_rule_t
   use law_state_m, only : friction_memory_t, is_open, sticks, slips
   use kinds_m, only : wp
-  use law_friction_m, only : coefficient_of, has_decay, sliding_speed, return_traction
+  use law_friction_m, only : coefficient_of, has_decay, sliding_speed, return_traction, &
+    holds_on
   use lengths_m, only : competence_length
   use nodal_average_m, only : average_values, share_out
   implicit none
   private
   public :: start_trial_slip, take_trial_motion, set_tractions_aside, rub_places, has_slipped, &
-    let_stick
+    let_hold
 
   !> One place in a step.
   type :: rub_t
@@ -63,18 +64,19 @@ contains
     end do
   end function has_slipped
 
-  !> All places that slipped stick in the first tangent of a step.
-  pure subroutine let_stick(contacts)
+  !> All places that slip or slipped hold on in the next tangent, wherever round-off puts them
+  !> beside the limit: a body all of whose places slip meets no stiffness along the face.
+  pure subroutine let_hold(contacts)
     type(contact_state_t), intent(inout) :: contacts(:)
     integer :: i
 
     do i = 1, size(contacts)
       if (.not. contacts(i)%has%friction) cycle
-      associate (state => contacts(i)%scratch%former_state)
-        where (state == slips) state = sticks
+      associate (former => contacts(i)%scratch%former_state)
+        where (former == slips .or. contacts(i)%friction%state == slips) former = holds_on
       end associate
     end do
-  end subroutine let_stick
+  end subroutine let_hold
 
   !> Before the points are placed: all places are open until they are found to be pressed. Tractions
   !> and states trade places with those of the call before.

@@ -143,10 +143,6 @@ contains
             //to_text(watch%balance)//per_depth(model%controls%units, 'F L', model%is_round) &
             //', '//percent(watch%balance, state%largest_energy) &
             //' of the largest energy so far; finer meshes lose less')
-          if (memory%n_swept > 0) call write_log(log, name//': in '//to_text(memory%n_swept) &
-            //' cycles sweeps had to settle which nodes press')
-          if (memory%n_dropped > 0) call write_log(log, name//': in '//to_text(memory%n_dropped) &
-            //' cycles pressures depended on each other, and some were left to the others')
         else if (abs(watch%balance) > noticed_share*state%largest_energy .and. state%cycle > 0) then
           call warn(log, name//': in the whole run the contact springs have ' &
             //amount_text(model, i, sign_of, state))
