@@ -8,16 +8,19 @@ module contact_dispatch_m
   use contacts_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_vts_ppt, &
     type_nts_mar, type_mortar, type_segmented_mortar, contact_t, contact_kind_t
   use kinds_m, only : wp
+  use linearisation_m, only : varied_list_t
+  use nodal_tangent_m, only : add_nodal_tangents
   use place_mortar_m, only : place_mortar
   use place_nts_m, only : place_nts, place_nts_ar, place_two_pass_ar
   use place_nts_mar_m, only : place_nts_mar
   use place_segmented_mortar_m, only : place_segmented_mortar
   use place_vts_ppt_m, only : place_vts_ppt
+  use point_tangent_m, only : add_point_tangents
   use sparse_m, only : sparse_t
   use spots_m, only : spots_at_nodes, spots_at_quarters, spots_at_gauss_points
-  use tangent_mortar_m, only : add_mortar_tangent, add_segmented_mortar_tangent
-  use tangent_nts_m, only : add_nts_tangent, add_nts_ar_tangent
-  use tangent_nts_mar_m, only : add_nts_mar_tangent
+  use tangent_mortar_m, only : vary_fixed_points
+  use tangent_nts_m, only : vary_nodes
+  use tangent_overlaps_m, only : vary_overlap_ends, vary_gauss_points
   use tangent_vts_ppt_m, only : add_vts_ppt_tangent
   implicit none
   private
@@ -107,17 +110,22 @@ contains
     type(contact_state_t), intent(in) :: memory
     integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
     type(sparse_t), intent(inout) :: matrix
+    type(varied_list_t) :: list
 
     select case (contact%contact_type)
-    case (type_nts); call add_nts_tangent(contact, memory, equations, matrix)
-    case (type_nts_ar, type_two_pass_ar)
-      call add_nts_ar_tangent(contact, memory, equations, matrix)
+    case (type_nts); call vary_nodes(contact, .true., memory, list)
+    case (type_nts_ar, type_two_pass_ar); call vary_nodes(contact, .false., memory, list)
     case (type_vts_ppt); call add_vts_ppt_tangent(contact, memory, equations, matrix)
-    case (type_nts_mar); call add_nts_mar_tangent(contact, memory, equations, matrix)
-    case (type_mortar); call add_mortar_tangent(contact, memory, equations, matrix)
-    case (type_segmented_mortar)
-      call add_segmented_mortar_tangent(contact, memory, equations, matrix)
+    case (type_nts_mar); call vary_overlap_ends(contact, memory, list)
+    case (type_mortar); call vary_fixed_points(contact, memory, list)
+    case (type_segmented_mortar); call vary_gauss_points(contact, memory, list)
     end select
+    if (list%n == 0) return
+    if (memory%has%nodal_pressure) then
+      call add_nodal_tangents(contact, memory, list, equations, matrix)
+    else
+      call add_point_tangents(contact%friction, memory, list, equations, matrix)
+    end if
   end subroutine add_tangent
 
 end module contact_dispatch_m

@@ -272,9 +272,8 @@ contains
       if (memory%has%breaks) then
         call archive%expect(folder//'state', all(ties%state == is_open .or. ties%state &
           == is_held .or. ties%state == is_broken), 'numbers that mean nothing')
-        call archive%expect(folder//'place', all(ties%place >= merge(0, 1, &
-          memory%has%nodal_pressure) .and. ties%place <= n_place), &
-          'numbers that no place of the interface has')
+        call archive%expect(folder//'place', all(ties%place >= 1 &
+          .and. ties%place <= n_place), 'numbers that no place of the interface has')
       end if
       call archive%expect(folder//'first', ties%first(1) == 1 &
         .and. all(ties%first(2:) > ties%first(:n)) .and. (ties%first(n + 1) == memory%points%n + 1 &

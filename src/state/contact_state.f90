@@ -126,7 +126,8 @@ module contact_state_m
     real(wp) :: growth = 0.0_wp             !! of an initial overlap in this step, as a part of it
     logical :: is_start = .false.           !! this call is that of time zero; both only where such
                                             !! overlaps grow
-    integer, allocatable :: point_at(:)     !! (n_slave) point at each slave node, 0 between steps
+    integer, allocatable :: segment_near(:) !! (n_slave) master segment near a slave node, 0 between
+                                            !! steps; only where points are at fixed places
     logical, allocatable :: is_placed(:)    !! (slave segments) have their points
     logical :: waits = .false.              !! points are placed, forces follow once all others are
                                             !! known
@@ -284,7 +285,7 @@ contains
       source=0)
     allocate (tracking%xi(n), tracking%gap(n), tracking%normal(2, n), tracking%spot_depth(n), &
       tracking%segment_depth(n_segment), source=0.0_wp)
-    allocate (tracking%offset(n), source=0.0_wp)
+    allocate (tracking%offset(n), tracking%faded(n), source=0.0_wp)
     allocate (tracking%wake(n), source=-huge(1.0_wp))
   end subroutine allocate_tracking
 
@@ -295,7 +296,7 @@ contains
     associate (scratch => memory%scratch, n => memory%n_slave + memory%n_master)
       allocate (scratch%former_force(2, n), scratch%nodal(2, n), scratch%increment(2, n), &
         source=0.0_wp)
-      allocate (scratch%point_at(memory%n_slave), source=0)
+      allocate (scratch%segment_near(memory%n_slave), source=0)
       if (memory%has%limit) allocate (scratch%velocity(2, n), source=0.0_wp)
       if (memory%has%limit .and. (memory%has%damping .or. memory%has%friction)) &
         allocate (scratch%spring(2, n), scratch%former_spring(2, n), source=0.0_wp)

@@ -53,12 +53,14 @@ module law_state_m
     real(wp), allocatable :: lag(:, :)   !! (2, n_spring) from the master place to the slave place
                                          !! in the reference geometry, m
     real(wp), allocatable :: offset(:, :) !! (2, n_spring) parts of it along n and t there, m
-    real(wp), allocatable :: traction(:) !! (n_slave) where pressure is formed at slave nodes, N/m^2
+    real(wp), allocatable :: area(:)     !! (n_bond) of bonds, which are springs, or slave nodes
+                                         !! where pressure is formed there, m
+    real(wp), allocatable :: pressure(:) !! (n_bond) below 0: tension, N/m^2
+    real(wp), allocatable :: traction(:) !! (n_bond) N/m^2
     integer, allocatable :: state(:)     !! (n_place) of each place of friction: open, held
                                          !! or broken; this and the next two only where ties break
-    integer, allocatable :: place(:)     !! (n_spring) of each spring; of types 6 and 7, whose
-                                         !! places are slave nodes, 0
-    real(wp), allocatable :: to_stress(:) !! (n_spring) stress of the bond over pressure: 1 but for
+    integer, allocatable :: place(:)     !! (n_bond) of each bond
+    real(wp), allocatable :: to_stress(:) !! (n_bond) stress of the bond over pressure: 1 but for
                                          !! types 1 and 3
     real(wp) :: spent = 0.0_wp           !! what springs held that have broken, less what contact
                                          !! behind them took over, J/m
@@ -195,12 +197,15 @@ contains
     call visitor%visit('work', self%work)
   end subroutine visit_interference
 
-  !> Allocate for so many springs.
-  pure subroutine allocate_ties(ties, n_spring)
+  !> Allocate for springs that have these first points.
+  pure subroutine allocate_ties(ties, first)
     type(tie_memory_t), intent(inout) :: ties
-    integer, intent(in) :: n_spring
+    integer, intent(in) :: first(:) !! (n_spring + 1) then the end
+    integer :: n_spring
 
-    allocate (ties%first(n_spring + 1), ties%owner(2, n_spring), source=1)
+    n_spring = size(first) - 1
+    ties%first = first
+    allocate (ties%owner(2, n_spring), source=1)
     allocate (ties%side(n_spring), ties%lag(2, n_spring), ties%offset(2, n_spring), source=0.0_wp)
   end subroutine allocate_ties
 
@@ -214,6 +219,8 @@ contains
     call visitor%visit('side', self%side)
     call visitor%visit('lag', self%lag)
     call visitor%visit('offset', self%offset)
+    call visitor%visit('area', self%area)
+    call visitor%visit('pressure', self%pressure)
     call visitor%visit('traction', self%traction)
     call visitor%visit('state', self%state)
     call visitor%visit('place', self%place)

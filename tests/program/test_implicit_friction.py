@@ -28,16 +28,12 @@ def drawn(kind):
 
 @pytest.mark.parametrize("kind", ALL_TYPES)
 def test_drawn_and_let_go(slideline, tmp_path, kind):
-    """Drawn on, a step needs no more iterations than without friction; let go, friction alone holds the block.
-
-    Types 6 and 7 are not let go: once all their places slip in an iteration the matrix is singular, and whether they do is
-    decided by round-off (doc/theory/contact.md, 9.8): of 20 loads that differ by 0.1 % some 10 and 6 runs end there."""
-    is_let_go = kind not in (6, 7)
-    done = slideline("d=x", *([] if is_let_go else ["endtim=1.0"]), deck=drawn(kind))
+    """Drawn on, a step needs no more iterations than without friction; let go, friction alone holds the block."""
+    done = slideline("d=x", deck=drawn(kind))
     assert done.returncode == 0, done.stderr
     log = (tmp_path / "x" / "job.log").read_text()
     assert len(re.findall(r"step to 1\.000000E\+00 iteration", log)) <= 4
-    assert ("step to 1.250000E+00: the matrix is singular" in log) == is_let_go, "all of it slipped"
+    assert ("step to 1.250000E+00: the matrix is singular" in log), "all of it slipped"
     # Friction has taken what the springs and bodies do not store.
     assert "has passed a limit point" not in log.split("step to 1.250000E+00")[0]
     table = tmp_path / "x" / "job.rcforc.csv"
@@ -46,4 +42,4 @@ def test_drawn_and_let_go(slideline, tmp_path, kind):
     # The block's lower side, whose normals types 3 and 5 press along too, bends a little.
     assert pulled == [pytest.approx(FRICTION * LOAD, rel=1.0e-9 if kind not in (3, 5) else 1.0e-2)]
     assert abs(down[-1]) == pytest.approx(LOAD, rel=1.0e-9)
-    assert (abs(along[-1]) < 1.0e-9 * LOAD) == is_let_go
+    assert abs(along[-1]) < 1.0e-9 * LOAD

@@ -4,13 +4,13 @@
 !> the face through which it came (doc/theory/contact.md, section 3). Many places at a time go
 !> through foot_block, which leaves to this module what needs a decision.
 module foot_m
-  use geometry_m, only : sight_t, sight_of_segment, closest_distance, sight_normal, separation
+  use geometry_m, only : sight_t, sight_of_segment, closest_distance, sight_normal
   use kinds_m, only : wp
   use surfaces_m, only : surface_t, meets_axis
   implicit none
   private
-  public :: foot_t, mark_t, see_segment, closest_foot, nearest_foot, near_foot, face_foot, &
-    follow_contact, walk_to_closest, walk_to_mark, is_over_segment, turns_gently, &
+  public :: foot_t, mark_t, see_segment, closest_foot, near_foot, stays_over, vector_of, &
+    face_foot, follow_contact, walk_to_closest, walk_to_mark, is_over_segment, turns_gently, &
     facing_share, side_share, end_tolerance, gentle_turn, side_on, face_on, least_excess, &
     most_excess, round_off
 
@@ -28,8 +28,8 @@ module foot_m
   real(wp), parameter :: face_on = -0.5_wp
   !> By how much the cosine of the more opposed of both segments at a vertex exceeds that of the
   !> other where all of the other counts, and from where on nothing of it does: a side that stands
-  !> at 70 degrees on a face is no part of a contact that the next one is in at 20.
-  real(wp), parameter :: least_excess = 0.1_wp, most_excess = 0.5_wp
+  !> at 70 degrees on a face is no part of a contact that the next one is in at 20 (0.598).
+  real(wp), parameter :: least_excess = 0.1_wp, most_excess = 0.59_wp
   !> Part of a segment next to its ends where round-off decides on which side of a node a place is.
   real(wp), parameter :: round_off = 1.0e-12_wp
 
@@ -158,32 +158,60 @@ contains
     type(sight_t) :: sight
 
     sight = see_segment(surface, chain, spot, start)
-    if (stands_alone(surface, chain, sight, start)) then
+    if (stays_over(surface, chain, sight%t, sight%d, start)) then
       foot = face_foot(sight, start)
     else
       foot = closest_foot(surface, chain, spot, walk_to_closest(surface, chain, spot, start))
     end if
   end function nearest_foot
 
-  !> Whether a place is over a segment and over neither of its neighbours.
-  pure function stands_alone(surface, chain, sight, segment) result(alone)
+  !> Whether a place is over a segment and no nearer to a neighbour: over neither, or farther from
+  !> its line.
+  pure function stays_over(surface, chain, t, d, segment) result(stays)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: chain(:, :)
-    type(sight_t), intent(in) :: sight
+    real(wp), intent(in) :: t(2), d(2) !! vector of the segment, and from its first node, m
     integer, intent(in) :: segment
-    logical :: alone
-    integer :: neighbour
+    logical :: stays
+    real(wp) :: along, square
 
-    alone = sight%along > 0.0_wp .and. sight%along < sight%square
-    neighbour = surface%previous(segment)
-    if (alone .and. neighbour > 0) alone = dot_product(sight%d, &
-      separation(chain(:, surface%segments(2, neighbour)), &
-      chain(:, surface%segments(1, neighbour)))) >= 0.0_wp
-    neighbour = surface%next(segment)
-    if (alone .and. neighbour > 0) alone = dot_product(sight%d - sight%t, &
-      separation(chain(:, surface%segments(2, neighbour)), &
-      chain(:, surface%segments(1, neighbour)))) <= 0.0_wp
-  end function stands_alone
+    along = d(1)*t(1) + d(2)*t(2)
+    square = t(1)*t(1) + t(2)*t(2)
+    stays = along > 0.0_wp .and. along < square
+    if (stays .and. surface%previous(segment) > 0) stays = is_no_nearer(surface%previous(segment), &
+      d, 1.0_wp)
+    if (stays .and. surface%next(segment) > 0) stays = is_no_nearer(surface%next(segment), d - t, &
+      -1.0_wp)
+
+  contains
+
+    !> Whether a neighbour is no nearer.
+    pure function is_no_nearer(neighbour, from_node, way) result(is)
+      integer, intent(in) :: neighbour
+      real(wp), intent(in) :: from_node(2) !! from the node in common to the place, m
+      real(wp), intent(in) :: way          !! 1: the neighbour lies before, -1: behind
+      logical :: is
+      real(wp) :: beside(2)
+
+      beside = vector_of(surface, chain, neighbour)
+      is = way*(from_node(1)*beside(1) + from_node(2)*beside(2)) >= 0.0_wp
+      if (.not. is) is = (from_node(1)*beside(2) - from_node(2)*beside(1))**2*square &
+        >= (d(1)*t(2) - d(2)*t(1))**2*(beside(1)**2 + beside(2)**2)
+    end function is_no_nearer
+
+  end function stays_over
+
+  !> Vector of a segment, m.
+  pure function vector_of(surface, chain, segment) result(t)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: chain(:, :)
+    integer, intent(in) :: segment
+    real(wp) :: t(2)
+
+    associate (a => surface%segments(1, segment), b => surface%segments(2, segment))
+      t = (chain(1:2, b) - chain(1:2, a)) + (chain(3:4, b) - chain(3:4, a))
+    end associate
+  end function vector_of
 
   !> Foot of a place that is not followed, near a known segment: behind the surface it belongs to
   !> the face that it came through, outside to the closest one.
@@ -209,12 +237,20 @@ contains
       backwards = sight%along < 0.0_wp
       neighbour = merge(surface%previous(start), surface%next(start), backwards)
       if (neighbour > 0) then
-        ! Behind the node between two faces, over neither: what is found first in a valley.
         associate (other => see_segment(surface, chain, spot, neighbour))
-          if (is_before(other, backwards)) &
+          if (is_before(other, backwards)) then
+            ! Over neither of two faces, on the same side of both: the node between them. Behind it
+            ! that is what is found first in a valley.
             foot = corner_foot(sight, other, [start, neighbour])
+            if (foot%gap < 0.0_wp .or. min(sight%across, other%across) > 0.0_wp) return
+          else if (other%across >= 0.0_wp .or. (sight%across < 0.0_wp .and. turns_gently(sight%t, &
+            other%t))) then
+            if (stays_over(surface, chain, other%t, other%d, neighbour)) then
+              foot = face_foot(other, neighbour)
+              return
+            end if
+          end if
         end associate
-        if (foot%gap < 0.0_wp) return
       end if
     end if
     closest = nearest_foot(surface, chain, spot, start)
@@ -321,7 +357,7 @@ contains
       if (is_before(other, sight%along < 0.0_wp)) then
         foot = corner_foot(sight, other, [segment, neighbour])
         return
-      else if (.not. turns_gently(sight, other) .and. &
+      else if (.not. turns_gently(sight%t, other%t) .and. &
         (other%across >= 0.0_wp .or. is_over_segment(sight))) then
         foot = face_foot(sight, segment)
         return
@@ -330,15 +366,15 @@ contains
     end do
   end function follow_contact
 
-  !> Whether two segments meet at a gentle corner.
-  pure function turns_gently(sight, other)
-    type(sight_t), intent(in) :: sight, other
+  !> Whether two segments meet at a gentle corner: they turn by 60 degrees at most.
+  pure function turns_gently(one, two)
+    real(wp), intent(in) :: one(2), two(2) !! vectors of the segments, m
     logical :: turns_gently
     real(wp) :: product
 
-    product = sight%t(1)*other%t(1) + sight%t(2)*other%t(2)
-    turns_gently = product >= 0.0_wp &
-      .and. product*product >= gentle_turn**2*(sight%square*other%square)
+    product = one(1)*two(1) + one(2)*two(2)
+    turns_gently = product >= 0.0_wp .and. product*product >= gentle_turn**2*((one(1)*one(1) &
+      + one(2)*one(2))*(two(1)*two(1) + two(2)*two(2)))
   end function turns_gently
 
   !> Whether the spot has not yet reached the segment it is walking to (backwards or forwards).
@@ -370,7 +406,7 @@ contains
       other = see_segment(surface, chain, spot, candidates(i))
       if (other%along < 0.0_wp .or. other%along > other%square) cycle
       if (other%across >= 0.0_wp) cycle
-      if (.not. turns_gently(sight, other)) cycle
+      if (.not. turns_gently(sight%t, other%t)) cycle
       if (other%across**2*sight%square >= sight%across**2*other%square) cycle
       neighbour = candidates(i)
       return
@@ -403,7 +439,7 @@ contains
         return
       end if
       other = see_segment(surface, chain, place, neighbour)
-      if (.not. turns_gently(sight, other)) then
+      if (.not. turns_gently(sight%t, other%t)) then
         ! At a sharp convex vertex the face ends as at the end of an open surface.
         if (is_over_segment(sight) .and. merge(-1.0_wp, 1.0_wp, backwards)*(sight%t(1)*other%t(2) &
           - sight%t(2)*other%t(1)) > 0.0_wp) return

@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> The one place that knows the contact laws: from the gap of a place to the pressure there. Where
 !> these places are, at the points or at the slave nodes, the row of the formulation says; the
-!> pressure of every point is kept on the list. Adding a law is a file law_*.f90, a row of `laws` and
-!> its `case` (doc/add_a_law.md).
+!> pressure of every point is kept on the list. Adding a law is a file law_*.f90, a row of `laws`
+!> and its `case` (doc/add_a_law.md).
 module contact_law_m
   use contact_state_m, only : contact_state_t, place_at
   use dual_m, only : dual_t

@@ -32,10 +32,10 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
 
-    if (memory%slave_tracking%has_offset) call fade_offsets(memory%slave_tracking, contact%slave, &
-      contact%master, memory%places, memory%scratch%increment)
-    if (memory%master_tracking%has_offset) call fade_offsets(memory%master_tracking, &
-      contact%master, contact%slave, memory%places, memory%scratch%increment)
+    call fade_offsets(memory%slave_tracking, contact%slave, contact%master, memory%places, &
+      memory%scratch%increment)
+    if (memory%master_tracking%n > 0) call fade_offsets(memory%master_tracking, contact%master, &
+      contact%slave, memory%places, memory%scratch%increment)
   end subroutine update_offsets
 
   !> The offsets of one pass.
@@ -47,7 +47,6 @@ contains
     real(wp) :: limited, t(2), length, slip
     integer :: k, i, ends(2)
 
-    if (.not. allocated(tracking%faded)) allocate (tracking%faded(tracking%n), source=0.0_wp)
     tracking%faded = 0.0_wp
     tracking%has_offset = .false.
     where (tracking%status == is_free) tracking%offset = 0.0_wp
@@ -98,12 +97,9 @@ contains
     real(wp) :: value
     integer :: n
 
-    value = 0.0_wp
     associate (points => memory%points, nodes => memory%points%slave_nodes(:, p))
       if (nodes(1) > memory%n_slave) then
-        if (allocated(of_master)) value = of_master(nodes(1) - memory%n_slave)
-      else if (.not. allocated(of_slave)) then
-        value = 0.0_wp
+        value = of_master(nodes(1) - memory%n_slave)
       else if (memory%has%spots) then
         n = size(memory%spot_xi)
         value = of_slave(n*(memory%slave_tracking%pass%segment_at(nodes(1)) - 1) &

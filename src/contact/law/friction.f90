@@ -6,13 +6,14 @@ module friction_m
   use contacts_m, only : contact_t, friction_rule_t
   use law_state_m, only : friction_memory_t, is_open, sticks, slips
   use kinds_m, only : wp
-  use law_friction_m, only : coefficient_of, has_decay, sliding_speed, return_traction
+  use law_friction_m, only : coefficient_of, has_decay, sliding_speed, return_traction, &
+    holds_on
   use lengths_m, only : competence_length
   use nodal_average_m, only : average_values, share_out
   implicit none
   private
   public :: start_trial_slip, take_trial_motion, set_tractions_aside, rub_places, has_slipped, &
-    let_stick
+    let_hold
 
   !> One place in a step.
   type :: rub_t
@@ -63,18 +64,19 @@ contains
     end do
   end function has_slipped
 
-  !> All places that slipped stick in the first tangent of a step.
-  pure subroutine let_stick(contacts)
+  !> All places that slip or slipped hold on in the next tangent, wherever round-off puts them
+  !> beside the limit: a body all of whose places slip meets no stiffness along the face.
+  pure subroutine let_hold(contacts)
     type(contact_state_t), intent(inout) :: contacts(:)
     integer :: i
 
     do i = 1, size(contacts)
       if (.not. contacts(i)%has%friction) cycle
-      associate (state => contacts(i)%scratch%former_state)
-        where (state == slips) state = sticks
+      associate (former => contacts(i)%scratch%former_state)
+        where (former == slips .or. contacts(i)%friction%state == slips) former = holds_on
       end associate
     end do
-  end subroutine let_stick
+  end subroutine let_hold
 
   !> Before the points are placed: all places are open until they are found to be pressed. Tractions
   !> and states trade places with those of the call before.
@@ -125,7 +127,7 @@ contains
       if (rule%most > 0.0_wp) rub%most = rule%most
       do p = 1, points%n
         rub%place = place_at(memory, p)
-        rub%slip = slip_at(memory, p, points%master_nodes(:, p), points%master_weights(:, p))
+        rub%slip = slip_at(memory, p)
         call take_former(memory, rub)
         if (rub%before == is_open) then
           associate (nodes => points%slave_nodes(:, p))
@@ -151,8 +153,8 @@ contains
     real(wp), intent(in) :: dt
     type(contact_state_t), intent(inout) :: memory
     type(rub_t) :: rub
-    real(wp) :: none
-    integer :: k, p, last
+    real(wp) :: weights(n_side), none
+    integer :: nodes(n_side), spot, k, p, last
 
     last = 0
     associate (points => memory%points, rule => contact%friction, &
@@ -160,14 +162,14 @@ contains
       if (rule%most > 0.0_wp) rub%most = rule%most
       rub%stiffness = rule%stiffness*memory%slave_penalty
       do k = 1, tracking%n_touching
+        spot = tracking%touching(k)
         p = last + 1
         last = last_portion(points, p)
         rub%place = place_at(memory, p)
-        associate (xi => tracking%xi(tracking%touching(k)), &
-          segment => tracking%segment(tracking%touching(k)))
-          rub%slip = slip_at(memory, p, memory%n_slave + contact%master%segments(:, segment), &
-            [1.0_wp - xi, xi])
-        end associate
+        nodes = memory%n_slave + contact%master%segments(:, tracking%segment(spot))
+        weights = [1.0_wp - tracking%xi(spot), tracking%xi(spot)]
+        rub%slip = slip_of(points%slave_nodes(1, p), points%slave_weights(1, p), nodes, weights, &
+          points%normal(1, p), points%gap(p), memory%scratch%increment, memory%places)
         call take_former(memory, rub)
         rub%pressure = points%pressure(p)
         call rub_place(rule, [dt, memory%scratch%lag], rub)
@@ -204,8 +206,7 @@ contains
     acting = 0.0_wp
     associate (points => memory%points, nodal => memory%scratch%nodal)
       do p = 1, points%n
-        points%traction(p) = slip_at(memory, p, points%master_nodes(:, p), &
-          points%master_weights(:, p))
+        points%traction(p) = slip_at(memory, p)
       end do
       call average_values(points, points%traction, memory%n_slave, nodal)
       do i = 1, memory%n_slave
@@ -231,33 +232,49 @@ contains
     rub%before = memory%scratch%former_state(rub%place)
   end subroutine take_former
 
+  !> Slip of a step of a point on the list, m.
+  pure function slip_at(memory, p) result(slip)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: p
+    real(wp) :: slip
+
+    associate (points => memory%points)
+      slip = slip_of(points%slave_nodes(1, p), points%slave_weights(1, p), &
+        points%master_nodes(1, p), points%master_weights(1, p), points%normal(1, p), &
+        points%gap(p), memory%scratch%increment, memory%places)
+    end associate
+  end function slip_at
+
   !> Slip of a step of the slave side of a point over its master side, along t = (-n_y, n_x), m: the
   !> motion of the foot over the segment that has the normal, L d(xi) (doc/theory/contact.md,
   !> section 6.2). That segment is the master's, or the slave's where the master side is one node.
   !> Its second term takes off what the turn of that segment moves at a distance; without it a
   !> rotation of all would slip.
-  pure function slip_at(memory, p, master_nodes, master_weights) result(slip)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: p                    !! point: slave side, normal and gap
-    integer, intent(in) :: master_nodes(n_side)
-    real(wp), intent(in) :: master_weights(n_side)
+  pure function slip_of(slave_nodes, slave_weights, master_nodes, master_weights, normal, gap, &
+      du, places) result(slip)
+    integer, intent(in) :: slave_nodes(n_side), master_nodes(n_side)
+    real(wp), intent(in) :: slave_weights(n_side), master_weights(n_side)
+    real(wp), intent(in) :: normal(2), gap      !! m
+    real(wp), intent(in) :: du(2, *)            !! increments of the nodes, m
+    real(wp), intent(in) :: places(4, *)        !! of the nodes
     real(wp) :: slip
     real(wp) :: relative(2), along(4), t(2), change(2)
-    integer :: owner(n_side)
+    integer :: a, b
 
-    associate (points => memory%points, du => memory%scratch%increment)
-      owner = points%slave_nodes(:, p)
-      relative = points%slave_weights(1, p)*du(:, owner(1)) &
-        + points%slave_weights(2, p)*du(:, owner(2)) - master_weights(1)*du(:, master_nodes(1)) &
-        - master_weights(2)*du(:, master_nodes(2))
-      if (master_nodes(1) /= master_nodes(2)) owner = master_nodes
-      along = memory%places(:, owner(2)) - memory%places(:, owner(1))
-      t = along(1:2) + along(3:4)
-      change = du(:, owner(2)) - du(:, owner(1))
-      slip = points%normal(1, p)*relative(2) - points%normal(2, p)*relative(1) + points%gap(p) &
-        *(t(2)*change(1) - t(1)*change(2))/max(t(1)*t(1) + t(2)*t(2), tiny(1.0_wp))
-    end associate
-  end function slip_at
+    a = slave_nodes(1)
+    b = slave_nodes(2)
+    relative = slave_weights(1)*du(:, a) + slave_weights(2)*du(:, b) &
+      - master_weights(1)*du(:, master_nodes(1)) - master_weights(2)*du(:, master_nodes(2))
+    if (master_nodes(1) /= master_nodes(2)) then
+      a = master_nodes(1)
+      b = master_nodes(2)
+    end if
+    along = places(:, b) - places(:, a)
+    t = along(1:2) + along(3:4)
+    change = du(:, b) - du(:, a)
+    slip = normal(1)*relative(2) - normal(2)*relative(1) &
+      + gap*(t(2)*change(1) - t(1)*change(2))/max(t(1)*t(1) + t(2)*t(2), tiny(1.0_wp))
+  end function slip_of
 
   !> Traction and state of a place after a step.
   pure subroutine rub_place(rule, times, rub)

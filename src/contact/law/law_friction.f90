@@ -8,10 +8,13 @@ module law_friction_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: coefficient_of, has_decay, sliding_speed, return_traction, vary_traction, goes_on
+  public :: coefficient_of, has_decay, sliding_speed, return_traction, vary_traction, goes_on, &
+    holds_on
 
   !> What slips on in the first tangent of a step, in which nothing has moved yet.
   integer, parameter :: goes_on = -1
+  !> What slips where the tangent of slipping is singular: its spring stands for it.
+  integer, parameter :: holds_on = -2
 
   !> Passes of Newton's method for the speed of sliding. Where two roots all but meet each halves
   !> the error.
@@ -115,6 +118,10 @@ contains
     trial = sign(1.0_wp, traction%value)*traction
     limit = coefficient_of(rule, 0.0_wp)*pressure
     if (most%value < limit%value) limit = most
+    if (before == holds_on) then
+      traction%value = sign(min(limit%value, trial%value), traction%value)
+      return
+    end if
     speed = 0.0_wp
     if (has_decay(rule) .and. stiffness*times(1) > 0.0_wp) then
       if (before == sticks) then

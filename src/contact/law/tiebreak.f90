@@ -5,7 +5,7 @@
 module tiebreak_m
   use contact_state_m, only : contact_state_t, places_of_segment, place_at
   use contacts_m, only : contact_t
-  use law_state_m, only : is_open, is_held, is_broken
+  use law_state_m, only : tie_memory_t, is_open, is_held, is_broken
   use kinds_m, only : wp
   use lengths_m, only : competence_area
   implicit none
@@ -21,52 +21,43 @@ contains
     type(contact_t), intent(in) :: contact
     logical, intent(in) :: has_unit_area, has_two_passes !! of the formulation
     type(contact_state_t), intent(inout) :: memory
-    integer :: s, p
+    integer :: s
 
     associate (ties => memory%ties, points => memory%points)
-      allocate (ties%state(places_of_segment(memory)*memory%n_slave + memory%n_master), source=is_open)
-      allocate (ties%place(size(ties%side)), source=0)
-      allocate (ties%to_stress(size(ties%side)), source=1.0_wp)
-      do s = 1, size(ties%side)
-        p = ties%first(s)
-        if (memory%has%nodal_pressure) then
-          where (points%slave_weights(:, p) > 0.0_wp) ties%state(points%slave_nodes(:, p)) = is_held
-        else
-          ties%place(s) = place_at(memory, p)
-          ties%state(ties%place(s)) = is_held
-          if (has_two_passes) ties%to_stress(s) = (memory%slave_penalty + memory%master_penalty) &
-            /points%stiffness(p)
-          if (has_unit_area) ties%to_stress(s) = points%area(p)/competence_area(contact%slave, &
-            memory%places(:, :memory%n_slave), contact%is_round, ties%place(s))
-        end if
+      allocate (ties%state(places_of_segment(memory)*memory%n_slave + memory%n_master), &
+        source=is_open)
+      allocate (ties%to_stress(size(ties%area)), source=1.0_wp)
+      if (memory%has%nodal_pressure) then
+        ties%place = [(s, s=1, memory%n_slave)]
+      else
+        ties%place = [(place_at(memory, ties%first(s)), s=1, size(ties%side))]
+      end if
+      do s = 1, size(ties%area)
+        if (ties%area(s) > 0.0_wp) ties%state(ties%place(s)) = is_held
+        if (has_two_passes) ties%to_stress(s) = (memory%slave_penalty + memory%master_penalty) &
+          /points%stiffness(ties%first(s))
+        if (has_unit_area) ties%to_stress(s) = ties%area(s)/competence_area(contact%slave, &
+          memory%places(:, :memory%n_slave), contact%is_round, ties%place(s))
       end do
     end associate
   end subroutine start_breaking
 
   !> Mark the places that reach their strengths under the present pressures and tractions.
-  pure subroutine mark_breaks(strength, time, memory, n_new)
+  pure subroutine mark_breaks(strength, time, ties, n_new)
     real(wp), intent(in) :: strength(2) !! NFLS, SFLS, N/m^2
     real(wp), intent(in) :: time        !! s
-    type(contact_state_t), intent(inout) :: memory
+    type(tie_memory_t), intent(inout) :: ties
     integer, intent(out) :: n_new       !! places marked
-    integer :: s
+    integer :: b
 
     n_new = 0
-    associate (ties => memory%ties, points => memory%points)
-      if (memory%has%nodal_pressure) then
-        do s = 1, memory%n_slave
-          call mark(strength, memory%node_pressure(s), ties%traction(s), ties%state(s), n_new)
-        end do
-      else
-        do s = 1, size(ties%side)
-          call mark(strength, ties%to_stress(s)*points%pressure(ties%first(s)), &
-            ties%to_stress(s)*points%traction(ties%first(s)), ties%state(ties%place(s)), n_new)
-        end do
-      end if
-      if (n_new == 0) return
-      if (.not. ties%first_break > 0.0_wp) ties%first_break = time
-      ties%last_break = time
-    end associate
+    do b = 1, size(ties%place)
+      call mark(strength, ties%to_stress(b)*ties%pressure(b), ties%to_stress(b)*ties%traction(b), &
+        ties%state(ties%place(b)), n_new)
+    end do
+    if (n_new == 0) return
+    if (.not. ties%first_break > 0.0_wp) ties%first_break = time
+    ties%last_break = time
   end subroutine mark_breaks
 
   !> One place under its stresses. Pressure does not help to break it.
@@ -81,24 +72,13 @@ contains
   end subroutine mark
 
   !> Broken places carry nothing.
-  pure subroutine let_go(memory)
-    type(contact_state_t), intent(inout) :: memory
-    integer :: s
+  pure subroutine let_go(ties)
+    type(tie_memory_t), intent(inout) :: ties
 
-    associate (ties => memory%ties, points => memory%points)
-      if (memory%has%nodal_pressure) then
-        where (ties%state(:memory%n_slave) /= is_held)
-          memory%node_pressure = 0.0_wp
-          ties%traction = 0.0_wp
-        end where
-        return
-      end if
-      do s = 1, size(ties%side)
-        if (ties%state(ties%place(s)) == is_held) cycle
-        points%pressure(ties%first(s):ties%first(s + 1) - 1) = 0.0_wp
-        points%traction(ties%first(s):ties%first(s + 1) - 1) = 0.0_wp
-      end do
-    end associate
+    where (ties%state(ties%place) /= is_held)
+      ties%pressure = 0.0_wp
+      ties%traction = 0.0_wp
+    end where
   end subroutine let_go
 
   !> Whether a spring still holds anything.

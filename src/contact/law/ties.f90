@@ -36,27 +36,25 @@ contains
     real(wp), intent(in) :: reach          !! m
     type(contact_state_t), intent(inout) :: memory
     type(tie_spring_t) :: spring
-    integer :: s, n
+    integer :: s
 
     call keep_points(reach, memory%points)
-    call allocate_ties(memory%ties, count_springs(memory))
-    n = 0
-    do s = 1, size(memory%ties%side)
-      memory%ties%first(s) = n + 1
-      n = n + 1
-      do while (n < memory%points%n)
-        if (.not. is_same_spring(memory, n)) exit
-        n = n + 1
+    call allocate_ties(memory%ties, spring_starts(memory))
+    associate (ties => memory%ties, points => memory%points)
+      do s = 1, size(ties%side)
+        call find_owner(contact, s, memory)
+        ties%lag(:, s) = mean_separation(memory, s, 1)
+        spring = tie_spring(memory, s)
+        ties%offset(:, s) = [dot_product(spring%d, spring%n), dot_product(spring%d, spring%t)]
       end do
-      call find_owner(contact, s, memory)
-      memory%ties%lag(:, s) = 0.0_wp
-      memory%ties%first(s + 1) = n + 1
-      memory%ties%lag(:, s) = mean_separation(memory, s, 1)
-      spring = tie_spring(memory, s)
-      memory%ties%offset(:, s) = [dot_product(spring%d, spring%n), dot_product(spring%d, spring%t)]
-    end do
-    if (memory%has%nodal_pressure) &
-      allocate (memory%ties%traction(memory%n_slave), source=0.0_wp)
+      if (memory%has%nodal_pressure) then
+        call average_values(points, points%gap, memory%n_slave, memory%scratch%nodal)
+        ties%area = memory%scratch%nodal(2, :memory%n_slave)
+      else
+        ties%area = [(sum(points%area(ties%first(s):ties%first(s + 1) - 1)), s=1, size(ties%side))]
+      end if
+      allocate (ties%pressure(size(ties%area)), ties%traction(size(ties%area)), source=0.0_wp)
+    end associate
   end subroutine freeze_ties
 
   !> Keep the points within reach that have an area.
@@ -81,16 +79,21 @@ contains
     points%n = n
   end subroutine keep_points
 
-  !> Springs of the points on the list.
-  pure function count_springs(memory) result(n)
+  !> The first point of each spring, then the end.
+  pure function spring_starts(memory) result(first)
     type(contact_state_t), intent(in) :: memory
-    integer :: n, p
+    integer, allocatable :: first(:)
+    integer :: p
 
-    n = min(1, memory%points%n)
-    do p = 1, memory%points%n - 1
-      if (.not. is_same_spring(memory, p)) n = n + 1
+    first = [integer ::]
+    do p = 1, memory%points%n
+      if (p > 1) then
+        if (is_same_spring(memory, p - 1)) cycle
+      end if
+      first = [first, p]
     end do
-  end function count_springs
+    first = [first, memory%points%n + 1]
+  end function spring_starts
 
   !> Whether a point and the next one belong to one spring: portions of one virtual node.
   pure function is_same_spring(memory, p) result(same)
@@ -185,6 +188,7 @@ contains
     real(wp), intent(in) :: strength(2) !! NFLS, SFLS, N/m^2; 0 = nothing breaks now
     real(wp), intent(in) :: time        !! s
     type(tie_spring_t) :: springs(size(memory%ties%side))
+    real(wp) :: along_n(size(springs)), along_t(size(springs)) !! stretches, m
     integer :: s, p, n_new
 
     associate (points => memory%points, ties => memory%ties)
@@ -193,17 +197,18 @@ contains
         do p = ties%first(s), ties%first(s + 1) - 1
           points%normal(:, p) = springs(s)%n
           points%gap(p) = dot_product(springs(s)%d, springs(s)%n)
-          points%pressure(p) = points%gap(p) - ties%offset(1, s)
-          points%traction(p) = dot_product(springs(s)%d, springs(s)%t) - ties%offset(2, s)
         end do
+        along_n(s) = dot_product(springs(s)%d, springs(s)%n) - ties%offset(1, s)
+        along_t(s) = dot_product(springs(s)%d, springs(s)%t) - ties%offset(2, s)
       end do
+      ties%pressure = -bond_loads(memory, along_n)
+      ties%traction = bond_loads(memory, along_t)
     end associate
-    call load_stretches(memory)
     if (memory%has%breaks) then
       if (strength(1) > 0.0_wp) call break_ties(strength, time, memory, n_new)
-      call let_go(memory)
+      call let_go(memory%ties)
     end if
-    call share_nodal(memory)
+    call share_loads(memory)
     call scatter_ties(springs, memory)
   end subroutine hold_ties
 
@@ -216,45 +221,54 @@ contains
     real(wp) :: before, after, load
     integer :: node
 
-    call let_go(memory)
+    call let_go(memory%ties)
     call tie_energy(memory, before, load, node)
-    call mark_breaks(strength, time, memory, n_new)
+    call mark_breaks(strength, time, memory%ties, n_new)
     if (n_new == 0) return
-    call let_go(memory)
+    call let_go(memory%ties)
+    call share_loads(memory)
     call tie_energy(memory, after, load, node)
     memory%ties%spent = memory%ties%spent + (before - after)
   end subroutine break_ties
 
-  !> From stretches along n and t, which stand for pressures and tractions of the points, to these,
-  !> or to those of slave nodes.
-  pure subroutine load_stretches(memory)
-    type(contact_state_t), intent(inout) :: memory
+  !> Loads of bonds, which are springs or slave nodes where pressure is formed, from the stretches
+  !> of springs in one direction, N/m^2.
+  pure function bond_loads(memory, stretches) result(loads)
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in), contiguous :: stretches(:) !! m
+    real(wp) :: loads(size(memory%ties%area))
+    real(wp) :: nodal(2, memory%n_slave)
 
-    associate (points => memory%points, nodal => memory%scratch%nodal, n => memory%n_slave)
-      if (.not. memory%has%nodal_pressure) then
-        points%pressure(:points%n) = -points%stiffness(:points%n)*points%pressure(:points%n)
-        points%traction(:points%n) = points%stiffness(:points%n)*points%traction(:points%n)
-        return
+    associate (first => memory%ties%first(:size(stretches)))
+      if (memory%has%nodal_pressure) then
+        call average_values(memory%points, stretches, memory%n_slave, nodal)
+        loads = memory%slave_penalty*nodal(1, :)
+      else
+        loads = memory%points%stiffness(first)*stretches
       end if
-      call average_values(points, points%pressure, n, nodal)
-      memory%node_pressure = -memory%slave_penalty*nodal(1, :n)
-      call average_values(points, points%traction, n, nodal)
-      memory%ties%traction = memory%slave_penalty*nodal(1, :n)
     end associate
-  end subroutine load_stretches
+  end function bond_loads
 
-  !> Pressures and tractions of the points from those of slave nodes.
-  pure subroutine share_nodal(memory)
+  !> Pressures and tractions of the points from those of bonds.
+  pure subroutine share_loads(memory)
     type(contact_state_t), intent(inout) :: memory
+    integer :: s
 
-    if (.not. memory%has%nodal_pressure) return
-    associate (points => memory%points)
-      call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
-        points%pressure)
-      call share_out(points%n, points%slave_nodes, points%slave_weights, memory%ties%traction, &
-        points%traction)
+    associate (points => memory%points, ties => memory%ties)
+      if (memory%has%nodal_pressure) then
+        memory%node_pressure = ties%pressure
+        call share_out(points%n, points%slave_nodes, points%slave_weights, ties%pressure, &
+          points%pressure)
+        call share_out(points%n, points%slave_nodes, points%slave_weights, ties%traction, &
+          points%traction)
+      else
+        do s = 1, size(ties%side)
+          points%pressure(ties%first(s):ties%first(s + 1) - 1) = ties%pressure(s)
+          points%traction(ties%first(s):ties%first(s + 1) - 1) = ties%traction(s)
+        end do
+      end if
     end associate
-  end subroutine share_nodal
+  end subroutine share_loads
 
   !> Forces of all springs: those of their points, and the couples.
   pure subroutine scatter_ties(springs, memory)
@@ -300,32 +314,28 @@ contains
     real(wp), intent(out) :: energy
     real(wp), intent(out) :: load !! N/m
     integer, intent(out) :: node  !! slave node next to it, by place in the mesh; 0: no load
-    real(wp) :: square, area(memory%n_slave)
-    integer :: p, i, k
+    real(wp) :: square, stiffness
+    integer :: b, i
 
     energy = 0.0_wp
     load = 0.0_wp
     node = 0
-    area = 0.0_wp
-    associate (points => memory%points)
-      do p = 1, points%n
-        square = points%pressure(p)**2 + points%traction(p)**2
-        if (points%area(p)*sqrt(square) > load) then
-          load = points%area(p)*sqrt(square)
-          node = memory%nodes(points%slave_nodes(maxloc(points%slave_weights(:, p), 1), p))
-        end if
+    if (memory%points%n == 0) return
+    associate (points => memory%points, ties => memory%ties)
+      do b = 1, size(ties%area)
+        i = b
+        stiffness = memory%slave_penalty
         if (.not. memory%has%nodal_pressure) then
-          energy = energy + points%area(p)*square/(2.0_wp*points%stiffness(p))
-          cycle
+          i = points%slave_nodes(maxloc(points%slave_weights(:, ties%first(b)), 1), ties%first(b))
+          stiffness = points%stiffness(ties%first(b))
         end if
-        do k = 1, n_side
-          i = points%slave_nodes(k, p)
-          area(i) = area(i) + points%slave_weights(k, p)*points%area(p)
-        end do
+        square = ties%pressure(b)**2 + ties%traction(b)**2
+        energy = energy + ties%area(b)*square/(2.0_wp*stiffness)
+        if (.not. ties%area(b)*sqrt(square) > load) cycle
+        load = ties%area(b)*sqrt(square)
+        node = memory%nodes(i)
       end do
     end associate
-    if (memory%has%nodal_pressure) energy = sum(area*(memory%node_pressure**2 &
-      + memory%ties%traction**2))/(2.0_wp*memory%slave_penalty)
   end subroutine tie_energy
 
   !> Stiffness times area of a spring, N/m.

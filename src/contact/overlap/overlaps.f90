@@ -8,10 +8,9 @@ module overlaps_m
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
   use foot_m, only : foot_t, closest_foot, side_on, face_on, side_share, &
-    least_excess, facing_share, see_segment, round_off
-  use geometry_m, only : sight_t, separation, closest_distance
+    least_excess, facing_share, see_segment, vector_of, turns_gently, round_off
+  use geometry_m, only : sight_t, closest_distance
   use kinds_m, only : wp
-  use opposed_m, only : turns_sharply
   use overlap_m, only : overlap_t, gap_at, order_overlaps
   use surfaces_m, only : surface_t
   implicit none
@@ -184,8 +183,8 @@ contains
         if (is_beyond(contact%master, own%below, m, n_most)) cycle
         if (.not. may_be_deep .and. gap_at(overlap, 0.5_wp*(overlap%low + overlap%high)) &
           < -deep*memory%slave_tracking%segment_depth(m)) then
-          if (.not. any(own%is_active .and. own%below == m) .and. .not. is_reached(contact, memory, &
-            own, m, n_most)) cycle
+          if (.not. any(own%is_active .and. own%below == m) &
+            .and. .not. is_reached(contact, memory, own, m, n_most)) cycle
         end if
         n = n + 1
       end associate
@@ -206,17 +205,20 @@ contains
     integer :: k, i, segment, next
 
     reached = .false.
-    do k = 1, 2
-      if (.not. own%is_active(k)) cycle
-      segment = memory%slave_tracking%segment(own%ends(k))
-      do i = 1, n_most
-        reached = reached .or. segment == m
-        next = merge(contact%master%previous(segment), contact%master%next(segment), k == 1)
-        if (reached .or. next == 0 .or. contact%is_self) exit
-        if (turns_sharply(contact%master, memory%places(:, memory%n_slave + 1:), segment, next)) exit
-        segment = next
+    associate (master => contact%master, chain => memory%places(:, memory%n_slave + 1:))
+      do k = 1, 2
+        if (.not. own%is_active(k)) cycle
+        segment = memory%slave_tracking%segment(own%ends(k))
+        do i = 1, n_most
+          reached = reached .or. segment == m
+          next = merge(master%previous(segment), master%next(segment), k == 1)
+          if (reached .or. next == 0 .or. contact%is_self) exit
+          if (.not. turns_gently(vector_of(master, chain, segment), vector_of(master, chain, &
+            next))) exit
+          segment = next
+        end do
       end do
-    end do
+    end associate
   end function is_reached
 
   !> Master segment on which the k-th end of a slave segment has its projection: of an active end
@@ -282,7 +284,8 @@ contains
       behind = foot%segment
     end if
     goes_on = min(before, behind) == 0
-    if (.not. goes_on) goes_on = .not. turns_sharply(surface, chain, before, behind)
+    if (.not. goes_on) goes_on = turns_gently(vector_of(surface, chain, before), &
+      vector_of(surface, chain, behind))
   end function goes_on
 
   !> The candidate of a slave segment that is closest to a position on it; 0: none.
@@ -299,7 +302,7 @@ contains
 
     closest = 0
     least = huge(1.0_wp)
-    own = vector(contact%slave, memory%places, s)
+    own = vector_of(contact%slave, memory%places, s)
     do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
       m = memory%candidates%items(j)
       sight = see_segment(contact%master, memory%places(:, memory%n_slave + 1:), point, m)
@@ -337,7 +340,7 @@ contains
     associate (master => memory%places(:, memory%n_slave + 1:))
       do k = 1, size(overlaps)
         if (.not. overlaps(k)%share > 0.0_wp) cycle
-        other = vector(contact%master, master, overlaps(k)%master)
+        other = vector_of(contact%master, master, overlaps(k)%master)
         overlaps(k)%part = side_part(contact%slave, memory%places, own%number, other)
         if (overlaps(k)%part > 0.0_wp) overlaps(k)%part = overlaps(k)%part &
           *side_part(contact%master, master, overlaps(k)%master, own%t)
@@ -358,7 +361,7 @@ contains
     integer :: k, next
 
     part = 1.0_wp
-    own = vector(surface, places, segment)
+    own = vector_of(surface, places, segment)
     product = own(1)*other(1) + own(2)*other(2)
     squares = (own(1)**2 + own(2)**2)*(other(1)**2 + other(2)**2)
     ! No segment can be opposed so much more.
@@ -366,23 +369,12 @@ contains
     do k = 1, 2
       next = merge(surface%previous(segment), surface%next(segment), k == 1)
       if (next == 0) cycle
-      beside = vector(surface, places, next)
+      beside = vector_of(surface, places, next)
       if (merge(-1.0_wp, 1.0_wp, k == 1)*(own(1)*beside(2) - own(2)*beside(1)) <= 0.0_wp) cycle
       part = part*side_share(product/sqrt(squares) - (beside(1)*other(1) + beside(2)*other(2)) &
         /sqrt((beside(1)**2 + beside(2)**2)*(other(1)**2 + other(2)**2)))
     end do
   end function side_part
-
-  !> Vector of a segment, m.
-  pure function vector(surface, places, segment) result(t)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, at least n_node) from this surface on
-    integer, intent(in) :: segment
-    real(wp) :: t(2)
-
-    t = separation(places(:, surface%segments(2, segment)), &
-      places(:, surface%segments(1, segment)))
-  end function vector
 
   !> Whether a slave segment is opposed to the face that one of its ends is active on.
   pure function is_opposed_to_contact(memory, own) result(opposed)

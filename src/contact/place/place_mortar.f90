@@ -26,17 +26,17 @@ contains
     if (memory%slave_tracking%n_touching == 0) return
     if (has_folds(contact)) call find_tips(contact%slave, memory)
     call mark_ends(memory%slave_tracking, size(memory%spot_xi), contact%slave%segments, &
-      memory%scratch%point_at)
+      memory%scratch%segment_near)
     do s = 1, contact%slave%n_segment
-      near = max(memory%scratch%point_at(contact%slave%segments(1, s)), &
-        memory%scratch%point_at(contact%slave%segments(2, s)))
+      near = max(memory%scratch%segment_near(contact%slave%segments(1, s)), &
+        memory%scratch%segment_near(contact%slave%segments(2, s)))
       if (near == 0) cycle
       first = memory%points%n + 1
       call add_segment(contact, s, near, memory)
       if (has_folds(contact)) call move_to_ends(first, memory)
     end do
     call finish_segment_points(memory%places, contact%is_round, 1, memory%points)
-    memory%scratch%point_at = 0
+    memory%scratch%segment_near = 0
   end subroutine place_mortar
 
   !> Note at both ends of each segment with a spot in contact the master segment of the first of

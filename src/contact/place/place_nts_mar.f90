@@ -12,7 +12,7 @@ module place_nts_mar_m
   use overlap_m, only : overlap_t
   use overlap_status_m, only : none_due, look_at_segment, note_next_wake
   use overlaps_m, only : find_overlaps, room_for_overlaps
-  use point_list_m, only : add_point, append_touching, add_length, finish_segment_points
+  use point_list_m, only : add_point, append_touching, finish_segment_points
   use radii_m, only : end_radius, radius_between
   use segment_points_m, only : judge_segments
   use surfaces_m, only : surface_t
@@ -36,19 +36,19 @@ contains
     call append_touching(memory%slave_tracking, contact%master, [0, memory%n_slave], 0.0_wp, &
       memory%slave_penalty, memory%points)
     n = memory%points%n
-    do k = 1, n
-      memory%scratch%point_at(memory%slave_tracking%touching(k)) = k
-    end do
+    memory%scratch%nodal(1, :memory%n_slave) = 0.0_wp
     do s = 1, contact%slave%n_segment
       call look_at_segment(contact, memory, s, is_due)
       memory%scratch%is_placed(s) = is_due
       if (is_due) call place_segment(contact, s, memory, overlaps)
     end do
+    do k = 1, n
+      memory%points%area(k) = memory%scratch%nodal(1, memory%slave_tracking%touching(k))
+    end do
     call judge_segments(contact, n, memory)
     call note_next_wake(memory)
     call finish_segment_points(memory%places, .false., n + 1, memory%points)
     call finish_nodes(contact, memory, n)
-    memory%scratch%point_at = 0
   end subroutine place_nts_mar
 
   !> Divide a slave segment among its ends and the master nodes at its breakpoints: each has half of
@@ -73,7 +73,9 @@ contains
       at = [overlaps(k)%first, overlaps(k)%last]
       do i = 1, 2
         if (at(i) == 0) then
-          call add_length(memory%points, memory%scratch%point_at(ends(i)), halves(i))
+          associate (area_of_end => memory%scratch%nodal(1, ends(i)))
+            area_of_end = area_of_end + halves(i)
+          end associate
         else if (at(i) == node) then
           area = area + halves(i)
         else
@@ -86,8 +88,8 @@ contains
     call add_breakpoint(ends, node, area, memory)
   end subroutine place_segment
 
-  !> Half of an overlap, as far as it counts, for either of its ends, m; in axisymmetry weighted by
-  !> the radius, so that they differ. With the strict rule all of it counts.
+  !> Half of an overlap, as far as it counts, for either of its ends, m; in axisymmetry weighted
+  !> by the radius, so that they differ. With the strict rule all but sides of corners counts.
   pure function halves_of(contact, a, b, length, overlap) result(halves)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in) :: a(4), b(4)     !! ends of the slave segment
@@ -135,8 +137,8 @@ contains
     do p = 1, n
       if (memory%points%area(p) > 0.0_wp) cycle
       node = memory%points%slave_nodes(1, p)
-      if (is_tip(contact%slave, memory, node)) call add_length(memory%points, p, &
-        competence_area(contact%slave, memory%places(:, :memory%n_slave), contact%is_round, node))
+      if (is_tip(contact%slave, memory, node)) memory%points%area(p) = competence_area( &
+        contact%slave, memory%places(:, :memory%n_slave), contact%is_round, node)
     end do
   end subroutine finish_nodes
 

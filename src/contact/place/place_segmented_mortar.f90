@@ -5,7 +5,7 @@ module place_segmented_mortar_m
   use contact_state_m, only : contact_state_t, is_touching
   use contacts_m, only : contact_t
   use foot_block_m, only : n_block, project_block, settle_odd
-  use foot_m, only : foot_t, near_foot
+  use foot_m, only : foot_t, near_foot, stays_over
   use geometry_m, only : separation
   use kinds_m, only : wp
   use overlap_m, only : overlap_t
@@ -126,29 +126,39 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(place_block_t), intent(inout) :: block
-    type(foot_t) :: foot
-    integer :: i, p
 
     block%feet%n = block%n
     call project_block(block%feet)
-    if (block%feet%n_odd > 0) call settle_odd(contact%master, &
-      memory%places(:, memory%n_slave + 1:), block%feet)
-    do i = 1, block%feet%n_moved
-      p = block%feet%moved(i)
-      associate (feet => block%feet, ends => block%ends(:, p), xi => block%xi(p))
-        if (feet%odd(p) > 0.0_wp) then
-          foot = near_foot(contact%master, memory%places(:, memory%n_slave + 1:), &
-            (1.0_wp - xi)*memory%places(:, ends(1)) + xi*memory%places(:, ends(2)), feet%segment(p))
-          feet%segment(p) = foot%segment
-          feet%xi(p) = foot%xi
-          feet%gap(p) = foot%gap
-          feet%normal(:, p) = foot%normal
-          if (.not. foot%is_on) block%area(p) = 0.0_wp
-        end if
-        block%nodes(:, p) = memory%n_slave + contact%master%segments(:, feet%segment(p))
-      end associate
-    end do
+    if (block%feet%n_odd > 0) call place_odd(contact, memory, block)
     call append_points(block, memory%slave_penalty, memory%points)
   end subroutine finish_block
+
+  !> Points that may be nearer to a neighbour of the master segment.
+  pure subroutine place_odd(contact, memory, block)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(place_block_t), intent(inout) :: block
+    type(foot_t) :: foot
+    integer :: p
+
+    associate (feet => block%feet, chain => memory%places(:, memory%n_slave + 1:))
+      call settle_odd(contact%master, chain, feet)
+      do p = 1, block%n
+        if (.not. feet%odd(p) > 0.0_wp) cycle
+        if (feet%gap(p) >= 0.0_wp) then
+          if (stays_over(contact%master, chain, feet%t(:, p), feet%d(:, p), feet%segment(p))) cycle
+        end if
+        associate (ends => block%ends(:, p), xi => block%xi(p))
+          foot = near_foot(contact%master, chain, (1.0_wp - xi)*memory%places(:, ends(1)) &
+            + xi*memory%places(:, ends(2)), feet%segment(p))
+        end associate
+        block%nodes(:, p) = memory%n_slave + contact%master%segments(:, foot%segment)
+        feet%xi(p) = foot%xi
+        feet%gap(p) = foot%gap
+        feet%normal(:, p) = foot%normal
+        if (.not. foot%is_on) block%area(p) = 0.0_wp
+      end do
+    end associate
+  end subroutine place_odd
 
 end module place_segmented_mortar_m

@@ -10,7 +10,7 @@ module point_list_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: place_block_t, append_points, add_point, append_touching, add_length, &
+  public :: place_block_t, append_points, add_point, append_touching, &
     finish_segment_points
 
   !> Places on slave segments that are to be points, with their projections on the master: many at a
@@ -95,15 +95,6 @@ contains
     end associate
     points%n = points%n + tracking%n_touching
   end subroutine append_touching
-
-  !> Give length to a point, if there is one.
-  pure subroutine add_length(points, p, length)
-    type(contact_points_t), intent(inout) :: points
-    integer, intent(in) :: p       !! 0: none
-    real(wp), intent(in) :: length !! m
-
-    if (p > 0) points%area(p) = points%area(p) + length
-  end subroutine add_length
 
   !> Points on slave segments: reduce their areas to what is opposed to the master, and drop those
   !> without; in axisymmetry let them weigh with the radius where they stand.

@@ -4,7 +4,7 @@
 !> (doc/theory/contact.md, sections 3 and 4).
 module contact_status_m
   use contact_state_m, only : tracking_t, candidates_t, is_free, is_touching
-  use entry_m, only : found_contact_t, find_contact, is_pair, is_opposed_at
+  use entry_m, only : found_contact_t, find_contact, is_pair, is_opposed
   use foot_m, only : foot_t, follow_contact, gentle_turn
   use foot_block_m, only : foot_block_t, n_block, project_block, settle_odd
   use kinds_m, only : wp
@@ -71,7 +71,7 @@ contains
   end subroutine list_due
 
   !> The common case of active points: still over their segment, behind it, and no nearer to a
-  !> neighbour than to it, or behind the node between both. The others are listed in `due`.
+  !> neighbour than to it. The others are listed in `due`.
   pure subroutine keep_contacts(tracking, surface, chain, points, n_left)
     type(tracking_t), intent(inout) :: tracking
     type(surface_t), intent(in) :: surface
@@ -99,31 +99,24 @@ contains
           tracking%normal(:, i) = block%normal(:, k)
         end do
       end if
-      call take_moved(block, tracking, first, n_left)
+      if (block%n_odd > 0) call list_odd(block%n, block%odd, tracking%touching(first), &
+        tracking%due, n_left)
     end do
   end subroutine keep_contacts
 
-  !> The segments of the points that were settled one by one; those that need a decision are listed:
-  !> what is open, what is beyond its segment, and on a surface with itself what has left its own.
-  pure subroutine take_moved(block, tracking, first, n_left)
-    type(foot_block_t), intent(in) :: block
-    type(tracking_t), intent(inout) :: tracking
-    integer, intent(in) :: first !! of the block on the list of active points
-    integer, intent(inout) :: n_left
-    integer :: i, j, k
-    logical :: stays
+  !> Append the points of a block that need a decision.
+  pure subroutine list_odd(n, odd, points, due, n_due)
+    integer, intent(in) :: n, points(n)
+    real(wp), intent(in) :: odd(n)
+    integer, intent(inout) :: due(*), n_due
+    integer :: k
 
-    do i = 1, block%n_moved
-      k = block%moved(i)
-      j = tracking%touching(first + k - 1)
-      stays = block%gap(k) < tracking%pass%closed_gap .and. .not. block%odd(k) > 0.0_wp
-      if (tracking%pass%is_self) stays = stays .and. tracking%segment(j) == block%segment(k)
-      if (stays .or. block%odd(k) < 0.0_wp) tracking%segment(j) = block%segment(k)
-      if (stays) cycle
-      n_left = n_left + 1
-      tracking%due(n_left) = j
+    do k = 1, n
+      if (.not. odd(k) > 0.0_wp) cycle
+      n_due = n_due + 1
+      due(n_due) = points(k)
     end do
-  end subroutine take_moved
+  end subroutine list_odd
 
   !> Vectors of a block of points.
   pure subroutine see_points(n, active, segment, ends, chain, points, on, t, d)
@@ -174,7 +167,7 @@ contains
     foot = follow_contact(other, places(:, tracking%pass%other_at + 1:), point, tracking%segment(i))
     stays = foot%is_on .and. foot%gap < tracking%pass%closed_gap
     if (stays .and. dot_product(foot%normal, tracking%normal(:, i)) < gentle_turn) &
-      stays = is_opposed_at(tracking%pass, own, places, i, foot%normal)
+      stays = is_opposed(tracking%pass, own, places, i, foot%normal)
     if (stays .and. tracking%pass%is_self) &
       stays = is_pair(tracking%pass, own, pairs, i, foot%segment)
     if (stays) then

@@ -5,18 +5,21 @@
 !> that it had before (doc/theory/contact.md, section 3.3).
 module entry_m
   use contact_state_m, only : tracking_t, candidates_t, pass_t
-  use foot_m, only : foot_t, closest_foot, face_foot, end_tolerance, round_off
+  use foot_m, only : foot_t, closest_foot, face_foot, vector_of, turns_gently, side_on, face_on, &
+    end_tolerance, round_off
   use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal, closest_distance, &
     segment_length
   use kinds_m, only : wp
-  use opposed_m, only : segments_of, is_opposed, turns_sharply
   use surfaces_m, only : surface_t, meets_axis
   implicit none
   private
-  public :: found_contact_t, find_contact, is_pair, is_opposed_at
+  public :: found_contact_t, find_contact, is_pair, segments_of, is_opposed
 
   !> Relative motion that a point without candidates is away from contact, m: any.
   real(wp), parameter :: unpaired = 0.25_wp*huge(1.0_wp)
+
+  !> Sine of the angle by which a direction lies between two others (10 degrees).
+  real(wp), parameter :: well_between = 0.17_wp
 
   !> What is found of a separated point.
   type :: found_contact_t
@@ -124,7 +127,7 @@ contains
     logical :: behind
 
     behind = is_over(other, places(:, tracking%pass%other_at + 1:), sight, segment)
-    if (behind) behind = is_opposed_at(tracking%pass, own, places, i, sight_normal(sight))
+    if (behind) behind = is_opposed(tracking%pass, own, places, i, sight_normal(sight))
   end function is_behind
 
   !> Whether a point behind a segment has come through it: it was not behind it before the step, and
@@ -170,7 +173,7 @@ contains
       end if
       if (foot%is_on .and. foot%gap < pass%closed_gap) then
         found%distance = 0.0_wp
-        if (.not. is_opposed_at(pass, own, places, i, foot%normal)) then
+        if (.not. is_opposed(pass, own, places, i, foot%normal)) then
           if (found%behind == 0) return
           foot = face_foot(sight_of_segment(point, places(:, pass%other_at + other%segments(1, &
             found%behind)), places(:, pass%other_at + other%segments(2, found%behind))), &
@@ -220,8 +223,7 @@ contains
     if (beside == 0) then
       over = beyond <= end_tolerance*sight%square .or. meets_axis(surface, segment, is_first)
     else if (beyond <= end_tolerance*sight%square) then
-      over = turns_sharply(surface, chain, merge(beside, segment, is_first), &
-        merge(segment, beside, is_first))
+      over = .not. turns_gently(vector_of(surface, chain, beside), sight%t)
     end if
   end function is_over
 
@@ -285,17 +287,65 @@ contains
     is = is .or. is_apart
   end function is_pair
 
-  !> Whether a face is opposed to a point.
-  pure function is_opposed_at(pass, own, places, i, normal) result(opposed)
+  !> The segments that a contact point is on: those before and after a node, 0: none there, or one
+  !> segment twice.
+  pure function segments_of(surface, n_on_segment, i) result(segments)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: n_on_segment !! points of a segment; 0: points at nodes
+    integer, intent(in) :: i            !! point
+    integer :: segments(2)
+
+    if (n_on_segment == 0) then
+      segments = [surface%incoming(i), surface%outgoing(i)]
+    else
+      segments = 1 + (i - 1)/n_on_segment
+    end if
+  end function segments_of
+
+  !> Whether a face is opposed to a point: its outward normal is opposite to that of one of the
+  !> point's segments within 60 degrees (points between nodes: 84 degrees), or lies opposite between
+  !> both of them at a convex vertex, by 10 degrees at least: else the nodes of a body that slides
+  !> on over a ramp would be held by the end face in front of it. At an end of an open surface the
+  !> tangent that leads out of it takes the place of the missing normal there.
+  pure function is_opposed(pass, own, places, i, normal) result(opposed)
     type(pass_t), intent(in) :: pass
-    type(surface_t), intent(in) :: own
+    type(surface_t), intent(in) :: own               !! of the points
     real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of the interface
-    integer, intent(in) :: i
+    integer, intent(in) :: i                         !! point
     real(wp), intent(in) :: normal(2)                !! outward, of the face
     logical :: opposed
+    real(wp) :: t(2, 2), normals(2, 2), limit
+    integer :: segments(2), k
 
-    opposed = is_opposed(own, places(:, pass%own_at + 1:), segments_of(own, pass%n_on_segment, i), &
-      normal)
-  end function is_opposed_at
+    opposed = .false.
+    segments = segments_of(own, pass%n_on_segment, i)
+    do k = 1, 2
+      if (segments(k) == 0) cycle
+      t(:, k) = vector_of(own, places(:, pass%own_at + 1:), segments(k))
+      t(:, k) = t(:, k)/max(sqrt(t(1, k)**2 + t(2, k)**2), tiny(1.0_wp))
+      normals(:, k) = [t(2, k), -t(1, k)]
+    end do
+    if (segments(1) == 0) normals(:, 1) = -t(:, 2)
+    if (segments(2) == 0) normals(:, 2) = t(:, 1)
+    limit = merge(side_on, face_on, segments(1) == segments(2))
+    do k = 1, 2
+      if (segments(k) == 0) cycle
+      opposed = dot_product(normals(:, k), normal) < limit
+      if (opposed) return
+    end do
+    ! The opposite of the normal turns counter-clockwise from the first to the second of the
+    ! normals.
+    opposed = cross(normals(:, 1), normals(:, 2)) > 0.0_wp .and. &
+      cross(normals(:, 1), -normal) > well_between .and. &
+      cross(-normal, normals(:, 2)) > well_between
+  end function is_opposed
+
+  !> Sine of the angle from one unit vector to another.
+  pure function cross(a, b)
+    real(wp), intent(in) :: a(2), b(2)
+    real(wp) :: cross
+
+    cross = a(1)*b(2) - a(2)*b(1)
+  end function cross
 
 end module entry_m

@@ -10,10 +10,9 @@ module initial_status_m
   use element_finder_m, only : element_finder_t, start_finder, is_inside_body
   use foot_m, only : foot_t, closest_foot, see_segment
   use geometry_m, only : sight_t, closest_distance, sight_gap, sight_normal
-  use entry_m, only : is_opposed_at
+  use entry_m, only : is_opposed, segments_of
   use kinds_m, only : wp
   use model_m, only : model_t
-  use opposed_m, only : segments_of
   use others_memory_m, only : answers_t
   use surfaces_m, only : surface_t, has_closed_chain
   implicit none
@@ -199,7 +198,7 @@ contains
         sight = see_segment(other, chain, point, m)
         square = closest_distance(sight)
         if (sight%across >= 0.0_wp .or. square >= least) cycle
-        if (.not. is_opposed_at(tracking%pass, own, places, i, sight_normal(sight))) cycle
+        if (.not. is_opposed(tracking%pass, own, places, i, sight_normal(sight))) cycle
         if (is_closed .and. -sight_gap(sight)*initial_length(model, other, m) &
           > area_behind(model, other, m)) cycle
         closest = m

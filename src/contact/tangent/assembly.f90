@@ -1,222 +1,168 @@
 ! SPDX-License-Identifier: MIT
-!> From varied points to the tangent of an interface, K = -dF/du (doc/theory/contact.md, section 9).
+!> From linearised points to the tangent of an interface, K = -dF/du
+!> (doc/theory/contact.md, section 9).
 module assembly_m
-  use behind_ties_m, only : is_left_to_tie
-  use variation_m, only : varied_point_t, n_slot
-  use contact_law_m, only : vary_pressure
-  use contact_state_m, only : contact_state_t
-  use contacts_m, only : friction_rule_t
-  use dual_m, only : dual_t, constant, n_partial, operator(+), operator(-), operator(*)
-  use entry_offset_m, only : has_offsets
-  use friction_tangent_m, only : vary_grip
+  use dual_m, only : dual_t, n_partial, operator(+), operator(-), operator(*)
   use kinds_m, only : wp
+  use linearisation_m, only : varied_point_t, n_slot
   use sparse_m, only : sparse_t, add_block
   implicit none
   private
-  public :: add_varied_point, add_pressed_point, pattern_t, start_pattern, use_node, &
-    add_to_row, add_to_column, add_product
+  public :: add_varied_point, product_t, start_product, add_to_row, add_to_column, add_gradient, &
+    add_point_force, finish_product
 
-  !> Scratch for a product of two vectors over the nodes of an interface of which few entries are
-  !> not zero.
-  type :: pattern_t
-    integer :: n = 0                       !! nodes in use
-    integer, allocatable :: nodes(:)       !! (n_node) the first n: local numbers
-    logical, allocatable :: is_used(:)     !! (n_node)
-    real(wp), allocatable :: column(:, :)  !! (2, n_node) force
-    real(wp), allocatable :: row(:, :)     !! (2, n_node) gradient
-  end type pattern_t
+  !> A product of two vectors over the nodes of an interface of which few entries are not zero.
+  type :: product_t
+    integer :: n = 0                      !! nodes in use
+    integer, allocatable :: nodes(:)      !! (n_node) the first n: local numbers
+    logical, allocatable :: is_used(:)    !! (n_node)
+    real(wp), allocatable :: column(:, :) !! (2, n_node) force
+    real(wp), allocatable :: row(:, :)    !! (2, n_node) gradient
+  end type product_t
 
 contains
 
-  !> Weights of slots 1 to 4 in the force, master side with minus.
-  pure function point_weights(point) result(weights)
+  !> Forces of a point on slots 1, 2 and its master side: load*normal - shear*tangent on the slave
+  !> side; the load is pressure times area, the shear traction times area, the tangent (-n_y, n_x).
+  pure function forces_of(point, load, shear) result(forces)
     type(varied_point_t), intent(in) :: point
-    type(dual_t) :: weights(4)
+    type(dual_t), intent(in) :: load, shear
+    type(dual_t) :: forces(2, 4)
+    type(dual_t) :: pull(2), to_last(2)
 
-    weights = [1.0_wp - point%slave_xi, point%slave_xi, point%master_xi, -point%master_xi]
-    weights(3)%value = weights(3)%value - 1.0_wp
-  end function point_weights
+    pull = load*point%normal
+    if (abs(shear%value) > 0.0_wp .or. any(abs(shear%slope) > 0.0_wp)) &
+      pull = pull + [shear*point%normal(2), -(shear*point%normal(1))]
+    to_last = point%slave_xi*pull
+    forces(:, 2) = to_last
+    forces(:, 1) = pull - to_last
+    to_last = point%master_xi*pull
+    forces(:, 4) = -to_last
+    forces(:, 3) = to_last - pull
+  end function forces_of
 
-  !> Add a point with the force load*normal - shear*tangent; the load is pressure times area, the
-  !> shear traction times area, the tangent (-n_y, n_x).
-  pure subroutine add_varied_point(point, load, equations, matrix, shear)
+  !> Add a point under its load and shear.
+  pure subroutine add_varied_point(point, load, shear, equations, matrix)
     type(varied_point_t), intent(in) :: point
-    type(dual_t), intent(in) :: load
+    type(dual_t), intent(in) :: load, shear            !! N/m
     integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
     type(sparse_t), intent(inout) :: matrix
-    type(dual_t), intent(in), optional :: shear !! absent: none
-    type(dual_t) :: weights(4), pull(2), force
+    type(dual_t) :: forces(2, 4)
     real(wp) :: block(8, n_partial)
-    integer :: numbers(n_partial), rows(8), k, j
+    integer :: numbers(n_partial), rows(8), k
 
     numbers = 0
     do k = 1, n_slot
       if (point%nodes(k) > 0) numbers(2*k - 1:2*k) = equations(:, point%nodes(k))
     end do
-    rows = numbers(:8)
-    weights = point_weights(point)
-    pull = load*point%normal
-    if (present(shear)) pull = pull + [shear*point%normal(2), -(shear*point%normal(1))]
+    associate (i => 2*point%master_slot)
+      rows = [numbers(1:4), numbers(i - 1:i + 2)]
+    end associate
+    forces = forces_of(point, load, shear)
     do k = 1, 4
-      if (.not. (abs(weights(k)%value) > 0.0_wp .or. any(abs(weights(k)%slope) > 0.0_wp))) &
-        rows(2*k - 1:2*k) = 0
-      do j = 1, 2
-        force = weights(k)*pull(j)
-        block(2*k - 2 + j, :) = -force%slope
-      end do
+      block(2*k - 1, :) = -forces(1, k)%slope
+      block(2*k, :) = -forces(2, k)%slope
+      if (.not. any(abs(block(2*k - 1:2*k, :)) > 0.0_wp)) rows(2*k - 1:2*k) = 0
     end do
     call add_block(matrix, rows, numbers, block)
   end subroutine add_varied_point
 
-  !> Add a point that is pressed by its own gap, with friction by its own slip.
-  pure subroutine add_pressed_point(rule, memory, place, point, stiffness, equations, matrix, &
-      length)
-    type(friction_rule_t), intent(in) :: rule
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: place !! of its traction, a local node
-    type(varied_point_t), intent(in) :: point
-    real(wp), intent(in) :: stiffness
-    integer, intent(in), contiguous :: equations(:, :)
-    type(sparse_t), intent(inout) :: matrix
-    type(dual_t), intent(in), optional :: length !! competence length where the area is 1, m
-    type(dual_t) :: pressure, gap
-
-    if (is_left_to_tie(memory, place)) return
-    gap = point%gap
-    if (memory%has%interference) gap = gap + vary_left(memory, place, point)
-    if (has_offsets(memory)) gap = gap + vary_offset(memory, place, point)
-    if (.not. gap%value < memory%closed_gap) return
-    pressure = vary_pressure(memory%contact_law, stiffness, gap)
-    if (memory%has%friction) then
-      call add_varied_point(point, pressure*point%area, equations, matrix, &
-        vary_grip(rule, memory, place, point, pressure, stiffness, length)*point%area)
-    else
-      call add_varied_point(point, pressure*point%area, equations, matrix)
-    end if
-  end subroutine add_pressed_point
-
-  !> The part of a place's initial overlap that does not act yet. A master node that was no place
-  !> at time zero goes by the ends of its slave segment.
-  pure function vary_left(memory, place, point) result(left)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: place
-    type(varied_point_t), intent(in) :: point
-    type(dual_t) :: left
-    real(wp) :: ends(2)
-
-    associate (interference => memory%interference)
-      left = constant(interference%left*max(0.0_wp, interference%depth(place)))
-      if (interference%depth(place) >= 0.0_wp .or. point%nodes(2) == 0) return
-      ends = interference%left*max(0.0_wp, interference%depth(point%nodes(:2)))
-      left = (ends(2) - ends(1))*point%slave_xi
-      left = left + ends(1)
-    end associate
-  end function vary_left
-
-  !> Entry offset of a point at a node; a master node of type 5 goes by the ends of its slave
-  !> segment.
-  pure function vary_offset(memory, place, point) result(offset)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: place
-    type(varied_point_t), intent(in) :: point
-    type(dual_t) :: offset
-    real(wp) :: ends(2)
-
-    if (place <= memory%n_slave) then
-      offset = constant(memory%slave_tracking%offset(place))
-    else if (memory%master_tracking%n > 0) then
-      offset = constant(memory%master_tracking%offset(place - memory%n_slave))
-    else
-      ends = memory%slave_tracking%offset(point%nodes(:2))
-      offset = (ends(2) - ends(1))*point%slave_xi
-      offset = offset + ends(1)
-    end if
-  end function vary_offset
-
-  !> Scratch for an interface of n nodes.
-  pure subroutine start_pattern(pattern, n)
-    type(pattern_t), intent(out) :: pattern
+  !> An empty product for an interface of n nodes.
+  pure subroutine start_product(product, n)
+    type(product_t), intent(out) :: product
     integer, intent(in) :: n
 
-    allocate (pattern%nodes(n), source=0)
-    allocate (pattern%is_used(n), source=.false.)
-    allocate (pattern%column(2, n), pattern%row(2, n), source=0.0_wp)
-  end subroutine start_pattern
+    allocate (product%nodes(n), product%column(2, n), product%row(2, n))
+    allocate (product%is_used(n), source=.false.)
+  end subroutine start_product
 
-  !> Add the derivative of something to the row.
-  pure subroutine add_to_row(pattern, point, slope)
-    type(pattern_t), intent(inout) :: pattern
-    type(varied_point_t), intent(in) :: point !! whose slots the derivative is for
-    real(wp), intent(in) :: slope(n_partial)
-    integer :: k, node
+  !> Add a vector at a node to the gradient.
+  pure subroutine add_to_row(product, node, vector)
+    type(product_t), intent(inout) :: product
+    integer, intent(in) :: node
+    real(wp), intent(in) :: vector(2)
 
-    do k = 1, n_slot
-      node = point%nodes(k)
-      if (node == 0) cycle
-      call use_node(pattern, node)
-      pattern%row(:, node) = pattern%row(:, node) + slope(2*k - 1:2*k)
-    end do
+    call use_node(product, node)
+    product%row(:, node) = product%row(:, node) + vector
   end subroutine add_to_row
 
-  !> Add the force of a point under the given load and shear to the column.
-  pure subroutine add_to_column(pattern, point, load, shear)
-    type(pattern_t), intent(inout) :: pattern
-    type(varied_point_t), intent(in) :: point
-    real(wp), intent(in) :: load, shear
-    type(dual_t) :: weights(4)
-    integer :: k, node
+  !> Add a force at a node.
+  pure subroutine add_to_column(product, node, vector)
+    type(product_t), intent(inout) :: product
+    integer, intent(in) :: node
+    real(wp), intent(in) :: vector(2)
 
-    weights = point_weights(point)
-    do k = 1, 4
-      node = point%nodes(k)
-      if (node == 0) cycle
-      call use_node(pattern, node)
-      pattern%column(:, node) = pattern%column(:, node) &
-        + load*weights(k)%value*point%normal%value
-      if (abs(shear) > 0.0_wp) pattern%column(:, node) = pattern%column(:, node) &
-        + shear*weights(k)%value*[point%normal(2)%value, -point%normal(1)%value]
-    end do
+    call use_node(product, node)
+    product%column(:, node) = product%column(:, node) + vector
   end subroutine add_to_column
 
+  !> Add derivatives by the slots of a point to the gradient.
+  pure subroutine add_gradient(product, point, slope)
+    type(product_t), intent(inout) :: product
+    type(varied_point_t), intent(in) :: point
+    real(wp), intent(in) :: slope(n_partial)
+    integer :: k
+
+    do k = 1, n_slot
+      if (point%nodes(k) > 0) call add_to_row(product, point%nodes(k), slope(2*k - 1:2*k))
+    end do
+  end subroutine add_gradient
+
+  !> Add the forces of a point under a load and a shear without derivatives.
+  pure subroutine add_point_force(product, point, load, shear)
+    type(product_t), intent(inout) :: product
+    type(varied_point_t), intent(in) :: point
+    real(wp), intent(in) :: load, shear !! N/m
+    real(wp) :: pull(2), weights(4)
+    integer :: nodes(4), k
+
+    pull = load*point%normal%value &
+      + shear*[point%normal(2)%value, -point%normal(1)%value]
+    associate (slave => point%slave_xi%value, master => point%master_xi%value)
+      weights = [1.0_wp - slave, slave, master - 1.0_wp, -master]
+    end associate
+    nodes = point%nodes([1, 2, point%master_slot, point%master_slot + 1])
+    do k = 1, 4
+      if (nodes(k) > 0) call add_to_column(product, nodes(k), weights(k)*pull)
+    end do
+  end subroutine add_point_force
+
   !> Note that a node takes part.
-  pure subroutine use_node(pattern, node)
-    type(pattern_t), intent(inout) :: pattern
+  pure subroutine use_node(product, node)
+    type(product_t), intent(inout) :: product
     integer, intent(in) :: node
 
-    if (pattern%is_used(node)) return
-    pattern%is_used(node) = .true.
-    pattern%n = pattern%n + 1
-    pattern%nodes(pattern%n) = node
+    if (product%is_used(node)) return
+    product%is_used(node) = .true.
+    product%n = product%n + 1
+    product%nodes(product%n) = node
+    product%column(:, node) = 0.0_wp
+    product%row(:, node) = 0.0_wp
   end subroutine use_node
 
-  !> Add factor*column*row to the matrix and empty the scratch.
-  pure subroutine add_product(pattern, factor, equations, matrix)
-    type(pattern_t), intent(inout) :: pattern
+  !> Add factor*column*row to the matrix and empty the product.
+  pure subroutine finish_product(product, factor, equations, matrix)
+    type(product_t), intent(inout) :: product
     real(wp), intent(in) :: factor
-    integer, intent(in), contiguous :: equations(:, :)
+    integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
     type(sparse_t), intent(inout) :: matrix
-    real(wp) :: block(2*pattern%n, 2)
-    integer :: rows(2*pattern%n), i, j
+    real(wp) :: column(2*product%n), block(2*product%n, 2)
+    integer :: rows(2*product%n), k
 
-    do i = 1, pattern%n
-      associate (node => pattern%nodes(i))
-        rows(2*i - 1:2*i) = equations(:, node)
-        if (.not. any(abs(pattern%column(:, node)) > 0.0_wp)) rows(2*i - 1:2*i) = 0
-      end associate
-    end do
-    do i = 1, pattern%n
-      associate (row => pattern%row(:, pattern%nodes(i)))
-        do j = 1, pattern%n
-          block(2*j - 1:2*j, 1) = factor*row(1)*pattern%column(:, pattern%nodes(j))
-          block(2*j - 1:2*j, 2) = factor*row(2)*pattern%column(:, pattern%nodes(j))
-        end do
-      end associate
-      call add_block(matrix, rows, equations(:, pattern%nodes(i)), block)
-    end do
-    pattern%is_used(pattern%nodes(:pattern%n)) = .false.
-    pattern%column(:, pattern%nodes(:pattern%n)) = 0.0_wp
-    pattern%row(:, pattern%nodes(:pattern%n)) = 0.0_wp
-    pattern%n = 0
-  end subroutine add_product
+    associate (nodes => product%nodes(:product%n))
+      column = factor*reshape(product%column(:, nodes), [2*product%n])
+      rows = reshape(equations(:, nodes), [2*product%n])
+      do k = 1, product%n
+        if (.not. any(abs(column(2*k - 1:2*k)) > 0.0_wp)) rows(2*k - 1:2*k) = 0
+      end do
+      do k = 1, product%n
+        block(:, 1) = product%row(1, nodes(k))*column
+        block(:, 2) = product%row(2, nodes(k))*column
+        call add_block(matrix, rows, equations(:, nodes(k)), block)
+      end do
+      product%is_used(nodes) = .false.
+    end associate
+    product%n = 0
+  end subroutine finish_product
 
 end module assembly_m

@@ -1,141 +1,151 @@
 ! SPDX-License-Identifier: MIT
-!> Tangent where pressure comes from averaged gaps of slave nodes (types 6 and 7;
-!> doc/theory/contact.md, section 9.5): the points under their present nodal pressures, and for each
-!> loaded slave node one product of the force of unit pressure and the gradient of the pressure.
+!> Tangents of points under pressures and tractions from gaps and slips averaged at slave nodes
+!> (types 6 and 7; doc/theory/contact.md, sections 9.5 and 9.8): the points under the present
+!> nodal values, and for each slave node in contact and each average a product of the force that
+!> a unit of that makes and its gradient.
 module nodal_tangent_m
-  use assembly_m, only : add_varied_point, pattern_t, start_pattern, add_to_row, &
-    add_to_column, add_product
+  use assembly_m, only : add_varied_point, product_t, start_product, add_gradient, &
+    add_point_force, finish_product
   use behind_ties_m, only : is_left_to_tie
   use contact_law_m, only : vary_pressure
   use contact_state_m, only : contact_state_t, n_side
-  use variation_m, only : varied_point_t
   use contacts_m, only : contact_t
-  use dual_m, only : dual_t, operator(-), operator(+), operator(*)
+  use dual_m, only : dual_t, constant, variable, operator(-), operator(+), operator(*)
+  use interference_m, only : ease_gaps
   use kinds_m, only : wp
+  use linearisation_m, only : varied_list_t, varied_point_t, slip_of, between
+  use point_tangent_m, only : vary_grip
   use sparse_m, only : sparse_t
   implicit none
   private
-  public :: varied_list_t, start_list, append_point, add_nodal_tangent, average, nodal_share, &
-    eased_moment
+  public :: add_nodal_tangents, nodal_share
 
-  !> Points segment by segment.
-  type :: varied_list_t
-    integer :: n = 0
-    type(varied_point_t), allocatable :: points(:) !! (capacity)
-    integer, allocatable :: first(:) !! (n_segment) of the points on each slave segment
-    integer, allocatable :: last(:)  !! (n_segment) less than the first where there are none
-  end type varied_list_t
+  !> What is averaged.
+  integer, parameter :: of_gap = 1, of_slip = 2
 
 contains
 
-  !> An empty list; it grows as needed.
-  pure subroutine start_list(list, n_segment, capacity)
-    type(varied_list_t), intent(out) :: list
-    integer, intent(in) :: n_segment !! of the slave surface
-    integer, intent(in) :: capacity
-
-    allocate (list%points(max(1, capacity)))
-    allocate (list%first(n_segment), source=1)
-    allocate (list%last(n_segment), source=0)
-  end subroutine start_list
-
-  !> Append a point. All points of a segment come one after the other.
-  pure subroutine append_point(list, segment, point)
-    type(varied_list_t), intent(inout) :: list
-    integer, intent(in) :: segment !! of the slave surface
-    type(varied_point_t), intent(in) :: point
-    type(varied_point_t), allocatable :: longer(:)
-
-    if (list%n == size(list%points)) then
-      allocate (longer(2*list%n))
-      longer(:list%n) = list%points
-      call move_alloc(longer, list%points)
-    end if
-    list%n = list%n + 1
-    list%points(list%n) = point
-    if (list%last(segment) == 0) list%first(segment) = list%n
-    list%last(segment) = list%n
-  end subroutine append_point
-
-  !> Add the tangent of all points.
-  pure subroutine add_nodal_tangent(contact, memory, list, equations, matrix)
+  !> Add the tangent of all points. Those of a slave segment follow each other.
+  pure subroutine add_nodal_tangents(contact, memory, list, equations, matrix)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(varied_list_t), intent(in) :: list
     integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
     type(sparse_t), intent(inout) :: matrix
-    type(pattern_t) :: pattern
-    type(dual_t) :: load
-    type(dual_t) :: gap, pressed
-    real(wp), dimension(memory%n_slave) :: moment, content, eased, pressure, stiffness
-    real(wp) :: gaps(list%n)
-    integer :: p, node
+    type(dual_t) :: values(list%n, 2)
+    type(dual_t), dimension(memory%n_slave) :: pressures, tractions
+    real(wp) :: means(2, memory%n_slave), areas(memory%n_slave)
+    integer :: p
 
     do p = 1, list%n
-      gaps(p) = list%points(p)%gap%value + list%points(p)%left%value
+      values(p, of_gap) = list%points(p)%gap + list%points(p)%left
+      values(p, of_slip) = constant(0.0_wp)
+      if (memory%has%friction) values(p, of_slip) = slip_of(memory, list%points(p))
     end do
-    call average(memory, list, gaps, moment, content)
-    eased = eased_moment(memory, moment, content)
-    pressure = 0.0_wp
-    gap%slope = 0.0_wp
-    gap%slope(1) = 1.0_wp
-    do node = 1, memory%n_slave
-      gap%value = eased(node)/max(content(node), tiny(1.0_wp))
-      pressed = vary_pressure(memory%contact_law, memory%slave_penalty, gap)
-      if (eased(node) < 0.0_wp .and. .not. is_left_to_tie(memory, node)) &
-        pressure(node) = pressed%value
-      stiffness(node) = -pressed%slope(1)
-    end do
+    call average(list, values, means, areas)
+    call press_nodes(contact, memory, means, areas, pressures, tractions)
     do p = 1, list%n
-      associate (point => list%points(p))
-        load = ((pressure(point%nodes(2)) - pressure(point%nodes(1)))*point%slave_xi &
-          + pressure(point%nodes(1)))*point%area
-        if (any(pressure(point%nodes(:2)) > 0.0_wp)) &
-          call add_varied_point(point, load, equations, matrix)
+      associate (point => list%points(p), a => list%points(p)%nodes(1), &
+        b => list%points(p)%nodes(2))
+        if (.not. max(pressures(a)%value, pressures(b)%value) > 0.0_wp) cycle
+        call add_varied_point(point, point%area*between(pressures([a, b])%value, &
+          point%slave_xi), point%area*between(tractions([a, b])%value, point%slave_xi), &
+          equations, matrix)
       end associate
     end do
-    call start_pattern(pattern, size(equations, 2))
-    do node = 1, memory%n_slave
-      if (.not. eased(node) < memory%closed_gap*content(node)) cycle
-      if (is_left_to_tie(memory, node)) cycle
-      call fill_pattern(contact, list, node, moment(node)/content(node), pattern)
-      call add_product(pattern, stiffness(node)/content(node), equations, matrix)
-    end do
-  end subroutine add_nodal_tangent
+    call add_averages(contact, list, values, means, areas, pressures, tractions, equations, matrix)
+  end subroutine add_nodal_tangents
 
-  !> Sums of N_A a g as the springs feel it, where initial overlaps grow.
-  pure function eased_moment(memory, moment, content) result(eased)
-    type(contact_state_t), intent(in) :: memory
-    real(wp), intent(in) :: moment(:), content(:) !! (n_slave) of N_A a g, and of N_A a
-    real(wp) :: eased(size(moment))
-
-    eased = moment
-    if (memory%has%interference) eased = moment + memory%interference%left &
-      *memory%interference%depth(:size(moment))*content
-  end function eased_moment
-
-  !> Sums of N_A a g and N_A a of all slave nodes, g a value of points.
-  pure subroutine average(memory, list, values, moment, content)
-    type(contact_state_t), intent(in) :: memory
+  !> Means of gaps and slips at the slave nodes, and what these weigh there.
+  pure subroutine average(list, values, means, areas)
     type(varied_list_t), intent(in) :: list
-    real(wp), intent(in) :: values(:) !! (list%n)
-    real(wp), intent(out) :: moment(memory%n_slave)
-    real(wp), intent(out) :: content(memory%n_slave)
+    type(dual_t), intent(in) :: values(:, :) !! (list%n, 2) m
+    real(wp), intent(out) :: means(:, :)     !! (2, n_slave) m; 0 where there is no point
+    real(wp), intent(out) :: areas(:)        !! (n_slave) m
     type(dual_t) :: share
     integer :: p, k
 
-    moment = 0.0_wp
-    content = 0.0_wp
+    means = 0.0_wp
+    areas = 0.0_wp
     do p = 1, list%n
       do k = 1, n_side
-        associate (point => list%points(p), node => list%points(p)%nodes(k))
-          share = nodal_share(point, k)
-          moment(node) = moment(node) + share%value*values(p)
-          content(node) = content(node) + share%value
+        share = nodal_share(list%points(p), k)
+        associate (node => list%points(p)%nodes(k))
+          means(:, node) = means(:, node) + share%value*values(p, :)%value
+          areas(node) = areas(node) + share%value
         end associate
       end do
     end do
+    means = means/spread(max(areas, tiny(1.0_wp)), 1, 2)
   end subroutine average
+
+  !> Pressures and tractions of the slave nodes, variable 1 the mean gap, 2 the mean slip; without
+  !> slopes where nothing acts.
+  pure subroutine press_nodes(contact, memory, means, areas, pressures, tractions)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in) :: means(:, :), areas(:)
+    type(dual_t), intent(out) :: pressures(:), tractions(:) !! (n_slave) N/m^2
+    real(wp) :: gaps(memory%n_slave)
+    integer :: i
+
+    gaps = means(of_gap, :)
+    if (memory%has%interference) call ease_gaps(memory, gaps)
+    pressures = constant(0.0_wp)
+    tractions = constant(0.0_wp)
+    do i = 1, memory%n_slave
+      if (.not. (gaps(i) < memory%closed_gap .and. areas(i) > 0.0_wp)) cycle
+      if (is_left_to_tie(memory, i)) cycle
+      pressures(i) = vary_pressure(memory%contact_law, memory%slave_penalty, &
+        variable(gaps(i), of_gap))
+      if (memory%has%friction) tractions(i) = vary_grip(contact%friction, memory, &
+        constant(memory%scratch%former_traction(i)), variable(means(of_slip, i), of_slip), &
+        pressures(i), memory%slave_penalty, memory%scratch%former_state(i), constant(1.0_wp))
+    end do
+  end subroutine press_nodes
+
+  !> Add what the means of all slave nodes change, by the points on both segments of each.
+  pure subroutine add_averages(contact, list, values, means, areas, pressures, tractions, &
+      equations, matrix)
+    type(contact_t), intent(in) :: contact
+    type(varied_list_t), intent(in) :: list
+    type(dual_t), intent(in) :: values(:, :)
+    real(wp), intent(in) :: means(:, :), areas(:)
+    type(dual_t), intent(in) :: pressures(:), tractions(:)
+    integer, intent(in), contiguous :: equations(:, :)
+    type(sparse_t), intent(inout) :: matrix
+    type(product_t) :: product
+    type(dual_t) :: share, change
+    integer, dimension(contact%slave%n_segment) :: first, last
+    integer :: segments(2), i, k, p, q
+
+    first = 1
+    last = 0
+    do p = list%n, 1, -1
+      associate (s => contact%slave%outgoing(list%points(p)%nodes(1)))
+        first(s) = p
+        if (last(s) == 0) last(s) = p
+      end associate
+    end do
+    call start_product(product, size(equations, 2))
+    do i = 1, size(areas)
+      segments = [contact%slave%outgoing(i), contact%slave%incoming(i)]
+      do q = of_gap, of_slip
+        if (.not. max(abs(pressures(i)%slope(q)), abs(tractions(i)%slope(q))) > 0.0_wp) cycle
+        do k = 1, 2
+          if (segments(k) == 0) cycle
+          do p = first(segments(k)), last(segments(k))
+            share = nodal_share(list%points(p), k)
+            change = share*(values(p, q) + (-means(q, i)))
+            call add_gradient(product, list%points(p), change%slope)
+            call add_point_force(product, list%points(p), pressures(i)%slope(q)*share%value, &
+              tractions(i)%slope(q)*share%value)
+          end do
+        end do
+        call finish_product(product, -1.0_wp/areas(i), equations, matrix)
+      end do
+    end do
+  end subroutine add_averages
 
   !> N_A a at a point, for its k-th slave node.
   pure function nodal_share(point, k) result(share)
@@ -146,30 +156,5 @@ contains
     share = point%slave_xi*point%area
     if (k == 1) share = point%area - share
   end function nodal_share
-
-  !> For one slave node: the force of all points under unit pressure of the node as column, and as
-  !> row content times the gradient of the averaged gap.
-  pure subroutine fill_pattern(contact, list, node, gap, pattern)
-    type(contact_t), intent(in) :: contact
-    type(varied_list_t), intent(in) :: list
-    integer, intent(in) :: node
-    real(wp), intent(in) :: gap !! averaged, m
-    type(pattern_t), intent(inout) :: pattern
-    type(dual_t) :: share, change
-    integer :: segments(2), k, p
-
-    segments = [contact%slave%outgoing(node), contact%slave%incoming(node)]
-    do k = 1, 2
-      if (segments(k) == 0) cycle
-      do p = list%first(segments(k)), list%last(segments(k))
-        associate (point => list%points(p))
-          share = nodal_share(point, k)
-          change = share*(point%gap + point%left + (-gap))
-          call add_to_row(pattern, point, change%slope)
-          call add_to_column(pattern, point, share%value, 0.0_wp)
-        end associate
-      end do
-    end do
-  end subroutine fill_pattern
 
 end module nodal_tangent_m

@@ -10,7 +10,7 @@ module newton_m
   use contacts_m, only : told_as
   use controls_m, only : implicit_t
   use equations_m, only : take_free, move_prescribed
-  use friction_m, only : let_stick
+  use friction_m, only : let_hold, has_slipped
   use implicit_forces_m, only : trial_t, assemble_forces, trouble_of, step_t, assemble_tangent, &
     assemble_residual
   use kinds_m, only : wp
@@ -102,13 +102,17 @@ contains
     call assemble_forces(model, state, step%time, .true., clock, trial)
     outcome%reason = trouble_of(trial)
     if (len(outcome%reason) > 0) return
-    if (.not. step%slips_on) call let_stick(trial%contacts)
+    if (.not. step%slips_on) call let_hold(trial%contacts)
     allocate (way%moved(size(step%prescribed%increment)))
     do iteration = 1, model%controls%implicit%max_iteration
       outcome%iterations = iteration
       way%moved = step%prescribed%increment
       if (iteration > 1) way%moved = 0.0_wp
       call find_way(model, state, step, clock, trial, matrix, way, report)
+      if (report%is_singular .and. iteration > 1 .and. has_slipped(trial%contacts)) then
+        call let_hold(trial%contacts)
+        call find_way(model, state, step, clock, trial, matrix, way, report)
+      end if
       if (iteration == 1) outcome%began_negative = report%is_negative
       if (report%is_singular) outcome%singular_equation = report%equation
       outcome%reason = report%message

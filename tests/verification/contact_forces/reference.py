@@ -15,7 +15,7 @@ import numpy as np
 
 OVERSHOOT = 0.01      # of the end segment of an open surface: still projected, not clamped
 SIDE_ON, FACE_ON = -0.1, -0.5  # slave normal . master normal: not opposed above, fully below
-LESS, MUCH_LESS = 0.1, 0.5     # cosine of a side less the one of its neighbour at a corner
+LESS, MUCH_LESS = 0.1, 0.59    # cosine of a side less the one of its neighbour at a corner
 AVERTED = 0.25        # cosine of normals from which on a segment is no candidate
 BETWEEN = 0.17        # sine of the angle between a direction and those that it lies between
 SHALLOW = 0.25        # of the segment: how deep a point may be to change sides at a sharp corner
