@@ -128,16 +128,19 @@ module contact_state_m
     integer, allocatable :: segment_near(:) !! (n_slave) master segment near a slave node, 0 between
                                             !! steps; only where points are at fixed places
     logical, allocatable :: is_placed(:)    !! (slave segments) have their points
-    logical, allocatable :: is_left(:)      !! (n_place) to the tie that holds it; this and the next
-                                            !! two only of contact behind a tie
-    logical, allocatable :: is_freed(:)     !! (n_place) it has broken in this cycle
-    real(wp) :: taken = 0.0_wp              !! what springs hold that were freed pressed, J/m
     logical :: waits = .false.              !! points are placed, forces follow once all others are
                                             !! known
     logical :: had_force = .false.          !! the call before had some
     logical :: is_born = .false.            !! contact begins in this call, after time zero; these
                                             !! three only of implicit penalties
   end type contact_scratch_t
+
+  !> What contact behind a tie takes over from it; made again by the tie after a restart.
+  type :: handover_t
+    logical, allocatable :: is_left(:)  !! (n_place) to the tie that holds it
+    logical, allocatable :: is_freed(:) !! (n_place) it has broken in this cycle
+    real(wp) :: taken = 0.0_wp          !! what springs hold that were freed pressed, J/m
+  end type handover_t
 
   !> What an interface has beside springs along the normal at its points: by its formulation and by
   !> the deck.
@@ -201,6 +204,7 @@ module contact_state_m
     type(friction_memory_t) :: friction     !! of places, and its forces
     type(interference_memory_t) :: interference !! initial overlaps that grow
     type(tie_memory_t) :: ties              !! springs of a tied interface
+    type(handover_t) :: handover            !! only of contact behind a tie
     type(contact_watch_t) :: watch          !! whether the springs give back what they take
     type(energy_limit_t) :: limit           !! that they give back no more
     integer :: n_active = 0                 !! points that carry pressure

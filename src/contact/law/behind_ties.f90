@@ -17,12 +17,12 @@ contains
   pure subroutine hear_tie(tie, memory)
     type(contact_state_t), intent(in) :: tie
     type(contact_state_t), intent(inout) :: memory
-    associate (scratch => memory%scratch)
-      if (.not. allocated(scratch%is_left)) &
-        allocate (scratch%is_left(size(tie%ties%state)), source=.false.)
-      scratch%is_freed = scratch%is_left
-      scratch%is_left = held_places(tie)
-      scratch%is_freed = scratch%is_freed .and. .not. scratch%is_left
+    associate (handover => memory%handover)
+      if (.not. allocated(handover%is_left)) &
+        allocate (handover%is_left(size(tie%ties%state)), source=.false.)
+      handover%is_freed = handover%is_left
+      handover%is_left = held_places(tie)
+      handover%is_freed = handover%is_freed .and. .not. handover%is_left
     end associate
   end subroutine hear_tie
 
@@ -56,12 +56,12 @@ contains
 
     associate (points => memory%points)
       if (memory%has%nodal_pressure) then
-        where (memory%scratch%is_left(:memory%n_slave)) memory%node_pressure = 0.0_wp
+        where (memory%handover%is_left(:memory%n_slave)) memory%node_pressure = 0.0_wp
         call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
           points%pressure)
       else
         do p = 1, points%n
-          if (memory%scratch%is_left(place_at(memory, p))) points%pressure(p) = 0.0_wp
+          if (memory%handover%is_left(place_at(memory, p))) points%pressure(p) = 0.0_wp
         end do
       end if
     end associate
@@ -75,14 +75,14 @@ contains
     real(wp) :: gaps(max(memory%points%n, memory%n_slave))
     integer :: i
 
-    associate (scratch => memory%scratch)
-      if (.not. any(scratch%is_freed)) return
+    associate (handover => memory%handover)
+      if (.not. any(handover%is_freed)) return
       call find_gaps(memory, gaps)
       do i = 1, n_springs(memory)
         spring = spring_at(memory, gaps(i), i)
-        if (scratch%is_freed(spring%place)) scratch%taken = scratch%taken + spring%energy
+        if (handover%is_freed(spring%place)) handover%taken = handover%taken + spring%energy
       end do
-      memory%energy = memory%energy + scratch%taken
+      memory%energy = memory%energy + handover%taken
     end associate
   end subroutine take_over
 
@@ -93,14 +93,14 @@ contains
     type(contact_state_t), intent(inout) :: memory, tie
     real(wp) :: given
 
-    if (.not. memory%scratch%taken > 0.0_wp) return
-    given = min(memory%scratch%taken, max(0.0_wp, tie%ties%spent))
+    if (.not. memory%handover%taken > 0.0_wp) return
+    given = min(memory%handover%taken, max(0.0_wp, tie%ties%spent))
     tie%ties%spent = tie%ties%spent - given
     tie%energy = tie%energy - given
     tie%watch%stored = tie%watch%stored - given
-    memory%energy = memory%energy - (memory%scratch%taken - given)
-    memory%limit%credit = memory%limit%credit + (memory%scratch%taken - given)
-    memory%scratch%taken = 0.0_wp
+    memory%energy = memory%energy - (memory%handover%taken - given)
+    memory%limit%credit = memory%limit%credit + (memory%handover%taken - given)
+    memory%handover%taken = 0.0_wp
   end subroutine settle_with_tie
 
   !> Whether a tie holds a place.
@@ -110,7 +110,7 @@ contains
     logical :: is_left
 
     is_left = .false.
-    if (memory%has%former_tie) is_left = memory%scratch%is_left(place)
+    if (memory%has%former_tie) is_left = memory%handover%is_left(place)
   end function is_left_to_tie
 
 end module behind_ties_m
