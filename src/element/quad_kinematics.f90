@@ -3,7 +3,7 @@
 !> doc/theory/elements.md, "Round bodies").
 !> With B_x3 = y42/2, B_y3 = -x42/2, B_x4 = -y31/2, B_y4 = x31/2 (and opposite signs at nodes 1 and
 !> 2): A = (x31 y42 - x42 y31)/2, L_ix = (v31 y42 - v42 y31)/(2A), L_iy = (x31 v42 - x42 v31)/(2A).
-!> In round bodies, a = d31 and b = d42, the volume per radian is (METHODS 6 in these patterns)
+!> In round bodies, a = d31 and b = d42, the volume per radian is (in these patterns)
 !>   V = s A/4 + (h_r (a_r b_z + b_r a_z) - 2 a_r b_r h_z)/24.
 module quad_kinematics_m
   use kinds_m, only : wp

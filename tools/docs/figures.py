@@ -4,7 +4,8 @@
     build/venv/bin/python tools/docs/figures.py [--program build/release/slideline]
 
 writes doc/pictures/collision.png, draw.png, first_deck.svg, first_model.png,
-first_stress.png, first_history.png, contact_points.svg and taylor.png.
+first_stress.png, first_history.png, contact_points.svg, taylor.png and the
+drawings of doc/theory/contact.md.
 """
 import argparse
 import pathlib
@@ -222,6 +223,182 @@ def contact_points(program, folder):
     save(figure, "contact_points.svg")
 
 
+# --- the theory of contact: drawings, no runs -------------------------------------------------
+
+def surface(axes, x, colour, below=True, depth=0.5):
+    """A surface with its nodes and the body behind it."""
+    x = np.asarray(x, dtype=float)
+    back = x + np.array([0.0, -depth if below else depth])
+    axes.fill(*np.vstack((x, back[::-1])).T, color=colour, alpha=0.16, linewidth=0)
+    axes.plot(*x.T, "-o", color=colour, linewidth=1.6, markersize=4.5)
+
+
+def bare(axes, title, low, high):
+    axes.set_title(title, fontsize=10, loc="left", color=INK)
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
+    axes.set_aspect("equal")
+    axes.axis("off")
+
+
+def arrow(axes, start, end, colour=INK, text="", shift=(0.03, 0.0)):
+    axes.annotate("", xy=end, xytext=start, arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.3,
+                                                        "shrinkA": 0, "shrinkB": 0})
+    if text:
+        axes.text(end[0] + shift[0], end[1] + shift[1], text, fontsize=10, color=colour)
+
+
+def projection_figure():
+    """Projection on a segment; the regions at a convex and at a re-entrant vertex."""
+    figure, panels = plt.subplots(1, 3, figsize=(10.0, 3.0))
+    axes = panels[0]
+    a, b = np.array([1.0, 0.0]), np.array([0.0, 0.25])
+    surface(axes, [b, a], MASTER)
+    t = (b - a) / np.hypot(*(b - a))
+    n = np.array([t[1], -t[0]])
+    foot = a + 0.45 * (b - a)
+    x = foot - 0.22 * n
+    axes.plot(*x, "o", color=SLAVE, markersize=6)
+    axes.plot(*np.array([x, foot]).T, ":", color=INK, linewidth=1.2)
+    axes.text(*(x + [0.03, -0.07]), "x", fontsize=11, color=SLAVE)
+    axes.text(*(0.5 * (x + foot) + [-0.24, -0.03]), r"$g < 0$", fontsize=10, color=INK)
+    arrow(axes, foot, foot + 0.3 * n, text=r"$n$")
+    arrow(axes, a, a + 0.3 * t, text=r"$t$", shift=(-0.02, 0.05))
+    axes.text(*(foot + [0.03, 0.04]), r"$\xi$", fontsize=11, color=INK)
+    bare(axes, "projection", (-0.1, -0.4), (1.15, 0.65))
+    for axes, apex, title, text, where in (
+            (panels[1], 0.3, "convex vertex", "closest: the vertex, g > 0", (0.5, 0.3)),
+            (panels[2], -0.3, "re-entrant vertex", r"$g = -|x - x_{vertex}|$", (0.5, -0.3))):
+        nodes = np.array([[0.0, 0.0], [0.5, apex], [1.0, 0.0]])
+        surface(axes, nodes[::-1], MASTER, depth=0.45)
+        way = 1.0 if apex > 0 else -1.0
+        flanks = [np.array([-way * apex, 0.5 * way]) / np.hypot(apex, 0.5) * np.array([1.0, 1.0]),
+                  np.array([way * apex, 0.5 * way]) / np.hypot(apex, 0.5)]
+        ends = [nodes[1] + 0.38 * flank for flank in flanks]
+        axes.fill(*np.array([nodes[1], ends[0], ends[1]]).T, color=SLAVE, alpha=0.25, linewidth=0)
+        for end in ends:
+            axes.plot(*np.array([nodes[1], end]).T, "--", color=INK, linewidth=0.8)
+        axes.text(0.5, apex + way * 0.42, text, fontsize=9, ha="center", va="center", color=INK)
+        bare(axes, title, (-0.1, -0.85), (1.1, 0.85))
+    save(figure, "contact_projection.svg")
+
+
+def candidates_figure():
+    """The row of a slave segment on its bucket grid."""
+    figure, axes = plt.subplots(figsize=(8.0, 3.4))
+    x = np.linspace(2.6, -0.1, 10)
+    master = np.column_stack((x, 0.08 * np.sin(2.3 * x)))
+    master = np.vstack(([3.0, -0.7], [2.8, -0.35], master))
+    slave = np.array([[0.2, 0.62], [0.75, 0.42], [1.3, 0.4], [1.85, 0.5], [2.4, 0.75]])
+    surface(axes, slave, SLAVE, below=False, depth=0.4)
+    cell, radius = 0.32, 0.36
+    own = slave[1:3]
+    low, high = own.min(axis=0) - radius, own.max(axis=0) + radius
+    for k in range(-1, 11):
+        axes.axvline(k * cell, color=INK, linewidth=0.3, alpha=0.5)
+    for k in range(-3, 4):
+        axes.axhline(k * cell, color=INK, linewidth=0.3, alpha=0.5)
+    axes.fill([low[0], high[0], high[0], low[0]], [low[1], low[1], high[1], high[1]], color=SLAVE, alpha=0.10, linewidth=0)
+    axes.plot(*own.T, color=SLAVE, linewidth=4.0)
+    for a, b in zip(master, master[1:]):
+        near = np.all(np.minimum(a, b) <= high) and np.all(np.maximum(a, b) >= low)
+        axes.plot(*np.array([a, b]).T, "-", color=MASTER, linewidth=4.0 if near else 1.4, alpha=1.0 if near else 0.6)
+    axes.plot(*master.T, "o", color=MASTER, markersize=4)
+    axes.text(high[0] + 0.05, 0.3, "box of the slave segment\n+ radius + skin", fontsize=9, va="top", color=SLAVE)
+    axes.text(0.55, -0.28, "row: its candidate pairs", fontsize=9, color=MASTER)
+    bare(axes, "", (-0.2, -0.75), (3.2, 1.2))
+    save(figure, "contact_candidates.svg")
+
+
+def entry_figure():
+    """Gap and gap of the law over slip, for a point through a face and for one from beside."""
+    figure, panels = plt.subplots(1, 2, figsize=(9.0, 2.8), sharey=True)
+    time = np.linspace(0.0, 1.0, 300)
+    for axes, title in zip(panels, ("entered through the face", "edge entry")):
+        if title.startswith("entered"):
+            gap = 0.25 - 1.0 * time + 0.35 * time**2
+            law = gap
+        else:
+            gap = -0.25 - 0.12 * time
+            start, offset, law = 0.3, np.zeros_like(time), np.full_like(time, np.nan)
+            now = 0.27
+            for k, at in enumerate(time):
+                if at < start:
+                    continue
+                now = min(now, -gap[k])
+                now = max(0.0, now - (time[1] - time[0]) * max(2.0 * now / 0.6, 0.05))
+                offset[k], law[k] = now, gap[k] + now
+            axes.fill_between(time, law, gap, where=time >= start, color=SLAVE, alpha=0.18, linewidth=0)
+            axes.annotate("offset $o$, fades with slip", xy=(0.42, -0.2), xytext=(0.38, 0.12), fontsize=9, color=INK,
+                          arrowprops={"arrowstyle": "-", "linewidth": 0.7, "color": INK})
+            axes.axvline(start, color=INK, linewidth=0.7, linestyle=":")
+            axes.text(start - 0.01, -0.46, "over the end", fontsize=8, ha="right", color=INK)
+        axes.axhline(0.0, color=INK, linewidth=0.8)
+        axes.plot(time, gap, color=MASTER, linewidth=1.8, label="$g$")
+        axes.plot(time, np.where(np.isnan(law), np.nan, np.minimum(law, 0.0)), color=SLAVE, linewidth=1.8,
+                  label=r"$\min(0, g + o)$: law")
+        axes.set_title(title, fontsize=10, loc="left", color=INK)
+        axes.set_xlabel("slip", fontsize=9)
+        axes.set_xticks([])
+        axes.set_yticks([0.0])
+        axes.set_yticklabels(["0"])
+        axes.set_ylim(-0.5, 0.3)
+        for side in ("top", "right"):
+            axes.spines[side].set_visible(False)
+    panels[0].legend(fontsize=9, frameon=False)
+    save(figure, "contact_entry.svg")
+
+
+def overlaps_figure():
+    """A slave segment over three master segments: breakpoints, overlaps, points of types 5 and 7."""
+    figure, axes = plt.subplots(figsize=(8.0, 3.0))
+    master = np.array([[2.2, -0.15], [1.55, 0.0], [0.7, 0.05], [-0.2, -0.1]])
+    slave = np.array([[0.1, 0.42], [1.9, 0.38]])
+    surface(axes, master, MASTER, depth=0.35)
+    surface(axes, slave, SLAVE, below=False, depth=0.35)
+    t = slave[1] - slave[0]
+    cuts = [0.0] + [float((node - slave[0]) @ t / (t @ t)) for node in (master[2], master[1])] + [1.0]
+    for node, xi in zip((master[2], master[1]), cuts[1:3]):
+        on = slave[0] + xi * t
+        axes.plot(*np.array([node, on]).T, ":", color=INK, linewidth=1.0)
+        axes.plot(*on, "|", color=INK, markersize=12, markeredgewidth=1.6)
+        axes.plot(*node, "x", color=MASTER, markersize=9, markeredgewidth=2.0)
+    for k, (low, high) in enumerate(zip(cuts, cuts[1:])):
+        middle = slave[0] + 0.5 * (low + high) * t
+        axes.annotate("", xy=slave[0] + low * t + [0.01, 0.12], xytext=slave[0] + high * t + [-0.01, 0.12],
+                      arrowprops={"arrowstyle": "<->", "color": INK, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0})
+        axes.text(*(middle + [0.0, 0.15]), f"overlap {k + 1}", fontsize=9, ha="center", color=INK)
+        for point in GAUSS:
+            axes.plot(*(slave[0] + (0.5 * (low + high) + 0.5 * point * (high - low)) * t), "x", color=SLAVE, markersize=6,
+                      markeredgewidth=1.6)
+    axes.text(1.98, 0.45, "x  Gauss points (type 7)", fontsize=9, color=SLAVE)
+    axes.text(1.98, 0.25, "x  master nodes at breakpoints (type 5)", fontsize=9, color=MASTER)
+    bare(axes, "", (-0.35, -0.55), (3.4, 0.85))
+    save(figure, "contact_overlaps.svg")
+
+
+def energy_limit_figure():
+    """What scaled forces return, and the largest admissible factor."""
+    figure, axes = plt.subplots(figsize=(6.0, 2.8))
+    s = np.linspace(0.0, 1.0, 200)
+    linear, square, limit = 0.25, 0.9, 0.6
+    best = (-linear + np.sqrt(linear**2 + 4.0 * square * limit)) / (2.0 * square)
+    axes.plot(s, linear * s + square * s**2, color=SLAVE, linewidth=1.8)
+    axes.axhline(limit, color=MASTER, linewidth=1.4)
+    axes.plot([best, best], [0.0, limit], ":", color=INK, linewidth=1.0)
+    axes.plot(best, limit, "o", color=INK, markersize=5)
+    axes.text(0.02, limit + 0.03, r"limit $= e + E_{max}/100$", fontsize=10, color=MASTER)
+    axes.text(0.88, linear + square - 0.12, r"$S\,s + C\,s^2$", fontsize=10, color=SLAVE, ha="right")
+    axes.text(best + 0.01, 0.03, "$s_2$", fontsize=11, color=INK)
+    axes.set_xlabel("factor $s$ on all forces of the interface", fontsize=9)
+    axes.set_ylabel("energy returned", fontsize=9)
+    axes.set_xlim(0.0, 1.0)
+    axes.set_ylim(0.0, 1.2)
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    save(figure, "contact_energy_limit.svg")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", default=str(ROOT / "build/release/slideline"))
@@ -230,6 +407,8 @@ def main():
         collision(program, pathlib.Path(folder))
         first_deck(program, pathlib.Path(folder))
         contact_points(program, pathlib.Path(folder))
+        for draw in (projection_figure, candidates_figure, entry_figure, overlaps_figure, energy_limit_figure):
+            draw()
         taylor(run(program, ROOT / "input/taylor/taylor.k", pathlib.Path(folder)), PICTURES / "taylor.png")
 
 

@@ -2,7 +2,7 @@
 !> Entry offsets: a point that has come behind a face without coming through it starts without
 !> force, with the gap g + offset. The offset is never more than the depth, and fades with the slip
 !> over half of the segment, small ones as over a ramp of 1 to 20; the work of its fading is
-!> admissible energy (doc/theory/contact.md, section 6.4).
+!> admissible energy (doc/theory/contact.md, section 3.3).
 module entry_offset_m
   use contact_state_m, only : contact_state_t, tracking_t, is_free, spot_at
   use contacts_m, only : contact_t

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Ties that break (METHODS 7; doc/theory/contact.md, section 6.4): where (s_n/NFLS)^2 +
+!> Ties that break (doc/theory/contact.md, section 6.4): where (s_n/NFLS)^2 +
 !> (s_t/SFLS)^2 >= 1, s_n the tension and s_t the shear of a place, it is free for good. Places are
 !> those at which pressure is formed (law_state_m).
 module tiebreak_m

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Ties (METHODS 7; doc/theory/contact.md, section 6.3): springs of both signs along the current
+!> Ties (doc/theory/contact.md, section 6.3): springs of both signs along the current
 !> normal and tangent of a segment, between places that were frozen in the reference geometry. With
 !> d from the master place to the slave place, d0 and n0, t0 in the reference geometry, a = d.n -
 !> d0.n0, b = d.t - d0.t0, each spring stores k w (a^2 + b^2)/2, and its forces are the exact
