@@ -3,11 +3,11 @@
 module contact_results_m
   use contact_state_m, only : contact_state_t, is_touching, n_side
   use contacts_m, only : contact_t
-  use foot_m, only : foot_t, closest_foot, follow_contact, walk_to_closest
+  use foot_m, only : foot_t, closest_foot, follow_contact, turns_gently, walk_to_closest
   use geometry_m, only : segment_length
   use kinds_m, only : wp
   use law_state_m, only : is_open, is_held, is_broken
-  use lengths_m, only : competence_area
+  use lengths_m, only : see_half
   use nodal_average_m, only : average_values
   use snapshot_m, only : interface_result_t, slave_result_t, rubbed_t
   use surfaces_m, only : surface_t
@@ -40,7 +40,8 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, v
     type(contact_state_t), intent(in) :: memory
     type(slave_result_t), intent(inout) :: rows
-    real(wp), allocatable :: places(:, :), share(:), pull(:)
+    real(wp), allocatable :: places(:, :), share(:), pull(:), lengths(:)
+    logical, allocatable :: carries(:)
     integer :: i, n
 
     n = memory%n_slave
@@ -56,22 +57,28 @@ contains
     rows%force = memory%force(:, :n)
     call fill_arc_lengths(contact%slave, places(:, :n), rows%arc_length)
     share = nodal_sums(contact%is_self, memory, memory%points%pressure)
-    do i = 1, memory%n_master
-      rows%master_pressure(i) = share(n + i)/max(tiny(1.0_wp), &
-        competence_area(contact%master, places(:, n + 1:), contact%is_round, i))
-    end do
+    carries = abs(share) > 0.0_wp
+    if (memory%has%ties) carries = carries .or. tied_nodes(memory, .false.)
+    rows%length = lengths_in_contact(contact%slave, places(:, :n), contact%is_round, carries(:n))
+    lengths = [rows%length, lengths_in_contact(contact%master, places(:, n + 1:), &
+      contact%is_round, carries(n + 1:))]
+    lengths = max(lengths, tiny(1.0_wp))
+    rows%pressure = share(:n)/lengths(:n)
+    rows%master_pressure = share(n + 1:)/lengths(n + 1:)
     do i = 1, n
-      rows%length(i) = competence_area(contact%slave, places(:, :n), contact%is_round, i)
-      rows%pressure(i) = share(i)/max(rows%length(i), tiny(1.0_wp))
       rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i)
     end do
     if (.not. (memory%has%friction .or. memory%has%ties)) return
     allocate (pull(n + memory%n_master))
     pull = nodal_sums(contact%is_self, memory, memory%points%traction)
-    call fill_rubbed(contact%slave, 0, places(:, :n), contact%is_round, pull(:n), memory, &
-      rows%rubbed(:n))
-    call fill_rubbed(contact%master, n, places(:, n + 1:), contact%is_round, pull(n + 1:), memory, &
-      rows%rubbed(n + 1:))
+    rows%rubbed%traction = pull/lengths
+    do i = 1, n
+      call find_state(contact%slave, 0, i, memory, rows%rubbed(i)%slip, rows%rubbed(i)%state)
+    end do
+    do i = 1, memory%n_master
+      call find_state(contact%master, n, i, memory, rows%rubbed(n + i)%slip, &
+        rows%rubbed(n + i)%state)
+    end do
     if (memory%has%ties) call fill_ties(memory, rows)
   end subroutine slave_rows
 
@@ -158,23 +165,30 @@ contains
     end do
   end subroutine fill_arc_lengths
 
-  !> Friction at the nodes of one surface.
-  pure subroutine fill_rubbed(surface, offset, places, is_round, force, memory, rubbed)
+  !> Tributary lengths of the nodes of a surface, m, in axisymmetry m^2 per radian: half of both
+  !> segments; at a sharp corner of the one that carries contact alone.
+  pure function lengths_in_contact(surface, places, is_round, carries) result(lengths)
     type(surface_t), intent(in) :: surface
-    integer, intent(in) :: offset                    !! local number before the first of its nodes
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of these
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
     logical, intent(in) :: is_round
-    real(wp), intent(in) :: force(:)                 !! (n_node) N/m, along the chain
-    type(contact_state_t), intent(in) :: memory
-    type(rubbed_t), intent(inout) :: rubbed(:)       !! (n_node)
-    integer :: i
+    logical, intent(in) :: carries(:)                !! (n_node) has contact force, or is tied
+    real(wp) :: lengths(surface%n_node)
+    real(wp) :: t(2, 2), halves(2)
+    logical :: counts(2)
+    integer :: segments(2), i, k
 
-    do i = 1, size(rubbed)
-      rubbed(i)%traction = force(i)/max(competence_area(surface, places, is_round, i), &
-        tiny(1.0_wp))
-      call find_state(surface, offset, i, memory, rubbed(i)%slip, rubbed(i)%state)
+    do i = 1, surface%n_node
+      segments = [surface%incoming(i), surface%outgoing(i)]
+      do k = 1, 2
+        call see_half(surface, places, is_round, i, k, t(:, k), halves(k))
+        counts(k) = segments(k) > 0
+        if (counts(k)) counts(k) = carries(surface%segments(k, segments(k)))
+      end do
+      if (count(counts) /= 1 .or. minval(segments) == 0) counts = .true.
+      if (.not. all(counts)) counts = counts .or. turns_gently(t(:, 1), t(:, 2))
+      lengths(i) = sum(halves, mask=counts)
     end do
-  end subroutine fill_rubbed
+  end function lengths_in_contact
 
   !> Slip and state of a node. With virtual nodes: of those next to it, the mean slip, and slip if
   !> one slips.

@@ -9,7 +9,7 @@ module lengths_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: competence_length, competence_area, mean_radius, put_lengths
+  public :: see_half, competence_length, competence_area, mean_radius, put_lengths
 
 contains
 
