@@ -3,7 +3,8 @@
 module contact_results_m
   use contact_state_m, only : contact_state_t, is_touching, n_side
   use contacts_m, only : contact_t
-  use foot_m, only : foot_t, closest_foot, follow_contact, turns_gently, walk_to_closest
+  use foot_m, only : foot_t, closest_foot, follow_contact, turns_gently, &
+    vector_of, walk_to_closest
   use geometry_m, only : segment_length
   use kinds_m, only : wp
   use law_state_m, only : is_open, is_held, is_broken
@@ -14,7 +15,7 @@ module contact_results_m
   use ties_m, only : tie_spring_t, tie_spring, tied_nodes
   implicit none
   private
-  public :: interface_resultants, slave_rows, join_rows
+  public :: interface_resultants, sides_of_corners, slave_rows, join_rows
 
 contains
 
@@ -165,6 +166,29 @@ contains
     end do
   end subroutine fill_arc_lengths
 
+  !> Which segments are the side next to a sharp corner without contact of its own: of their nodes
+  !> that of the corner alone carries contact, and of the other segment there both do.
+  pure function sides_of_corners(surface, places, carries) result(is_side)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    logical, intent(in) :: carries(:)                !! (n_node) has contact force, or is tied
+    logical :: is_side(surface%n_segment)
+    integer :: s, next, k
+
+    is_side = .false.
+    do s = 1, surface%n_segment
+      associate (ends => surface%segments(:, s))
+        if (carries(ends(1)) .eqv. carries(ends(2))) cycle
+        k = merge(1, 2, carries(ends(1)))
+        next = merge(surface%previous(s), surface%next(s), k == 1)
+        if (next == 0) cycle
+        if (.not. carries(surface%segments(k, next))) cycle
+        is_side(s) = .not. turns_gently(vector_of(surface, places, s), &
+          vector_of(surface, places, next))
+      end associate
+    end do
+  end function sides_of_corners
+
   !> Tributary lengths of the nodes of a surface, m, in axisymmetry m^2 per radian: half of both
   !> segments; at a sharp corner of the one that carries contact alone.
   pure function lengths_in_contact(surface, places, is_round, carries) result(lengths)
@@ -173,20 +197,21 @@ contains
     logical, intent(in) :: is_round
     logical, intent(in) :: carries(:)                !! (n_node) has contact force, or is tied
     real(wp) :: lengths(surface%n_node)
-    real(wp) :: t(2, 2), halves(2)
-    logical :: counts(2)
-    integer :: segments(2), i, k
+    real(wp) :: t(2), half
+    logical :: is_side(surface%n_segment)
+    integer :: i, k
 
+    lengths = 0.0_wp
+    is_side = sides_of_corners(surface, places, carries)
     do i = 1, surface%n_node
-      segments = [surface%incoming(i), surface%outgoing(i)]
       do k = 1, 2
-        call see_half(surface, places, is_round, i, k, t(:, k), halves(k))
-        counts(k) = segments(k) > 0
-        if (counts(k)) counts(k) = carries(surface%segments(k, segments(k)))
+        associate (s => merge(surface%incoming(i), surface%outgoing(i), k == 1))
+          if (s == 0) cycle
+          if (carries(i) .and. is_side(s)) cycle
+        end associate
+        call see_half(surface, places, is_round, i, k, t, half)
+        lengths(i) = lengths(i) + half
       end do
-      if (count(counts) /= 1 .or. minval(segments) == 0) counts = .true.
-      if (.not. all(counts)) counts = counts .or. turns_gently(t(:, 1), t(:, 2))
-      lengths(i) = sum(halves, mask=counts)
     end do
   end function lengths_in_contact
 

@@ -7,6 +7,7 @@ module contact_judging_m
   use contact_facets_m, only : follow_arcs
   use law_state_m, only : contact_estimate_t
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step
+  use contact_results_m, only : sides_of_corners
   use contacts_m, only : contact_t, n_told, told_as, is_tied, penalty_implicit
   use controls_m, only : is_asked
   use history_tables_m, only : table_sleout
@@ -94,7 +95,8 @@ contains
     type(contact_estimate_t), intent(inout) :: side
     real(wp), allocatable, intent(inout) :: row_stress(:) !! of its nodes
     real(wp), dimension(surface%n_node) :: area, moved, pressure
-    real(wp) :: share(2), stress
+    real(wp) :: places(4, surface%n_node), share(2), stress
+    logical :: is_side(surface%n_segment)
     integer :: s, k, nodes(2)
 
     if (allocated(row_stress)) deallocate (row_stress)
@@ -103,7 +105,11 @@ contains
     moved = 0.0_wp
     pressure = own
     if (allocated(others)) pressure = own + others
+    places(1:2, :) = model%mesh%coordinates(:, surface%nodes)
+    places(3:4, :) = state%motion(1:2, surface%nodes)
+    is_side = sides_of_corners(surface, places, abs(own) > 0.0_wp)
     do s = 1, surface%n_segment
+      if (is_side(s)) cycle
       associate (element => surface%segment_element(s), ends => surface%segments(:, s))
         if (.not. has_stress(model, state, element)) cycle
         nodes = surface%nodes(ends)
