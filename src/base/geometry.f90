@@ -7,18 +7,18 @@ module geometry_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: sight_t, sight_of_segment, separation, closest_distance, sight_gap, sight_normal, &
-    segment_length
+  public :: local_coordinates_t, coordinates_on_segment, separation, closest_distance, local_gap, &
+    local_normal, segment_length
 
   !> A point seen from a segment a-b with the vector t = b - a and the outward normal (t_y,
   !> -t_x)/|t|. Without default values, which would be written before each use.
-  type :: sight_t
+  type :: local_coordinates_t
     real(wp) :: t(2)    !! vector of the segment, m
     real(wp) :: d(2)    !! vector from a to the point, m
     real(wp) :: square  !! t.t, m^2 (never zero)
     real(wp) :: along   !! d.t: xi times `square`
     real(wp) :: across  !! gap times length
-  end type sight_t
+  end type local_coordinates_t
 
 contains
 
@@ -32,48 +32,48 @@ contains
   end function separation
 
   !> See `point` from the segment a-b.
-  pure function sight_of_segment(point, a, b) result(sight)
+  pure function coordinates_on_segment(point, a, b) result(local)
     real(wp), intent(in) :: point(4), a(4), b(4)
-    type(sight_t) :: sight
+    type(local_coordinates_t) :: local
 
-    sight%t(1) = (b(1) - a(1)) + (b(3) - a(3))
-    sight%t(2) = (b(2) - a(2)) + (b(4) - a(4))
-    sight%d(1) = (point(1) - a(1)) + (point(3) - a(3))
-    sight%d(2) = (point(2) - a(2)) + (point(4) - a(4))
-    sight%square = max(sight%t(1)**2 + sight%t(2)**2, tiny(1.0_wp))
-    sight%along = sight%d(1)*sight%t(1) + sight%d(2)*sight%t(2)
-    sight%across = sight%d(1)*sight%t(2) - sight%d(2)*sight%t(1)
-  end function sight_of_segment
+    local%t(1) = (b(1) - a(1)) + (b(3) - a(3))
+    local%t(2) = (b(2) - a(2)) + (b(4) - a(4))
+    local%d(1) = (point(1) - a(1)) + (point(3) - a(3))
+    local%d(2) = (point(2) - a(2)) + (point(4) - a(4))
+    local%square = max(local%t(1)**2 + local%t(2)**2, tiny(1.0_wp))
+    local%along = local%d(1)*local%t(1) + local%d(2)*local%t(2)
+    local%across = local%d(1)*local%t(2) - local%d(2)*local%t(1)
+  end function coordinates_on_segment
 
   !> Square of the distance from the point to the segment, ends included.
-  pure function closest_distance(sight) result(square)
-    type(sight_t), intent(in) :: sight
+  pure function closest_distance(local) result(square)
+    type(local_coordinates_t), intent(in) :: local
     real(wp) :: square !! m^2
 
-    if (sight%along < 0.0_wp) then
-      square = sight%d(1)**2 + sight%d(2)**2
-    else if (sight%along > sight%square) then
-      square = (sight%d(1) - sight%t(1))**2 + (sight%d(2) - sight%t(2))**2
+    if (local%along < 0.0_wp) then
+      square = local%d(1)**2 + local%d(2)**2
+    else if (local%along > local%square) then
+      square = (local%d(1) - local%t(1))**2 + (local%d(2) - local%t(2))**2
     else
-      square = sight%across**2/sight%square
+      square = local%across**2/local%square
     end if
   end function closest_distance
 
   !> Signed distance to the line of the segment, negative behind it.
-  pure function sight_gap(sight) result(gap)
-    type(sight_t), intent(in) :: sight
+  pure function local_gap(local) result(gap)
+    type(local_coordinates_t), intent(in) :: local
     real(wp) :: gap
 
-    gap = sight%across/sqrt(sight%square)
-  end function sight_gap
+    gap = local%across/sqrt(local%square)
+  end function local_gap
 
   !> Outward unit normal of the segment.
-  pure function sight_normal(sight) result(normal)
-    type(sight_t), intent(in) :: sight
+  pure function local_normal(local) result(normal)
+    type(local_coordinates_t), intent(in) :: local
     real(wp) :: normal(2)
 
-    normal = [sight%t(2), -sight%t(1)]/sqrt(sight%square)
-  end function sight_normal
+    normal = [local%t(2), -local%t(1)]/sqrt(local%square)
+  end function local_normal
 
   !> Length of the segment between two places.
   pure function segment_length(a, b) result(length)

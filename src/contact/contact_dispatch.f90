@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The one place that knows the contact types: their names, needs, placements and tangents. Adding
-!> one is a number in `contacts_m`, a row of `formulations`, and a `use` and a `case` for
+!> The only file that knows the contact types: their names, needs, contact points and tangents.
+!> Adding one is a number in `contacts_m`, a row of `formulations`, and a `use` and a `case` for
 !> either (doc/add_a_formulation.md).
 module contact_dispatch_m
   use contact_law_m, only : law_penalty
@@ -8,35 +8,36 @@ module contact_dispatch_m
   use contacts_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_vts_ppt, &
     type_nts_mar, type_mortar, type_segmented_mortar, contact_t, contact_kind_t
   use kinds_m, only : wp
-  use linearisation_m, only : varied_list_t
+  use linearisation_m, only : linearised_list_t
   use nodal_tangent_m, only : add_nodal_tangents
-  use place_mortar_m, only : place_mortar
-  use place_nts_m, only : place_nts, place_nts_ar, place_two_pass_ar
-  use place_nts_mar_m, only : place_nts_mar
-  use place_segmented_mortar_m, only : place_segmented_mortar
-  use place_vts_ppt_m, only : place_vts_ppt
+  use points_mortar_m, only : points_mortar
+  use points_nts_m, only : points_nts, points_nts_ar, points_two_pass_ar
+  use points_nts_mar_m, only : points_nts_mar
+  use points_segmented_mortar_m, only : points_segmented_mortar
+  use points_vts_ppt_m, only : points_vts_ppt
   use point_tangent_m, only : add_point_tangents
   use sparse_m, only : sparse_t
-  use spots_m, only : spots_at_nodes, spots_at_quarters, spots_at_gauss_points
-  use tangent_mortar_m, only : vary_fixed_points
-  use tangent_nts_m, only : vary_nodes
-  use tangent_overlaps_m, only : vary_overlap_ends, vary_gauss_points
+  use points_on_segments_m, only : points_at_nodes, points_at_quarters, points_at_gauss_points
+  use tangent_mortar_m, only : linearise_fixed_points
+  use tangent_nts_m, only : linearise_nodes
+  use tangent_overlaps_m, only : linearise_overlap_ends, linearise_gauss_points
   use tangent_vts_ppt_m, only : add_vts_ppt_tangent
   implicit none
   private
-  public :: contact_kinds, formulation_t, formulation_of, is_strict, place_points, &
+  public :: contact_kinds, formulation_t, formulation_of, is_strict, generate_points, &
     add_tangent
 
-  !> What the frame must know of a formulation before it places points.
+  !> What the frame must know of a formulation before it generates points.
   type :: formulation_t
     type(contact_kind_t) :: kind          !! number and name
-    integer :: spots = spots_at_nodes     !! what the search follows over the master chain
-    logical :: has_two_passes = .false.   !! master nodes are tracked over the slave chain too
+    integer :: segment_points = points_at_nodes !! what the search follows over the master surface
+    logical :: has_two_passes = .false.   !! master nodes are tracked over the slave surface too
     logical :: has_unit_area = .false.    !! the penalty is N/m per node
-    logical :: covers_segments = .false.  !! goes along both chains, slave segment by slave segment
+    logical :: covers_segments = .false.  !! goes along both surfaces, slave segment by slave
+                                          !! segment
     logical :: has_nodal_pressure = .false. !! it is formed at slave nodes, not at points
     integer :: contact_law = law_penalty  !! from the gap there to the pressure
-    integer :: points_per_slave = 1       !! usual most of points for each spot, for the allocation
+    integer :: points_per_slave = 1       !! usual most of points for each point, for the allocation
     integer :: points_per_master = 0      !! and for each master node
     real(wp) :: self_share = 0.5_wp       !! part of the penalty that either pass of a surface with
                                           !! itself has
@@ -48,12 +49,12 @@ module contact_dispatch_m
     formulation_t(contact_kind_t(type_nts_ar, 'NTS-AR')), &
     formulation_t(contact_kind_t(type_two_pass_ar, 'NTS-AR two-pass'), has_two_passes=.true., &
       points_per_master=1, self_share=1.0_wp), &
-    formulation_t(contact_kind_t(type_vts_ppt, 'VTS-PPT'), spots=spots_at_quarters, &
+    formulation_t(contact_kind_t(type_vts_ppt, 'VTS-PPT'), segment_points=points_at_quarters, &
       points_per_master=1), &
     formulation_t(contact_kind_t(type_nts_mar, 'NTS-mAR', has_strict_rule=.true.), &
       covers_segments=.true., points_per_master=1), &
     formulation_t(contact_kind_t(type_mortar, 'mortar', uses_gauss_points=.true.), &
-      spots=spots_at_gauss_points, has_nodal_pressure=.true.), &
+      segment_points=points_at_gauss_points, has_nodal_pressure=.true.), &
     formulation_t(contact_kind_t(type_segmented_mortar, 'segmented mortar', &
       has_implicit_springs=.true.), &
       covers_segments=.true., has_nodal_pressure=.true., points_per_slave=2, &
@@ -87,22 +88,22 @@ contains
     strict = formulation%kind%has_strict_rule .and. contact%strict
   end function is_strict
 
-  !> Place the contact points of one interface for the places and pairs in its memory.
-  pure subroutine place_points(contact, memory)
+  !> Generate the contact points of one interface for the positions and pairs in its memory.
+  pure subroutine generate_points(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
 
     memory%points%n = 0
     select case (contact%contact_type)
-    case (type_nts); call place_nts(contact, memory)
-    case (type_nts_ar); call place_nts_ar(contact, memory)
-    case (type_two_pass_ar); call place_two_pass_ar(contact, memory)
-    case (type_vts_ppt); call place_vts_ppt(contact, memory)
-    case (type_nts_mar); call place_nts_mar(contact, memory)
-    case (type_mortar); call place_mortar(contact, memory)
-    case (type_segmented_mortar); call place_segmented_mortar(contact, memory)
+    case (type_nts); call points_nts(contact, memory)
+    case (type_nts_ar); call points_nts_ar(contact, memory)
+    case (type_two_pass_ar); call points_two_pass_ar(contact, memory)
+    case (type_vts_ppt); call points_vts_ppt(contact, memory)
+    case (type_nts_mar); call points_nts_mar(contact, memory)
+    case (type_mortar); call points_mortar(contact, memory)
+    case (type_segmented_mortar); call points_segmented_mortar(contact, memory)
     end select
-  end subroutine place_points
+  end subroutine generate_points
 
   !> Add the derivative of minus the forces of the points in the memory.
   pure subroutine add_tangent(contact, memory, equations, matrix)
@@ -110,15 +111,15 @@ contains
     type(contact_state_t), intent(in) :: memory
     integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
     type(sparse_t), intent(inout) :: matrix
-    type(varied_list_t) :: list
+    type(linearised_list_t) :: list
 
     select case (contact%contact_type)
-    case (type_nts); call vary_nodes(contact, .true., memory, list)
-    case (type_nts_ar, type_two_pass_ar); call vary_nodes(contact, .false., memory, list)
+    case (type_nts); call linearise_nodes(contact, .true., memory, list)
+    case (type_nts_ar, type_two_pass_ar); call linearise_nodes(contact, .false., memory, list)
     case (type_vts_ppt); call add_vts_ppt_tangent(contact, memory, equations, matrix)
-    case (type_nts_mar); call vary_overlap_ends(contact, memory, list)
-    case (type_mortar); call vary_fixed_points(contact, memory, list)
-    case (type_segmented_mortar); call vary_gauss_points(contact, memory, list)
+    case (type_nts_mar); call linearise_overlap_ends(contact, memory, list)
+    case (type_mortar); call linearise_fixed_points(contact, memory, list)
+    case (type_segmented_mortar); call linearise_gauss_points(contact, memory, list)
     end select
     if (list%n == 0) return
     if (memory%has%nodal_pressure) then

@@ -23,16 +23,16 @@ module contact_facets_m
     real(wp), allocatable :: curvature(:) !! (n_segment) 1/m
     real(wp), allocatable :: chord(:)     !! (n_segment) length of the segment, m
     real(wp), allocatable :: unlike(:)    !! (n_segment) curvature of both surfaces together, where
-                                          !! it is pressed, 1/m
+                                          !! it is loaded, 1/m
     logical, allocatable :: meets_corner(:) !! (n_segment) and may stand for a coarse arc
-    logical, allocatable :: is_pressed(:) !! (n_segment)
+    logical, allocatable :: is_loaded(:)  !! (n_segment)
   end type arcs_t
 
 contains
 
-  !> Follow an interface: the deepest penetration so far of places on curved segments, that of time
-  !> zero included, which is the interference, and the way by which bodies of unlike curvature are
-  !> flattened there; and what facets put gaps off by.
+  !> Follow an interface: the deepest penetration so far of positions on curved segments, that of
+  !> time zero included, which is the interference, and the way by which bodies of unlike curvature
+  !> are flattened there; and what facets put gaps off by.
   pure subroutine follow_arcs(contact, memory, estimate)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -43,8 +43,8 @@ contains
 
     associate (points => memory%points, n => memory%n_slave)
       if (.not. any(points%gap(:points%n) < 0.0_wp)) return
-      call find_arcs(contact%slave, memory%places(:, :n), arcs(1))
-      call find_arcs(contact%master, memory%places(:, n + 1:), arcs(2))
+      call find_arcs(contact%slave, memory%positions(:, :n), arcs(1))
+      call find_arcs(contact%master, memory%positions(:, n + 1:), arcs(2))
       if (.not. (any(abs(arcs(1)%curvature) > 0.0_wp) &
         .or. any(abs(arcs(2)%curvature) > 0.0_wp))) return
       deepest = 0.0_wp
@@ -52,35 +52,35 @@ contains
         if (.not. points%gap(p) < 0.0_wp) cycle
         ! Those of an overlap that grows have no pressure at first.
         if (points%pressure(p) > 0.0_wp .or. memory%has%interference) &
-          call look_at_point(contact, points, p, arcs, deepest, estimate)
+          call sample_point(contact, points, p, arcs, deepest, estimate)
       end do
     end associate
-    if (any(arcs(1)%is_pressed) .or. any(arcs(2)%is_pressed)) estimate%penetration = &
+    if (any(arcs(1)%is_loaded) .or. any(arcs(2)%is_loaded)) estimate%penetration = &
       max(estimate%penetration, deepest + max(flattening(contact%slave, arcs(1)), &
       flattening(contact%master, arcs(2))))
   end subroutine follow_arcs
 
   !> The arcs of one surface.
-  pure subroutine find_arcs(surface, places, arcs)
+  pure subroutine find_arcs(surface, positions, arcs)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in) :: places(:, :) !! (4, n_node) X, Y, u_x, u_y
+    real(wp), intent(in) :: positions(:, :) !! (4, n_node) X, Y, u_x, u_y
     type(arcs_t), intent(out) :: arcs
     integer :: s, n
 
     n = surface%n_segment
     allocate (arcs%curvature(n), arcs%chord(n), arcs%unlike(n), source=0.0_wp)
-    allocate (arcs%meets_corner(n), arcs%is_pressed(n), source=.false.)
-    call find_curvatures(surface, places, arcs%curvature, arcs%meets_corner)
+    allocate (arcs%meets_corner(n), arcs%is_loaded(n), source=.false.)
+    call find_curvatures(surface, positions, arcs%curvature, arcs%meets_corner)
     do s = 1, n
       associate (ends => surface%segments(:, s))
-        arcs%chord(s) = norm2(places(1:2, ends(2)) - places(1:2, ends(1)))
+        arcs%chord(s) = norm2(positions(1:2, ends(2)) - positions(1:2, ends(1)))
       end associate
     end do
   end subroutine find_arcs
 
-  !> One point that is pressed: the segments that it is on, either of which may be of either surface
+  !> One point that is loaded: the segments that it is on, either of which may be of either surface
   !> where there are two passes.
-  pure subroutine look_at_point(contact, points, p, arcs, deepest, estimate)
+  pure subroutine sample_point(contact, points, p, arcs, deepest, estimate)
     type(contact_t), intent(in) :: contact
     type(contact_points_t), intent(in) :: points
     integer, intent(in) :: p
@@ -111,7 +111,7 @@ contains
     do k = 1, 2
       associate (arc => arcs(side(k)), i => segment(k))
         off = off + 0.5_wp*curvature(k)*arc%chord(i)**2*max(product(weights(:, k)), 0.0_wp)
-        arc%is_pressed(i) = .true.
+        arc%is_loaded(i) = .true.
         if (.not. any(meets_corner)) arc%unlike(i) = abs(sum(curvature))
       end associate
     end do
@@ -127,10 +127,10 @@ contains
       estimate%arc_curvature = abs(curvature(k))
       estimate%arc_side = side(k)
     end do
-  end subroutine look_at_point
+  end subroutine sample_point
 
-  !> The segment that a place is on; of those beside the node that it is at, the one with the higher
-  !> arc, the first one of equal ones (round-off is no choice); 0: none.
+  !> The segment that a position is on; of those beside the node that it is at, the one with the
+  !> higher arc, the first one of equal ones (round-off is no choice); 0: none.
   pure function segment_at(surface, arcs, nodes, weights) result(segment)
     type(surface_t), intent(in) :: surface
     type(arcs_t), intent(in) :: arcs
@@ -162,7 +162,7 @@ contains
   end function height_of
 
   !> The largest way by which bodies of unlike curvature are flattened where they touch: the arc of
-  !> both curvatures over a run of pressed segments, up to one radian of it.
+  !> both curvatures over a run of loaded segments, up to one radian of it.
   pure function flattening(surface, arcs) result(way)
     type(surface_t), intent(in) :: surface
     type(arcs_t), intent(in) :: arcs
@@ -172,12 +172,12 @@ contains
     integer :: i, s, k
 
     way = 0.0_wp
-    is_left = arcs%is_pressed
+    is_left = arcs%is_loaded
     do i = 0, 2*surface%n_segment - 1
       s = 1 + modulo(i, surface%n_segment)
-      ! What is pressed all round has no first segment: any one, the second time.
+      ! What is loaded all round has no first segment: any one, the second time.
       if (i == s - 1 .and. surface%previous(s) > 0) then
-        if (arcs%is_pressed(surface%previous(s))) cycle
+        if (arcs%is_loaded(surface%previous(s))) cycle
       end if
       length = 0.0_wp
       unlike = 0.0_wp

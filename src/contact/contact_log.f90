@@ -89,7 +89,7 @@ contains
       call log_ties(contact, model, memory, log)
     else
       call write_log(log, '  deepest first contact: '//to_text(minval( &
-        memory%slave_tracking%spot_depth))//in_units(model%controls%units, 'L')//' or less')
+        memory%slave_status%point_depth))//in_units(model%controls%units, 'L')//' or less')
     end if
   end subroutine log_contact
 
@@ -214,8 +214,8 @@ contains
     end if
   end subroutine report_tie_step
 
-  !> How far the springs are pressed in beside the elements behind both surfaces, by the bulk
-  !> modulus of these; rigid ones are not pressed in.
+  !> How far the springs are loaded in beside the elements behind both surfaces, by the bulk
+  !> modulus of these; rigid ones are not loaded in.
   subroutine log_softness(contact, model, memory, log, softness)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
@@ -305,7 +305,7 @@ contains
     type(log_t), intent(inout) :: log
     character(:), allocatable :: text
     real(wp) :: depth !! that counts, m
-    logical :: is_pressed(memory%points%n)
+    logical :: is_loaded(memory%points%n)
     integer :: p, k
 
     if (memory%points%n == 0 .and. allocated(contact%interference)) call warn(log, 'interface ' &
@@ -313,14 +313,14 @@ contains
       //'overlaps at the start')
     if (memory%points%n == 0) return
     ! Behind ties, what these hold has no force.
-    is_pressed = .true.
-    if (contact%behind > 0) is_pressed = memory%points%pressure(:memory%points%n) > 0.0_wp
-    if (.not. any(is_pressed)) return
-    p = minloc(memory%points%gap(:memory%points%n), 1, is_pressed)
-    depth = round_off*memory%slave_tracking%reach
+    is_loaded = .true.
+    if (contact%behind > 0) is_loaded = memory%points%pressure(:memory%points%n) > 0.0_wp
+    if (.not. any(is_loaded)) return
+    p = minloc(memory%points%gap(:memory%points%n), 1, is_loaded)
+    depth = round_off*memory%slave_status%reach
     if (-memory%points%gap(p) <= depth) return
     k = maxloc(memory%points%slave_weights(:, p), 1)
-    text = ' at '//to_text(count(is_pressed .and. memory%points%gap(:memory%points%n) < -depth)) &
+    text = ' at '//to_text(count(is_loaded .and. memory%points%gap(:memory%points%n) < -depth)) &
       //' points, deepest at node '//to_text(model%mesh%node_id(memory%nodes( &
       memory%points%slave_nodes(k, p))))//': '//to_text(-memory%points%gap(p)) &
       //in_units(model%controls%units, 'L')
@@ -365,7 +365,7 @@ contains
     type(log_t), intent(inout) :: log
     integer :: n
 
-    n = memory%slave_tracking%n_released + memory%master_tracking%n_released
+    n = memory%slave_status%n_released + memory%master_status%n_released
     if (n == 0) return
     call warn(log, 'interface '//to_text(contact%id)//': '//to_text(n) &
       //' first contacts were deeper than the limit and were released; SRCH sets the limit')

@@ -4,14 +4,14 @@ module contact_preparation_m
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_penalty_m, only : set_penalties
   use contact_state_m, only : contact_state_t, features_t, allocate_points, allocate_damping, &
-    allocate_tractions, allocate_scratch, places_of_segment
+    allocate_tractions, allocate_scratch, sites_of_segment
   use contacts_m, only : contact_t, has_friction, is_tied, breaks, penalty_implicit
   use law_state_m, only : allocate_limit, allocate_friction, allocate_interference
-  use initial_status_m, only : allocate_slave_tracking, allocate_master_tracking, allocate_segments
+  use initial_status_m, only : allocate_slave_status, allocate_master_status, allocate_segments
   use kinds_m, only : wp
   use model_m, only : model_t
-  use spots_m, only : start_spots, spots_at_nodes
-  use tips_m, only : has_folds
+  use points_on_segments_m, only : start_segment_points, points_at_nodes
+  use sharp_vertices_m, only : has_folds
   implicit none
   private
   public :: prepare_contact
@@ -32,23 +32,23 @@ contains
     memory%n_slave = n_slave
     memory%n_master = n_master
     memory%nodes = [contact%slave%nodes, contact%master%nodes]
-    allocate (memory%force(2, n_slave + n_master), memory%places(4, n_slave + n_master), &
+    allocate (memory%force(2, n_slave + n_master), memory%positions(4, n_slave + n_master), &
       source=0.0_wp)
     origin = model%mesh%coordinates(:, memory%nodes(1))
     if (contact%is_round) origin(1) = 0.0_wp
     do i = 1, size(memory%nodes)
-      memory%places(1:2, i) = model%mesh%coordinates(:, memory%nodes(i)) - origin
+      memory%positions(1:2, i) = model%mesh%coordinates(:, memory%nodes(i)) - origin
     end do
     formulation = formulation_of(contact)
     memory%contact_law = formulation%contact_law
     memory%has = features_of(contact, formulation, model%controls%implicit%is_on)
     call set_penalties(contact, model, formulation%self_share, memory)
-    call start_spots(formulation%spots, contact%n_gauss, contact%is_round, has_folds(contact), &
-      contact%slave, memory)
-    call allocate_slave_tracking(contact, model, memory)
-    if (formulation%has_two_passes) call allocate_master_tracking(contact, model, memory)
+    call start_segment_points(formulation%segment_points, contact%n_gauss, contact%is_round, &
+      has_folds(contact), contact%slave, memory)
+    call allocate_slave_status(contact, model, memory)
+    if (formulation%has_two_passes) call allocate_master_status(contact, model, memory)
     if (memory%has%overlaps) call allocate_segments(contact, memory)
-    call allocate_points(memory%points, formulation%points_per_slave*memory%slave_tracking%n &
+    call allocate_points(memory%points, formulation%points_per_slave*memory%slave_status%n &
       + formulation%points_per_master*n_master)
     if (memory%has%nodal_pressure) allocate (memory%node_pressure(n_slave), source=0.0_wp)
     if (memory%has%damping) then
@@ -58,11 +58,11 @@ contains
     if (memory%has%limit) call allocate_limit(memory%limit, n_slave + n_master)
     if (memory%has%friction) then
       call allocate_tractions(memory%points)
-      call allocate_friction(memory%friction, places_of_segment(memory)*n_slave + n_master, &
+      call allocate_friction(memory%friction, sites_of_segment(memory)*n_slave + n_master, &
         n_slave + n_master)
     end if
     if (memory%has%interference) call allocate_interference(memory%interference, &
-      places_of_segment(memory)*n_slave, n_master)
+      sites_of_segment(memory)*n_slave, n_master)
     call allocate_scratch(memory)
   end subroutine prepare_contact
 
@@ -74,7 +74,7 @@ contains
     logical, intent(in) :: is_implicit !! the whole run
     type(features_t) :: has
 
-    has%spots = formulation%spots /= spots_at_nodes
+    has%segment_points = formulation%segment_points /= points_at_nodes
     has%overlaps = formulation%covers_segments
     has%nodal_pressure = formulation%has_nodal_pressure
     has%damping = contact%damping > 0.0_wp
@@ -82,7 +82,7 @@ contains
     has%interference = allocated(contact%interference)
     has%ties = is_tied(contact)
     has%breaks = breaks(contact)
-    has%former_tie = contact%behind > 0
+    has%tie_handover = contact%behind > 0
     has%limit = .not. (is_implicit .or. has%ties &
       .or. contact%penalty_unit == penalty_implicit .and. .not. has%friction)
   end function features_of

@@ -1,16 +1,16 @@
 ! SPDX-License-Identifier: MIT
 !> What the writers want to know of an interface.
 module contact_results_m
-  use contact_state_m, only : contact_state_t, is_touching, n_side
+  use contact_state_m, only : contact_state_t, active, n_side
   use contacts_m, only : contact_t
-  use foot_m, only : foot_t, closest_foot, follow_contact, turns_gently, &
-    vector_of, walk_to_closest
+  use projection_m, only : projection_t, closest_projection, follow_contact, turns_gently, &
+    vector_of, find_closest_segment
   use geometry_m, only : segment_length
   use kinds_m, only : wp
   use law_state_m, only : is_open, is_held, is_broken
-  use lengths_m, only : see_half
+  use tributary_lengths_m, only : see_half
   use nodal_average_m, only : average_values
-  use snapshot_m, only : interface_result_t, slave_result_t, rubbed_t
+  use snapshot_m, only : interface_result_t, slave_result_t, friction_result_t
   use surfaces_m, only : surface_t
   use ties_m, only : tie_spring_t, tie_spring, tied_nodes
   implicit none
@@ -31,7 +31,7 @@ contains
       resultants%energy = memory%energy + friction%stored
       resultants%friction = friction%work - friction%stored
       resultants%damping = memory%damping_work
-      resultants%stored = memory%watch%stored - memory%ties%spent + friction%stored
+      resultants%stored = memory%monitor%stored - memory%ties%spent + friction%stored
     end associate
   end subroutine interface_resultants
 
@@ -41,7 +41,7 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, v
     type(contact_state_t), intent(in) :: memory
     type(slave_result_t), intent(inout) :: rows
-    real(wp), allocatable :: places(:, :), share(:), pull(:), lengths(:)
+    real(wp), allocatable :: positions(:, :), share(:), pull(:), lengths(:)
     logical, allocatable :: carries(:)
     integer :: i, n
 
@@ -50,35 +50,37 @@ contains
       rows%node = contact%slave%nodes
       allocate (rows%arc_length(n), rows%gap(n), rows%pressure(n), rows%force(2, n), &
         rows%length(n), rows%master_pressure(memory%n_master))
-      if (memory%has%friction .or. memory%has%ties) allocate (rows%rubbed(n + memory%n_master))
+      if (memory%has%friction .or. memory%has%ties) allocate (rows%friction_result(n &
+        + memory%n_master))
     end if
-    allocate (places, source=memory%places)
+    allocate (positions, source=memory%positions)
     allocate (share(n + memory%n_master))
-    places(3:4, :) = motion(1:2, memory%nodes)
+    positions(3:4, :) = motion(1:2, memory%nodes)
     rows%force = memory%force(:, :n)
-    call fill_arc_lengths(contact%slave, places(:, :n), rows%arc_length)
+    call fill_arc_lengths(contact%slave, positions(:, :n), rows%arc_length)
     share = nodal_sums(contact%is_self, memory, memory%points%pressure)
     carries = abs(share) > 0.0_wp
     if (memory%has%ties) carries = carries .or. tied_nodes(memory, .false.)
-    rows%length = lengths_in_contact(contact%slave, places(:, :n), contact%is_round, carries(:n))
-    lengths = [rows%length, lengths_in_contact(contact%master, places(:, n + 1:), &
+    rows%length = lengths_in_contact(contact%slave, positions(:, :n), contact%is_round, carries(:n))
+    lengths = [rows%length, lengths_in_contact(contact%master, positions(:, n + 1:), &
       contact%is_round, carries(n + 1:))]
     lengths = max(lengths, tiny(1.0_wp))
     rows%pressure = share(:n)/lengths(:n)
     rows%master_pressure = share(n + 1:)/lengths(n + 1:)
     do i = 1, n
-      rows%gap(i) = present_gap(contact, places(:, n + 1:), places(:, i), memory, i)
+      rows%gap(i) = present_gap(contact, positions(:, n + 1:), positions(:, i), memory, i)
     end do
     if (.not. (memory%has%friction .or. memory%has%ties)) return
     allocate (pull(n + memory%n_master))
     pull = nodal_sums(contact%is_self, memory, memory%points%traction)
-    rows%rubbed%traction = pull/lengths
+    rows%friction_result%traction = pull/lengths
     do i = 1, n
-      call find_state(contact%slave, 0, i, memory, rows%rubbed(i)%slip, rows%rubbed(i)%state)
+      call find_state(contact%slave, 0, i, memory, rows%friction_result(i)%slip, &
+        rows%friction_result(i)%state)
     end do
     do i = 1, memory%n_master
-      call find_state(contact%master, n, i, memory, rows%rubbed(n + i)%slip, &
-        rows%rubbed(n + i)%state)
+      call find_state(contact%master, n, i, memory, rows%friction_result(n + i)%slip, &
+        rows%friction_result(n + i)%state)
     end do
     if (memory%has%ties) call fill_ties(memory, rows)
   end subroutine slave_rows
@@ -95,18 +97,18 @@ contains
       call average_values(memory%points, memory%points%gap, size(nodal, 2), nodal)
       rows%gap = nodal(1, :memory%n_slave)
     end if
-    rows%rubbed%slip = mean_slips(memory)
-    rows%rubbed%state = merge(is_broken, is_open, tied_nodes(memory, .false.))
+    rows%friction_result%slip = mean_slips(memory)
+    rows%friction_result%state = merge(is_broken, is_open, tied_nodes(memory, .false.))
     associate (still => tied_nodes(memory, .true.))
       do i = 1, size(still)
-        if (still(i)) rows%rubbed(i)%state = is_held
+        if (still(i)) rows%friction_result(i)%state = is_held
       end do
     end associate
   end subroutine fill_ties
 
-  !> How far nodes have moved along their chains over the other side, against the reference geometry
-  !> and whether they still are held or not, m. Springs measure the slave along the master's chain,
-  !> which runs the other way.
+  !> How far nodes have moved along their surfaces over the other side, against the reference
+  !> geometry and whether they still are held or not, m. Springs measure the slave along the
+  !> master's surface, which runs the other way.
   pure function mean_slips(memory) result(slip)
     type(contact_state_t), intent(in) :: memory
     real(wp) :: slip(memory%n_slave + memory%n_master)
@@ -136,23 +138,23 @@ contains
     rows%force = rows%force + behind%force
     rows%master_pressure = rows%master_pressure + behind%master_pressure
     do i = 1, size(rows%node)
-      if (rows%rubbed(i)%state /= is_held) rows%gap(i) = behind%gap(i)
+      if (rows%friction_result(i)%state /= is_held) rows%gap(i) = behind%gap(i)
     end do
-    if (.not. allocated(behind%rubbed)) return
-    do i = 1, size(rows%rubbed)
-      associate (rub => rows%rubbed(i), other => behind%rubbed(i))
-        rub%traction = rub%traction + other%traction
-        if (rub%state /= is_open) cycle
-        rub%slip = other%slip
-        rub%state = other%state
+    if (.not. allocated(behind%friction_result)) return
+    do i = 1, size(rows%friction_result)
+      associate (own => rows%friction_result(i), other => behind%friction_result(i))
+        own%traction = own%traction + other%traction
+        if (own%state /= is_open) cycle
+        own%slip = other%slip
+        own%state = other%state
       end associate
     end do
   end subroutine join_rows
 
-  !> Distance along each chain from its first node, in the present shape.
-  pure subroutine fill_arc_lengths(surface, places, arc_length)
+  !> Distance along each surface from its first node, in the present shape.
+  pure subroutine fill_arc_lengths(surface, positions, arc_length)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :)
+    real(wp), intent(in), contiguous :: positions(:, :)
     real(wp), intent(out) :: arc_length(:)
     integer :: i
 
@@ -161,16 +163,16 @@ contains
       if (surface%incoming(i) == 0) cycle
       associate (before => surface%segments(1, surface%incoming(i)))
         if (before == i - 1) arc_length(i) = arc_length(before) &
-          + segment_length(places(:, before), places(:, i))
+          + segment_length(positions(:, before), positions(:, i))
       end associate
     end do
   end subroutine fill_arc_lengths
 
   !> Which segments are the side next to a sharp corner without contact of its own: of their nodes
   !> that of the corner alone carries contact, and of the other segment there both do.
-  pure function sides_of_corners(surface, places, carries) result(is_side)
+  pure function sides_of_corners(surface, positions, carries) result(is_side)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface
     logical, intent(in) :: carries(:)                !! (n_node) has contact force, or is tied
     logical :: is_side(surface%n_segment)
     integer :: s, next, k
@@ -183,17 +185,17 @@ contains
         next = merge(surface%previous(s), surface%next(s), k == 1)
         if (next == 0) cycle
         if (.not. carries(surface%segments(k, next))) cycle
-        is_side(s) = .not. turns_gently(vector_of(surface, places, s), &
-          vector_of(surface, places, next))
+        is_side(s) = .not. turns_gently(vector_of(surface, positions, s), &
+          vector_of(surface, positions, next))
       end associate
     end do
   end function sides_of_corners
 
   !> Tributary lengths of the nodes of a surface, m, in axisymmetry m^2 per radian: half of both
   !> segments; at a sharp corner of the one that carries contact alone.
-  pure function lengths_in_contact(surface, places, is_round, carries) result(lengths)
+  pure function lengths_in_contact(surface, positions, is_round, carries) result(lengths)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface
     logical, intent(in) :: is_round
     logical, intent(in) :: carries(:)                !! (n_node) has contact force, or is tied
     real(wp) :: lengths(surface%n_node)
@@ -202,14 +204,14 @@ contains
     integer :: i, k
 
     lengths = 0.0_wp
-    is_side = sides_of_corners(surface, places, carries)
+    is_side = sides_of_corners(surface, positions, carries)
     do i = 1, surface%n_node
       do k = 1, 2
         associate (s => merge(surface%incoming(i), surface%outgoing(i), k == 1))
           if (s == 0) cycle
           if (carries(i) .and. is_side(s)) cycle
         end associate
-        call see_half(surface, places, is_round, i, k, t, half)
+        call see_half(surface, positions, is_round, i, k, t, half)
         lengths(i) = lengths(i) + half
       end do
     end do
@@ -226,11 +228,11 @@ contains
     integer :: near(2), n
 
     near = offset + i
-    if (memory%has%spots .and. .not. memory%has%nodal_pressure) then
+    if (memory%has%segment_points .and. .not. memory%has%nodal_pressure) then
       slip = 0.0_wp
       state = is_open
       if (offset > 0 .or. max(surface%incoming(i), surface%outgoing(i)) == 0) return
-      n = size(memory%spot_xi)
+      n = size(memory%segment_xi)
       near = n*(i - 1) + 1
       if (surface%incoming(i) > 0) near(2) = n*surface%segments(1, surface%incoming(i))
       if (surface%outgoing(i) == 0) near(1) = near(2)
@@ -240,7 +242,7 @@ contains
       state = is_open
       return
     end if
-    ! Slips are those of the slave side along the master's chain, which runs the other way.
+    ! Slips are those of the slave side along the master's surface, which runs the other way.
     ! At a corner the side next to it has no contact.
     if (count(memory%friction%state(near) == is_open) == 1) &
       near = near(maxloc(memory%friction%state(near), 1))
@@ -249,8 +251,8 @@ contains
   end subroutine find_state
 
   !> Values of points times their areas, shared out to the nodes on both sides: the normal forces on
-  !> them of pressures, N/m, forces along their chains of tractions. All of a surface with itself is
-  !> on the slave.
+  !> them of pressures, N/m, forces along their surfaces of tractions. All of a surface with itself
+  !> is on the slave.
   pure function nodal_sums(is_self, memory, values) result(share)
     logical, intent(in) :: is_self
     type(contact_state_t), intent(in) :: memory
@@ -278,53 +280,53 @@ contains
     end associate
   end function nodal_sums
 
-  !> Gap of a slave node at the present places; 0 when it is unpaired. A spot that sleeps keeps its
-  !> segment although it may have gone out of reach since.
-  pure function present_gap(contact, chain, place, memory, i) result(gap)
+  !> Gap of a slave node at the present positions; 0 when it is unpaired. A point that sleeps keeps
+  !> its segment although it may have gone out of reach since.
+  pure function present_gap(contact, polyline, position, memory, i) result(gap)
     type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_master) present places
-    real(wp), intent(in) :: place(4)                !! of the node
+    real(wp), intent(in), contiguous :: polyline(:, :) !! (4, n_master) present positions
+    real(wp), intent(in) :: position(4)             !! of the node
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: i                        !! node of the slave surface
     real(wp) :: gap
-    type(foot_t) :: foot
-    integer :: spot
+    type(projection_t) :: projection
+    integer :: point
 
     gap = 0.0_wp
     if (contact%slave%incoming(i) == 0 .and. contact%slave%outgoing(i) == 0) return
-    spot = spot_at_node(contact%slave, memory, i)
-    associate (tracking => memory%slave_tracking, segment => memory%slave_tracking%segment(spot))
+    point = point_at_node(contact%slave, memory, i)
+    associate (status => memory%slave_status, segment => memory%slave_status%segment(point))
       if (memory%is_stale .or. segment == 0) return
-      if (tracking%status(spot) /= is_touching) then
-        foot = closest_foot(contact%master, chain, place, &
-          walk_to_closest(contact%master, chain, place, segment))
-        if (foot%distance > tracking%reach) return
-      else if (memory%has%spots) then
-        foot = follow_contact(contact%master, chain, place, segment)
+      if (status%state(point) /= active) then
+        projection = closest_projection(contact%master, polyline, position, &
+          find_closest_segment(contact%master, polyline, position, segment))
+        if (projection%distance > status%reach) return
+      else if (memory%has%segment_points) then
+        projection = follow_contact(contact%master, polyline, position, segment)
       else
-        gap = tracking%gap(spot)
+        gap = status%gap(point)
         return
       end if
-      if (foot%is_on) gap = foot%gap
+      if (projection%is_on) gap = projection%gap
     end associate
   end function present_gap
 
-  !> The spot at a slave node, or of those on its segments the one next to it that is in contact, if
-  !> any.
-  pure function spot_at_node(slave, memory, i) result(spot)
+  !> The point at a slave node, or of those on its segments the one next to it that is in contact,
+  !> if any.
+  pure function point_at_node(slave, memory, i) result(point)
     type(surface_t), intent(in) :: slave
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: i
-    integer :: spot, n, other
+    integer :: point, n, other
 
-    spot = i
-    if (.not. memory%has%spots) return
-    n = size(memory%spot_xi)
+    point = i
+    if (.not. memory%has%segment_points) return
+    n = size(memory%segment_xi)
     other = n*slave%incoming(i)
-    spot = n*(slave%outgoing(i) - 1) + 1
-    if (slave%outgoing(i) == 0) spot = other
+    point = n*(slave%outgoing(i) - 1) + 1
+    if (slave%outgoing(i) == 0) point = other
     if (other == 0) return
-    if (memory%slave_tracking%status(spot) /= is_touching) spot = other
-  end function spot_at_node
+    if (memory%slave_status%state(point) /= active) point = other
+  end function point_at_node
 
 end module contact_results_m

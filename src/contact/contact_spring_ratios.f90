@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> How stiff the penalty springs of an interface can hold each of its nodes. A node of the tracked
-!> side carries at most its competence length in all formulations, for a node of the other side see
+!> side carries at most its tributary length in all formulations, for a node of the other side see
 !> `most_on_nodes` (doc/theory/contact.md, section 7). In axisymmetry lengths weigh with their
 !> radius: m^2 per radian.
 module contact_spring_ratios_m
@@ -9,7 +9,7 @@ module contact_spring_ratios_m
   use contacts_m, only : contact_t, is_tied
   use geometry_m, only : segment_length
   use kinds_m, only : wp
-  use lengths_m, only : competence_area, mean_radius
+  use tributary_lengths_m, only : nodal_area, mean_radius
   use radii_m, only : radius_of, end_radius
   use surfaces_m, only : surface_t
   use ties_m, only : stiffness_of_nodes
@@ -22,7 +22,7 @@ module contact_spring_ratios_m
 
 contains
 
-  !> Most K/m of each node, K being the sum of spring stiffness times weight, 1/s^2. `places` are
+  !> Most K/m of each node, K being the sum of spring stiffness times weight, 1/s^2. `positions` are
   !> those in the memory, all nodes in contact.
   pure function spring_ratios(contact, mass, memory) result(ratio)
     type(contact_t), intent(in) :: contact
@@ -38,9 +38,9 @@ contains
     overhang = beyond_ends
     if (formulation%covers_segments .and. .not. is_strict(contact)) overhang = 0.0_wp
     is_lonely = .false.
-    if (is_round .and. allocated(memory%spot_xi)) is_lonely = size(memory%spot_xi) == 1
-    associate (n => memory%n_slave, slave => memory%places(:, :memory%n_slave), &
-      master => memory%places(:, memory%n_slave + 1:))
+    if (is_round .and. allocated(memory%segment_xi)) is_lonely = size(memory%segment_xi) == 1
+    associate (n => memory%n_slave, slave => memory%positions(:, :memory%n_slave), &
+      master => memory%positions(:, memory%n_slave + 1:))
       if (is_tied(contact)) then
         ratio = stiffness_of_nodes(memory)
       else if (formulation%has_unit_area) then
@@ -89,19 +89,20 @@ contains
 
   !> Competence areas of all nodes of a surface; where one Gauss point stands alone on a segment no
   !> less than half of each neighbouring segment by the radius of its middle.
-  pure function areas(surface, places, is_round, is_lonely)
+  pure function areas(surface, positions, is_round, is_lonely)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :)
+    real(wp), intent(in), contiguous :: positions(:, :)
     logical, intent(in) :: is_round, is_lonely
     real(wp) :: areas(surface%n_node)
     real(wp) :: middle(surface%n_node)
     integer :: i
 
-    areas = [(competence_area(surface, places, is_round, i), i=1, surface%n_node)]
+    areas = [(nodal_area(surface, positions, is_round, i), i=1, surface%n_node)]
     if (.not. is_lonely) return
     middle = 0.0_wp
     do i = 1, surface%n_segment
-      associate (a => places(:, surface%segments(1, i)), b => places(:, surface%segments(2, i)))
+      associate (a => positions(:, surface%segments(1, i)), b => &
+        positions(:, surface%segments(2, i)))
         middle(surface%segments(:, i)) = middle(surface%segments(:, i)) &
           + 0.25_wp*segment_length(a, b)*(radius_of(a) + radius_of(b))
       end associate
@@ -110,9 +111,9 @@ contains
   end function areas
 
   !> Largest radius on the segments beside each node, m.
-  pure function radii_near(surface, places) result(radii)
+  pure function radii_near(surface, positions) result(radii)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :)
+    real(wp), intent(in), contiguous :: positions(:, :)
     real(wp) :: radii(surface%n_node)
     integer :: i, k
 
@@ -120,42 +121,43 @@ contains
     do i = 1, surface%n_segment
       do k = 1, 2
         radii(surface%segments(:, i)) = max(radii(surface%segments(:, i)), &
-          radius_of(places(:, surface%segments(k, i))))
+          radius_of(positions(:, surface%segments(k, i))))
       end do
     end do
   end function radii_near
 
   !> Lengths of all segments of a surface, m.
-  pure function lengths(surface, places)
+  pure function lengths(surface, positions)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :)
+    real(wp), intent(in), contiguous :: positions(:, :)
     real(wp) :: lengths(surface%n_segment)
     integer :: i
 
     do i = 1, surface%n_segment
-      lengths(i) = segment_length(places(:, surface%segments(1, i)), &
-        places(:, surface%segments(2, i)))
+      lengths(i) = segment_length(positions(:, surface%segments(1, i)), &
+        positions(:, surface%segments(2, i)))
     end do
   end function lengths
 
   !> Length of the longest segment of a surface, m.
-  pure real(wp) function longest_of(surface, places)
+  pure real(wp) function longest_of(surface, positions)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :)
+    real(wp), intent(in), contiguous :: positions(:, :)
 
-    longest_of = maxval(lengths(surface, places))
+    longest_of = maxval(lengths(surface, positions))
   end function longest_of
 
   !> Most length, or area by radius, that points of the other side can put on each node by its hat
   !> function over segments of length h, at distances up to s or integrating segments of up to s:
   !> the integral of the hat, h/2 or h (2 r_i + r_j)/6, and the largest error of the trapezoidal
-  !> rule at its foot, s^2/(8h) times the mean radius there, at most s/6 above that of the foot; or,
-  !> where s > 2h, s/2 in all (the midpoint rule errs as much at the top, Gauss rules less). One
-  !> Gauss point on a segment errs at the top of the hat, by s^2/12 more since radius times hat is
-  !> curved. Points at a chain's end may stand for a part `overhang` of s beyond it.
-  pure function most_on_nodes(surface, places, is_round, s, overhang, is_lonely) result(most)
+  !> rule at its projection, s^2/(8h) times the mean radius there, at most s/6 above that of the
+  !> projection; or, where s > 2h, s/2 in all (the midpoint rule errs as much at the top, Gauss
+  !> rules less). One Gauss point on a segment errs at the top of the hat, by s^2/12 more since
+  !> radius times hat is curved. Points at a surface's end may stand for a part `overhang` of s
+  !> beyond it.
+  pure function most_on_nodes(surface, positions, is_round, s, overhang, is_lonely) result(most)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :)
+    real(wp), intent(in), contiguous :: positions(:, :)
     logical, intent(in) :: is_round
     real(wp), intent(in) :: s         !! m
     real(wp), intent(in) :: overhang
@@ -164,7 +166,7 @@ contains
     real(wp) :: h(surface%n_segment), share, near, far, rise
     integer :: i, k, other
 
-    h = lengths(surface, places)
+    h = lengths(surface, positions)
     rise = merge(1.0_wp, 0.0_wp, is_round)
     near = 1.0_wp
     far = 1.0_wp
@@ -172,8 +174,8 @@ contains
     do i = 1, surface%n_segment
       do k = 1, 2
         associate (node => surface%segments(k, i))
-          if (is_round) near = radius_of(places(:, node))
-          if (is_round) far = radius_of(places(:, surface%segments(3 - k, i)))
+          if (is_round) near = radius_of(positions(:, node))
+          if (is_round) far = radius_of(positions(:, surface%segments(3 - k, i)))
           if (s <= 2.0_wp*h(i)) then
             share = 0.5_wp*h(i)*end_radius(near, far) &
               + s**2/(8.0_wp*h(i))*(merge(max(near, far), far, is_lonely) + rise*s/6.0_wp)

@@ -272,7 +272,7 @@ contains
 
     limit = huge(limit)
     if (is_tied(contact) .or. contact%search_depth > 0.0_wp) return
-    depth = min(memory%slave_tracking%shallowest, memory%master_tracking%shallowest)
+    depth = min(memory%slave_status%shallowest, memory%master_status%shallowest)
     depth = approach_share*depth
     if (memory%advance > 0.01_wp*depth) limit = dt*(depth/memory%advance)
   end function approach_step

@@ -14,7 +14,7 @@ module contact_stiffness_m
 contains
 
   !> Add the derivative of minus the contact forces, as evaluate_contact has left them in the
-  !> memory, with respect to u; which spot is on which segment and which nodes cut which segment is
+  !> memory, with respect to u; which point is on which segment and which nodes cut which segment is
   !> held.
   pure subroutine add_contact_stiffness(contact, memory, equation, matrix)
     type(contact_t), intent(in) :: contact

@@ -8,7 +8,7 @@ module gap_rates_m
   use weighted_gaps_m, only : rows_t, node_of, first_row, last_row, share_at
   implicit none
   private
-  public :: find_rates, add_turns, press_nodes, turns_alike, fill_band, along_normal, along_tangent
+  public :: find_rates, add_turns, load_nodes, turns_alike, fill_band, along_normal, along_tangent
 
   !> Along what the shares of a row act: its normals, or these turned by a right angle.
   integer, parameter :: along_normal = 1, along_tangent = 2
@@ -50,20 +50,20 @@ contains
 
   !> What the turn of the master segments adds to the rates along tangents, of points that stand at
   !> a distance (section 6.2).
-  pure subroutine add_turns(rows, points, places, velocity, rate)
+  pure subroutine add_turns(rows, points, positions, velocity, rate)
     type(rows_t), intent(in) :: rows
     type(contact_points_t), intent(in) :: points
-    real(wp), intent(in) :: places(4, *), velocity(2, *) !! of the nodes; velocity in m/s
+    real(wp), intent(in) :: positions(4, *), velocity(2, *) !! of the nodes; velocity in m/s
     real(wp), intent(inout) :: rate(*)                   !! (rows%n) m/s
     real(wp) :: moment
     integer :: p, k
 
     do p = 1, points%n
-      if (all(rows%place(points%slave_nodes(:, p)) == 0)) cycle
+      if (all(rows%row_of(points%slave_nodes(:, p)) == 0)) cycle
       moment = points%area(p)*points%gap(p)*turn_of(points%master_nodes(1, p), &
-        points%master_nodes(2, p), places, velocity)
+        points%master_nodes(2, p), positions, velocity)
       do k = 1, n_side
-        associate (row => rows%place(points%slave_nodes(k, p)))
+        associate (row => rows%row_of(points%slave_nodes(k, p)))
           if (row > 0) rate(row) = rate(row) + rows%inverse(row)*points%slave_weights(k, p)*moment
         end associate
       end do
@@ -71,24 +71,24 @@ contains
   end subroutine add_turns
 
   !> How fast a segment turns, clockwise.
-  pure function turn_of(a, b, places, velocity) result(turn)
+  pure function turn_of(a, b, positions, velocity) result(turn)
     integer, intent(in) :: a, b !! its nodes
-    real(wp), intent(in) :: places(4, *), velocity(2, *)
+    real(wp), intent(in) :: positions(4, *), velocity(2, *)
     real(wp) :: turn
     real(wp) :: along(4), t(2), change(2)
 
-    along = places(:, b) - places(:, a)
+    along = positions(:, b) - positions(:, a)
     t = along(1:2) + along(3:4)
     change = velocity(:, b) - velocity(:, a)
     turn = (t(2)*change(1) - t(1)*change(2))/max(t(1)*t(1) + t(2)*t(2), tiny(1.0_wp))
   end function turn_of
 
   !> Velocities of the nodes that have rows with forces along the normals of these.
-  pure subroutine press_nodes(rows, mobility, x, velocity, pressed)
+  pure subroutine load_nodes(rows, mobility, x, velocity, loaded)
     type(rows_t), intent(in) :: rows
     real(wp), intent(in), contiguous :: mobility(:, :), velocity(:, :) !! (2, nodes)
     real(wp), intent(in) :: x(rows%n)                                  !! N/m
-    real(wp), intent(inout), contiguous :: pressed(:, :)               !! (2, nodes) m/s
+    real(wp), intent(inout), contiguous :: loaded(:, :)                !! (2, nodes) m/s
     real(wp) :: force(2)
     integer :: i, k, at
 
@@ -101,10 +101,10 @@ contains
         force = force + x(k)*[rows%share_x(at + k), rows%share_y(at + k)]
       end do
       associate (j => rows%node(node_of, i))
-        pressed(:, j) = velocity(:, j) + mobility(:, j)*force
+        loaded(:, j) = velocity(:, j) + mobility(:, j)*force
       end associate
     end do
-  end subroutine press_nodes
+  end subroutine load_nodes
 
   !> Whether forces along tangents change rates along these as forces along normals do those along
   !> normals: no node that has rows is moved more easily in one direction.

@@ -1,37 +1,37 @@
 ! SPDX-License-Identifier: MIT
-!> One interface, one step: gather, search, place, law, scatter, energy limit, work.
+!> One interface, one step: gather, search, points, law, scatter, energy limit, work.
 module interface_m
   use clock_m, only : clock_t, lap, phase_contact_search, phase_contact_pairing, &
     phase_contact_force
   use candidates_m, only : update_candidates, list_candidates
   use closed_gap_m, only : closed_gap_of, gap_ahead
-  use contact_dispatch_m, only : formulation_t, formulation_of, place_points
-  use behind_ties_m, only : leave_to_tie, take_over
-  use contact_law_m, only : press_places
+  use contact_dispatch_m, only : formulation_t, formulation_of, generate_points
+  use tie_handover_m, only : exclude_tied_sites, take_handover
+  use contact_law_m, only : form_pressures
   use contact_log_m, only : log_contact
   use contact_preparation_m, only : prepare_contact
   use contact_scatter_m, only : scatter_forces, join_passes
-  use contact_springs_m, only : begin_look, measure_springs, end_look
-  use contact_work_m, only : apart_t, take_apart, hand_over
-  use contact_state_m, only : contact_state_t, pass_t, is_free
+  use contact_springs_m, only : begin_sampling, measure_springs, end_sampling
+  use contact_work_m, only : previous_work_t, store_previous_work, apply_forces
+  use contact_state_m, only : contact_state_t, pass_t, separated
   use contacts_m, only : contact_t, is_tied, penalty_implicit
   use damping_m, only : damp_points, find_lag
   use entry_offset_m, only : has_offsets, update_offsets, faded_work
-  use energy_limit_m, only : keep_former_springs, form_springs, limit_forces, lend
-  use friction_m, only : start_trial_slip, take_trial_motion, rub_places
+  use energy_limit_m, only : store_previous_springs, form_springs, limit_forces, admit_entry_work
+  use friction_m, only : start_trial_slip, take_trial_motion, form_tractions
   use initial_status_m, only : activate_deep_points, activate_deep_segments
-  use gather_m, only : gather_places, keep_former
+  use gather_m, only : gather_positions, store_previous
   use others_memory_m, only : answers_t
-  use interference_m, only : begin_growth
+  use interference_m, only : begin_ramp
   use kinds_m, only : wp
   use law_state_m, only : is_held
   use law_friction_m, only : has_decay
   use log_m, only : log_t
   use model_m, only : model_t
-  use spots_m, only : move_spots
+  use points_on_segments_m, only : move_segment_points
   use tied_interface_m, only : start_ties, tie_reach
   use ties_m, only : hold_ties
-  use contact_status_m, only : update_status, forget_pairs
+  use contact_status_m, only : update_status, reset_status
   implicit none
   private
   public :: start_contact, resume_contact, apply_contact, evaluate_contact
@@ -72,15 +72,15 @@ contains
     if (is_tied(contact)) memory%closed_gap = tie_reach(contact, model)
     call search_pairs(contact, 0, .false., memory)
     associate (n => memory%n_slave)
-      if (memory%has%spots) then
-        call activate_deep_points(memory%slave_tracking, model, contact%slave, contact%master, &
-          memory%places, memory%spots, answers)
+      if (memory%has%segment_points) then
+        call activate_deep_points(memory%slave_status, model, contact%slave, contact%master, &
+          memory%positions, memory%segment_points, answers)
       else
-        call activate_deep_points(memory%slave_tracking, model, contact%slave, contact%master, &
-          memory%places, memory%places(:, :n), answers)
+        call activate_deep_points(memory%slave_status, model, contact%slave, contact%master, &
+          memory%positions, memory%positions(:, :n), answers)
       end if
-      if (memory%master_tracking%n > 0) call activate_deep_points(memory%master_tracking, model, &
-        contact%master, contact%slave, memory%places, memory%places(:, n + 1:), answers)
+      if (memory%master_status%n > 0) call activate_deep_points(memory%master_status, model, &
+        contact%master, contact%slave, memory%positions, memory%positions(:, n + 1:), answers)
     end associate
     if (memory%has%overlaps) &
       call activate_deep_segments(contact, model, memory, answers)
@@ -139,13 +139,13 @@ contains
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :)    !! (2, at least the interface's nodes)
     type(clock_t), intent(inout), optional :: clock
-    type(apart_t) :: former
+    type(previous_work_t) :: previous
     logical :: had_force, begins
 
     had_force = memory%n_active > 0
     begins = memory%is_stale .and. now%cycle > 0
-    memory%watch%has_looked = .false.
-    if (memory%has%interference) call begin_growth(contact, now%time, memory)
+    memory%monitor%has_sampled = .false.
+    if (memory%has%interference) call begin_ramp(contact, now%time, memory)
     if (is_alive(contact, now%time)) then
       call find_contacts(contact, now, motion, memory)
     else
@@ -154,8 +154,8 @@ contains
     if (present(clock)) call lap(clock, phase_contact_search)
     if (.not. had_force .and. (memory%is_stale .or. has_broken(memory))) return
 
-    if (.not. now%is_trial) call keep_previous(contact, motion, begins, memory, former)
-    if (.not. (memory%is_stale .or. memory%has%ties)) call place_points(contact, memory)
+    if (.not. now%is_trial) call keep_previous(contact, motion, begins, memory, previous)
+    if (.not. (memory%is_stale .or. memory%has%ties)) call generate_points(contact, memory)
     if (present(clock)) call lap(clock, phase_contact_pairing)
     if (memory%scratch%waits) return
 
@@ -164,10 +164,10 @@ contains
         call hold_ties(memory, merge(0.0_wp, contact%strength, now%is_trial), now%time)
         if (.not. now%is_trial) call book_springs(now%cycle, begins, memory)
       else
-        call press_places(memory)
-        if (memory%has%former_tie) call leave_to_tie(memory)
+        call form_pressures(memory)
+        if (memory%has%tie_handover) call exclude_tied_sites(memory)
         if (.not. now%is_trial) call book_springs(now%cycle, begins, memory)
-        if (memory%has%friction) call rub_points(contact, now, mass, memory)
+        if (memory%has%friction) call tractions_at_points(contact, now, mass, memory)
         if (memory%has%damping .and. .not. now%is_trial) call damp_points(memory%points, &
           contact%damping, memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
         call scatter_forces(memory)
@@ -180,9 +180,9 @@ contains
       call add_trial_force(memory%nodes, memory%force, force)
     else
       if (memory%points%n > 0 .or. had_force) &
-        call hand_over(now%dt, motion, former, memory, force)
-      call end_look(had_force, memory%n_active > 0 &
-        .or. (memory%has%ties .and. memory%points%n > 0), memory%watch)
+        call apply_forces(now%dt, motion, previous, memory, force)
+      call end_sampling(had_force, memory%n_active > 0 &
+        .or. (memory%has%ties .and. memory%points%n > 0), memory%monitor)
     end if
     if (present(clock)) call lap(clock, phase_contact_force)
   end subroutine step_contact
@@ -198,45 +198,45 @@ contains
 
     was_stale = memory%is_stale
     if (was_stale) call refresh_memory(motion, memory)
-    call gather_places(motion, memory)
+    call gather_positions(motion, memory)
     if (memory%has%ties) return
-    if (memory%has%spots) call move_spots(contact%slave, memory%places, memory%spot_xi, &
-      memory%spot_spread, memory%spots, memory%travel)
+    if (memory%has%segment_points) call move_segment_points(contact%slave, memory%positions, &
+      memory%segment_xi, memory%segment_spread, memory%segment_points, memory%travel)
     if (now%is_trial) then
       if (memory%has%friction) call take_trial_motion(motion, memory)
       if (now%closes) memory%closed_gap = closed_gap_of(contact, memory)
     else if (contact%penalty_unit == penalty_implicit) then
       memory%closed_gap = gap_ahead(contact, now%cycle == 0 .or. was_stale, memory)
     end if
-    memory%slave_tracking%pass%is_trial = now%is_trial
-    memory%master_tracking%pass%is_trial = now%is_trial
+    memory%slave_status%pass%is_trial = now%is_trial
+    memory%master_status%pass%is_trial = now%is_trial
     call search_pairs(contact, now%cycle, .not. was_stale .and. (now%is_trial .or. now%cycle > 0), &
       memory)
   end subroutine find_contacts
 
   !> Before contact points are generated: the forces of the last call are kept for their half of the
   !> work of the step.
-  pure subroutine keep_previous(contact, motion, begins, memory, former)
+  pure subroutine keep_previous(contact, motion, begins, memory, previous)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: motion(:, :)
     logical, intent(in) :: begins !! contact is born in this call
     type(contact_state_t), intent(inout) :: memory
-    type(apart_t), intent(out) :: former
+    type(previous_work_t), intent(out) :: previous
 
     associate (scratch => memory%scratch)
       scratch%had_force = memory%n_active > 0
       scratch%is_born = begins
       scratch%waits = contact%penalty_unit == penalty_implicit .and. .not. memory%is_stale
       memory%n_active = 0
-      call begin_look(scratch%had_force, memory%watch)
-      if (scratch%had_force) call keep_former(memory)
+      call begin_sampling(scratch%had_force, memory%monitor)
+      if (scratch%had_force) call store_previous(memory)
       if (scratch%waits) return
-      call keep_former_springs(scratch%had_force, memory)
-      call take_apart(motion, scratch%had_force, memory, former)
+      call store_previous_springs(scratch%had_force, memory)
+      call store_previous_work(motion, scratch%had_force, memory, previous)
     end associate
   end subroutine keep_previous
 
-  !> What the springs hold as pressed: those loaded at time zero hold energy that no force has put
+  !> What the springs hold as loaded: those loaded at time zero hold energy that no force has put
   !> in; those born loaded may return what they hold; the work of fading offsets is lent. When the
   !> last tie breaks there is no later look.
   pure subroutine book_springs(cycle, begins, memory)
@@ -244,16 +244,16 @@ contains
     logical, intent(in) :: begins
     type(contact_state_t), intent(inout) :: memory
 
-    if (memory%has%former_tie) call take_over(memory)
-    if (memory%watch%is_due .or. cycle == 0 .or. memory%has%ties .and. memory%n_active == 0) &
+    if (memory%has%tie_handover) call take_handover(memory)
+    if (memory%monitor%is_due .or. cycle == 0 .or. memory%has%ties .and. memory%n_active == 0) &
       call measure_springs(memory)
-    if (cycle == 0) memory%energy = memory%watch%stored
-    if (begins) memory%limit%credit = memory%limit%credit + memory%watch%stored
-    if (has_offsets(memory)) call lend(faded_work(memory), memory%limit)
+    if (cycle == 0) memory%energy = memory%monitor%stored
+    if (begins) memory%limit%admissible = memory%limit%admissible + memory%monitor%stored
+    if (has_offsets(memory)) call admit_entry_work(faded_work(memory), memory%limit)
   end subroutine book_springs
 
   !> Friction tractions. Where the coefficient decays, explicit steps damp those that stick.
-  pure subroutine rub_points(contact, now, mass, memory)
+  pure subroutine tractions_at_points(contact, now, mass, memory)
     type(contact_t), intent(in) :: contact
     type(instant_t), intent(in) :: now
     real(wp), intent(in), contiguous :: mass(:)
@@ -264,8 +264,8 @@ contains
       call find_lag(memory%points, memory%nodes, mass, contact%is_self, now%dt, &
       memory%scratch%nodal, memory%scratch%lag)
     formulation = formulation_of(contact)
-    call rub_places(contact, formulation%has_unit_area, now%dt, memory)
-  end subroutine rub_points
+    call form_tractions(contact, formulation%has_unit_area, now%dt, memory)
+  end subroutine tractions_at_points
 
   !> Whether it is a tie all of which has broken.
   pure function has_broken(memory)
@@ -315,17 +315,17 @@ contains
     memory%points%n = 0
   end subroutine suspend_contact
 
-  !> After a time without contact: take the present places and search all anew.
+  !> After a time without contact: take the present positions and search all anew.
   pure subroutine refresh_memory(motion, memory)
     real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
 
-    memory%places(3:4, :) = motion(1:2, memory%nodes)
+    memory%positions(3:4, :) = motion(1:2, memory%nodes)
     memory%listed_until = -huge(1.0_wp)
-    call forget_pairs(memory%slave_tracking)
-    call forget_pairs(memory%master_tracking)
+    call reset_status(memory%slave_status)
+    call reset_status(memory%master_status)
     if (memory%has%overlaps) then
-      memory%segment_status = is_free
+      memory%segment_state = separated
       memory%segment_gap = huge(1.0_wp)
     end if
     memory%is_stale = .false.
@@ -340,22 +340,22 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     call update_candidates(contact, cycle, memory)
-    call start_pass(memory%slave_tracking%pass)
-    call start_pass(memory%master_tracking%pass)
+    call start_pass(memory%slave_status%pass)
+    call start_pass(memory%master_status%pass)
     associate (n => memory%n_slave, increments => memory%scratch%increment)
-      if (memory%has%spots) then
-        call update_status(memory%slave_tracking, contact%slave, contact%master, &
-          memory%candidates, memory%places, increments, memory%spots)
+      if (memory%has%segment_points) then
+        call update_status(memory%slave_status, contact%slave, contact%master, &
+          memory%candidates, memory%positions, increments, memory%segment_points)
       else
-        call update_status(memory%slave_tracking, contact%slave, contact%master, &
-          memory%candidates, memory%places, increments, memory%places(:, :n))
+        call update_status(memory%slave_status, contact%slave, contact%master, &
+          memory%candidates, memory%positions, increments, memory%positions(:, :n))
       end if
-      if (memory%master_tracking%n > 0) call update_status(memory%master_tracking, &
-        contact%master, contact%slave, memory%reversed, memory%places, increments, &
-        memory%places(:, n + 1:))
+      if (memory%master_status%n > 0) call update_status(memory%master_status, &
+        contact%master, contact%slave, memory%reversed, memory%positions, increments, &
+        memory%positions(:, n + 1:))
     end associate
     ! In a trial of an implicit step they stay: they are no part of the tangent.
-    if (has_offsets(memory) .and. .not. memory%slave_tracking%pass%is_trial) &
+    if (has_offsets(memory) .and. .not. memory%slave_status%pass%is_trial) &
       call update_offsets(contact, memory)
 
   contains

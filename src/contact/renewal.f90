@@ -1,18 +1,18 @@
 ! SPDX-License-Identifier: MIT
 !> An interface whose surfaces have lost elements or come to light anew: its memory is made for the
-!> surfaces that are left, and what it knew of places that remain goes over by nodes and segments.
+!> surfaces that are left, and what it knew of sites that remain goes over by nodes and segments.
 module renewal_m
   use contact_preparation_m, only : prepare_contact
   use contact_springs_m, only : measure_springs
-  use contact_state_m, only : contact_state_t, tracking_t, make_room, places_of_segment, &
-    n_side, is_touching
+  use contact_state_m, only : contact_state_t, contact_status_t, make_room, sites_of_segment, &
+    n_side, active
   use contacts_m, only : contact_t
   use energy_limit_m, only : form_springs
   use gather_m, only : power_of
   use kinds_m, only : wp
   use model_m, only : model_t
   use surfaces_m, only : surface_t
-  use contact_status_m, only : list_touching
+  use contact_status_m, only : list_active
   implicit none
   private
   public :: renew_contact, close_contact
@@ -26,10 +26,10 @@ module renewal_m
 
 contains
 
-  !> The memory of `contact` out of that of `former`; `lost` is what the springs stored that are not
-  !> there any more.
-  subroutine renew_contact(former, contact, model, motion, memory, lost)
-    type(contact_t), intent(in) :: former, contact
+  !> The memory of `contact` out of that of `previous`; `lost` is what the springs stored that are
+  !> not there any more.
+  subroutine renew_contact(previous, contact, model, motion, memory, lost)
+    type(contact_t), intent(in) :: previous, contact
     type(model_t), intent(in) :: model
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node)
     type(contact_state_t), intent(inout) :: memory
@@ -40,23 +40,23 @@ contains
 
     old = memory
     call prepare_contact(contact, model, memory)
-    call match_surface(former%slave, contact%slave, size(motion, 2), sides(1))
-    call match_surface(former%master, contact%master, size(motion, 2), sides(2))
-    memory%places(3:4, :) = motion(1:2, memory%nodes)
+    call match_surface(previous%slave, contact%slave, size(motion, 2), sides(1))
+    call match_surface(previous%master, contact%master, size(motion, 2), sides(2))
+    memory%positions(3:4, :) = motion(1:2, memory%nodes)
     call carry_scalars(old, memory)
     call carry_nodes([sides(1)%node, shifted(sides(2)%node, memory%n_slave)], old, memory)
-    if (old%has%friction) call carry_places(sides, old, memory)
+    if (old%has%friction) call carry_sites(sides, old, memory)
     call carry_points([sides(1)%node, shifted(sides(2)%node, memory%n_slave)], contact, old, memory)
-    call carry_trackings(sides(1)%segment, sides(2)%segment, sides, old, memory)
+    call carry_statuses(sides(1)%segment, sides(2)%segment, sides, old, memory)
     call form_springs(memory)
-    stored_at = old%watch%node
+    stored_at = old%monitor%node
     call measure_springs(old)
     call measure_springs(memory)
-    lost = max(0.0_wp, old%watch%stored - memory%watch%stored)
-    lost = min(lost, max(0.0_wp, memory%energy + memory%limit%credit))
+    lost = max(0.0_wp, old%monitor%stored - memory%monitor%stored)
+    lost = min(lost, max(0.0_wp, memory%energy + memory%limit%admissible))
     memory%energy = memory%energy - lost
-    memory%watch%node = stored_at
-    memory%watch%is_due = .true.
+    memory%monitor%node = stored_at
+    memory%monitor%is_due = .true.
   end subroutine renew_contact
 
   !> An interface that is over keeps its account alone. The forces of the last call have done half
@@ -91,8 +91,8 @@ contains
 
   !> Nodes and segments of a surface on the one that it has become. A node that stands there several
   !> times is the one of its own segments.
-  pure subroutine match_surface(former, surface, n_node, passage)
-    type(surface_t), intent(in) :: former, surface
+  pure subroutine match_surface(previous, surface, n_node, passage)
+    type(surface_t), intent(in) :: previous, surface
     integer, intent(in) :: n_node !! of the mesh
     type(passage_t), intent(out) :: passage
     integer, allocatable :: head(:), any_node(:), next(:)
@@ -108,31 +108,31 @@ contains
         head(node) = s
       end associate
     end do
-    allocate (passage%node(former%n_node), passage%segment(former%n_segment), source=0)
-    allocate (passage%keeps(former%n_node), source=.false.)
-    do s = 1, former%n_segment
-      k = head(former%nodes(former%segments(1, s)))
+    allocate (passage%node(previous%n_node), passage%segment(previous%n_segment), source=0)
+    allocate (passage%keeps(previous%n_node), source=.false.)
+    do s = 1, previous%n_segment
+      k = head(previous%nodes(previous%segments(1, s)))
       do while (k > 0)
-        if (surface%segment_element(k) == former%segment_element(s) .and. surface%nodes( &
-          surface%segments(2, k)) == former%nodes(former%segments(2, s))) exit
+        if (surface%segment_element(k) == previous%segment_element(s) .and. surface%nodes( &
+          surface%segments(2, k)) == previous%nodes(previous%segments(2, s))) exit
         k = next(k)
       end do
       passage%segment(s) = k
     end do
-    do k = 1, former%n_node
-      s = former%outgoing(k)
+    do k = 1, previous%n_node
+      s = previous%outgoing(k)
       if (s > 0) s = passage%segment(s)
       passage%keeps(k) = s > 0
       if (s > 0) then
         passage%node(k) = surface%segments(1, s)
         cycle
       end if
-      s = former%incoming(k)
+      s = previous%incoming(k)
       if (s > 0) s = passage%segment(s)
       if (s > 0) then
         passage%node(k) = surface%segments(2, s)
       else
-        passage%node(k) = any_node(former%nodes(k))
+        passage%node(k) = any_node(previous%nodes(k))
       end if
     end do
   end subroutine match_surface
@@ -145,24 +145,24 @@ contains
     memory%travel = old%travel
     memory%advance = old%advance
     memory%is_stale = old%is_stale
-    memory%next_search = old%next_search
+    memory%next_listing = old%next_listing
     memory%slave_penalty = old%slave_penalty
     memory%master_penalty = old%master_penalty
     memory%node_penalty = old%node_penalty
     memory%energy = old%energy
     memory%damping_work = old%damping_work
     memory%n_active = old%n_active
-    memory%slave_tracking%n_released = old%slave_tracking%n_released
-    memory%master_tracking%n_released = old%master_tracking%n_released
+    memory%slave_status%n_released = old%slave_status%n_released
+    memory%master_status%n_released = old%master_status%n_released
     memory%rules_step = old%rules_step
-    memory%watch = old%watch
+    memory%monitor = old%monitor
     memory%friction%work = old%friction%work
     memory%friction%stored = old%friction%stored
     memory%limit%coming_step = old%limit%coming_step
     memory%limit%recoil = huge(1.0_wp)
-    memory%limit%credit = old%limit%credit
-    memory%limit%lent = old%limit%lent
-    memory%limit%loan = old%limit%loan
+    memory%limit%admissible = old%limit%admissible
+    memory%limit%admitted = old%limit%admitted
+    memory%limit%entry_allowance = old%limit%entry_allowance
     memory%limit%largest = old%limit%largest
     memory%limit%n_loaded = old%limit%n_loaded
     memory%limit%n_limited = old%limit%n_limited
@@ -174,7 +174,7 @@ contains
 
   !> Values of nodes.
   pure subroutine carry_nodes(now, old, memory)
-    integer, intent(in) :: now(:) !! (n_slave + n_master) of the former memory
+    integer, intent(in) :: now(:) !! (n_slave + n_master) of the previous memory
     type(contact_state_t), intent(in) :: old
     type(contact_state_t), intent(inout) :: memory
     integer, allocatable :: from(:), to(:)
@@ -182,7 +182,7 @@ contains
 
     from = pack([(k, k=1, size(now))], now > 0)
     to = now(from)
-    memory%places(3:4, to) = old%places(3:4, from)
+    memory%positions(3:4, to) = old%positions(3:4, from)
     memory%force(:, to) = old%force(:, from)
     if (old%has%damping) memory%damping_force(:, to) = old%damping_force(:, from)
     if (old%has%friction) memory%friction%force(:, to) = old%friction%force(:, from)
@@ -194,14 +194,14 @@ contains
 
   !> What friction remembers: at nodes, or at the virtual nodes of the segment that starts at a
   !> node.
-  pure subroutine carry_places(sides, old, memory)
+  pure subroutine carry_sites(sides, old, memory)
     type(passage_t), intent(in) :: sides(2)
     type(contact_state_t), intent(in) :: old
     type(contact_state_t), intent(inout) :: memory
     integer :: now(size(old%friction%state)), i, n, q
     integer, allocatable :: from(:), to(:)
 
-    n = places_of_segment(old)
+    n = sites_of_segment(old)
     now = 0
     do i = 1, old%n_slave
       if (sides(1)%node(i) == 0 .or. (n > 1 .and. .not. sides(1)%keeps(i))) cycle
@@ -213,7 +213,7 @@ contains
     memory%friction%traction(to) = old%friction%traction(from)
     memory%friction%state(to) = old%friction%state(from)
     memory%friction%slip(to) = old%friction%slip(from)
-  end subroutine carry_places
+  end subroutine carry_sites
 
   !> Points of the last call, but for those whose nodes or segments have gone.
   pure subroutine carry_points(now, contact, old, memory)
@@ -276,48 +276,48 @@ contains
   end function follows
 
   !> Status of both passes, and the memory of slave segments.
-  pure subroutine carry_trackings(slave, master, sides, old, memory)
+  pure subroutine carry_statuses(slave, master, sides, old, memory)
     integer, intent(in) :: slave(:), master(:) !! present numbers of the segments
     type(passage_t), intent(in) :: sides(2)
     type(contact_state_t), intent(in) :: old
     type(contact_state_t), intent(inout) :: memory
-    integer, allocatable :: spots(:), from(:)
+    integer, allocatable :: segment_points(:), from(:)
     integer :: k, q, n
 
-    spots = sides(1)%node
-    if (old%has%spots) then
-      n = size(old%spot_xi)
-      spots = [((merge((slave(k) - 1)*n + q, 0, slave(k) > 0), q=1, n), k=1, size(slave))]
+    segment_points = sides(1)%node
+    if (old%has%segment_points) then
+      n = size(old%segment_xi)
+      segment_points = [((merge((slave(k) - 1)*n + q, 0, slave(k) > 0), q=1, n), k=1, size(slave))]
     end if
-    call carry_tracking(old%slave_tracking, spots, master, memory%slave_tracking)
-    if (memory%master_tracking%n > 0) call carry_tracking(old%master_tracking, sides(2)%node, &
-      slave, memory%master_tracking)
+    call carry_status(old%slave_status, segment_points, master, memory%slave_status)
+    if (memory%master_status%n > 0) call carry_status(old%master_status, sides(2)%node, &
+      slave, memory%master_status)
     if (.not. old%has%overlaps) return
     from = pack([(k, k=1, size(slave))], slave > 0)
-    memory%segment_status(slave(from)) = old%segment_status(from)
+    memory%segment_state(slave(from)) = old%segment_state(from)
     memory%segment_gap(slave(from)) = old%segment_gap(from)
-  end subroutine carry_trackings
+  end subroutine carry_statuses
 
   !> Points that are still there keep their segments if these are; all are looked at anew.
-  pure subroutine carry_tracking(old, points, segments, tracking)
-    type(tracking_t), intent(in) :: old
+  pure subroutine carry_status(old, points, segments, status)
+    type(contact_status_t), intent(in) :: old
     integer, intent(in) :: points(:), segments(:) !! present numbers
-    type(tracking_t), intent(inout) :: tracking
+    type(contact_status_t), intent(inout) :: status
     integer, allocatable :: from(:), to(:)
     integer :: i
 
     from = pack([(i, i=1, old%n)], points > 0 .and. old%segment > 0)
     from = pack(from, segments(old%segment(from)) > 0)
     to = points(from)
-    tracking%segment(to) = segments(old%segment(from))
-    tracking%status(to) = old%status(from)
-    tracking%xi(to) = old%xi(from)
-    tracking%gap(to) = old%gap(from)
-    tracking%normal(:, to) = old%normal(:, from)
-    tracking%offset(to) = old%offset(from)
-    tracking%wake(to) = merge(huge(1.0_wp), -huge(1.0_wp), old%status(from) == is_touching)
-    tracking%has_offset = old%has_offset
-    call list_touching(tracking)
-  end subroutine carry_tracking
+    status%segment(to) = segments(old%segment(from))
+    status%state(to) = old%state(from)
+    status%xi(to) = old%xi(from)
+    status%gap(to) = old%gap(from)
+    status%normal(:, to) = old%normal(:, from)
+    status%offset(to) = old%offset(from)
+    status%next_search(to) = merge(huge(1.0_wp), -huge(1.0_wp), old%state(from) == active)
+    status%has_offset = old%has_offset
+    call list_active(status)
+  end subroutine carry_status
 
 end module renewal_m

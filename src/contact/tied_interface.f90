@@ -2,7 +2,7 @@
 !> The start of a tied interface, placed once in the reference geometry, and what breaks at the end
 !> of an implicit step.
 module tied_interface_m
-  use contact_dispatch_m, only : place_points, formulation_t, formulation_of
+  use contact_dispatch_m, only : generate_points, formulation_t, formulation_of
   use contact_penalty_m, only : mean_length
   use contact_state_m, only : contact_state_t, allocate_tractions
   use contacts_m, only : contact_t, breaks
@@ -28,14 +28,14 @@ contains
     call allocate_tractions(memory%points)
     formulation = formulation_of(contact)
     reach = tie_reach(contact, model)
-    call place_points(contact, memory)
+    call generate_points(contact, memory)
     memory%closed_gap = 0.0_wp
     call freeze_ties(contact, reach, memory)
     if (breaks(contact)) call start_breaking(contact, formulation%has_unit_area, &
       formulation%has_two_passes, memory)
   end subroutine start_ties
 
-  !> How far apart places may lie that are tied, m.
+  !> How far apart positions may lie that are tied, m.
   pure function tie_reach(contact, model) result(reach)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
@@ -51,7 +51,7 @@ contains
     type(contact_t), intent(in) :: contact
     real(wp), intent(in) :: time
     type(contact_state_t), intent(inout) :: memory
-    integer, intent(out) :: n_new !! places that have broken
+    integer, intent(out) :: n_new !! positions that have broken
 
     n_new = 0
     if (breaks(contact) .and. memory%points%n > 0) &

@@ -20,8 +20,8 @@ module weighted_gaps_m
   type :: rows_t
     integer :: n = 0
     integer :: width = 0                  !! rows farther apart than that do not meet
-    integer, allocatable :: slave(:)      !! (n) slave node of each, in the order of the chain
-    integer, allocatable :: place(:)      !! (n_slave) its row, 0: none
+    integer, allocatable :: slave(:)      !! (n) slave node of each, in the order of the surface
+    integer, allocatable :: row_of(:)     !! (n_slave) its row, 0: none
     real(wp), allocatable :: inverse(:)   !! (n) 1/kappa, 1/m
     integer :: n_node = 0
     integer, allocatable :: node(:, :)    !! (4, n_node) that have rows
@@ -37,12 +37,12 @@ contains
     integer, intent(in) :: n_slave, n_node
     type(rows_t), intent(inout) :: rows
 
-    allocate (rows%slave(n_slave), rows%place(n_slave), rows%inverse(n_slave))
+    allocate (rows%slave(n_slave), rows%row_of(n_slave), rows%inverse(n_slave))
     allocate (rows%node(4, n_node), rows%listed(n_node), source=0)
   end subroutine start_rows
 
-  !> A row for each slave node whose mean gap may close in the step, or that has pressed in the one
-  !> before, in the order of the chain. A closed chain begins behind its longest stretch without
+  !> A row for each slave node whose mean gap may close in the step, or that has loaded in the one
+  !> before, in the order of the surface. A closed surface begins behind its longest stretch without
   !> rows, so that neighbours stay neighbours.
   pure subroutine choose_rows(n_slave, nodal, pressure, reach, rows)
     integer, intent(in) :: n_slave
@@ -54,7 +54,7 @@ contains
 
     rows%n = 0
     do i = 1, n_slave
-      rows%place(i) = 0
+      rows%row_of(i) = 0
       if (.not. nodal(2, i) > 0.0_wp) cycle
       if (nodal(1, i) >= reach .and. .not. pressure(i) > 0.0_wp) cycle
       rows%n = rows%n + 1
@@ -74,7 +74,7 @@ contains
     end do
     if (begin > 1) rows%slave(:rows%n) = cshift(rows%slave(:rows%n), begin - 1)
     do i = 1, rows%n
-      rows%place(rows%slave(i)) = i
+      rows%row_of(rows%slave(i)) = i
       rows%inverse(i) = 1.0_wp/nodal(2, rows%slave(i))
     end do
   end subroutine choose_rows
@@ -88,10 +88,10 @@ contains
     integer :: p, k, m, row
 
     call list_nodes(points%n, points%slave_nodes, points%master_nodes, rows)
-    call place_shares(rows)
+    call layout_shares(rows)
     do p = 1, points%n
       do k = 1, n_side
-        row = rows%place(points%slave_nodes(k, p))
+        row = rows%row_of(points%slave_nodes(k, p))
         if (row == 0) cycle
         along = (points%area(p)*points%slave_weights(k, p)*rows%inverse(row))*points%normal(:, p)
         do m = 1, n_side
@@ -121,9 +121,9 @@ contains
     integer :: p, m, low, high
 
     do p = 1, n
-      high = maxval(rows%place(slave_nodes(:, p)))
+      high = maxval(rows%row_of(slave_nodes(:, p)))
       if (high == 0) cycle
-      low = minval(rows%place(slave_nodes(:, p)))
+      low = minval(rows%row_of(slave_nodes(:, p)))
       if (low == 0) low = high
       do m = 1, n_side
         call list_node(slave_nodes(m, p), low, high, rows)
@@ -150,7 +150,7 @@ contains
   end subroutine list_node
 
   !> Where the shares of each node are, with room for them; all are zero.
-  pure subroutine place_shares(rows)
+  pure subroutine layout_shares(rows)
     type(rows_t), intent(inout) :: rows
     integer :: i, n
 
@@ -169,6 +169,6 @@ contains
     if (.not. allocated(rows%share_x)) allocate (rows%share_x(n + n/2), rows%share_y(n + n/2))
     rows%share_x(:n) = 0.0_wp
     rows%share_y(:n) = 0.0_wp
-  end subroutine place_shares
+  end subroutine layout_shares
 
 end module weighted_gaps_m

@@ -5,7 +5,7 @@
 module initial_overlap_m
   use element_finder_m, only : body_view_t, most_crossed, half_row, list_crossed, ends_of, &
     is_inside_body, element_at
-  use geometry_m, only : sight_t, sight_of_segment, closest_distance
+  use geometry_m, only : local_coordinates_t, coordinates_on_segment, closest_distance
   use kinds_m, only : wp
   use model_m, only : model_t
   use sorting_m, only : place_among
@@ -115,7 +115,7 @@ contains
     type(overlap_t), intent(inout) :: found
     integer :: k, node, near(8)
     type(overlap_t) :: new
-    type(sight_t) :: sight
+    type(local_coordinates_t) :: local
 
     if (.not. is_inside_body(view%finder, model, place%x, place%nodes)) return
     associate (corners => model%mesh%element_nodes(:, &
@@ -132,9 +132,9 @@ contains
     call measure(model, other, place, [(k, k=1, other%n_segment)], new)
     if (new%segment == 0 .or. new%depth < new%allowed) return
     ! Beyond a segment at the end of an open chain.
-    sight = sight_from(model, other, new%segment, place%x)
-    if (sight%along < 0.0_wp .and. other%previous(new%segment) == 0) return
-    if (sight%along > sight%square .and. other%next(new%segment) == 0) return
+    local = local_from(model, other, new%segment, place%x)
+    if (local%along < 0.0_wp .and. other%previous(new%segment) == 0) return
+    if (local%along > local%square .and. other%next(new%segment) == 0) return
     if (found%segment > 0) then
       if (new%depth*found%allowed <= found%depth*new%allowed) return
     end if
@@ -157,7 +157,7 @@ contains
       associate (s => segments(k))
         if (s == 0 .or. any(place%beside == s)) cycle
         if (dot_product(place%normal, normal_of(ends_of(model, other, s))) > same_way) cycle
-        depth = sqrt(closest_distance(sight_from(model, other, s, place%x)))
+        depth = sqrt(closest_distance(local_from(model, other, s, place%x)))
         allowed = half_row(model, other, s)
         if (least%segment > 0 .and. depth*least%allowed >= least%depth*allowed) cycle
         least = overlap_t(place%nodes, s, depth, allowed)
@@ -175,17 +175,17 @@ contains
   end function normal_of
 
   !> A place seen from a segment.
-  pure function sight_from(model, surface, segment, x) result(sight)
+  pure function local_from(model, surface, segment, x) result(local)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: segment
     real(wp), intent(in) :: x(2)
-    type(sight_t) :: sight
+    type(local_coordinates_t) :: local
     real(wp) :: ends(2, 2)
 
     ends = ends_of(model, surface, segment)
-    sight = sight_of_segment([x, 0.0_wp, 0.0_wp], [ends(:, 1), 0.0_wp, 0.0_wp], &
+    local = coordinates_on_segment([x, 0.0_wp, 0.0_wp], [ends(:, 1), 0.0_wp, 0.0_wp], &
       [ends(:, 2), 0.0_wp, 0.0_wp])
-  end function sight_from
+  end function local_from
 
 end module initial_overlap_m

@@ -5,7 +5,7 @@
 module history_rows_m
   use controls_m, only : boundary_body_load, boundary_body_motion
   use contacts_m, only : n_told
-  use snapshot_m, only : total_energy, energy_ratio, snapshot_t, rubbed_t
+  use snapshot_m, only : total_energy, energy_ratio, snapshot_t, friction_result_t
   use history_file_m, only : history_t, add_row, n_each
   use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_contact, &
     table_matsum, table_rwforc, table_sleout, table_spcforc, table_elout, table_rbdout, &
@@ -147,23 +147,23 @@ contains
     type(history_t), intent(inout) :: table
     type(model_t), intent(in) :: model
     type(snapshot_t), intent(in) :: shot
-    type(rubbed_t) :: rubbed
+    type(friction_result_t) :: friction_result
     real(wp) :: row_stress
     integer :: i, k
 
     do i = 1, n_told(model%contacts)
       associate (slave => shot%slaves(i))
         do k = 1, size(slave%node)
-          rubbed = rubbed_t()
-          if (allocated(slave%rubbed)) rubbed = slave%rubbed(k)
+          friction_result = friction_result_t()
+          if (allocated(slave%friction_result)) friction_result = slave%friction_result(k)
           row_stress = 0.0_wp
           if (allocated(slave%row_stress)) row_stress = slave%row_stress(k)
           associate (node => slave%node(k))
             call add_row(table, [shot%time, &
               real([model%contacts(i)%id, model%mesh%node_id(node)], wp), slave%arc_length(k), &
               model%mesh%coordinates(:, node) + shot%displacement(:, node), slave%gap(k), &
-              slave%pressure(k), slave%force(:, k), slave%length(k), rubbed%traction, &
-              rubbed%slip, real(rubbed%state, wp), row_stress])
+              slave%pressure(k), slave%force(:, k), slave%length(k), friction_result%traction, &
+              friction_result%slip, real(friction_result%state, wp), row_stress])
           end associate
         end do
       end associate

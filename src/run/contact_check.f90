@@ -185,8 +185,8 @@ contains
     if (estimate%forces > 0.0_wp) text = text//'; the force is rough by ' &
       //percent(sqrt(estimate%jumps/of_noise), sqrt(estimate%forces))//' between instants'
     if (state%largest_energy > 0.0_wp) text = text//'; contact has ' &
-      //trim(merge('made', 'lost', state%contacts(i)%watch%balance < 0.0_wp))//' ' &
-      //percent(abs(state%contacts(i)%watch%balance), state%largest_energy) &
+      //trim(merge('made', 'lost', state%contacts(i)%monitor%balance < 0.0_wp))//' ' &
+      //percent(abs(state%contacts(i)%monitor%balance), state%largest_energy) &
       //' of the largest energy'
     if (estimate%least_margin < huge(1.0_wp)) text = text//'; the step is ' &
       //percent(1.0_wp, estimate%least_margin)//' of the stable one'

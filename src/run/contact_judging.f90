@@ -158,11 +158,11 @@ contains
     end if
     if (estimate%n > 2) then
       estimate%jumps = estimate%jumps + sum((result%slave_force - estimate%force &
-        - ratio*(estimate%force - estimate%former))**2) &
+        - ratio*(estimate%force - estimate%previous))**2) &
         *of_noise/(1.0_wp + (1.0_wp + ratio)**2 + ratio**2)
       estimate%forces = estimate%forces + sum(result%slave_force**2)
     end if
-    estimate%former = estimate%force
+    estimate%previous = estimate%force
     estimate%force = result%slave_force
     if (result%step_limit > 0.0_wp .and. dt > 0.0_wp) &
       estimate%least_margin = min(estimate%least_margin, result%step_limit/dt)
@@ -186,7 +186,7 @@ contains
         if (state%cycle == 0) cycle
         estimate%bodies = max(estimate%bodies, sum(parts%internal, &
           of_bodies(bodies, parts_behind(model, contact))))
-        estimate%stored = max(estimate%stored, memory%watch%stored)
+        estimate%stored = max(estimate%stored, memory%monitor%stored)
       end associate
     end do
   end subroutine follow_softness

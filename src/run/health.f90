@@ -111,7 +111,7 @@ contains
 
     do i = 1, size(state%contacts)
       associate (contact => state%contacts(i))
-        if (.not. all(abs(contact%places) <= huge(1.0_wp))) cycle
+        if (.not. all(abs(contact%positions) <= huge(1.0_wp))) cycle
         do k = 1, size(contact%force, 2)
           if (all(abs(contact%force(:, k)) <= huge(1.0_wp))) cycle
           call raise(error, 'a contact force that is not finite at node ' &

@@ -12,7 +12,7 @@ module restart_m
   use archive_m, only : archive_t
   use checksum_m, only : add_bytes, checksum_text
   use clock_m, only : lap, phase_nodes, phase_output
-  use contact_state_m, only : contact_state_t, tracking_t, is_free, is_touching
+  use contact_state_m, only : contact_state_t, contact_status_t, separated, active
   use contacts_m, only : contact_t
   use errors_m, only : error_t, status_files
   use files_m, only : file_exists, remove_file, unfinished
@@ -214,17 +214,17 @@ contains
     type(contact_state_t), intent(in) :: memory
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
-    integer :: n_segments(2), n_spot
+    integer :: n_segments(2), n_contact_point
 
     call check_points(memory, folder//'points/', archive)
     if (memory%has%ties) call check_ties(memory, folder//'ties/', archive)
     n_segments = [contact%slave%n_segment, contact%master%n_segment]
-    n_spot = memory%n_slave
-    if (allocated(memory%spot_xi)) n_spot = size(memory%spot_xi)*n_segments(1)
-    call check_tracking(memory%slave_tracking, n_spot, n_segments(2), &
-      folder//'slave_tracking/', archive)
-    call check_tracking(memory%master_tracking, memory%n_master, n_segments(1), &
-      folder//'master_tracking/', archive)
+    n_contact_point = memory%n_slave
+    if (allocated(memory%segment_xi)) n_contact_point = size(memory%segment_xi)*n_segments(1)
+    call check_status(memory%slave_status, n_contact_point, n_segments(2), &
+      folder//'slave_status/', archive)
+    call check_status(memory%master_status, memory%n_master, n_segments(1), &
+      folder//'master_status/', archive)
   end subroutine check_contact
 
   !> The list of points: as many in all its arrays, and nodes of the interface.
@@ -263,17 +263,18 @@ contains
     type(contact_state_t), intent(in) :: memory
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
-    integer :: n, n_place
+    integer :: n, n_site
 
     associate (ties => memory%ties)
       n = size(ties%side)
-      n_place = memory%n_master + memory%n_slave
-      if (memory%has%spots) n_place = memory%n_master + size(memory%spot_xi)*memory%n_slave
+      n_site = memory%n_master + memory%n_slave
+      if (memory%has%segment_points) n_site = memory%n_master &
+        + size(memory%segment_xi)*memory%n_slave
       if (memory%has%breaks) then
         call archive%expect(folder//'state', all(ties%state == is_open .or. ties%state &
           == is_held .or. ties%state == is_broken), 'numbers that mean nothing')
-        call archive%expect(folder//'place', all(ties%place >= 1 &
-          .and. ties%place <= n_place), 'numbers that no place of the interface has')
+        call archive%expect(folder//'site', all(ties%site >= 1 &
+          .and. ties%site <= n_site), 'numbers that no place of the interface has')
       end if
       call archive%expect(folder//'first', ties%first(1) == 1 &
         .and. all(ties%first(2:) > ties%first(:n)) .and. (ties%first(n + 1) == memory%points%n + 1 &
@@ -284,34 +285,35 @@ contains
   end subroutine check_ties
 
   !> Spots followed over a chain.
-  subroutine check_tracking(tracking, n_spot, n_segment, folder, archive)
-    type(tracking_t), intent(in) :: tracking
-    integer, intent(in) :: n_spot       !! spots, where there are any
+  subroutine check_status(status, n_contact_point, n_segment, folder, archive)
+    type(contact_status_t), intent(in) :: status
+    integer, intent(in) :: n_contact_point !! spots, where there are any
     integer, intent(in) :: n_segment    !! of the chain
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
     logical, allocatable :: is_listed(:)
     integer :: n
 
-    n = tracking%n
-    if (.not. allocated(tracking%status)) then
-      call archive%expect(folder//'n', n == 0, 'another number of spots than there are')
-      call archive%expect(folder//'n_touching', tracking%n_touching == 0, &
-        'spots that are not there')
+    n = status%n
+    if (.not. allocated(status%state)) then
+      call archive%expect(folder//'n', n == 0, 'another number of contact points than there are')
+      call archive%expect(folder//'n_active', status%n_active == 0, &
+        'contact points that are not there')
       return
     end if
-    call archive%expect(folder//'n', n == n_spot, 'another number of spots than there are')
-    call archive%expect(folder//'segment', all(tracking%segment >= 0 &
-      .and. tracking%segment <= n_segment), 'numbers that no segment has')
-    call archive%expect(folder//'status', all(tracking%status == is_free &
-      .or. tracking%segment > 0), 'spots that stand before no segment')
-    call archive%expect(folder//'n_touching', count(tracking%status == is_touching) &
-      == tracking%n_touching, 'another number than there are spots in contact')
+    call archive%expect(folder//'n', n == n_contact_point, &
+      'another number of contact points than there are')
+    call archive%expect(folder//'segment', all(status%segment >= 0 &
+      .and. status%segment <= n_segment), 'numbers that no segment has')
+    call archive%expect(folder//'state', all(status%state == separated &
+      .or. status%segment > 0), 'active points without a segment')
+    call archive%expect(folder//'n_active', count(status%state == active) &
+      == status%n_active, 'another number than there are active points')
     if (allocated(archive%error)) return
     allocate (is_listed(0:n), source=.false.)
-    is_listed(tracking%touching(:tracking%n_touching)) = .true.
-    call archive%expect(folder//'touching', all(is_listed(1:) .eqv. tracking%status &
-      == is_touching), 'spots that are not those in contact, each once')
-  end subroutine check_tracking
+    is_listed(status%active_points(:status%n_active)) = .true.
+    call archive%expect(folder//'active_points', all(is_listed(1:) .eqv. status%state &
+      == active), 'points that are not the active ones, each once')
+  end subroutine check_status
 
 end module restart_m

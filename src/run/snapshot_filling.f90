@@ -204,7 +204,7 @@ contains
       energies%friction = sum(state%contacts%friction%work) - sum(state%contacts%friction%stored)
       if (allocated(state%walls)) energies%friction = energies%friction &
         + sum(state%walls%dissipated)
-      energies%made = sum(max(0.0_wp, -state%contacts%watch%balance))
+      energies%made = sum(max(0.0_wp, -state%contacts%monitor%balance))
       energies%external_work = state%external_work + sum(state%contacts%interference%work)
       energies%initial = state%initial_energy
       if (model%erodes) energies%eroded = state%elements%erosion%took
@@ -360,16 +360,16 @@ contains
           if (rows%pressure(k) > 0.0_wp) snapshot%gap(rows%node(k)) = &
             min(snapshot%gap(rows%node(k)), rows%gap(k))
         end do
-        if (.not. allocated(rows%rubbed)) cycle
+        if (.not. allocated(rows%friction_result)) cycle
         ! Nodes of several have the sum of their tractions, the largest slip and the last of their
         ! states.
         do k = 1, size(memory%nodes)
-          associate (rubbed => rows%rubbed(k), node => memory%nodes(k))
+          associate (friction_result => rows%friction_result(k), node => memory%nodes(k))
             associate (traction => snapshot%contact_traction(node), &
               slip => snapshot%contact_slip(node), now => snapshot%contact_state(node))
-              traction = traction + rubbed%traction
-              if (abs(rubbed%slip) > abs(slip)) slip = rubbed%slip
-              now = max(now, real(rubbed%state, wp))
+              traction = traction + friction_result%traction
+              if (abs(friction_result%slip) > abs(slip)) slip = friction_result%slip
+              now = max(now, real(friction_result%state, wp))
             end associate
           end associate
         end do

@@ -1,37 +1,37 @@
 ! SPDX-License-Identifier: MIT
 !> What one interface remembers from step to step, and the common list of contact points.
 !>
-!> A contact point is the only thing that a formulation makes. Whoever places points promises:
+!> A contact point is the only thing that a formulation makes. Whoever generates points promises:
 !> P1: the weights sum to one on each side;
 !> P2: x_slave - x_master = gap * normal, with positions taken by those weights, normal pointing
 !>     from master to slave and gap < 0 in penetration.
 !> Balance of momentum follows from P1, balance of angular momentum from P2.
 !>
 !> Node numbers here are local to the interface: 1 .. n_slave for slave nodes, then
-!> n_slave + 1 .. n_slave + n_master for master nodes. A place is (X, Y, u_x, u_y), X and Y relative
-!> to the first slave node, so that places between nodes lose no digit far from the origin; in
-!> axisymmetry X is the radius itself.
+!> n_slave + 1 .. n_slave + n_master for master nodes. A position is (X, Y, u_x, u_y), X and Y
+!> relative to the first slave node, so that positions between nodes lose no digit far from the
+!> origin; in axisymmetry X is the radius itself.
 !>
 !> Contact is looked for among candidate pairs alone: master segments near each slave segment. A
 !> separated point at distance d from all of its candidates is skipped until `travel` has grown by
 !> d: the sum over all steps of a bound on how far any two nodes of the interface have moved
 !> relative to each other.
 module contact_state_m
-  use law_state_m, only : contact_watch_t, energy_limit_t, friction_memory_t, &
+  use law_state_m, only : contact_monitor_t, energy_limit_t, friction_memory_t, &
     interference_memory_t, tie_memory_t
   use kinds_m, only : wp
   use visitor_m, only : visited_t, visitor_t, any_length, length, whole
   implicit none
   private
-  public :: contact_state_t, contact_points_t, tracking_t, candidates_t, pass_t, &
+  public :: contact_state_t, contact_points_t, contact_status_t, candidates_t, pass_t, &
     contact_scratch_t, allocate_points, allocate_damping, allocate_tractions, make_room, &
-    allocate_tracking, allocate_scratch, n_side, places_of_segment, &
-    place_at, spot_at, features_t, is_free, is_touching
+    allocate_status, allocate_scratch, n_side, sites_of_segment, &
+    site_at, segment_point_at, features_t, separated, active
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
   !> Status of a contact point: separated or active.
-  integer, parameter :: is_free = 0, is_touching = 1
+  integer, parameter :: separated = 0, active = 1
 
   !> The list, one column per point.
   type, extends(visited_t) :: contact_points_t
@@ -76,36 +76,36 @@ module contact_state_m
   end type pass_t
 
   !> Status of the points of one surface over the segments of the other.
-  type, extends(visited_t) :: tracking_t
+  type, extends(visited_t) :: contact_status_t
     integer :: n = 0                         !! points
-    integer :: n_touching = 0
-    real(wp) :: next_wake = -huge(1.0_wp)    !! travel before which no separated point can touch
+    integer :: n_active = 0
+    real(wp) :: earliest_search = -huge(1.0_wp) !! travel before which no separated point can touch
     real(wp) :: reach = 0.0_wp               !! search radius: points farther away are unpaired, m
-    integer, allocatable :: touching(:)      !! (n) the first n_touching: active points, in order
+    integer, allocatable :: active_points(:) !! (n) the first n_active: active points, in order
     integer, allocatable :: due(:)           !! (n) scratch: points to be looked at one by one
     integer, allocatable :: segment(:)       !! (n) active: its segment; else the closest, 0 = none
-    integer, allocatable :: status(:)        !! (n) is_free or is_touching
+    integer, allocatable :: state(:)         !! (n) separated or active
     real(wp), allocatable :: xi(:)           !! (n) 0 to 1 along the segment (a little more at ends)
     real(wp), allocatable :: gap(:)          !! (n) m; up to date while active
     real(wp), allocatable :: normal(:, :)    !! (2, n) from the segment to the point's side
     real(wp), allocatable :: offset(:)       !! (n) entry offset, m: pressure acts from gap + offset
-    real(wp), allocatable :: wake(:)         !! (n) next search time: travel before which the point
+    real(wp), allocatable :: next_search(:)  !! (n) next search time: travel before which the point
                                              !! can not touch; huge while active
     real(wp), allocatable :: faded(:)        !! (n) scratch: by which offsets have faded in this
                                              !! call, m
     logical :: has_offset = .false.          !! some offset is above 0
     integer :: n_released = 0                !! first contacts deeper than the limit so far
-    real(wp), allocatable :: spot_depth(:)   !! (n) deepest first contact of a point, m
+    real(wp), allocatable :: point_depth(:)  !! (n) deepest first contact of a point, m
     real(wp), allocatable :: segment_depth(:) !! (n_segment) deepest first contact of a segment, m
     real(wp) :: shallowest = huge(1.0_wp)    !! smallest of both, m
     type(pass_t) :: pass                     !! of the present call
   contains
-    procedure :: visit => visit_tracking
-  end type tracking_t
+    procedure :: visit => visit_status
+  end type contact_status_t
 
   !> Room that procedures use within a step; nothing in it lasts to the next one.
   type :: contact_scratch_t
-    real(wp), allocatable :: former_force(:, :) !! (2, n_slave + n_master) forces of the call
+    real(wp), allocatable :: previous_force(:, :) !! (2, n_slave + n_master) forces of the call
                                             !! before, 0 between calls
     real(wp), allocatable :: nodal(:, :)    !! (2, n_slave + n_master) averaged gaps, springs at
                                             !! nodes
@@ -113,23 +113,23 @@ module contact_state_m
                                             !! forces are limited
     real(wp), allocatable :: spring(:, :)   !! (2, n_slave + n_master) forces of the normal springs
                                             !! alone; only where there are others
-    real(wp), allocatable :: former_spring(:, :) !! the same of the call before
+    real(wp), allocatable :: previous_spring(:, :) !! the same of the call before
     real(wp), allocatable :: increment(:, :) !! (2, n_slave + n_master) displacements of the
                                             !! step, m
     real(wp) :: dt = 0.0_wp                 !! step that made them, s; only in implicit runs
     real(wp) :: lag = 0.0_wp                !! damping of tangential springs that stick over their
                                             !! stiffness, s
-    real(wp), allocatable :: former_traction(:) !! (n_place) of the call before; this and the next
+    real(wp), allocatable :: previous_traction(:) !! (n_site) of the call before; this and the next
                                             !! only where there is friction
-    integer, allocatable :: former_state(:) !! (n_place) the same
-    real(wp) :: growth = 0.0_wp             !! of an initial overlap in this step, as a part of it
+    integer, allocatable :: previous_state(:) !! (n_site) the same
+    real(wp) :: ramp_step = 0.0_wp          !! of an initial overlap in this step, as a part of it
     logical :: is_start = .false.           !! this call is that of time zero; both only where such
                                             !! overlaps grow
     integer, allocatable :: segment_near(:) !! (n_slave) master segment near a slave node, 0 between
-                                            !! steps; only where points are at fixed places
-    logical, allocatable :: is_placed(:)    !! (slave segments) have their points
-    logical :: waits = .false.              !! points are placed, forces follow once all others are
-                                            !! known
+                                            !! steps; only where points are at fixed positions
+    logical, allocatable :: has_points(:)   !! (slave segments) have their points
+    logical :: waits = .false.              !! points are generated, forces follow once all others
+                                            !! are known
     logical :: had_force = .false.          !! the call before had some
     logical :: is_born = .false.            !! contact begins in this call, after time zero; these
                                             !! three only of implicit penalties
@@ -137,15 +137,15 @@ module contact_state_m
 
   !> What contact behind a tie takes over from it; made again by the tie after a restart.
   type :: handover_t
-    logical, allocatable :: is_left(:)  !! (n_place) to the tie that holds it
-    logical, allocatable :: is_freed(:) !! (n_place) it has broken in this cycle
-    real(wp) :: taken = 0.0_wp          !! what springs hold that were freed pressed, J/m
+    logical, allocatable :: is_tied_site(:) !! (n_site) to the tie that holds it
+    logical, allocatable :: is_freed(:) !! (n_site) it has broken in this cycle
+    real(wp) :: handed_over = 0.0_wp    !! what springs hold that were freed loaded, J/m
   end type handover_t
 
   !> What an interface has beside springs along the normal at its points: by its formulation and by
   !> the deck.
   type :: features_t
-    logical :: spots = .false.          !! points between nodes are followed
+    logical :: segment_points = .false. !! points between nodes are followed
     logical :: overlaps = .false.       !! points are made of overlaps of segments
     logical :: nodal_pressure = .false. !! pressure is formed at slave nodes
     logical :: damping = .false.
@@ -153,7 +153,7 @@ module contact_state_m
     logical :: interference = .false.   !! initial overlaps grow
     logical :: ties = .false.           !! it is tied
     logical :: breaks = .false.         !! ties break
-    logical :: former_tie = .false.     !! it takes over what a tie has lost
+    logical :: tie_handover = .false.   !! it takes over what a tie has lost
     logical :: limit = .false.          !! its energy is limited
   end type features_t
 
@@ -162,30 +162,34 @@ module contact_state_m
     type(features_t) :: has
     integer :: n_slave = 0, n_master = 0
     integer, allocatable :: nodes(:)        !! (n_slave + n_master) node indices in the mesh
-    real(wp), allocatable :: places(:, :)   !! (4, n_slave + n_master) X, Y, u_x, u_y of the last
+    real(wp), allocatable :: positions(:, :) !! (4, n_slave + n_master) X, Y, u_x, u_y of the last
                                             !! call
     real(wp) :: travel = 0.0_wp             !! bound on relative motion since the start, m
     real(wp) :: advance = 0.0_wp            !! bound on relative motion in the last step, m
-    logical :: is_stale = .false.           !! tracking has been left alone outside birth .. death
-    integer :: next_search = 0              !! cycle at which FREQ asks for a global search
-    real(wp), allocatable :: spots(:, :)    !! (4, n_spot) places of spots that are not nodes
-    real(wp), allocatable :: spot_xi(:)     !! (spots of a segment) where on the segment they are
-    real(wp), allocatable :: spot_share(:)  !! (spots of a segment) part of its length they stand
+    logical :: is_stale = .false.           !! contact status has been left alone outside birth ..
+                                            !! death
+    integer :: next_listing = 0             !! cycle at which FREQ asks for a global search
+    real(wp), allocatable :: segment_points(:, :) !! (4, n_contact_point) positions of points that
+                                                  !! are not nodes
+    real(wp), allocatable :: segment_xi(:)  !! (points of a segment) where on the segment they are
+    real(wp), allocatable :: segment_share(:) !! (points of a segment) part of its length they stand
                                             !! for
-    real(wp) :: spot_spread = 0.0_wp        !! above 0: a spot stands at the centre, by radius, of
-                                            !! this part of its segment about its spot_xi
-    type(tracking_t) :: slave_tracking      !! slave nodes, or `spots`, over the master chain
-    type(tracking_t) :: master_tracking     !! master nodes over the slave chain; empty for one pass
+    real(wp) :: segment_spread = 0.0_wp     !! above 0: a point stands at the centre, by radius, of
+                                            !! this part of its segment about its segment_xi
+    type(contact_status_t) :: slave_status  !! slave nodes, or `segment_points`, over the master
+                                            !! surface
+    type(contact_status_t) :: master_status !! master nodes over the slave surface; empty for one
+                                            !! pass
     type(candidates_t) :: candidates        !! of slave segments
     real(wp) :: listed_until = -huge(1.0_wp) !! travel for which these hold, m
     type(candidates_t) :: reversed          !! of master segments: the same pairs; for two passes
-    integer, allocatable :: segment_status(:) !! (slave segments) is_touching: overlaps of it are in
+    integer, allocatable :: segment_state(:)  !! (slave segments) active: overlaps of it are in
                                             !! contact; only where these make points
     real(wp), allocatable :: segment_gap(:) !! (slave segments) smallest gap of its points at the
                                             !! last look, m
-    real(wp), allocatable :: segment_wake(:) !! (slave segments) travel before which its overlaps
+    real(wp), allocatable :: segment_search(:) !! (slave segments) travel before which its overlaps
                                             !! can not touch, m
-    real(wp) :: next_segment_wake = -huge(1.0_wp) !! smallest of these, m
+    real(wp) :: earliest_segment_search = -huge(1.0_wp) !! smallest of these, m
     type(contact_points_t) :: points
     real(wp) :: closed_gap = 0.0_wp         !! gaps below it are contact, m; more than 0 only where
                                             !! a tangent of touching bodies is wanted
@@ -201,11 +205,11 @@ module contact_state_m
                                                  !! damping has; only where there is damping
     real(wp) :: energy = 0.0_wp             !! minus the accumulated work of the springs, J/m
     real(wp) :: damping_work = 0.0_wp       !! minus that of the damping forces
-    type(friction_memory_t) :: friction     !! of places, and its forces
+    type(friction_memory_t) :: friction     !! of sites, and its forces
     type(interference_memory_t) :: interference !! initial overlaps that grow
     type(tie_memory_t) :: ties              !! springs of a tied interface
     type(handover_t) :: handover            !! only of contact behind a tie
-    type(contact_watch_t) :: watch          !! whether the springs give back what they take
+    type(contact_monitor_t) :: monitor      !! whether the springs give back what they take
     type(energy_limit_t) :: limit           !! that they give back no more
     integer :: n_active = 0                 !! points that carry pressure
     logical :: rules_step = .false.         !! the step obeys the springs, which nobody has chosen
@@ -242,7 +246,7 @@ contains
     allocate (points%traction(size(points%gap)), source=0.0_wp)
   end subroutine allocate_tractions
 
-  !> Make room for `n_more` points. The capacity of the start serves chains that face each other
+  !> Make room for `n_more` points. The capacity of the start serves surfaces that are opposed
   !> once; only where slave segments lie upon each other is more needed, and the list then doubles.
   pure subroutine make_room(points, n_more)
     type(contact_points_t), intent(inout) :: points
@@ -275,75 +279,75 @@ contains
   end subroutine make_room
 
   !> Allocate for `n` points over `n_segment` segments.
-  pure subroutine allocate_tracking(tracking, n, n_segment)
-    type(tracking_t), intent(inout) :: tracking
+  pure subroutine allocate_status(status, n, n_segment)
+    type(contact_status_t), intent(inout) :: status
     integer, intent(in) :: n, n_segment
 
-    tracking%n = n
-    allocate (tracking%touching(n), tracking%due(n), tracking%segment(n), tracking%status(n), &
+    status%n = n
+    allocate (status%active_points(n), status%due(n), status%segment(n), status%state(n), &
       source=0)
-    allocate (tracking%xi(n), tracking%gap(n), tracking%normal(2, n), tracking%spot_depth(n), &
-      tracking%segment_depth(n_segment), source=0.0_wp)
-    allocate (tracking%offset(n), tracking%faded(n), source=0.0_wp)
-    allocate (tracking%wake(n), source=-huge(1.0_wp))
-  end subroutine allocate_tracking
+    allocate (status%xi(n), status%gap(n), status%normal(2, n), status%point_depth(n), &
+      status%segment_depth(n_segment), source=0.0_wp)
+    allocate (status%offset(n), status%faded(n), source=0.0_wp)
+    allocate (status%next_search(n), source=-huge(1.0_wp))
+  end subroutine allocate_status
 
   !> Allocate the room of an interface; after a restart too.
   pure subroutine allocate_scratch(memory)
     type(contact_state_t), intent(inout) :: memory
 
     associate (scratch => memory%scratch, n => memory%n_slave + memory%n_master)
-      allocate (scratch%former_force(2, n), scratch%nodal(2, n), scratch%increment(2, n), &
+      allocate (scratch%previous_force(2, n), scratch%nodal(2, n), scratch%increment(2, n), &
         source=0.0_wp)
       allocate (scratch%segment_near(memory%n_slave), source=0)
       if (memory%has%limit) allocate (scratch%velocity(2, n), source=0.0_wp)
       if (memory%has%limit .and. (memory%has%damping .or. memory%has%friction)) &
-        allocate (scratch%spring(2, n), scratch%former_spring(2, n), source=0.0_wp)
+        allocate (scratch%spring(2, n), scratch%previous_spring(2, n), source=0.0_wp)
       if (memory%has%friction) then
-        allocate (scratch%former_traction(size(memory%friction%state)), source=0.0_wp)
-        allocate (scratch%former_state(size(memory%friction%state)), source=0)
+        allocate (scratch%previous_traction(size(memory%friction%state)), source=0.0_wp)
+        allocate (scratch%previous_state(size(memory%friction%state)), source=0)
       end if
       if (.not. memory%has%overlaps) return
-      allocate (scratch%is_placed(size(memory%segment_status)), source=.false.)
+      allocate (scratch%has_points(size(memory%segment_state)), source=.false.)
     end associate
   end subroutine allocate_scratch
 
-  !> Places of a slave segment that have a memory of their own.
-  pure function places_of_segment(memory) result(n)
+  !> Sites of a slave segment that have a memory of their own.
+  pure function sites_of_segment(memory) result(n)
     type(contact_state_t), intent(in) :: memory
     integer :: n
 
     n = 1
-    if (memory%has%spots) n = size(memory%spot_xi)
-  end function places_of_segment
+    if (memory%has%segment_points) n = size(memory%segment_xi)
+  end function sites_of_segment
 
-  !> The place of a point at a node, slave or master, or between nodes.
-  pure function place_at(memory, p) result(place)
+  !> The position of a point at a node, slave or master, or between nodes.
+  pure function site_at(memory, p) result(position)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: p
-    integer :: place
+    integer :: position
 
     associate (points => memory%points)
-      place = points%slave_nodes(1, p)
-      if (memory%has%spots) then
-        place = size(memory%spot_xi)*(place - 1) &
-          + spot_at(points%slave_weights(2, p), memory%spot_xi)
-      else if (place /= points%slave_nodes(2, p)) then
-        place = points%master_nodes(1, p)
+      position = points%slave_nodes(1, p)
+      if (memory%has%segment_points) then
+        position = size(memory%segment_xi)*(position - 1) &
+          + segment_point_at(points%slave_weights(2, p), memory%segment_xi)
+      else if (position /= points%slave_nodes(2, p)) then
+        position = points%master_nodes(1, p)
       end if
     end associate
-  end function place_at
+  end function site_at
 
-  !> Which of the spots of a segment stands at xi.
-  pure function spot_at(xi, spot_xi) result(q)
-    real(wp), intent(in) :: xi, spot_xi(:)
+  !> Which of the points of a segment stands at xi.
+  pure function segment_point_at(xi, segment_xi) result(q)
+    real(wp), intent(in) :: xi, segment_xi(:)
     integer :: q, i
 
     q = 1
-    do i = 2, size(spot_xi)
-      if (abs(spot_xi(i) - xi) < abs(spot_xi(q) - xi)) q = i
+    do i = 2, size(segment_xi)
+      if (abs(segment_xi(i) - xi) < abs(segment_xi(q) - xi)) q = i
     end do
-  end function spot_at
+  end function segment_point_at
 
   !> Its components.
   subroutine visit_points(self, visitor)
@@ -369,17 +373,17 @@ contains
   end subroutine visit_points
 
   !> Its components; extremes are found again.
-  subroutine visit_tracking(self, visitor)
-    class(tracking_t), intent(inout), target :: self
+  subroutine visit_status(self, visitor)
+    class(contact_status_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
 
     call visitor%visit('n', self%n)
-    call visitor%visit('n_touching', self%n_touching)
-    call visitor%visit('next_wake', self%next_wake)
-    call visitor%visit('touching', self%touching, whole, 0, length(self%touching), &
-      'numbers that no spot has')
+    call visitor%visit('n_active', self%n_active)
+    call visitor%visit('earliest_search', self%earliest_search)
+    call visitor%visit('active_points', self%active_points, whole, 0, length(self%active_points), &
+      'numbers that no contact point has')
     call visitor%visit('segment', self%segment)
-    call visitor%visit('status', self%status, whole, is_free, is_touching, &
+    call visitor%visit('state', self%state, whole, separated, active, &
       'numbers that mean nothing')
     call visitor%visit('xi', self%xi)
     call visitor%visit('gap', self%gap)
@@ -387,11 +391,11 @@ contains
     call visitor%visit('offset', self%offset)
     call visitor%visit('has_offset', self%has_offset)
     call visitor%visit('n_released', self%n_released, 0, 10**9, 'a number that no run reaches')
-    call visitor%visit('wake', self%wake)
-    call visitor%visit('spot_depth', self%spot_depth)
+    call visitor%visit('next_search', self%next_search)
+    call visitor%visit('point_depth', self%point_depth)
     call visitor%visit('segment_depth', self%segment_depth)
     call visitor%visit('shallowest', self%shallowest)
-  end subroutine visit_tracking
+  end subroutine visit_status
 
   !> Its components.
   subroutine visit_contact(self, visitor)
@@ -401,23 +405,23 @@ contains
     call visitor%same('n_slave', self%n_slave)
     call visitor%same('n_master', self%n_master)
     call visitor%same('nodes', self%nodes)
-    call visitor%visit('places', self%places)
+    call visitor%visit('positions', self%positions)
     call visitor%visit('travel', self%travel, 0.0_wp, 'a way below zero')
     call visitor%visit('advance', self%advance, 0.0_wp, 'a way below zero')
     call visitor%visit('is_stale', self%is_stale)
-    call visitor%visit('next_search', self%next_search)
-    call visitor%visit('spots', self%spots)
-    call visitor%visit('spot_xi', self%spot_xi)
-    call visitor%visit('spot_share', self%spot_share)
-    call visitor%visit('spot_spread', self%spot_spread)
-    call visitor%part('slave_tracking', self%slave_tracking)
-    call visitor%part('master_tracking', self%master_tracking)
-    call visitor%visit('segment_status', self%segment_status, whole, is_free, is_touching, &
+    call visitor%visit('next_listing', self%next_listing)
+    call visitor%visit('segment_points', self%segment_points)
+    call visitor%visit('segment_xi', self%segment_xi)
+    call visitor%visit('segment_share', self%segment_share)
+    call visitor%visit('segment_spread', self%segment_spread)
+    call visitor%part('slave_status', self%slave_status)
+    call visitor%part('master_status', self%master_status)
+    call visitor%visit('segment_state', self%segment_state, whole, separated, active, &
       'numbers that mean nothing')
     call visitor%visit('segment_gap', self%segment_gap)
-    call visitor%visit('segment_wake', self%segment_wake)
+    call visitor%visit('segment_search', self%segment_search)
     call visitor%visit('listed_until', self%listed_until)
-    call visitor%visit('next_segment_wake', self%next_segment_wake)
+    call visitor%visit('earliest_segment_search', self%earliest_segment_search)
     call visitor%part('points', self%points)
     call visitor%visit('closed_gap', self%closed_gap)
     call visitor%visit('node_pressure', self%node_pressure)
@@ -432,7 +436,7 @@ contains
     call visitor%part('ties', self%ties)
     call visitor%visit('energy', self%energy)
     call visitor%visit('damping_work', self%damping_work)
-    call visitor%part('watch', self%watch)
+    call visitor%part('monitor', self%monitor)
     call visitor%part('limit', self%limit)
     call visitor%visit('n_active', self%n_active, 0, huge(1), 'a number below zero')
     call visitor%visit('rules_step', self%rules_step)

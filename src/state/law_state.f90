@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> What the laws of an interface remember: friction, overlaps that a curve lets grow, ties, the
 !> energy that springs may return, whether they return it, and how good the contact is. Tractions
-!> stand at the places where pressure is formed. A place is a local node; with n virtual nodes to a
+!> stand at the sites where pressure is formed. A site is a local node; with n virtual nodes to a
 !> segment n (k - 1) + q is the q-th of the slave segment that starts at node k. Nodes keep their
 !> numbers when runs of segments change; they are local to the interface.
 module law_state_m
@@ -11,19 +11,19 @@ module law_state_m
   private
   public :: friction_memory_t, allocate_friction, is_open, sticks, slips, is_held, is_broken, &
     interference_memory_t, allocate_interference, tie_memory_t, allocate_ties, energy_limit_t, &
-    allocate_limit, contact_watch_t, contact_change_t, has_made, has_lost, contact_estimate_t
+    allocate_limit, contact_monitor_t, contact_change_t, has_made, has_lost, contact_estimate_t
 
-  !> What a place is doing.
+  !> What a site is doing.
   integer, parameter :: is_open = 0, sticks = 1, slips = 2
   !> What a tie makes of it.
   integer, parameter :: is_held = 3, is_broken = 4
 
   !> Arrays are allocated for interfaces with friction alone.
   type, extends(visited_t) :: friction_memory_t
-    real(wp), allocatable :: traction(:)  !! (n_place) of the last call, before the energy law,
+    real(wp), allocatable :: traction(:)  !! (n_site) of the last call, before the energy law,
                                           !! N/m^2 (N/m for type 1); 0 where open
-    integer, allocatable :: state(:)      !! (n_place) one of the constants above
-    real(wp), allocatable :: slip(:)      !! (n_place) sum of all steps in contact, m
+    integer, allocatable :: state(:)      !! (n_site) one of the constants above
+    real(wp), allocatable :: slip(:)      !! (n_site) sum of all steps in contact, m
     real(wp), allocatable :: force(:, :)  !! (2, n_slave + n_master) the part of the contact forces
                                           !! that friction has, N/m
     real(wp) :: work = 0.0_wp             !! minus the accumulated work of these forces, J/m
@@ -34,9 +34,9 @@ module law_state_m
 
   !> The array is allocated for interfaces with such a curve alone.
   type, extends(visited_t) :: interference_memory_t
-    real(wp), allocatable :: depth(:)  !! (n_place) overlap at time zero, m; below 0: that of a
-                                       !! master node which was no place then
-    real(wp) :: left = 1.0_wp          !! the part of it that does not act yet, 1 - s
+    real(wp), allocatable :: depth(:)  !! (n_site) overlap at time zero, m; below 0: that of a
+                                       !! master node which was no site then
+    real(wp) :: remaining = 1.0_wp     !! the part of it that does not act yet, 1 - s
     real(wp) :: moment = 0.0_wp        !! sum of p w depth of the last call, J/m
     real(wp) :: work = 0.0_wp          !! of the curve so far, J/m
   contains
@@ -50,16 +50,16 @@ module law_state_m
                                          !! with
     real(wp), allocatable :: side(:)     !! (n_spring) 1: its outward normal points from master to
                                          !! slave, -1: the other way
-    real(wp), allocatable :: lag(:, :)   !! (2, n_spring) from the master place to the slave place
+    real(wp), allocatable :: lag(:, :)   !! (2, n_spring) from the master site to the slave site
                                          !! in the reference geometry, m
     real(wp), allocatable :: offset(:, :) !! (2, n_spring) parts of it along n and t there, m
     real(wp), allocatable :: area(:)     !! (n_bond) of bonds, which are springs, or slave nodes
                                          !! where pressure is formed there, m
     real(wp), allocatable :: pressure(:) !! (n_bond) below 0: tension, N/m^2
     real(wp), allocatable :: traction(:) !! (n_bond) N/m^2
-    integer, allocatable :: state(:)     !! (n_place) of each place of friction: open, held
+    integer, allocatable :: state(:)     !! (n_site) of each site of friction: open, held
                                          !! or broken; this and the next two only where ties break
-    integer, allocatable :: place(:)     !! (n_bond) of each bond
+    integer, allocatable :: site(:)      !! (n_bond) of each bond
     real(wp), allocatable :: to_stress(:) !! (n_bond) stress of the bond over pressure: 1 but for
                                          !! types 1 and 3
     real(wp) :: spent = 0.0_wp           !! what springs held that have broken, less what contact
@@ -77,9 +77,9 @@ module law_state_m
                                       !! contact meets, 0 where the motion is held, m/kg
     real(wp), allocatable :: velocity(:, :) !! (2, n_slave + n_master) of the last call with force
     real(wp) :: recoil = 0.0_wp       !! sum of F.F/m of the last call, N^2/kg
-    real(wp) :: credit = 0.0_wp       !! what springs held that were born or caught loaded, J/m
-    real(wp) :: lent = 0.0_wp         !! the part of it of those that were caught, J/m
-    real(wp) :: loan = 0.0_wp         !! most that may be lent, J/m
+    real(wp) :: admissible = 0.0_wp   !! what springs held that were born or caught loaded, J/m
+    real(wp) :: admitted = 0.0_wp     !! the part of it of those that were caught, J/m
+    real(wp) :: entry_allowance = 0.0_wp !! most that may be lent, J/m
     real(wp) :: largest = 0.0_wp      !! largest energy of the springs so far, credit included, J/m
     integer :: n_loaded = 0           !! cycles with force
     integer :: n_limited = 0          !! cycles whose forces were scaled down
@@ -91,7 +91,7 @@ module law_state_m
     procedure :: visit => visit_limit
   end type energy_limit_t
 
-  !> Signs of the balance, as places in arrays of two.
+  !> Signs of the balance, as sites in arrays of two.
   integer, parameter :: has_made = 1, has_lost = 2
   character(*), parameter :: no_node = 'a number that no node has'
 
@@ -99,8 +99,8 @@ module law_state_m
   !> of that sign.
   type, extends(visited_t) :: contact_change_t
     real(wp) :: amount = 0.0_wp   !! J/m
-    integer :: node = 0           !! most loaded then, by place in the mesh; 0: none yet
-    real(wp) :: place(2) = 0.0_wp !! where that node was, m
+    integer :: node = 0           !! most loaded then, by index in the mesh; 0: none yet
+    real(wp) :: position(2) = 0.0_wp !! where that node was, m
     real(wp) :: time = 0.0_wp     !! of the second of the two looks, s
     logical :: warned = .false.
   contains
@@ -108,18 +108,18 @@ module law_state_m
   end type contact_change_t
 
   !> Filled when the springs are looked at, now and then.
-  type, extends(visited_t) :: contact_watch_t
+  type, extends(visited_t) :: contact_monitor_t
     logical :: is_due = .false.       !! the next call looks at the springs
-    logical :: has_looked = .false.   !! the last call did, or found that contact has opened
+    logical :: has_sampled = .false.  !! the last call did, or found that contact has opened
     real(wp) :: stored = 0.0_wp       !! potential of the springs then, J/m
     real(wp) :: load = 0.0_wp         !! largest force of a point then, N/m
-    integer :: node = 0               !! slave node next to it, by place in the mesh; 0: none yet
+    integer :: node = 0               !! slave node next to it, by index in the mesh; 0: none yet
     real(wp) :: balance = 0.0_wp      !! energy of the interface minus what its springs stored then:
                                       !! below 0 made, above lost
     type(contact_change_t) :: changes(2) !! by sign
   contains
-    procedure :: visit => visit_watch
-  end type contact_watch_t
+    procedure :: visit => visit_monitor
+  end type contact_monitor_t
 
   !> Sums and extremes; nothing of time zero, where elements have no stress yet.
   type, extends(visited_t) :: contact_estimate_t
@@ -134,7 +134,7 @@ module law_state_m
     real(wp) :: springs = 0.0_wp       !! sum of what springs store, J/m
     real(wp) :: rows = 0.0_wp          !! sum of the elastic energy of the rows behind, J/m
     real(wp) :: force(2) = 0.0_wp      !! on the slave at the last instant, N/m
-    real(wp) :: former(2) = 0.0_wp     !! at the one before
+    real(wp) :: previous(2) = 0.0_wp   !! at the one before
     real(wp) :: jumps = 0.0_wp         !! sum of squares of second differences of that
                                        !! force, as of equal strides
     real(wp) :: forces = 0.0_wp        !! sum of its squares over the same instants
@@ -142,7 +142,7 @@ module law_state_m
     real(wp) :: softness = 0.0_wp      !! of springs, over that of a row of elements on either side
     real(wp) :: stored = 0.0_wp        !! largest energy of the springs, J/m
     real(wp) :: bodies = 0.0_wp        !! largest internal energy of the bodies on both sides, J/m
-    real(wp) :: penetration = 0.0_wp   !! deepest one of curved places, their flattening
+    real(wp) :: penetration = 0.0_wp   !! deepest one of curved sites, their flattening
                                        !! included, m
     real(wp) :: facet_error = 0.0_wp   !! by which facets put gaps off there, m
     real(wp) :: arc_height = 0.0_wp    !! of the highest arc over its segment there, m
@@ -154,14 +154,14 @@ module law_state_m
 
 contains
 
-  !> Allocate for so many places and nodes; all places are open.
-  pure subroutine allocate_friction(friction, n_place, n_node)
+  !> Allocate for so many sites and nodes; all sites are open.
+  pure subroutine allocate_friction(friction, n_site, n_node)
     type(friction_memory_t), intent(inout) :: friction
-    integer, intent(in) :: n_place, n_node
+    integer, intent(in) :: n_site, n_node
 
-    allocate (friction%traction(n_place), friction%slip(n_place), friction%force(2, n_node), &
+    allocate (friction%traction(n_site), friction%slip(n_site), friction%force(2, n_node), &
       source=0.0_wp)
-    allocate (friction%state(n_place), source=is_open)
+    allocate (friction%state(n_site), source=is_open)
   end subroutine allocate_friction
 
   !> Its components.
@@ -177,7 +177,7 @@ contains
     call visitor%visit('stored', self%stored)
   end subroutine visit_friction
 
-  !> Allocate for so many places of slave nodes or spots, and of master nodes behind them.
+  !> Allocate for so many sites of slave nodes or points, and of master nodes behind them.
   pure subroutine allocate_interference(interference, n_slave, n_master)
     type(interference_memory_t), intent(inout) :: interference
     integer, intent(in) :: n_slave, n_master
@@ -192,7 +192,7 @@ contains
     class(visitor_t), intent(inout) :: visitor
 
     call visitor%visit('depth', self%depth)
-    call visitor%visit('left', self%left)
+    call visitor%visit('remaining', self%remaining)
     call visitor%visit('moment', self%moment)
     call visitor%visit('work', self%work)
   end subroutine visit_interference
@@ -223,7 +223,7 @@ contains
     call visitor%visit('pressure', self%pressure)
     call visitor%visit('traction', self%traction)
     call visitor%visit('state', self%state)
-    call visitor%visit('place', self%place)
+    call visitor%visit('site', self%site)
     call visitor%visit('to_stress', self%to_stress)
     call visitor%visit('spent', self%spent)
     call visitor%visit('first_break', self%first_break)
@@ -247,9 +247,9 @@ contains
     call visitor%visit('inverse_mass', self%inverse_mass)
     call visitor%visit('velocity', self%velocity)
     call visitor%visit('recoil', self%recoil)
-    call visitor%visit('credit', self%credit)
-    call visitor%visit('lent', self%lent)
-    call visitor%visit('loan', self%loan)
+    call visitor%visit('admissible', self%admissible)
+    call visitor%visit('admitted', self%admitted)
+    call visitor%visit('entry_allowance', self%entry_allowance)
     call visitor%visit('largest', self%largest)
     call visitor%visit('n_loaded', self%n_loaded)
     call visitor%visit('n_limited', self%n_limited)
@@ -266,24 +266,24 @@ contains
 
     call visitor%visit('amount', self%amount)
     call visitor%visit('node', self%node, 0, visitor%n_node, no_node)
-    call visitor%fixed('place', self%place)
+    call visitor%fixed('position', self%position)
     call visitor%visit('time', self%time)
     call visitor%visit('warned', self%warned)
   end subroutine visit_change
 
   !> Its components.
-  subroutine visit_watch(self, visitor)
-    class(contact_watch_t), intent(inout), target :: self
+  subroutine visit_monitor(self, visitor)
+    class(contact_monitor_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
 
     call visitor%visit('is_due', self%is_due)
-    call visitor%visit('has_looked', self%has_looked)
+    call visitor%visit('has_sampled', self%has_sampled)
     call visitor%visit('stored', self%stored)
     call visitor%visit('load', self%load)
     call visitor%visit('node', self%node, 0, visitor%n_node, no_node)
     call visitor%visit('balance', self%balance)
     call visitor%each('changes', self%changes)
-  end subroutine visit_watch
+  end subroutine visit_monitor
 
   !> Its components.
   subroutine visit_estimate(self, visitor)
@@ -301,7 +301,7 @@ contains
     call visitor%visit('springs', self%springs)
     call visitor%visit('rows', self%rows)
     call visitor%fixed('force', self%force)
-    call visitor%fixed('former', self%former)
+    call visitor%fixed('previous', self%previous)
     call visitor%visit('jumps', self%jumps)
     call visitor%visit('forces', self%forces)
     call visitor%visit('least_margin', self%least_margin)

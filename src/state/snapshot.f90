@@ -6,7 +6,8 @@ module snapshot_m
   implicit none
   private
   public :: energies_t, total_energy, energy_ratio, snapshot_t, interface_result_t, part_result_t, &
-    slave_result_t, wall_result_t, rubbed_t, element_result_t, body_result_t, section_result_t
+    slave_result_t, wall_result_t, friction_result_t, element_result_t, body_result_t, &
+    section_result_t
 
   !> What rounding leaves of a sum that vanishes, as a share of its largest term: terms are sums
   !> over nodes, elements and thousands of cycles.
@@ -95,11 +96,11 @@ module snapshot_m
   end type section_result_t
 
   !> Friction at a node of an interface.
-  type :: rubbed_t
+  type :: friction_result_t
     real(wp) :: traction = 0.0_wp !! on the node, along the walking direction of its chain
     real(wp) :: slip = 0.0_wp     !! of the node over the other side, along that, of the whole run
     integer :: state = 0          !! 0 open, 1 stick, 2 slip, 3 tied, 4 broken
-  end type rubbed_t
+  end type friction_result_t
 
   !> Slave nodes of one interface in walking order; all arrays (n_slave) but the last two.
   type :: slave_result_t
@@ -111,8 +112,9 @@ module snapshot_m
     real(wp), allocatable :: length(:)     !! competence length, current
     real(wp), allocatable :: row_stress(:) !! pressure of the elements behind, carried to the face
     real(wp), allocatable :: master_pressure(:) !! (n_master) as `pressure`, on the other side
-    type(rubbed_t), allocatable :: rubbed(:) !! (n_slave + n_master) nodes of both sides; only where
-                                             !! there is friction
+    type(friction_result_t), allocatable :: friction_result(:) !! (n_slave + n_master) nodes of both
+                                                               !! sides; only where there is
+                                                               !! friction
   end type slave_result_t
 
   !> The instant. Node arrays are in model order (the writer maps through mesh%deck_node); element

@@ -23,14 +23,14 @@ LAYERS = {
     "state": {"base", "model"},
     "material": {"base", "model"},
     "element": {"base", "linear", "model", "state", "material"},
-    "contact_chain": {"base", "model", "state"},
-    "contact_search": {"base", "model", "state", "contact_chain"},
-    "contact_overlap": {"base", "model", "state", "contact_chain", "contact_search"},
-    "contact_place": {"base", "model", "state", "contact_chain", "contact_search", "contact_overlap"},
-    "contact_law": {"base", "model", "state", "contact_chain"},
-    "contact_tangent": {"base", "linear", "model", "state", "contact_chain", "contact_overlap", "contact_place", "contact_law"},
-    "contact": {"base", "linear", "model", "state", "contact_chain", "contact_search", "contact_overlap",
-                "contact_place", "contact_law", "contact_tangent"},
+    "contact_geometry": {"base", "model", "state"},
+    "contact_search": {"base", "model", "state", "contact_geometry"},
+    "contact_overlap": {"base", "model", "state", "contact_geometry", "contact_search"},
+    "contact_points": {"base", "model", "state", "contact_geometry", "contact_search", "contact_overlap"},
+    "contact_law": {"base", "model", "state", "contact_geometry"},
+    "contact_tangent": {"base", "linear", "model", "state", "contact_geometry", "contact_overlap", "contact_points", "contact_law"},
+    "contact": {"base", "linear", "model", "state", "contact_geometry", "contact_search", "contact_overlap",
+                "contact_points", "contact_law", "contact_tangent"},
     "loads": {"base", "model"},
     "output": {"base", "model", "state"},
     "run": {"base", "parallel", "model", "state", "element", "contact", "loads", "output"},
@@ -66,7 +66,7 @@ OUTSIDE["source_version_m"] = {""}  # made at every build, for the program alone
 
 
 def folder_of(layer):
-    """The folder of a layer below src/: contact_chain is contact/chain."""
+    """The folder of a layer below src/: contact_geometry is contact/geometry."""
     return layer.replace("_", "/", 1)
 
 

@@ -15,7 +15,7 @@ EXEMPT = {
     "block_state_t": {"mass_shares": "made of the deck and the status of elements"},
     "contact_state_t": {"has": OF_THE_DECK, "handover": "told by the tie", "scratch": "nothing in it lasts to the next step",
                         "candidates": "no result depends on them", "reversed": "no result depends on them"},
-    "tracking_t": {"due": EACH_CYCLE, "faded": EACH_CYCLE, "pass": OF_THE_DECK, "reach": OF_THE_DECK},
+    "contact_status_t": {"due": EACH_CYCLE, "faded": EACH_CYCLE, "pass": OF_THE_DECK, "reach": OF_THE_DECK},
     "schedule_t": {"end_time": "from the deck, which may change it", "curve": "kept as two arrays"},
     "histories_t": {"tables": "rows one table after another"},
     "explicit_cycle_t": dict.fromkeys((
@@ -37,7 +37,7 @@ EXEMPT = {
 #: types of src/state that hold no memory
 WITHOUT_MEMORY = {"contact_scratch_t", "features_t", "handover_t", "bucket_grid_t", "candidates_t", "pass_t", "snapshot_t",
                   "interface_result_t", "part_result_t", "slave_result_t",
-                  "wall_result_t", "rubbed_t", "element_result_t", "body_result_t", "section_result_t",
+                  "wall_result_t", "friction_result_t", "element_result_t", "body_result_t", "section_result_t",
                   "energies_t", "others_t", "answers_t"}
 
 

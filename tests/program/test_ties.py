@@ -132,7 +132,7 @@ LIES = {
     "lag": (lambda old: old[:, :-1].copy(), "expected here"),
     "offset": (lambda old: old[:-1].copy(), "expected here"),
     "state": (lambda old: old * 0 + 2, "mean nothing"),
-    "place": (lambda old: old * 0 + 10**6, "no place"),
+    "site": (lambda old: old * 0 + 10**6, "no place"),
     "to_stress": (lambda old: np.append(old, 1.0), "expected here"),
     "owner": (lambda old: old * 0 - 1, "no node"),
 }

@@ -1,20 +1,20 @@
 ! SPDX-License-Identifier: MIT
-!> The one place that knows the contact laws: from the gap of a place to the pressure there. Where
-!> these places are, at the points or at the slave nodes, the row of the formulation says; the
+!> The only file that knows the contact laws: from the gap of a site to the pressure there. Where
+!> these sites are, at the points or at the slave nodes, the row of the formulation says; the
 !> pressure of every point is kept on the list. Adding a law is a file law_*.f90, a row of `laws`
 !> and its `case` (doc/add_a_law.md).
 module contact_law_m
-  use contact_state_m, only : contact_state_t, place_at
+  use contact_state_m, only : contact_state_t, site_at
   use dual_m, only : dual_t
   use entry_offset_m, only : has_offsets, add_offsets
-  use interference_m, only : take_overlaps, ease_gaps, gather_moment
+  use interference_m, only : take_overlaps, ramp_gaps, gather_moment
   use kinds_m, only : wp
   use law_penalty_m, only : apply_penalty
   use nodal_average_m, only : average_values, share_out
   implicit none
   private
-  public :: law_t, laws, law_penalty, press_places, find_gaps, spring_t, n_springs, spring_at, &
-    vary_pressure, density_of
+  public :: law_t, laws, law_penalty, form_pressures, find_gaps, spring_t, n_springs, spring_at, &
+    linearise_pressure, density_of
 
   !> A law.
   type :: law_t
@@ -24,7 +24,7 @@ module contact_law_m
 
   !> A spring, where pressure is formed.
   type :: spring_t
-    integer :: place    !! on the lists of what laws remember
+    integer :: site     !! on the lists of what laws remember
     integer :: node     !! slave node next to it
     real(wp) :: energy  !! J/m
     real(wp) :: load    !! N/m
@@ -36,7 +36,7 @@ module contact_law_m
 
 contains
 
-  !> Pressures of some places, their slopes by the gap in contact, and what the places store.
+  !> Pressures of some sites, their slopes by the gap in contact, and what the sites store.
   pure subroutine apply_law(contact_law, n, stiffness, gap, pressure, slope, energy)
     integer, intent(in) :: contact_law !! a number of `laws`
     integer, intent(in) :: n
@@ -51,7 +51,7 @@ contains
   end subroutine apply_law
 
   !> Pressures of all points on the list, before damping.
-  pure subroutine press_places(memory)
+  pure subroutine form_pressures(memory)
     type(contact_state_t), intent(inout) :: memory
     real(wp), dimension(max(memory%points%n, memory%n_slave)) :: gaps, stiffness, slope, energy
 
@@ -68,7 +68,7 @@ contains
       end if
     end associate
     if (memory%has%interference) call gather_moment(memory)
-  end subroutine press_places
+  end subroutine form_pressures
 
   !> Gaps that springs feel, of points or averaged at slave nodes: with entry offsets, and with the
   !> part of initial overlaps that does not act yet.
@@ -83,7 +83,7 @@ contains
         call average_values(memory%points, gaps, n_slave, memory%scratch%nodal)
         gaps(:n_slave) = memory%scratch%nodal(1, :n_slave)
       end if
-      if (memory%has%interference) call ease_gaps(memory, gaps)
+      if (memory%has%interference) call ramp_gaps(memory, gaps)
     end associate
   end subroutine find_gaps
 
@@ -107,7 +107,7 @@ contains
         spring = spring_t(i, i, nodal(2, i)*density_of(law, memory%slave_penalty, gap), &
           nodal(2, i)*memory%node_pressure(i))
       else
-        spring = spring_t(place_at(memory, i), points%slave_nodes( &
+        spring = spring_t(site_at(memory, i), points%slave_nodes( &
           maxloc(points%slave_weights(:, i), 1), i), &
           points%area(i)*density_of(law, points%stiffness(i), gap), &
           points%area(i)*points%pressure(i))
@@ -115,8 +115,8 @@ contains
     end associate
   end function spring_at
 
-  !> Pressure of a place in contact with its derivatives.
-  pure function vary_pressure(contact_law, stiffness, gap) result(pressure)
+  !> Pressure of a site in contact with its derivatives.
+  pure function linearise_pressure(contact_law, stiffness, gap) result(pressure)
     integer, intent(in) :: contact_law
     real(wp), intent(in) :: stiffness
     type(dual_t), intent(in) :: gap
@@ -126,9 +126,9 @@ contains
     call apply_law(contact_law, 1, [stiffness], [gap%value], value, slope, energy)
     pressure%value = value(1)
     pressure%slope = slope(1)*gap%slope
-  end function vary_pressure
+  end function linearise_pressure
 
-  !> Energy that a place stores per unit of its area.
+  !> Energy that a site stores per unit of its area.
   pure function density_of(contact_law, stiffness, gap) result(density)
     integer, intent(in) :: contact_law
     real(wp), intent(in) :: stiffness, gap

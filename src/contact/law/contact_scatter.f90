@@ -100,8 +100,8 @@ contains
 
   end subroutine join_passes
 
-  !> What the rounding of places, one part in 1/epsilon of them, makes of the nodal forces of all
-  !> pressed points: a gap along n is known to n_x X and n_y Y. Times epsilon it is a force.
+  !> What the rounding of sites, one part in 1/epsilon of them, makes of the nodal forces of all
+  !> loaded points: a gap along n is known to n_x X and n_y Y. Times epsilon it is a force.
   pure subroutine add_gap_round_off(memory, total)
     type(contact_state_t), intent(in) :: memory
     real(wp), intent(inout), contiguous :: total(:, :) !! (2, n_node of the mesh) N/m
@@ -114,7 +114,7 @@ contains
         normal = abs(points%normal(:, p))
         node = points%master_nodes(1, p)
         force = points%stiffness(p)*points%area(p) &
-          *dot_product(normal, abs(memory%places(1:2, node)))
+          *dot_product(normal, abs(memory%positions(1:2, node)))
         do k = 1, n_side
           node = memory%nodes(points%slave_nodes(k, p))
           total(:, node) = total(:, node) + abs(points%slave_weights(k, p))*force*normal

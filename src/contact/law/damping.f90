@@ -92,7 +92,7 @@ contains
     omega = sqrt(omega)
   end function frequency
 
-  !> Springs of all pressed points by node, N/m, into nodal(1, :): in two passes a node stands on
+  !> Springs of all loaded points by node, N/m, into nodal(1, :): in two passes a node stands on
   !> either side.
   pure subroutine sum_springs(points, is_self, nodal)
     type(contact_points_t), intent(in) :: points

@@ -10,8 +10,8 @@ module energy_limit_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: keep_former_springs, form_springs, limit_forces, follow_largest, lend, energy_factor, &
-    scale_forces, count_cycle, returned_t, slack
+  public :: store_previous_springs, form_springs, limit_forces, follow_largest, admit_entry_work, &
+    energy_factor, scale_forces, count_cycle, returned_t, slack
 
   !> Work of forces with the factor one, J/m.
   type :: returned_t
@@ -24,7 +24,7 @@ module energy_limit_m
   !> Sums over the nodes of an interface.
   type :: power_sums_t
     real(wp) :: present = 0.0_wp !! F.v, W/m
-    real(wp) :: former = 0.0_wp  !! F-.v, of the forces of the cycle before
+    real(wp) :: previous = 0.0_wp !! F-.v, of the forces of the cycle before
     real(wp) :: recoil = 0.0_wp  !! F.F/m, N^2/kg
   end type power_sums_t
 
@@ -39,19 +39,19 @@ module energy_limit_m
 
 contains
 
-  !> Before the points are placed: the forces of the normal springs alone that acted in the cycle
-  !> before, where there are others; both lists trade places.
-  pure subroutine keep_former_springs(had_force, memory)
+  !> Before the points are generated: the forces of the normal springs alone that acted in the cycle
+  !> before, where there are others; both lists are exchanged.
+  pure subroutine store_previous_springs(had_force, memory)
     logical, intent(in) :: had_force
     type(contact_state_t), intent(inout) :: memory
     real(wp), allocatable :: spare(:, :)
 
     if (.not. has_other_forces(memory)) return
-    call move_alloc(memory%scratch%former_spring, spare)
-    call move_alloc(memory%scratch%spring, memory%scratch%former_spring)
+    call move_alloc(memory%scratch%previous_spring, spare)
+    call move_alloc(memory%scratch%spring, memory%scratch%previous_spring)
     call move_alloc(spare, memory%scratch%spring)
-    if (.not. had_force) memory%scratch%former_spring = 0.0_wp
-  end subroutine keep_former_springs
+    if (.not. had_force) memory%scratch%previous_spring = 0.0_wp
+  end subroutine store_previous_springs
 
   !> The forces of the normal springs alone, where there are others; after a restart too.
   pure subroutine form_springs(memory)
@@ -99,10 +99,10 @@ contains
     associate (limit => memory%limit, scratch => memory%scratch)
       if (.not. memory%has%limit) return
       if (has_other_forces(memory)) then
-        call find_factor(memory%energy, memory%nodes, motion, dt, scratch%former_spring, &
+        call find_factor(memory%energy, memory%nodes, motion, dt, scratch%previous_spring, &
           scratch%spring, scratch%velocity, limit, factor)
       else
-        call find_factor(memory%energy, memory%nodes, motion, dt, scratch%former_force, &
+        call find_factor(memory%energy, memory%nodes, motion, dt, scratch%previous_force, &
           memory%force, scratch%velocity, limit, factor)
       end if
       call move_alloc(limit%velocity, spare)
@@ -118,87 +118,88 @@ contains
 
   !> The factor of this cycle. The sums that are formed in each cycle bound what may be returned;
   !> only where that is too much, most often just before contact opens, all is looked at.
-  pure subroutine find_factor(energy, nodes, motion, dt, former, present, velocity, limit, factor)
+  pure subroutine find_factor(energy, nodes, motion, dt, previous, present, velocity, limit, factor)
     real(wp), intent(in) :: energy       !! of the springs up to the cycle before, J/m
     integer, intent(in), contiguous :: nodes(:)
     real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node of the mesh)
     real(wp), intent(in) :: dt
-    real(wp), intent(in), contiguous :: former(:, :)   !! (2, n) forces of the cycle before, N/m
+    real(wp), intent(in), contiguous :: previous(:, :) !! (2, n) forces of the cycle before, N/m
     real(wp), intent(in), contiguous :: present(:, :)  !! (2, n) forces of this cycle, N/m
     real(wp), intent(inout), contiguous :: velocity(:, :) !! (2, n) v(n-1/2) on return
     type(energy_limit_t), intent(inout) :: limit       !! has that of the cycle before
     real(wp), intent(out) :: factor
     type(power_sums_t) :: sums
     type(returned_t) :: returned
-    real(wp) :: leap, bound, former_recoil
+    real(wp) :: leap, bound, previous_recoil
 
     factor = 1.0_wp
-    call sum_powers(size(nodes), nodes, motion, former, present, limit%inverse_mass, velocity, sums)
-    former_recoil = limit%recoil
+    call sum_powers(size(nodes), nodes, motion, previous, present, limit%inverse_mass, velocity, &
+      sums)
+    previous_recoil = limit%recoil
     limit%recoil = sums%recoil
     if (.not. limit%coming_step > 0.0_wp) return
     leap = 0.25_wp*limit%coming_step*(dt + limit%coming_step)
-    bound = energy + limit%credit - 0.5_wp*dt*sums%former + slack*limit%largest
+    bound = energy + limit%admissible - 0.5_wp*dt*sums%previous + slack*limit%largest
     ! |F.q| <= (F.F + F-.F-)/2
     if (.not. 0.5_wp*(dt + limit%coming_step)*sums%present + leap*(1.5_wp*sums%recoil &
-      + 0.5_wp*former_recoil) > bound) return
+      + 0.5_wp*previous_recoil) > bound) return
     returned%behind = 0.5_wp*dt*sums%present
     returned%ahead = 0.5_wp*limit%coming_step*sums%present
     returned%recoil = leap*sums%recoil
-    returned%pushed = pushed_work(dt, leap, former, present, limit%inverse_mass, velocity &
+    returned%pushed = pushed_work(dt, leap, previous, present, limit%inverse_mass, velocity &
       - limit%velocity)
     if (returned%pushed < 0.0_wp) returned%pushed = relied_on*returned%pushed
     factor = energy_factor(returned, bound)
     limit%recoil = factor**2*limit%recoil
   end subroutine find_factor
 
-  !> The velocities, the powers of former and present forces, and what these do to the nodes. One
+  !> The velocities, the powers of previous and present forces, and what these do to the nodes. One
   !> loop gathers, the other goes through lists that lie in one piece: that is vectorised.
-  pure subroutine sum_powers(n, nodes, motion, former, present, inverse_mass, velocity, sums)
+  pure subroutine sum_powers(n, nodes, motion, previous, present, inverse_mass, velocity, sums)
     integer, intent(in) :: n
     integer, intent(in) :: nodes(n)
     real(wp), intent(in) :: motion(4, *)
-    real(wp), intent(in), dimension(2*n) :: former, present, inverse_mass !! x and y of each node
+    real(wp), intent(in), dimension(2*n) :: previous, present, inverse_mass !! x and y of each node
     real(wp), intent(inout) :: velocity(2*n)
     type(power_sums_t), intent(out) :: sums
-    real(wp) :: power, former_power, recoil
+    real(wp) :: power, previous_power, recoil
     integer :: i
 
     do i = 1, n
       velocity(2*i - 1:2*i) = motion(3:4, nodes(i))
     end do
     power = 0.0_wp
-    former_power = 0.0_wp
+    previous_power = 0.0_wp
     recoil = 0.0_wp
-    !$omp simd reduction(+:power, former_power, recoil)
+    !$omp simd reduction(+:power, previous_power, recoil)
     do i = 1, 2*n
       power = power + velocity(i)*present(i)
-      former_power = former_power + velocity(i)*former(i)
+      previous_power = previous_power + velocity(i)*previous(i)
       recoil = recoil + inverse_mass(i)*(present(i)*present(i))
     end do
-    sums = power_sums_t(power, former_power, recoil)
+    sums = power_sums_t(power, previous_power, recoil)
   end subroutine sum_powers
 
   !> Work that all else does on the nodes in the half step to come: forces as in the cycle before,
   !> in the free directions of each node no larger than the contact force there was.
-  pure function pushed_work(dt, leap, former, present, inverse_mass, change) result(work)
+  pure function pushed_work(dt, leap, previous, present, inverse_mass, change) result(work)
     real(wp), intent(in) :: dt
     real(wp), intent(in) :: leap !! half the coming step times the mean of both steps, s^2
-    real(wp), intent(in), contiguous :: former(:, :), present(:, :), inverse_mass(:, :)
+    real(wp), intent(in), contiguous :: previous(:, :), present(:, :), inverse_mass(:, :)
     real(wp), intent(in), contiguous :: change(:, :) !! (2, n) v(n-1/2) - v(n-3/2)
     real(wp) :: work
-    real(wp) :: other(2), square, former_square
+    real(wp) :: other(2), square, previous_square
     integer :: i
 
     work = 0.0_wp
     do i = 1, size(present, 2)
       associate (is_free => inverse_mass(:, i) > 0.0_wp)
-        former_square = sum(former(:, i)**2, mask=is_free)
-        if (.not. former_square > 0.0_wp) cycle
+        previous_square = sum(previous(:, i)**2, mask=is_free)
+        if (.not. previous_square > 0.0_wp) cycle
         other = 0.0_wp
-        where (is_free) other = change(:, i)/(inverse_mass(:, i)*dt) - former(:, i)
+        where (is_free) other = change(:, i)/(inverse_mass(:, i)*dt) - previous(:, i)
         square = sum(other**2)
-        if (square > former_square) other = other*sqrt(former_square/square)
+        if (square > previous_square) other = other*sqrt(previous_square/square)
         work = work + leap*sum(present(:, i)*other*inverse_mass(:, i))
       end associate
     end do
@@ -265,22 +266,22 @@ contains
   end subroutine count_cycle
 
   !> Grant springs that were caught loaded what they hold, as far as the loan goes.
-  pure subroutine lend(energy, limit)
+  pure subroutine admit_entry_work(energy, limit)
     real(wp), intent(in) :: energy !! J/m
     type(energy_limit_t), intent(inout) :: limit
     real(wp) :: granted
 
-    granted = min(energy, max(0.0_wp, limit%loan - limit%lent))
-    limit%lent = limit%lent + granted
-    limit%credit = limit%credit + granted
-  end subroutine lend
+    granted = min(energy, max(0.0_wp, limit%entry_allowance - limit%admitted))
+    limit%admitted = limit%admitted + granted
+    limit%admissible = limit%admissible + granted
+  end subroutine admit_entry_work
 
   !> After the work of a cycle has been counted: the largest energy so far.
   pure subroutine follow_largest(energy, limit)
     real(wp), intent(in) :: energy !! of the springs, J/m
     type(energy_limit_t), intent(inout) :: limit
 
-    limit%largest = max(limit%largest, energy + limit%credit)
+    limit%largest = max(limit%largest, energy + limit%admissible)
   end subroutine follow_largest
 
 end module energy_limit_m

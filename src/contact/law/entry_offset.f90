@@ -4,7 +4,7 @@
 !> over half of the segment, small ones as over a ramp of 1 to 20; the work of its fading is
 !> admissible energy (doc/theory/contact.md, section 3.3).
 module entry_offset_m
-  use contact_state_m, only : contact_state_t, tracking_t, is_free, spot_at
+  use contact_state_m, only : contact_state_t, contact_status_t, separated, segment_point_at
   use contacts_m, only : contact_t
   use geometry_m, only : separation
   use kinds_m, only : wp
@@ -23,7 +23,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     logical :: has
 
-    has = memory%slave_tracking%has_offset .or. memory%master_tracking%has_offset
+    has = memory%slave_status%has_offset .or. memory%master_status%has_offset
   end function has_offsets
 
   !> Limit all offsets by the present depths, and let them fade: after the search; in implicit runs
@@ -32,57 +32,57 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
 
-    call fade_offsets(memory%slave_tracking, contact%slave, contact%master, memory%places, &
+    call fade_offsets(memory%slave_status, contact%slave, contact%master, memory%positions, &
       memory%scratch%increment)
-    if (memory%master_tracking%n > 0) call fade_offsets(memory%master_tracking, contact%master, &
-      contact%slave, memory%places, memory%scratch%increment)
+    if (memory%master_status%n > 0) call fade_offsets(memory%master_status, contact%master, &
+      contact%slave, memory%positions, memory%scratch%increment)
   end subroutine update_offsets
 
   !> The offsets of one pass.
-  pure subroutine fade_offsets(tracking, own, other, places, increments)
-    type(tracking_t), intent(inout) :: tracking
+  pure subroutine fade_offsets(status, own, other, positions, increments)
+    type(contact_status_t), intent(inout) :: status
     type(surface_t), intent(in) :: own, other
-    real(wp), intent(in), contiguous :: places(:, :)     !! (4, n_node) of the interface
+    real(wp), intent(in), contiguous :: positions(:, :)  !! (4, n_node) of the interface
     real(wp), intent(in), contiguous :: increments(:, :) !! (2, n_node) displacements of the step, m
     real(wp) :: limited, t(2), length, slip
     integer :: k, i, ends(2)
 
-    tracking%faded = 0.0_wp
-    tracking%has_offset = .false.
-    where (tracking%status == is_free) tracking%offset = 0.0_wp
-    do k = 1, tracking%n_touching
-      i = tracking%touching(k)
-      if (.not. tracking%offset(i) > 0.0_wp) cycle
-      limited = min(tracking%offset(i), max(0.0_wp, -tracking%gap(i)))
-      ends = tracking%pass%other_at + other%segments(:, tracking%segment(i))
-      t = separation(places(:, ends(2)), places(:, ends(1)))
+    status%faded = 0.0_wp
+    status%has_offset = .false.
+    where (status%state == separated) status%offset = 0.0_wp
+    do k = 1, status%n_active
+      i = status%active_points(k)
+      if (.not. status%offset(i) > 0.0_wp) cycle
+      limited = min(status%offset(i), max(0.0_wp, -status%gap(i)))
+      ends = status%pass%other_at + other%segments(:, status%segment(i))
+      t = separation(positions(:, ends(2)), positions(:, ends(1)))
       length = norm2(t)
-      associate (xi => tracking%xi(i))
-        slip = dot_product(motion_of(tracking, own, increments, i) - (1.0_wp - xi) &
+      associate (xi => status%xi(i))
+        slip = dot_product(motion_of(status, own, increments, i) - (1.0_wp - xi) &
           *increments(:, ends(1)) - xi*increments(:, ends(2)), t)/length
       end associate
-      if (.not. tracking%pass%has_history) slip = 0.0_wp
-      tracking%offset(i) = max(0.0_wp, limited - abs(slip)*max(2.0_wp*limited/length, ramp))
-      tracking%faded(i) = limited - tracking%offset(i)
-      tracking%has_offset = tracking%has_offset .or. limited > 0.0_wp
+      if (.not. status%pass%has_history) slip = 0.0_wp
+      status%offset(i) = max(0.0_wp, limited - abs(slip)*max(2.0_wp*limited/length, ramp))
+      status%faded(i) = limited - status%offset(i)
+      status%has_offset = status%has_offset .or. limited > 0.0_wp
     end do
   end subroutine fade_offsets
 
   !> Displacement of a point in the step, m.
-  pure function motion_of(tracking, own, increments, i) result(motion)
-    type(tracking_t), intent(in) :: tracking
+  pure function motion_of(status, own, increments, i) result(motion)
+    type(contact_status_t), intent(in) :: status
     type(surface_t), intent(in) :: own
     real(wp), intent(in), contiguous :: increments(:, :)
     integer, intent(in) :: i
     real(wp) :: motion(2)
     integer :: s, q
 
-    if (tracking%pass%n_on_segment == 0) then
-      motion = increments(:, tracking%pass%own_at + i)
+    if (status%pass%n_on_segment == 0) then
+      motion = increments(:, status%pass%own_at + i)
     else
-      s = 1 + (i - 1)/tracking%pass%n_on_segment
-      q = i - (s - 1)*tracking%pass%n_on_segment
-      associate (ends => tracking%pass%own_at + own%segments(:, s), xi => tracking%pass%xi(q))
+      s = 1 + (i - 1)/status%pass%n_on_segment
+      q = i - (s - 1)*status%pass%n_on_segment
+      associate (ends => status%pass%own_at + own%segments(:, s), xi => status%pass%xi(q))
         motion = (1.0_wp - xi)*increments(:, ends(1)) + xi*increments(:, ends(2))
       end associate
     end if
@@ -100,10 +100,10 @@ contains
     associate (points => memory%points, nodes => memory%points%slave_nodes(:, p))
       if (nodes(1) > memory%n_slave) then
         value = of_master(nodes(1) - memory%n_slave)
-      else if (memory%has%spots) then
-        n = size(memory%spot_xi)
-        value = of_slave(n*(memory%slave_tracking%pass%segment_at(nodes(1)) - 1) &
-          + spot_at(points%slave_weights(2, p), memory%spot_xi))
+      else if (memory%has%segment_points) then
+        n = size(memory%segment_xi)
+        value = of_slave(n*(memory%slave_status%pass%segment_at(nodes(1)) - 1) &
+          + segment_point_at(points%slave_weights(2, p), memory%segment_xi))
       else
         value = dot_product(points%slave_weights(:, p), of_slave(nodes))
       end if
@@ -117,12 +117,12 @@ contains
     integer :: p
 
     do p = 1, memory%points%n
-      gaps(p) = gaps(p) + value_at(memory, memory%slave_tracking%offset, &
-        memory%master_tracking%offset, p)
+      gaps(p) = gaps(p) + value_at(memory, memory%slave_status%offset, &
+        memory%master_status%offset, p)
     end do
   end subroutine add_offsets
 
-  !> Work of the fading of this call, with the points pressed, J/m: the springs have been given it.
+  !> Work of the fading of this call, with the points loaded, J/m: the springs have been given it.
   pure function faded_work(memory) result(work)
     type(contact_state_t), intent(in) :: memory
     real(wp) :: work
@@ -131,7 +131,7 @@ contains
     work = 0.0_wp
     do p = 1, memory%points%n
       work = work + memory%points%pressure(p)*memory%points%area(p) &
-        *value_at(memory, memory%slave_tracking%faded, memory%master_tracking%faded, p)
+        *value_at(memory, memory%slave_status%faded, memory%master_status%faded, p)
     end do
   end function faded_work
 

@@ -1,42 +1,42 @@
 ! SPDX-License-Identifier: MIT
-!> Interference (LCINT; doc/theory/contact.md, section 6.5): a place that overlaps by d at time zero
+!> Interference (LCINT; doc/theory/contact.md, section 6.5): a site that overlaps by d at time zero
 !> has the gap g + (1 - s) d, where the curve s leads from 0 to 1. So a press fit starts without
 !> force, and at the end the overlap acts as it is. What the curve does is external work.
 module interference_m
-  use contact_state_m, only : contact_state_t, place_at
+  use contact_state_m, only : contact_state_t, site_at
   use contacts_m, only : contact_t
   use curves_m, only : curve_value
   use kinds_m, only : wp
   use nodal_average_m, only : average_values
   implicit none
   private
-  public :: begin_growth, take_overlaps, ease_gaps, gather_moment, limit_moment
+  public :: begin_ramp, take_overlaps, ramp_gaps, gather_moment, limit_moment
 
 contains
 
   !> At the beginning of a call: the part that does not act yet. The curve works on the springs of
   !> the call before for half of what it grows by; where these are gone, so is the rest.
-  pure subroutine begin_growth(contact, time, memory)
+  pure subroutine begin_ramp(contact, time, memory)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in) :: time
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: former
+    real(wp) :: previous
 
     associate (interference => memory%interference)
-      former = interference%left
-      interference%left = 1.0_wp - curve_value(contact%interference, time)
+      previous = interference%remaining
+      interference%remaining = 1.0_wp - curve_value(contact%interference, time)
       ! What grows in the step waits here for the moment of this call.
-      call add_work(0.5_wp*interference%moment*(former - interference%left), memory)
-      memory%scratch%growth = former - interference%left
+      call add_work(0.5_wp*interference%moment*(previous - interference%remaining), memory)
+      memory%scratch%ramp_step = previous - interference%remaining
       memory%scratch%is_start = .not. time > 0.0_wp
       interference%moment = 0.0_wp
     end associate
-  end subroutine begin_growth
+  end subroutine begin_ramp
 
-  !> At time zero, with the points placed: how deep the places are.
+  !> At time zero, with the points generated: how deep the sites are.
   pure subroutine take_overlaps(memory)
     type(contact_state_t), intent(inout) :: memory
-    integer :: p, place
+    integer :: p, site
 
     associate (depth => memory%interference%depth, points => memory%points)
       if (memory%has%nodal_pressure) then
@@ -46,30 +46,30 @@ contains
       end if
       do p = 1, points%n
         if (.not. points%gap(p) < 0.0_wp) cycle
-        place = place_at(memory, p)
-        depth(place) = max(depth(place), -points%gap(p))
+        site = site_at(memory, p)
+        depth(site) = max(depth(site), -points%gap(p))
       end do
     end associate
   end subroutine take_overlaps
 
   !> Add what does not act yet to the gaps of points or slave nodes.
-  pure subroutine ease_gaps(memory, gaps)
+  pure subroutine ramp_gaps(memory, gaps)
     type(contact_state_t), intent(in) :: memory
     real(wp), intent(inout) :: gaps(:) !! (points or slave nodes, or more) m
     integer :: p
 
-    associate (n => memory%n_slave, left => memory%interference%left)
+    associate (n => memory%n_slave, remaining => memory%interference%remaining)
       if (memory%has%nodal_pressure) then
-        gaps(:n) = gaps(:n) + left*memory%interference%depth(:n)
+        gaps(:n) = gaps(:n) + remaining*memory%interference%depth(:n)
       else
         do p = 1, memory%points%n
-          gaps(p) = gaps(p) + left*depth_at(memory, p)
+          gaps(p) = gaps(p) + remaining*depth_at(memory, p)
         end do
       end if
     end associate
-  end subroutine ease_gaps
+  end subroutine ramp_gaps
 
-  !> The overlap of a point at time zero. A master node that was no place then has what the ends of
+  !> The overlap of a point at time zero. A master node that was no site then has what the ends of
   !> its slave segment had.
   pure function depth_at(memory, p) result(depth)
     type(contact_state_t), intent(in) :: memory
@@ -77,7 +77,7 @@ contains
     real(wp) :: depth
 
     associate (depths => memory%interference%depth, nodes => memory%points%slave_nodes(:, p))
-      depth = depths(place_at(memory, p))
+      depth = depths(site_at(memory, p))
       if (depth < 0.0_wp) depth = sum(memory%points%slave_weights(:, p)*max(0.0_wp, depths(nodes)))
     end associate
   end function depth_at
@@ -102,7 +102,7 @@ contains
         end do
       end if
     end associate
-    call add_work(0.5_wp*(moment - memory%interference%moment)*memory%scratch%growth, memory)
+    call add_work(0.5_wp*(moment - memory%interference%moment)*memory%scratch%ramp_step, memory)
     memory%interference%moment = moment
   end subroutine gather_moment
 
@@ -112,7 +112,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
 
     associate (moment => memory%interference%moment)
-      call add_work(0.5_wp*(factor - 1.0_wp)*moment*memory%scratch%growth, memory)
+      call add_work(0.5_wp*(factor - 1.0_wp)*moment*memory%scratch%ramp_step, memory)
       moment = factor*moment
     end associate
   end subroutine limit_moment

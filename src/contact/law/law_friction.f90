@@ -8,8 +8,8 @@ module law_friction_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: coefficient_of, has_decay, sliding_speed, return_traction, vary_traction, goes_on, &
-    holds_on
+  public :: coefficient_of, has_decay, sliding_speed, return_traction, linearise_traction, &
+    goes_on, holds_on
 
   !> What slips on in the first tangent of a step, in which nothing has moved yet.
   integer, parameter :: goes_on = -1
@@ -42,7 +42,7 @@ contains
     has_decay = rule%decay > 0.0_wp .and. abs(rule%at_rest - rule%sliding) > 0.0_wp
   end function has_decay
 
-  !> Speed of sliding of a place, m/s: that of the slip that does not come back, by v = (trial -
+  !> Speed of sliding of a site, m/s: that of the slip that does not come back, by v = (trial -
   !> limit(v))/stiffness with limit(v) = min(mu(v) p, most); 0 where it sticks
   !> (doc/theory/contact.md, section 6.2).
   pure function sliding_speed(rule, trial, pressure, most, stiffness, slid) result(speed)
@@ -53,7 +53,7 @@ contains
     real(wp), intent(in) :: stiffness !! tangential, times the step, N s/m^3, > 0
     logical, intent(in) :: slid       !! the same way in the step before
     real(wp) :: speed
-    real(wp) :: x, former, beyond, height, fall
+    real(wp) :: x, previous, beyond, height, fall
     integer :: pass
 
     speed = 0.0_wp
@@ -72,18 +72,18 @@ contains
     ! up to its only one from the left. Neither passes the root.
     x = merge(beyond, 0.0_wp, height > 0.0_wp)
     do pass = 1, most_passes
-      former = x
+      previous = x
       fall = height*exp(-x)
       if (fall >= 1.0_wp) exit
       x = x - (x + fall - beyond)/(1.0_wp - fall)
-      if (abs(x - former) <= 2.0_wp*spacing(x)) exit
+      if (abs(x - previous) <= 2.0_wp*spacing(x)) exit
     end do
     speed = max(x, 0.0_wp)/rule%decay
   end function sliding_speed
 
   !> Return of a trial traction to the limit.
   elemental subroutine return_traction(trial, limit, traction, state)
-    real(wp), intent(in) :: trial     !! former traction plus stiffness times slip, N/m^2
+    real(wp), intent(in) :: trial     !! previous traction plus stiffness times slip, N/m^2
     real(wp), intent(in) :: limit     !! largest traction, N/m^2, >= 0
     real(wp), intent(out) :: traction !! N/m^2
     integer, intent(out) :: state     !! sticks or slips
@@ -92,12 +92,12 @@ contains
     traction = merge(sign(limit, trial), trial, abs(trial) > limit)
   end subroutine return_traction
 
-  !> The traction of a place in contact with its derivatives. One that touches without pressure has
+  !> The traction of a site in contact with its derivatives. One that touches without pressure has
   !> none yet, and sticks.
-  pure function vary_traction(rule, former, slip, pressure, stiffness, most, times, before) &
+  pure function linearise_traction(rule, previous, slip, pressure, stiffness, most, times, before) &
       result(traction)
     type(friction_rule_t), intent(in) :: rule
-    type(dual_t), intent(in) :: former   !! traction before, N/m^2
+    type(dual_t), intent(in) :: previous !! traction before, N/m^2
     type(dual_t), intent(in) :: slip     !! of the step, m
     type(dual_t), intent(in) :: pressure !! N/m^2
     real(wp), intent(in) :: stiffness    !! tangential, N/m^3
@@ -114,7 +114,7 @@ contains
       traction%value = 0.0_wp
       return
     end if
-    traction = former + traction
+    traction = previous + traction
     trial = sign(1.0_wp, traction%value)*traction
     limit = coefficient_of(rule, 0.0_wp)*pressure
     if (most%value < limit%value) limit = most
@@ -131,19 +131,19 @@ contains
         traction = damped
       end if
       speed = sliding_speed(rule, trial%value, pressure%value, most%value, stiffness*times(1), &
-        (before == slips .or. before == goes_on) .and. traction%value*former%value > 0.0_wp)
+        (before == slips .or. before == goes_on) .and. traction%value*previous%value > 0.0_wp)
     end if
     if (speed > 0.0_wp) then
-      limit = vary_sliding_limit(rule, speed, trial, pressure, most, stiffness*times(1))
+      limit = linearise_sliding_limit(rule, speed, trial, pressure, most, stiffness*times(1))
     else if (.not. (abs(traction%value) > limit%value .or. before == goes_on)) then
       return
     end if
     traction = sign(1.0_wp, traction%value)*limit
-  end function vary_traction
+  end function linearise_traction
 
   !> The limit at a speed of sliding with its derivatives, from those of the equation that the speed
   !> solves.
-  pure function vary_sliding_limit(rule, speed, trial, pressure, most, stiffness) result(limit)
+  pure function linearise_sliding_limit(rule, speed, trial, pressure, most, stiffness) result(limit)
     type(friction_rule_t), intent(in) :: rule
     real(wp), intent(in) :: speed     !! m/s
     type(dual_t), intent(in) :: trial !! size of the trial traction, N/m^2
@@ -162,6 +162,6 @@ contains
     fall = rule%decay*(coefficient - rule%sliding)*pressure%value/stiffness
     limit%slope = limit%slope - fall/max(1.0_wp - fall, sqrt(epsilon(fall))) &
       *(trial%slope - limit%slope)
-  end function vary_sliding_limit
+  end function linearise_sliding_limit
 
 end module law_friction_m

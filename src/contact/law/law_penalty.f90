@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> The penalty law: a spring at each place, which pushes and never pulls.
+!> The penalty law: a spring at each site, which pushes and never pulls.
 module law_penalty_m
   use kinds_m, only : wp
   implicit none
@@ -8,8 +8,8 @@ module law_penalty_m
 
 contains
 
-  !> Pressures p = stiffness * max(0, -gap) of some places, their slopes by the gap in contact, and
-  !> what the places store: the integral of p over the way from closing.
+  !> Pressures p = stiffness * max(0, -gap) of some sites, their slopes by the gap in contact, and
+  !> what the sites store: the integral of p over the way from closing.
   pure subroutine apply_penalty(n, stiffness, gap, pressure, slope, energy)
     integer, intent(in) :: n
     real(wp), intent(in) :: stiffness(n)   !! N/m^2

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Ties (doc/theory/contact.md, section 6.3): springs of both signs along the current
-!> normal and tangent of a segment, between places that were frozen in the reference geometry. With
-!> d from the master place to the slave place, d0 and n0, t0 in the reference geometry, a = d.n -
+!> normal and tangent of a segment, between sites that were frozen in the reference geometry. With
+!> d from the master site to the slave site, d0 and n0, t0 in the reference geometry, a = d.n -
 !> d0.n0, b = d.t - d0.t0, each spring stores k w (a^2 + b^2)/2, and its forces are the exact
 !> gradient: -k w (a n + b t) on the slave side, the opposite on the master side, and the couple
 !> k w (b d.n - a d.t) on the segment that n and t turn with, so that the net moment vanishes.
@@ -23,7 +23,7 @@ module ties_m
   type :: tie_spring_t
     real(wp) :: n(2)    !! unit, from master to slave
     real(wp) :: t(2)    !! (-n_y, n_x)
-    real(wp) :: d(2)    !! from the master place to the slave place, m
+    real(wp) :: d(2)    !! from the master site to the slave site, m
     real(wp) :: length  !! of the segment, m
   end type tie_spring_t
 
@@ -38,7 +38,7 @@ contains
     type(tie_spring_t) :: spring
     integer :: s
 
-    call keep_points(reach, memory%points)
+    call select_points(reach, memory%points)
     call allocate_ties(memory%ties, spring_starts(memory))
     associate (ties => memory%ties, points => memory%points)
       do s = 1, size(ties%side)
@@ -58,7 +58,7 @@ contains
   end subroutine freeze_ties
 
   !> Keep the points within reach that have an area.
-  pure subroutine keep_points(reach, points)
+  pure subroutine select_points(reach, points)
     real(wp), intent(in) :: reach
     type(contact_points_t), intent(inout) :: points
     integer :: p, n
@@ -77,7 +77,7 @@ contains
       points%stiffness(n) = points%stiffness(p)
     end do
     points%n = n
-  end subroutine keep_points
+  end subroutine select_points
 
   !> The first point of each spring, then the end.
   pure function spring_starts(memory) result(first)
@@ -95,7 +95,7 @@ contains
     first = [first, memory%points%n + 1]
   end function spring_starts
 
-  !> Whether a point and the next one belong to one spring: portions of one virtual node.
+  !> Whether a point and the next one belong to one spring: sub-segments of one virtual node.
   pure function is_same_spring(memory, p) result(same)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: p
@@ -114,7 +114,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     logical :: has
 
-    has = memory%has%spots .and. .not. memory%has%nodal_pressure
+    has = memory%has%segment_points .and. .not. memory%has%nodal_pressure
   end function has_virtual_nodes
 
   !> The segment that the normal of a spring belongs to: the master's, for a virtual node the one
@@ -133,16 +133,16 @@ contains
         owner = points%slave_nodes(:, p)
         memory%ties%side(s) = -1.0_wp
       else if (has_virtual_nodes(memory)) then
-        n = size(memory%spot_xi)
-        q = minloc(abs(memory%spot_xi - points%slave_weights(2, p)), 1)
-        owner = memory%n_slave + contact%master%segments(:, memory%slave_tracking%segment( &
+        n = size(memory%segment_xi)
+        q = minloc(abs(memory%segment_xi - points%slave_weights(2, p)), 1)
+        owner = memory%n_slave + contact%master%segments(:, memory%slave_status%segment( &
           n*(contact%slave%outgoing(points%slave_nodes(1, p)) - 1) + q))
       end if
     end associate
   end subroutine find_owner
 
-  !> Mean by area, over the points of a spring, of slave place minus master place: rows k and k + 1
-  !> of the places (1: in the reference geometry, 3: displacements), m.
+  !> Mean by area, over the points of a spring, of slave site minus master site: rows k and k + 1
+  !> of the sites (1: in the reference geometry, 3: displacements), m.
   pure function mean_separation(memory, s, k) result(d)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s, k
@@ -152,12 +152,12 @@ contains
 
     d = 0.0_wp
     total = 0.0_wp
-    associate (points => memory%points, places => memory%places)
+    associate (points => memory%points, positions => memory%positions)
       do p = memory%ties%first(s), memory%ties%first(s + 1) - 1
         do i = 1, n_side
           d = d + points%area(p)*( &
-            points%slave_weights(i, p)*places(k:k + 1, points%slave_nodes(i, p)) &
-            - points%master_weights(i, p)*places(k:k + 1, points%master_nodes(i, p)))
+            points%slave_weights(i, p)*positions(k:k + 1, points%slave_nodes(i, p)) &
+            - points%master_weights(i, p)*positions(k:k + 1, points%master_nodes(i, p)))
         end do
         total = total + points%area(p)
       end do
@@ -165,15 +165,15 @@ contains
     d = d/total
   end function mean_separation
 
-  !> A spring at the places in the memory.
+  !> A spring at the sites in the memory.
   pure function tie_spring(memory, s) result(spring)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
     type(tie_spring_t) :: spring
     real(wp) :: way(2)
 
-    associate (ties => memory%ties, places => memory%places)
-      way = separation(places(:, ties%owner(2, s)), places(:, ties%owner(1, s)))
+    associate (ties => memory%ties, positions => memory%positions)
+      way = separation(positions(:, ties%owner(2, s)), positions(:, ties%owner(1, s)))
       spring%length = max(sqrt(way(1)**2 + way(2)**2), tiny(1.0_wp))
       spring%t = ties%side(s)/spring%length*way
       spring%n = [spring%t(2), -spring%t(1)]
@@ -181,7 +181,7 @@ contains
     end associate
   end function tie_spring
 
-  !> Pressures, tractions and nodal forces of all springs at the places in the memory. Pressures
+  !> Pressures, tractions and nodal forces of all springs at the sites in the memory. Pressures
   !> below zero are tension. Springs that reach their strengths break, where any are given.
   pure subroutine hold_ties(memory, strength, time)
     type(contact_state_t), intent(inout) :: memory
@@ -217,7 +217,7 @@ contains
     real(wp), intent(in) :: strength(2) !! NFLS, SFLS, N/m^2
     real(wp), intent(in) :: time        !! s
     type(contact_state_t), intent(inout) :: memory
-    integer, intent(out) :: n_new       !! places that have broken
+    integer, intent(out) :: n_new       !! sites that have broken
     real(wp) :: before, after, load
     integer :: node
 
@@ -313,7 +313,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     real(wp), intent(out) :: energy
     real(wp), intent(out) :: load !! N/m
-    integer, intent(out) :: node  !! slave node next to it, by place in the mesh; 0: no load
+    integer, intent(out) :: node  !! slave node next to it, by index in the mesh; 0: no load
     real(wp) :: square, stiffness
     integer :: b, i
 

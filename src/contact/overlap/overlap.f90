@@ -60,29 +60,29 @@ contains
   pure subroutine resolve_overlaps(overlaps, n)
     type(overlap_t), intent(inout) :: overlaps(:) !! with room for twice as many
     integer, intent(inout) :: n
-    type(overlap_t) :: former(n)
+    type(overlap_t) :: previous(n)
     real(wp) :: points(2*n), low, high
-    integer :: nodes(2*n), i, winner, n_former
+    integer :: nodes(2*n), i, winner, n_previous
 
-    n_former = n
-    former = overlaps(:n)
-    call list_breakpoints(former, points, nodes)
+    n_previous = n
+    previous = overlaps(:n)
+    call list_breakpoints(previous, points, nodes)
     n = 0
-    do i = 1, 2*n_former - 1
+    do i = 1, 2*n_previous - 1
       low = points(i)
       high = points(i + 1)
       if (.not. high > low) cycle
-      winner = nearest_penetrated(former, low, high)
+      winner = nearest_penetrated(previous, low, high)
       if (winner == 0) cycle
       if (n > 0) then
-        if (overlaps(n)%master == former(winner)%master .and. .not. low > overlaps(n)%high) then
+        if (overlaps(n)%master == previous(winner)%master .and. .not. low > overlaps(n)%high) then
           overlaps(n)%high = high
           overlaps(n)%last = nodes(i + 1)
           cycle
         end if
       end if
       n = n + 1
-      overlaps(n) = former(winner)
+      overlaps(n) = previous(winner)
       overlaps(n)%low = low
       overlaps(n)%high = high
       overlaps(n)%first = nodes(i)

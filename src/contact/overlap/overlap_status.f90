@@ -2,13 +2,14 @@
 !> Status of slave segments whose overlaps make contact points between the slave nodes: what may
 !> begin, and which segments are not due (doc/theory/contact.md, sections 3.3 and 4).
 module overlap_status_m
-  use contact_state_m, only : contact_state_t, is_free, is_touching
+  use contact_state_m, only : contact_state_t, separated, active
   use contacts_m, only : contact_t
   use geometry_m, only : separation
   use kinds_m, only : wp
   implicit none
   private
-  public :: none_due, look_at_segment, keep_segment, judge_segment, note_next_wake
+  public :: none_due, search_segment, store_segment_state, update_segment_state, &
+    note_earliest_search
 
   !> Cosine between outward normals from which on segments can not come to be opposed before new
   !> lists are made.
@@ -21,46 +22,46 @@ contains
     type(contact_state_t), intent(in) :: memory
     logical :: none_due
 
-    none_due = memory%slave_tracking%n_touching == 0 &
-      .and. memory%travel + memory%closed_gap < memory%next_segment_wake
+    none_due = memory%slave_status%n_active == 0 &
+      .and. memory%travel + memory%closed_gap < memory%earliest_segment_search
   end function none_due
 
   !> Whether a slave segment may touch: an end of it is active, or its next search time has come and
   !> something is behind it or behind what it is opposed to. Else that time is put off.
-  pure subroutine look_at_segment(contact, memory, segment, is_due)
+  pure subroutine search_segment(contact, memory, segment, is_due)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: segment
     logical, intent(out) :: is_due
     real(wp) :: distance
 
-    associate (status => memory%slave_tracking%status, ends => contact%slave%segments(:, segment))
-      is_due = status(ends(1)) == is_touching .or. status(ends(2)) == is_touching
+    associate (state => memory%slave_status%state, ends => contact%slave%segments(:, segment))
+      is_due = state(ends(1)) == active .or. state(ends(2)) == active
     end associate
-    if (is_due .or. memory%travel + memory%closed_gap < memory%segment_wake(segment)) return
+    if (is_due .or. memory%travel + memory%closed_gap < memory%segment_search(segment)) return
     call see_candidates(contact, memory, segment, distance, is_due)
     is_due = is_due .or. distance < memory%closed_gap
-    memory%segment_wake(segment) = memory%travel + distance
+    memory%segment_search(segment) = memory%travel + distance
     if (is_due) return
-    memory%segment_status(segment) = is_free
+    memory%segment_state(segment) = separated
     memory%segment_gap(segment) = distance
-  end subroutine look_at_segment
+  end subroutine search_segment
 
   !> Note a segment with both ends active: it stays, whatever its gaps. Of one in contact nothing is
   !> written again.
-  pure subroutine keep_segment(is_deep, travel, status, wake)
+  pure subroutine store_segment_state(is_deep, travel, state, next_search)
     logical, intent(in) :: is_deep   !! some gap of it is closed
     real(wp), intent(in) :: travel   !! m
-    integer, intent(inout) :: status !! of the segment
-    real(wp), intent(inout) :: wake  !! m
+    integer, intent(inout) :: state  !! of the segment
+    real(wp), intent(inout) :: next_search !! m
 
-    if (is_deep .and. status == is_touching) return
-    status = merge(is_touching, is_free, is_deep)
-    wake = merge(-huge(1.0_wp), travel, is_deep)
-  end subroutine keep_segment
+    if (is_deep .and. state == active) return
+    state = merge(active, separated, is_deep)
+    next_search = merge(-huge(1.0_wp), travel, is_deep)
+  end subroutine store_segment_state
 
   !> Whether the points on a segment count. One that is in contact, or has an active end, stays.
-  pure subroutine judge_segment(memory, segment, ends, deepest, counts)
+  pure subroutine update_segment_state(memory, segment, ends, deepest, counts)
     type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: segment
     integer, intent(in) :: ends(2)     !! its nodes
@@ -69,36 +70,37 @@ contains
     logical :: has_active_end
 
     counts = .true.
-    has_active_end = any(memory%slave_tracking%status(ends) == is_touching)
-    associate (status => memory%segment_status(segment), wake => memory%segment_wake(segment))
+    has_active_end = any(memory%slave_status%state(ends) == active)
+    associate (state => memory%segment_state(segment), next_search => &
+      memory%segment_search(segment))
       if (deepest >= memory%closed_gap) then
-        status = is_free
-        ! It is due as long as an end is active; without one `look_at_segment` has set the time.
-        if (has_active_end) wake = memory%travel
+        state = separated
+        ! It is due as long as an end is active; without one `search_segment` has set the time.
+        if (has_active_end) next_search = memory%travel
       else
-        wake = -huge(1.0_wp)
+        next_search = -huge(1.0_wp)
         if (has_active_end) then
-          status = is_touching
-        else if (status == is_free) then
-          call begin_contact(memory, segment, ends, -deepest, status)
+          state = active
+        else if (state == separated) then
+          call begin_contact(memory, segment, ends, -deepest, state)
         end if
-        counts = status == is_touching
+        counts = state == active
       end if
     end associate
     memory%segment_gap(segment) = deepest
-  end subroutine judge_segment
+  end subroutine update_segment_state
 
   !> A segment neither end of which is active, behind which points have come: in contact if these
   !> have come through it since the last look, and no deeper than a first contact may be unless the
   !> step is an implicit one.
-  pure subroutine begin_contact(memory, segment, ends, depth, status)
+  pure subroutine begin_contact(memory, segment, ends, depth, state)
     type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: segment, ends(2)
     real(wp), intent(in) :: depth    !! of the deepest, m
-    integer, intent(inout) :: status !! of the segment
+    integer, intent(inout) :: state  !! of the segment
     logical :: is_new, is_deep
 
-    associate (pass => memory%slave_tracking%pass)
+    associate (pass => memory%slave_status%pass)
       is_new = .not. pass%has_history .or. memory%segment_gap(segment) >= 0.0_wp
       is_deep = depth > deepest_first_contact(memory, segment, ends)
       if (pass%has_history .and. pass%is_trial) is_deep = .false.
@@ -106,10 +108,10 @@ contains
     if (.not. is_new) return
     if (is_deep) then
       ! Ends that have come as deep have been counted.
-      if (all(memory%slave_tracking%gap(ends) >= 0.0_wp)) &
-        memory%slave_tracking%n_released = memory%slave_tracking%n_released + 1
+      if (all(memory%slave_status%gap(ends) >= 0.0_wp)) &
+        memory%slave_status%n_released = memory%slave_status%n_released + 1
     else
-      status = is_touching
+      state = active
     end if
   end subroutine begin_contact
 
@@ -120,9 +122,9 @@ contains
     real(wp) :: depth
     integer :: j
 
-    depth = minval(memory%slave_tracking%spot_depth(ends))
+    depth = minval(memory%slave_status%point_depth(ends))
     do j = memory%candidates%first(segment), memory%candidates%first(segment + 1) - 1
-      depth = min(depth, memory%slave_tracking%segment_depth(memory%candidates%items(j)))
+      depth = min(depth, memory%slave_status%segment_depth(memory%candidates%items(j)))
     end do
   end function deepest_first_contact
 
@@ -138,23 +140,23 @@ contains
     real(wp) :: a(2), b(2), own(2), other(2), squares(2), across(4), product, least
     integer :: ends(2), nodes(2), j
 
-    least = memory%slave_tracking%reach**2
+    least = memory%slave_status%reach**2
     is_behind = .false.
     ends = contact%slave%segments(:, s)
-    associate (places => memory%places)
-      own = separation(places(:, ends(2)), places(:, ends(1)))
+    associate (positions => memory%positions)
+      own = separation(positions(:, ends(2)), positions(:, ends(1)))
       squares(1) = max(own(1)**2 + own(2)**2, tiny(1.0_wp))
       do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
         nodes = memory%n_slave + contact%master%segments(:, memory%candidates%items(j))
-        other = separation(places(:, nodes(2)), places(:, nodes(1)))
+        other = separation(positions(:, nodes(2)), positions(:, nodes(1)))
         squares(2) = max(other(1)**2 + other(2)**2, tiny(1.0_wp))
         product = own(1)*other(1) + own(2)*other(2)
         if (product > 0.0_wp .and. product**2 >= averted**2*(squares(1)*squares(2))) cycle
-        a = separation(places(:, ends(1)), places(:, nodes(1)))
-        b = separation(places(:, ends(2)), places(:, nodes(1)))
+        a = separation(positions(:, ends(1)), positions(:, nodes(1)))
+        b = separation(positions(:, ends(2)), positions(:, nodes(1)))
         call see_node(a, other, squares(2), least, across(1))
         call see_node(b, other, squares(2), least, across(2))
-        b = separation(places(:, nodes(2)), places(:, ends(1)))
+        b = separation(positions(:, nodes(2)), positions(:, ends(1)))
         call see_node(-a, own, squares(1), least, across(3))
         call see_node(b, own, squares(1), least, across(4))
         is_behind = is_behind .or. minval(across) < 0.0_wp
@@ -184,12 +186,12 @@ contains
   end subroutine see_node
 
   !> After all segments have been looked at. Not asked for as long as something is active.
-  pure subroutine note_next_wake(memory)
+  pure subroutine note_earliest_search(memory)
     type(contact_state_t), intent(inout) :: memory
 
-    memory%next_segment_wake = -huge(1.0_wp)
-    if (memory%slave_tracking%n_touching == 0) &
-      memory%next_segment_wake = minval(memory%segment_wake)
-  end subroutine note_next_wake
+    memory%earliest_segment_search = -huge(1.0_wp)
+    if (memory%slave_status%n_active == 0) &
+      memory%earliest_segment_search = minval(memory%segment_search)
+  end subroutine note_earliest_search
 
 end module overlap_status_m

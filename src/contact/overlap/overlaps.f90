@@ -5,11 +5,11 @@
 !> overlaps of different bodies lie over each other the nearest penetrated one wins
 !> (doc/theory/contact.md, section 3.5).
 module overlaps_m
-  use contact_state_m, only : contact_state_t, is_touching
+  use contact_state_m, only : contact_state_t, active
   use contacts_m, only : contact_t
-  use foot_m, only : foot_t, closest_foot, side_on, face_on, side_share, &
-    least_excess, facing_share, see_segment, vector_of, turns_gently, round_off
-  use geometry_m, only : sight_t, closest_distance
+  use projection_m, only : projection_t, closest_projection, side_on, face_on, side_share, &
+    least_excess, opposed_share, local_coordinates, vector_of, turns_gently, round_off
+  use geometry_m, only : local_coordinates_t, closest_distance
   use kinds_m, only : wp
   use overlap_m, only : overlap_t, gap_at, order_overlaps
   use surfaces_m, only : surface_t
@@ -62,12 +62,12 @@ contains
   end function room_for_overlaps
 
   !> Overlaps of a slave segment, in order along it.
-  pure subroutine find_overlaps(contact, memory, s, is_strict, least_cut, overlaps, n)
+  pure subroutine find_overlaps(contact, memory, s, is_strict, least_part, overlaps, n)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s         !! slave segment
     logical, intent(in) :: is_strict !! with an end beyond the master it has one without a master
-    real(wp), intent(in) :: least_cut !! part of the segment next to its active ends where master
+    real(wp), intent(in) :: least_part !! part of the segment next to its active ends where master
                                       !! nodes are no breakpoints
     type(overlap_t), intent(inout), contiguous :: overlaps(:) !! with room for
                                       !! `n_most_overlaps`
@@ -77,10 +77,10 @@ contains
 
     own%number = s
     own%ends = contact%slave%segments(:, s)
-    own%is_active = memory%slave_tracking%status(own%ends) == is_touching
-    own%margins = merge(least_cut, 0.0_wp, own%is_active)
-    own%start = memory%places(:, own%ends(1))
-    own%t = way_to(own%ends(2), own, memory%places)
+    own%is_active = memory%slave_status%state(own%ends) == active
+    own%margins = merge(least_part, 0.0_wp, own%is_active)
+    own%start = memory%positions(:, own%ends(1))
+    own%t = way_to(own%ends(2), own, memory%positions)
     own%square = max(own%t(1)**2 + own%t(2)**2, tiny(1.0_wp))
     do k = 1, 2
       own%below(k) = segment_below(contact, memory, own, k)
@@ -94,22 +94,22 @@ contains
     end if
     if (contact%master%n_segment > short_surface .and. all(own%is_active)) &
       call take_between(own, contact%master%previous, &
-      contact%master%segments, memory%n_slave, memory%places, least_cut, overlaps, n)
+      contact%master%segments, memory%n_slave, memory%positions, least_part, overlaps, n)
     if (n == 0) call take_candidates(contact, memory, own, overlaps, n)
-    if (memory%slave_tracking%pass%is_closed) call weigh_sides(contact, memory, own, overlaps(:n))
+    if (memory%slave_status%pass%is_closed) call weigh_sides(contact, memory, own, overlaps(:n))
   end subroutine find_overlaps
 
   !> Overlaps with the master segments from below one active end to below the other; none where
   !> these are too many or do not follow each other.
-  pure subroutine take_between(own, previous, segments, n_slave, places, least_cut, overlaps, n)
+  pure subroutine take_between(own, previous, segments, n_slave, positions, least_part, overlaps, n)
     type(slave_segment_t), intent(in) :: own
     integer, intent(in) :: previous(*), segments(2, *) !! of the master
     integer, intent(in) :: n_slave       !! local number before the first master node
-    real(wp), intent(in) :: places(4, *) !! of the interface
-    real(wp), intent(in) :: least_cut
+    real(wp), intent(in) :: positions(4, *) !! of the interface
+    real(wp), intent(in) :: least_part
     type(overlap_t), intent(inout) :: overlaps(*)
     integer, intent(out) :: n
-    real(wp) :: d(2), former(2), inverse, xi, low
+    real(wp) :: d(2), earlier(2), inverse, xi, low
     integer :: k, m, node, first
 
     n = 0
@@ -125,40 +125,40 @@ contains
     low = 0.0_wp
     first = 0
     inverse = 1.0_wp/own%square
-    former = way_to(n_slave + segments(2, own%below(1)), own, places)
+    earlier = way_to(n_slave + segments(2, own%below(1)), own, positions)
     do k = 1, n
       node = segments(1, overlaps(k)%master)
-      d = way_to(n_slave + node, own, places)
+      d = way_to(n_slave + node, own, positions)
       xi = (d(1)*own%t(1) + d(2)*own%t(2))*inverse
       overlaps(k)%low = low
       overlaps(k)%first = first
       overlaps(k)%share = 0.0_wp
       overlaps(k)%part = 1.0_wp
-      if (k == n .or. xi >= 1.0_wp - least_cut) then
+      if (k == n .or. xi >= 1.0_wp - least_part) then
         xi = 1.0_wp
         node = 0
-      else if (xi <= max(low, least_cut)) then
+      else if (xi <= max(low, least_part)) then
         xi = low
         node = first
       end if
       overlaps(k)%high = xi
       overlaps(k)%last = node
-      if (xi > low) overlaps(k)%share = share_of(own, former - d)
-      former = d
+      if (xi > low) overlaps(k)%share = share_of(own, earlier - d)
+      earlier = d
       low = xi
       first = node
     end do
   end subroutine take_between
 
   !> Vector from the first end of a slave segment to a node, m.
-  pure function way_to(node, own, places) result(d)
+  pure function way_to(node, own, positions) result(d)
     integer, intent(in) :: node          !! local number
     type(slave_segment_t), intent(in) :: own
-    real(wp), intent(in) :: places(4, *) !! of the interface
+    real(wp), intent(in) :: positions(4, *) !! of the interface
     real(wp) :: d(2)
 
-    d(1) = (places(1, node) - own%start(1)) + (places(3, node) - own%start(3))
-    d(2) = (places(2, node) - own%start(2)) + (places(4, node) - own%start(4))
+    d(1) = (positions(1, node) - own%start(1)) + (positions(3, node) - own%start(3))
+    d(2) = (positions(2, node) - own%start(2)) + (positions(4, node) - own%start(4))
   end function way_to
 
   !> Overlaps with the candidates of a slave segment.
@@ -173,16 +173,16 @@ contains
 
     ! From the start a master node may lie deep behind a segment both ends of which are beside it.
     may_be_deep = .not. contact%is_self .and. .not. any(own%is_active) &
-      .and. memory%segment_status(own%number) == is_touching
+      .and. memory%segment_state(own%number) == active
     n_most = n_most_overlaps(memory, own%number)
     n = 0
     do j = memory%candidates%first(own%number), memory%candidates%first(own%number + 1) - 1
       associate (m => memory%candidates%items(j), overlap => overlaps(n + 1))
-        call cut_by(contact%master, memory, own, m, overlap)
+        call clip(contact%master, memory, own, m, overlap)
         if (.not. overlap%high > overlap%low) cycle
         if (is_beyond(contact%master, own%below, m, n_most)) cycle
         if (.not. may_be_deep .and. gap_at(overlap, 0.5_wp*(overlap%low + overlap%high)) &
-          < -deep*memory%slave_tracking%segment_depth(m)) then
+          < -deep*memory%slave_status%segment_depth(m)) then
           if (.not. any(own%is_active .and. own%below == m) &
             .and. .not. is_reached(contact, memory, own, m, n_most)) cycle
         end if
@@ -205,15 +205,15 @@ contains
     integer :: k, i, segment, next
 
     reached = .false.
-    associate (master => contact%master, chain => memory%places(:, memory%n_slave + 1:))
+    associate (master => contact%master, polyline => memory%positions(:, memory%n_slave + 1:))
       do k = 1, 2
         if (.not. own%is_active(k)) cycle
-        segment = memory%slave_tracking%segment(own%ends(k))
+        segment = memory%slave_status%segment(own%ends(k))
         do i = 1, n_most
           reached = reached .or. segment == m
           next = merge(master%previous(segment), master%next(segment), k == 1)
           if (reached .or. next == 0 .or. contact%is_self) exit
-          if (.not. turns_gently(vector_of(master, chain, segment), vector_of(master, chain, &
+          if (.not. turns_gently(vector_of(master, polyline, segment), vector_of(master, polyline, &
             next))) exit
           segment = next
         end do
@@ -233,10 +233,10 @@ contains
     real(wp) :: at
 
     if (own%is_active(k)) then
-      segment = memory%slave_tracking%segment(own%ends(k))
-      at = memory%slave_tracking%xi(own%ends(k))
+      segment = memory%slave_status%segment(own%ends(k))
+      at = memory%slave_status%xi(own%ends(k))
     else
-      call look_below(contact, memory, own%number, own%ends(k), segment, at)
+      call search_below(contact, memory, own%number, own%ends(k), segment, at)
     end if
     if (segment == 0) return
     outer = 0
@@ -246,46 +246,47 @@ contains
   end function segment_below
 
   !> The same of an end that is not active, and where on the segment.
-  pure subroutine look_below(contact, memory, s, node, segment, at)
+  pure subroutine search_below(contact, memory, s, node, segment, at)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s, node
     integer, intent(out) :: segment
     real(wp), intent(out) :: at !! 0 to 1
-    type(foot_t) :: foot
+    type(projection_t) :: projection
 
     at = 0.5_wp
-    segment = closest_candidate(contact, memory, s, memory%places(:, node), .true.)
+    segment = closest_candidate(contact, memory, s, memory%positions(:, node), .true.)
     if (segment == 0) return
-    associate (chain => memory%places(:, memory%n_slave + 1:), point => memory%places(:, node))
-      foot = closest_foot(contact%master, chain, point, segment)
-      if (.not. foot%is_on) then
+    associate (polyline => memory%positions(:, memory%n_slave + 1:), point => &
+      memory%positions(:, node))
+      projection = closest_projection(contact%master, polyline, point, segment)
+      if (.not. projection%is_on) then
         segment = 0
-      else if (abs(foot%xi - 0.5_wp) >= 0.5_wp) then
+      else if (abs(projection%xi - 0.5_wp) >= 0.5_wp) then
         ! At a vertex: below the end of the slave segment only if the master goes on gently there.
-        segment = merge(foot%segment, 0, goes_on(contact%master, chain, foot))
+        segment = merge(projection%segment, 0, goes_on(contact%master, polyline, projection))
       end if
-      at = foot%xi
+      at = projection%xi
     end associate
-  end subroutine look_below
+  end subroutine search_below
 
   !> Whether a surface goes on without a sharp turn at the node on which a projection stands.
-  pure function goes_on(surface, chain, foot)
+  pure function goes_on(surface, polyline, projection)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_node) positions
-    type(foot_t), intent(in) :: foot
+    real(wp), intent(in), contiguous :: polyline(:, :) !! (4, n_node) positions
+    type(projection_t), intent(in) :: projection
     logical :: goes_on
     integer :: before, behind
 
-    before = foot%segment
-    behind = surface%next(foot%segment)
-    if (foot%xi < 0.5_wp) then
-      before = surface%previous(foot%segment)
-      behind = foot%segment
+    before = projection%segment
+    behind = surface%next(projection%segment)
+    if (projection%xi < 0.5_wp) then
+      before = surface%previous(projection%segment)
+      behind = projection%segment
     end if
     goes_on = min(before, behind) == 0
-    if (.not. goes_on) goes_on = turns_gently(vector_of(surface, chain, before), &
-      vector_of(surface, chain, behind))
+    if (.not. goes_on) goes_on = turns_gently(vector_of(surface, polyline, before), &
+      vector_of(surface, polyline, behind))
   end function goes_on
 
   !> The candidate of a slave segment that is closest to a position on it; 0: none.
@@ -297,19 +298,19 @@ contains
     logical, intent(in) :: is_opposed !! only those that are opposed to the segment
     integer :: closest
     real(wp) :: own(2), square, least
-    type(sight_t) :: sight
+    type(local_coordinates_t) :: local
     integer :: j, m
 
     closest = 0
     least = huge(1.0_wp)
-    own = vector_of(contact%slave, memory%places, s)
+    own = vector_of(contact%slave, memory%positions, s)
     do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
       m = memory%candidates%items(j)
-      sight = see_segment(contact%master, memory%places(:, memory%n_slave + 1:), point, m)
-      square = closest_distance(sight)
+      local = local_coordinates(contact%master, memory%positions(:, memory%n_slave + 1:), point, m)
+      square = closest_distance(local)
       if (square >= least) cycle
       if (is_opposed) then
-        if (.not. looks_against(own, sight%t)) cycle
+        if (.not. looks_against(own, local%t)) cycle
       end if
       least = square
       closest = m
@@ -337,11 +338,11 @@ contains
     real(wp) :: other(2)
     integer :: k
 
-    associate (master => memory%places(:, memory%n_slave + 1:))
+    associate (master => memory%positions(:, memory%n_slave + 1:))
       do k = 1, size(overlaps)
         if (.not. overlaps(k)%share > 0.0_wp) cycle
         other = vector_of(contact%master, master, overlaps(k)%master)
-        overlaps(k)%part = side_part(contact%slave, memory%places, own%number, other)
+        overlaps(k)%part = side_part(contact%slave, memory%positions, own%number, other)
         if (overlaps(k)%part > 0.0_wp) overlaps(k)%part = overlaps(k)%part &
           *side_part(contact%master, master, overlaps(k)%master, own%t)
         overlaps(k)%share = overlaps(k)%share*overlaps(k)%part
@@ -351,9 +352,9 @@ contains
 
   !> How much of a segment counts, 0 to 1: less the more a segment next to it at a convex vertex is
   !> opposed to the segment of the other surface than it is itself (see `side_share`).
-  pure function side_part(surface, places, segment, other) result(part)
+  pure function side_part(surface, positions, segment, other) result(part)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, at least n_node) from this surface on
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, at least n_node) from this surface on
     integer, intent(in) :: segment
     real(wp), intent(in) :: other(2)                 !! segment of the other surface, m
     real(wp) :: part
@@ -361,7 +362,7 @@ contains
     integer :: k, next
 
     part = 1.0_wp
-    own = vector_of(surface, places, segment)
+    own = vector_of(surface, positions, segment)
     product = own(1)*other(1) + own(2)*other(2)
     squares = (own(1)**2 + own(2)**2)*(other(1)**2 + other(2)**2)
     ! No segment can be opposed so much more.
@@ -369,7 +370,7 @@ contains
     do k = 1, 2
       next = merge(surface%previous(segment), surface%next(segment), k == 1)
       if (next == 0) cycle
-      beside = vector_of(surface, places, next)
+      beside = vector_of(surface, positions, next)
       if (merge(-1.0_wp, 1.0_wp, k == 1)*(own(1)*beside(2) - own(2)*beside(1)) <= 0.0_wp) cycle
       part = part*side_share(product/sqrt(squares) - (beside(1)*other(1) + beside(2)*other(2)) &
         /sqrt((beside(1)**2 + beside(2)**2)*(other(1)**2 + other(2)**2)))
@@ -386,7 +387,7 @@ contains
     opposed = .false.
     do k = 1, 2
       if (.not. own%is_active(k)) cycle
-      associate (normal => memory%slave_tracking%normal(:, own%ends(k)))
+      associate (normal => memory%slave_status%normal(:, own%ends(k)))
         opposed = opposed .or. own%t(2)*normal(1) - own%t(1)*normal(2) < side_on*sqrt(own%square)
       end associate
     end do
@@ -420,7 +421,7 @@ contains
   end function is_beyond
 
   !> The overlap with one master segment; empty where they are not opposed.
-  pure subroutine cut_by(master, memory, own, m, overlap)
+  pure subroutine clip(master, memory, own, m, overlap)
     type(surface_t), intent(in) :: master
     type(contact_state_t), intent(in) :: memory
     type(slave_segment_t), intent(in) :: own
@@ -433,7 +434,7 @@ contains
     overlap%high = 0.0_wp
     nodes = [master%segments(2, m), master%segments(1, m)]
     do k = 1, 2
-      d(:, k) = way_to(memory%n_slave + nodes(k), own, memory%places)
+      d(:, k) = way_to(memory%n_slave + nodes(k), own, memory%positions)
       xi(k) = (d(1, k)*own%t(1) + d(2, k)*own%t(2))/own%square
     end do
     ! Most candidates lie beyond an end.
@@ -466,7 +467,7 @@ contains
       *([0.0_wp, 1.0_wp] - xi(1))/(xi(2) - xi(1))
     overlap%share = share_of(own, d(:, 1) - d(:, 2))
     overlap%part = 1.0_wp
-  end subroutine cut_by
+  end subroutine clip
 
   !> How much of an overlap counts: all up to a certain angle between the two segments, none from a
   !> larger one on.
@@ -480,7 +481,7 @@ contains
     squares = own%square*(other(1)**2 + other(2)**2)
     share = 1.0_wp
     if (product < 0.0_wp .and. product*product >= face_on**2*squares) return
-    share = facing_share(product/sqrt(max(squares, tiny(1.0_wp))))
+    share = opposed_share(product/sqrt(max(squares, tiny(1.0_wp))))
   end function share_of
 
 end module overlaps_m

@@ -3,9 +3,9 @@
 !> the skin (doc/theory/contact.md, section 4). The lists are wide enough that no result depends on
 !> when they were made.
 module candidates_m
-  use contact_state_m, only : contact_state_t, candidates_t, tracking_t
+  use contact_state_m, only : contact_state_t, candidates_t, contact_status_t
   use contacts_m, only : contact_t
-  use foot_m, only : face_on
+  use projection_m, only : face_on
   use geometry_m, only : separation
   use kinds_m, only : wp, long
   use surfaces_m, only : surface_t
@@ -41,26 +41,26 @@ contains
     logical :: is_due
 
     is_due = .not. memory%travel < memory%listed_until
-    if (contact%search_interval > 0 .and. cycle >= memory%next_search) then
-      memory%next_search = cycle + contact%search_interval
+    if (contact%search_interval > 0 .and. cycle >= memory%next_listing) then
+      memory%next_listing = cycle + contact%search_interval
       is_due = .true.
     end if
     if (.not. is_due) return
     call list_candidates(contact, memory, memory%listed_until)
-    call look_at_all(memory%slave_tracking)
-    call look_at_all(memory%master_tracking)
-    if (allocated(memory%segment_wake)) memory%segment_wake = -huge(1.0_wp)
-    memory%next_segment_wake = -huge(1.0_wp)
+    call search_all(memory%slave_status)
+    call search_all(memory%master_status)
+    if (allocated(memory%segment_search)) memory%segment_search = -huge(1.0_wp)
+    memory%earliest_segment_search = -huge(1.0_wp)
   end subroutine update_candidates
 
   !> Have every separated point looked at in this call.
-  pure subroutine look_at_all(tracking)
-    type(tracking_t), intent(inout) :: tracking
+  pure subroutine search_all(status)
+    type(contact_status_t), intent(inout) :: status
 
-    if (tracking%n == 0) return
-    where (tracking%wake < huge(1.0_wp)) tracking%wake = -huge(1.0_wp)
-    tracking%next_wake = -huge(1.0_wp)
-  end subroutine look_at_all
+    if (status%n == 0) return
+    where (status%next_search < huge(1.0_wp)) status%next_search = -huge(1.0_wp)
+    status%earliest_search = -huge(1.0_wp)
+  end subroutine search_all
 
   !> All pairs within the search radius, the motion of this call, and the skin. Boxes farther apart
   !> are looked at again when they can have come that near.
@@ -68,46 +68,46 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), optional :: valid_until !! travel; after a restart it is known, m
-    real(wp) :: skin, radius, apart
+    real(wp) :: skin, radius, box_distance
     integer :: n
 
     n = memory%n_slave
-    skin = skin_part*min(mean_length(contact%slave, memory%places(:, :n)), &
-      mean_length(contact%master, memory%places(:, n + 1:)))
+    skin = skin_part*min(mean_length(contact%slave, memory%positions(:, :n)), &
+      mean_length(contact%master, memory%positions(:, n + 1:)))
     ! What a long step leads through a face lies as deep as that step.
-    radius = memory%advance + max(memory%slave_tracking%reach, deepest_of(memory%slave_tracking), &
-      deepest_of(memory%master_tracking))
-    apart = box_gap(memory%places(:, :n), memory%places(:, n + 1:))
-    if (present(valid_until)) valid_until = memory%travel + max(skin, apart - radius)
-    call list_pairs(contact, memory%places, merge(radius + skin, -1.0_wp, apart <= radius + skin), &
-      memory%candidates)
-    if (memory%master_tracking%n > 0) &
+    radius = memory%advance + max(memory%slave_status%reach, deepest_of(memory%slave_status), &
+      deepest_of(memory%master_status))
+    box_distance = box_gap(memory%positions(:, :n), memory%positions(:, n + 1:))
+    if (present(valid_until)) valid_until = memory%travel + max(skin, box_distance - radius)
+    call list_pairs(contact, memory%positions, merge(radius + skin, -1.0_wp, box_distance &
+      <= radius + skin), memory%candidates)
+    if (memory%master_status%n > 0) &
       call reverse_pairs(contact%master%n_segment, memory%candidates, memory%reversed)
   end subroutine list_candidates
 
   !> Depth of the deepest active point, m.
-  pure function deepest_of(tracking) result(depth)
-    type(tracking_t), intent(in) :: tracking
+  pure function deepest_of(status) result(depth)
+    type(contact_status_t), intent(in) :: status
     real(wp) :: depth
     integer :: k
 
     depth = 0.0_wp
-    do k = 1, tracking%n_touching
-      depth = max(depth, -tracking%gap(tracking%touching(k)))
+    do k = 1, status%n_active
+      depth = max(depth, -status%gap(status%active_points(k)))
     end do
   end function deepest_of
 
   !> Mean length of the segments of a surface, m.
-  pure function mean_length(surface, places) result(length)
+  pure function mean_length(surface, positions) result(length)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface
     real(wp) :: length
     integer :: s
 
     length = 0.0_wp
     do s = 1, surface%n_segment
-      length = length + norm2(separation(places(:, surface%segments(2, s)), &
-        places(:, surface%segments(1, s))))
+      length = length + norm2(separation(positions(:, surface%segments(2, s)), &
+        positions(:, surface%segments(1, s))))
     end do
     length = length/max(surface%n_segment, 1)
   end function mean_length
@@ -129,8 +129,8 @@ contains
   end function box_gap
 
   !> Box of positions relative to an origin.
-  pure subroutine find_box(places, origin, low, high)
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n)
+  pure subroutine find_box(positions, origin, low, high)
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n)
     real(wp), intent(in) :: origin(4)
     real(wp), intent(out) :: low(2), high(2)         !! m
     real(wp) :: y(2)
@@ -138,8 +138,8 @@ contains
 
     low = huge(1.0_wp)
     high = -huge(1.0_wp)
-    do i = 1, size(places, 2)
-      y = separation(places(:, i), origin)
+    do i = 1, size(positions, 2)
+      y = separation(positions(:, i), origin)
       low = min(low, y)
       high = max(high, y)
     end do
@@ -147,9 +147,9 @@ contains
 
   !> Fill the rows: for each slave segment the master segments whose boxes lie within a radius of
   !> its own, by rising number.
-  pure subroutine list_pairs(contact, places, radius, candidates)
+  pure subroutine list_pairs(contact, positions, radius, candidates)
     type(contact_t), intent(in) :: contact
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_slave + n_master)
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_slave + n_master)
     real(wp), intent(in) :: radius                   !! m; below 0: no pair
     type(candidates_t), intent(inout) :: candidates
     type(cells_t) :: cells
@@ -160,11 +160,12 @@ contains
     if (radius < 0.0_wp) return
     n = size(contact%slave%nodes)
     allocate (listed_for(contact%master%n_segment), source=0)
-    call fill_cells(contact%master, places(:, n + 1:), radius, cells)
+    call fill_cells(contact%master, positions(:, n + 1:), radius, cells)
     do s = 1, contact%slave%n_segment
       associate (ends => contact%slave%segments(:, s))
-        call fill_row(contact, s, separation(places(:, ends(1)), places(:, n + 1)), &
-          separation(places(:, ends(2)), places(:, ends(1))), radius, cells, listed_for, candidates)
+        call fill_row(contact, s, separation(positions(:, ends(1)), positions(:, n + 1)), &
+          separation(positions(:, ends(2)), positions(:, ends(1))), radius, cells, listed_for, &
+          candidates)
       end associate
     end do
   end subroutine list_pairs
@@ -184,9 +185,9 @@ contains
 
   !> Sort segments into cells (counting sort over hashed cells), so long that each of them lies in
   !> four at most.
-  pure subroutine fill_cells(surface, places, least, cells)
+  pure subroutine fill_cells(surface, positions, least, cells)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface
     real(wp), intent(in) :: least                    !! side of a cell, m
     type(cells_t), intent(out) :: cells
     real(wp) :: a(2), b(2)
@@ -195,8 +196,8 @@ contains
     associate (n => surface%n_segment)
       allocate (cells%t(2, n), cells%low(2, n), cells%high(2, n))
       do i = 1, n
-        a = separation(places(:, surface%segments(1, i)), places(:, 1))
-        b = separation(places(:, surface%segments(2, i)), places(:, 1))
+        a = separation(positions(:, surface%segments(1, i)), positions(:, 1))
+        b = separation(positions(:, surface%segments(2, i)), positions(:, 1))
         cells%t(:, i) = b - a
         cells%low(:, i) = min(a, b)
         cells%high(:, i) = max(a, b)

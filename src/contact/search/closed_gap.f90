@@ -29,7 +29,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     real(wp) :: gap
 
-    gap = closed_part*mean_length(contact%slave, memory%places(:, :memory%n_slave))
+    gap = closed_part*mean_length(contact%slave, memory%positions(:, :memory%n_slave))
   end function closed_gap_of
 
   !> The gap that may close in the step ahead, m.
@@ -39,7 +39,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     real(wp) :: gap, segment
 
-    segment = mean_length(contact%slave, memory%places(:, :memory%n_slave))
+    segment = mean_length(contact%slave, memory%positions(:, :memory%n_slave))
     gap = most_ahead*segment
     if (.not. is_first) gap = min(gap, least_ahead*segment + ahead_factor*memory%advance)
   end function gap_ahead

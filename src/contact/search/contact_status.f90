@@ -3,25 +3,25 @@
 !> its segment; a separated one is looked for among its candidate pairs once it can have come near
 !> (doc/theory/contact.md, sections 3 and 4).
 module contact_status_m
-  use contact_state_m, only : tracking_t, candidates_t, is_free, is_touching
+  use contact_state_m, only : contact_status_t, candidates_t, separated, active
   use entry_m, only : found_contact_t, find_contact, is_pair, is_opposed
-  use foot_m, only : foot_t, follow_contact, gentle_turn
-  use foot_block_m, only : foot_block_t, n_block, project_block, settle_odd
+  use projection_m, only : projection_t, follow_contact, gentle_turn
+  use projection_block_m, only : projection_block_t, n_block, project_block, resolve_ambiguous
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: update_status, list_touching, forget_pairs
+  public :: update_status, list_active, reset_status
 
 contains
 
   !> Bring the status of all points up to date and list the active ones.
-  pure subroutine update_status(tracking, own, other, pairs, places, increments, points)
-    type(tracking_t), intent(inout) :: tracking
+  pure subroutine update_status(status, own, other, pairs, positions, increments, points)
+    type(contact_status_t), intent(inout) :: status
     type(surface_t), intent(in) :: own                  !! of the points
     type(surface_t), intent(in) :: other                !! of the segments
     type(candidates_t), intent(in) :: pairs             !! of the segments of `own`
-    real(wp), intent(in), contiguous :: places(:, :)    !! (4, n_node) of the interface
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     real(wp), intent(in), contiguous :: increments(:, :) !! (2, n_node) displacements of the step, m
     real(wp), intent(in), contiguous :: points(:, :)    !! (4, n) positions of the points
     real(wp) :: travel
@@ -29,40 +29,40 @@ contains
     logical :: has_changed, was_active
 
     n_left = 0
-    if (tracking%n_touching > 0) call keep_contacts(tracking, other, &
-      places(:, tracking%pass%other_at + 1:), points, n_left)
+    if (status%n_active > 0) call follow_active(status, other, &
+      positions(:, status%pass%other_at + 1:), points, n_left)
     ! Distances are to segments; contact begins at the closed gap.
-    travel = tracking%pass%travel + tracking%pass%closed_gap
-    if (n_left == 0 .and. travel < tracking%next_wake) return
+    travel = status%pass%travel + status%pass%closed_gap
+    if (n_left == 0 .and. travel < status%earliest_search) return
     n_due = n_left
-    if (.not. travel < tracking%next_wake) call list_due(tracking%n, tracking%wake, travel, &
-      tracking%next_wake, tracking%due, n_due)
+    if (.not. travel < status%earliest_search) call list_due(status%n, status%next_search, travel, &
+      status%earliest_search, status%due, n_due)
     has_changed = .false.
     do k = 1, n_due
-      i = tracking%due(k)
-      was_active = tracking%status(i) == is_touching
-      if (was_active) call follow_point(tracking, own, other, pairs, places, points(:, i), i)
-      if (tracking%status(i) /= is_touching) &
-        call look_at_point(tracking, own, other, pairs, places, increments, points(:, i), i)
-      has_changed = has_changed .or. (tracking%status(i) == is_touching .neqv. was_active)
-      tracking%next_wake = min(tracking%next_wake, tracking%wake(i))
+      i = status%due(k)
+      was_active = status%state(i) == active
+      if (was_active) call follow_point(status, own, other, pairs, positions, points(:, i), i)
+      if (status%state(i) /= active) &
+        call search_point(status, own, other, pairs, positions, increments, points(:, i), i)
+      has_changed = has_changed .or. (status%state(i) == active .neqv. was_active)
+      status%earliest_search = min(status%earliest_search, status%next_search(i))
     end do
-    if (has_changed) call list_touching(tracking)
+    if (has_changed) call list_active(status)
   end subroutine update_status
 
   !> Append the points whose next search time has come, and find the first one of the others. That
   !> of active points never comes.
-  pure subroutine list_due(n, wake, travel, next_wake, due, n_due)
+  pure subroutine list_due(n, next_search, travel, earliest_search, due, n_due)
     integer, intent(in) :: n
-    real(wp), intent(in) :: wake(n), travel
-    real(wp), intent(out) :: next_wake
+    real(wp), intent(in) :: next_search(n), travel
+    real(wp), intent(out) :: earliest_search
     integer, intent(inout) :: due(*), n_due
     integer :: i
 
-    next_wake = huge(1.0_wp)
+    earliest_search = huge(1.0_wp)
     do i = 1, n
-      if (travel < wake(i)) then
-        next_wake = min(next_wake, wake(i))
+      if (travel < next_search(i)) then
+        earliest_search = min(earliest_search, next_search(i))
       else
         n_due = n_due + 1
         due(n_due) = i
@@ -72,56 +72,56 @@ contains
 
   !> The common case of active points: still over their segment, behind it, and no nearer to a
   !> neighbour than to it. The others are listed in `due`.
-  pure subroutine keep_contacts(tracking, surface, chain, points, n_left)
-    type(tracking_t), intent(inout) :: tracking
+  pure subroutine follow_active(status, surface, polyline, points, n_left)
+    type(contact_status_t), intent(inout) :: status
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :), points(:, :)
+    real(wp), intent(in), contiguous :: polyline(:, :), points(:, :)
     integer, intent(out) :: n_left    !! points that were not kept
-    type(foot_block_t) :: block
+    type(projection_block_t) :: block
     integer :: first, i, k
 
     n_left = 0
-    do first = 1, tracking%n_touching, n_block
-      block%n = min(n_block, tracking%n_touching - first + 1)
-      call see_points(block%n, tracking%touching(first), tracking%segment, surface%segments, &
-        chain, points, block%segment, block%t, block%d)
+    do first = 1, status%n_active, n_block
+      block%n = min(n_block, status%n_active - first + 1)
+      call vectors_to_points(block%n, status%active_points(first), status%segment, &
+        surface%segments, polyline, points, block%segment, block%t, block%d)
       call project_block(block)
-      if (block%n_odd > 0) call settle_odd(surface, chain, block)
-      i = tracking%touching(first)
-      if (tracking%touching(first + block%n - 1) == i + block%n - 1) then
-        call store_row(block%n, block%xi, block%gap, block%normal, tracking%xi(i), &
-          tracking%gap(i), tracking%normal(1, i))
+      if (block%n_ambiguous > 0) call resolve_ambiguous(surface, polyline, block)
+      i = status%active_points(first)
+      if (status%active_points(first + block%n - 1) == i + block%n - 1) then
+        call store_projections(block%n, block%xi, block%gap, block%normal, status%xi(i), &
+          status%gap(i), status%normal(1, i))
       else
         do k = 1, block%n
-          i = tracking%touching(first + k - 1)
-          tracking%xi(i) = block%xi(k)
-          tracking%gap(i) = block%gap(k)
-          tracking%normal(:, i) = block%normal(:, k)
+          i = status%active_points(first + k - 1)
+          status%xi(i) = block%xi(k)
+          status%gap(i) = block%gap(k)
+          status%normal(:, i) = block%normal(:, k)
         end do
       end if
-      if (block%n_odd > 0) call list_odd(block%n, block%odd, tracking%touching(first), &
-        tracking%due, n_left)
+      if (block%n_ambiguous > 0) call list_ambiguous(block%n, block%ambiguous, &
+        status%active_points(first), status%due, n_left)
     end do
-  end subroutine keep_contacts
+  end subroutine follow_active
 
   !> Append the points of a block that need a decision.
-  pure subroutine list_odd(n, odd, points, due, n_due)
+  pure subroutine list_ambiguous(n, ambiguous, points, due, n_due)
     integer, intent(in) :: n, points(n)
-    real(wp), intent(in) :: odd(n)
+    real(wp), intent(in) :: ambiguous(n)
     integer, intent(inout) :: due(*), n_due
     integer :: k
 
     do k = 1, n
-      if (.not. odd(k) > 0.0_wp) cycle
+      if (.not. ambiguous(k) > 0.0_wp) cycle
       n_due = n_due + 1
       due(n_due) = points(k)
     end do
-  end subroutine list_odd
+  end subroutine list_ambiguous
 
   !> Vectors of a block of points.
-  pure subroutine see_points(n, active, segment, ends, chain, points, on, t, d)
+  pure subroutine vectors_to_points(n, active, segment, ends, polyline, points, on, t, d)
     integer, intent(in) :: n, active(n), segment(*), ends(2, *)
-    real(wp), intent(in) :: chain(4, *), points(4, *)
+    real(wp), intent(in) :: polyline(4, *), points(4, *)
     integer, intent(inout) :: on(n)      !! their segments
     real(wp), intent(inout) :: t(2, n)   !! these, m
     real(wp), intent(inout) :: d(2, n)   !! from the segments' first nodes, m
@@ -134,15 +134,15 @@ contains
       on(k) = segment(i)
       a = ends(1, segment(i))
       b = ends(2, segment(i))
-      along = chain(:, b) - chain(:, a)
-      across = points(:, i) - chain(:, a)
+      along = polyline(:, b) - polyline(:, a)
+      across = points(:, i) - polyline(:, a)
       t(:, k) = along(1:2) + along(3:4)
       d(:, k) = across(1:2) + across(3:4)
     end do
-  end subroutine see_points
+  end subroutine vectors_to_points
 
   !> Store the projections of points that follow each other.
-  pure subroutine store_row(n, xi, gap, normal, kept_xi, kept_gap, kept_normal)
+  pure subroutine store_projections(n, xi, gap, normal, kept_xi, kept_gap, kept_normal)
     integer, intent(in) :: n
     real(wp), intent(in) :: xi(n), gap(n), normal(2, n)
     real(wp), intent(inout) :: kept_xi(n), kept_gap(n), kept_normal(2, n)
@@ -150,95 +150,96 @@ contains
     kept_xi = xi
     kept_gap = gap
     kept_normal = normal
-  end subroutine store_row
+  end subroutine store_projections
 
   !> An active point that needs a decision: it stays on its face until that ends. Across a sharp
   !> vertex it goes on only where the next face is opposed to it.
-  pure subroutine follow_point(tracking, own, other, pairs, places, point, i)
-    type(tracking_t), intent(inout) :: tracking
+  pure subroutine follow_point(status, own, other, pairs, positions, point, i)
+    type(contact_status_t), intent(inout) :: status
     type(surface_t), intent(in) :: own, other
     type(candidates_t), intent(in) :: pairs
-    real(wp), intent(in), contiguous :: places(:, :)
+    real(wp), intent(in), contiguous :: positions(:, :)
     real(wp), intent(in) :: point(4)
     integer, intent(in) :: i
-    type(foot_t) :: foot
+    type(projection_t) :: projection
     logical :: stays
 
-    foot = follow_contact(other, places(:, tracking%pass%other_at + 1:), point, tracking%segment(i))
-    stays = foot%is_on .and. foot%gap < tracking%pass%closed_gap
-    if (stays .and. dot_product(foot%normal, tracking%normal(:, i)) < gentle_turn) &
-      stays = is_opposed(tracking%pass, own, places, i, foot%normal)
-    if (stays .and. tracking%pass%is_self) &
-      stays = is_pair(tracking%pass, own, pairs, i, foot%segment)
+    projection = follow_contact(other, positions(:, status%pass%other_at + 1:), point, &
+      status%segment(i))
+    stays = projection%is_on .and. projection%gap < status%pass%closed_gap
+    if (stays .and. dot_product(projection%normal, status%normal(:, i)) < gentle_turn) &
+      stays = is_opposed(status%pass, own, positions, i, projection%normal)
+    if (stays .and. status%pass%is_self) &
+      stays = is_pair(status%pass, own, pairs, i, projection%segment)
     if (stays) then
-      call store_foot(tracking, i, foot)
+      call store_projection(status, i, projection)
     else
-      tracking%status(i) = is_free
-      if (.not. tracking%pass%is_trial) tracking%offset(i) = 0.0_wp
+      status%state(i) = separated
+      if (.not. status%pass%is_trial) status%offset(i) = 0.0_wp
     end if
   end subroutine follow_point
 
   !> A separated point: it becomes active, or has a next search time.
-  pure subroutine look_at_point(tracking, own, other, pairs, places, increments, point, i)
-    type(tracking_t), intent(inout) :: tracking
+  pure subroutine search_point(status, own, other, pairs, positions, increments, point, i)
+    type(contact_status_t), intent(inout) :: status
     type(surface_t), intent(in) :: own, other
     type(candidates_t), intent(in) :: pairs
-    real(wp), intent(in), contiguous :: places(:, :), increments(:, :)
+    real(wp), intent(in), contiguous :: positions(:, :), increments(:, :)
     real(wp), intent(in) :: point(4)
     integer, intent(in) :: i
     type(found_contact_t) :: found
 
-    found = find_contact(tracking, own, other, pairs, places, increments, point, i)
-    call store_foot(tracking, i, found%foot)
-    if (found%is_released) tracking%n_released = tracking%n_released + 1
-    if (found%is_active .or. .not. tracking%pass%is_trial) tracking%offset(i) = found%offset
-    tracking%has_offset = tracking%has_offset .or. found%offset > 0.0_wp
+    found = find_contact(status, own, other, pairs, positions, increments, point, i)
+    call store_projection(status, i, found%projection)
+    if (found%is_released) status%n_released = status%n_released + 1
+    if (found%is_active .or. .not. status%pass%is_trial) status%offset(i) = found%offset
+    status%has_offset = status%has_offset .or. found%offset > 0.0_wp
     if (found%is_active) then
-      tracking%status(i) = is_touching
-      tracking%wake(i) = huge(1.0_wp)
+      status%state(i) = active
+      status%next_search(i) = huge(1.0_wp)
     else
-      tracking%status(i) = is_free
-      tracking%wake(i) = tracking%pass%travel + found%distance
+      status%state(i) = separated
+      status%next_search(i) = status%pass%travel + found%distance
     end if
-  end subroutine look_at_point
+  end subroutine search_point
 
   !> Keep a projection.
-  pure subroutine store_foot(tracking, i, foot)
-    type(tracking_t), intent(inout) :: tracking
+  pure subroutine store_projection(status, i, projection)
+    type(contact_status_t), intent(inout) :: status
     integer, intent(in) :: i
-    type(foot_t), intent(in) :: foot
+    type(projection_t), intent(in) :: projection
 
-    tracking%segment(i) = foot%segment
-    tracking%xi(i) = foot%xi
-    tracking%gap(i) = foot%gap
-    tracking%normal(:, i) = foot%normal
-  end subroutine store_foot
+    status%segment(i) = projection%segment
+    status%xi(i) = projection%xi
+    status%gap(i) = projection%gap
+    status%normal(:, i) = projection%normal
+  end subroutine store_projection
 
   !> Start anew: all points are separated and looked at in the next call.
-  pure subroutine forget_pairs(tracking)
-    type(tracking_t), intent(inout) :: tracking
+  pure subroutine reset_status(status)
+    type(contact_status_t), intent(inout) :: status
 
-    if (tracking%n == 0) return
-    tracking%segment = 0
-    tracking%n_touching = 0
-    tracking%status = is_free
-    tracking%offset = 0.0_wp
-    tracking%has_offset = .false.
-    tracking%wake = -huge(1.0_wp)
-    tracking%next_wake = -huge(1.0_wp)
-  end subroutine forget_pairs
+    if (status%n == 0) return
+    status%segment = 0
+    status%n_active = 0
+    status%state = separated
+    status%offset = 0.0_wp
+    status%has_offset = .false.
+    status%next_search = -huge(1.0_wp)
+    status%earliest_search = -huge(1.0_wp)
+  end subroutine reset_status
 
   !> List the active points anew.
-  pure subroutine list_touching(tracking)
-    type(tracking_t), intent(inout) :: tracking
+  pure subroutine list_active(status)
+    type(contact_status_t), intent(inout) :: status
     integer :: i
 
-    tracking%n_touching = 0
-    do i = 1, tracking%n
-      if (tracking%status(i) /= is_touching) cycle
-      tracking%n_touching = tracking%n_touching + 1
-      tracking%touching(tracking%n_touching) = i
+    status%n_active = 0
+    do i = 1, status%n
+      if (status%state(i) /= active) cycle
+      status%n_active = status%n_active + 1
+      status%active_points(status%n_active) = i
     end do
-  end subroutine list_touching
+  end subroutine list_active
 
 end module contact_status_m

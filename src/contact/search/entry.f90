@@ -4,11 +4,11 @@
 !> it is active up to the depth of a first contact, with an entry offset that takes off the depth
 !> that it had before (doc/theory/contact.md, section 3.3).
 module entry_m
-  use contact_state_m, only : tracking_t, candidates_t, pass_t
-  use foot_m, only : foot_t, closest_foot, face_foot, vector_of, turns_gently, side_on, face_on, &
-    end_tolerance, round_off
-  use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal, closest_distance, &
-    segment_length
+  use contact_state_m, only : contact_status_t, candidates_t, pass_t
+  use projection_m, only : projection_t, closest_projection, face_projection, vector_of, &
+    turns_gently, side_on, face_on, end_tolerance, round_off
+  use geometry_m, only : local_coordinates_t, coordinates_on_segment, local_gap, local_normal, &
+    closest_distance, segment_length
   use kinds_m, only : wp
   use surfaces_m, only : surface_t, meets_axis
   implicit none
@@ -23,12 +23,12 @@ module entry_m
 
   !> What is found of a separated point.
   type :: found_contact_t
-    type(foot_t) :: foot              !! on the face that it has entered, or the closest; segment 0:
+    type(projection_t) :: projection  !! on the face that it has entered, or the closest; segment 0:
                                       !! none within the search radius
     integer :: nearest = 0            !! candidate
     integer :: behind = 0             !! nearest opposed candidate that it is over and behind
     real(wp) :: depth = huge(1.0_wp)  !! behind that, m
-    real(wp) :: sideways = huge(1.0_wp) !! motion before which it can not have come behind any other
+    real(wp) :: lateral = huge(1.0_wp)  !! motion before which it can not have come behind any other
                                       !! candidate from beside, m
     logical :: is_active = .false.
     logical :: is_released = .false.  !! it has come to lie deeper than a first contact may be
@@ -39,26 +39,26 @@ module entry_m
 contains
 
   !> Look at all candidates of a separated point, as they lie now and lay before the step.
-  pure function find_contact(tracking, own, other, pairs, places, increments, point, &
+  pure function find_contact(status, own, other, pairs, positions, increments, point, &
       i) result(found)
-    type(tracking_t), intent(in) :: tracking
+    type(contact_status_t), intent(in) :: status
     type(surface_t), intent(in) :: own                   !! of the points
     type(surface_t), intent(in) :: other                 !! of the segments
     type(candidates_t), intent(in) :: pairs              !! of the segments of `own`
-    real(wp), intent(in), contiguous :: places(:, :)     !! (4, n_node) of the interface
+    real(wp), intent(in), contiguous :: positions(:, :)  !! (4, n_node) of the interface
     real(wp), intent(in), contiguous :: increments(:, :) !! (2, n_node) displacements of the step, m
     real(wp), intent(in) :: point(4)                     !! position
     integer, intent(in) :: i                             !! number of the point
     type(found_contact_t) :: found
-    type(sight_t) :: sight
+    type(local_coordinates_t) :: local
     integer :: segments(2), k, j, at, last
     real(wp) :: gap, square, least
 
     least = huge(1.0_wp)
-    segments = segments_of(own, tracking%pass%n_on_segment, i)
+    segments = segments_of(own, status%pass%n_on_segment, i)
     at = 1
     last = 0
-    associate (pass => tracking%pass, nearest => found%nearest)
+    associate (pass => status%pass, nearest => found%nearest)
       do k = 1, merge(1, 2, segments(1) == segments(2))
         if (segments(k) == 0) cycle
         do j = pairs%first(segments(k)), pairs%first(segments(k) + 1) - 1
@@ -73,19 +73,19 @@ contains
           associate (segment => pairs%items(j), ends => other%segments(:, pairs%items(j)))
             ! A node of a side that folds upon itself belongs to the segment.
             if (pass%is_self .and. pass%n_on_segment == 0 .and. any(ends == i)) cycle
-            sight = sight_of_segment(point, places(:, pass%other_at + ends(1)), &
-              places(:, pass%other_at + ends(2)))
-            square = closest_distance(sight)
+            local = coordinates_on_segment(point, positions(:, pass%other_at + ends(1)), &
+              positions(:, pass%other_at + ends(2)))
+            square = closest_distance(local)
             if (square < least) nearest = segment
             least = min(least, square)
-            if (sight%across >= 0.0_wp .and. .not. pass%closed_gap > 0.0_wp) cycle
-            gap = sight_gap(sight)
+            if (local%across >= 0.0_wp .and. .not. pass%closed_gap > 0.0_wp) cycle
+            gap = local_gap(local)
             if (gap >= pass%closed_gap) cycle
-            found%sideways = min(found%sideways, way_in(sight))
-            if (.not. is_behind(tracking, own, other, places, sight, i, segment)) cycle
-            if (has_entered(tracking, own, other, places, increments, sight, i, segment)) then
-              if (found%is_active .and. abs(gap) >= abs(found%foot%gap)) cycle
-              found%foot = face_foot(sight, segment)
+            found%lateral = min(found%lateral, way_in(local))
+            if (.not. is_behind(status, own, other, positions, local, i, segment)) cycle
+            if (has_entered(status, own, other, positions, increments, local, i, segment)) then
+              if (found%is_active .and. abs(gap) >= abs(found%projection%gap)) cycle
+              found%projection = face_projection(local, segment)
               found%is_active = .true.
             else if (.not. found%is_active .and. abs(gap) < found%depth) then
               found%behind = segment
@@ -100,166 +100,170 @@ contains
     if (found%is_active) return
     ! Without candidates the next list is waited for. What lists hold beyond the search radius is a
     ! matter of when they were made.
-    found%distance = merge(tracking%reach, unpaired, found%nearest > 0)
-    if (found%nearest > 0 .and. least <= tracking%reach**2) &
-      call look_at_closest(tracking, own, other, places, increments, point, i, found)
+    found%distance = merge(status%reach, unpaired, found%nearest > 0)
+    if (found%nearest > 0 .and. least <= status%reach**2) &
+      call search_closest(status, own, other, positions, increments, point, i, found)
   end function find_contact
 
   !> Motion that brings a point on the inner side of a segment's line, beyond its ends, over the
   !> segment, m.
-  pure function way_in(sight) result(way)
-    type(sight_t), intent(in) :: sight !! of the point from the segment
+  pure function way_in(local) result(way)
+    type(local_coordinates_t), intent(in) :: local !! of the point from the segment
     real(wp) :: way
     real(wp) :: beyond
 
     way = huge(1.0_wp)
-    beyond = max(-sight%along, sight%along - sight%square) - end_tolerance*sight%square
-    if (beyond > 0.0_wp) way = beyond/sqrt(sight%square)
+    beyond = max(-local%along, local%along - local%square) - end_tolerance*local%square
+    if (beyond > 0.0_wp) way = beyond/sqrt(local%square)
   end function way_in
 
   !> Whether a point on the inner side of a segment is over it, and the face opposed to it.
-  pure function is_behind(tracking, own, other, places, sight, i, segment) result(behind)
-    type(tracking_t), intent(in) :: tracking
+  pure function is_behind(status, own, other, positions, local, i, segment) result(behind)
+    type(contact_status_t), intent(in) :: status
     type(surface_t), intent(in) :: own, other
-    real(wp), intent(in), contiguous :: places(:, :)
-    type(sight_t), intent(in) :: sight !! of the point from the segment
+    real(wp), intent(in), contiguous :: positions(:, :)
+    type(local_coordinates_t), intent(in) :: local !! of the point from the segment
     integer, intent(in) :: i, segment
     logical :: behind
 
-    behind = is_over(other, places(:, tracking%pass%other_at + 1:), sight, segment)
-    if (behind) behind = is_opposed(tracking%pass, own, places, i, sight_normal(sight))
+    behind = is_over(other, positions(:, status%pass%other_at + 1:), local, segment)
+    if (behind) behind = is_opposed(status%pass, own, positions, i, local_normal(local))
   end function is_behind
 
   !> Whether a point behind a segment has come through it: it was not behind it before the step, and
   !> is no deeper than a first contact may be unless the step is an implicit one.
-  pure function has_entered(tracking, own, other, places, increments, sight, i, &
+  pure function has_entered(status, own, other, positions, increments, local, i, &
       segment) result(entered)
-    type(tracking_t), intent(in) :: tracking
+    type(contact_status_t), intent(in) :: status
     type(surface_t), intent(in) :: own, other
-    real(wp), intent(in), contiguous :: places(:, :), increments(:, :)
-    type(sight_t), intent(in) :: sight !! of the point from the segment
+    real(wp), intent(in), contiguous :: positions(:, :), increments(:, :)
+    type(local_coordinates_t), intent(in) :: local !! of the point from the segment
     integer, intent(in) :: i, segment
     logical :: entered
-    type(sight_t) :: former
+    type(local_coordinates_t) :: previous
 
-    entered = -sight_gap(sight) <= depth_limit(tracking, i, segment)
-    if (tracking%pass%has_history .and. (entered .or. tracking%pass%is_trial)) then
-      former = former_sight(tracking%pass, own, other, places, increments, i, segment)
-      entered = former%across >= 0.0_wp
+    entered = -local_gap(local) <= depth_limit(status, i, segment)
+    if (status%pass%has_history .and. (entered .or. status%pass%is_trial)) then
+      previous = previous_coordinates(status%pass, own, other, positions, increments, i, segment)
+      entered = previous%across >= 0.0_wp
     end if
   end function has_entered
 
   !> The closest candidate: in front of it the point is separated; behind it, it is active from now
   !> on unless it is too deep, on that or on the nearest face that is opposed to it.
-  pure subroutine look_at_closest(tracking, own, other, places, increments, point, i, found)
-    type(tracking_t), intent(in) :: tracking
+  pure subroutine search_closest(status, own, other, positions, increments, point, i, found)
+    type(contact_status_t), intent(in) :: status
     type(surface_t), intent(in) :: own, other
-    real(wp), intent(in), contiguous :: places(:, :), increments(:, :)
+    real(wp), intent(in), contiguous :: positions(:, :), increments(:, :)
     real(wp), intent(in) :: point(4)
     integer, intent(in) :: i
     type(found_contact_t), intent(inout) :: found
-    type(sight_t) :: former
+    type(local_coordinates_t) :: previous
     real(wp) :: limit
 
-    associate (pass => tracking%pass, foot => found%foot)
-      foot = closest_foot(other, places(:, pass%other_at + 1:), point, found%nearest)
-      found%distance = min(tracking%reach, foot%distance, abs(foot%gap), found%sideways)
-      if (foot%xi <= 0.0_wp .or. foot%xi >= 1.0_wp) then
+    associate (pass => status%pass, projection => found%projection)
+      projection = closest_projection(other, positions(:, pass%other_at + 1:), point, found%nearest)
+      found%distance = min(status%reach, projection%distance, abs(projection%gap), found%lateral)
+      if (projection%xi <= 0.0_wp .or. projection%xi >= 1.0_wp) then
         ! A face reaches a little beyond its end.
-        associate (ends => pass%other_at + other%segments(:, foot%segment))
-          found%distance = max(0.0_wp, min(tracking%reach, foot%distance, found%sideways) &
-            - end_tolerance*segment_length(places(:, ends(1)), places(:, ends(2))))
+        associate (ends => pass%other_at + other%segments(:, projection%segment))
+          found%distance = max(0.0_wp, min(status%reach, projection%distance, found%lateral) &
+            - end_tolerance*segment_length(positions(:, ends(1)), positions(:, ends(2))))
         end associate
       end if
-      if (foot%is_on .and. foot%gap < pass%closed_gap) then
+      if (projection%is_on .and. projection%gap < pass%closed_gap) then
         found%distance = 0.0_wp
-        if (.not. is_opposed(pass, own, places, i, foot%normal)) then
+        if (.not. is_opposed(pass, own, positions, i, projection%normal)) then
           if (found%behind == 0) return
-          foot = face_foot(sight_of_segment(point, places(:, pass%other_at + other%segments(1, &
-            found%behind)), places(:, pass%other_at + other%segments(2, found%behind))), &
+          projection = face_projection(coordinates_on_segment(point, &
+            positions(:, pass%other_at + other%segments(1, &
+            found%behind)), positions(:, pass%other_at + other%segments(2, found%behind))), &
             found%behind)
         end if
-        limit = depth_limit(tracking, i, foot%segment)
-        found%is_active = -foot%gap <= limit
+        limit = depth_limit(status, i, projection%segment)
+        found%is_active = -projection%gap <= limit
         ! Beyond the first row of elements it may as well be the far side of a body.
         found%is_released = .not. found%is_active &
-          .and. -foot%gap < 2.0_wp*tracking%segment_depth(foot%segment)
+          .and. -projection%gap < 2.0_wp*status%segment_depth(projection%segment)
         if (.not. pass%has_history) return
-        former = former_sight(pass, own, other, places, increments, i, foot%segment)
-        if (found%is_active) found%offset = max(0.0_wp, min(-foot%gap, -sight_gap(former)))
+        previous = previous_coordinates(pass, own, other, positions, increments, i, &
+          projection%segment)
+        if (found%is_active) found%offset = max(0.0_wp, min(-projection%gap, -local_gap(previous)))
         ! What lay as deep before is known.
-        if (found%is_released) found%is_released = .not. (-sight_gap(former) > limit .and. &
-          is_over(other, places(:, pass%other_at + 1:), former, foot%segment))
+        if (found%is_released) found%is_released = .not. (-local_gap(previous) > limit .and. &
+          is_over(other, positions(:, pass%other_at + 1:), previous, projection%segment))
       end if
     end associate
-  end subroutine look_at_closest
+  end subroutine search_closest
 
   !> Deepest first contact of a point with a segment, m.
-  pure function depth_limit(tracking, i, segment) result(depth)
-    type(tracking_t), intent(in) :: tracking
+  pure function depth_limit(status, i, segment) result(depth)
+    type(contact_status_t), intent(in) :: status
     integer, intent(in) :: i, segment
     real(wp) :: depth
 
-    depth = min(tracking%spot_depth(i), tracking%segment_depth(segment))
+    depth = min(status%point_depth(i), status%segment_depth(segment))
   end function depth_limit
 
   !> Whether a point is over a segment; beyond an end of an open surface, or a sharp vertex, by a
   !> tolerance of 1 % too.
-  pure function is_over(surface, chain, sight, segment) result(over)
+  pure function is_over(surface, polyline, local, segment) result(over)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: chain(:, :) !! (4, n_node) positions
-    type(sight_t), intent(in) :: sight
+    real(wp), intent(in), contiguous :: polyline(:, :) !! (4, n_node) positions
+    type(local_coordinates_t), intent(in) :: local
     integer, intent(in) :: segment
     logical :: over
     integer :: beside
     real(wp) :: beyond
     logical :: is_first
 
-    is_first = sight%along < 0.0_wp
-    beyond = max(-sight%along, sight%along - sight%square)
-    over = beyond <= round_off*sight%square
+    is_first = local%along < 0.0_wp
+    beyond = max(-local%along, local%along - local%square)
+    over = beyond <= round_off*local%square
     if (over) return
     beside = merge(surface%previous(segment), surface%next(segment), is_first)
     if (beside == 0) then
-      over = beyond <= end_tolerance*sight%square .or. meets_axis(surface, segment, is_first)
-    else if (beyond <= end_tolerance*sight%square) then
-      over = .not. turns_gently(vector_of(surface, chain, beside), sight%t)
+      over = beyond <= end_tolerance*local%square .or. meets_axis(surface, segment, is_first)
+    else if (beyond <= end_tolerance*local%square) then
+      over = .not. turns_gently(vector_of(surface, polyline, beside), local%t)
     end if
   end function is_over
 
   !> A point from a segment as both lay before the step.
-  pure function former_sight(pass, own, other, places, increments, i, segment) result(sight)
+  pure function previous_coordinates(pass, own, other, positions, increments, i, segment) &
+    result(local)
     type(pass_t), intent(in) :: pass
     type(surface_t), intent(in) :: own, other
-    real(wp), intent(in), contiguous :: places(:, :), increments(:, :)
+    real(wp), intent(in), contiguous :: positions(:, :), increments(:, :)
     integer, intent(in) :: i, segment
-    type(sight_t) :: sight
+    type(local_coordinates_t) :: local
     integer :: ends(2), s, q
 
     ends = pass%other_at + other%segments(:, segment)
     if (pass%n_on_segment == 0) then
-      sight = sight_of_segment(former(pass%own_at + i), former(ends(1)), former(ends(2)))
+      local = coordinates_on_segment(previous(pass%own_at + i), previous(ends(1)), &
+        previous(ends(2)))
     else
       s = 1 + (i - 1)/pass%n_on_segment
       q = i - (s - 1)*pass%n_on_segment
       associate (own_ends => pass%own_at + own%segments(:, s))
-        sight = sight_of_segment((1.0_wp - pass%xi(q))*former(own_ends(1)) &
-          + pass%xi(q)*former(own_ends(2)), former(ends(1)), former(ends(2)))
+        local = coordinates_on_segment((1.0_wp - pass%xi(q))*previous(own_ends(1)) &
+          + pass%xi(q)*previous(own_ends(2)), previous(ends(1)), previous(ends(2)))
       end associate
     end if
 
   contains
 
     !> Position of a node before the step.
-    pure function former(node) result(place)
+    pure function previous(node) result(position)
       integer, intent(in) :: node
-      real(wp) :: place(4)
+      real(wp) :: position(4)
 
-      place(1:2) = places(1:2, node)
-      place(3:4) = places(3:4, node) - increments(:, node)
-    end function former
+      position(1:2) = positions(1:2, node)
+      position(3:4) = positions(3:4, node) - increments(:, node)
+    end function previous
 
-  end function former_sight
+  end function previous_coordinates
 
   !> Whether a point on a surface in contact with itself may be followed to a segment: a candidate,
   !> or none that shares a node or the element behind with the point's own.
@@ -306,11 +310,11 @@ contains
   !> point's segments within 60 degrees (points between nodes: 84 degrees), or lies opposite between
   !> both of them at a convex vertex, by 10 degrees at least: else the nodes of a body that slides
   !> on over a ramp would be held by the end face in front of it. At an end of an open surface the
-  !> tangent that leads out of it takes the place of the missing normal there.
-  pure function is_opposed(pass, own, places, i, normal) result(opposed)
+  !> tangent that leads out of it replaces the missing normal there.
+  pure function is_opposed(pass, own, positions, i, normal) result(opposed)
     type(pass_t), intent(in) :: pass
     type(surface_t), intent(in) :: own               !! of the points
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of the interface
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     integer, intent(in) :: i                         !! point
     real(wp), intent(in) :: normal(2)                !! outward, of the face
     logical :: opposed
@@ -321,7 +325,7 @@ contains
     segments = segments_of(own, pass%n_on_segment, i)
     do k = 1, 2
       if (segments(k) == 0) cycle
-      t(:, k) = vector_of(own, places(:, pass%own_at + 1:), segments(k))
+      t(:, k) = vector_of(own, positions(:, pass%own_at + 1:), segments(k))
       t(:, k) = t(:, k)/max(sqrt(t(1, k)**2 + t(2, k)**2), tiny(1.0_wp))
       normals(:, k) = [t(2, k), -t(1, k)]
     end do

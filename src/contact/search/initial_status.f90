@@ -4,12 +4,12 @@
 !> behind the segments: points beyond the far side of a body are no penetrations
 !> (doc/theory/contact.md, section 3.4).
 module initial_status_m
-  use contact_state_m, only : contact_state_t, tracking_t, allocate_tracking, is_free, is_touching
-  use contact_status_m, only : list_touching
+  use contact_state_m, only : contact_state_t, contact_status_t, allocate_status, separated, active
+  use contact_status_m, only : list_active
   use contacts_m, only : contact_t, is_tied
   use element_finder_m, only : element_finder_t, start_finder, is_inside_body
-  use foot_m, only : foot_t, closest_foot, see_segment
-  use geometry_m, only : sight_t, closest_distance, sight_gap, sight_normal
+  use projection_m, only : projection_t, closest_projection, local_coordinates
+  use geometry_m, only : local_coordinates_t, closest_distance, local_gap, local_normal
   use entry_m, only : is_opposed, segments_of
   use kinds_m, only : wp
   use model_m, only : model_t
@@ -17,98 +17,98 @@ module initial_status_m
   use surfaces_m, only : surface_t, has_closed_chain
   implicit none
   private
-  public :: allocate_slave_tracking, allocate_master_tracking, allocate_segments, &
+  public :: allocate_slave_status, allocate_master_status, allocate_segments, &
     activate_deep_points, activate_deep_segments
 
 contains
 
   !> The points of the slave side before anything is looked for.
-  subroutine allocate_slave_tracking(contact, model, memory)
+  subroutine allocate_slave_status(contact, model, memory)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
     integer :: n
 
-    associate (tracking => memory%slave_tracking)
+    associate (status => memory%slave_status)
       n = contact%slave%n_node
-      if (allocated(memory%spot_xi)) then
-        tracking%pass%xi = memory%spot_xi
-        tracking%pass%segment_at = contact%slave%outgoing
-        tracking%pass%n_on_segment = size(memory%spot_xi)
-        n = tracking%pass%n_on_segment*contact%slave%n_segment
+      if (allocated(memory%segment_xi)) then
+        status%pass%xi = memory%segment_xi
+        status%pass%segment_at = contact%slave%outgoing
+        status%pass%n_on_segment = size(memory%segment_xi)
+        n = status%pass%n_on_segment*contact%slave%n_segment
       end if
-      tracking%pass%other_at = memory%n_slave
-      tracking%pass%is_self = contact%is_self
-      tracking%pass%is_closed = has_closed_chain(contact%slave)
-      call allocate_tracking(tracking, n, contact%master%n_segment)
-      call set_depths(tracking, contact, model, contact%slave, contact%master)
+      status%pass%other_at = memory%n_slave
+      status%pass%is_self = contact%is_self
+      status%pass%is_closed = has_closed_chain(contact%slave)
+      call allocate_status(status, n, contact%master%n_segment)
+      call set_depths(status, contact, model, contact%slave, contact%master)
     end associate
-  end subroutine allocate_slave_tracking
+  end subroutine allocate_slave_status
 
   !> Master nodes of the second pass before anything is looked for.
-  subroutine allocate_master_tracking(contact, model, memory)
+  subroutine allocate_master_status(contact, model, memory)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
 
-    associate (tracking => memory%master_tracking)
-      tracking%pass%own_at = memory%n_slave
-      tracking%pass%is_closed = has_closed_chain(contact%master)
-      call allocate_tracking(tracking, contact%master%n_node, contact%slave%n_segment)
-      call set_depths(tracking, contact, model, contact%master, contact%slave)
+    associate (status => memory%master_status)
+      status%pass%own_at = memory%n_slave
+      status%pass%is_closed = has_closed_chain(contact%master)
+      call allocate_status(status, contact%master%n_node, contact%slave%n_segment)
+      call set_depths(status, contact, model, contact%master, contact%slave)
     end associate
-  end subroutine allocate_master_tracking
+  end subroutine allocate_master_status
 
   !> Status of slave segments.
   pure subroutine allocate_segments(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
 
-    allocate (memory%segment_status(contact%slave%n_segment), source=is_free)
+    allocate (memory%segment_state(contact%slave%n_segment), source=separated)
     allocate (memory%segment_gap(contact%slave%n_segment), source=huge(1.0_wp))
-    allocate (memory%segment_wake(contact%slave%n_segment), source=-huge(1.0_wp))
+    allocate (memory%segment_search(contact%slave%n_segment), source=-huge(1.0_wp))
   end subroutine allocate_segments
 
   !> Deepest first contact: SRCH, or half of the shortest of the point's own segments, the segment
   !> that it meets, and the thickness of the element behind that. All from the initial mesh. The
   !> search radius also is the longest segment of both sides: what is opposed to any part of a
   !> segment is within reach of one of its ends.
-  subroutine set_depths(tracking, contact, model, own, other)
-    type(tracking_t), intent(inout) :: tracking
+  subroutine set_depths(status, contact, model, own, other)
+    type(contact_status_t), intent(inout) :: status
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: own, other
     real(wp) :: length, longest
     integer :: i, k, segments(2)
 
-    tracking%spot_depth = huge(1.0_wp)
+    status%point_depth = huge(1.0_wp)
     longest = 0.0_wp
-    do i = 1, tracking%n
-      segments = segments_of(own, tracking%pass%n_on_segment, i)
+    do i = 1, status%n
+      segments = segments_of(own, status%pass%n_on_segment, i)
       do k = 1, 2
         if (segments(k) == 0) cycle
         length = initial_length(model, own, segments(k))
         longest = max(longest, length)
-        tracking%spot_depth(i) = min(tracking%spot_depth(i), 0.5_wp*length)
+        status%point_depth(i) = min(status%point_depth(i), 0.5_wp*length)
       end do
     end do
     do i = 1, other%n_segment
       length = initial_length(model, other, i)
       longest = max(longest, length)
-      tracking%segment_depth(i) = 0.5_wp*min(length, area_behind(model, other, i)/length)
+      status%segment_depth(i) = 0.5_wp*min(length, area_behind(model, other, i)/length)
     end do
     if (contact%search_depth > 0.0_wp) then
-      tracking%spot_depth = contact%search_depth
-      tracking%segment_depth = contact%search_depth
+      status%point_depth = contact%search_depth
+      status%segment_depth = contact%search_depth
     end if
-    tracking%reach = max(longest, 2.0_wp*maxval(tracking%segment_depth))
+    status%reach = max(longest, 2.0_wp*maxval(status%segment_depth))
     if (is_tied(contact)) then
       ! What is tied its reach says alone, at whatever depth.
-      tracking%reach = max(tracking%reach, contact%tie_reach, -0.01_wp*contact%tie_reach*longest)
-      tracking%spot_depth = tracking%reach
-      tracking%segment_depth = tracking%reach
+      status%reach = max(status%reach, contact%tie_reach, -0.01_wp*contact%tie_reach*longest)
+      status%point_depth = status%reach
+      status%segment_depth = status%reach
     end if
-    tracking%shallowest = min(minval(tracking%spot_depth), minval(tracking%segment_depth))
+    status%shallowest = min(minval(status%point_depth), minval(status%segment_depth))
   end subroutine set_depths
 
   !> Initial length of a segment, m.
@@ -139,50 +139,50 @@ contains
   !> Points deeper than a first contact may be that lie inside an element behind the other surface
   !> are active on the closest face that is opposed to them; on a closed boundary no deeper than the
   !> element behind that face is thick, else it is the far side of the body.
-  subroutine activate_deep_points(tracking, model, own, other, places, points, answers)
-    type(tracking_t), intent(inout) :: tracking
+  subroutine activate_deep_points(status, model, own, other, positions, points, answers)
+    type(contact_status_t), intent(inout) :: status
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: own, other
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of the interface
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     real(wp), intent(in), contiguous :: points(:, :) !! (4, n) positions of the points
     type(answers_t), intent(inout), optional :: answers
     type(element_finder_t) :: finder
-    type(foot_t) :: foot
+    type(projection_t) :: projection
     logical :: inside
     integer :: i, segments(2), at
 
-    at = tracking%pass%other_at
+    at = status%pass%other_at
     call begin_asking(model, other%segment_element, own%nodes, finder, answers)
-    do i = 1, tracking%n
-      segments = segments_of(own, tracking%pass%n_on_segment, i)
-      if (tracking%status(i) == is_touching .or. maxval(segments) == 0) cycle
+    do i = 1, status%n
+      segments = segments_of(own, status%pass%n_on_segment, i)
+      if (status%state(i) == active .or. maxval(segments) == 0) cycle
       call ask_inside(finder, model, model%mesh%coordinates(:, other%nodes(1)) &
-        + (points(1:2, i) - places(1:2, at + 1)), own%nodes(carriers(own, segments)), inside, &
+        + (points(1:2, i) - positions(1:2, at + 1)), own%nodes(carriers(own, segments)), inside, &
         answers)
       if (.not. inside) cycle
-      foot = closest_opposed(tracking, model, own, other, places, points(:, i), i)
-      if (foot%segment == 0) cycle
-      tracking%segment(i) = foot%segment
-      tracking%xi(i) = foot%xi
-      tracking%gap(i) = foot%gap
-      tracking%normal(:, i) = foot%normal
-      tracking%status(i) = is_touching
-      tracking%wake(i) = huge(1.0_wp)
+      projection = closest_opposed(status, model, own, other, positions, points(:, i), i)
+      if (projection%segment == 0) cycle
+      status%segment(i) = projection%segment
+      status%xi(i) = projection%xi
+      status%gap(i) = projection%gap
+      status%normal(:, i) = projection%normal
+      status%state(i) = active
+      status%next_search(i) = huge(1.0_wp)
     end do
-    call list_touching(tracking)
+    call list_active(status)
   end subroutine activate_deep_points
 
   !> Projection of a point on the closest of all segments that it is behind and that are opposed to
   !> it; segment 0: none.
-  pure function closest_opposed(tracking, model, own, other, places, point, i) result(foot)
-    type(tracking_t), intent(in) :: tracking
+  pure function closest_opposed(status, model, own, other, positions, point, i) result(projection)
+    type(contact_status_t), intent(in) :: status
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: own, other
-    real(wp), intent(in), contiguous :: places(:, :)
+    real(wp), intent(in), contiguous :: positions(:, :)
     real(wp), intent(in) :: point(4)
     integer, intent(in) :: i
-    type(foot_t) :: foot
-    type(sight_t) :: sight
+    type(projection_t) :: projection
+    type(local_coordinates_t) :: local
     real(wp) :: square, least
     integer :: m, closest
     logical :: is_closed
@@ -190,23 +190,23 @@ contains
     closest = 0
     least = huge(1.0_wp)
     is_closed = has_closed_chain(other)
-    associate (chain => places(:, tracking%pass%other_at + 1:))
+    associate (polyline => positions(:, status%pass%other_at + 1:))
       do m = 1, other%n_segment
-        if (tracking%pass%is_self .and. tracking%pass%n_on_segment == 0) then
+        if (status%pass%is_self .and. status%pass%n_on_segment == 0) then
           if (any(other%segments(:, m) == i)) cycle
         end if
-        sight = see_segment(other, chain, point, m)
-        square = closest_distance(sight)
-        if (sight%across >= 0.0_wp .or. square >= least) cycle
-        if (.not. is_opposed(tracking%pass, own, places, i, sight_normal(sight))) cycle
-        if (is_closed .and. -sight_gap(sight)*initial_length(model, other, m) &
+        local = local_coordinates(other, polyline, point, m)
+        square = closest_distance(local)
+        if (local%across >= 0.0_wp .or. square >= least) cycle
+        if (.not. is_opposed(status%pass, own, positions, i, local_normal(local))) cycle
+        if (is_closed .and. -local_gap(local)*initial_length(model, other, m) &
           > area_behind(model, other, m)) cycle
         closest = m
         least = square
       end do
-      if (closest > 0) foot = closest_foot(other, chain, point, closest)
+      if (closest > 0) projection = closest_projection(other, polyline, point, closest)
     end associate
-    if (.not. foot%is_on .or. foot%gap >= 0.0_wp) foot%segment = 0
+    if (.not. projection%is_on .or. projection%gap >= 0.0_wp) projection%segment = 0
   end function closest_opposed
 
   !> Slave segments with a master node deep inside the body behind them are in contact from the
@@ -230,14 +230,14 @@ contains
         least = huge(1.0_wp)
         do s = 1, contact%slave%n_segment
           if (any(contact%slave%nodes(contact%slave%segments(:, s)) == node)) cycle
-          square = closest_distance(see_segment(contact%slave, memory%places(:, :memory%n_slave), &
-            memory%places(:, memory%n_slave + i), s))
+          square = closest_distance(local_coordinates(contact%slave, &
+            memory%positions(:, :memory%n_slave), memory%positions(:, memory%n_slave + i), s))
           if (square >= least) cycle
           least = square
           nearest = s
         end do
       end associate
-      if (nearest > 0) memory%segment_status(nearest) = is_touching
+      if (nearest > 0) memory%segment_state(nearest) = active
     end do
   end subroutine activate_deep_segments
 
@@ -260,7 +260,7 @@ contains
   pure subroutine begin_asking(model, members, nodes, finder, answers)
     type(model_t), intent(in) :: model
     integer, intent(in) :: members(:) !! elements behind the surface
-    integer, intent(in) :: nodes(:)   !! of the surface whose places are asked about
+    integer, intent(in) :: nodes(:)   !! of the surface whose positions are asked about
     type(element_finder_t), intent(out) :: finder
     type(answers_t), intent(in), optional :: answers
 

@@ -4,12 +4,12 @@
 module assembly_m
   use dual_m, only : dual_t, n_partial, operator(+), operator(-), operator(*)
   use kinds_m, only : wp
-  use linearisation_m, only : varied_point_t, n_slot
+  use linearisation_m, only : linearised_point_t, n_slot
   use sparse_m, only : sparse_t, add_block
   implicit none
   private
-  public :: add_varied_point, product_t, start_product, add_to_row, add_to_column, add_gradient, &
-    add_point_force, finish_product
+  public :: add_linearised_point, product_t, start_product, add_to_row, add_to_column, &
+    add_gradient, add_point_force, finish_product
 
   !> A product of two vectors over the nodes of an interface of which few entries are not zero.
   type :: product_t
@@ -25,7 +25,7 @@ contains
   !> Forces of a point on slots 1, 2 and its master side: load*normal - shear*tangent on the slave
   !> side; the load is pressure times area, the shear traction times area, the tangent (-n_y, n_x).
   pure function forces_of(point, load, shear) result(forces)
-    type(varied_point_t), intent(in) :: point
+    type(linearised_point_t), intent(in) :: point
     type(dual_t), intent(in) :: load, shear
     type(dual_t) :: forces(2, 4)
     type(dual_t) :: pull(2), to_last(2)
@@ -42,8 +42,8 @@ contains
   end function forces_of
 
   !> Add a point under its load and shear.
-  pure subroutine add_varied_point(point, load, shear, equations, matrix)
-    type(varied_point_t), intent(in) :: point
+  pure subroutine add_linearised_point(point, load, shear, equations, matrix)
+    type(linearised_point_t), intent(in) :: point
     type(dual_t), intent(in) :: load, shear            !! N/m
     integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
     type(sparse_t), intent(inout) :: matrix
@@ -65,7 +65,7 @@ contains
       if (.not. any(abs(block(2*k - 1:2*k, :)) > 0.0_wp)) rows(2*k - 1:2*k) = 0
     end do
     call add_block(matrix, rows, numbers, block)
-  end subroutine add_varied_point
+  end subroutine add_linearised_point
 
   !> An empty product for an interface of n nodes.
   pure subroutine start_product(product, n)
@@ -99,7 +99,7 @@ contains
   !> Add derivatives by the slots of a point to the gradient.
   pure subroutine add_gradient(product, point, slope)
     type(product_t), intent(inout) :: product
-    type(varied_point_t), intent(in) :: point
+    type(linearised_point_t), intent(in) :: point
     real(wp), intent(in) :: slope(n_partial)
     integer :: k
 
@@ -111,7 +111,7 @@ contains
   !> Add the forces of a point under a load and a shear without derivatives.
   pure subroutine add_point_force(product, point, load, shear)
     type(product_t), intent(inout) :: product
-    type(varied_point_t), intent(in) :: point
+    type(linearised_point_t), intent(in) :: point
     real(wp), intent(in) :: load, shear !! N/m
     real(wp) :: pull(2), weights(4)
     integer :: nodes(4), k

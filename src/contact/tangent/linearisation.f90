@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Linearisation of a contact point: its gap, its place on the master segment and its normal with
+!> Linearisation of a contact point: its gap, its site on the master segment and its normal with
 !> their derivatives by the displacements of nodes, and its slip (Laursen 2002; Wriggers 2006;
 !> doc/theory/contact.md, section 9). What the formulations make of these, areas above all, is
 !> built from the same parts. All in dual numbers, so that each formula stands here once.
@@ -7,13 +7,14 @@ module linearisation_m
   use contact_state_m, only : contact_state_t
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
     operator(/), sqrt
-  use foot_m, only : side_on, face_on, least_excess, most_excess, round_off
+  use projection_m, only : side_on, face_on, least_excess, most_excess, round_off
   use geometry_m, only : separation
   use kinds_m, only : wp
   use radii_m, only : radius_of
   implicit none
   private
-  public :: varied_point_t, varied_list_t, varied_projection_t, n_slot, append_point, apart, &
+  public :: linearised_point_t, linearised_list_t, linearised_projection_t, n_slot, append_point, &
+    difference, &
     length_between, project, way_from, project_point, slip_of, between, share_of, side_share_of, &
     cosine_of, radius_at, end_radius_at, centroid_of
 
@@ -23,40 +24,40 @@ module linearisation_m
   !> A point. Its forces act on the nodes in slots 1, 2 (slave side) and `master_slot` and the next
   !> (master side); it may depend on those in the other slots too. A node may stand in several
   !> slots; variable 2 i - 1 is u_x of slot i, 2 i its u_y.
-  type :: varied_point_t
+  type :: linearised_point_t
     integer :: nodes(n_slot) = 0   !! local numbers, 0 = slot not used
     integer :: master_slot = 3
-    integer :: place = 0           !! of its traction, and of the tie that it may be left to
+    integer :: site = 0            !! of its traction, and of the tie that it may be left to
     real(wp) :: stiffness = 0.0_wp !! N/m^2 (N/m for type 1)
     type(dual_t) :: slave_xi       !! weights of slots 1, 2 are (1 - xi, xi)
     type(dual_t) :: master_xi      !! the same of the master side
     type(dual_t) :: normal(2)      !! unit, from master to slave
     type(dual_t) :: gap            !! m
-    type(dual_t) :: left           !! part of its depth that does not act: entry offset, m
+    type(dual_t) :: remaining      !! part of its depth that does not act: entry offset, m
     type(dual_t) :: area           !! m
     type(dual_t) :: length         !! what a largest traction counts times: 1, or m for type 1
-  end type varied_point_t
+  end type linearised_point_t
 
   !> Points of an interface.
-  type :: varied_list_t
+  type :: linearised_list_t
     integer :: n = 0
-    type(varied_point_t), allocatable :: points(:) !! the first n
-  end type varied_list_t
+    type(linearised_point_t), allocatable :: points(:) !! the first n
+  end type linearised_list_t
 
   !> A projection on the line of a segment.
-  type :: varied_projection_t
+  type :: linearised_projection_t
     type(dual_t) :: xi        !! 0 to 1 on the segment
     type(dual_t) :: gap       !! m
     type(dual_t) :: normal(2) !! of the segment
-  end type varied_projection_t
+  end type linearised_projection_t
 
 contains
 
   !> Append a point.
   pure subroutine append_point(list, point)
-    type(varied_list_t), intent(inout) :: list
-    type(varied_point_t), intent(in) :: point
-    type(varied_point_t), allocatable :: longer(:)
+    type(linearised_list_t), intent(inout) :: list
+    type(linearised_point_t), intent(in) :: point
+    type(linearised_point_t), allocatable :: longer(:)
 
     if (.not. allocated(list%points)) allocate (list%points(16))
     if (list%n == size(list%points)) then
@@ -69,27 +70,27 @@ contains
   end subroutine append_point
 
   !> Vector from the node in slot j to that in slot i.
-  pure function apart(places, nodes, i, j) result(d)
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node)
+  pure function difference(positions, nodes, i, j) result(d)
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node)
     integer, intent(in) :: nodes(n_slot)
     integer, intent(in) :: i, j
     type(dual_t) :: d(2)
 
-    d = constant(separation(places(:, nodes(i)), places(:, nodes(j))))
+    d = constant(separation(positions(:, nodes(i)), positions(:, nodes(j))))
     d(1)%slope(2*i - 1) = 1.0_wp
     d(2)%slope(2*i) = 1.0_wp
     d(1)%slope(2*j - 1) = d(1)%slope(2*j - 1) - 1.0_wp
     d(2)%slope(2*j) = d(2)%slope(2*j) - 1.0_wp
-  end function apart
+  end function difference
 
   !> Distance between the nodes in slots i and j.
-  pure function length_between(places, nodes, i, j) result(length)
-    real(wp), intent(in), contiguous :: places(:, :)
+  pure function length_between(positions, nodes, i, j) result(length)
+    real(wp), intent(in), contiguous :: positions(:, :)
     integer, intent(in) :: nodes(n_slot)
     integer, intent(in) :: i, j
     type(dual_t) :: length, d(2)
 
-    d = apart(places, nodes, i, j)
+    d = difference(positions, nodes, i, j)
     length = sqrt(d(1)*d(1) + d(2)*d(2))
   end function length_between
 
@@ -106,7 +107,7 @@ contains
   !> g = d.n, n = (t_y, -t_x)/|t|.
   pure function project(d, t) result(projection)
     type(dual_t), intent(in) :: d(2), t(2)
-    type(varied_projection_t) :: projection
+    type(linearised_projection_t) :: projection
     type(dual_t) :: square, length
 
     square = t(1)*t(1) + t(2)*t(2)
@@ -118,29 +119,29 @@ contains
 
   !> Vector from the node in slot i to the slave side of a point, which is slot 1 where slot 2 is
   !> not used.
-  pure function way_from(places, point, i) result(d)
-    real(wp), intent(in), contiguous :: places(:, :)
-    type(varied_point_t), intent(in) :: point
+  pure function way_from(positions, point, i) result(d)
+    real(wp), intent(in), contiguous :: positions(:, :)
+    type(linearised_point_t), intent(in) :: point
     integer, intent(in) :: i
     type(dual_t) :: d(2)
 
-    d = apart(places, point%nodes, 1, i)
-    if (point%nodes(2) > 0) d = d + point%slave_xi*apart(places, point%nodes, 2, 1)
+    d = difference(positions, point%nodes, 1, i)
+    if (point%nodes(2) > 0) d = d + point%slave_xi*difference(positions, point%nodes, 2, 1)
   end function way_from
 
-  !> Gap, place and normal of a point over the segment in slots 3, 4, like those known: on the line
+  !> Gap, site and normal of a point over the segment in slots 3, 4, like those known: on the line
   !> of the segment, or at its node at a corner, where the normal points along the connection. A
   !> corner so close that its normal means nothing stands on the line.
   pure subroutine project_point(memory, xi, gap, point)
     type(contact_state_t), intent(in) :: memory
     real(wp), intent(in) :: xi, gap !! known; gap in m
-    type(varied_point_t), intent(inout) :: point
-    type(varied_projection_t) :: projection
+    type(linearised_point_t), intent(inout) :: point
+    type(linearised_projection_t) :: projection
     type(dual_t) :: d(2), t(2)
     logical :: is_corner
 
-    d = way_from(memory%places, point, 3)
-    t = apart(memory%places, point%nodes, 4, 3)
+    d = way_from(memory%positions, point, 3)
+    t = difference(memory%positions, point%nodes, 4, 3)
     projection = project(d, t)
     is_corner = .not. (abs(xi) > 0.0_wp .and. abs(xi - 1.0_wp) > 0.0_wp)
     if (is_corner) is_corner = abs(projection%xi%value - 0.5_wp) > 0.5_wp + round_off
@@ -153,7 +154,7 @@ contains
     point%master_xi = projection%xi
     point%gap = projection%gap
     point%normal = projection%normal
-    point%left = constant(0.0_wp)
+    point%remaining = constant(0.0_wp)
     point%length = constant(1.0_wp)
   end subroutine project_point
 
@@ -161,7 +162,7 @@ contains
   !> used the segment that has the normal is the slave's.
   pure function slip_of(memory, point) result(slip)
     type(contact_state_t), intent(in) :: memory
-    type(varied_point_t), intent(in) :: point
+    type(linearised_point_t), intent(in) :: point
     type(dual_t) :: slip
     type(dual_t) :: relative(2), t(2), turn(2)
     integer :: owner
@@ -174,7 +175,7 @@ contains
       owner = 3
       relative = relative - point%master_xi*(moved(memory, point, 4) - moved(memory, point, 3))
     end if
-    t = apart(memory%places, point%nodes, owner + 1, owner)
+    t = difference(memory%positions, point%nodes, owner + 1, owner)
     turn = moved(memory, point, owner + 1) - moved(memory, point, owner)
     slip = point%normal(1)*relative(2) - point%normal(2)*relative(1) &
       + point%gap*(t(2)*turn(1) - t(1)*turn(2))/(t(1)*t(1) + t(2)*t(2))
@@ -183,7 +184,7 @@ contains
   !> Displacement of the node in slot i in the step.
   pure function moved(memory, point, i) result(du)
     type(contact_state_t), intent(in) :: memory
-    type(varied_point_t), intent(in) :: point
+    type(linearised_point_t), intent(in) :: point
     integer, intent(in) :: i
     type(dual_t) :: du(2)
 
@@ -226,41 +227,41 @@ contains
   end function smooth_step
 
   !> In axisymmetry: radius at xi of the segment in slots i, j, m.
-  pure function radius_at(places, nodes, i, j, xi) result(radius)
-    real(wp), intent(in), contiguous :: places(:, :)
+  pure function radius_at(positions, nodes, i, j, xi) result(radius)
+    real(wp), intent(in), contiguous :: positions(:, :)
     integer, intent(in) :: nodes(n_slot)
     integer, intent(in) :: i, j
     type(dual_t), intent(in) :: xi
     type(dual_t) :: radius, t(2)
 
-    radius = variable(radius_of(places(:, nodes(i))), 2*i - 1)
-    t = apart(places, nodes, j, i)
+    radius = variable(radius_of(positions(:, nodes(i))), 2*i - 1)
+    t = difference(positions, nodes, j, i)
     radius = radius + xi*t(1)
   end function radius_at
 
   !> Mean radius of a stretch of the segment in slots i, j as its end at `near` has it, m.
-  pure function end_radius_at(places, nodes, i, j, near, far) result(radius)
-    real(wp), intent(in), contiguous :: places(:, :)
+  pure function end_radius_at(positions, nodes, i, j, near, far) result(radius)
+    real(wp), intent(in), contiguous :: positions(:, :)
     integer, intent(in) :: nodes(n_slot)
     integer, intent(in) :: i, j
     type(dual_t), intent(in) :: near, far !! its ends, 0 to 1
     type(dual_t) :: radius
 
-    radius = radius_at(places, nodes, i, j, (1.0_wp/3.0_wp)*(2.0_wp*near + far))
+    radius = radius_at(positions, nodes, i, j, (1.0_wp/3.0_wp)*(2.0_wp*near + far))
   end function end_radius_at
 
   !> Centre by radius of a stretch of the segment in slots i, j; the middle where nothing has
   !> weight.
-  pure function centroid_of(places, nodes, i, j, low, high) result(xi)
-    real(wp), intent(in), contiguous :: places(:, :)
+  pure function centroid_of(positions, nodes, i, j, low, high) result(xi)
+    real(wp), intent(in), contiguous :: positions(:, :)
     integer, intent(in) :: nodes(n_slot)
     integer, intent(in) :: i, j
     type(dual_t), intent(in) :: low, high !! its ends, 0 to 1
     type(dual_t) :: xi, first, last
 
     xi = 0.5_wp*(low + high)
-    first = radius_at(places, nodes, i, j, low)
-    last = radius_at(places, nodes, i, j, high)
+    first = radius_at(positions, nodes, i, j, low)
+    last = radius_at(positions, nodes, i, j, high)
     if (first%value + last%value > tiny(1.0_wp)) &
       xi = xi + (1.0_wp/6.0_wp)*((high - low)*(last - first)/(first + last))
   end function centroid_of

@@ -4,17 +4,17 @@
 !> nodal values, and for each slave node in contact and each average a product of the force that
 !> a unit of that makes and its gradient.
 module nodal_tangent_m
-  use assembly_m, only : add_varied_point, product_t, start_product, add_gradient, &
+  use assembly_m, only : add_linearised_point, product_t, start_product, add_gradient, &
     add_point_force, finish_product
-  use behind_ties_m, only : is_left_to_tie
-  use contact_law_m, only : vary_pressure
+  use tie_handover_m, only : is_held_by_tie
+  use contact_law_m, only : linearise_pressure
   use contact_state_m, only : contact_state_t, n_side
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, variable, operator(-), operator(+), operator(*)
-  use interference_m, only : ease_gaps
+  use interference_m, only : ramp_gaps
   use kinds_m, only : wp
-  use linearisation_m, only : varied_list_t, varied_point_t, slip_of, between
-  use point_tangent_m, only : vary_grip
+  use linearisation_m, only : linearised_list_t, linearised_point_t, slip_of, between
+  use point_tangent_m, only : linearise_friction
   use sparse_m, only : sparse_t
   implicit none
   private
@@ -29,7 +29,7 @@ contains
   pure subroutine add_nodal_tangents(contact, memory, list, equations, matrix)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    type(varied_list_t), intent(in) :: list
+    type(linearised_list_t), intent(in) :: list
     integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
     type(sparse_t), intent(inout) :: matrix
     type(dual_t) :: values(list%n, 2)
@@ -38,17 +38,17 @@ contains
     integer :: p
 
     do p = 1, list%n
-      values(p, of_gap) = list%points(p)%gap + list%points(p)%left
+      values(p, of_gap) = list%points(p)%gap + list%points(p)%remaining
       values(p, of_slip) = constant(0.0_wp)
       if (memory%has%friction) values(p, of_slip) = slip_of(memory, list%points(p))
     end do
     call average(list, values, means, areas)
-    call press_nodes(contact, memory, means, areas, pressures, tractions)
+    call form_nodal_pressures(contact, memory, means, areas, pressures, tractions)
     do p = 1, list%n
       associate (point => list%points(p), a => list%points(p)%nodes(1), &
         b => list%points(p)%nodes(2))
         if (.not. max(pressures(a)%value, pressures(b)%value) > 0.0_wp) cycle
-        call add_varied_point(point, point%area*between(pressures([a, b])%value, &
+        call add_linearised_point(point, point%area*between(pressures([a, b])%value, &
           point%slave_xi), point%area*between(tractions([a, b])%value, point%slave_xi), &
           equations, matrix)
       end associate
@@ -58,7 +58,7 @@ contains
 
   !> Means of gaps and slips at the slave nodes, and what these weigh there.
   pure subroutine average(list, values, means, areas)
-    type(varied_list_t), intent(in) :: list
+    type(linearised_list_t), intent(in) :: list
     type(dual_t), intent(in) :: values(:, :) !! (list%n, 2) m
     real(wp), intent(out) :: means(:, :)     !! (2, n_slave) m; 0 where there is no point
     real(wp), intent(out) :: areas(:)        !! (n_slave) m
@@ -81,7 +81,7 @@ contains
 
   !> Pressures and tractions of the slave nodes, variable 1 the mean gap, 2 the mean slip; without
   !> slopes where nothing acts.
-  pure subroutine press_nodes(contact, memory, means, areas, pressures, tractions)
+  pure subroutine form_nodal_pressures(contact, memory, means, areas, pressures, tractions)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     real(wp), intent(in) :: means(:, :), areas(:)
@@ -90,25 +90,25 @@ contains
     integer :: i
 
     gaps = means(of_gap, :)
-    if (memory%has%interference) call ease_gaps(memory, gaps)
+    if (memory%has%interference) call ramp_gaps(memory, gaps)
     pressures = constant(0.0_wp)
     tractions = constant(0.0_wp)
     do i = 1, memory%n_slave
       if (.not. (gaps(i) < memory%closed_gap .and. areas(i) > 0.0_wp)) cycle
-      if (is_left_to_tie(memory, i)) cycle
-      pressures(i) = vary_pressure(memory%contact_law, memory%slave_penalty, &
+      if (is_held_by_tie(memory, i)) cycle
+      pressures(i) = linearise_pressure(memory%contact_law, memory%slave_penalty, &
         variable(gaps(i), of_gap))
-      if (memory%has%friction) tractions(i) = vary_grip(contact%friction, memory, &
-        constant(memory%scratch%former_traction(i)), variable(means(of_slip, i), of_slip), &
-        pressures(i), memory%slave_penalty, memory%scratch%former_state(i), constant(1.0_wp))
+      if (memory%has%friction) tractions(i) = linearise_friction(contact%friction, memory, &
+        constant(memory%scratch%previous_traction(i)), variable(means(of_slip, i), of_slip), &
+        pressures(i), memory%slave_penalty, memory%scratch%previous_state(i), constant(1.0_wp))
     end do
-  end subroutine press_nodes
+  end subroutine form_nodal_pressures
 
   !> Add what the means of all slave nodes change, by the points on both segments of each.
   pure subroutine add_averages(contact, list, values, means, areas, pressures, tractions, &
       equations, matrix)
     type(contact_t), intent(in) :: contact
-    type(varied_list_t), intent(in) :: list
+    type(linearised_list_t), intent(in) :: list
     type(dual_t), intent(in) :: values(:, :)
     real(wp), intent(in) :: means(:, :), areas(:)
     type(dual_t), intent(in) :: pressures(:), tractions(:)
@@ -149,7 +149,7 @@ contains
 
   !> N_A a at a point, for its k-th slave node.
   pure function nodal_share(point, k) result(share)
-    type(varied_point_t), intent(in) :: point
+    type(linearised_point_t), intent(in) :: point
     integer, intent(in) :: k
     type(dual_t) :: share
 

@@ -1,23 +1,23 @@
 ! SPDX-License-Identifier: MIT
-!> Tangents of points that are pressed by their own gaps (doc/theory/contact.md, sections 9.2 and
+!> Tangents of points that are loaded by their own gaps (doc/theory/contact.md, sections 9.2 and
 !> 9.8).
 module point_tangent_m
-  use assembly_m, only : add_varied_point
-  use behind_ties_m, only : is_left_to_tie
-  use contact_law_m, only : vary_pressure
+  use assembly_m, only : add_linearised_point
+  use tie_handover_m, only : is_held_by_tie
+  use contact_law_m, only : linearise_pressure
   use contact_state_m, only : contact_state_t
   use contacts_m, only : friction_rule_t
   use dual_m, only : dual_t, constant, operator(+), operator(*)
   use entry_offset_m, only : has_offsets, add_offsets
-  use interference_m, only : ease_gaps
+  use interference_m, only : ramp_gaps
   use kinds_m, only : wp
-  use law_friction_m, only : vary_traction, goes_on
+  use law_friction_m, only : linearise_traction, goes_on
   use law_state_m, only : is_open, slips
-  use linearisation_m, only : varied_list_t, varied_point_t, slip_of, between
+  use linearisation_m, only : linearised_list_t, linearised_point_t, slip_of, between
   use sparse_m, only : sparse_t
   implicit none
   private
-  public :: add_point_tangents, press_point, vary_grip, parts_left
+  public :: add_point_tangents, load_point, linearise_friction, parts_left
 
 contains
 
@@ -25,7 +25,7 @@ contains
   pure subroutine add_point_tangents(rule, memory, list, equations, matrix)
     type(friction_rule_t), intent(in) :: rule
     type(contact_state_t), intent(in) :: memory
-    type(varied_list_t), intent(in) :: list
+    type(linearised_list_t), intent(in) :: list
     integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
     type(sparse_t), intent(inout) :: matrix
     type(dual_t) :: pressure, traction
@@ -34,51 +34,52 @@ contains
 
     do p = 1, list%n
       associate (point => list%points(p))
-        call press_point(rule, memory, point, acts, pressure, traction)
-        if (acts) call add_varied_point(point, pressure*point%area, traction*point%area, &
+        call load_point(rule, memory, point, acts, pressure, traction)
+        if (acts) call add_linearised_point(point, pressure*point%area, traction*point%area, &
           equations, matrix)
       end associate
     end do
   end subroutine add_point_tangents
 
   !> Pressure and traction of a point, if it acts.
-  pure subroutine press_point(rule, memory, point, acts, pressure, traction)
+  pure subroutine load_point(rule, memory, point, acts, pressure, traction)
     type(friction_rule_t), intent(in) :: rule
     type(contact_state_t), intent(in) :: memory
-    type(varied_point_t), intent(in) :: point
+    type(linearised_point_t), intent(in) :: point
     logical, intent(out) :: acts !! in contact, and not left to a tie
     type(dual_t), intent(out) :: pressure, traction
-    type(dual_t) :: gap, former
+    type(dual_t) :: gap, previous
     integer :: before
 
-    gap = point%gap + point%left
+    gap = point%gap + point%remaining
     acts = gap%value < memory%closed_gap
-    if (acts) acts = .not. is_left_to_tie(memory, point%place)
+    if (acts) acts = .not. is_held_by_tie(memory, point%site)
     if (.not. acts) return
-    pressure = vary_pressure(memory%contact_law, point%stiffness, gap)
+    pressure = linearise_pressure(memory%contact_law, point%stiffness, gap)
     traction = constant(0.0_wp)
     if (.not. memory%has%friction) return
-    associate (tractions => memory%scratch%former_traction, &
-      states => memory%scratch%former_state, nodes => point%nodes)
-      former = constant(tractions(point%place))
-      before = states(point%place)
+    associate (tractions => memory%scratch%previous_traction, &
+      states => memory%scratch%previous_state, nodes => point%nodes)
+      previous = constant(tractions(point%site))
+      before = states(point%site)
       if (nodes(4) == 0 .and. before == is_open) then
         ! A master node that was none of the points goes on from the ends of its slave segment.
-        former = between(tractions(nodes(:2)), point%slave_xi)
+        previous = between(tractions(nodes(:2)), point%slave_xi)
         if (any(states(nodes(:2)) == slips)) before = slips
       end if
     end associate
-    traction = vary_grip(rule, memory, former, slip_of(memory, point), pressure, point%stiffness, &
-      before, point%length)
-  end subroutine press_point
+    traction = linearise_friction(rule, memory, previous, slip_of(memory, point), pressure, &
+      point%stiffness, before, point%length)
+  end subroutine load_point
 
   !> Traction from what was before and a slip; in the first tangent of a step, in which nothing has
   !> moved yet, what slipped before goes on.
-  pure function vary_grip(rule, memory, former, slip, pressure, stiffness, before, length) &
+  pure function linearise_friction(rule, memory, previous, slip, pressure, stiffness, before, &
+    length) &
       result(traction)
     type(friction_rule_t), intent(in) :: rule
     type(contact_state_t), intent(in) :: memory
-    type(dual_t), intent(in) :: former, slip, pressure !! N/m^2, m, N/m^2
+    type(dual_t), intent(in) :: previous, slip, pressure !! N/m^2, m, N/m^2
     real(wp), intent(in) :: stiffness                  !! normal, N/m^3
     integer, intent(in) :: before                      !! state at the end of the step before
     type(dual_t), intent(in) :: length                 !! what a largest traction counts times
@@ -86,20 +87,21 @@ contains
 
     most = constant(huge(1.0_wp))
     if (rule%most > 0.0_wp) most = rule%most*length
-    traction = vary_traction(rule, former, slip, pressure, rule%stiffness*stiffness, most, &
+    traction = linearise_traction(rule, previous, slip, pressure, rule%stiffness*stiffness, most, &
       [memory%scratch%dt, memory%scratch%lag], &
       merge(goes_on, before, memory%closed_gap > 0.0_wp .and. before == slips))
-  end function vary_grip
+  end function linearise_friction
 
   !> The parts of the depths of the points on the list that do not act: entry offsets, and initial
   !> overlaps that grow, m. Those of averages at slave nodes are added there.
-  pure function parts_left(memory) result(left)
+  pure function parts_left(memory) result(remaining)
     type(contact_state_t), intent(in) :: memory
-    real(wp) :: left(memory%points%n)
+    real(wp) :: remaining(memory%points%n)
 
-    left = 0.0_wp
-    if (has_offsets(memory)) call add_offsets(memory, left)
-    if (memory%has%interference .and. .not. memory%has%nodal_pressure) call ease_gaps(memory, left)
+    remaining = 0.0_wp
+    if (has_offsets(memory)) call add_offsets(memory, remaining)
+    if (memory%has%interference .and. .not. memory%has%nodal_pressure) &
+      call ramp_gaps(memory, remaining)
   end function parts_left
 
 end module point_tangent_m

@@ -1,44 +1,44 @@
 ! SPDX-License-Identifier: MIT
-!> Linearised points of type 6, which stand at fixed places of their segments
+!> Linearised points of type 6, which stand at fixed sites of their segments
 !> (doc/theory/contact.md, section 9.5).
 module tangent_mortar_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use dual_m, only : constant, operator(*)
-  use linearisation_m, only : varied_point_t, varied_list_t, append_point, apart, project_point, &
-    length_between, share_of, radius_at
+  use linearisation_m, only : linearised_point_t, linearised_list_t, append_point, difference, &
+    project_point, length_between, share_of, radius_at
   use kinds_m, only : wp
   use point_tangent_m, only : parts_left
   implicit none
   private
-  public :: vary_fixed_points
+  public :: linearise_fixed_points
 
 contains
 
   !> All points. Of the area only what changes has to be gone through again.
-  pure subroutine vary_fixed_points(contact, memory, list)
+  pure subroutine linearise_fixed_points(contact, memory, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    type(varied_list_t), intent(inout) :: list
-    type(varied_point_t) :: point
-    real(wp) :: left(memory%points%n)
+    type(linearised_list_t), intent(inout) :: list
+    type(linearised_point_t) :: point
+    real(wp) :: remaining(memory%points%n)
     integer :: p
 
-    left = parts_left(memory)
-    associate (points => memory%points, places => memory%places)
+    remaining = parts_left(memory)
+    associate (points => memory%points, positions => memory%positions)
       do p = 1, points%n
         point%nodes(:4) = [points%slave_nodes(:, p), points%master_nodes(:, p)]
         point%slave_xi = constant(points%slave_weights(2, p))
         call project_point(memory, points%master_weights(2, p), points%gap(p), point)
-        point%left = constant(left(p))
-        point%area = length_between(places, point%nodes, 1, 2) &
-          *share_of(apart(places, point%nodes, 2, 1), point%normal)
+        point%remaining = constant(remaining(p))
+        point%area = length_between(positions, point%nodes, 1, 2) &
+          *share_of(difference(positions, point%nodes, 2, 1), point%normal)
         if (contact%is_round) &
-          point%area = point%area*radius_at(places, point%nodes, 1, 2, point%slave_xi)
+          point%area = point%area*radius_at(positions, point%nodes, 1, 2, point%slave_xi)
         point%area = (points%area(p)/point%area%value)*point%area
         call append_point(list, point)
       end do
     end associate
-  end subroutine vary_fixed_points
+  end subroutine linearise_fixed_points
 
 end module tangent_mortar_m

@@ -6,90 +6,90 @@ module tangent_nts_m
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/)
   use kinds_m, only : wp
-  use linearisation_m, only : varied_point_t, varied_list_t, append_point, project_point, apart, &
-    length_between, share_of, side_share_of, cosine_of, end_radius_at
+  use linearisation_m, only : linearised_point_t, linearised_list_t, append_point, project_point, &
+    difference, length_between, share_of, side_share_of, cosine_of, end_radius_at
   use point_tangent_m, only : parts_left
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: vary_nodes, vary_node, vary_length
+  public :: linearise_nodes, linearise_node, linearise_length
 
 contains
 
   !> All points. The area of type 1 is 1, in axisymmetry the mean radius of the tributary length,
   !> which a largest traction counts times; that of types 2 and 3 is the tributary length.
-  pure subroutine vary_nodes(contact, has_unit_area, memory, list)
+  pure subroutine linearise_nodes(contact, has_unit_area, memory, list)
     type(contact_t), intent(in) :: contact
     logical, intent(in) :: has_unit_area !! type 1
     type(contact_state_t), intent(in) :: memory
-    type(varied_list_t), intent(inout) :: list
-    type(varied_point_t) :: point
-    real(wp) :: left(memory%points%n)
+    type(linearised_list_t), intent(inout) :: list
+    type(linearised_point_t) :: point
+    real(wp) :: remaining(memory%points%n)
     logical :: is_closed
     integer :: p
 
-    left = parts_left(memory)
+    remaining = parts_left(memory)
     do p = 1, memory%points%n
-      point = vary_node(memory, p)
-      point%left = constant(left(p))
-      if (point%place > memory%n_slave) then
-        call vary_length(contact%master, memory%n_slave, contact%is_round, &
-          memory%master_tracking%pass%is_closed, memory, point)
+      point = linearise_node(memory, p)
+      point%remaining = constant(remaining(p))
+      if (point%site > memory%n_slave) then
+        call linearise_length(contact%master, memory%n_slave, contact%is_round, &
+          memory%master_status%pass%is_closed, memory, point)
       else
-        is_closed = memory%slave_tracking%pass%is_closed
+        is_closed = memory%slave_status%pass%is_closed
         if (contact%is_round .or. .not. has_unit_area) &
-          call vary_length(contact%slave, 0, contact%is_round, is_closed, memory, point)
-        if (has_unit_area) call vary_unit(contact, is_closed, memory, point)
+          call linearise_length(contact%slave, 0, contact%is_round, is_closed, memory, point)
+        if (has_unit_area) call linearise_unit(contact, is_closed, memory, point)
       end if
       call append_point(list, point)
     end do
-  end subroutine vary_nodes
+  end subroutine linearise_nodes
 
   !> The p-th point of the list, which stands at a node, with an area of 1.
-  pure function vary_node(memory, p) result(point)
+  pure function linearise_node(memory, p) result(point)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: p
-    type(varied_point_t) :: point
+    type(linearised_point_t) :: point
 
     associate (points => memory%points)
-      point%place = points%slave_nodes(1, p)
-      point%nodes(1) = point%place
+      point%site = points%slave_nodes(1, p)
+      point%nodes(1) = point%site
       point%nodes(3:4) = points%master_nodes(:, p)
       point%stiffness = points%stiffness(p)
       point%slave_xi = constant(0.0_wp)
       point%area = constant(1.0_wp)
       call project_point(memory, points%master_weights(2, p), points%gap(p), point)
     end associate
-  end function vary_node
+  end function linearise_node
 
   !> Type 1: what its area has been made of.
-  pure subroutine vary_unit(contact, is_closed, memory, point)
+  pure subroutine linearise_unit(contact, is_closed, memory, point)
     type(contact_t), intent(in) :: contact
     logical, intent(in) :: is_closed
     type(contact_state_t), intent(in) :: memory
-    type(varied_point_t), intent(inout) :: point
-    type(varied_point_t) :: plane
+    type(linearised_point_t), intent(inout) :: point
+    type(linearised_point_t) :: plane
 
     plane = point
     if (contact%is_round) then
-      call vary_length(contact%slave, 0, .false., is_closed, memory, plane)
+      call linearise_length(contact%slave, 0, .false., is_closed, memory, plane)
       point%area = point%area/plane%area
     end if
     if (.not. contact%friction%most > 0.0_wp) return
-    call vary_length(contact%slave, 0, .false., .false., memory, plane)
+    call linearise_length(contact%slave, 0, .false., .false., memory, plane)
     point%nodes = plane%nodes
     point%length = plane%area
-  end subroutine vary_unit
+  end subroutine linearise_unit
 
   !> Let the area of a point at a node be the node's tributary length, the neighbours of which go
   !> into slots 5 and 6; on a closed boundary its segments count as far as they are opposed to the
   !> face.
-  pure subroutine vary_length(surface, offset, by_radius, is_closed, memory, point)
+  pure subroutine linearise_length(surface, offset, by_radius, is_closed, memory, point)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: offset !! local number before the first node of the surface
     logical, intent(in) :: by_radius, is_closed
     type(contact_state_t), intent(in) :: memory
-    type(varied_point_t), intent(inout) :: point
+    type(linearised_point_t), intent(inout) :: point
     type(dual_t) :: halves(2), shares(2), cosines(2), t(2, 2)
     integer :: segments(2), less, more, k
 
@@ -101,11 +101,11 @@ contains
     do k = 1, 2
       if (segments(k) == 0) cycle
       point%nodes(4 + k) = offset + surface%segments(k, segments(k))
-      halves(k) = 0.5_wp*length_between(memory%places, point%nodes, 1, 4 + k)
-      if (by_radius) halves(k) = halves(k)*end_radius_at(memory%places, point%nodes, 1, 4 + k, &
+      halves(k) = 0.5_wp*length_between(memory%positions, point%nodes, 1, 4 + k)
+      if (by_radius) halves(k) = halves(k)*end_radius_at(memory%positions, point%nodes, 1, 4 + k, &
         constant(0.0_wp), constant(1.0_wp))
       if (.not. is_closed) cycle
-      t(:, k) = apart(memory%places, point%nodes, merge(1, 6, k == 1), merge(5, 1, k == 1))
+      t(:, k) = difference(memory%positions, point%nodes, merge(1, 6, k == 1), merge(5, 1, k == 1))
       shares(k) = share_of(t(:, k), point%normal)
       cosines(k) = cosine_of(t(:, k), point%normal)
     end do
@@ -119,6 +119,6 @@ contains
     if (dot_product(t(:, 1)%value, point%normal%value) < 0.0_wp .and. &
       dot_product(t(:, 2)%value, point%normal%value) > 0.0_wp) &
       point%area = point%area + (1.0_wp - shares(more))*(halves(1) + halves(2))
-  end subroutine vary_length
+  end subroutine linearise_length
 
 end module tangent_nts_m

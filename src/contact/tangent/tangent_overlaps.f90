@@ -3,64 +3,65 @@
 !> segments (doc/theory/contact.md, sections 9.4 and 9.5). Half of each overlap is the area of a
 !> point of its own at either of its ends for type 5, so that each depends on few nodes.
 module tangent_overlaps_m
-  use contact_state_m, only : contact_state_t, is_touching
+  use contact_state_m, only : contact_state_t, active
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
-  use foot_m, only : foot_t, near_foot, round_off
+  use projection_m, only : projection_t, nearby_projection, round_off
   use kinds_m, only : wp
-  use linearisation_m, only : varied_point_t, varied_list_t, varied_projection_t, append_point, &
-    apart, length_between, project, project_point, between, share_of, side_share_of, &
+  use linearisation_m, only : linearised_point_t, linearised_list_t, linearised_projection_t, &
+    append_point, &
+    difference, length_between, project, project_point, between, share_of, side_share_of, &
     radius_at, end_radius_at
   use nodal_tangent_m, only : nodal_share
   use overlap_m, only : overlap_t
   use overlaps_m, only : find_overlaps, n_most_overlaps
-  use place_nts_mar_m, only : is_tip
-  use place_segmented_mortar_m, only : gauss_xi, least_cut
+  use points_nts_mar_m, only : is_sharp_vertex
+  use points_segmented_mortar_m, only : gauss_xi, least_part
   use surfaces_m, only : surface_t
-  use tangent_nts_m, only : vary_node, vary_length
-  use tips_m, only : has_folds
+  use tangent_nts_m, only : linearise_node, linearise_length
+  use sharp_vertices_m, only : has_folds
   implicit none
   private
-  public :: vary_overlap_ends, vary_gauss_points
+  public :: linearise_overlap_ends, linearise_gauss_points
 
 contains
 
   !> Type 5: the ends of all overlaps; then the nodes at a tip, which have none.
-  pure subroutine vary_overlap_ends(contact, memory, list)
+  pure subroutine linearise_overlap_ends(contact, memory, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    type(varied_list_t), intent(inout) :: list
-    type(varied_point_t) :: point
+    type(linearised_list_t), intent(inout) :: list
+    type(linearised_point_t) :: point
     logical :: has_area(memory%n_slave)
     integer :: s, p
 
     has_area = .false.
     do s = 1, contact%slave%n_segment
-      if (memory%segment_status(s) == is_touching .or. any(memory%slave_tracking%status( &
-        contact%slave%segments(:, s)) == is_touching)) &
-        call vary_ends_on(contact, memory, s, has_area, list)
+      if (memory%segment_state(s) == active .or. any(memory%slave_status%state( &
+        contact%slave%segments(:, s)) == active)) &
+        call linearise_ends_on(contact, memory, s, has_area, list)
     end do
-    do p = 1, memory%slave_tracking%n_touching
-      associate (node => memory%slave_tracking%touching(p))
+    do p = 1, memory%slave_status%n_active
+      associate (node => memory%slave_status%active_points(p))
         if (has_area(node)) cycle
-        if (.not. is_tip(contact%slave, memory, node)) cycle
-        point = vary_node(memory, p)
-        call vary_length(contact%slave, 0, contact%is_round, .false., memory, point)
-        point%left = constant(memory%slave_tracking%offset(node) + depth_left(memory, node))
+        if (.not. is_sharp_vertex(contact%slave, memory, node)) cycle
+        point = linearise_node(memory, p)
+        call linearise_length(contact%slave, 0, contact%is_round, .false., memory, point)
+        point%remaining = constant(memory%slave_status%offset(node) + depth_left(memory, node))
         call append_point(list, point)
       end associate
     end do
-  end subroutine vary_overlap_ends
+  end subroutine linearise_overlap_ends
 
   !> Type 5: the points of one slave segment.
-  pure subroutine vary_ends_on(contact, memory, s, has_area, list)
+  pure subroutine linearise_ends_on(contact, memory, s, has_area, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
     logical, intent(inout) :: has_area(:) !! (n_slave) slave nodes with points
-    type(varied_list_t), intent(inout) :: list
+    type(linearised_list_t), intent(inout) :: list
     type(overlap_t) :: overlaps(n_most_overlaps(memory, s))
-    type(varied_point_t) :: point
+    type(linearised_point_t) :: point
     type(dual_t) :: xi(2), half
     integer :: breakpoints(2), n, k, i
 
@@ -69,18 +70,18 @@ contains
       if (.not. overlaps(k)%high > overlaps(k)%low) cycle
       if (.not. contact%strict .and. .not. overlaps(k)%share > 0.0_wp) cycle
       call start_on_overlap(contact, memory, s, overlaps(:n), k, point, xi)
-      half = 0.5_wp*(xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2)
+      half = 0.5_wp*(xi(2) - xi(1))*length_between(memory%positions, point%nodes, 1, 2)
       breakpoints = [overlaps(k)%first, overlaps(k)%last]
       do i = 1, 2
         point%area = half
-        if (contact%is_round) point%area = half*end_radius_at(memory%places, point%nodes, 1, 2, &
+        if (contact%is_round) point%area = half*end_radius_at(memory%positions, point%nodes, 1, 2, &
           xi(i), xi(3 - i))
         associate (node => contact%slave%segments(i, s))
           if (breakpoints(i) > 0) then
-            if (memory%segment_status(s) /= is_touching) cycle
+            if (memory%segment_state(s) /= active) cycle
             call put_at_breakpoint(memory, memory%n_slave + breakpoints(i), point)
           else
-            if (memory%slave_tracking%status(node) /= is_touching) cycle
+            if (memory%slave_status%state(node) /= active) cycle
             call put_at_end(contact, memory, node, i, point)
             has_area(node) = .true.
           end if
@@ -92,32 +93,32 @@ contains
         end if
       end do
     end do
-  end subroutine vary_ends_on
+  end subroutine linearise_ends_on
 
   !> Type 5: let the point stand at a master node behind the slave segment, with the normal of that.
   pure subroutine put_at_breakpoint(memory, node, point)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: node !! local number
-    type(varied_point_t), intent(inout) :: point
-    type(varied_projection_t) :: projection
+    type(linearised_point_t), intent(inout) :: point
+    type(linearised_projection_t) :: projection
 
     point%nodes(3:4) = [node, 0]
-    point%place = node
-    projection = project(apart(memory%places, point%nodes, 3, 1), &
-      apart(memory%places, point%nodes, 2, 1))
+    point%site = node
+    projection = project(difference(memory%positions, point%nodes, 3, 1), &
+      difference(memory%positions, point%nodes, 2, 1))
     point%slave_xi = projection%xi
     point%master_xi = constant(0.0_wp)
     point%gap = projection%gap
     point%normal = -projection%normal
     point%length = constant(1.0_wp)
     associate (ends => point%nodes(:2))
-      point%left = between(memory%slave_tracking%offset(ends), point%slave_xi)
+      point%remaining = between(memory%slave_status%offset(ends), point%slave_xi)
       if (.not. memory%has%interference) return
       if (memory%interference%depth(node) < 0.0_wp) then
-        point%left = point%left + between([depth_left(memory, ends(1)), &
+        point%remaining = point%remaining + between([depth_left(memory, ends(1)), &
           depth_left(memory, ends(2))], point%slave_xi)
       else
-        point%left = point%left + depth_left(memory, node)
+        point%remaining = point%remaining + depth_left(memory, node)
       end if
     end associate
   end subroutine put_at_breakpoint
@@ -127,79 +128,79 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: node, k
-    type(varied_point_t), intent(inout) :: point
+    type(linearised_point_t), intent(inout) :: point
 
-    associate (tracking => memory%slave_tracking)
-      point%nodes(3:4) = memory%n_slave + contact%master%segments(:, tracking%segment(node))
-      point%place = node
+    associate (status => memory%slave_status)
+      point%nodes(3:4) = memory%n_slave + contact%master%segments(:, status%segment(node))
+      point%site = node
       point%slave_xi = constant(k - 1.0_wp)
-      call project_point(memory, tracking%xi(node), tracking%gap(node), point)
-      point%left = constant(tracking%offset(node) + depth_left(memory, node))
+      call project_point(memory, status%xi(node), status%gap(node), point)
+      point%remaining = constant(status%offset(node) + depth_left(memory, node))
     end associate
   end subroutine put_at_end
 
-  !> What is left of the initial overlap of a place, m.
-  pure function depth_left(memory, place) result(left)
+  !> What is left of the initial overlap of a site, m.
+  pure function depth_left(memory, site) result(remaining)
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: place
-    real(wp) :: left
+    integer, intent(in) :: site
+    real(wp) :: remaining
 
-    left = 0.0_wp
+    remaining = 0.0_wp
     if (memory%has%interference) &
-      left = memory%interference%left*max(0.0_wp, memory%interference%depth(place))
+      remaining = memory%interference%remaining*max(0.0_wp, memory%interference%depth(site))
   end function depth_left
 
   !> Type 7: the Gauss points of all overlaps.
-  pure subroutine vary_gauss_points(contact, memory, list)
+  pure subroutine linearise_gauss_points(contact, memory, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    type(varied_list_t), intent(inout) :: list
-    logical :: is_placed(contact%slave%n_segment)
+    type(linearised_list_t), intent(inout) :: list
+    logical :: has_points(contact%slave%n_segment)
     integer :: s, first
 
-    is_placed = .false.
-    is_placed(contact%slave%outgoing(memory%points%slave_nodes(1, :memory%points%n))) = .true.
+    has_points = .false.
+    has_points(contact%slave%outgoing(memory%points%slave_nodes(1, :memory%points%n))) = .true.
     do s = 1, contact%slave%n_segment
-      if (.not. is_placed(s)) cycle
+      if (.not. has_points(s)) cycle
       first = list%n + 1
-      call vary_gauss_points_on(contact, memory, s, list)
-      if (has_folds(contact)) call vary_tips(memory, contact%slave%segments(:, s), first, list)
+      call linearise_gauss_points_on(contact, memory, s, list)
+      if (has_folds(contact)) call linearise_tips(memory, contact%slave%segments(:, s), first, list)
     end do
-  end subroutine vary_gauss_points
+  end subroutine linearise_gauss_points
 
   !> Type 7: those of one slave segment, as far as they count.
-  pure subroutine vary_gauss_points_on(contact, memory, s, list)
+  pure subroutine linearise_gauss_points_on(contact, memory, s, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
-    type(varied_list_t), intent(inout) :: list
+    type(linearised_list_t), intent(inout) :: list
     type(overlap_t) :: overlaps(n_most_overlaps(memory, s))
-    type(varied_point_t) :: point
+    type(linearised_point_t) :: point
     type(dual_t) :: xi(2), length, share
-    type(foot_t) :: foot
+    type(projection_t) :: projected
     integer :: n, k, q
 
-    call find_overlaps(contact, memory, s, .false., least_cut, overlaps, n)
+    call find_overlaps(contact, memory, s, .false., least_part, overlaps, n)
     do k = 1, n
       if (.not. overlaps(k)%share > 0.0_wp) cycle
       call start_on_overlap(contact, memory, s, overlaps(:n), k, point, xi)
-      length = (xi(2) - xi(1))*length_between(memory%places, point%nodes, 1, 2)
+      length = (xi(2) - xi(1))*length_between(memory%positions, point%nodes, 1, 2)
       do q = 1, size(gauss_xi)
         point%slave_xi = xi(1) + gauss_xi(q)*(xi(2) - xi(1))
         associate (at => point%slave_xi%value, ends => point%nodes(:2))
-          foot = near_foot(contact%master, memory%places(:, memory%n_slave + 1:), &
-            (1.0_wp - at)*memory%places(:, ends(1)) + at*memory%places(:, ends(2)), &
+          projected = nearby_projection(contact%master, memory%positions(:, memory%n_slave + 1:), &
+            (1.0_wp - at)*memory%positions(:, ends(1)) + at*memory%positions(:, ends(2)), &
             overlaps(k)%master)
-          if (.not. foot%is_on) cycle
-          point%nodes(3:4) = memory%n_slave + contact%master%segments(:, foot%segment)
-          call project_point(memory, foot%xi, foot%gap, point)
-          point%left = between(memory%slave_tracking%offset(ends), point%slave_xi)
+          if (.not. projected%is_on) cycle
+          point%nodes(3:4) = memory%n_slave + contact%master%segments(:, projected%segment)
+          call project_point(memory, projected%xi, projected%gap, point)
+          point%remaining = between(memory%slave_status%offset(ends), point%slave_xi)
         end associate
-        share = share_of(apart(memory%places, point%nodes, 2, 1), point%normal)
+        share = share_of(difference(memory%positions, point%nodes, 2, 1), point%normal)
         if (.not. share%value > 0.0_wp) cycle
         point%area = 0.5_wp*share*length
         if (contact%is_round) point%area = point%area &
-          *radius_at(memory%places, point%nodes, 1, 2, point%slave_xi)
+          *radius_at(memory%positions, point%nodes, 1, 2, point%slave_xi)
         if (overlaps(k)%part >= 1.0_wp) then
           call append_point(list, point)
         else
@@ -207,17 +208,17 @@ contains
         end if
       end do
     end do
-  end subroutine vary_gauss_points_on
+  end subroutine linearise_gauss_points_on
 
   !> Type 7: the points at the nodes of a segment at the tip of a fold, one for each point that
   !> gives way to them. How much does is held, and so is what the area of such a point owes to its
   !> own projection.
-  pure subroutine vary_tips(memory, ends, first, list)
+  pure subroutine linearise_tips(memory, ends, first, list)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2) !! nodes of the segment
     integer, intent(in) :: first   !! of its points, the last ones on the list
-    type(varied_list_t), intent(inout) :: list
-    type(varied_point_t) :: point
+    type(linearised_list_t), intent(inout) :: list
+    type(linearised_point_t) :: point
     type(dual_t) :: shares(2)
     real(wp) :: part(2)
     integer :: at_end(2), last, p, k
@@ -245,12 +246,12 @@ contains
         point%slave_xi = constant(real(k - 1, wp))
         call project_point(memory, memory%points%master_weights(2, at_end(k)), &
           memory%points%gap(at_end(k)), point)
-        point%left = constant(memory%slave_tracking%offset(ends(k)))
+        point%remaining = constant(memory%slave_status%offset(ends(k)))
         call append_point(list, point)
       end do
       list%points(p)%area = list%points(p)%area - (shares(1) + shares(2))
     end do
-  end subroutine vary_tips
+  end subroutine linearise_tips
 
   !> Points of the list at the nodes of a segment, 0: none.
   pure function points_at_ends(memory, ends) result(at_end)
@@ -277,23 +278,23 @@ contains
     integer, intent(in) :: s              !! slave segment
     type(overlap_t), intent(in) :: overlap
     logical, intent(in) :: is_by_master   !! opposed to the master segment, not at the point itself
-    type(varied_point_t), intent(in) :: point
-    type(varied_list_t), intent(inout) :: list
-    type(varied_point_t) :: change
-    type(varied_projection_t) :: projection
+    type(linearised_point_t), intent(in) :: point
+    type(linearised_list_t), intent(inout) :: list
+    type(linearised_point_t) :: change
+    type(linearised_projection_t) :: projection
     type(dual_t) :: share, own(2), other(2)
 
     change = point
     change%nodes(5:8) = [memory%n_slave + contact%master%segments(:, overlap%master), 0, 0]
-    own = apart(memory%places, change%nodes, 2, 1)
-    other = apart(memory%places, change%nodes, 6, 5)
+    own = difference(memory%positions, change%nodes, 2, 1)
+    other = difference(memory%positions, change%nodes, 6, 5)
     share = constant(1.0_wp)
     projection = project(own, other)
     if (is_by_master) share = share_of(own, projection%normal)
     if (overlap%part < 1.0_wp) then
-      call vary_side(contact%slave, s, [0, 1, 7], memory, other, change, share)
-      call vary_side(contact%master, overlap%master, [memory%n_slave, 5, 8], memory, own, change, &
-        share)
+      call linearise_side(contact%slave, s, [0, 1, 7], memory, other, change, share)
+      call linearise_side(contact%master, overlap%master, [memory%n_slave, 5, 8], memory, own, &
+        change, share)
     end if
     change%area%value = 0.0_wp
     change%area%slope = point%area%value*share%slope
@@ -304,25 +305,25 @@ contains
   end subroutine append_share
 
   !> Reduce a share by what segments next to a segment take at convex vertices.
-  pure subroutine vary_side(surface, segment, at, memory, other, point, share)
+  pure subroutine linearise_side(surface, segment, at, memory, other, point, share)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: segment
     integer, intent(in) :: at(3)         !! local number before the surface's first node; slots: of
                                          !! the segment's first node, of a node next to it
     type(contact_state_t), intent(in) :: memory
     type(dual_t), intent(in) :: other(2) !! segment of the other surface
-    type(varied_point_t), intent(inout) :: point
+    type(linearised_point_t), intent(inout) :: point
     type(dual_t), intent(inout) :: share
     type(dual_t) :: own(2), beside(2), part
     integer :: next, held, k
 
-    own = apart(memory%places, point%nodes, at(2) + 1, at(2))
+    own = difference(memory%positions, point%nodes, at(2) + 1, at(2))
     do k = 1, 2
       next = merge(surface%previous(segment), surface%next(segment), k == 1)
       if (next == 0) cycle
       held = point%nodes(at(3))
       point%nodes(at(3)) = at(1) + surface%segments(k, next)
-      beside = apart(memory%places, point%nodes, merge(at(2), at(3), k == 1), &
+      beside = difference(memory%positions, point%nodes, merge(at(2), at(3), k == 1), &
         merge(at(3), at(2) + 1, k == 1))
       part = constant(1.0_wp)
       if (merge(-1.0_wp, 1.0_wp, k == 1)*(own(1)%value*beside(2)%value &
@@ -333,7 +334,7 @@ contains
       if (held > 0 .or. part%value >= 1.0_wp) point%nodes(at(3)) = held
       share = share*part
     end do
-  end subroutine vary_side
+  end subroutine linearise_side
 
   !> Cosine between two vectors.
   pure function cosine_between(a, b) result(cosine)
@@ -345,7 +346,7 @@ contains
 
   !> A point on an overlap of a slave segment, which goes into slots 1, 2; the master nodes at the
   !> breakpoints go into slots 5 and 6, those that the overlaps before and behind it have there into
-  !> 7 and 8. Where another chain begins before one ends the breakpoint is half way between both
+  !> 7 and 8. Where another surface begins before one ends the breakpoint is half way between both
   !> nodes.
   pure subroutine start_on_overlap(contact, memory, s, overlaps, k, point, xi)
     type(contact_t), intent(in) :: contact
@@ -353,9 +354,9 @@ contains
     integer, intent(in) :: s        !! slave segment
     type(overlap_t), intent(in) :: overlaps(:)
     integer, intent(in) :: k        !! overlap
-    type(varied_point_t), intent(out) :: point
+    type(linearised_point_t), intent(out) :: point
     type(dual_t), intent(out) :: xi(2) !! where it starts and ends
-    type(varied_projection_t) :: own, other
+    type(linearised_projection_t) :: own, other
     integer :: breakpoints(4), i
     real(wp) :: range(2)
 
@@ -368,13 +369,13 @@ contains
     xi = constant(range)
     do i = 1, 2
       if (breakpoints(i) == 0) cycle
-      own = project(apart(memory%places, point%nodes, 4 + i, 1), &
-        apart(memory%places, point%nodes, 2, 1))
+      own = project(difference(memory%positions, point%nodes, 4 + i, 1), &
+        difference(memory%positions, point%nodes, 2, 1))
       if (abs(own%xi%value - range(i)) <= round_off) then
         xi(i) = own%xi
       else if (breakpoints(2 + i) > 0) then
-        other = project(apart(memory%places, point%nodes, 6 + i, 1), &
-          apart(memory%places, point%nodes, 2, 1))
+        other = project(difference(memory%positions, point%nodes, 6 + i, 1), &
+          difference(memory%positions, point%nodes, 2, 1))
         other%xi = 0.5_wp*(own%xi + other%xi)
         if (abs(other%xi%value - range(i)) <= round_off) xi(i) = other%xi
       end if

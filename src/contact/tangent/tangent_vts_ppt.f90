@@ -1,18 +1,19 @@
 ! SPDX-License-Identifier: MIT
-!> Tangent of type 4: virtual nodes pressed by their own gaps, whose forces go to portions of the
+!> Tangent of type 4: virtual nodes loaded by their own gaps, whose forces go to sub-segments of the
 !> master (doc/theory/contact.md, section 9.3).
 module tangent_vts_ppt_m
-  use assembly_m, only : add_varied_point, product_t, start_product, add_gradient, &
+  use assembly_m, only : add_linearised_point, product_t, start_product, add_gradient, &
     add_point_force, finish_product
-  use contact_state_m, only : contact_state_t, place_at
+  use contact_state_m, only : contact_state_t, site_at
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
-  use foot_m, only : mark_t, walk_to_mark, round_off
+  use projection_m, only : polyline_parameter_t, project_along, round_off
   use kinds_m, only : wp
-  use linearisation_m, only : varied_point_t, varied_list_t, varied_projection_t, append_point, &
-    apart, length_between, project, way_from, project_point, radius_at, centroid_of
-  use place_vts_ppt_m, only : end_of_half
-  use point_tangent_m, only : press_point, parts_left
+  use linearisation_m, only : linearised_point_t, linearised_list_t, linearised_projection_t, &
+    append_point, &
+    difference, length_between, project, way_from, project_point, radius_at, centroid_of
+  use points_vts_ppt_m, only : end_of_half
+  use point_tangent_m, only : load_point, parts_left
   use sparse_m, only : sparse_t
   implicit none
   private
@@ -20,141 +21,144 @@ module tangent_vts_ppt_m
 
 contains
 
-  !> All virtual nodes in contact. Their portions follow each other on the list.
+  !> All virtual nodes in contact. Their sub-segments follow each other on the list.
   pure subroutine add_vts_ppt_tangent(contact, memory, equations, matrix)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in), contiguous :: equations(:, :) !! (2, n_node) by local number, 0 = none
     type(sparse_t), intent(inout) :: matrix
     type(product_t) :: product
-    type(varied_point_t) :: point
-    type(varied_list_t) :: portions
+    type(linearised_point_t) :: point
+    type(linearised_list_t) :: sub_segments
     type(dual_t) :: pressure, traction
-    real(wp) :: left(memory%points%n)
+    real(wp) :: remaining(memory%points%n)
     logical :: acts
     integer :: k, p
 
-    left = parts_left(memory)
+    remaining = parts_left(memory)
     call start_product(product, size(equations, 2))
     p = 1
-    do k = 1, memory%slave_tracking%n_touching
-      associate (spot => memory%slave_tracking%touching(k))
-        point = vary_virtual_node(contact, memory, spot)
-        point%place = place_at(memory, p)
-        point%left = constant(left(p))
-        call vary_portions(contact, memory, spot, point, portions)
+    do k = 1, memory%slave_status%n_active
+      associate (virtual_node => memory%slave_status%active_points(k))
+        point = linearise_virtual_node(contact, memory, virtual_node)
+        point%site = site_at(memory, p)
+        point%remaining = constant(remaining(p))
+        call linearise_sub_segments(contact, memory, virtual_node, point, sub_segments)
       end associate
-      p = p + portions%n
-      call press_point(contact%friction, memory, point, acts, pressure, traction)
-      if (acts) call add_portions(portions, pressure*point%area, traction*point%area, product, &
-        equations, matrix)
+      p = p + sub_segments%n
+      call load_point(contact%friction, memory, point, acts, pressure, traction)
+      if (acts) call add_sub_segments(sub_segments, pressure*point%area, traction*point%area, &
+        product, equations, matrix)
     end do
   end subroutine add_vts_ppt_tangent
 
   !> A virtual node over its master segment; its area is half of the slave segment.
-  pure function vary_virtual_node(contact, memory, spot) result(point)
+  pure function linearise_virtual_node(contact, memory, virtual_node) result(point)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: spot
-    type(varied_point_t) :: point
+    integer, intent(in) :: virtual_node
+    type(linearised_point_t) :: point
 
-    associate (tracking => memory%slave_tracking, at => memory%spot_xi(2 - mod(spot, 2)), &
-      places => memory%places)
-      point%nodes(1:2) = contact%slave%segments(:, (spot + 1)/2)
-      point%nodes(3:4) = memory%n_slave + contact%master%segments(:, tracking%segment(spot))
+    associate (status => memory%slave_status, at => memory%segment_xi(2 - mod(virtual_node, 2)), &
+      positions => memory%positions)
+      point%nodes(1:2) = contact%slave%segments(:, (virtual_node + 1)/2)
+      point%nodes(3:4) = memory%n_slave + contact%master%segments(:, status%segment(virtual_node))
       point%stiffness = memory%slave_penalty
       point%slave_xi = constant(at)
-      point%area = 0.5_wp*length_between(places, point%nodes, 1, 2)
+      point%area = 0.5_wp*length_between(positions, point%nodes, 1, 2)
       if (contact%is_round) then
-        point%area = point%area*radius_at(places, point%nodes, 1, 2, point%slave_xi)
-        point%slave_xi = centroid_of(places, point%nodes, 1, 2, constant(end_of_half(at, 2)), &
+        point%area = point%area*radius_at(positions, point%nodes, 1, 2, point%slave_xi)
+        point%slave_xi = centroid_of(positions, point%nodes, 1, 2, constant(end_of_half(at, 2)), &
           constant(end_of_half(at, 1)))
       end if
-      call project_point(memory, tracking%xi(spot), tracking%gap(spot), point)
+      call project_point(memory, status%xi(virtual_node), status%gap(virtual_node), point)
     end associate
-  end function vary_virtual_node
+  end function linearise_virtual_node
 
-  !> Its portions, as the placement finds them: the master side of each in slots 5, 6, its own
+  !> Its sub-segments, as the placement finds them: the master side of each in slots 5, 6, its own
   !> length there as area. Without any all goes to the virtual node's own projection.
-  pure subroutine vary_portions(contact, memory, spot, point, portions)
+  pure subroutine linearise_sub_segments(contact, memory, virtual_node, point, sub_segments)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: spot
-    type(varied_point_t), intent(in) :: point
-    type(varied_list_t), intent(inout) :: portions
-    type(varied_point_t) :: portion
-    type(mark_t) :: marks(2)
+    integer, intent(in) :: virtual_node
+    type(linearised_point_t), intent(in) :: point
+    type(linearised_list_t), intent(inout) :: sub_segments
+    type(linearised_point_t) :: sub_segment
+    type(polyline_parameter_t) :: limits(2)
     type(dual_t) :: range(2)
     real(wp) :: xi(2)
     integer :: segment, k
 
-    portions%n = 0
+    sub_segments%n = 0
     do k = 1, 2
-      xi(k) = end_of_half(memory%spot_xi(2 - mod(spot, 2)), k)
-      marks(k) = walk_to_mark(contact%master, memory%places(:, memory%n_slave + 1:), &
-        (1.0_wp - xi(k))*memory%places(:, point%nodes(1)) &
-        + xi(k)*memory%places(:, point%nodes(2)), memory%slave_tracking%segment(spot))
+      xi(k) = end_of_half(memory%segment_xi(2 - mod(virtual_node, 2)), k)
+      limits(k) = project_along(contact%master, memory%positions(:, memory%n_slave + 1:), &
+        (1.0_wp - xi(k))*memory%positions(:, point%nodes(1)) &
+        + xi(k)*memory%positions(:, point%nodes(2)), memory%slave_status%segment(virtual_node))
     end do
-    portion = point
-    portion%master_slot = 5
-    segment = marks(1)%segment
-    do k = marks(1)%n_step, marks(2)%n_step
-      portion%nodes(5:6) = memory%n_slave + contact%master%segments(:, segment)
+    sub_segment = point
+    sub_segment%master_slot = 5
+    segment = limits(1)%segment
+    do k = limits(1)%n_step, limits(2)%n_step
+      sub_segment%nodes(5:6) = memory%n_slave + contact%master%segments(:, segment)
       range = constant([0.0_wp, 1.0_wp])
-      if (k == marks(1)%n_step) range(1) = vary_mark(memory, portion, xi(1), marks(1))
-      if (k == marks(2)%n_step) range(2) = vary_mark(memory, portion, xi(2), marks(2))
+      if (k == limits(1)%n_step) range(1) = linearise_parameter(memory, sub_segment, xi(1), &
+        limits(1))
+      if (k == limits(2)%n_step) range(2) = linearise_parameter(memory, sub_segment, xi(2), &
+        limits(2))
       segment = contact%master%next(segment)
       if (range(2)%value - range(1)%value > round_off) then
-        call set_range(contact, memory, range, portion)
-        call append_point(portions, portion)
+        call set_range(contact, memory, range, sub_segment)
+        call append_point(sub_segments, sub_segment)
       end if
       if (segment == 0) exit
     end do
-    if (portions%n > 0) return
-    portion = point
-    portion%area = length_between(memory%places, point%nodes, 3, 4)
-    call append_point(portions, portion)
-  end subroutine vary_portions
+    if (sub_segments%n > 0) return
+    sub_segment = point
+    sub_segment%area = length_between(memory%positions, point%nodes, 3, 4)
+    call append_point(sub_segments, sub_segment)
+  end subroutine linearise_sub_segments
 
   !> The end of a half on the segment in slots 5, 6; constant where it has been stopped at a node.
-  pure function vary_mark(memory, portion, slave_xi, mark) result(xi)
+  pure function linearise_parameter(memory, sub_segment, slave_xi, eta) result(xi)
     type(contact_state_t), intent(in) :: memory
-    type(varied_point_t), intent(in) :: portion
+    type(linearised_point_t), intent(in) :: sub_segment
     real(wp), intent(in) :: slave_xi !! where the half ends on its segment
-    type(mark_t), intent(in) :: mark
+    type(polyline_parameter_t), intent(in) :: eta
     type(dual_t) :: xi
-    type(varied_point_t) :: place
-    type(varied_projection_t) :: projection
+    type(linearised_point_t) :: site
+    type(linearised_projection_t) :: projection
 
-    place = portion
-    place%slave_xi = constant(slave_xi)
-    projection = project(way_from(memory%places, place, 5), &
-      apart(memory%places, place%nodes, 6, 5))
+    site = sub_segment
+    site%slave_xi = constant(slave_xi)
+    projection = project(way_from(memory%positions, site, 5), &
+      difference(memory%positions, site%nodes, 6, 5))
     xi = projection%xi
-    if (.not. mark%xi < 0.0_wp .and. xi%value < -round_off) xi = constant(0.0_wp)
-    if (.not. mark%xi > 1.0_wp .and. xi%value > 1.0_wp + round_off) xi = constant(1.0_wp)
-  end function vary_mark
+    if (.not. eta%xi < 0.0_wp .and. xi%value < -round_off) xi = constant(0.0_wp)
+    if (.not. eta%xi > 1.0_wp .and. xi%value > 1.0_wp + round_off) xi = constant(1.0_wp)
+  end function linearise_parameter
 
-  !> Let a portion be this range of the segment in slots 5, 6.
-  pure subroutine set_range(contact, memory, range, portion)
+  !> Let a sub-segment be this range of the segment in slots 5, 6.
+  pure subroutine set_range(contact, memory, range, sub_segment)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(dual_t), intent(in) :: range(2)
-    type(varied_point_t), intent(inout) :: portion
+    type(linearised_point_t), intent(inout) :: sub_segment
 
-    associate (nodes => portion%nodes)
-      portion%master_xi = 0.5_wp*(range(1) + range(2))
-      portion%area = (range(2) - range(1))*length_between(memory%places, nodes, 5, 6)
+    associate (nodes => sub_segment%nodes)
+      sub_segment%master_xi = 0.5_wp*(range(1) + range(2))
+      sub_segment%area = (range(2) - range(1))*length_between(memory%positions, nodes, 5, 6)
       if (.not. contact%is_round) return
-      portion%area = portion%area*radius_at(memory%places, nodes, 5, 6, portion%master_xi)
-      portion%master_xi = centroid_of(memory%places, nodes, 5, 6, range(1), range(2))
+      sub_segment%area = sub_segment%area*radius_at(memory%positions, nodes, 5, 6, &
+        sub_segment%master_xi)
+      sub_segment%master_xi = centroid_of(memory%positions, nodes, 5, 6, range(1), range(2))
     end associate
   end subroutine set_range
 
-  !> Share out the force of a virtual node by the portions' lengths: each share at a constant sum
-  !> of these, and the change of the sum as one product of two vectors.
-  pure subroutine add_portions(portions, load, shear, product, equations, matrix)
-    type(varied_list_t), intent(in) :: portions
+  !> Share out the force of a virtual node by the sub-segments' lengths: each share at a constant
+  !> sum of these, and the change of the sum as one product of two vectors.
+  pure subroutine add_sub_segments(sub_segments, load, shear, product, equations, matrix)
+    type(linearised_list_t), intent(in) :: sub_segments
     type(dual_t), intent(in) :: load, shear !! of the virtual node, N/m
     type(product_t), intent(inout) :: product
     integer, intent(in), contiguous :: equations(:, :)
@@ -163,20 +167,20 @@ contains
     real(wp) :: total
     integer :: k
 
-    if (portions%n == 1) then
-      call add_varied_point(portions%points(1), load, shear, equations, matrix)
+    if (sub_segments%n == 1) then
+      call add_linearised_point(sub_segments%points(1), load, shear, equations, matrix)
       return
     end if
-    total = sum(portions%points(:portions%n)%area%value)
-    do k = 1, portions%n
-      associate (portion => portions%points(k))
-        share = (1.0_wp/total)*portion%area
-        call add_varied_point(portion, share*load, share*shear, equations, matrix)
-        call add_gradient(product, portion, share%slope)
-        call add_point_force(product, portion, share%value*load%value, share%value*shear%value)
+    total = sum(sub_segments%points(:sub_segments%n)%area%value)
+    do k = 1, sub_segments%n
+      associate (sub_segment => sub_segments%points(k))
+        share = (1.0_wp/total)*sub_segment%area
+        call add_linearised_point(sub_segment, share*load, share*shear, equations, matrix)
+        call add_gradient(product, sub_segment, share%slope)
+        call add_point_force(product, sub_segment, share%value*load%value, share%value*shear%value)
       end associate
     end do
     call finish_product(product, 1.0_wp, equations, matrix)
-  end subroutine add_portions
+  end subroutine add_sub_segments
 
 end module tangent_vts_ppt_m

@@ -8,20 +8,20 @@ module explicit_contact_m
   use clock_m, only : clock_t, lap, share_contact, phase_contact_force, phase_nodes
   use loads_m, only : is_active, part_damping_rate
   use contacts_m, only : penalty_implicit
-  use implicit_penalty_m, only : find_rows, press_ahead
+  use implicit_penalty_m, only : find_rows, pressures_ahead
   use kinds_m, only : wp
   use law_state_m, only : has_made, has_lost, energy_limit_t
   use log_m, only : log_t, warn, write_log, to_text, percent
   use model_m, only : model_t
   use node_motion_m, only : leap_t, look_ahead, solve_rigids, damping_of
-  use pressing_m, only : pressing_t, start_pressing
+  use pressure_step_m, only : pressure_step_t, start_pressure_step
   use rigid_state_m, only : turn_of, shift_by_turn, velocity_of
   use state_m, only : state_t
   use units_m, only : per_depth
   use weighted_gaps_m, only : node_of
   implicit none
   private
-  public :: plan_looks, follow_contact, report_contact_energies, pressing_t, press_contacts
+  public :: plan_looks, follow_contact, report_contact_energies, pressure_step_t, press_contacts
 
   !> Cycles between two looks at springs; at more of them the sum over all points would show in the
   !> time of a step.
@@ -52,11 +52,11 @@ contains
     if (size(state%contacts) == 0) return
     if (state%cycle > 0) state%largest_energy = max(state%largest_energy, &
       abs(state%initial_energy + (state%external_work + sum(state%contacts%interference%work))))
-    if (writes .or. mod(state%cycle, look_interval) == 0) state%contacts%watch%is_due = .true.
-    state%contacts%limit%loan = lent_share*state%largest_energy/size(state%contacts)
+    if (writes .or. mod(state%cycle, look_interval) == 0) state%contacts%monitor%is_due = .true.
+    state%contacts%limit%entry_allowance = lent_share*state%largest_energy/size(state%contacts)
     ! What is led takes from its guide what it needs; not so the folds of a surface with itself.
     if (size(model%conditions%motions) + size(model%conditions%rigid_motions) > 0) then
-      where (.not. model%contacts%is_self) state%contacts%limit%loan = huge(1.0_wp)
+      where (.not. model%contacts%is_self) state%contacts%limit%entry_allowance = huge(1.0_wp)
     end if
     ! The step of cycle zero is not known yet.
     state%contacts%limit%coming_step = merge(state%dt, 0.0_wp, state%cycle > 0)
@@ -80,31 +80,31 @@ contains
           //limit_text(limit)//hint)
       end if
     end associate
-    associate (contact => state%contacts(i), watch => state%contacts(i)%watch)
-      if (.not. watch%has_looked) return
+    associate (contact => state%contacts(i), monitor => state%contacts(i)%monitor)
+      if (.not. monitor%has_sampled) return
       ! What springs hold beyond what they were given is not returned (energy_limit).
-      watch%stored = min(watch%stored, max(0.0_wp, contact%energy + contact%limit%credit))
-      change = contact%energy - watch%stored - watch%balance
-      watch%balance = contact%energy - watch%stored
+      monitor%stored = min(monitor%stored, max(0.0_wp, contact%energy + contact%limit%admissible))
+      change = contact%energy - monitor%stored - monitor%balance
+      monitor%balance = contact%energy - monitor%stored
       ! What is loaded at time zero is what it stores.
       if (state%cycle == 0) return
       sign_of = merge(has_made, has_lost, change < 0.0_wp)
-      if (abs(change) > watch%changes(sign_of)%amount) then
-        watch%changes(sign_of)%amount = abs(change)
-        watch%changes(sign_of)%time = state%time
-        watch%changes(sign_of)%node = watch%node
-        if (watch%node > 0) watch%changes(sign_of)%place = &
-          model%mesh%coordinates(:, watch%node) + state%motion(1:2, watch%node)
+      if (abs(change) > monitor%changes(sign_of)%amount) then
+        monitor%changes(sign_of)%amount = abs(change)
+        monitor%changes(sign_of)%time = state%time
+        monitor%changes(sign_of)%node = monitor%node
+        if (monitor%node > 0) monitor%changes(sign_of)%position = &
+          model%mesh%coordinates(:, monitor%node) + state%motion(1:2, monitor%node)
       end if
-      sign_of = merge(has_made, has_lost, watch%balance < 0.0_wp)
+      sign_of = merge(has_made, has_lost, monitor%balance < 0.0_wp)
       ! In the first cycles the springs hold energy that no work has been booked for yet.
-      if (watch%changes(sign_of)%warned .or. abs(watch%balance) <= &
+      if (monitor%changes(sign_of)%warned .or. abs(monitor%balance) <= &
         noticed_share*max(state%largest_energy, contact%energy)) return
       ! While an overlap grows there is nothing yet to hold it against.
-      if (contact%has%interference .and. contact%interference%left > 0.0_wp) return
+      if (contact%has%interference .and. contact%interference%remaining > 0.0_wp) return
       ! What impacts take of implicit springs is no fault of theirs; the end tells it.
       if (sign_of == has_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) return
-      watch%changes(sign_of)%warned = .true.
+      monitor%changes(sign_of)%warned = .true.
       call warn(log, 'interface '//to_text(model%contacts(i)%id)//': at cycle ' &
         //to_text(state%cycle)//', time '//to_text(state%time)//', the contact springs have ' &
         //amount_text(model, i, sign_of, state)//hint//trim(merge(not_lost, repeat(' ', &
@@ -133,20 +133,21 @@ contains
     integer :: i, sign_of
 
     do i = 1, size(state%contacts)
-      associate (memory => state%contacts(i), watch => state%contacts(i)%watch)
+      associate (memory => state%contacts(i), monitor => state%contacts(i)%monitor)
         name = 'interface '//to_text(model%contacts(i)%id)
         if (memory%limit%n_limited > 0) call write_log(log, name//limit_text(memory%limit))
-        sign_of = merge(has_made, has_lost, watch%balance < 0.0_wp)
+        sign_of = merge(has_made, has_lost, monitor%balance < 0.0_wp)
         if (sign_of == has_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) then
           ! Impact is plastic within the first row of elements.
-          if (watch%balance > 0.0_wp) call write_log(log, name//': impacts have taken ' &
-            //to_text(watch%balance)//per_depth(model%controls%units, 'F L', model%is_round) &
-            //', '//percent(watch%balance, state%largest_energy) &
+          if (monitor%balance > 0.0_wp) call write_log(log, name//': impacts have taken ' &
+            //to_text(monitor%balance)//per_depth(model%controls%units, 'F L', model%is_round) &
+            //', '//percent(monitor%balance, state%largest_energy) &
             //' of the largest energy so far; finer meshes lose less')
-        else if (abs(watch%balance) > noticed_share*state%largest_energy .and. state%cycle > 0) then
+        else if (abs(monitor%balance) > noticed_share*state%largest_energy .and. state%cycle &
+          > 0) then
           call warn(log, name//': in the whole run the contact springs have ' &
             //amount_text(model, i, sign_of, state))
-        else if (any(watch%changes%warned)) then
+        else if (any(monitor%changes%warned)) then
           call write_log(log, name//': at the end the contact springs have ' &
             //amount_text(model, i, sign_of, state))
         end if
@@ -161,16 +162,16 @@ contains
     type(state_t), intent(in) :: state
     character(:), allocatable :: text
 
-    associate (watch => state%contacts(i)%watch, &
-      largest => state%contacts(i)%watch%changes(sign_of))
+    associate (monitor => state%contacts(i)%monitor, &
+      largest => state%contacts(i)%monitor%changes(sign_of))
       text = trim(merge('made', 'lost', sign_of == has_made))//' energy: ' &
-        //to_text(abs(watch%balance))//', '//percent(abs(watch%balance), state%largest_energy) &
+        //to_text(abs(monitor%balance))//', '//percent(abs(monitor%balance), state%largest_energy) &
         //' of the largest energy so far '//to_text(state%largest_energy) &
         //' (initial energy and external work)'
       if (largest%node == 0) return
       text = text//'; the largest step of it, '//to_text(largest%amount)//', near node ' &
-        //to_text(model%mesh%node_id(largest%node))//' at ('//to_text(largest%place(1))//', ' &
-        //to_text(largest%place(2))//') up to time '//to_text(largest%time)
+        //to_text(model%mesh%node_id(largest%node))//' at ('//to_text(largest%position(1))//', ' &
+        //to_text(largest%position(2))//') up to time '//to_text(largest%time)
     end associate
   end function amount_text
 
@@ -184,7 +185,7 @@ contains
     type(clock_t), intent(inout) :: clock
     type(log_t), intent(inout) :: log
     type(state_t), intent(inout) :: state
-    type(pressing_t), intent(inout) :: steps(:) !! (interfaces) of the call before
+    type(pressure_step_t), intent(inout) :: steps(:) !! (interfaces) of the call before
     real(wp) :: free(2)
     logical :: are_solved !! rigid bodies: no two interfaces press one that moves
     integer :: i, k
@@ -195,7 +196,7 @@ contains
       if (model%contacts(i)%penalty_unit /= penalty_implicit) cycle
       if (.not. state%contacts(i)%scratch%waits) cycle
       if (.not. allocated(steps(i)%velocity)) then
-        call start_pressing(model%contacts(i), state%contacts(i), steps(i))
+        call start_pressure_step(model%contacts(i), state%contacts(i), steps(i))
         call list_company(model, state%contacts(i)%nodes, steps(i))
       end if
       steps(i)%dt = leap%dt
@@ -224,7 +225,7 @@ contains
       steps(i)%dt_before = state%dt_before
       steps(i)%cycle = state%cycle
       steps(i)%time = state%time
-      call press_ahead(model%contacts(i)%friction, state%motion, steps(i), state%contacts(i), &
+      call pressures_ahead(model%contacts(i)%friction, state%motion, steps(i), state%contacts(i), &
         state%force_special)
       call lap(clock, phase_contact_force)
       call share_contact(clock, i)
@@ -236,7 +237,7 @@ contains
   subroutine list_company(model, nodes, step)
     type(model_t), intent(in) :: model
     integer, intent(in) :: nodes(:)
-    type(pressing_t), intent(inout) :: step
+    type(pressure_step_t), intent(inout) :: step
     integer :: local(model%mesh%n_node) !! number in the interface, 0: not of it
     integer :: led(size(model%conditions%motions)), riders(3, size(nodes)), i, k, n
 
@@ -266,7 +267,7 @@ contains
     type(leap_t), intent(in) :: leap
     real(wp), intent(in) :: damping(2)       !! D per direction
     type(state_t), intent(in) :: state
-    type(pressing_t), intent(inout) :: step
+    type(pressure_step_t), intent(inout) :: step
     real(wp) :: speed(3), arm(2), unit(3), root, rate(3)
     logical :: is_free(3)
     integer :: i, k, body

@@ -3,7 +3,7 @@
 !> and health after them.
 module explicit_cycle_m
   use archive_m, only : archive_t
-  use behind_ties_m, only : hear_tie, settle_with_tie
+  use tie_handover_m, only : receive_tie_state, complete_handover
   use element_dispatch_m, only : sum_special_forces
   use load_work_m, only : find_prescribed_velocities, impose_prescribed, count_motions, &
     count_body_motions, count_boundary_loads, count_groups, apply_loads, motion_sums_t, plan_sums, &
@@ -11,7 +11,7 @@ module explicit_cycle_m
   use clock_m, only : lap, share_contact, phase_nodes
   use common_motion_m, only : common_velocity
   use loads_m, only : fix_nodes, update_activity, is_active
-  use explicit_contact_m, only : plan_looks, follow_contact, pressing_t
+  use explicit_contact_m, only : plan_looks, follow_contact, pressure_step_t
   use start_m, only : check_added_mass, weigh_contacts
   use contacts_m, only : told_as, penalty_implicit
   use element_losses_m, only : settle_elements, release_nodes, failure_watch_t, follow_failures, &
@@ -64,7 +64,7 @@ module explicit_cycle_m
     logical :: timed_motions = .false. !! some prescribed motion starts or ends during the run
     logical, allocatable :: active(:)  !! (n_motion) which of them hold, once that has been asked
     logical :: presses = .false.     !! contact forces of some interface follow all other forces
-    type(pressing_t), allocatable :: pressing(:) !! (interfaces) where these are found
+    type(pressure_step_t), allocatable :: pressing(:) !! (interfaces) where these are found
     logical :: refines = .false.     !! steps of elements are not those of their density alone
     type(motion_sums_t) :: sums      !! for the work of body loads and damping
     type(rest_t) :: rest             !! tiles that need no step
@@ -165,10 +165,10 @@ contains
     call plan_looks(model, cycle%writes, state)
     do i = 1, size(model%contacts)
       k = told_as(model%contacts, i)
-      if (k < i) call hear_tie(state%contacts(k), state%contacts(i))
+      if (k < i) call receive_tie_state(state%contacts(k), state%contacts(i))
       call apply_contact(state%outlines(i), state%motion, state%contact_mass, state%time, &
         state%dt_before, state%cycle, monitor%clock, state%contacts(i), state%force_special)
-      if (k < i) call settle_with_tie(state%contacts(i), state%contacts(k))
+      if (k < i) call complete_handover(state%contacts(i), state%contacts(k))
       call share_contact(monitor%clock, k)
       call follow_contact(model, i, state, monitor%log)
     end do

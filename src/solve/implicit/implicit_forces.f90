@@ -3,7 +3,7 @@
 !> state to a trial displacement; residual and tangent of one step (doc/theory/implicit.md, sections
 !> 1 and 2).
 module implicit_forces_m
-  use behind_ties_m, only : hear_tie
+  use tie_handover_m, only : receive_tie_state
   use block_state_m, only : block_state_t
   use clock_m, only : clock_t, lap, share_contact, phase_elements, phase_contact_force, phase_nodes
   use conditions_m, only : pressure_load_t
@@ -112,7 +112,7 @@ contains
     trial%contacts = state%contacts
     do i = 1, size(model%contacts)
       k = told_as(model%contacts, i)
-      if (k < i) call hear_tie(trial%contacts(k), trial%contacts(i))
+      if (k < i) call receive_tie_state(trial%contacts(k), trial%contacts(i))
       call evaluate_contact(model%contacts(i), trial%motion, time, time - state%time, is_first, &
         trial%contacts(i), trial%contact)
       call lap(clock, phase_contact_force)

@@ -267,8 +267,8 @@ contains
     do i = 1, size(model%contacts)
       if (.not. has_decay(model%contacts(i)%friction) .or. is_tied(model%contacts(i))) cycle
       undeformed = state%contacts(i)
-      undeformed%places(1:2, :) = model%mesh%coordinates(:, undeformed%nodes)
-      undeformed%places(3:4, :) = 0.0_wp
+      undeformed%positions(1:2, :) = model%mesh%coordinates(:, undeformed%nodes)
+      undeformed%positions(3:4, :) = 0.0_wp
       associate (ratio => spring_ratios(model%contacts(i), state%mass, undeformed), &
         n => undeformed%n_slave)
         state%contacts(i)%scratch%lag = 2.0_wp*of_stuck/sqrt(maxval(ratio(:n)) &
@@ -301,7 +301,7 @@ contains
     ! Springs loaded at time zero hold energy that no force has put in.
     do i = 1, size(state%contacts)
       call measure_springs(state%contacts(i))
-      state%contacts(i)%energy = state%contacts(i)%watch%stored
+      state%contacts(i)%energy = state%contacts(i)%monitor%stored
     end do
     if (allocated(memory%trial%damping)) memory%trial%damping = mass_times(model, &
       state%motion(3:4, :), damping_rates(model, 0.0_wp))

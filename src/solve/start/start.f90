@@ -5,7 +5,7 @@
 !> law sees (doc/theory/contact.md, section 6.1). The log tells of masses what d3hsp does.
 module start_m
   use automatic_penalty_m, only : set_automatic_penalties
-  use behind_ties_m, only : hear_tie
+  use tie_handover_m, only : receive_tie_state
   use block_state_m, only : block_state_t
   use conditions_m, only : motion_velocity
   use contact_log_m, only : log_softness
@@ -187,7 +187,7 @@ contains
     do i = 1, size(state%contacts)
       call resume_contact(state%outlines(i), state%contacts(i))
       k = told_as(model%contacts, i)
-      if (k < i) call hear_tie(state%contacts(k), state%contacts(i))
+      if (k < i) call receive_tie_state(state%contacts(k), state%contacts(i))
     end do
   end subroutine resume_contacts
 

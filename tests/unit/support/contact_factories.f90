@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Contact problems for tests: two chains given by their nodes, an element behind every segment.
+!> Contact problems for tests: two surfaces given by their nodes, an element behind every segment.
 module contact_factories_m
   use clock_m, only : clock_t
   use contact_state_m, only : contact_state_t
@@ -31,8 +31,8 @@ module contact_factories_m
 
 contains
 
-  !> Chains through the given nodes, walked with the body on the left; `thickness` of the row of elements
-  !> behind them. Nodes of the mesh: slave chain, master chain, then those inside. Type, penalty and
+  !> Surfaces through the given nodes, walked with the body on the left; `thickness` of the row of elements
+  !> behind them. Nodes of the mesh: slave surface, master surface, then those inside. Type, penalty and
   !> so on of `problem%contact` are the caller's; start_contact comes after that.
   subroutine make_problem(problem, slave, master, thickness, slave_is_closed, master_is_closed)
     type(problem_t), intent(out) :: problem
@@ -71,7 +71,7 @@ contains
     allocate (problem%mass(2*n), source=1.0_wp)
   end subroutine make_problem
 
-  !> Chain through `n` mesh nodes after `offset`, its elements after `first_element`.
+  !> Surface through `n` mesh nodes after `offset`, its elements after `first_element`.
   subroutine make_chain(surface, offset, n, is_closed, first_element)
     type(surface_t), intent(out) :: surface
     integer, intent(in) :: offset, n, first_element
@@ -88,7 +88,7 @@ contains
     call link_segments(surface)
   end subroutine make_chain
 
-  !> Take segments out of a chain, so that several remain.
+  !> Take segments out of a surface, so that several remain.
   subroutine cut_chain(surface, dropped)
     type(surface_t), intent(inout) :: surface
     integer, intent(in) :: dropped(:) !! segments
@@ -101,7 +101,7 @@ contains
     call link_segments(surface)
   end subroutine cut_chain
 
-  !> The nodes and elements behind a chain: to the left of it.
+  !> The nodes and elements behind a surface: to the left of it.
   subroutine fill_behind(surface, offset, thickness, x, elements)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: offset
@@ -152,7 +152,7 @@ contains
     end do
   end function polygon
 
-  !> Moment of the contact forces about the first node, from differences of places.
+  !> Moment of the contact forces about the first node, from differences of positions.
   pure function slave_master_moment(memory) result(moment)
     type(contact_state_t), intent(in) :: memory
     real(wp) :: moment, d(2)
@@ -160,8 +160,8 @@ contains
 
     moment = 0.0_wp
     do i = 1, size(memory%nodes)
-      d = (memory%places(1:2, i) - memory%places(1:2, 1)) &
-        + (memory%places(3:4, i) - memory%places(3:4, 1))
+      d = (memory%positions(1:2, i) - memory%positions(1:2, 1)) &
+        + (memory%positions(3:4, i) - memory%positions(3:4, 1))
       moment = moment + d(1)*memory%force(2, i) - d(2)*memory%force(1, i)
     end do
   end function slave_master_moment

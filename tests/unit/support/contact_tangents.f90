@@ -1,23 +1,23 @@
 ! SPDX-License-Identifier: MIT
-!> Further contact problems, for tangents: what the common scenes do not have (corner feet, overhang, steep slopes,
-!> closed chains).
+!> Further contact problems, for tangents: what the common scenes do not have (corner projections, overhang, steep slopes,
+!> closed surfaces).
 module contact_tangents_m
   use contact_factories_m, only : problem_t, make_problem, line, polygon
   use kinds_m, only : wp
   use surfaces_m, only : surface_t, link_segments
   implicit none
   private
-  public :: n_place, first_closed, places, make_place, valley, needle, solve_dense
+  public :: n_site, first_closed, positions, make_place, valley, needle, solve_dense
 
-  integer, parameter :: n_place = 20, valley = 1, needle = 6, first_closed = 14
-  character(16), parameter :: places(n_place) = [character(16) :: 'valley', 'ridge', 'overhang', &
+  integer, parameter :: n_site = 20, valley = 1, needle = 6, first_closed = 14
+  character(16), parameter :: positions(n_site) = [character(16) :: 'valley', 'ridge', 'overhang', &
     'one end', 'steep tip', 'needle', 'disc on plane', 'plane on disc', 'disc in ring', 'two chains', &
     'overlapped', 'chain at end', 'backwards', 'block on block', 'block at 30', 'block at 45', 'face on tip', &
     'over an edge', 'two blocks', 'wedge']
 
 contains
 
-  !> Place k: slave and master chains, pressed into each other by displacement.
+  !> Position k: slave and master surfaces, loaded into each other by displacement.
   subroutine make_place(problem, k)
     type(problem_t), intent(out) :: problem
     integer, intent(in) :: k
@@ -28,7 +28,7 @@ contains
     down = 0.02_wp
     ! gfortran looks at the bounds of what it is to allocate anew: these are numbers.
     allocate (slave(2, 0), master(2, 0))
-    select case (places(k))
+    select case (positions(k))
     case ('valley')
       slave = reshape([0.0_wp, 0.15_wp, 0.25_wp, 0.075_wp, 0.4985_wp, 0.003_wp, 0.509_wp, 0.0036_wp, &
         0.75_wp, 0.075_wp, 1.0_wp, 0.15_wp], [2, 6])
@@ -68,10 +68,10 @@ contains
       slave(1, 3) = 0.45_wp
       master = line([1.1_wp, 0.0_wp], [-0.1_wp, 0.0_wp], 7)
       master(1, 4:5) = [0.63_wp, 0.55_wp]
-      if (places(k) == 'overlapped') master(1, 4:5) = [0.55_wp, 0.63_wp]
-      if (places(k) == 'overlapped') master(2, 5:) = -0.002_wp
+      if (positions(k) == 'overlapped') master(1, 4:5) = [0.55_wp, 0.63_wp]
+      if (positions(k) == 'overlapped') master(2, 5:) = -0.002_wp
     case ('chain at end')
-      ! The second chain begins below the end of a slave segment, just outside its projection.
+      ! The second surface begins below the end of a slave segment, just outside its projection.
       slave = line([0.0_wp, 0.0_wp], [1.0_wp, 0.0_wp], 4)
       slave(2, :) = -0.2_wp*abs(slave(1, :) - 0.5_wp)
       master = line([1.1_wp, 0.0_wp], [-0.1_wp, 0.0_wp], 6)

@@ -404,7 +404,7 @@ def overlaps(slave, master, k, feet, strict=False):
     right, master node at the left or None, at the right or None, master segment, part that counts of
     sides of corners).
     """
-    ends = [end_foot(slave, master, k, node, feet[node]) for node in slave.nodes[k]]
+    ends = [end_projection(slave, master, k, node, feet[node]) for node in slave.nodes[k]]
     if strict and None in ends:
         faces = [foot.normal for foot in (feet[node] for node in slave.nodes[k]) if foot and foot.gap < 0.0]
         is_opposed = any(np.dot(slave.normal[k], normal) < SIDE_ON for normal in faces)
@@ -448,7 +448,7 @@ def side_part(chain, k, normal):
     return part
 
 
-def end_foot(slave, master, k, node, foot):
+def end_projection(slave, master, k, node, foot):
     """Projection of an end of slave segment k: the one that it is in contact with, or the closest on
     what is opposed to the segment; or None, which it is beside a sharp corner."""
     if foot and foot.gap < 0.0:

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Axisymmetric scenes: the x of a place is its radius, and lengths weigh with it. Projections stay
-!> plane (doc/theory/contact.md, section 5.8).
+!> Axisymmetric scenes: the x of a position is its radius, and lengths weigh with it. Projections
+!> stay plane (doc/theory/contact.md, section 5.8).
 module radii_m
   use kinds_m, only : wp
   implicit none
@@ -9,12 +9,12 @@ module radii_m
 
 contains
 
-  !> Radius of a place, m.
-  pure function radius_of(place) result(radius)
-    real(wp), intent(in) :: place(4)
+  !> Radius of a position, m.
+  pure function radius_of(position) result(radius)
+    real(wp), intent(in) :: position(4)
     real(wp) :: radius
 
-    radius = place(1) + place(3)
+    radius = position(1) + position(3)
   end function radius_of
 
   !> Mean radius of a straight stretch as one of its ends has it: with l/2 the integral of r over
@@ -26,7 +26,7 @@ contains
     radius = (2.0_wp*near + far)/3.0_wp
   end function end_radius
 
-  !> Radius at xi between two places, m.
+  !> Radius at xi between two positions, m.
   pure function radius_between(a, b, xi) result(radius)
     real(wp), intent(in) :: a(4), b(4), xi
     real(wp) :: radius

@@ -1,33 +1,33 @@
 ! SPDX-License-Identifier: MIT
 !> Tributary lengths: what each node of a surface stands for (doc/theory/contact.md, section 5).
-module lengths_m
-  use contact_state_m, only : tracking_t
-  use foot_m, only : facing_share, side_share
+module tributary_lengths_m
+  use contact_state_m, only : contact_status_t
+  use projection_m, only : opposed_share, side_share
   use geometry_m, only : separation
   use kinds_m, only : wp
   use radii_m, only : radius_of, end_radius
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: see_half, competence_length, competence_area, mean_radius, put_lengths
+  public :: see_half, tributary_length, nodal_area, mean_radius, put_lengths
 
 contains
 
   !> Half of the neighbouring segments of a node at their present length, m.
-  pure function competence_length(surface, places, i_node) result(length)
+  pure function tributary_length(surface, positions, i_node) result(length)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface
     integer, intent(in) :: i_node
     real(wp) :: length
 
-    length = competence_area(surface, places, .false., i_node)
-  end function competence_length
+    length = nodal_area(surface, positions, .false., i_node)
+  end function tributary_length
 
   !> What a node of a surface stands for: half of its segments, m; in axisymmetry the integral of
   !> the radius by its hat function, l (2 r_i + r_j)/6 of each segment, m^2 per radian.
-  pure function competence_area(surface, places, is_round, i_node) result(area)
+  pure function nodal_area(surface, positions, is_round, i_node) result(area)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface
     logical, intent(in) :: is_round
     integer, intent(in) :: i_node
     real(wp) :: area
@@ -35,57 +35,57 @@ contains
     integer :: k
 
     do k = 1, 2
-      call see_half(surface, places, is_round, i_node, k, t, halves(k))
+      call see_half(surface, positions, is_round, i_node, k, t, halves(k))
     end do
     area = halves(1) + halves(2)
-  end function competence_area
+  end function nodal_area
 
   !> The second over the first in axisymmetry, m.
-  pure function mean_radius(surface, places, i_node) result(radius)
+  pure function mean_radius(surface, positions, i_node) result(radius)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface
     integer, intent(in) :: i_node
     real(wp) :: radius
 
-    radius = competence_area(surface, places, .true., i_node) &
-      /max(competence_area(surface, places, .false., i_node), tiny(1.0_wp))
+    radius = nodal_area(surface, positions, .true., i_node) &
+      /max(nodal_area(surface, positions, .false., i_node), tiny(1.0_wp))
   end function mean_radius
 
   !> Tributary lengths of the active nodes of a surface, m: half of each of their segments; in
   !> axisymmetry as above, m^2 per radian. On a closed boundary segments count as far as they are
   !> opposed to the face below the node. A segment between two active nodes is seen once.
-  pure subroutine put_lengths(surface, places, is_round, tracking, areas)
+  pure subroutine put_lengths(surface, positions, is_round, status, areas)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :) !! (4, n_node) of this surface
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface
     logical, intent(in) :: is_round
-    type(tracking_t), intent(in) :: tracking         !! of its nodes
-    real(wp), intent(inout), contiguous :: areas(:)  !! (n_touching)
+    type(contact_status_t), intent(in) :: status     !! of its nodes
+    real(wp), intent(inout), contiguous :: areas(:)  !! (n_active)
     real(wp) :: t(2, 2), halves(2)
     integer :: k, seen
 
     seen = 0
     halves = 0.0_wp
-    do k = 1, tracking%n_touching
-      associate (node => tracking%touching(k))
+    do k = 1, status%n_active
+      associate (node => status%active_points(k))
         if (seen > 0 .and. seen == surface%incoming(node) .and. .not. is_round) then
           t(:, 1) = t(:, 2)
           halves(1) = halves(2)
         else
-          call see_half(surface, places, is_round, node, 1, t(:, 1), halves(1))
+          call see_half(surface, positions, is_round, node, 1, t(:, 1), halves(1))
         end if
-        call see_half(surface, places, is_round, node, 2, t(:, 2), halves(2))
+        call see_half(surface, positions, is_round, node, 2, t(:, 2), halves(2))
         seen = surface%outgoing(node)
         areas(k) = halves(1) + halves(2)
-        if (tracking%pass%is_closed) areas(k) = opposed_part(t, halves, tracking%normal(:, node))
+        if (status%pass%is_closed) areas(k) = opposed_part(t, halves, status%normal(:, node))
       end associate
     end do
   end subroutine put_lengths
 
   !> The segment before (1) or after (2) a node: its vector, m, and half of its length, in
   !> axisymmetry weighted with the radius; zero where there is none.
-  pure subroutine see_half(surface, places, is_round, i_node, k, t, half)
+  pure subroutine see_half(surface, positions, is_round, i_node, k, t, half)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: places(:, :)
+    real(wp), intent(in), contiguous :: positions(:, :)
     logical, intent(in) :: is_round
     integer, intent(in) :: i_node, k
     real(wp), intent(out) :: t(2), half
@@ -96,10 +96,10 @@ contains
     s = merge(surface%incoming(i_node), surface%outgoing(i_node), k == 1)
     if (s == 0) return
     associate (ends => surface%segments(:, s))
-      t = separation(places(:, ends(2)), places(:, ends(1)))
+      t = separation(positions(:, ends(2)), positions(:, ends(1)))
       half = 0.5_wp*sqrt(t(1)*t(1) + t(2)*t(2))
-      if (is_round) half = half*end_radius(radius_of(places(:, i_node)), &
-        radius_of(places(:, ends(k))))
+      if (is_round) half = half*end_radius(radius_of(positions(:, i_node)), &
+        radius_of(positions(:, ends(k))))
     end associate
   end subroutine see_half
 
@@ -119,7 +119,7 @@ contains
     do k = 1, 2
       if (.not. halves(k) > 0.0_wp) cycle
       cosines(k) = (t(2, k)*normal(1) - t(1, k)*normal(2))/sqrt(t(1, k)**2 + t(2, k)**2)
-      shares(k) = facing_share(cosines(k))
+      shares(k) = opposed_share(cosines(k))
     end do
     k = maxloc(cosines, 1)
     shares(k) = shares(k)*side_share(maxval(cosines) - minval(cosines))
@@ -130,4 +130,4 @@ contains
       area = area + (1.0_wp - maxval(shares))*sum(halves)
   end function opposed_part
 
-end module lengths_m
+end module tributary_lengths_m

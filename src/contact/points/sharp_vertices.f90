@@ -1,16 +1,16 @@
 ! SPDX-License-Identifier: MIT
 !> Averages over a slave segment at the tip of a fold (types 6 and 7 of a surface with itself): the
 !> tip comes first, and its flanks, which are still open, would hold it off the sum. There the
-!> points of the segment give way to its two nodes (doc/theory/contact.md, section 5.7).
-module tips_m
-  use contact_state_m, only : contact_state_t, make_room, is_touching
+!> points of the segment give their areas to its two nodes (doc/theory/contact.md, section 5.7).
+module sharp_vertices_m
+  use contact_state_m, only : contact_state_t, make_room, active
   use contacts_m, only : contact_t, is_tied
-  use foot_m, only : foot_t, near_foot
+  use projection_m, only : projection_t, nearby_projection
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: has_folds, find_tips, sharpen_tips, belongs_to
+  public :: has_folds, find_sharp_vertices, weight_sharp_vertices, belongs_to
 
   !> Cosines of the turn at a node up to which nothing changes, and from which on all gives way.
   real(wp), parameter :: gentle = 0.99026806874157036_wp, sharp = 0.95105651629515353_wp
@@ -25,8 +25,8 @@ contains
     has_folds = contact%is_self .and. .not. is_tied(contact)
   end function has_folds
 
-  !> Let the points of segments at tips of folds give way to their nodes.
-  pure subroutine sharpen_tips(contact, memory)
+  !> Let the points of segments at tips of folds give their areas to their nodes.
+  pure subroutine weight_sharp_vertices(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     real(wp) :: part(2)
@@ -44,9 +44,9 @@ contains
         end do
         part = maxval(memory%scratch%nodal(1, ends(:, first)))
       end associate
-      if (part(1) > 0.0_wp) call give_way(contact, first, last, part, memory)
+      if (part(1) > 0.0_wp) call shift_to_nodes(contact, first, last, part, memory)
     end do
-  end subroutine sharpen_tips
+  end subroutine weight_sharp_vertices
 
   !> Whether a node is an end of the segment that it stands upon, where a surface folds.
   pure function belongs_to(nodes, node, master_nodes) result(belongs)
@@ -59,10 +59,10 @@ contains
 
   !> How much gives way at each slave node, 0 to 1: kept where averages come later. In a trial of an
   !> implicit step that of the start of the step, so that it is no part of the tangent.
-  pure subroutine find_tips(slave, memory)
+  pure subroutine find_sharp_vertices(slave, memory)
     type(surface_t), intent(in) :: slave
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: former(2, 2), moved(2, 2)
+    real(wp) :: previous(2, 2), moved(2, 2)
     integer :: node, ends(3), k
 
     memory%scratch%nodal(1, :memory%n_slave) = 0.0_wp
@@ -71,26 +71,26 @@ contains
       ends = [slave%segments(1, slave%incoming(node)), node, &
         slave%segments(2, slave%outgoing(node))]
       do k = 1, 2
-        former(:, k) = memory%places(1:2, ends(k + 1)) - memory%places(1:2, ends(k))
-        moved(:, k) = memory%places(3:4, ends(k + 1)) - memory%places(3:4, ends(k))
-        if (memory%slave_tracking%pass%is_trial) moved(:, k) = moved(:, k) &
+        previous(:, k) = memory%positions(1:2, ends(k + 1)) - memory%positions(1:2, ends(k))
+        moved(:, k) = memory%positions(3:4, ends(k + 1)) - memory%positions(3:4, ends(k))
+        if (memory%slave_status%pass%is_trial) moved(:, k) = moved(:, k) &
           - (memory%scratch%increment(:, ends(k + 1)) - memory%scratch%increment(:, ends(k)))
       end do
-      memory%scratch%nodal(1, node) = sharpness(former, former + moved)
+      memory%scratch%nodal(1, node) = sharpness(previous, previous + moved)
     end do
-  end subroutine find_tips
+  end subroutine find_sharp_vertices
 
   !> The same for the ways along the surface to a node and from it on, at the start and now: the
   !> turn outwards, as far as it has come since the start.
-  pure function sharpness(former, ways) result(part)
-    real(wp), intent(in), dimension(2, 2) :: former, ways !! (x and y, to and from the node) m
+  pure function sharpness(previous, ways) result(part)
+    real(wp), intent(in), dimension(2, 2) :: previous, ways !! (x and y, to and from the node) m
     real(wp) :: part
     real(wp) :: turn(2), turn_before(2), cosine ! cosine and sine, times lengths
 
     part = 0.0_wp
     turn = turn_of(ways)
     if (.not. turn(2) > 0.0_wp) return
-    turn_before = turn_of(former)
+    turn_before = turn_of(previous)
     if (turn_before(2) > 0.0_wp) turn = turn_of(reshape([turn_before, turn], [2, 2]))
     if (.not. turn(2) > 0.0_wp) return
     cosine = turn(1)/norm2(turn)
@@ -108,22 +108,22 @@ contains
   end function turn_of
 
   !> Points at the nodes of a segment take a part of the areas of its points, as these weigh there,
-  !> as far as the nodes have a foot.
-  pure subroutine give_way(contact, first, last, part, memory)
+  !> as far as the nodes have a projection.
+  pure subroutine shift_to_nodes(contact, first, last, part, memory)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: first, last !! points of the segment
     real(wp), intent(inout) :: part(2) !! at either end
     type(contact_state_t), intent(inout) :: memory
-    type(foot_t) :: feet(2)
+    type(projection_t) :: projections(2)
     real(wp) :: content(2)
     integer :: k, p
 
     do k = 1, 2
-      call find_foot(contact, memory, first, last, k, feet(k))
-      if (feet(k)%is_on) feet(k)%is_on = .not. belongs_to(memory%nodes, &
+      call find_projection(contact, memory, first, last, k, projections(k))
+      if (projections(k)%is_on) projections(k)%is_on = .not. belongs_to(memory%nodes, &
         memory%points%slave_nodes(k, first), memory%n_slave &
-        + contact%master%segments(:, feet(k)%segment))
-      if (.not. feet(k)%is_on) part(k) = 0.0_wp
+        + contact%master%segments(:, projections(k)%segment))
+      if (.not. projections(k)%is_on) part(k) = 0.0_wp
       content(k) = sum(memory%points%slave_weights(k, first:last)*memory%points%area(first:last))
     end do
     call make_room(memory%points, 2)
@@ -138,41 +138,43 @@ contains
         points%slave_nodes(:, p) = points%slave_nodes(:, first)
         points%slave_weights(:, p) = 0.0_wp
         points%slave_weights(k, p) = 1.0_wp
-        points%master_nodes(:, p) = memory%n_slave + contact%master%segments(:, feet(k)%segment)
-        points%master_weights(:, p) = [1.0_wp - feet(k)%xi, feet(k)%xi]
-        points%normal(:, p) = feet(k)%normal
-        points%gap(p) = feet(k)%gap
+        points%master_nodes(:, p) = memory%n_slave + contact%master%segments(:, &
+          projections(k)%segment)
+        points%master_weights(:, p) = [1.0_wp - projections(k)%xi, projections(k)%xi]
+        points%normal(:, p) = projections(k)%normal
+        points%gap(p) = projections(k)%gap
         points%area(p) = part(k)*content(k)
         points%stiffness(p) = points%stiffness(first)
       end do
     end associate
-  end subroutine give_way
+  end subroutine shift_to_nodes
 
-  !> Foot of an end of a segment: that which is followed, or from the nearest of its points on.
-  pure subroutine find_foot(contact, memory, first, last, k, foot)
+  !> Projection of an end of a segment: that which is followed, or from the nearest of its points
+  !> on.
+  pure subroutine find_projection(contact, memory, first, last, k, projection)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: first, last, k
-    type(foot_t), intent(out) :: foot
+    type(projection_t), intent(out) :: projection
     integer :: node, nearest
 
     node = memory%points%slave_nodes(k, first)
-    if (.not. memory%has%spots) then
-      associate (tracking => memory%slave_tracking)
-        if (tracking%status(node) == is_touching) then
-          foot%segment = tracking%segment(node)
-          foot%is_on = .true.
-          foot%xi = tracking%xi(node)
-          foot%gap = tracking%gap(node)
-          foot%normal = tracking%normal(:, node)
+    if (.not. memory%has%segment_points) then
+      associate (status => memory%slave_status)
+        if (status%state(node) == active) then
+          projection%segment = status%segment(node)
+          projection%is_on = .true.
+          projection%xi = status%xi(node)
+          projection%gap = status%gap(node)
+          projection%normal = status%normal(:, node)
           return
         end if
       end associate
     end if
     nearest = first - 1 + maxloc(memory%points%slave_weights(k, first:last), 1)
-    foot = near_foot(contact%master, memory%places(:, memory%n_slave + 1:), &
-      memory%places(:, node), contact%master%outgoing(memory%points%master_nodes(1, nearest) &
+    projection = nearby_projection(contact%master, memory%positions(:, memory%n_slave + 1:), &
+      memory%positions(:, node), contact%master%outgoing(memory%points%master_nodes(1, nearest) &
       - memory%n_slave))
-  end subroutine find_foot
+  end subroutine find_projection
 
-end module tips_m
+end module sharp_vertices_m

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> What implicit penalties (PUNIT 4) know of the step ahead, with room that is kept from step to
 !> step.
-module pressing_m
+module pressure_step_m
   use complementarity_m, only : problem_t
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
@@ -10,10 +10,10 @@ module pressing_m
   use weighted_gaps_m, only : rows_t, start_rows
   implicit none
   private
-  public :: pressing_t, start_pressing, take_diagonal, set_diagonal, fill_columns
+  public :: pressure_step_t, start_pressure_step, take_diagonal, set_diagonal, fill_columns
 
   !> The step ahead at the nodes of an interface.
-  type :: pressing_t
+  type :: pressure_step_t
     real(wp) :: dt = 0.0_wp                 !! to the end of the step, s
     real(wp) :: dt_before = 0.0_wp          !! of the step behind, s
     integer :: cycle = 0
@@ -31,33 +31,33 @@ module pressing_m
     real(wp), allocatable :: gap(:)         !! (n_slave) mean gaps, m
     real(wp), allocatable :: behind(:, :)   !! (2, n_slave + n_master) v(n-1/2); only where there is
                                             !! no friction
-    real(wp), allocatable :: pressed(:, :)  !! (2, n_slave + n_master) velocities with pressures, of
+    real(wp), allocatable :: loaded(:, :)   !! (2, n_slave + n_master) velocities with pressures, of
                                             !! nodes that have rows; only where there is friction
     real(wp), allocatable :: diagonal(:)    !! (rows) W(i, i) of the rows alone
     type(rows_t) :: rows
     type(problem_t) :: problem
-  end type pressing_t
+  end type pressure_step_t
 
 contains
 
   !> Room for an interface.
-  pure subroutine start_pressing(contact, memory, step)
+  pure subroutine start_pressure_step(contact, memory, step)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    type(pressing_t), intent(inout) :: step
+    type(pressure_step_t), intent(inout) :: step
 
     step%is_stiff = contact%penalty < 0.0_wp
     associate (n_node => memory%n_slave + memory%n_master, n_slave => memory%n_slave)
       allocate (step%velocity(2, n_node), step%mobility(2, n_node), source=0.0_wp)
       allocate (step%gap(n_slave), step%diagonal(n_slave))
       if (memory%has%friction) then
-        allocate (step%pressed(2, n_node))
+        allocate (step%loaded(2, n_node))
       else
         allocate (step%behind(2, n_node))
       end if
       call start_rows(n_slave, n_node, step%rows)
     end associate
-  end subroutine start_pressing
+  end subroutine start_pressure_step
 
   !> The diagonal of the rows alone.
   pure subroutine take_diagonal(n, width, band, diagonal)
@@ -85,7 +85,7 @@ contains
 
   !> How the rows move rigid bodies.
   pure subroutine fill_columns(step, direction)
-    type(pressing_t), intent(inout) :: step
+    type(pressure_step_t), intent(inout) :: step
     integer, intent(in) :: direction !! along_normal or along_tangent
     integer :: m
 
@@ -97,4 +97,4 @@ contains
     end do
   end subroutine fill_columns
 
-end module pressing_m
+end module pressure_step_m

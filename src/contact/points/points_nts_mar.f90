@@ -1,30 +1,31 @@
 ! SPDX-License-Identifier: MIT
-!> Type 5, NTS-mAR: type 2 with a modified competence length, and in addition the master nodes
-!> between the feet of the two ends of a slave segment, projected on that segment
+!> Type 5, NTS-mAR: type 2 with a modified tributary length, and in addition the master nodes
+!> between the projections of the two ends of a slave segment, projected on that segment
 !> (doc/theory/contact.md, section 5.5).
-module place_nts_mar_m
-  use contact_state_m, only : contact_state_t, is_touching
+module points_nts_mar_m
+  use contact_state_m, only : contact_state_t, active
   use contacts_m, only : contact_t
-  use foot_m, only : foot_t, see_segment, facing_share, round_off
-  use geometry_m, only : sight_t, sight_of_segment, sight_gap, sight_normal, segment_length
+  use projection_m, only : projection_t, local_coordinates, opposed_share, round_off
+  use geometry_m, only : local_coordinates_t, coordinates_on_segment, local_gap, local_normal, &
+    segment_length
   use kinds_m, only : wp
-  use lengths_m, only : competence_area
+  use tributary_lengths_m, only : nodal_area
   use overlap_m, only : overlap_t
-  use overlap_status_m, only : none_due, look_at_segment, note_next_wake
+  use overlap_status_m, only : none_due, search_segment, note_earliest_search
   use overlaps_m, only : find_overlaps, room_for_overlaps
-  use point_list_m, only : add_point, append_touching, finish_segment_points
+  use point_list_m, only : add_point, append_active, finish_segment_points
   use radii_m, only : end_radius, radius_between
-  use segment_points_m, only : judge_segments
+  use segment_states_m, only : update_segment_states
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: place_nts_mar, is_tip
+  public :: points_nts_mar, is_sharp_vertex
 
 contains
 
-  !> Place the points: slave nodes first; then, segment by segment, their areas and the master
+  !> Generate the points: slave nodes first; then, segment by segment, their areas and the master
   !> nodes.
-  pure subroutine place_nts_mar(contact, memory)
+  pure subroutine points_nts_mar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     type(overlap_t), allocatable :: overlaps(:)
@@ -33,27 +34,27 @@ contains
 
     if (none_due(memory)) return
     allocate (overlaps(room_for_overlaps(memory)))
-    call append_touching(memory%slave_tracking, contact%master, [0, memory%n_slave], 0.0_wp, &
+    call append_active(memory%slave_status, contact%master, [0, memory%n_slave], 0.0_wp, &
       memory%slave_penalty, memory%points)
     n = memory%points%n
     memory%scratch%nodal(1, :memory%n_slave) = 0.0_wp
     do s = 1, contact%slave%n_segment
-      call look_at_segment(contact, memory, s, is_due)
-      memory%scratch%is_placed(s) = is_due
-      if (is_due) call place_segment(contact, s, memory, overlaps)
+      call search_segment(contact, memory, s, is_due)
+      memory%scratch%has_points(s) = is_due
+      if (is_due) call points_on_segment(contact, s, memory, overlaps)
     end do
     do k = 1, n
-      memory%points%area(k) = memory%scratch%nodal(1, memory%slave_tracking%touching(k))
+      memory%points%area(k) = memory%scratch%nodal(1, memory%slave_status%active_points(k))
     end do
-    call judge_segments(contact, n, memory)
-    call note_next_wake(memory)
-    call finish_segment_points(memory%places, .false., n + 1, memory%points)
+    call update_segment_states(contact, n, memory)
+    call note_earliest_search(memory)
+    call finish_segment_points(memory%positions, .false., n + 1, memory%points)
     call finish_nodes(contact, memory, n)
-  end subroutine place_nts_mar
+  end subroutine points_nts_mar
 
   !> Divide a slave segment among its ends and the master nodes at its breakpoints: each has half of
   !> the overlap before it and half of the one behind it.
-  pure subroutine place_segment(contact, s, memory, overlaps)
+  pure subroutine points_on_segment(contact, s, memory, overlaps)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: s
     type(contact_state_t), intent(inout) :: memory
@@ -63,13 +64,13 @@ contains
 
     ends = contact%slave%segments(:, s)
     call find_overlaps(contact, memory, s, contact%strict, round_off, overlaps, n)
-    length = segment_length(memory%places(:, ends(1)), memory%places(:, ends(2)))
+    length = segment_length(memory%positions(:, ends(1)), memory%positions(:, ends(2)))
     node = 0
     area = 0.0_wp
     do k = 1, n
       if (.not. overlaps(k)%high > overlaps(k)%low) cycle
-      halves = halves_of(contact, memory%places(:, ends(1)), memory%places(:, ends(2)), length, &
-        overlaps(k))
+      halves = halves_of(contact, memory%positions(:, ends(1)), memory%positions(:, ends(2)), &
+        length, overlaps(k))
       at = [overlaps(k)%first, overlaps(k)%last]
       do i = 1, 2
         if (at(i) == 0) then
@@ -86,7 +87,7 @@ contains
       end do
     end do
     call add_breakpoint(ends, node, area, memory)
-  end subroutine place_segment
+  end subroutine points_on_segment
 
   !> Half of an overlap, as far as it counts, for either of its ends, m; in axisymmetry weighted
   !> by the radius, so that they differ. With the strict rule all but sides of corners counts.
@@ -113,20 +114,20 @@ contains
     integer, intent(in) :: node        !! of the master, 0: none
     real(wp), intent(in) :: area       !! m
     type(contact_state_t), intent(inout) :: memory
-    type(sight_t) :: sight
-    type(foot_t) :: foot
+    type(local_coordinates_t) :: local
+    type(projection_t) :: projection
 
     if (node == 0 .or. .not. area > 0.0_wp) return
-    associate (places => memory%places, at => memory%n_slave + node)
-      sight = sight_of_segment(places(:, at), places(:, ends(1)), places(:, ends(2)))
-      foot%gap = sight_gap(sight)
-      foot%normal = -sight_normal(sight)
-      if (foot%gap < memory%closed_gap) call add_point(memory%points, ends, &
-        sight%along/sight%square, [at, at], foot, area, memory%slave_penalty)
+    associate (positions => memory%positions, at => memory%n_slave + node)
+      local = coordinates_on_segment(positions(:, at), positions(:, ends(1)), positions(:, ends(2)))
+      projection%gap = local_gap(local)
+      projection%normal = -local_normal(local)
+      if (projection%gap < memory%closed_gap) call add_point(memory%points, ends, &
+        local%along/local%square, [at, at], projection, area, memory%slave_penalty)
     end associate
   end subroutine add_breakpoint
 
-  !> Nodes at a tip keep their whole competence length.
+  !> Nodes at a tip keep their whole tributary length.
   pure subroutine finish_nodes(contact, memory, n)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
@@ -137,28 +138,29 @@ contains
     do p = 1, n
       if (memory%points%area(p) > 0.0_wp) cycle
       node = memory%points%slave_nodes(1, p)
-      if (is_tip(contact%slave, memory, node)) memory%points%area(p) = competence_area( &
-        contact%slave, memory%places(:, :memory%n_slave), contact%is_round, node)
+      if (is_sharp_vertex(contact%slave, memory, node)) memory%points%area(p) = nodal_area( &
+        contact%slave, memory%positions(:, :memory%n_slave), contact%is_round, node)
     end do
   end subroutine finish_nodes
 
-  !> Whether none of the segments at a touching slave node faces the master at its foot.
-  pure function is_tip(slave, memory, node)
+  !> Whether none of the segments at a active slave node faces the master at its projection.
+  pure function is_sharp_vertex(slave, memory, node)
     type(surface_t), intent(in) :: slave
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: node
-    logical :: is_tip
+    logical :: is_sharp_vertex
     integer :: k, s
-    type(sight_t) :: sight
+    type(local_coordinates_t) :: local
 
-    is_tip = .true.
+    is_sharp_vertex = .true.
     do k = 1, 2
       s = merge(slave%incoming(node), slave%outgoing(node), k == 1)
       if (s == 0) cycle
-      sight = see_segment(slave, memory%places(:, :memory%n_slave), memory%places(:, node), s)
-      if (facing_share(dot_product(sight_normal(sight), memory%slave_tracking%normal(:, node))) &
-        > 0.0_wp) is_tip = .false.
+      local = local_coordinates(slave, memory%positions(:, :memory%n_slave), &
+        memory%positions(:, node), s)
+      if (opposed_share(dot_product(local_normal(local), memory%slave_status%normal(:, node))) &
+        > 0.0_wp) is_sharp_vertex = .false.
     end do
-  end function is_tip
+  end function is_sharp_vertex
 
-end module place_nts_mar_m
+end module points_nts_mar_m

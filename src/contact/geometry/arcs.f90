@@ -18,9 +18,9 @@ contains
   !> Curvature of the arc that each segment of a surface stands for: the mean of those at its ends,
   !> of circles through three nodes each; 0 where one end is a corner, flat, or bent the other way;
   !> at an end of an open surface that of the other end.
-  pure subroutine find_curvatures(surface, places, curvature, meets_corner)
+  pure subroutine find_curvatures(surface, positions, curvature, meets_corner)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in) :: places(:, :)      !! (at least 2, n_node) X, Y at time zero, m
+    real(wp), intent(in) :: positions(:, :)   !! (at least 2, n_node) X, Y at time zero, m
     real(wp), intent(out) :: curvature(:)     !! (n_segment) 1/m, above 0 where the body is convex
     logical, intent(out) :: meets_corner(:)   !! (n_segment) at either end
     real(wp) :: at_end(surface%n_segment), ends(2)
@@ -30,7 +30,7 @@ contains
     at_end = 0.0_wp
     is_corner = .false.
     do s = 1, surface%n_segment
-      if (surface%next(s) > 0) call look_at_end(surface, places, s, at_end(s), is_corner(s))
+      if (surface%next(s) > 0) call curvature_at_end(surface, positions, s, at_end(s), is_corner(s))
     end do
     curvature = 0.0_wp
     meets_corner = is_corner
@@ -50,9 +50,9 @@ contains
 
   !> Curvature of the circle through the nodes of a segment and the next one, and whether the turn
   !> between them is a corner.
-  pure subroutine look_at_end(surface, places, segment, curvature, is_corner)
+  pure subroutine curvature_at_end(surface, positions, segment, curvature, is_corner)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in) :: places(:, :)
+    real(wp), intent(in) :: positions(:, :)
     integer, intent(in) :: segment
     real(wp), intent(out) :: curvature !! 1/m
     logical, intent(out) :: is_corner
@@ -60,12 +60,12 @@ contains
 
     associate (one => surface%segments(:, segment), &
       two => surface%segments(:, surface%next(segment)))
-      a = places(1:2, one(2)) - places(1:2, one(1))
-      b = places(1:2, two(2)) - places(1:2, two(1))
+      a = positions(1:2, one(2)) - positions(1:2, one(1))
+      b = positions(1:2, two(2)) - positions(1:2, two(1))
     end associate
     curvature = 2.0_wp*(a(1)*b(2) - a(2)*b(1))/max(tiny(1.0_wp), norm2(a)*norm2(b)*norm2(a + b))
     is_corner = dot_product(a, b) < corner*norm2(a)*norm2(b)
-  end subroutine look_at_end
+  end subroutine curvature_at_end
 
   !> How far an arc stands off the middle of its chord, m.
   pure elemental function arc_height(curvature, chord) result(height)

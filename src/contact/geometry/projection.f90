@@ -1,0 +1,484 @@
+! SPDX-License-Identifier: MIT
+!> Where a position stands on a surface: its projection, with corners and ends. Two ways to find it:
+!> `closest_projection` knows nothing of the past; `follow_contact` keeps a position that is in
+!> contact on the face through which it came (doc/theory/contact.md, section 3). Many positions at a
+!> time go through projection_block, which leaves to this module what needs a decision.
+module projection_m
+  use geometry_m, only : local_coordinates_t, coordinates_on_segment, closest_distance, local_normal
+  use kinds_m, only : wp
+  use surfaces_m, only : surface_t, meets_axis
+  implicit none
+  private
+  public :: projection_t, polyline_parameter_t, local_coordinates, closest_projection, &
+    nearby_projection, stays_over, vector_of, &
+    face_projection, follow_contact, find_closest_segment, project_along, is_over_segment, &
+    turns_gently, &
+    opposed_share, side_share, end_tolerance, gentle_turn, side_on, face_on, least_excess, &
+    most_excess, round_off
+
+  !> Overshoot accepted beyond the end of a surface, as a part of the segment; not clamped.
+  real(wp), parameter :: end_tolerance = 0.01_wp
+  !> Cosine of the turn between two segments up to which their corner is gentle: a point in contact
+  !> changes over to the nearer one. At sharper corners it stays on its face until the face ends.
+  real(wp), parameter :: gentle_turn = 0.5_wp
+  !> Cosine of the angle between two outward normals from which on surfaces are not opposed
+  !> (a block's side that stands on a surface has no part in its contact).
+  real(wp), parameter :: side_on = -0.1_wp
+  !> Cosine of that angle up to which surfaces are opposed entirely (60 degrees between the
+  !> surfaces). From there to `side_on` the share falls smoothly: a jump would create energy when a
+  !> body turns.
+  real(wp), parameter :: face_on = -0.5_wp
+  !> By how much the cosine of the more opposed of both segments at a vertex exceeds that of the
+  !> other where all of the other counts, and from where on nothing of it does: a side that stands
+  !> at 70 degrees on a face is no part of a contact that the next one is in at 20 (0.598).
+  real(wp), parameter :: least_excess = 0.1_wp, most_excess = 0.59_wp
+  !> Part of a segment next to its ends where round-off decides on which side of a node a position
+  !> is.
+  real(wp), parameter :: round_off = 1.0e-12_wp
+
+  !> The projection of a point: weights (1 - xi, xi) on `segment`; point - projection = gap *
+  !> normal.
+  type :: projection_t
+    integer :: segment = 0
+    logical :: is_on = .false.        !! false: beyond the end of a surface
+    real(wp) :: xi = 0.0_wp
+    real(wp) :: gap = 0.0_wp          !! m
+    real(wp) :: normal(2) = 0.0_wp
+    real(wp) :: distance = 0.0_wp     !! to the closest point, m
+  end type projection_t
+
+  !> A position on a surface reached by walking.
+  type :: polyline_parameter_t
+    integer :: segment = 0
+    integer :: n_step = 0    !! segments walked to it, negative backwards
+    real(wp) :: xi = 0.0_wp
+  end type polyline_parameter_t
+
+contains
+
+  !> A point seen from a segment of a surface.
+  pure function local_coordinates(surface, polyline, point, segment) result(local)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: polyline(:, :) !! (4, n_node) positions
+    real(wp), intent(in) :: point(4)
+    integer, intent(in) :: segment
+    type(local_coordinates_t) :: local
+
+    local = coordinates_on_segment(point, polyline(:, surface%segments(1, segment)), &
+      polyline(:, surface%segments(2, segment)))
+  end function local_coordinates
+
+  !> Whether the point is over the segment or within the tolerance beyond its ends.
+  pure function is_over_segment(local) result(is_over)
+    type(local_coordinates_t), intent(in) :: local
+    logical :: is_over
+
+    is_over = local%along >= -end_tolerance*local%square &
+      .and. local%along <= (1.0_wp + end_tolerance)*local%square
+  end function is_over_segment
+
+  !> Segment closest to the point, found by walking along the surface while that brings it nearer.
+  pure function find_closest_segment(surface, polyline, point, start) result(segment)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: polyline(:, :)
+    real(wp), intent(in) :: point(4)
+    integer, intent(in) :: start
+    integer :: segment
+    real(wp) :: square, nearer
+    integer :: candidates(2), i, best
+
+    segment = start
+    square = closest_distance(local_coordinates(surface, polyline, point, segment))
+    do
+      candidates = [surface%previous(segment), surface%next(segment)]
+      best = 0
+      do i = 1, 2
+        if (candidates(i) == 0) cycle
+        nearer = closest_distance(local_coordinates(surface, polyline, point, candidates(i)))
+        if (.not. nearer < square) cycle
+        square = nearer
+        best = candidates(i)
+      end do
+      if (best == 0) then
+        best = beyond_node(segment)
+        if (best == 0) exit
+        square = closest_distance(local_coordinates(surface, polyline, point, best))
+      end if
+      segment = best
+    end do
+
+  contains
+
+    !> The segment behind a neighbour, if it is nearer than the node that both share.
+    pure integer function beyond_node(segment) result(beyond)
+      integer, intent(in) :: segment
+      type(local_coordinates_t) :: local
+
+      local = local_coordinates(surface, polyline, point, segment)
+      beyond = 0
+      if (local%along < 0.0_wp) then
+        beyond = surface%previous(segment)
+        if (beyond > 0) beyond = surface%previous(beyond)
+      else if (local%along > local%square) then
+        beyond = surface%next(segment)
+        if (beyond > 0) beyond = surface%next(beyond)
+      end if
+      if (beyond == 0) return
+      local = local_coordinates(surface, polyline, point, beyond)
+      if (.not. closest_distance(local) < square*(1.0_wp - round_off)) beyond = 0
+    end function beyond_node
+
+  end function find_closest_segment
+
+  !> Projection of a point whose closest segment is known.
+  pure function closest_projection(surface, polyline, point, segment) result(projection)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: polyline(:, :)
+    real(wp), intent(in) :: point(4)
+    integer, intent(in) :: segment
+    type(projection_t) :: projection
+    type(local_coordinates_t) :: local
+    integer :: neighbour
+
+    local = local_coordinates(surface, polyline, point, segment)
+    neighbour = 0
+    if (local%along < 0.0_wp) neighbour = surface%previous(segment)
+    if (local%along > local%square) neighbour = surface%next(segment)
+    if (neighbour == 0) then
+      projection = end_projection(surface, local, segment)
+    else
+      projection = vertex_projection(local, local_coordinates(surface, polyline, point, &
+        neighbour), [segment, neighbour])
+    end if
+  end function closest_projection
+
+  !> Closest projection of a position, found by walking from a segment near it. Where the closest
+  !> points of both neighbours are the nodes in common there is no need to walk.
+  pure function nearest_projection(surface, polyline, point, start) result(projection)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: polyline(:, :)
+    real(wp), intent(in) :: point(4)
+    integer, intent(in) :: start
+    type(projection_t) :: projection
+    type(local_coordinates_t) :: local
+
+    local = local_coordinates(surface, polyline, point, start)
+    if (stays_over(surface, polyline, local%t, local%d, start)) then
+      projection = face_projection(local, start)
+    else
+      projection = closest_projection(surface, polyline, point, &
+        find_closest_segment(surface, polyline, point, start))
+    end if
+  end function nearest_projection
+
+  !> Whether a position is over a segment and no nearer to a neighbour: over neither, or farther
+  !> from its line.
+  pure function stays_over(surface, polyline, t, d, segment) result(stays)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: polyline(:, :)
+    real(wp), intent(in) :: t(2), d(2) !! vector of the segment, and from its first node, m
+    integer, intent(in) :: segment
+    logical :: stays
+    real(wp) :: along, square
+
+    along = d(1)*t(1) + d(2)*t(2)
+    square = t(1)*t(1) + t(2)*t(2)
+    stays = along > 0.0_wp .and. along < square
+    if (stays .and. surface%previous(segment) > 0) stays = is_no_nearer(surface%previous(segment), &
+      d, 1.0_wp)
+    if (stays .and. surface%next(segment) > 0) stays = is_no_nearer(surface%next(segment), d - t, &
+      -1.0_wp)
+
+  contains
+
+    !> Whether a neighbour is no nearer.
+    pure function is_no_nearer(neighbour, from_node, way) result(is)
+      integer, intent(in) :: neighbour
+      real(wp), intent(in) :: from_node(2) !! from the node in common to the position, m
+      real(wp), intent(in) :: way          !! 1: the neighbour lies before, -1: behind
+      logical :: is
+      real(wp) :: beside(2)
+
+      beside = vector_of(surface, polyline, neighbour)
+      is = way*(from_node(1)*beside(1) + from_node(2)*beside(2)) >= 0.0_wp
+      if (.not. is) is = (from_node(1)*beside(2) - from_node(2)*beside(1))**2*square &
+        >= (d(1)*t(2) - d(2)*t(1))**2*(beside(1)**2 + beside(2)**2)
+    end function is_no_nearer
+
+  end function stays_over
+
+  !> Vector of a segment, m.
+  pure function vector_of(surface, polyline, segment) result(t)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: polyline(:, :)
+    integer, intent(in) :: segment
+    real(wp) :: t(2)
+
+    associate (a => surface%segments(1, segment), b => surface%segments(2, segment))
+      t = (polyline(1:2, b) - polyline(1:2, a)) + (polyline(3:4, b) - polyline(3:4, a))
+    end associate
+  end function vector_of
+
+  !> Projection of a position that is not followed, near a known segment: behind the surface it
+  !> belongs to the face that it came through, outside to the closest one.
+  pure function nearby_projection(surface, polyline, point, start) result(projection)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: polyline(:, :)
+    real(wp), intent(in) :: point(4)
+    integer, intent(in) :: start
+    type(projection_t) :: projection, closest
+    type(local_coordinates_t) :: local
+    integer :: neighbour
+    logical :: backwards
+
+    local = local_coordinates(surface, polyline, point, start)
+    if (local%along > 0.0_wp .and. local%along < local%square) then
+      ! Behind the face by less than it is away from its ends: nothing else is nearer.
+      if (local%across < 0.0_wp .and. -local%across <= min(local%along, local%square &
+        - local%along)) then
+        projection = face_projection(local, start)
+        return
+      end if
+    else
+      backwards = local%along < 0.0_wp
+      neighbour = merge(surface%previous(start), surface%next(start), backwards)
+      if (neighbour > 0) then
+        associate (other => local_coordinates(surface, polyline, point, neighbour))
+          if (is_before(other, backwards)) then
+            ! Over neither of two faces, on the same side of both: the node between them. Behind it
+            ! that is what is found first in a valley.
+            projection = vertex_projection(local, other, [start, neighbour])
+            if (projection%gap < 0.0_wp .or. min(local%across, other%across) > 0.0_wp) return
+          else if (other%across >= 0.0_wp .or. (local%across < 0.0_wp .and. turns_gently(local%t, &
+            other%t))) then
+            if (stays_over(surface, polyline, other%t, other%d, neighbour)) then
+              projection = face_projection(other, neighbour)
+              return
+            end if
+          end if
+        end associate
+      end if
+    end if
+    closest = nearest_projection(surface, polyline, point, start)
+    projection = closest
+    if (closest%is_on .and. closest%gap >= 0.0_wp) return
+    projection = follow_contact(surface, polyline, point, start)
+    if (.not. (projection%is_on .and. projection%gap < 0.0_wp)) projection = closest
+  end function nearby_projection
+
+  !> Projection on the line of a segment; beyond the tolerance it is not on the surface.
+  pure function face_projection(local, segment) result(projection)
+    type(local_coordinates_t), intent(in) :: local
+    integer, intent(in) :: segment
+    type(projection_t) :: projection
+
+    real(wp) :: length
+
+    length = sqrt(local%square)
+    projection%segment = segment
+    projection%is_on = is_over_segment(local)
+    projection%xi = local%along/local%square
+    projection%gap = local%across/length
+    projection%normal(1) = local%t(2)/length
+    projection%normal(2) = -local%t(1)/length
+    if (local%along >= 0.0_wp .and. local%along <= local%square) then
+      projection%distance = abs(projection%gap)
+    else
+      projection%distance = sqrt(closest_distance(local))
+    end if
+  end function face_projection
+
+  !> Projection on a segment, or beyond it at a surface's end. On the axis of a body of revolution
+  !> the surface has none: the position is behind a dish, and its projection stays on the line.
+  pure function end_projection(surface, local, segment) result(projection)
+    type(surface_t), intent(in) :: surface
+    type(local_coordinates_t), intent(in) :: local
+    integer, intent(in) :: segment
+    type(projection_t) :: projection
+
+    projection = face_projection(local, segment)
+    if (.not. projection%is_on) projection%is_on = meets_axis(surface, segment, local%along &
+      < 0.0_wp)
+  end function end_projection
+
+  !> Projection at the node between two segments, neither of which has the point over it. Outside of
+  !> a convex corner the gap is the distance. Inside of a re-entrant one it is minus the distance
+  !> and the normal points from the point to the node, so that P2 holds. The sides are told apart by
+  !> the mean normal. The projection is that of the segment to whose normal its own is nearer, whose
+  !> line is farther away: either has the node.
+  pure function vertex_projection(local, other, segments) result(projection)
+    type(local_coordinates_t), intent(in) :: local !! from a segment
+    type(local_coordinates_t), intent(in) :: other !! from its neighbour at the corner
+    integer, intent(in) :: segments(2) !! these
+    type(projection_t) :: projection
+    real(wp) :: d(2), mean_normal(2), side
+
+    projection%segment = segments(1)
+    projection%is_on = .true.
+    projection%xi = merge(0.0_wp, 1.0_wp, local%along < 0.0_wp)
+    d = local%d - projection%xi*local%t
+    if (other%across**2*local%square > local%across**2*other%square) then
+      projection%segment = segments(2)
+      projection%xi = 1.0_wp - projection%xi
+    end if
+    projection%distance = norm2(d)
+    mean_normal = local_normal(local) + local_normal(other)
+    side = dot_product(d, mean_normal)
+    if (projection%distance > tiny(1.0_wp)) then
+      projection%gap = sign(projection%distance, side)
+      projection%normal = d/projection%gap
+    else
+      projection%gap = 0.0_wp
+      projection%normal = mean_normal/max(norm2(mean_normal), tiny(1.0_wp))
+    end if
+  end function vertex_projection
+
+  !> Projection of a point in contact, starting from the segment it was on: stays on the face until
+  !> it ends, goes on to the next one there, changes to a nearer face across gentle corners. When
+  !> the contact has ended the projection is not on the surface or its gap is not negative.
+  pure function follow_contact(surface, polyline, point, start) result(projection)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: polyline(:, :)
+    real(wp), intent(in) :: point(4)
+    integer, intent(in) :: start
+    type(projection_t) :: projection
+    type(local_coordinates_t) :: local, other
+    integer :: segment, neighbour, i_step
+
+    segment = start
+    do i_step = 1, surface%n_segment
+      local = local_coordinates(surface, polyline, point, segment)
+      if (local%along >= 0.0_wp .and. local%along <= local%square) then
+        neighbour = nearer_face(surface, polyline, point, segment, local)
+        projection = face_projection(local, segment)
+        if (neighbour == 0) return
+        segment = neighbour
+        cycle
+      end if
+      neighbour = merge(surface%previous(segment), surface%next(segment), local%along < 0.0_wp)
+      if (neighbour == 0) then
+        projection = end_projection(surface, local, segment)
+        return
+      end if
+      other = local_coordinates(surface, polyline, point, neighbour)
+      if (is_before(other, local%along < 0.0_wp)) then
+        projection = vertex_projection(local, other, [segment, neighbour])
+        return
+      else if (.not. turns_gently(local%t, other%t) .and. &
+        (other%across >= 0.0_wp .or. is_over_segment(local))) then
+        projection = face_projection(local, segment)
+        return
+      end if
+      segment = neighbour
+    end do
+  end function follow_contact
+
+  !> Whether two segments meet at a gentle corner: they turn by 60 degrees at most.
+  pure function turns_gently(one, two)
+    real(wp), intent(in) :: one(2), two(2) !! vectors of the segments, m
+    logical :: turns_gently
+    real(wp) :: product
+
+    product = one(1)*two(1) + one(2)*two(2)
+    turns_gently = product >= 0.0_wp .and. product*product >= gentle_turn**2*((one(1)*one(1) &
+      + one(2)*one(2))*(two(1)*two(1) + two(2)*two(2)))
+  end function turns_gently
+
+  !> Whether the point has not yet reached the segment it is walking to (backwards or forwards).
+  pure function is_before(local, backwards) result(before)
+    type(local_coordinates_t), intent(in) :: local
+    logical, intent(in) :: backwards
+    logical :: before
+
+    before = merge(local%along > local%square, local%along < 0.0_wp, backwards)
+  end function is_before
+
+  !> Neighbour across a gentle corner that a penetrating point is nearer to, or 0. Such a neighbour
+  !> can only be nearer when the gap exceeds the distance to the end of the segment.
+  pure function nearer_face(surface, polyline, point, segment, local) result(neighbour)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: polyline(:, :)
+    real(wp), intent(in) :: point(4)
+    integer, intent(in) :: segment
+    type(local_coordinates_t), intent(in) :: local
+    integer :: neighbour
+    type(local_coordinates_t) :: other
+    integer :: candidates(2), i
+
+    neighbour = 0
+    if (-local%across <= min(local%along, local%square - local%along)) return
+    candidates = [surface%previous(segment), surface%next(segment)]
+    do i = 1, 2
+      if (candidates(i) == 0) cycle
+      other = local_coordinates(surface, polyline, point, candidates(i))
+      if (other%along < 0.0_wp .or. other%along > other%square) cycle
+      if (other%across >= 0.0_wp) cycle
+      if (.not. turns_gently(local%t, other%t)) cycle
+      if (other%across**2*local%square >= local%across**2*other%square) cycle
+      neighbour = candidates(i)
+      return
+    end do
+  end function nearer_face
+
+  !> Project a position on a surface, starting at a segment and going on to the neighbour where it
+  !> runs over a node. It stops at the surface's end (with the usual overshoot), at a sharp corner,
+  !> and at a node that no neighbour sees it beyond.
+  pure function project_along(surface, polyline, position, start) result(eta)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: polyline(:, :) !! (4, n_node) positions
+    real(wp), intent(in) :: position(4)
+    integer, intent(in) :: start
+    type(polyline_parameter_t) :: eta
+    type(local_coordinates_t) :: local, other
+    logical :: backwards
+    integer :: neighbour, i_step
+
+    eta%segment = start
+    local = local_coordinates(surface, polyline, position, start)
+    backwards = local%along < 0.0_wp
+    do i_step = 1, surface%n_segment
+      eta%xi = local%along/local%square
+      if (local%along >= 0.0_wp .and. local%along <= local%square) return
+      if (backwards .neqv. local%along < 0.0_wp) exit
+      neighbour = merge(surface%previous(eta%segment), surface%next(eta%segment), backwards)
+      if (neighbour == 0) then
+        if (.not. is_over_segment(local)) exit
+        return
+      end if
+      other = local_coordinates(surface, polyline, position, neighbour)
+      if (.not. turns_gently(local%t, other%t)) then
+        ! At a sharp convex vertex the face ends as at the end of an open surface.
+        if (is_over_segment(local) .and. merge(-1.0_wp, 1.0_wp, backwards)*(local%t(1)*other%t(2) &
+          - local%t(2)*other%t(1)) > 0.0_wp) return
+        exit
+      end if
+      local = other
+      eta%segment = neighbour
+      eta%n_step = eta%n_step + merge(-1, 1, backwards)
+    end do
+    eta%xi = max(0.0_wp, min(1.0_wp, eta%xi))
+  end function project_along
+
+  !> How much of the side next to a vertex counts, 0 to 1, where the segment on the other side of
+  !> the vertex is opposed to the same face by a cosine that is so much larger.
+  pure function side_share(excess) result(share)
+    real(wp), intent(in) :: excess
+    real(wp) :: share
+
+    share = max(0.0_wp, min(1.0_wp, (most_excess - excess)/(most_excess - least_excess)))
+    share = share*share*(3.0_wp - 2.0_wp*share)
+  end function side_share
+
+  !> How much of a surface counts where its outward normal and that of the other side have this
+  !> cosine, 0 to 1.
+  pure function opposed_share(cosine) result(share)
+    real(wp), intent(in) :: cosine
+    real(wp) :: share
+
+    share = 1.0_wp
+    if (cosine <= face_on) return
+    share = max(0.0_wp, min(1.0_wp, (side_on - cosine)/(side_on - face_on)))
+    share = share*share*(3.0_wp - 2.0_wp*share)
+  end function opposed_share
+
+end module projection_m

@@ -1,0 +1,136 @@
+! SPDX-License-Identifier: MIT
+!> Where the followed points of the slave side are: at its nodes, or at fixed positions of every
+!> segment. Points of segments move with the segment's nodes; point number (segment - 1)*(points per
+!> segment) + position.
+module points_on_segments_m
+  use contact_state_m, only : contact_state_t
+  use geometry_m, only : segment_length
+  use kinds_m, only : wp
+  use quadrature_m, only : gauss_rule
+  use radii_m, only : centroid
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: points_at_nodes, points_at_quarters, points_at_gauss_points, start_segment_points, &
+    move_segment_points
+
+  !> Rules for the positions of points.
+  integer, parameter :: points_at_nodes = 0, points_at_quarters = 1, points_at_gauss_points = 2
+
+contains
+
+  !> Positions on each segment and the part of its length that each stands for; nothing is allocated
+  !> for points at nodes, which are in `memory%positions` already.
+  pure subroutine start_segment_points(rule, n_gauss, is_round, has_ends, slave, memory)
+    integer, intent(in) :: rule    !! one of the constants above
+    integer, intent(in) :: n_gauss !! Gauss points of a segment
+    logical, intent(in) :: is_round
+    logical, intent(in) :: has_ends !! beside Gauss points both nodes of each segment
+    type(surface_t), intent(in) :: slave
+    type(contact_state_t), intent(inout) :: memory
+    integer :: s, q, n
+
+    select case (rule)
+    case (points_at_quarters); n = 2
+    case (points_at_gauss_points); n = n_gauss + merge(2, 0, has_ends)
+    case default; return
+    end select
+    allocate (memory%segment_xi(n), memory%segment_share(n), memory%segment_points(4, &
+      n*slave%n_segment))
+    select case (rule)
+    case (points_at_quarters)
+      memory%segment_xi(:) = [0.25_wp, 0.75_wp]
+      memory%segment_share = 0.5_wp
+      if (is_round) memory%segment_spread = 0.5_wp
+    case (points_at_gauss_points)
+      memory%segment_xi([1, n]) = [0.0_wp, 1.0_wp]
+      memory%segment_share([1, n]) = 0.0_wp
+      q = merge(1, 0, has_ends)
+      call gauss_rule(memory%segment_xi(1 + q:n - q), memory%segment_share(1 + q:n - q))
+    end select
+    do s = 1, slave%n_segment
+      associate (a => memory%positions(:, slave%segments(1, s)), &
+        b => memory%positions(:, slave%segments(2, s)))
+        do q = 1, n
+          memory%segment_points(:, (s - 1)*n + q) = (1.0_wp - memory%segment_xi(q))*a &
+            + memory%segment_xi(q)*b
+        end do
+      end associate
+    end do
+    call move_segment_points(slave, memory%positions, memory%segment_xi, memory%segment_spread, &
+      memory%segment_points)
+  end subroutine start_segment_points
+
+  !> Displacements of the points from those of the nodes. Where they stand at centres by radius,
+  !> these move on their segments: how far at most is added to `travel`.
+  pure subroutine move_segment_points(slave, positions, segment_xi, segment_spread, &
+    segment_points, travel)
+    type(surface_t), intent(in) :: slave
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
+    real(wp), intent(in), contiguous :: segment_xi(:)
+    real(wp), intent(in) :: segment_spread
+    real(wp), intent(inout), contiguous :: segment_points(:, :) !! (4, n_contact_point)
+    real(wp), intent(inout), optional :: travel        !! m
+    real(wp) :: slid
+
+    if (segment_spread > 0.0_wp) then
+      call lean_on_segments(slave, positions, segment_xi, segment_spread, segment_points, slid)
+      if (present(travel)) travel = travel + slid
+    else
+      call move_on_segments(slave%n_segment, slave%segments, size(segment_xi), segment_xi, &
+        positions, segment_points)
+    end if
+  end subroutine move_segment_points
+
+  !> Put the points at the centres by radius of their parts of the segments.
+  pure subroutine lean_on_segments(slave, positions, segment_xi, segment_spread, segment_points, &
+    slid)
+    type(surface_t), intent(in) :: slave
+    real(wp), intent(in), contiguous :: positions(:, :), segment_xi(:)
+    real(wp), intent(in) :: segment_spread
+    real(wp), intent(inout), contiguous :: segment_points(:, :)
+    real(wp), intent(out) :: slid !! the longest way of one on its segment, m
+    real(wp) :: before(2), xi
+    integer :: s, q, i
+
+    slid = 0.0_wp
+    do s = 1, slave%n_segment
+      associate (a => positions(:, slave%segments(1, s)), b => positions(:, slave%segments(2, s)))
+        do q = 1, size(segment_xi)
+          i = (s - 1)*size(segment_xi) + q
+          xi = centroid(a, b, segment_xi(q) - 0.5_wp*segment_spread, segment_xi(q) &
+            + 0.5_wp*segment_spread)
+          before = segment_points(1:2, i)
+          segment_points(:, i) = (1.0_wp - xi)*a + xi*b
+          ! Of the reference, in which nodes rest; stretched as the segment is.
+          slid = max(slid, norm2(segment_points(1:2, i) - before)*segment_length(a, b) &
+            /max(norm2(b(1:2) - a(1:2)), tiny(1.0_wp)))
+        end do
+      end associate
+    end do
+  end subroutine lean_on_segments
+
+  !> The same on arrays of known shape. Both components of a point are formed together: vectors over
+  !> the few points of a segment take 2 to 4 % more of the contact of type 4.
+  pure subroutine move_on_segments(n, segments, n_xi, xi, positions, segment_points)
+    integer, intent(in) :: n, segments(2, n), n_xi
+    real(wp), intent(in) :: xi(n_xi), positions(4, *)
+    real(wp), intent(inout) :: segment_points(4, n_xi, n)
+    real(wp), dimension(2) :: one, two
+    real(wp) :: weights(n_xi)
+    integer :: s, q
+
+    weights = 1.0_wp - xi
+    !GCC$ NOVECTOR
+    do s = 1, n
+      one = positions(3:4, segments(1, s))
+      two = positions(3:4, segments(2, s))
+      !GCC$ NOVECTOR
+      !GCC$ UNROLL 1
+      do q = 1, n_xi
+        segment_points(3:4, q, s) = xi(q)*two + weights(q)*one
+      end do
+    end do
+  end subroutine move_on_segments
+
+end module points_on_segments_m
