@@ -32,7 +32,7 @@ calls=1 0
 
 fn=__interface_m_MOD_apply_contact.isra.0
 20 1000
-cfn=__place_nts_m_MOD_place_nts
+cfn=__points_nts_m_MOD_generate_nts
 calls=1 0
 21 600
 cfn=memcpy
@@ -42,7 +42,7 @@ cfn=__wrap_malloc
 calls=2 0
 23 CHANCE
 
-fn=__place_nts_m_MOD_place_nts
+fn=__points_nts_m_MOD_generate_nts
 30 600
 
 fn=memcpy
@@ -50,7 +50,7 @@ fn=memcpy
 
 fn=__quad_m_MOD_advance_chunk
 50 30
-fn=__crossing_m_MOD_find_crossings
+fn=__candidates_m_MOD_list_pairs
 60 7
 
 totals: 1887
