@@ -32,7 +32,7 @@ calls=1 0
 
 fn=__interface_m_MOD_apply_contact.isra.0
 20 1000
-cfn=__points_nts_m_MOD_generate_nts
+cfn=__points_nts_m_MOD_points_nts
 calls=1 0
 21 600
 cfn=memcpy
@@ -42,7 +42,7 @@ cfn=__wrap_malloc
 calls=2 0
 23 CHANCE
 
-fn=__points_nts_m_MOD_generate_nts
+fn=__points_nts_m_MOD_points_nts
 30 600
 
 fn=memcpy
