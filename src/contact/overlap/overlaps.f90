@@ -15,7 +15,7 @@ module overlaps_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: find_overlaps, n_most_overlaps, room_for_overlaps, closest_candidate
+  public :: find_overlaps, n_most_overlaps, room_for_overlaps, closest_candidate, sides_part
 
   !> Most segments between two active ends that are taken without a look at the candidates, and
   !> number of segments of a closed master up to which the way forwards may be the shorter one.
@@ -335,20 +335,29 @@ contains
     type(contact_state_t), intent(in) :: memory
     type(slave_segment_t), intent(in) :: own
     type(overlap_t), intent(inout) :: overlaps(:)
-    real(wp) :: other(2)
     integer :: k
 
-    associate (master => memory%positions(:, memory%n_slave + 1:))
-      do k = 1, size(overlaps)
-        if (.not. overlaps(k)%share > 0.0_wp) cycle
-        other = vector_of(contact%master, master, overlaps(k)%master)
-        overlaps(k)%part = side_part(contact%slave, memory%positions, own%number, other)
-        if (overlaps(k)%part > 0.0_wp) overlaps(k)%part = overlaps(k)%part &
-          *side_part(contact%master, master, overlaps(k)%master, own%t)
-        overlaps(k)%share = overlaps(k)%share*overlaps(k)%part
-      end do
-    end associate
+    do k = 1, size(overlaps)
+      if (.not. overlaps(k)%share > 0.0_wp) cycle
+      overlaps(k)%part = sides_part(contact, memory, own%number, overlaps(k)%master)
+      overlaps(k)%share = overlaps(k)%share*overlaps(k)%part
+    end do
   end subroutine weigh_sides
+
+  !> How much of a slave segment counts opposite to a master segment, 0 to 1, where either may be
+  !> the side next to a convex vertex of a closed boundary.
+  pure function sides_part(contact, memory, s, m) result(part)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s, m !! slave and master segment
+    real(wp) :: part
+
+    associate (master => memory%positions(:, memory%n_slave + 1:))
+      part = side_part(contact%slave, memory%positions, s, vector_of(contact%master, master, m))
+      if (part > 0.0_wp) part = part*side_part(contact%master, master, m, &
+        vector_of(contact%slave, memory%positions, s))
+    end associate
+  end function sides_part
 
   !> How much of a segment counts, 0 to 1: less the more a segment next to it at a convex vertex is
   !> opposed to the segment of the other surface than it is itself (see `side_share`).

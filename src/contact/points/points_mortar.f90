@@ -7,8 +7,9 @@ module points_mortar_m
   use projection_m, only : projection_t, nearby_projection
   use geometry_m, only : segment_length
   use kinds_m, only : wp
-  use overlaps_m, only : closest_candidate
+  use overlaps_m, only : closest_candidate, sides_part
   use point_list_m, only : add_point, finish_segment_points
+  use surfaces_m, only : surface_t
   use sharp_vertices_m, only : has_folds, find_sharp_vertices, belongs_to
   implicit none
   private
@@ -33,7 +34,8 @@ contains
       if (near == 0) cycle
       first = memory%points%n + 1
       call add_segment(contact, s, near, memory)
-      if (has_folds(contact)) call move_to_ends(first, memory)
+      if (has_folds(contact)) call move_to_ends(contact%master, first, memory)
+      if (memory%slave_status%pass%is_closed) call weigh_sides(contact, s, first, memory)
     end do
     call finish_segment_points(memory%positions, contact%is_round, 1, memory%points)
     memory%scratch%segment_near = 0
@@ -109,7 +111,8 @@ contains
 
   !> At the tip of a fold the points at the nodes of a segment take over what the others are to give
   !> way, as far as they have a projection.
-  pure subroutine move_to_ends(first, memory)
+  pure subroutine move_to_ends(surface, first, memory)
+    type(surface_t), intent(in) :: surface
     integer, intent(in) :: first !! of the points of the segment, the last ones on the list
     type(contact_state_t), intent(inout) :: memory
     real(wp) :: part(2), length
@@ -121,7 +124,8 @@ contains
       do k = 1, 2
         p = merge(first, points%n, k == 1)
         if (points%slave_weights(k, p) < 1.0_wp .or. points%area(p) < 0.0_wp &
-          .or. belongs_to(memory%nodes, ends(k), points%master_nodes(:, p))) part(k) = 0.0_wp
+          .or. belongs_to(surface, ends(k), surface%outgoing(points%master_nodes(1, p) &
+          - memory%n_slave), points%master_weights(2, p))) part(k) = 0.0_wp
       end do
       do p = first, points%n
         points%area(p) = points%area(p)*(1.0_wp - dot_product(part, points%slave_weights(:, p)))
@@ -131,5 +135,20 @@ contains
       if (part(2) > 0.0_wp) points%area(points%n) = 0.5_wp*part(2)*length
     end associate
   end subroutine move_to_ends
+
+  !> Let the points of a segment of closed boundaries count less, or not, with the side next to a
+  !> convex vertex, as overlaps do.
+  pure subroutine weigh_sides(contact, s, first, memory)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: s, first !! slave segment, first of its points, the last ones on the list
+    type(contact_state_t), intent(inout) :: memory
+    integer :: p
+
+    do p = first, memory%points%n
+      if (.not. memory%points%area(p) > 0.0_wp) cycle
+      memory%points%area(p) = memory%points%area(p)*sides_part(contact, memory, s, &
+        contact%master%outgoing(memory%points%master_nodes(1, p) - memory%n_slave))
+    end do
+  end subroutine weigh_sides
 
 end module points_mortar_m

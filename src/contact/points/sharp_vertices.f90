@@ -48,13 +48,20 @@ contains
     end do
   end subroutine weight_sharp_vertices
 
-  !> Whether a node is an end of the segment that it stands upon, where a surface folds.
-  pure function belongs_to(nodes, node, master_nodes) result(belongs)
-    integer, intent(in), contiguous :: nodes(:) !! of the mesh, by local number
-    integer, intent(in) :: node, master_nodes(2) !! local numbers
+  !> Whether a node of a surface in contact with itself is an end of the segment that it stands
+  !> upon, or, where it stands on a node of that, of the next segment there: on which of both a node
+  !> of a fold stands is a matter of round-off.
+  pure function belongs_to(surface, node, segment, xi) result(belongs)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: node, segment
+    real(wp), intent(in) :: xi !! position on the segment, 0 to 1
     logical :: belongs
+    integer :: beside
 
-    belongs = any(nodes(master_nodes) == nodes(node))
+    belongs = any(surface%segments(:, segment) == node)
+    if (abs(xi - 0.5_wp) < 0.5_wp) return
+    beside = merge(surface%previous(segment), surface%next(segment), xi < 0.5_wp)
+    if (beside > 0) belongs = belongs .or. any(surface%segments(:, beside) == node)
   end function belongs_to
 
   !> How much gives way at each slave node, 0 to 1: kept where averages come later. In a trial of an
@@ -120,9 +127,8 @@ contains
 
     do k = 1, 2
       call find_projection(contact, memory, first, last, k, projections(k))
-      if (projections(k)%is_on) projections(k)%is_on = .not. belongs_to(memory%nodes, &
-        memory%points%slave_nodes(k, first), memory%n_slave &
-        + contact%master%segments(:, projections(k)%segment))
+      if (projections(k)%is_on) projections(k)%is_on = .not. belongs_to(contact%master, &
+        memory%points%slave_nodes(k, first), projections(k)%segment, projections(k)%xi)
       if (.not. projections(k)%is_on) part(k) = 0.0_wp
       content(k) = sum(memory%points%slave_weights(k, first:last)*memory%points%area(first:last))
     end do

@@ -8,7 +8,10 @@ module tangent_mortar_m
   use linearisation_m, only : linearised_point_t, linearised_list_t, append_point, difference, &
     project_point, length_between, share_of, radius_at
   use kinds_m, only : wp
+  use overlap_m, only : overlap_t
+  use overlaps_m, only : sides_part
   use point_tangent_m, only : parts_left
+  use tangent_overlaps_m, only : append_share
   implicit none
   private
   public :: linearise_fixed_points
@@ -21,8 +24,9 @@ contains
     type(contact_state_t), intent(in) :: memory
     type(linearised_list_t), intent(inout) :: list
     type(linearised_point_t) :: point
+    type(overlap_t) :: sides
     real(wp) :: remaining(memory%points%n)
-    integer :: p
+    integer :: s, p
 
     remaining = parts_left(memory)
     associate (points => memory%points, positions => memory%positions)
@@ -36,7 +40,17 @@ contains
         if (contact%is_round) &
           point%area = point%area*radius_at(positions, point%nodes, 1, 2, point%slave_xi)
         point%area = (points%area(p)/point%area%value)*point%area
-        call append_point(list, point)
+        s = contact%slave%outgoing(points%slave_nodes(1, p))
+        sides%master = contact%master%outgoing(points%master_nodes(1, p) - memory%n_slave)
+        sides%part = 1.0_wp
+        if (memory%slave_status%pass%is_closed) &
+          sides%part = sides_part(contact, memory, s, sides%master)
+        if (sides%part < 1.0_wp) then
+          point%area = (1.0_wp/sides%part)*point%area
+          call append_share(contact, memory, s, sides, .false., point, list)
+        else
+          call append_point(list, point)
+        end if
       end do
     end associate
   end subroutine linearise_fixed_points

@@ -22,7 +22,7 @@ module tangent_overlaps_m
   use sharp_vertices_m, only : has_folds
   implicit none
   private
-  public :: linearise_overlap_ends, linearise_gauss_points
+  public :: linearise_overlap_ends, linearise_gauss_points, append_share
 
 contains
 

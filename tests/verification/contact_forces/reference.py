@@ -431,10 +431,15 @@ def overlaps(slave, master, k, feet, strict=False):
         middle = np.interp(0.5 * (low + high), at, gap) if at[0] < at[1] else np.mean(gap)
         if middle < -0.75 * master.thick[m] and m not in touched:
             continue
-        part = side_part(slave, k, master.normal[m]) * side_part(master, m, slave.normal[k])
+        part = sides_part(slave, k, master, m)
         if part > 0.0:
             found.append((low, high, left, right, m, part))
     return sorted(found, key=lambda overlap: overlap[:2])
+
+
+def sides_part(slave, k, master, m):
+    """How much of slave segment k counts opposite to master segment m."""
+    return side_part(slave, k, master.normal[m]) * side_part(master, m, slave.normal[k])
 
 
 def side_part(chain, k, normal):
@@ -530,8 +535,9 @@ def nodal_pressure(slave, master, penalty, spots, offsets=None):
     feet = project(where, master, [of_segment(slave, k) for k, _, _, _ in spots]) if spots else []
     feet = [piece_foot(point, master, piece, foot)
             for point, (_, _, _, piece), foot in zip(where, spots, feet)]
-    kept = [(k, at, w * facing(slave.normal[k], foot.normal), foot)
-            for (k, at, w, _), foot in zip(spots, feet) if foot]
+    kept = [(k, at, w * facing(slave.normal[k], foot.normal)
+             * (sides_part(slave, k, master, foot.segment) if piece is None else 1.0), foot)
+            for (k, at, w, piece), foot in zip(spots, feet) if foot]
     of_spots = [forces.offsets.on_segment(slave, k, at) if piece is not None else
                 forces.offsets.between[k, i % (len(spots) // len(slave))]
                 for i, (k, at, _, piece) in enumerate(spots)]
