@@ -74,7 +74,7 @@ contains
   !> part of initial overlaps that does not act yet.
   pure subroutine find_gaps(memory, gaps)
     type(contact_state_t), intent(inout) :: memory !! out: (2, :) of scratch%nodal areas of nodes, m
-    real(wp), intent(inout) :: gaps(:)             !! (points or slave nodes, or more) m
+    real(wp), intent(inout), contiguous :: gaps(:) !! (points or slave nodes, or more) m
 
     associate (n => memory%points%n, n_slave => memory%n_slave)
       gaps(:n) = memory%points%gap(:n)
