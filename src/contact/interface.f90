@@ -293,7 +293,7 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
 
-    call list_candidates(contact, memory)
+    call list_candidates(contact, memory, .true.)
     call form_springs(memory)
   end subroutine resume_contact
 

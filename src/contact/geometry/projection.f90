@@ -10,11 +10,9 @@ module projection_m
   implicit none
   private
   public :: projection_t, polyline_parameter_t, local_coordinates, closest_projection, &
-    nearby_projection, stays_over, vector_of, &
-    face_projection, follow_contact, find_closest_segment, project_along, is_over_segment, &
-    turns_gently, &
-    opposed_share, side_share, end_tolerance, gentle_turn, side_on, face_on, least_excess, &
-    most_excess, round_off
+    nearby_projection, stays_over, vector_of, face_projection, follow_contact, &
+    find_closest_segment, project_along, turns_gently, opposed_share, side_share, end_tolerance, &
+    gentle_turn, side_on, face_on, least_excess, most_excess, round_off
 
   !> Overshoot accepted beyond the end of a surface, as a part of the segment; not clamped.
   real(wp), parameter :: end_tolerance = 0.01_wp

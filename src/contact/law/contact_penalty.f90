@@ -11,7 +11,7 @@ module contact_penalty_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: set_penalties, rigid_factor, built_in_penalty, softer_side, side_stiffness, &
+  public :: set_penalties, rigid_factor, built_in_penalty, side_stiffness, &
     mean_length, spread_of_stiffness, has_default_penalty
 
   !> Times K L/A of the softer side: implicit springs of a rigid slave without compliance.

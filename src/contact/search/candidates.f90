@@ -11,7 +11,7 @@ module candidates_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: update_candidates, list_candidates, list_pairs, mean_length
+  public :: update_candidates, list_candidates, mean_length
 
   !> Skin: relative motion for which a list holds, as a part of the finer mean segment.
   real(wp), parameter :: skin_part = 0.5_wp
@@ -46,7 +46,7 @@ contains
       is_due = .true.
     end if
     if (.not. is_due) return
-    call list_candidates(contact, memory, memory%listed_until)
+    call list_candidates(contact, memory, .false.)
     call search_all(memory%slave_status)
     call search_all(memory%master_status)
     if (allocated(memory%segment_search)) memory%segment_search = -huge(1.0_wp)
@@ -64,10 +64,10 @@ contains
 
   !> All pairs within the search radius, the motion of this call, and the skin. Boxes farther apart
   !> are looked at again when they can have come that near.
-  pure subroutine list_candidates(contact, memory, valid_until)
+  pure subroutine list_candidates(contact, memory, restarts)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    real(wp), intent(inout), optional :: valid_until !! travel; after a restart it is known, m
+    logical, intent(in) :: restarts !! until when the lists hold is known from the restart file
     real(wp) :: skin, radius, box_distance
     integer :: n
 
@@ -78,7 +78,7 @@ contains
     radius = memory%advance + max(memory%slave_status%reach, deepest_of(memory%slave_status), &
       deepest_of(memory%master_status))
     box_distance = box_gap(memory%positions(:, :n), memory%positions(:, n + 1:))
-    if (present(valid_until)) valid_until = memory%travel + max(skin, box_distance - radius)
+    if (.not. restarts) memory%listed_until = memory%travel + max(skin, box_distance - radius)
     call list_pairs(contact, memory%positions, merge(radius + skin, -1.0_wp, box_distance &
       <= radius + skin), memory%candidates)
     if (memory%master_status%n > 0) &

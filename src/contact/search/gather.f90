@@ -6,7 +6,7 @@ module gather_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: gather_positions, spread_of, take_force, power_of, store_previous, add_force
+  public :: gather_positions, take_force, power_of, store_previous, add_force
 
 contains
 
