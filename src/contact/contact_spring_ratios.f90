@@ -11,7 +11,7 @@ module contact_spring_ratios_m
   use kinds_m, only : wp
   use tributary_lengths_m, only : nodal_area, mean_radius
   use radii_m, only : radius_of, end_radius
-  use surfaces_m, only : surface_t
+  use surfaces_m, only : surface_t, open_ends
   use ties_m, only : stiffness_of_nodes
   implicit none
   private
@@ -74,8 +74,7 @@ contains
     n_slave = size(slave, 2)
     share(:n_slave) = 1.0_wp
     if (contact%is_round) share(:n_slave) = [(mean_radius(contact%slave, slave, i), i=1, n_slave)]
-    share(n_slave + 1:) = beyond_ends*(merge(1, 0, contact%master%incoming == 0) &
-      + merge(1, 0, contact%master%outgoing == 0))
+    share(n_slave + 1:) = beyond_ends*open_ends(contact%master)
     s = minval(lengths(contact%slave, slave))
     h = lengths(contact%master, master)
     do i = 1, contact%master%n_segment
@@ -164,13 +163,14 @@ contains
     logical, intent(in) :: is_lonely  !! one Gauss point on each segment of the other side
     real(wp) :: most(surface%n_node)
     real(wp) :: h(surface%n_segment), share, near, far, rise
-    integer :: i, k, other
+    integer :: ends(surface%n_node), i, k, other
 
     h = lengths(surface, positions)
     rise = merge(1.0_wp, 0.0_wp, is_round)
     near = 1.0_wp
     far = 1.0_wp
     most = 0.0_wp
+    ends = open_ends(surface)
     do i = 1, surface%n_segment
       do k = 1, 2
         associate (node => surface%segments(k, i))
@@ -184,7 +184,7 @@ contains
           end if
           if (is_lonely) share = share + s**2/12.0_wp
           other = merge(surface%incoming(node), surface%outgoing(node), k == 1)
-          if (other == 0) share = share + overhang*s*(near + rise*s/3.0_wp)
+          if (other == 0 .and. ends(node) > 0) share = share + overhang*s*(near + rise*s/3.0_wp)
           most(node) = most(node) + share
         end associate
       end do

@@ -5,7 +5,7 @@ module surface_building_m
   use boundary_m, only : boundary_t, find_boundary, find_edge
   use kinds_m, only : wp
   use mesh_m, only : mesh_t
-  use surfaces_m, only : surface_t, link_segments
+  use surfaces_m, only : surface_t, link_segments, part_at_axis
   implicit none
   private
   public :: boundary_surface, chain_surface, surface_left, chain_good, chain_turned, &
@@ -214,8 +214,9 @@ contains
     else
       call take_left(is_left, former, surface)
     end if
-    if (allocated(former%is_on_axis)) surface%is_on_axis = &
-      .not. mesh%coordinates(1, surface%nodes) > 0.0_wp
+    if (.not. allocated(former%is_on_axis)) return
+    surface%is_on_axis = .not. mesh%coordinates(1, surface%nodes) > 0.0_wp
+    call part_at_axis(surface)
   end subroutine surface_left
 
   !> Segments of a surface whose elements are left.

@@ -6,7 +6,8 @@ module surfaces_m
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: surface_t, link_segments, number_chains, has_closed_chain, meets_axis
+  public :: surface_t, link_segments, number_chains, has_closed_chain, meets_axis, &
+    is_axis_edge, part_at_axis, open_ends
 
   !> One surface. "Local" node numbers count the nodes of this surface in walking order.
   type, extends(visited_t) :: surface_t
@@ -59,15 +60,68 @@ contains
       segment))
   end function meets_axis
 
-  !> Whether some chain of a surface is closed.
+  !> Whether a segment lies on the axis of a body of revolution: it is no face.
+  pure function is_axis_edge(surface, segment) result(is)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: segment
+    logical :: is
+
+    is = allocated(surface%is_on_axis)
+    if (is) is = all(surface%is_on_axis(surface%segments(:, segment)))
+  end function is_axis_edge
+
+  !> Part the faces of a body of revolution from its edges on the axis: no face goes on there.
+  pure subroutine part_at_axis(surface)
+    type(surface_t), intent(inout) :: surface
+    integer :: s
+
+    do s = 1, surface%n_segment
+      if (.not. is_axis_edge(surface, s)) cycle
+      associate (before => surface%previous(s), after => surface%next(s))
+        if (before > 0) then
+          if (.not. is_axis_edge(surface, before)) then
+            surface%outgoing(surface%segments(1, s)) = 0
+            surface%next(before) = 0
+            before = 0
+          end if
+        end if
+        if (after > 0) then
+          if (.not. is_axis_edge(surface, after)) then
+            surface%incoming(surface%segments(2, s)) = 0
+            surface%previous(after) = 0
+            after = 0
+          end if
+        end if
+      end associate
+    end do
+    call number_chains(surface)
+  end subroutine part_at_axis
+
+  !> At how many of its two sides no segment follows a node; on the axis nothing lies beyond.
+  pure function open_ends(surface) result(n)
+    type(surface_t), intent(in) :: surface
+    integer :: n(surface%n_node)
+    integer :: s
+
+    n = merge(1, 0, surface%incoming == 0) + merge(1, 0, surface%outgoing == 0)
+    do s = 1, surface%n_segment
+      if (is_axis_edge(surface, s)) n(surface%segments(:, s)) = 0
+    end do
+  end function open_ends
+
+  !> Whether some chain of a surface is closed, if only along the axis.
   pure function has_closed_chain(surface) result(closed)
     type(surface_t), intent(in) :: surface
     logical :: closed
     logical :: is_open(maxval([0, surface%chain]))
+    integer :: s
 
     is_open = .false.
     is_open(pack(surface%chain, surface%previous == 0)) = .true.
     closed = .not. all(is_open)
+    do s = 1, surface%n_segment
+      closed = closed .or. is_axis_edge(surface, s)
+    end do
   end function has_closed_chain
 
   !> Number the chains of a surface in the order of their first segments.

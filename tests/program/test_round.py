@@ -231,12 +231,12 @@ def cone_on_disc(kind, sides):
     return deck.output(glstat=0.01, matsum=0.04, rcforc=4.0e-4).text()
 
 
-@pytest.mark.parametrize("kind", [4, 6])
+@pytest.mark.parametrize("kind", range(1, 8))
 def test_edges_on_the_axis_are_no_surface(exe, tmp_path, kind):
-    """Whole outlines go along the axis; contact is that of the faces alone."""
+    """Whole outlines go along the axis; contact is that of the faces alone, with a penalty (PUNIT 3) up to 4 % apart."""
     forces = []
     for sides in ((-1, -2), (1, 2)):
         (tmp_path / "job.k").write_text(cone_on_disc(kind, sides))
         run(exe, tmp_path, "i=job.k", "d=out")
         forces.append(np.max(np.abs(numbers(tmp_path / "out/job.rcforc.csv", "fy"))))
-    assert forces[0] > 1000.0 and np.isclose(*forces, rtol=0.02), forces
+    assert forces[0] > 900.0 and np.isclose(*forces, rtol=0.02 if kind in (2, 3, 4, 6) else 0.04), forces

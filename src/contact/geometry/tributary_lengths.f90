@@ -105,7 +105,8 @@ contains
 
   !> How much of both halves at a node counts below a face: each as far as it is opposed; of the
   !> side at a corner less than that, or nothing (see `side_share`). Where the face stands between
-  !> both normals of a convex vertex, what is missing to the larger share counts too.
+  !> both normals of a convex vertex, what is missing to the larger share counts too. At an end, as
+  !> on the axis, all counts.
   pure function opposed_part(t, halves, normal) result(area)
     real(wp), intent(in) :: t(2, 2)    !! vectors of the segments before and after the node, m
     real(wp), intent(in) :: halves(2)
@@ -114,17 +115,16 @@ contains
     real(wp) :: shares(2), cosines(2)
     integer :: k
 
-    cosines = 0.0_wp
-    shares = 0.0_wp
+    area = sum(halves)
+    if (.not. minval(halves) > 0.0_wp) return
     do k = 1, 2
-      if (.not. halves(k) > 0.0_wp) cycle
       cosines(k) = (t(2, k)*normal(1) - t(1, k)*normal(2))/sqrt(t(1, k)**2 + t(2, k)**2)
       shares(k) = opposed_share(cosines(k))
     end do
     k = maxloc(cosines, 1)
     shares(k) = shares(k)*side_share(maxval(cosines) - minval(cosines))
     area = dot_product(halves, shares)
-    if (maxval(shares) >= 1.0_wp .or. .not. minval(halves) > 0.0_wp) return
+    if (maxval(shares) >= 1.0_wp) return
     ! The opposite of the normal turns from the first of both normals to the second.
     if (dot_product(t(:, 1), normal) < 0.0_wp .and. dot_product(t(:, 2), normal) > 0.0_wp) &
       area = area + (1.0_wp - maxval(shares))*sum(halves)

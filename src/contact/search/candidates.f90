@@ -8,7 +8,7 @@ module candidates_m
   use projection_m, only : face_on
   use geometry_m, only : separation
   use kinds_m, only : wp, long
-  use surfaces_m, only : surface_t
+  use surfaces_m, only : surface_t, is_axis_edge
   implicit none
   private
   public :: update_candidates, list_candidates, mean_length
@@ -334,7 +334,7 @@ contains
   end subroutine enter_pair
 
   !> Whether a master segment may touch a slave segment: it does not look the same way, and it is
-  !> not part of the same side of the body, nor its back.
+  !> not part of the same side of the body, nor its back, and neither lies on the axis.
   pure function is_candidate(contact, s, own, m, other) result(is)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: s, m
@@ -344,6 +344,7 @@ contains
     integer :: own_first, own_last, first, last
 
     is = .false.
+    if (is_axis_edge(contact%master, m) .or. is_axis_edge(contact%slave, s)) return
     product = own(1)*other(1) + own(2)*other(2)
     if (product > 0.0_wp) then
       if (product**2 > same_way**2*((own(1)**2 + own(2)**2)*(other(1)**2 + other(2)**2))) return

@@ -48,8 +48,9 @@ contains
       associate (point => list%points(p), a => list%points(p)%nodes(1), &
         b => list%points(p)%nodes(2))
         if (.not. max(pressures(a)%value, pressures(b)%value) > 0.0_wp) cycle
-        call add_linearised_point(point, point%area*between(pressures([a, b])%value, &
-          point%slave_xi), point%area*between(tractions([a, b])%value, point%slave_xi), &
+        call add_linearised_point(point, &
+          point%area*between([pressures(a)%value, pressures(b)%value], point%slave_xi), &
+          point%area*between([tractions(a)%value, tractions(b)%value], point%slave_xi), &
           equations, matrix)
       end associate
     end do

@@ -110,11 +110,11 @@ contains
       cosines(k) = cosine_of(t(:, k), point%normal)
     end do
     point%area = halves(1) + halves(2)
-    if (.not. is_closed) return
+    if (.not. is_closed .or. any(segments == 0)) return
     less = merge(1, 2, cosines(1)%value >= cosines(2)%value)
     shares(less) = shares(less)*side_share_of(cosines(less), cosines(3 - less))
     point%area = halves(1)*shares(1) + halves(2)*shares(2)
-    if (maxval(shares%value) >= 1.0_wp .or. any(segments == 0)) return
+    if (maxval(shares%value) >= 1.0_wp) return
     more = maxloc(shares%value, 1)
     if (dot_product(t(:, 1)%value, point%normal%value) < 0.0_wp .and. &
       dot_product(t(:, 2)%value, point%normal%value) > 0.0_wp) &

@@ -7,7 +7,7 @@ module deck_contacts_m
   use log_m, only : to_text
   use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, is_tied, breaks, tie_none, &
     penalty_implicit, penalty_share
-  use surfaces_m, only : surface_t
+  use surfaces_m, only : surface_t, part_at_axis
   use model_m, only : model_t
   use boundary_m, only : find_boundary
   use deck_lines_m, only : deck_t, place_t, blocks_of, line_error, line_warning
@@ -65,6 +65,8 @@ contains
           radii => model%mesh%coordinates(1, :))
           slave%is_on_axis = .not. radii(slave%nodes) > 0.0_wp
           master%is_on_axis = .not. radii(master%nodes) > 0.0_wp
+          call part_at_axis(slave)
+          call part_at_axis(master)
         end associate
       end do
     end if
