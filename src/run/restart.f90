@@ -284,11 +284,11 @@ contains
     end associate
   end subroutine check_ties
 
-  !> Spots followed over a chain.
+  !> Status of contact points over the segments of the other surface.
   subroutine check_status(status, n_contact_point, n_segment, folder, archive)
     type(contact_status_t), intent(in) :: status
-    integer, intent(in) :: n_contact_point !! spots, where there are any
-    integer, intent(in) :: n_segment    !! of the chain
+    integer, intent(in) :: n_contact_point !! points, where there are any
+    integer, intent(in) :: n_segment    !! of the other surface
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
     logical, allocatable :: is_listed(:)
