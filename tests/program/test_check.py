@@ -95,7 +95,6 @@ def test_files_of_a_check(slideline, tmp_path):
     made is told."""
     (tmp_path / "wrong.k").write_text(WRONG)
     assert slideline("check", "wrong.k", "d=new").returncode == 1 and not (tmp_path / "new").exists()
-    deck = drop().text()
     apart = (ROOT / "doc/examples/contact_2d_tied.k").read_text()
     for node in ("      13             0.0", "      14             1.0"):
         apart = apart.replace(f"{node}             3.0", f"{node}             3.5")

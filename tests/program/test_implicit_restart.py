@@ -150,10 +150,10 @@ def test_assumed_strain_goes_on_to_the_same_bits(slideline, tmp_path, is_round):
 
 def test_file_before_the_last_step(slideline, tmp_path):
     """CYCL 0 asks for it alone; a run of one step begins anew from it."""
-    for name, dt, time, cycle in (("a", 0.25, 0.75, 3), ("b", 1.0, 0.0, 0)):
+    for name, dt, reached, cycle in (("a", 0.25, 0.75, 3), ("b", 1.0, 0.0, 0)):
         run_whole(slideline, pulled(1.0e3, dt=dt), name, dump=0)
         with h5py.File(tmp_path / name / "job.dump01.h5") as stream:
-            assert stream["state/time"][0] == time and stream["state/cycle"][0] == cycle
+            assert stream["state/time"][0] == reached and stream["state/cycle"][0] == cycle
             assert stream["run/is_implicit"][0] == 1
         rest = part_of(tmp_path / name, tmp_path / f"{name}2", "job.dump01.h5", "job.vtkhdf")
         go_on(slideline, rest / "job.dump01.h5")

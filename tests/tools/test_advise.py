@@ -259,4 +259,3 @@ def test_output_written_too_often(runs):
     # Energies of alternating rows do not lie on straight lines.
     run.tables["glstat"]["kinetic"][::2] *= 1.1
     assert "glstat" not in {item.what.split()[0] for item in outputs.too_often(run)}
-

@@ -175,7 +175,7 @@ def test_mypy_knows_the_public_names(tmp_path):
     pytest.importorskip("mypy")
     (tmp_path / "typed.py").write_text(TYPED)
     tools = conftest.ROOT / "tools"
-    done = subprocess.run([sys.executable, "-m", "mypy", "--no-site-packages", "--ignore-missing-imports", "--config-file", tools / "pyproject.toml", 
+    done = subprocess.run([sys.executable, "-m", "mypy", "--no-site-packages", "--ignore-missing-imports", "--config-file", tools / "pyproject.toml",
                            "--cache-dir", tmp_path / "cache", "typed.py"], cwd=tmp_path, capture_output=True, text=True, check=False,
                           env={**os.environ, "MYPYPATH": str(tools)})
     found = re.findall(r"Revealed type is \"([\w.]+)", done.stdout)

@@ -23,6 +23,7 @@ import numpy as np  # noqa: E402
 from slideline_tools import cli, plots  # noqa: E402
 from slideline_tools.contact_types import TYPES  # noqa: E402
 from slideline_tools.results import read  # noqa: E402
+from taylor import taylor  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PICTURES = ROOT / "doc/pictures"

@@ -91,6 +91,7 @@ def run_round(options, work, samples):
         return now
 
     if "step" in options.parts:
+        now = None  # the elastic decks come first
         for (_, material), (deck, count) in work["step"].items():
             now = units() if material == "elastic" else now
             for threads in sorted({1, options.threads}):

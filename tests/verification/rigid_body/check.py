@@ -318,7 +318,7 @@ def check_impact(run):
         deck.elastic(RHO, YOUNG, POISSON, 2)
         hit = grid(4, 4)
         flying = deck.mesh(rotate(hit[0] + (-1.3, 0.35), 0.1, (-0.8, 0.85)), hit[1], part=1)
-        target = deck.mesh(*grid(6, 6), part=2)
+        deck.mesh(*grid(6, 6), part=2)
         deck.node_set(1, flying)
         deck.add("*SET_PART_LIST", (1,), (1,)).add("*SET_PART_LIST", (2,), (2,))
         deck.add("*INITIAL_VELOCITY", (1,), (4.0, 0.0))

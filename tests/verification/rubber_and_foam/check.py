@@ -335,7 +335,6 @@ def check_tube(run):
             check_newton(run, result, f"{law.name}, tube of {n} quads")
             u = result.points("displacement")[-1][[0, n], 0]
             errors.append(np.abs(u / exact - 1.0).max())
-            table = result.table("glstat")
             run.report(f"{law.name}, tube of {n} quads: displacement inside", float(u[0]), f"exact {exact[0]}")
         run.check(f"{law.name}, tube: error of the displacements", errors[-1], 0.0)
         run.check(f"{law.name}, tube: order", run.order(1.0 / np.array(sizes), errors), 2.0)

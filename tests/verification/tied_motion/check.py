@@ -69,7 +69,7 @@ def came_back(spring):
     with v_t + tau dv_t/dt = v_i, tau = rho c/(2 k)."""
     tau = RHO * SOUND / (2.0 * spring)
     fine = np.linspace(0.0, 3.0 * PULSE / SOUND, 60001)
-    step, decay = fine[1] - fine[0], np.exp(-(fine[1] - fine[0]) / tau)
+    decay = np.exp(-(fine[1] - fine[0]) / tau)
     came, gone = pulse(fine), np.zeros_like(fine)
     for k in range(1, len(fine)):
         gone[k] = decay * gone[k - 1] + (1.0 - decay) * 0.5 * (came[k] + came[k - 1])

@@ -58,7 +58,7 @@ def oblique(ctype=2, ngauss=4, exchanged=False):
     deck.card("xc yc zc nx ny nz", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     deck.block("The two surfaces as node sets in walking order; that of the turned block is its left "
                "side, its lower face and its right side.")
-    contact_surfaces(deck, ("sides and lower face of the turned block", 
+    contact_surfaces(deck, ("sides and lower face of the turned block",
                             np.concatenate([turned.left, turned.lower[1:], turned.right[1:]])),
                      ("upper face of the large block", large.upper), exchanged)
     deck.block("Mesh of the large block: 16 x 6 quads.")
