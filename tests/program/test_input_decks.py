@@ -12,8 +12,20 @@ INPUT = pathlib.Path(__file__).resolve().parents[2] / "input"
 DECKS = sorted(path.relative_to(INPUT).as_posix() for path in INPUT.rglob("*.k"))
 #: deck -> end time, where the run to the end is long
 BEGINNINGS = {"block/block_implicit_2.k": "0.003", "sliding/sliding.k": "8e-6",
-              "sliding/sliding_2.k": "4e-6", "sliding/sliding_3.k": "2e-6"}
-SHORT = ["block/block.k", "block/block_2.k", "block/block_implicit.k", "hertz/hertz.k", *BEGINNINGS]
+              "sliding/sliding_2.k": "4e-6", "sliding/sliding_3.k": "2e-6", "hopkinson/hopkinson.k": "1.8e-4",
+              "penetration/penetration.k": "2e-5", "seal/seal.k": "6e-3", "tube/tube.k": "2e-4", "v_bend/v_bend.k": "4e-4"}
+SHORT = ["block/block.k", "block/block_2.k", "block/block_implicit.k", "hertz/hertz.k", "taylor/taylor_johnson_cook.k",
+         *BEGINNINGS]
+#: deck, words, history, which rows, column, mean of it, relative tolerance: closed forms
+#: and published figures of the decks' heads
+KNOWN = [
+    ("hopkinson/hopkinson.k", ["endtim=1.65e-4"], "elout", lambda row: 110e-6 < float(row["time"]) < 160e-6 and row["element"] == "10626",
+     "syy", -0.5 * 7850.0 * (210.0e9 / 7850.0) ** 0.5 * 10.0, 0.01),
+    ("v_bend/v_bend.k", ["endtim=3.5e-4"], "rcforc", lambda row: float(row["time"]) > 2.0e-4 and row["interface"] == "1"
+     and row["side"] == "master", "fy", 37.0e3, 0.1),
+    ("taylor/taylor_johnson_cook.k", [], "nodout", lambda row: float(row["time"]) > 7.98e-5 and row["node"] == "301",
+     "y", 26.54e-3, 0.005),
+]
 PATCHES = [deck for deck in DECKS if deck.startswith("patch/")]
 
 
@@ -38,6 +50,14 @@ def test_runs(exe, tmp_path, deck):
     end = BEGINNINGS.get(deck)
     run(exe, tmp_path, deck, *([f"endtim={end}"] if end else []))
     assert numbers(tmp_path / "job.glstat.csv", "energy_ratio") == pytest.approx(1.0, abs=0.01)
+
+
+@pytest.mark.parametrize("deck, words, table, is_meant, column, wanted, tolerance", KNOWN, ids=[case[0] for case in KNOWN])
+def test_mean_of_a_history_is_what_the_head_says(exe, tmp_path, deck, words, table, is_meant, column, wanted, tolerance):
+    run(exe, tmp_path, deck, "p:dtplot=1.0", *words)
+    with open(tmp_path / f"job.{table}.csv", newline="", encoding="ascii") as stream:
+        values = [float(row[column]) for row in csv.DictReader(stream) if is_meant(row)]
+    assert sum(values) / len(values) == pytest.approx(wanted, rel=tolerance)
 
 
 @pytest.mark.parametrize("deck", PATCHES)
