@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Draws the figures of the tutorial and the start page from runs of the program.
+"""Draws the figures of the tutorial and of the theory from runs of the program (gallery.py: those of the gallery).
 
     build/venv/bin/python tools/docs/figures.py [--program build/release/slideline]
 
-writes doc/pictures/collision.png, draw.png, first_deck.svg, first_model.png,
+writes doc/pictures/draw.png, first_deck.svg, first_model.png,
 first_stress.png, first_history.png, contact_points.svg, taylor.png and the
 drawings of doc/theory/contact.md.
 """
@@ -20,7 +20,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-from slideline_tools import cli, plots  # noqa: E402
+from slideline_tools import cli  # noqa: E402
 from slideline_tools.contact_types import TYPES  # noqa: E402
 from slideline_tools.results import read  # noqa: E402
 from taylor import taylor  # noqa: E402
@@ -28,7 +28,6 @@ from taylor import taylor  # noqa: E402
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PICTURES = ROOT / "doc/pictures"
 SLAVE, MASTER, INK = "#c8553d", "#33658a", "#333333"
-IMPACT = "1e-5"   # s, of the head picture: the projectile pushes the plate with its largest force
 GAUSS = np.array([-1.0, 1.0]) / np.sqrt(3.0)
 N_SLAVE, N_MASTER = 4, 5
 
@@ -124,12 +123,9 @@ def first_deck(program, folder):
             sys.exit("the picture could not be drawn")
 
 
-def collision(program, folder):
-    """The head picture, in the middle of the impact, and the model."""
+def collision(program):
+    """The model of the collision."""
     deck = ROOT / "input/collision/collision.k"
-    path = run(program, deck, folder / "collision", f"p:dtplot={IMPACT}", "ctype=5")
-    figure = plots.report_figure(read(path), IMPACT, "mises")
-    plots.save(figure, PICTURES / "collision.png")
     if cli.main(["draw", str(deck), "--program", str(program), "--output", str(PICTURES / "draw.png")]):
         sys.exit("the picture could not be drawn")
 
@@ -405,7 +401,7 @@ def main():
     parser.add_argument("--program", default=str(ROOT / "build/release/slideline"))
     program = parser.parse_args().program
     with tempfile.TemporaryDirectory() as folder:
-        collision(program, pathlib.Path(folder))
+        collision(program)
         first_deck(program, pathlib.Path(folder))
         contact_points(program, pathlib.Path(folder))
         for draw in (projection_figure, candidates_figure, entry_figure, overlaps_figure, energy_limit_figure):

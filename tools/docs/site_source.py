@@ -40,6 +40,7 @@ def site_paths():
     pages["doc/examples/README.md"] = "examples/index.md"
     pages["README.md"] = "quick_start.md"
     pages["tools/README.md"] = "tools.md"
+    pages[".github/CONTRIBUTING.md"] = "contributing.md"
     for path in sorted((ROOT / "tests/verification").glob("*/README.md")):
         case = path.parent.name
         pages[f"tests/verification/{case}/README.md"] = f"cases/{case}.md"
@@ -111,18 +112,20 @@ def navigation(folder, keywords):
               ("contact", "elements", "materials", "time_integration", "implicit", "rigid_bodies")]
     return [
         {"Start": ["index.md", {"Quick start": "quick_start.md"}, {"First steps": "first_steps.md"},
-                   {"Choose": "choose.md"}, {"Building": "building.md"},
-                   {"Tutorial": "tutorial.md"},
-                   {"Meshes": "meshes.md"}, {"Coming from LS-DYNA": "coming_from_ls_dyna.md"},
+                   {"Tutorial": "tutorial.md"}, {"Gallery": "gallery.md"}, {"Choose": "choose.md"},
+                   {"Glossary": "glossary.md"}, {"Building": "building.md"}, {"Meshes": "meshes.md"},
+                   {"Coming from LS-DYNA": "coming_from_ls_dyna.md"},
                    {"What was let go": "let_go.md"},
-                   {"Results": "results.md"}, {"Python tools": "tools.md"}]},
+                   {"Results": "results.md"}, {"Python tools": "tools.md"}, {"Reliability": "reliability.md"},
+                   {"Changelog": "changelog.md"}]},
         {"Keywords": ["keywords/index.md", {"All on one page": "keywords.md"},
                       {"Example decks": "examples/index.md"},
                       *({group: entries} for group, entries in groups.items())]},
         {"Theory": pages("theory/*.md", theory)},
         {"Verification": ["verification.md", {"Cases": pages("cases/*.md")}]},
         {"Studies": pages("studies/*.md", ["studies/index.md"])},
-        {"Extend": ["architecture.md", "add_a_formulation.md", "add_a_material.md", "add_a_history.md",
+        {"Extend": [{"Contributing": "contributing.md"}, "architecture.md", "add_a_formulation.md", "add_a_law.md",
+                    "add_a_material.md", "add_a_history.md",
                     {"Fortran interface": "fortran_interface.md"}]},
     ]
 
