@@ -58,7 +58,10 @@ def turn_links(text, source, page, pages, keywords):
         if re.match(r"[a-z]+:|#", target):
             return found.group(0)
         path, mark, anchor = target.partition("#")
+        named = path
         path = os.path.normpath(os.path.join(os.path.dirname(source), path)).replace(os.sep, "/")
+        if path not in pages and f"doc/{named}" in pages:  # pages made from doc/keywords.md keep its links
+            path = f"doc/{named}"
         if path in pages:
             return f"{label}({relative(pages[path], page)}{mark}{anchor})"
         if path.startswith("doc/") and (ROOT / path).is_file():
