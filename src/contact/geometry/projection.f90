@@ -10,7 +10,7 @@ module projection_m
   implicit none
   private
   public :: projection_t, polyline_parameter_t, local_coordinates, closest_projection, &
-    nearby_projection, stays_over, vector_of, face_projection, follow_contact, &
+    nearest_projection, nearby_projection, stays_over, vector_of, face_projection, follow_contact, &
     find_closest_segment, project_along, turns_gently, opposed_share, side_share, end_tolerance, &
     gentle_turn, side_on, face_on, least_excess, most_excess, round_off
 
