@@ -85,6 +85,7 @@ contains
     has%tie_handover = contact%behind > 0
     has%limit = .not. (is_implicit .or. has%ties &
       .or. contact%penalty_unit == penalty_implicit .and. .not. has%friction)
+    has%entry_offsets = contact%penalty_unit /= penalty_implicit
   end function features_of
 
 end module contact_preparation_m
