@@ -3,6 +3,7 @@
 !> Adding one is a number in `contacts_m`, a row of `formulations`, and a `use` and a `case` for
 !> either (doc/add_a_formulation.md).
 module contact_dispatch_m
+  use assembly_m, only : add_point_tangents, add_nodal_tangents
   use contact_law_m, only : law_penalty
   use contact_state_m, only : contact_state_t
   use contacts_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_vts_ppt, &
@@ -10,18 +11,16 @@ module contact_dispatch_m
     is_tied
   use kinds_m, only : wp
   use linearisation_m, only : linearised_list_t
-  use nodal_tangent_m, only : add_nodal_tangents
   use points_mortar_m, only : points_mortar
   use points_nts_m, only : points_nts, points_nts_ar, points_two_pass_ar
   use points_nts_mar_m, only : points_nts_mar
   use points_segmented_mortar_m, only : points_segmented_mortar
   use points_vts_ppt_m, only : points_vts_ppt
-  use point_tangent_m, only : add_point_tangents
   use sparse_m, only : sparse_t
   use points_on_segments_m, only : points_at_nodes, points_at_quarters, points_at_gauss_points
-  use tangent_mortar_m, only : linearise_fixed_points
   use tangent_nts_m, only : linearise_nodes
-  use tangent_overlaps_m, only : linearise_overlap_ends, linearise_gauss_points
+  use tangent_segments_m, only : linearise_overlap_ends, linearise_fixed_points, &
+    linearise_gauss_points
   use tangent_ties_m, only : add_tie_tangent
   use tangent_vts_ppt_m, only : add_vts_ppt_tangent
   implicit none
@@ -146,7 +145,7 @@ contains
     if (memory%has%nodal_pressure) then
       call add_nodal_tangents(contact, memory, list, equations, matrix)
     else
-      call add_point_tangents(contact%friction, memory, list, equations, matrix)
+      call add_point_tangents(contact, memory, list, equations, matrix)
     end if
   end subroutine add_tangent
 

@@ -15,7 +15,7 @@ module points_vts_ppt_m
   use radii_m, only : centroid, radius_between
   implicit none
   private
-  public :: points_vts_ppt, end_of_half
+  public :: points_vts_ppt, ends_of_half, end_of_half
 
 contains
 
@@ -46,7 +46,7 @@ contains
     a = memory%positions(:, ends(1))
     b = memory%positions(:, ends(2))
     at = memory%segment_xi(2 - mod(virtual_node, 2))
-    limits = ends_of_half(contact, memory, virtual_node, a, b, at)
+    limits = ends_of_half(contact, memory, virtual_node, at)
     xi = at
     half = 0.5_wp*segment_length(a, b)
     if (contact%is_round) then
@@ -81,19 +81,20 @@ contains
 
   !> Where both ends of the half of a virtual node are on the master: on the segment below the
   !> virtual node, or where a walk from there leads.
-  pure function ends_of_half(contact, memory, virtual_node, a, b, at) result(limits)
+  pure function ends_of_half(contact, memory, virtual_node, at) result(limits)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: virtual_node
-    real(wp), intent(in) :: a(4), b(4) !! ends of the slave segment
-    real(wp), intent(in) :: at         !! where the virtual node is on that
+    real(wp), intent(in) :: at !! where the virtual node is on its slave segment
     type(polyline_parameter_t) :: limits(2)
     type(local_coordinates_t) :: local
     real(wp) :: slope
     integer :: k
 
     associate (segment => memory%slave_status%segment(virtual_node), &
-      polyline => memory%positions(:, memory%n_slave + 1:))
+      polyline => memory%positions(:, memory%n_slave + 1:), &
+      a => memory%positions(:, contact%slave%segments(1, (virtual_node + 1)/2)), &
+      b => memory%positions(:, contact%slave%segments(2, (virtual_node + 1)/2)))
       local = local_coordinates(contact%master, polyline, (1.0_wp - at)*a + at*b, segment)
       slope = dot_product(separation(b, a), local%t)
       do k = 1, 2
