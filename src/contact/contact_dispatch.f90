@@ -11,16 +11,14 @@ module contact_dispatch_m
     is_tied
   use kinds_m, only : wp
   use linearisation_m, only : linearised_list_t
-  use points_mortar_m, only : points_mortar
+  use points_mortar_m, only : points_mortar, points_segmented_mortar
   use points_nts_m, only : points_nts, points_nts_ar, points_two_pass_ar
   use points_nts_mar_m, only : points_nts_mar
-  use points_segmented_mortar_m, only : points_segmented_mortar
   use points_vts_ppt_m, only : points_vts_ppt
   use sparse_m, only : sparse_t
   use points_on_segments_m, only : points_at_nodes, points_at_quarters, points_at_gauss_points
   use tangent_nts_m, only : linearise_nodes
-  use tangent_segments_m, only : linearise_overlap_ends, linearise_fixed_points, &
-    linearise_gauss_points
+  use tangent_segments_m, only : linearise_overlap_ends, linearise_gauss_points
   use tangent_ties_m, only : add_tie_tangent
   use tangent_vts_ppt_m, only : add_vts_ppt_tangent
   implicit none
@@ -138,8 +136,7 @@ contains
     case (type_nts_ar, type_two_pass_ar); call linearise_nodes(contact, .false., memory, list)
     case (type_vts_ppt); call add_vts_ppt_tangent(contact, memory, equations, matrix)
     case (type_nts_mar); call linearise_overlap_ends(contact, memory, list)
-    case (type_mortar); call linearise_fixed_points(contact, memory, list)
-    case (type_segmented_mortar); call linearise_gauss_points(contact, memory, list)
+    case (type_mortar, type_segmented_mortar); call linearise_gauss_points(contact, memory, list)
     end select
     if (list%n == 0) return
     if (memory%has%nodal_pressure) then

@@ -19,7 +19,7 @@ module contact_step_limit_m
   use contacts_m, only : contact_t, is_tied
   use geometry_m, only : segment_length
   use kinds_m, only : wp
-  use radii_m, only : end_radius
+  use tributary_lengths_m, only : end_radius
   use surfaces_m, only : surface_t, open_ends
   use ties_m, only : stiffness_of_nodes
   use visitor_m, only : visited_t, visitor_t

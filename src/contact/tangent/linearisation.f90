@@ -10,7 +10,7 @@ module linearisation_m
   use projection_m, only : side_on, face_on, least_excess, most_excess, round_off
   use geometry_m, only : separation
   use kinds_m, only : wp
-  use radii_m, only : radius_of
+  use tributary_lengths_m, only : radius_of
   implicit none
   private
   public :: linearised_point_t, linearised_list_t, linearised_projection_t, n_slot, append_point, &

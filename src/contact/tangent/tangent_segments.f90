@@ -5,7 +5,7 @@
 !> type 5, so that each depends on few nodes.
 module tangent_segments_m
   use assembly_m, only : nodal_share
-  use contact_state_m, only : contact_state_t, active, site_at
+  use contact_state_m, only : contact_state_t, active, site_at, segment_point_at
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
   use projection_m, only : round_off
@@ -16,13 +16,13 @@ module tangent_segments_m
   use overlap_m, only : overlap_t
   use overlaps_m, only : find_overlaps, n_most_overlaps, sides_part
   use points_nts_mar_m, only : is_sharp_vertex
-  use points_segmented_mortar_m, only : gauss_xi, least_part
+  use points_mortar_m, only : gauss_xi, least_part
   use surfaces_m, only : surface_t
   use tangent_nts_m, only : linearise_node, linearise_length
   use sharp_vertices_m, only : has_folds
   implicit none
   private
-  public :: linearise_overlap_ends, linearise_fixed_points, linearise_gauss_points
+  public :: linearise_overlap_ends, linearise_gauss_points
 
 contains
 
@@ -122,35 +122,8 @@ contains
     end associate
   end subroutine put_at_end
 
-  !> Type 6: all points. Of the area only what changes has to be gone through again.
-  pure subroutine linearise_fixed_points(contact, memory, list)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
-    type(linearised_list_t), intent(inout) :: list
-    type(linearised_point_t) :: point
-    type(overlap_t) :: sides
-    integer :: s, p
-
-    associate (points => memory%points)
-      do p = 1, points%n
-        point%nodes(:2) = points%slave_nodes(:, p)
-        point%slave_xi = constant(points%slave_weights(2, p))
-        point%site = site_at(memory, p)
-        call put_on_segment(contact, memory, p, length_between(memory, point, 1, 2), point)
-        s = contact%slave%outgoing(points%slave_nodes(1, p))
-        sides%master = contact%master%outgoing(points%master_nodes(1, p) - memory%n_slave)
-        sides%part = 1.0_wp
-        if (memory%slave_status%pass%is_closed) &
-          sides%part = sides_part(contact, memory, s, sides%master)
-        sides%share = sides%part
-        point%area = (points%area(p)/(sides%part*point%area%value))*point%area
-        call append_share(contact, memory, s, sides, .false., point, list)
-      end do
-    end associate
-  end subroutine linearise_fixed_points
-
-  !> Type 7: the Gauss points of all overlaps, which follow each other on the list slave segment by
-  !> slave segment.
+  !> Types 6 and 7: all points, which follow each other on the list slave segment by slave segment;
+  !> at the end of the list are points at nodes.
   pure subroutine linearise_gauss_points(contact, memory, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -159,17 +132,52 @@ contains
 
     p = 1
     do while (p <= memory%points%n)
-      ! At the end of the list are points at nodes.
       if (maxval(memory%points%slave_weights(:, p)) >= 1.0_wp) exit
       s = contact%slave%outgoing(memory%points%slave_nodes(1, p))
       first = list%n + 1
-      call linearise_gauss_points_on(contact, memory, s, p, list)
+      if (memory%has%overlaps) then
+        call linearise_on_overlaps(contact, memory, s, p, list)
+      else
+        call linearise_on_whole_segment(contact, memory, s, p, list)
+      end if
       if (has_folds(contact)) call linearise_tips(memory, contact%slave%segments(:, s), first, list)
     end do
   end subroutine linearise_gauss_points
 
+  !> Type 6: the points of one slave segment that are on the list.
+  pure subroutine linearise_on_whole_segment(contact, memory, s, p, list)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s
+    integer, intent(inout) :: p !! first point of the segment on the list; then of the next one
+    type(linearised_list_t), intent(inout) :: list
+    type(linearised_point_t) :: point
+    type(overlap_t) :: sides
+    integer :: q
+
+    point%nodes(:2) = contact%slave%segments(:, s)
+    associate (points => memory%points)
+      do while (p <= points%n)
+        if (points%slave_nodes(1, p) /= point%nodes(1)) exit
+        if (maxval(points%slave_weights(:, p)) >= 1.0_wp) exit
+        point%slave_xi = constant(points%slave_weights(2, p))
+        point%site = site_at(memory, p)
+        q = segment_point_at(points%slave_weights(2, p), memory%segment_xi)
+        call put_on_segment(contact, memory, p, &
+          memory%segment_share(q)*length_between(memory, point, 1, 2), point)
+        sides%master = contact%master%outgoing(points%master_nodes(1, p) - memory%n_slave)
+        sides%part = 1.0_wp
+        if (memory%slave_status%pass%is_closed) &
+          sides%part = sides_part(contact, memory, s, sides%master)
+        sides%share = sides%part
+        call append_share(contact, memory, s, sides, .false., point, list)
+        p = p + 1
+      end do
+    end associate
+  end subroutine linearise_on_whole_segment
+
   !> Type 7: those of one slave segment that are on the list.
-  pure subroutine linearise_gauss_points_on(contact, memory, s, p, list)
+  pure subroutine linearise_on_overlaps(contact, memory, s, p, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
@@ -195,7 +203,7 @@ contains
         p = p + 1
       end do
     end do
-  end subroutine linearise_gauss_points_on
+  end subroutine linearise_on_overlaps
 
   !> Types 6 and 7: let the point stand over the master segment that it has on the list; its area is
   !> this length as far as it is opposed to that.
@@ -216,7 +224,7 @@ contains
       point%area = point%area*radius_at(memory, point, 1, 2, point%slave_xi)
   end subroutine put_on_segment
 
-  !> Type 7: the points at the nodes of a segment at the tip of a fold, one for each point that
+  !> Types 6 and 7: the points at the nodes of a segment at the tip of a fold, one for each point that
   !> gives way to them. How much does is held, and so is what the area of such a point owes to its
   !> own projection.
   pure subroutine linearise_tips(memory, ends, first, list)

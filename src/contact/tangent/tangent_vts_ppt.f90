@@ -7,12 +7,12 @@ module tangent_vts_ppt_m
   use contact_state_m, only : contact_state_t, site_at
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
-  use projection_m, only : polyline_parameter_t, round_off
+  use projection_m, only : round_off
   use kinds_m, only : wp
   use linearisation_m, only : linearised_point_t, linearised_list_t, linearised_projection_t, &
     append_point, difference, length_between, project, way_from, project_point, radius_at, &
     centroid_of
-  use points_vts_ppt_m, only : end_of_half, ends_of_half
+  use points_vts_ppt_m, only : end_of_half, ends_of_half, polyline_parameter_t
   use sparse_m, only : sparse_t
   implicit none
   private
