@@ -118,20 +118,22 @@ contains
     logical, intent(in) :: is_round
     integer, intent(in) :: first                     !! of these points
     type(contact_points_t), intent(inout) :: points
+    real(wp) :: along(4), across, square
     integer :: p, n
 
-    n = points%n - first + 1
-    if (n < 1) return
-    call reduce_areas(n, points%slave_nodes(1, first), points%normal(1, first), positions, &
-      points%area(first))
-    if (is_round) then
-      do p = first, points%n
-        associate (nodes => points%slave_nodes(:, p))
-          points%area(p) = points%area(p)*radius_between(positions(:, nodes(1)), &
-            positions(:, nodes(2)), points%slave_weights(2, p))
-        end associate
-      end do
-    end if
+    !GCC$ NOVECTOR
+    do p = first, points%n
+      associate (a => points%slave_nodes(1, p), b => points%slave_nodes(2, p), &
+        normal => points%normal(:, p), area => points%area(p))
+        along = positions(:, b) - positions(:, a)
+        across = (along(2) + along(4))*normal(1) - (along(1) + along(3))*normal(2)
+        square = (along(1) + along(3))**2 + (along(2) + along(4))**2
+        if (across > 0.0_wp .or. across*across < face_on**2*square) &
+          area = area*opposed_share(across/sqrt(square))
+        if (is_round) area = area*radius_between(positions(:, a), positions(:, b), &
+          points%slave_weights(2, p))
+      end associate
+    end do
     if (all(points%area(first:points%n) > 0.0_wp)) return
     n = first - 1
     do p = first, points%n
@@ -141,25 +143,6 @@ contains
     end do
     points%n = n
   end subroutine finish_segment_points
-
-  !> Reduce areas to what is opposed to the master.
-  pure subroutine reduce_areas(n, ends, normal, positions, area)
-    integer, intent(in) :: n, ends(n_side, n)       !! of the slave segments
-    real(wp), intent(in) :: normal(2, n)            !! outward, of the master
-    real(wp), intent(in) :: positions(4, *)
-    real(wp), intent(inout) :: area(n)              !! m
-    real(wp) :: along(4), across, square
-    integer :: p
-
-    !GCC$ NOVECTOR
-    do p = 1, n
-      along = positions(:, ends(2, p)) - positions(:, ends(1, p))
-      across = (along(2) + along(4))*normal(1, p) - (along(1) + along(3))*normal(2, p)
-      square = (along(1) + along(3))**2 + (along(2) + along(4))**2
-      if (across > 0.0_wp .or. across*across < face_on**2*square) &
-        area(p) = area(p)*opposed_share(across/sqrt(square))
-    end do
-  end subroutine reduce_areas
 
   !> Move a point on the list.
   pure subroutine move_point(from, to, points)
