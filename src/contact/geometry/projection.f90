@@ -329,7 +329,8 @@ contains
         return
       end if
       other = local_coordinates(surface, polyline, point, neighbour)
-      if (is_before(other, local%along < 0.0_wp)) then
+      ! Over neither of both.
+      if (merge(other%along > other%square, other%along < 0.0_wp, local%along < 0.0_wp)) then
         projection = vertex_projection(local, other, [segment, neighbour])
         return
       else if (.not. turns_gently(local%t, other%t) .and. &
@@ -351,15 +352,6 @@ contains
     turns_gently = product >= 0.0_wp .and. product*product >= gentle_turn**2*((one(1)*one(1) &
       + one(2)*one(2))*(two(1)*two(1) + two(2)*two(2)))
   end function turns_gently
-
-  !> Whether the point has not yet reached the segment it is walking to (backwards or forwards).
-  pure function is_before(local, backwards) result(before)
-    type(local_coordinates_t), intent(in) :: local
-    logical, intent(in) :: backwards
-    logical :: before
-
-    before = merge(local%along > local%square, local%along < 0.0_wp, backwards)
-  end function is_before
 
   !> Neighbour across a gentle corner that a penetrating point is nearer to, or 0. Such a neighbour
   !> can only be nearer when the gap exceeds the distance to the end of the segment.

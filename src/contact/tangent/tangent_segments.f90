@@ -224,9 +224,9 @@ contains
       point%area = point%area*radius_at(memory, point, 1, 2, point%slave_xi)
   end subroutine put_on_segment
 
-  !> Types 6 and 7: the points at the nodes of a segment at the tip of a fold, one for each point that
-  !> gives way to them. How much does is held, and so is what the area of such a point owes to its
-  !> own projection.
+  !> Types 6 and 7: the points at the nodes of a segment at the tip of a fold, one for each point
+  !> that gives way to them. How much does is held, and so is what the area of such a point owes to
+  !> its own projection.
   pure subroutine linearise_tips(memory, ends, first, list)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2) !! nodes of the segment
