@@ -6,9 +6,9 @@ module contact_memory_m
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_penalty_m, only : set_penalties
   use contact_springs_m, only : measure_springs
-  use contact_state_m, only : contact_state_t, contact_status_t, features_t, allocate_points, &
-    allocate_damping, allocate_tractions, allocate_scratch, make_room, sites_of_segment, n_side, &
-    active
+  use contact_state_m, only : contact_state_t, contact_points_t, contact_status_t, features_t, &
+    allocate_points, allocate_damping, allocate_tractions, allocate_scratch, sites_of_segment, &
+    n_side, active
   use contact_status_m, only : list_active
   use contacts_m, only : contact_t, has_friction, is_tied, breaks, penalty_implicit
   use energy_limit_m, only : form_springs
@@ -103,8 +103,8 @@ contains
     has%entry_offsets = contact%penalty_unit /= penalty_implicit
   end function features_of
 
-  !> The memory of `contact` out of that of `previous`; `lost` is what the springs stored that are
-  !> not there any more.
+  !> The memory of `contact` out of that of `previous`; `lost` is the energy of springs that have
+  !> gone. Points are generated anew in the next call.
   subroutine renew_contact(previous, contact, model, motion, memory, lost)
     type(contact_t), intent(in) :: previous, contact
     type(model_t), intent(in) :: model
@@ -113,27 +113,28 @@ contains
     real(wp), intent(out) :: lost                    !! J/m
     type(contact_state_t) :: old
     type(passage_t) :: sides(2)
-    integer :: stored_at
+    integer, allocatable :: now(:) !! present numbers of the nodes
 
     old = memory
     call prepare_contact(contact, model, memory)
     call match_surface(previous%slave, contact%slave, size(motion, 2), sides(1))
     call match_surface(previous%master, contact%master, size(motion, 2), sides(2))
+    now = [sides(1)%node, shifted(sides(2)%node, memory%n_slave)]
     memory%positions(3:4, :) = motion(1:2, memory%nodes)
     call carry_scalars(old, memory)
-    call carry_nodes([sides(1)%node, shifted(sides(2)%node, memory%n_slave)], old, memory)
+    call carry_nodes(now, old, memory)
     if (old%has%friction) call carry_sites(sides, old, memory)
-    call carry_points([sides(1)%node, shifted(sides(2)%node, memory%n_slave)], contact, old, memory)
     call carry_statuses(sides(1)%segment, sides(2)%segment, sides, old, memory)
     call form_springs(memory)
-    stored_at = old%monitor%node
     call measure_springs(old)
-    call measure_springs(memory)
-    lost = max(0.0_wp, old%monitor%stored - memory%monitor%stored)
+    lost = old%monitor%stored
+    call clear_lost_points(now, contact, memory%n_slave, old%points)
+    call measure_springs(old)
+    memory%monitor%stored = old%monitor%stored
+    memory%monitor%is_due = .true.
+    lost = max(0.0_wp, lost - memory%monitor%stored)
     lost = min(lost, max(0.0_wp, memory%energy + memory%limit%admissible))
     memory%energy = memory%energy - lost
-    memory%monitor%node = stored_at
-    memory%monitor%is_due = .true.
   end subroutine renew_contact
 
   !> An interface that is over keeps its account alone. The forces of the last call have done half
@@ -287,35 +288,18 @@ contains
     memory%friction%slip(to) = old%friction%slip(from)
   end subroutine carry_sites
 
-  !> Points of the last call, but for those whose nodes or segments have gone.
-  pure subroutine carry_points(now, contact, old, memory)
-    integer, intent(in) :: now(:)
+  !> Points of the last call whose nodes or segments have gone stand for no area.
+  pure subroutine clear_lost_points(now, contact, n_slave, points)
+    integer, intent(in) :: now(:)          !! present numbers of the nodes
     type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: old
-    type(contact_state_t), intent(inout) :: memory
-    integer :: p, q, slave(n_side), master(n_side)
+    integer, intent(in) :: n_slave         !! at present
+    type(contact_points_t), intent(inout) :: points
+    integer :: p
 
-    call make_room(memory%points, old%points%n)
-    associate (from => old%points, to => memory%points)
-      do p = 1, from%n
-        slave = now(from%slave_nodes(:, p))
-        master = now(from%master_nodes(:, p))
-        if (.not. (is_there(slave) .and. is_there(master))) cycle
-        q = to%n + 1
-        to%n = q
-        to%slave_nodes(:, q) = slave
-        to%master_nodes(:, q) = master
-        to%slave_weights(:, q) = from%slave_weights(:, p)
-        to%master_weights(:, q) = from%master_weights(:, p)
-        to%normal(:, q) = from%normal(:, p)
-        to%gap(q) = from%gap(p)
-        to%area(q) = from%area(p)
-        to%stiffness(q) = from%stiffness(p)
-        to%pressure(q) = from%pressure(p)
-        if (allocated(from%damping)) to%damping(q) = from%damping(p)
-        if (allocated(from%traction)) to%traction(q) = from%traction(p)
-      end do
-    end associate
+    do p = 1, points%n
+      if (.not. (is_there(now(points%slave_nodes(:, p))) &
+        .and. is_there(now(points%master_nodes(:, p))))) points%area(p) = 0.0_wp
+    end do
 
   contains
 
@@ -326,14 +310,14 @@ contains
 
       there = all(nodes > 0)
       if (.not. there .or. nodes(1) == nodes(2)) return
-      if (nodes(1) <= memory%n_slave) then
+      if (nodes(1) <= n_slave) then
         there = follows(contact%slave, nodes)
       else
-        there = follows(contact%master, nodes - memory%n_slave)
+        there = follows(contact%master, nodes - n_slave)
       end if
     end function is_there
 
-  end subroutine carry_points
+  end subroutine clear_lost_points
 
   !> Whether a segment leads from one node to the other.
   pure function follows(surface, nodes)
