@@ -25,8 +25,8 @@ module contact_step_limit_m
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: spring_bound_t, spring_ratios, bound_springs, bound_each, stable_step, closed_step, &
-    opening_step, binding_bound, fitting_scale, approach_step, sharpness
+  public :: spring_bound_t, spring_ratios, bound_springs, stable_step, closed_step, opening_step, &
+    binding_bound, fitting_scale, approach_step, sharpness
 
   !> What is known of the springs at the nodes of one interface, those of other interfaces there
   !> included.
@@ -92,20 +92,6 @@ contains
     end do
     if (are_shared) call join_interfaces(contacts, memories, size(mass), ratios, bounds)
   end subroutine bound_springs
-
-  !> Bounds of all interfaces, of each as if there were no other one.
-  pure subroutine bound_each(contacts, mass, memories, scale, bounds)
-    type(contact_t), intent(in) :: contacts(:)
-    real(wp), intent(in) :: mass(:)
-    type(contact_state_t), intent(in) :: memories(:)
-    real(wp), intent(in) :: scale(:)
-    type(spring_bound_t), intent(out) :: bounds(:)
-    integer :: i
-
-    do i = 1, size(contacts)
-      call bound_springs(contacts(i:i), mass, memories(i:i), scale(i:i), bounds(i:i))
-    end do
-  end subroutine bound_each
 
   !> Bound of one interface whose sides share no nodes: A + B.
   pure subroutine bound_interface(contact, memory, ratios, bound)
