@@ -26,7 +26,7 @@ module contact_dispatch_m
   public :: contact_kinds, formulation_t, formulation_of, is_strict, generate_points, &
     add_contact_stiffness
 
-  !> What the frame must know of a formulation before it generates points.
+  !> Needs of a formulation before its points are generated.
   type :: formulation_t
     type(contact_kind_t) :: kind          !! number and name
     integer :: segment_points = points_at_nodes !! what the search follows over the master surface

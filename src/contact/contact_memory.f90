@@ -81,8 +81,8 @@ contains
     call allocate_scratch(memory)
   end subroutine prepare_contact
 
-  !> What an interface has by its formulation and by the deck. Forces of the end of the step have an
-  !> energy limit of their own, which has to know them apart from those of friction.
+  !> Features of an interface by its formulation and by the deck. Implicit penalties have an energy
+  !> limit of their own, which needs normal forces apart from those of friction.
   pure function features_of(contact, formulation, is_implicit) result(has)
     type(contact_t), intent(in) :: contact
     type(formulation_t), intent(in) :: formulation
@@ -354,7 +354,7 @@ contains
     memory%segment_gap(slave(from)) = old%segment_gap(from)
   end subroutine carry_statuses
 
-  !> Points that are still there keep their segments if these are; all are looked at anew.
+  !> Points that remain keep their segments where these remain; all are searched anew.
   pure subroutine carry_status(old, points, segments, status)
     type(contact_status_t), intent(in) :: old
     integer, intent(in) :: points(:), segments(:) !! present numbers

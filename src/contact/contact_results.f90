@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What the writers want to know of an interface.
+!> Results of an interface for the writers: resultants, and values of its nodes.
 module contact_results_m
   use contact_state_m, only : contact_state_t, candidates_t, active, n_side
   use contacts_m, only : contact_t
@@ -191,7 +191,7 @@ contains
   end function sides_of_corners
 
   !> Tributary lengths of the nodes of a surface, m, in axisymmetry m^2 per radian: half of both
-  !> segments; at a sharp corner of the one that carries contact alone.
+  !> segments; at a sharp vertex half of the one under contact alone.
   pure function lengths_in_contact(surface, positions, is_round, carries) result(lengths)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface

@@ -390,8 +390,8 @@ contains
 
   !> Step in which nothing comes deeper than a first contact may be, from the relative motion in a
   !> step `dt`; huge where that is slow, and where the deck says what counts as a first contact
-  !> (ties, a depth of its own). Alarms of the search are no part of it: they depend on when it last
-  !> looked.
+  !> (ties, a depth of its own). Searches are no part of it: they depend on when the last one
+  !> was.
   pure function approach_step(contact, memory, dt) result(limit)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
