@@ -3,31 +3,30 @@
 !> Adding one is a number in `contacts_m`, a row of `formulations`, and a `use` and a `case` for
 !> either (doc/add_a_formulation.md).
 module contact_dispatch_m
+  use assembly_m, only : add_point_tangents, add_nodal_tangents
   use contact_law_m, only : law_penalty
   use contact_state_m, only : contact_state_t
   use contacts_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_vts_ppt, &
-    type_nts_mar, type_mortar, type_segmented_mortar, contact_t, contact_kind_t
+    type_nts_mar, type_mortar, type_segmented_mortar, contact_t, contact_kind_t, &
+    is_tied
   use kinds_m, only : wp
   use linearisation_m, only : linearised_list_t
-  use nodal_tangent_m, only : add_nodal_tangents
-  use points_mortar_m, only : points_mortar
+  use points_mortar_m, only : points_mortar, points_segmented_mortar
   use points_nts_m, only : points_nts, points_nts_ar, points_two_pass_ar
   use points_nts_mar_m, only : points_nts_mar
-  use points_segmented_mortar_m, only : points_segmented_mortar
   use points_vts_ppt_m, only : points_vts_ppt
-  use point_tangent_m, only : add_point_tangents
   use sparse_m, only : sparse_t
   use points_on_segments_m, only : points_at_nodes, points_at_quarters, points_at_gauss_points
-  use tangent_mortar_m, only : linearise_fixed_points
   use tangent_nts_m, only : linearise_nodes
-  use tangent_overlaps_m, only : linearise_overlap_ends, linearise_gauss_points
+  use tangent_segments_m, only : linearise_overlap_ends, linearise_gauss_points
+  use tangent_ties_m, only : add_tie_tangent
   use tangent_vts_ppt_m, only : add_vts_ppt_tangent
   implicit none
   private
   public :: contact_kinds, formulation_t, formulation_of, is_strict, generate_points, &
-    add_tangent
+    add_contact_stiffness
 
-  !> What the frame must know of a formulation before it generates points.
+  !> Needs of a formulation before its points are generated.
   type :: formulation_t
     type(contact_kind_t) :: kind          !! number and name
     integer :: segment_points = points_at_nodes !! what the search follows over the master surface
@@ -105,7 +104,26 @@ contains
     end select
   end subroutine generate_points
 
-  !> Add the derivative of minus the forces of the points in the memory.
+  !> Add the derivative of minus the contact forces, as evaluate_contact has left them in the
+  !> memory, with respect to u (doc/theory/contact.md, section 9): exact while the points stay on
+  !> their segments and the same nodes cut the same segments.
+  pure subroutine add_contact_stiffness(contact, memory, equation, matrix)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: equation(:, :)   !! (2, n_node) of the mesh, 0 = not an unknown
+    type(sparse_t), intent(inout) :: matrix !! started, not yet compressed
+    integer, allocatable :: equations(:, :) !! by local number
+
+    if (memory%points%n == 0) return
+    equations = equation(:, memory%nodes)
+    if (is_tied(contact)) then
+      call add_tie_tangent(memory, equations, matrix)
+    else
+      call add_tangent(contact, memory, equations, matrix)
+    end if
+  end subroutine add_contact_stiffness
+
+  !> Derivative of minus the forces of the points of an interface without ties.
   pure subroutine add_tangent(contact, memory, equations, matrix)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -118,14 +136,13 @@ contains
     case (type_nts_ar, type_two_pass_ar); call linearise_nodes(contact, .false., memory, list)
     case (type_vts_ppt); call add_vts_ppt_tangent(contact, memory, equations, matrix)
     case (type_nts_mar); call linearise_overlap_ends(contact, memory, list)
-    case (type_mortar); call linearise_fixed_points(contact, memory, list)
-    case (type_segmented_mortar); call linearise_gauss_points(contact, memory, list)
+    case (type_mortar, type_segmented_mortar); call linearise_gauss_points(contact, memory, list)
     end select
     if (list%n == 0) return
     if (memory%has%nodal_pressure) then
       call add_nodal_tangents(contact, memory, list, equations, matrix)
     else
-      call add_point_tangents(contact%friction, memory, list, equations, matrix)
+      call add_point_tangents(contact, memory, list, equations, matrix)
     end if
   end subroutine add_tangent
 

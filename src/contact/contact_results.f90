@@ -1,11 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> What the writers want to know of an interface.
+!> Results of an interface for the writers: resultants, and values of its nodes.
 module contact_results_m
-  use contact_state_m, only : contact_state_t, active, n_side
+  use contact_state_m, only : contact_state_t, candidates_t, active, n_side
   use contacts_m, only : contact_t
-  use projection_m, only : projection_t, closest_projection, follow_contact, turns_gently, &
-    vector_of, find_closest_segment
-  use geometry_m, only : segment_length
+  use projection_m, only : projection_t, nearest_projection, follow_contact, turns_gently, vector_of
+  use geometry_m, only : segment_length, coordinates_on_segment, closest_distance
   use kinds_m, only : wp
   use law_state_m, only : is_open, is_held, is_broken
   use tributary_lengths_m, only : see_half
@@ -192,7 +191,7 @@ contains
   end function sides_of_corners
 
   !> Tributary lengths of the nodes of a surface, m, in axisymmetry m^2 per radian: half of both
-  !> segments; at a sharp corner of the one that carries contact alone.
+  !> segments; at a sharp vertex half of the one under contact alone.
   pure function lengths_in_contact(surface, positions, is_round, carries) result(lengths)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface
@@ -280,8 +279,8 @@ contains
     end associate
   end function nodal_sums
 
-  !> Gap of a slave node at the present positions; 0 when it is unpaired. A point that sleeps keeps
-  !> its segment although it may have gone out of reach since.
+  !> Gap of a slave node at the present positions; 0 when it is unpaired: no candidate of its
+  !> segments is within the search radius.
   pure function present_gap(contact, polyline, position, memory, i) result(gap)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: polyline(:, :) !! (4, n_master) present positions
@@ -290,19 +289,20 @@ contains
     integer, intent(in) :: i                        !! node of the slave surface
     real(wp) :: gap
     type(projection_t) :: projection
-    integer :: point
+    integer :: point, segment
 
     gap = 0.0_wp
+    if (memory%is_stale) return
     if (contact%slave%incoming(i) == 0 .and. contact%slave%outgoing(i) == 0) return
     point = point_at_node(contact%slave, memory, i)
-    associate (status => memory%slave_status, segment => memory%slave_status%segment(point))
-      if (memory%is_stale .or. segment == 0) return
+    associate (status => memory%slave_status)
       if (status%state(point) /= active) then
-        projection = closest_projection(contact%master, polyline, position, &
-          find_closest_segment(contact%master, polyline, position, segment))
+        segment = nearest_candidate(contact, polyline, position, memory%candidates, i)
+        if (segment == 0) return
+        projection = nearest_projection(contact%master, polyline, position, segment)
         if (projection%distance > status%reach) return
       else if (memory%has%segment_points) then
-        projection = follow_contact(contact%master, polyline, position, segment)
+        projection = follow_contact(contact%master, polyline, position, status%segment(point))
       else
         gap = status%gap(point)
         return
@@ -310,6 +310,35 @@ contains
       if (projection%is_on) gap = projection%gap
     end associate
   end function present_gap
+
+  !> The candidate of the segments at a slave node that is next to it, 0: none.
+  pure function nearest_candidate(contact, polyline, position, candidates, i) result(nearest)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in), contiguous :: polyline(:, :) !! (4, n_master) present positions
+    real(wp), intent(in) :: position(4)
+    type(candidates_t), intent(in) :: candidates
+    integer, intent(in) :: i
+    integer :: nearest
+    real(wp) :: square, least
+    integer :: j, k, own(2)
+
+    nearest = 0
+    least = huge(1.0_wp)
+    own = [contact%slave%incoming(i), contact%slave%outgoing(i)]
+    do k = 1, 2
+      if (own(k) == 0) cycle
+      do j = candidates%first(own(k)), candidates%first(own(k) + 1) - 1
+        associate (ends => contact%master%segments(:, candidates%items(j)))
+          if (contact%is_self .and. any(ends == i)) cycle
+          square = closest_distance(coordinates_on_segment(position, polyline(:, ends(1)), &
+            polyline(:, ends(2))))
+        end associate
+        if (.not. square < least) cycle
+        least = square
+        nearest = candidates%items(j)
+      end do
+    end do
+  end function nearest_candidate
 
   !> The point at a slave node, or of those on its segments the one next to it that is in contact,
   !> if any.

@@ -14,14 +14,18 @@
 !> stay closed. One that only pushes may not turn its mass round in the step in which it closes
 !> (doc/theory/contact.md, section 7). Everything here obeys both bounds.
 module contact_step_limit_m
-  use contact_spring_ratios_m, only : spring_ratios
+  use contact_dispatch_m, only : formulation_t, formulation_of, is_strict
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t, is_tied
+  use geometry_m, only : segment_length
   use kinds_m, only : wp
+  use tributary_lengths_m, only : end_radius
+  use surfaces_m, only : surface_t, open_ends
+  use ties_m, only : stiffness_of_nodes
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: spring_bound_t, bound_springs, bound_each, stable_step, closed_step, opening_step, &
+  public :: spring_bound_t, spring_ratios, bound_springs, stable_step, closed_step, opening_step, &
     binding_bound, fitting_scale, approach_step, sharpness
 
   !> What is known of the springs at the nodes of one interface, those of other interfaces there
@@ -34,6 +38,13 @@ module contact_step_limit_m
   contains
     procedure :: visit => visit_springs
   end type spring_bound_t
+
+  !> Segments and nodes of a side.
+  type :: side_t
+    real(wp), allocatable :: length(:) !! (n_segment) m
+    real(wp), allocatable :: radius(:) !! (n_node) m; 1 in the plane
+    real(wp) :: slope = 0.0_wp         !! most change of the radius by length: 1; 0 in the plane
+  end type side_t
 
   !> K/m of the nodes of one interface.
   type :: ratios_t
@@ -48,6 +59,9 @@ module contact_step_limit_m
   !> Part of the depth of a first contact by which bodies may come nearer in a step.
   real(wp), parameter :: approach_share = 0.8_wp
 
+  !> Part of a slave segment that points at the end of a master may stand for beyond it.
+  real(wp), parameter :: beyond_ends = 0.5_wp
+
   !> Rounds over all interfaces, and halvings of the interval of log c: any c is safe, more only
   !> sharpen the bound.
   integer, parameter :: n_round = 20, n_halving = 40
@@ -61,160 +75,126 @@ contains
     type(contact_state_t), intent(in) :: memories(:)
     real(wp), intent(in) :: scale(:)                     !! (n_interface) 0 or more
     type(spring_bound_t), intent(out) :: bounds(:)       !! (n_interface)
-    integer :: number(size(mass))
+    type(ratios_t) :: ratios(size(contacts))
+    integer :: side_at(size(mass)), i
+    logical :: are_shared
 
-    number = 0
-    call bound_group(contacts, mass, memories, scale, number, bounds)
+    side_at = 0
+    are_shared = .false.
+    do i = 1, size(contacts)
+      ratios(i)%at = scale(i)*spring_ratios(contacts(i), mass, memories(i))
+      call bound_interface(contacts(i), memories(i), ratios(i), bounds(i))
+      if (.not. scale(i) > 0.0_wp) cycle
+      associate (nodes => memories(i)%nodes, n => memories(i)%n_slave)
+        call mark_nodes(nodes(:n), 2*i - 1, side_at, are_shared)
+        call mark_nodes(nodes(n + 1:), 2*i, side_at, are_shared)
+      end associate
+    end do
+    if (are_shared) call join_interfaces(contacts, memories, size(mass), ratios, bounds)
   end subroutine bound_springs
 
-  !> Bounds of all interfaces, of each as if there were no other one.
-  pure subroutine bound_each(contacts, mass, memories, scale, bounds)
-    type(contact_t), intent(in) :: contacts(:)
-    real(wp), intent(in) :: mass(:)
-    type(contact_state_t), intent(in) :: memories(:)
-    real(wp), intent(in) :: scale(:)
-    type(spring_bound_t), intent(out) :: bounds(:)
-    integer :: number(size(mass)), i
+  !> Bound of one interface whose sides share no nodes: A + B.
+  pure subroutine bound_interface(contact, memory, ratios, bound)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(ratios_t), intent(inout) :: ratios !! out: c
+    type(spring_bound_t), intent(inout) :: bound
+    integer :: worst(2)
 
-    number = 0
-    do i = 1, size(contacts)
-      call bound_group(contacts(i:i), mass, memories(i:i), scale(i:i), number, bounds(i:i))
-    end do
-  end subroutine bound_each
+    associate (n => memory%n_slave)
+      worst = [maxloc(ratios%at(:n), 1), n + maxloc(ratios%at(n + 1:), 1)]
+    end associate
+    associate (most => ratios%at(worst))
+      bound%rate = sum(most)
+      if (is_tied(contact)) bound%closed_rate = bound%rate
+      bound%damping = contact%damping*sqrt(bound%rate*merge(2.0_wp, 1.0_wp, contact%is_self))
+      bound%node = memory%nodes(worst(merge(1, 2, most(1) >= most(2))))
+      if (all(most > 0.0_wp) .and. .not. contact%is_self) ratios%c = most(2)/most(1)
+    end associate
+  end subroutine bound_interface
 
-  !> Bounds of some interfaces together.
-  pure subroutine bound_group(contacts, mass, memories, scale, number, bounds)
-    type(contact_t), intent(in) :: contacts(:)
-    real(wp), intent(in) :: mass(:)
-    type(contact_state_t), intent(in) :: memories(:)
-    real(wp), intent(in) :: scale(:)
-    integer, intent(inout) :: number(:) !! (n_node) room of the nodes' numbers in the group, 0
-                                        !! between calls
-    type(spring_bound_t), intent(inout) :: bounds(:)
-    type(ratios_t) :: ratios(size(contacts))
-    integer :: i, n, n_node, worst(2)
-    logical :: are_joined
+  !> Mark the nodes of a side; those that another side has marked are shared.
+  pure subroutine mark_nodes(nodes, side, side_at, are_shared)
+    integer, intent(in) :: nodes(:), side
+    integer, intent(inout) :: side_at(:)   !! (n_node of the mesh) 0: none
+    logical, intent(inout) :: are_shared
+    integer :: k
 
-    n_node = 0
-    are_joined = .false.
-    do i = 1, size(contacts)
-      n = memories(i)%n_slave
-      ratios(i)%at = scale(i)*spring_ratios(contacts(i), mass, memories(i))
-      worst = [maxloc(ratios(i)%at(:n), 1), n + maxloc(ratios(i)%at(n + 1:), 1)]
-      associate (most => ratios(i)%at(worst), nodes => memories(i)%nodes)
-        bounds(i)%rate = sum(most)
-        if (is_tied(contacts(i))) bounds(i)%closed_rate = bounds(i)%rate
-        bounds(i)%damping = contacts(i)%damping*sqrt(bounds(i)%rate*merge(2.0_wp, 1.0_wp, &
-          contacts(i)%is_self))
-        bounds(i)%node = nodes(worst(merge(1, 2, most(1) >= most(2))))
-        if (all(most > 0.0_wp) .and. .not. contacts(i)%is_self) ratios(i)%c = most(2)/most(1)
-        if (.not. scale(i) > 0.0_wp) cycle
-        call number_nodes(nodes(:n), number, n_node, are_joined)
-        call number_nodes(nodes(n + 1:), number, n_node, are_joined)
-      end associate
-    end do
-    if (are_joined) then
-      do i = 1, size(contacts)
-        call number_nodes(memories(i)%nodes, number, n_node, are_joined)
-      end do
-      call join_interfaces(contacts, memories, number, n_node, ratios, bounds)
-    end if
-    do i = 1, size(contacts)
-      number(memories(i)%nodes) = 0
-    end do
-  end subroutine bound_group
-
-  !> Number the nodes of a side that have no number yet.
-  pure subroutine number_nodes(nodes, number, n, are_shared)
-    integer, intent(in) :: nodes(:)
-    integer, intent(inout) :: number(:)    !! (n_node of the mesh)
-    integer, intent(inout) :: n            !! numbers so far
-    logical, intent(inout) :: are_shared   !! some node has a number from another side
-    integer :: k, before
-
-    before = n
     do k = 1, size(nodes)
-      associate (at => number(nodes(k)))
-        are_shared = are_shared .or. (at > 0 .and. at <= before)
-        if (at > 0) cycle
-        n = n + 1
-        at = n
-      end associate
+      are_shared = are_shared .or. all(side_at(nodes(k)) /= [0, side])
+      side_at(nodes(k)) = side
     end do
-  end subroutine number_nodes
+  end subroutine mark_nodes
 
   !> Interfaces that share nodes: the c of each in turn evens out its sides, as the others stand.
   !> A surface with itself has each node on both sides, evenly.
-  pure subroutine join_interfaces(contacts, memories, number, n_node, ratios, bounds)
+  pure subroutine join_interfaces(contacts, memories, n_node, ratios, bounds)
     type(contact_t), intent(in) :: contacts(:)
     type(contact_state_t), intent(in) :: memories(:)
-    integer, intent(in) :: number(:) !! (n_node of the mesh) 1 to n_node where they have any
-    integer, intent(in) :: n_node
+    integer, intent(in) :: n_node !! of the mesh
     type(ratios_t), intent(inout) :: ratios(:)
     type(spring_bound_t), intent(inout) :: bounds(:)
-    real(wp) :: total(n_node), opening(n_node), damping(n_node)
+    real(wp), dimension(n_node) :: total, opening, damping
     integer :: i, round
 
     total = 0.0_wp
     damping = 0.0_wp
     do i = 1, size(memories)
-      call add_sides(number(memories(i)%nodes), memories(i)%n_slave, 1.0_wp, ratios(i), total)
-      call add_damping(number(memories(i)%nodes), bounds(i)%damping, damping)
+      call add_sides(memories(i), 1.0_wp, ratios(i), total)
+      call add_once(memories(i)%nodes, bounds(i)%damping, damping)
     end do
     do round = 1, n_round
       do i = 1, size(memories)
         if (contacts(i)%is_self) cycle
-        associate (nodes => number(memories(i)%nodes), n_slave => memories(i)%n_slave)
-          call add_sides(nodes, n_slave, -1.0_wp, ratios(i), total)
-          ratios(i)%c = even_share(ratios(i), n_slave, max(total(nodes), 0.0_wp))
-          call add_sides(nodes, n_slave, 1.0_wp, ratios(i), total)
-        end associate
+        call add_sides(memories(i), -1.0_wp, ratios(i), total)
+        ratios(i)%c = even_share(ratios(i), memories(i)%n_slave, &
+          max(total(memories(i)%nodes), 0.0_wp))
+        call add_sides(memories(i), 1.0_wp, ratios(i), total)
       end do
     end do
     opening = total
     do i = 1, size(memories)
-      if (is_tied(contacts(i))) call add_sides(number(memories(i)%nodes), memories(i)%n_slave, &
-        -1.0_wp, ratios(i), opening)
+      if (is_tied(contacts(i))) call add_sides(memories(i), -1.0_wp, ratios(i), opening)
     end do
     do i = 1, size(memories)
-      associate (nodes => number(memories(i)%nodes))
+      associate (nodes => memories(i)%nodes)
         bounds(i)%rate = maxval(total(nodes))
         bounds(i)%closed_rate = merge(bounds(i)%rate, bounds(i)%rate - maxval(opening(nodes)), &
           is_tied(contacts(i)))
-        bounds(i)%node = memories(i)%nodes(maxloc(total(nodes), 1))
+        bounds(i)%node = nodes(maxloc(total(nodes), 1))
         bounds(i)%damping = maxval(damping(nodes))
       end associate
     end do
   end subroutine join_interfaces
 
-  !> What an interface puts on its nodes, times `sign`.
-  pure subroutine add_sides(nodes, n_slave, sign, ratios, total)
-    integer, intent(in) :: nodes(:), n_slave
+  !> The part of an interface in the sums of its nodes, times `sign`.
+  pure subroutine add_sides(memory, sign, ratios, total)
+    type(contact_state_t), intent(in) :: memory
     real(wp), intent(in) :: sign
     type(ratios_t), intent(in) :: ratios
-    real(wp), intent(inout) :: total(:) !! by number of the node
-    real(wp) :: load(size(nodes))
+    real(wp), intent(inout) :: total(:) !! (n_node of the mesh)
+    real(wp) :: load(size(memory%nodes))
     integer :: k
 
-    load = weighted(ratios, n_slave, ratios%c)
-    do k = 1, size(nodes)
-      total(nodes(k)) = total(nodes(k)) + sign*load(k)
+    load = weighted(ratios, memory%n_slave, ratios%c)
+    do k = 1, size(load)
+      total(memory%nodes(k)) = total(memory%nodes(k)) + sign*load(k)
     end do
   end subroutine add_sides
 
-  !> The damping of an interface on each of its nodes, once.
-  pure subroutine add_damping(nodes, damping, total)
+  !> Add a value to each of some nodes once, though some stand there several times.
+  pure subroutine add_once(nodes, value, total)
     integer, intent(in) :: nodes(:)
-    real(wp), intent(in) :: damping
-    real(wp), intent(inout) :: total(:) !! by number of the node
+    real(wp), intent(in) :: value
+    real(wp), intent(inout) :: total(:) !! (n_node of the mesh)
     real(wp) :: before(size(nodes))
     integer :: k
 
     before = total(nodes)
     do k = 1, size(nodes)
-      total(nodes(k)) = before(k) + damping
+      total(nodes(k)) = before(k) + value
     end do
-  end subroutine add_damping
+  end subroutine add_once
 
   !> (1 + c) K/m of slave nodes and (1 + 1/c) K/m of master nodes.
   pure function weighted(ratios, n_slave, c)
@@ -250,6 +230,155 @@ contains
     end do
   end function even_share
 
+  !> Most K/m of each node, K being the sum of spring stiffness times weight, 1/s^2, for the
+  !> positions in the memory, all nodes in contact: a node of the tracked side carries at most its
+  !> tributary length in all formulations, a node of the other side `most_on_nodes`.
+  pure function spring_ratios(contact, mass, memory) result(ratio)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in) :: mass(:) !! (n_node) kg/m
+    type(contact_state_t), intent(in) :: memory
+    real(wp) :: ratio(memory%n_slave + memory%n_master) !! slave nodes, then master nodes
+    type(formulation_t) :: formulation
+    type(side_t) :: slave, master
+    real(wp) :: overhang
+    logical :: is_lonely
+
+    formulation = formulation_of(contact)
+    overhang = beyond_ends
+    if (formulation%covers_segments .and. .not. is_strict(contact)) overhang = 0.0_wp
+    is_lonely = .false.
+    if (contact%is_round .and. allocated(memory%segment_xi)) &
+      is_lonely = size(memory%segment_xi) == 1
+    associate (n => memory%n_slave)
+      slave = measure_side(contact%slave, memory%positions(:, :n), contact%is_round)
+      master = measure_side(contact%master, memory%positions(:, n + 1:), contact%is_round)
+      if (is_tied(contact)) then
+        ratio = stiffness_of_nodes(memory)
+      else if (formulation%has_unit_area) then
+        ratio = memory%node_penalty*node_shares(contact, slave, master)
+      else
+        ratio = memory%slave_penalty*[areas(contact%slave, slave, is_lonely), &
+          most_on_nodes(contact%master, master, maxval(slave%length), overhang, is_lonely)]
+        if (formulation%has_two_passes) ratio = ratio + memory%master_penalty &
+          *[most_on_nodes(contact%slave, slave, maxval(master%length), overhang, .false.), &
+          areas(contact%master, master, .false.)]
+      end if
+    end associate
+    ratio = ratio/mass(memory%nodes)
+  end function spring_ratios
+
+  !> Lengths and radii of a side.
+  pure function measure_side(surface, positions, is_round) result(side)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in) :: positions(:, :) !! (4, n_node)
+    logical, intent(in) :: is_round
+    type(side_t) :: side
+    integer :: i
+
+    allocate (side%length(surface%n_segment), side%radius(surface%n_node))
+    do i = 1, surface%n_segment
+      associate (ends => surface%segments(:, i))
+        side%length(i) = segment_length(positions(:, ends(1)), positions(:, ends(2)))
+      end associate
+    end do
+    side%radius = 1.0_wp
+    if (.not. is_round) return
+    side%radius = positions(1, :) + positions(3, :)
+    side%slope = 1.0_wp
+  end function measure_side
+
+  !> Type 1, where each slave node has the same spring: how much of it each node of both sides can
+  !> get, by its hat function over segments of length h with slave nodes at equal distances s and
+  !> one at the node itself: s/2 and sum(s (1 - i s/h), i s < h) for each neighbouring segment, and
+  !> at ends what lies beyond, over s. In axisymmetry slave nodes weigh with their mean radius, m.
+  pure function node_shares(contact, slave, master) result(share)
+    type(contact_t), intent(in) :: contact
+    type(side_t), intent(in) :: slave, master
+    real(wp) :: share(size(slave%radius) + size(master%radius))
+    real(wp) :: s, largest(size(master%radius)) !! radius on the segments at each node, m
+    type(side_t) :: plane
+    integer :: i, n, n_slave
+
+    n_slave = size(slave%radius)
+    plane = slave
+    plane%radius = 1.0_wp
+    share(:n_slave) = areas(contact%slave, slave, .false.) &
+      /max(areas(contact%slave, plane, .false.), tiny(1.0_wp))
+    share(n_slave + 1:) = beyond_ends*open_ends(contact%master)
+    largest = 0.0_wp
+    s = minval(slave%length)
+    do i = 1, contact%master%n_segment
+      associate (ends => contact%master%segments(:, i), h => master%length(i))
+        n = int(h/s)
+        share(n_slave + ends) = share(n_slave + ends) &
+          + (0.5_wp + n*(1.0_wp - 0.5_wp*(n + 1)*s/h))
+        largest(ends) = max(largest(ends), maxval(master%radius(ends)))
+      end associate
+    end do
+    share(n_slave + 1:) = share(n_slave + 1:)*(largest + slave%slope*maxval(slave%length)/3.0_wp)
+  end function node_shares
+
+  !> Tributary areas of the nodes of a side; where one Gauss point stands alone on a segment no less
+  !> than half of each neighbouring segment by the radius of its middle.
+  pure function areas(surface, side, is_lonely)
+    type(surface_t), intent(in) :: surface
+    type(side_t), intent(in) :: side
+    logical, intent(in) :: is_lonely
+    real(wp) :: areas(surface%n_node)
+    real(wp) :: middle(surface%n_node), radii(2)
+    integer :: i
+
+    areas = 0.0_wp
+    middle = 0.0_wp
+    do i = 1, surface%n_segment
+      associate (ends => surface%segments(:, i))
+        radii = side%radius(ends)
+        areas(ends) = areas(ends) + 0.5_wp*side%length(i)*end_radius(radii, radii(2:1:-1))
+        middle(ends) = middle(ends) + 0.25_wp*side%length(i)*sum(radii)
+      end associate
+    end do
+    if (is_lonely) areas = max(areas, middle)
+  end function areas
+
+  !> Most length, or area by radius, that points of the other side can put on each node by its hat
+  !> function over segments of length h, at distances up to s or integrating segments of up to s:
+  !> the integral of the hat, h/2 or h (2 r_i + r_j)/6, and the largest error of the trapezoidal
+  !> rule at its projection, s^2/(8h) times the mean radius there, at most s/6 above that of the
+  !> projection; or, where s > 2h, s/2 in all (the midpoint rule errs as much at the top, Gauss
+  !> rules less). One Gauss point on a segment errs at the top of the hat, by s^2/12 more since
+  !> radius times hat is curved. Points at a surface's end may stand for a part `overhang` of s
+  !> beyond it.
+  pure function most_on_nodes(surface, side, s, overhang, is_lonely) result(most)
+    type(surface_t), intent(in) :: surface
+    type(side_t), intent(in) :: side
+    real(wp), intent(in) :: s         !! m
+    real(wp), intent(in) :: overhang
+    logical, intent(in) :: is_lonely  !! one Gauss point on each segment of the other side
+    real(wp) :: most(surface%n_node)
+    real(wp) :: share
+    integer :: ends(surface%n_node), i, k, other
+
+    most = 0.0_wp
+    ends = open_ends(surface)
+    do i = 1, surface%n_segment
+      do k = 1, 2
+        associate (node => surface%segments(k, i), near => side%radius(surface%segments(k, i)), &
+          far => side%radius(surface%segments(3 - k, i)), h => side%length(i), rise => side%slope)
+          if (s <= 2.0_wp*h) then
+            share = 0.5_wp*h*end_radius(near, far) &
+              + s**2/(8.0_wp*h)*(merge(max(near, far), far, is_lonely) + rise*s/6.0_wp)
+          else
+            share = 0.5_wp*s*(max(near, far) + rise*s/3.0_wp)
+          end if
+          if (is_lonely) share = share + s**2/12.0_wp
+          other = merge(surface%incoming(node), surface%outgoing(node), k == 1)
+          if (other == 0 .and. ends(node) > 0) share = share + overhang*s*(near + rise*s/3.0_wp)
+          most(node) = most(node) + share
+        end associate
+      end do
+    end do
+  end function most_on_nodes
+
   !> Largest stable step of elements and contact springs, s; without springs that of the elements.
   pure elemental function stable_step(element_limit, bound) result(limit)
     real(wp), intent(in) :: element_limit !! s
@@ -261,8 +390,8 @@ contains
 
   !> Step in which nothing comes deeper than a first contact may be, from the relative motion in a
   !> step `dt`; huge where that is slow, and where the deck says what counts as a first contact
-  !> (ties, a depth of its own). Alarms of the search are no part of it: they depend on when it last
-  !> looked.
+  !> (ties, a depth of its own). Searches are no part of it: they depend on when the last one
+  !> was.
   pure function approach_step(contact, memory, dt) result(limit)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory

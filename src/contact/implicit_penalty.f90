@@ -2,34 +2,77 @@
 !> Springs on the weighted gaps of type 7 whose forces are those of the end of the step (PUNIT 4;
 !> doc/theory/contact.md, section 6.6): no stiffness makes them unstable at the step of the
 !> elements. The points are generated with the other interfaces; pressures follow here, once the
-!> velocities are known that the nodes would have without them.
+!> velocities are known that the nodes would have without them, then tractions at the slave nodes
+!> under pressure, along the rows of these turned by a right angle, within Coulomb's bounds.
 module implicit_penalty_m
-  use complementarity_m, only : outcome_t, set_size, solve_complementarity, is_low, &
-    is_between
+  use complementarity_m, only : problem_t, outcome_t, set_size, solve_complementarity, is_low, &
+    is_between, is_high
   use contact_scatter_m, only : scatter_forces
   use contact_springs_m, only : measure_springs, end_sampling
-  use contact_state_m, only : contact_state_t
+  use contact_state_m, only : contact_state_t, contact_points_t
   use contact_work_m, only : previous_work_t, store_previous_work, apply_forces
-  use contacts_m, only : friction_rule_t
+  use contacts_m, only : contact_t, friction_rule_t
   use energy_limit_m, only : energy_factor, scale_forces, count_cycle, returned_t, slack, &
     store_previous_springs, form_springs
-  use gap_rates_m, only : find_rates, fill_band, along_normal
-  use implicit_friction_m, only : friction_ahead
   use kinds_m, only : wp
+  use law_friction_m, only : coefficient_of, has_decay
+  use law_state_m, only : sticks, slips
   use nodal_average_m, only : average_values, share_out
-  use pressure_step_m, only : pressure_step_t, take_diagonal, set_diagonal, fill_columns
-  use weighted_gaps_m, only : choose_rows, form_shares
+  use weighted_gaps_m, only : rows_t, start_rows, choose_rows, form_shares, find_rates, &
+    add_segment_rotation, velocities_under, is_isotropic, fill_band, node_of, along_normal, &
+    along_tangent
   implicit none
   private
-  public :: find_rows, pressures_ahead
+  public :: pressure_step_t, start_pressure_step, find_rows, pressures_ahead
+
+  !> The step ahead at the nodes of an interface, with room that is kept from step to step.
+  type :: pressure_step_t
+    real(wp) :: dt = 0.0_wp                 !! to the end of the step, s
+    real(wp) :: dt_before = 0.0_wp          !! of the step behind, s
+    integer :: cycle = 0
+    logical :: is_stiff = .false.           !! the deck asks for springs without compliance
+    real(wp) :: time = 0.0_wp               !! of u(n), s
+    real(wp), allocatable :: velocity(:, :) !! (2, n_slave + n_master) v(n+1/2) without the
+                                            !! interface; this and the next of nodes that have
+                                            !! rows, of others from some step before
+    real(wp), allocatable :: mobility(:, :) !! (2, n_slave + n_master) velocity from a force of 1
+    real(wp), allocatable :: loaded(:, :)   !! (2, n_slave + n_master) v(n+1/2) with pressures, of
+                                            !! nodes that have rows
+    real(wp), allocatable :: previous_velocity(:, :) !! (2, n_slave + n_master) v(n-1/2)
+    integer, allocatable :: prescribed(:, :) !! (2, :) prescribed motions, and their nodes
+    integer, allocatable :: rigid_nodes(:, :) !! (3, :) rigid bodies, the number of a node in it,
+                                            !! and the node
+    integer :: n_mode = 0                   !! free motions of rigid bodies
+    real(wp), allocatable :: modes(:, :, :) !! (2, n_slave + n_master, n_mode or more) velocities of
+                                            !! them, times the root of what a unit force makes
+    real(wp), allocatable :: gap(:)         !! (n_slave) mean gaps, m
+    real(wp), allocatable :: diagonal(:)    !! (rows) W(i, i) of the rows alone
+    type(rows_t) :: rows
+    type(problem_t) :: problem
+  end type pressure_step_t
 
   !> Part of a penetration that is taken back in a step where springs have no compliance, or stand
   !> for such.
   real(wp), parameter :: recovered = 0.1_wp
-  !> Penetration that counts as one from the start, over the gap below which nodes are looked at.
+  !> Penetration that counts as one from the start, over the gap below which nodes have rows.
   real(wp), parameter :: overlap = 1.0e-3_wp
 
 contains
+
+  !> Room for an interface.
+  pure subroutine start_pressure_step(contact, memory, step)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(pressure_step_t), intent(inout) :: step
+
+    step%is_stiff = contact%penalty < 0.0_wp
+    associate (n_node => memory%n_slave + memory%n_master, n_slave => memory%n_slave)
+      allocate (step%velocity(2, n_node), step%mobility(2, n_node), step%loaded(2, n_node), &
+        step%previous_velocity(2, n_node), source=0.0_wp)
+      allocate (step%gap(n_slave), step%diagonal(n_slave))
+      call start_rows(n_slave, n_node, step%rows)
+    end associate
+  end subroutine start_pressure_step
 
   !> The rows of the interface once its points are generated, and what each moves.
   pure subroutine find_rows(step, memory)
@@ -51,27 +94,17 @@ contains
     type(pressure_step_t), intent(inout) :: step
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, at least the interface's nodes)
-
     type(previous_work_t) :: previous_work
 
     memory%scratch%waits = .false.
     call store_previous_springs(memory%scratch%had_force, memory)
     call store_previous_work(motion, memory%scratch%had_force, memory, previous_work)
     if (memory%points%n > 0) then
-      call find_pressures(step, memory)
-      call share_out(memory%points%n, memory%points%slave_nodes, memory%points%slave_weights, &
-        memory%node_pressure, memory%points%pressure)
-      if (memory%monitor%is_due .or. step%cycle == 0 .or. memory%scratch%is_born) then
-        call measure_springs(memory)
-        if (step%is_stiff) memory%monitor%stored = 0.0_wp
-      end if
-      ! Loaded at time zero they hold energy that no force has put in.
-      if (step%cycle == 0) memory%energy = memory%monitor%stored
-      call admit_energy(step, memory)
+      call solve_pressures(step, memory)
+      call store_spring_energy(step, memory)
       if (memory%has%friction) then
-        call take_velocities(memory%nodes, motion, memory%limit%velocity)
         memory%points%traction(:memory%points%n) = 0.0_wp
-        if (step%rows%n > 0) call friction_ahead(rule, step, memory)
+        if (step%rows%n > 0) call solve_tractions(rule, step, memory)
       end if
       if (step%rows%n > 0) call scatter_forces(memory)
       call form_springs(memory)
@@ -89,13 +122,28 @@ contains
     end associate
   end subroutine pressures_ahead
 
-  !> What springs hold that are born loaded may be returned. Without compliance they hold nothing:
-  !> a penetration from the start is taken back whatever that makes, and from then on contact owes
-  !> nothing.
+  !> Energy of the springs where it is due; those loaded at time zero hold energy that no force has
+  !> put in, and those without compliance hold none.
+  pure subroutine store_spring_energy(step, memory)
+    type(pressure_step_t), intent(in) :: step
+    type(contact_state_t), intent(inout) :: memory
+
+    if (memory%monitor%is_due .or. step%cycle == 0 .or. memory%scratch%is_born) then
+      call measure_springs(memory)
+      if (step%is_stiff) memory%monitor%stored = 0.0_wp
+    end if
+    if (step%cycle == 0) memory%energy = memory%monitor%stored
+    call admit_energy(step, memory)
+  end subroutine store_spring_energy
+
+  !> The energy of springs that are born loaded is admissible. Without compliance they hold none:
+  !> a penetration from the start is taken back at any energy, and from then on contact may return
+  !> what it has taken.
   pure subroutine admit_energy(step, memory)
     type(pressure_step_t), intent(in) :: step
     type(contact_state_t), intent(inout) :: memory
-    logical :: overlaps !! some mean gap is below zero by more than springs leave
+    real(wp) :: left(memory%n_slave) !! mean gaps without the compliance of the springs, m
+    logical :: overlaps
 
     associate (limit => memory%limit, begins => step%cycle == 0 .or. memory%scratch%is_born)
       if (.not. step%is_stiff) then
@@ -103,8 +151,10 @@ contains
         return
       end if
       if (.not. (begins .or. limit%admissible >= huge(1.0_wp))) return
-      overlaps = are_below(step%gap, memory%node_pressure, recovered*memory%slave_penalty, &
-        -overlap*memory%closed_gap)
+      left = step%gap
+      if (memory%slave_penalty > 0.0_wp) left = left &
+        + memory%node_pressure/(recovered*memory%slave_penalty)
+      overlaps = any(left < -overlap*memory%closed_gap)
       if (begins) then
         if (overlaps) limit%admissible = huge(1.0_wp)
       else if (.not. overlaps) then
@@ -114,134 +164,105 @@ contains
     end associate
   end subroutine admit_energy
 
-  !> Whether any gap is below a bound by more than springs leave of it.
-  pure logical function are_below(gap, pressure, stiffness, bound)
-    real(wp), intent(in), contiguous :: gap(:), pressure(:)
-    real(wp), intent(in) :: stiffness !! N/m^3; 0: they leave nothing
-    real(wp), intent(in) :: bound     !! m
-
-    if (stiffness > 0.0_wp) then
-      are_below = any(gap + pressure/stiffness < bound)
-    else
-      are_below = any(gap < bound)
-    end if
-  end function are_below
-
-  !> Contact never returns more than it took (section 6.1): areas and normals change while corners
-  !> turn. The step to come is known here, and so is what it returns.
+  !> Energy limit (section 6.1): areas and normals change while corners turn. The step to come is
+  !> known here, and so is the energy that it returns.
   pure subroutine limit_return(step, motion, memory)
     type(pressure_step_t), intent(inout) :: step
     real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
     type(returned_t) :: returned
-    real(wp) :: before, bound, factor
+    real(wp) :: previous_power, factor
+    integer :: i
 
+    do i = 1, size(memory%nodes)
+      step%previous_velocity(:, i) = motion(3:4, memory%nodes(i))
+    end do
     if (memory%has%friction) then
-      call sum_returns(size(memory%force), memory%limit%velocity, memory%scratch%spring, &
-        memory%scratch%previous_spring, step%velocity, step%mobility, returned, before)
-      returned%recoil = returned%recoil + sum_modes(memory%scratch%spring)
+      returned = work_of(step, memory%scratch%spring)
+      previous_power = sum(memory%scratch%previous_spring*step%previous_velocity)
     else
-      call take_velocities(memory%nodes, motion, step%behind)
-      call sum_returns(size(memory%force), step%behind, memory%force, &
-        memory%scratch%previous_force, step%velocity, step%mobility, returned, before)
-      returned%recoil = returned%recoil + sum_modes(memory%force)
+      returned = work_of(step, memory%force)
+      previous_power = sum(memory%scratch%previous_force*step%previous_velocity)
     end if
-    returned%behind = 0.5_wp*step%dt_before*returned%behind
-    returned%ahead = 0.5_wp*step%dt*returned%ahead
-    returned%recoil = 0.5_wp*step%dt*returned%recoil
-    bound = memory%energy + memory%limit%admissible - 0.5_wp*step%dt_before*before &
-      + slack*memory%limit%largest + memory%limit%entry_allowance
-    factor = energy_factor(returned, bound)
-    call count_cycle(factor, step%time, memory%limit)
+    associate (limit => memory%limit)
+      factor = energy_factor(returned, memory%energy + limit%admissible &
+        - 0.5_wp*step%dt_before*previous_power + slack*limit%largest + limit%entry_allowance)
+      call count_cycle(factor, step%time, limit)
+    end associate
     if (.not. factor < 1.0_wp) return
     call scale_forces(factor, memory)
     call form_springs(memory)
-
-  contains
-
-    !> What free motions of rigid bodies add.
-    pure function sum_modes(forces) result(recoil)
-      real(wp), intent(in), contiguous :: forces(:, :)
-      real(wp) :: recoil
-      integer :: k
-
-      recoil = 0.0_wp
-      do k = 1, step%n_mode
-        recoil = recoil + sum(step%modes(:, :, k)*forces)**2
-      end do
-    end function sum_modes
-
   end subroutine limit_return
 
-  !> v(n-1/2) of the nodes.
-  pure subroutine take_velocities(nodes, motion, velocity)
-    integer, intent(in), contiguous :: nodes(:)
-    real(wp), intent(in) :: motion(4, *)
-    real(wp), intent(inout) :: velocity(2, *)
-    integer :: i
+  !> Work of normal forces with the factor one in both half steps.
+  pure function work_of(step, forces) result(returned)
+    type(pressure_step_t), intent(in) :: step
+    real(wp), intent(in), contiguous :: forces(:, :) !! (2, n_slave + n_master) N/m
+    type(returned_t) :: returned
+    integer :: k
 
-    !GCC$ NOVECTOR
-    do i = 1, size(nodes)
-      velocity(:, i) = motion(3:4, nodes(i))
+    returned%behind = 0.5_wp*step%dt_before*sum(forces*step%previous_velocity)
+    returned%ahead = 0.5_wp*step%dt*sum(forces*step%velocity)
+    returned%recoil = 0.5_wp*step%dt*sum(forces**2*step%mobility)
+    do k = 1, step%n_mode
+      returned%recoil = returned%recoil + 0.5_wp*step%dt*sum(step%modes(:, :, k)*forces)**2
     end do
-  end subroutine take_velocities
-
-  !> Sums over x and y of all nodes, of the springs alone.
-  pure subroutine sum_returns(n, behind, present, previous, ahead, mobility, returned, before)
-    integer, intent(in) :: n
-    real(wp), intent(in), dimension(n) :: behind, ahead   !! velocities of both steps, m/s
-    real(wp), intent(in), dimension(n) :: present, previous !! forces, of the step before, N/m
-    real(wp), intent(in) :: mobility(n)
-    type(returned_t), intent(inout) :: returned
-    real(wp), intent(out) :: before
-    real(wp) :: of_present, to_come, recoil
-    integer :: i
-
-    of_present = 0.0_wp
-    to_come = 0.0_wp
-    recoil = 0.0_wp
-    before = 0.0_wp
-    !$omp simd reduction(+:of_present, to_come, recoil, before)
-    do i = 1, n
-      of_present = of_present + present(i)*behind(i)
-      to_come = to_come + present(i)*ahead(i)
-      recoil = recoil + present(i)*present(i)*mobility(i)
-      before = before + previous(i)*behind(i)
-    end do
-    returned%behind = of_present
-    returned%ahead = to_come
-    returned%recoil = recoil
-  end subroutine sum_returns
+  end function work_of
 
   !> Pressures of the slave nodes: P = kappa p >= 0, and what is left of each mean gap at the end of
   !> the step beside the spring, r + W P >= 0, one of them zero.
-  pure subroutine find_pressures(step, memory)
+  pure subroutine solve_pressures(step, memory)
     type(pressure_step_t), intent(inout) :: step
     type(contact_state_t), intent(inout) :: memory
     type(outcome_t) :: outcome
     integer :: i
 
-    associate (rows => step%rows, problem => step%problem)
+    associate (rows => step%rows, problem => step%problem, points => memory%points)
       if (rows%n > 0) then
         call set_size(problem, rows%n, rows%width, step%n_mode)
-        call fill_band(rows, along_normal, step%mobility, problem%band)
-        call fill_columns(step, along_normal)
-        call take_diagonal(rows%n, rows%width, problem%band, step%diagonal)
-        call set_diagonal(rows%n, rows%width, step%diagonal, rows%inverse, &
-          memory%slave_penalty*step%dt, problem%band)
-        call set_up(step, memory%node_pressure)
+        call set_matrix(step, along_normal, memory%slave_penalty*step%dt)
+        call set_gap_rates(step, memory%node_pressure)
         call solve_complementarity(problem, outcome)
       end if
       memory%node_pressure = 0.0_wp
       do i = 1, rows%n
         memory%node_pressure(rows%slave(i)) = problem%x(i)*rows%inverse(i)
       end do
+      call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
+        points%pressure)
     end associate
-  end subroutine find_pressures
+  end subroutine solve_pressures
 
-  !> What would be left of the mean gaps without pressures, over the step, and what is guessed to
-  !> press. Of an overlap a part is taken back in a step where springs have no compliance.
-  pure subroutine set_up(step, pressure)
+  !> W: what forces along rows change in their rates, the compliance of their springs on the
+  !> diagonal, and how they move rigid bodies.
+  pure subroutine set_matrix(step, direction, stiffness)
+    type(pressure_step_t), intent(inout) :: step
+    integer, intent(in) :: direction    !! along_normal, or along_tangent after that
+    real(wp), intent(in) :: stiffness   !! times the step, N s/m^2; 0: they have no compliance
+    integer :: i, at, m
+
+    associate (rows => step%rows, problem => step%problem, band => step%problem%band)
+      if (direction == along_normal .or. .not. is_isotropic(rows%n_node, rows%node, &
+        step%mobility)) then
+        call fill_band(rows, direction, step%mobility, band)
+        do i = 1, rows%n
+          step%diagonal(i) = band((rows%width + 1)*(i - 1) + 1)
+        end do
+      end if
+      do i = 1, rows%n
+        at = (rows%width + 1)*(i - 1) + 1
+        band(at) = step%diagonal(i)
+        if (stiffness > 0.0_wp) band(at) = band(at) + rows%inverse(i)/stiffness
+      end do
+      do m = 1, step%n_mode
+        call find_rates(rows, direction, step%modes(:, :, m), problem%column((m - 1)*rows%n + 1))
+      end do
+    end associate
+  end subroutine set_matrix
+
+  !> Rates of the mean gaps over the step without pressures, and which pressures are guessed above
+  !> zero. Of an overlap a part is taken back in a step where springs have no compliance.
+  pure subroutine set_gap_rates(step, pressure)
     type(pressure_step_t), intent(inout) :: step
     real(wp), intent(in) :: pressure(:) !! (n_slave) of the step before, N/m^2
     real(wp) :: opens, closes           !! per m of gap, 1/s
@@ -260,6 +281,129 @@ contains
         problem%at(i) = merge(is_between, is_low, pressure(rows%slave(i)) > 0.0_wp)
       end do
     end associate
-  end subroutine set_up
+  end subroutine set_gap_rates
+
+  !> Tractions of slave nodes and points, once pressures are known.
+  pure subroutine solve_tractions(rule, step, memory)
+    type(friction_rule_t), intent(in) :: rule
+    type(pressure_step_t), intent(inout) :: step
+    type(contact_state_t), intent(inout) :: memory
+    type(outcome_t) :: outcome
+
+    call find_bounds(rule, step, memory)
+    call velocities_under(step%rows, step%mobility, step%problem%x, step%velocity, step%loaded)
+    call add_mode_velocities(step)
+    call find_slips(step%rows, memory%points, memory%positions, step%loaded, step%problem%r)
+    call set_matrix(step, along_tangent, rule%stiffness*memory%slave_penalty*step%dt)
+    call guess_tractions(rule, memory, step)
+    call solve_complementarity(step%problem, outcome)
+    call store_tractions(rule, step, memory)
+    associate (points => memory%points)
+      call share_out(points%n, points%slave_nodes, points%slave_weights, &
+        memory%friction%traction, points%traction)
+    end associate
+  end subroutine solve_tractions
+
+  !> Largest tractions of the rows times kappa, by the speeds of sliding of the step behind: what
+  !> stuck did not slide, however its spring moved.
+  pure subroutine find_bounds(rule, step, memory)
+    type(friction_rule_t), intent(in) :: rule
+    type(pressure_step_t), intent(inout) :: step
+    type(contact_state_t), intent(in) :: memory
+    integer :: i
+
+    associate (n => step%rows%n, problem => step%problem)
+      problem%high(:n) = coefficient_of(rule, 0.0_wp)*problem%x(:n)
+      if (has_decay(rule) .and. step%dt_before > 0.0_wp) then
+        call find_slips(step%rows, memory%points, memory%positions, memory%scratch%increment, &
+          problem%r)
+        do i = 1, n
+          if (memory%scratch%previous_state(step%rows%slave(i)) == sticks) cycle
+          problem%high(i) = coefficient_of(rule, abs(problem%r(i))/step%dt_before)*problem%x(i)
+        end do
+      end if
+      if (rule%most > 0.0_wp) &
+        problem%high(:n) = min(problem%high(:n), rule%most/step%rows%inverse(:n))
+    end associate
+  end subroutine find_bounds
+
+  !> Add the velocities that the pressures give to rigid bodies.
+  pure subroutine add_mode_velocities(step)
+    type(pressure_step_t), intent(inout) :: step
+    real(wp) :: speed
+    integer :: j, k
+
+    associate (n => step%problem%n)
+      do k = 1, step%n_mode
+        speed = dot_product(step%problem%column((k - 1)*n + 1:k*n), step%problem%x(:n))
+        do j = 1, step%rows%n_node
+          associate (node => step%rows%node(node_of, j))
+            step%loaded(:, node) = step%loaded(:, node) + step%modes(:, node, k)*speed
+          end associate
+        end do
+      end do
+    end associate
+  end subroutine add_mode_velocities
+
+  !> Mean slips of the rows by motions of the nodes.
+  pure subroutine find_slips(rows, points, positions, motion, slip)
+    type(rows_t), intent(in) :: rows
+    type(contact_points_t), intent(in) :: points
+    real(wp), intent(in), contiguous :: positions(:, :), motion(:, :) !! motion in m or m/s
+    real(wp), intent(inout), contiguous :: slip(:)                 !! in the unit of motion
+
+    call find_rates(rows, along_tangent, motion, slip)
+    call add_segment_rotation(rows, points, positions, motion, slip)
+  end subroutine find_slips
+
+  !> The problem, whose r is the slips: x is minus kappa times the traction, its slack what is left
+  !> of the slip rate beside the spring. What slipped is guessed to slip.
+  pure subroutine guess_tractions(rule, memory, step)
+    type(friction_rule_t), intent(in) :: rule
+    type(contact_state_t), intent(in) :: memory
+    type(pressure_step_t), intent(inout) :: step
+    real(wp) :: stiffness
+    integer :: i, node
+
+    stiffness = rule%stiffness*memory%slave_penalty*step%dt
+    associate (problem => step%problem, previous => memory%scratch%previous_traction)
+      do i = 1, step%rows%n
+        node = step%rows%slave(i)
+        if (stiffness > 0.0_wp) problem%r(i) = problem%r(i) + previous(node)/stiffness
+        problem%low(i) = -problem%high(i)
+        problem%at(i) = is_between
+        if (memory%scratch%previous_state(node) == slips .or. .not. problem%high(i) > 0.0_wp) &
+          problem%at(i) = merge(is_low, is_high, previous(node) > 0.0_wp)
+      end do
+    end associate
+  end subroutine guess_tractions
+
+  !> Tractions, states and slips of the slave nodes, and what their tangential springs store.
+  pure subroutine store_tractions(rule, step, memory)
+    type(friction_rule_t), intent(in) :: rule
+    type(pressure_step_t), intent(in) :: step
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: stiffness, rate
+    integer :: i, node
+
+    stiffness = rule%stiffness*memory%slave_penalty
+    associate (problem => step%problem, friction => memory%friction, &
+      previous => memory%scratch%previous_traction)
+      do i = 1, step%rows%n
+        node = step%rows%slave(i)
+        if (.not. memory%node_pressure(node) > 0.0_wp) cycle
+        associate (kappa => memory%scratch%nodal(2, node), traction => friction%traction(node))
+          traction = -problem%x(i)/kappa
+          rate = problem%slack(i)
+          if (stiffness > 0.0_wp) then
+            rate = rate + (traction - previous(node))/(stiffness*step%dt)
+            friction%stored = friction%stored + kappa*traction**2/(2.0_wp*stiffness)
+          end if
+          friction%slip(node) = friction%slip(node) + rate*step%dt
+          friction%state(node) = merge(sticks, slips, problem%at(i) == is_between)
+        end associate
+      end do
+    end associate
+  end subroutine store_tractions
 
 end module implicit_penalty_m

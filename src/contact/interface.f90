@@ -9,7 +9,7 @@ module interface_m
   use tie_handover_m, only : exclude_tied_sites, take_handover
   use contact_law_m, only : form_pressures
   use contact_log_m, only : log_contact
-  use contact_preparation_m, only : prepare_contact
+  use contact_memory_m, only : prepare_contact
   use contact_scatter_m, only : scatter_forces, join_passes
   use contact_springs_m, only : begin_sampling, measure_springs, end_sampling
   use contact_work_m, only : previous_work_t, store_previous_work, apply_forces

@@ -155,6 +155,7 @@ module contact_state_m
     logical :: breaks = .false.         !! ties break
     logical :: tie_handover = .false.   !! it takes over what a tie has lost
     logical :: limit = .false.          !! its energy is limited
+    logical :: entry_offsets = .false.  !! pressure acts from gap + entry offset
   end type features_t
 
   !> Memory of one interface.

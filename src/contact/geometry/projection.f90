@@ -9,10 +9,10 @@ module projection_m
   use surfaces_m, only : surface_t, meets_axis
   implicit none
   private
-  public :: projection_t, polyline_parameter_t, local_coordinates, closest_projection, &
-    nearby_projection, stays_over, vector_of, face_projection, follow_contact, &
-    find_closest_segment, project_along, turns_gently, opposed_share, side_share, end_tolerance, &
-    gentle_turn, side_on, face_on, least_excess, most_excess, round_off
+  public :: projection_t, local_coordinates, closest_projection, nearest_projection, &
+    nearby_projection, stays_over, vector_of, face_projection, is_over_segment, follow_contact, &
+    find_closest_segment, turns_gently, opposed_share, side_share, end_tolerance, gentle_turn, &
+    side_on, face_on, least_excess, most_excess, round_off
 
   !> Overshoot accepted beyond the end of a surface, as a part of the segment; not clamped.
   real(wp), parameter :: end_tolerance = 0.01_wp
@@ -44,13 +44,6 @@ module projection_m
     real(wp) :: normal(2) = 0.0_wp
     real(wp) :: distance = 0.0_wp     !! to the closest point, m
   end type projection_t
-
-  !> A position on a surface reached by walking.
-  type :: polyline_parameter_t
-    integer :: segment = 0
-    integer :: n_step = 0    !! segments walked to it, negative backwards
-    real(wp) :: xi = 0.0_wp
-  end type polyline_parameter_t
 
 contains
 
@@ -226,36 +219,13 @@ contains
     integer, intent(in) :: start
     type(projection_t) :: projection, closest
     type(local_coordinates_t) :: local
-    integer :: neighbour
-    logical :: backwards
 
     local = local_coordinates(surface, polyline, point, start)
-    if (local%along > 0.0_wp .and. local%along < local%square) then
-      ! Behind the face by less than it is away from its ends: nothing else is nearer.
-      if (local%across < 0.0_wp .and. -local%across <= min(local%along, local%square &
-        - local%along)) then
-        projection = face_projection(local, start)
-        return
-      end if
-    else
-      backwards = local%along < 0.0_wp
-      neighbour = merge(surface%previous(start), surface%next(start), backwards)
-      if (neighbour > 0) then
-        associate (other => local_coordinates(surface, polyline, point, neighbour))
-          if (is_before(other, backwards)) then
-            ! Over neither of two faces, on the same side of both: the node between them. Behind it
-            ! that is what is found first in a valley.
-            projection = vertex_projection(local, other, [start, neighbour])
-            if (projection%gap < 0.0_wp .or. min(local%across, other%across) > 0.0_wp) return
-          else if (other%across >= 0.0_wp .or. (local%across < 0.0_wp .and. turns_gently(local%t, &
-            other%t))) then
-            if (stays_over(surface, polyline, other%t, other%d, neighbour)) then
-              projection = face_projection(other, neighbour)
-              return
-            end if
-          end if
-        end associate
-      end if
+    ! Behind the face by less than it is away from its ends: nothing else is nearer.
+    if (local%across < 0.0_wp .and. -local%across <= min(local%along, local%square &
+      - local%along)) then
+      projection = face_projection(local, start)
+      return
     end if
     closest = nearest_projection(surface, polyline, point, start)
     projection = closest
@@ -359,7 +329,8 @@ contains
         return
       end if
       other = local_coordinates(surface, polyline, point, neighbour)
-      if (is_before(other, local%along < 0.0_wp)) then
+      ! Over neither of both.
+      if (merge(other%along > other%square, other%along < 0.0_wp, local%along < 0.0_wp)) then
         projection = vertex_projection(local, other, [segment, neighbour])
         return
       else if (.not. turns_gently(local%t, other%t) .and. &
@@ -381,15 +352,6 @@ contains
     turns_gently = product >= 0.0_wp .and. product*product >= gentle_turn**2*((one(1)*one(1) &
       + one(2)*one(2))*(two(1)*two(1) + two(2)*two(2)))
   end function turns_gently
-
-  !> Whether the point has not yet reached the segment it is walking to (backwards or forwards).
-  pure function is_before(local, backwards) result(before)
-    type(local_coordinates_t), intent(in) :: local
-    logical, intent(in) :: backwards
-    logical :: before
-
-    before = merge(local%along > local%square, local%along < 0.0_wp, backwards)
-  end function is_before
 
   !> Neighbour across a gentle corner that a penetrating point is nearer to, or 0. Such a neighbour
   !> can only be nearer when the gap exceeds the distance to the end of the segment.
@@ -418,53 +380,13 @@ contains
     end do
   end function nearer_face
 
-  !> Project a position on a surface, starting at a segment and going on to the neighbour where it
-  !> runs over a node. It stops at the surface's end (with the usual overshoot), at a sharp corner,
-  !> and at a node that no neighbour sees it beyond.
-  pure function project_along(surface, polyline, position, start) result(eta)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: polyline(:, :) !! (4, n_node) positions
-    real(wp), intent(in) :: position(4)
-    integer, intent(in) :: start
-    type(polyline_parameter_t) :: eta
-    type(local_coordinates_t) :: local, other
-    logical :: backwards
-    integer :: neighbour, i_step
-
-    eta%segment = start
-    local = local_coordinates(surface, polyline, position, start)
-    backwards = local%along < 0.0_wp
-    do i_step = 1, surface%n_segment
-      eta%xi = local%along/local%square
-      if (local%along >= 0.0_wp .and. local%along <= local%square) return
-      if (backwards .neqv. local%along < 0.0_wp) exit
-      neighbour = merge(surface%previous(eta%segment), surface%next(eta%segment), backwards)
-      if (neighbour == 0) then
-        if (.not. is_over_segment(local)) exit
-        return
-      end if
-      other = local_coordinates(surface, polyline, position, neighbour)
-      if (.not. turns_gently(local%t, other%t)) then
-        ! At a sharp convex vertex the face ends as at the end of an open surface.
-        if (is_over_segment(local) .and. merge(-1.0_wp, 1.0_wp, backwards)*(local%t(1)*other%t(2) &
-          - local%t(2)*other%t(1)) > 0.0_wp) return
-        exit
-      end if
-      local = other
-      eta%segment = neighbour
-      eta%n_step = eta%n_step + merge(-1, 1, backwards)
-    end do
-    eta%xi = max(0.0_wp, min(1.0_wp, eta%xi))
-  end function project_along
-
   !> How much of the side next to a vertex counts, 0 to 1, where the segment on the other side of
   !> the vertex is opposed to the same face by a cosine that is so much larger.
   pure function side_share(excess) result(share)
     real(wp), intent(in) :: excess
     real(wp) :: share
 
-    share = max(0.0_wp, min(1.0_wp, (most_excess - excess)/(most_excess - least_excess)))
-    share = share*share*(3.0_wp - 2.0_wp*share)
+    share = smooth_step((most_excess - excess)/(most_excess - least_excess))
   end function side_share
 
   !> How much of a surface counts where its outward normal and that of the other side have this
@@ -474,9 +396,16 @@ contains
     real(wp) :: share
 
     share = 1.0_wp
-    if (cosine <= face_on) return
-    share = max(0.0_wp, min(1.0_wp, (side_on - cosine)/(side_on - face_on)))
-    share = share*share*(3.0_wp - 2.0_wp*share)
+    if (cosine > face_on) share = smooth_step((side_on - cosine)/(side_on - face_on))
   end function opposed_share
+
+  !> A step from 0 to 1 with slopes of zero.
+  pure function smooth_step(along) result(share)
+    real(wp), intent(in) :: along
+    real(wp) :: share
+
+    share = max(0.0_wp, min(1.0_wp, along))
+    share = share*share*(3.0_wp - 2.0_wp*share)
+  end function smooth_step
 
 end module projection_m

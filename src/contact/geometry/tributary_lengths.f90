@@ -1,27 +1,57 @@
 ! SPDX-License-Identifier: MIT
-!> Tributary lengths: what each node of a surface stands for (doc/theory/contact.md, section 5).
+!> Tributary lengths: what each node of a surface stands for (doc/theory/contact.md, section 5); in
+!> axisymmetry, where the x of a position is its radius, lengths weigh with it while projections
+!> stay plane (section 5.8).
 module tributary_lengths_m
   use contact_state_m, only : contact_status_t
   use projection_m, only : opposed_share, side_share
   use geometry_m, only : separation
   use kinds_m, only : wp
-  use radii_m, only : radius_of, end_radius
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: see_half, tributary_length, nodal_area, mean_radius, put_lengths
+  public :: radius_of, end_radius, radius_between, centroid, see_half, nodal_area, put_lengths
 
 contains
 
-  !> Half of the neighbouring segments of a node at their present length, m.
-  pure function tributary_length(surface, positions, i_node) result(length)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface
-    integer, intent(in) :: i_node
-    real(wp) :: length
+  !> Radius of a position, m.
+  pure function radius_of(position) result(radius)
+    real(wp), intent(in) :: position(4)
+    real(wp) :: radius
 
-    length = nodal_area(surface, positions, .false., i_node)
-  end function tributary_length
+    radius = position(1) + position(3)
+  end function radius_of
+
+  !> Mean radius of a straight stretch as one of its ends has it: with l/2 the integral of r over
+  !> the stretch by the hat function of that end.
+  elemental function end_radius(near, far) result(radius)
+    real(wp), intent(in) :: near, far !! radii of that end and of the other, m
+    real(wp) :: radius
+
+    radius = (2.0_wp*near + far)/3.0_wp
+  end function end_radius
+
+  !> Radius at xi between two positions, m.
+  pure function radius_between(a, b, xi) result(radius)
+    real(wp), intent(in) :: a(4), b(4), xi
+    real(wp) :: radius
+
+    radius = radius_of(a) + xi*((b(1) - a(1)) + (b(3) - a(3)))
+  end function radius_between
+
+  !> Where the centre of a stretch of the segment a-b is when its parts weigh with their radius. On
+  !> the axis itself nothing has weight: there it is the middle; never outside of the stretch.
+  pure function centroid(a, b, low, high) result(xi)
+    real(wp), intent(in) :: a(4), b(4)
+    real(wp), intent(in) :: low, high !! where the stretch starts and ends on the segment, 0 to 1
+    real(wp) :: xi
+    real(wp) :: first, last
+
+    first = radius_between(a, b, low)
+    last = radius_between(a, b, high)
+    xi = 0.5_wp*(low + high) + (high - low)/6.0_wp &
+      *max(-3.0_wp, min(3.0_wp, (last - first)/max(first + last, tiny(1.0_wp))))
+  end function centroid
 
   !> What a node of a surface stands for: half of its segments, m; in axisymmetry the integral of
   !> the radius by its hat function, l (2 r_i + r_j)/6 of each segment, m^2 per radian.
@@ -39,17 +69,6 @@ contains
     end do
     area = halves(1) + halves(2)
   end function nodal_area
-
-  !> The second over the first in axisymmetry, m.
-  pure function mean_radius(surface, positions, i_node) result(radius)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface
-    integer, intent(in) :: i_node
-    real(wp) :: radius
-
-    radius = nodal_area(surface, positions, .true., i_node) &
-      /max(nodal_area(surface, positions, .false., i_node), tiny(1.0_wp))
-  end function mean_radius
 
   !> Tributary lengths of the active nodes of a surface, m: half of each of their segments; in
   !> axisymmetry as above, m^2 per radian. On a closed boundary segments count as far as they are

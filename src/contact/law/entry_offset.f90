@@ -23,7 +23,8 @@ contains
     type(contact_state_t), intent(in) :: memory
     logical :: has
 
-    has = memory%slave_status%has_offset .or. memory%master_status%has_offset
+    has = memory%has%entry_offsets .and. (memory%slave_status%has_offset &
+      .or. memory%master_status%has_offset)
   end function has_offsets
 
   !> Limit all offsets by the present depths, and let them fade: after the search; in implicit runs

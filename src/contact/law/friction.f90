@@ -8,7 +8,7 @@ module friction_m
   use kinds_m, only : wp
   use law_friction_m, only : coefficient_of, has_decay, sliding_speed, return_traction, &
     holds_on
-  use tributary_lengths_m, only : tributary_length
+  use tributary_lengths_m, only : nodal_area
   use nodal_average_m, only : average_values, share_out
   implicit none
   private
@@ -137,8 +137,8 @@ contains
         end if
         slider%pressure = points%pressure(p)
         slider%stiffness = rule%stiffness*points%stiffness(p)
-        if (has_unit_area .and. rule%most > 0.0_wp) slider%most = rule%most*tributary_length( &
-          contact%slave, memory%positions(:, :memory%n_slave), slider%site)
+        if (has_unit_area .and. rule%most > 0.0_wp) slider%most = rule%most*nodal_area( &
+          contact%slave, memory%positions(:, :memory%n_slave), .false., slider%site)
         call return_slider(rule, [dt, scratch%lag], slider)
         points%traction(p) = slider%traction + slider%drag
         call store_state(slider, points%area(p), scratch%nodal(1, slider%site), memory%friction)

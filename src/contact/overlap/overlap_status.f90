@@ -8,8 +8,7 @@ module overlap_status_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: none_due, search_segment, store_segment_state, update_segment_state, &
-    note_earliest_search
+  public :: none_due, search_segment, update_segment_states, note_earliest_search
 
   !> Cosine between outward normals from which on segments can not come to be opposed before new
   !> lists are made.
@@ -47,18 +46,36 @@ contains
     memory%segment_gap(segment) = distance
   end subroutine search_segment
 
-  !> Note a segment with both ends active: it stays, whatever its gaps. Of one in contact nothing is
-  !> written again.
-  pure subroutine store_segment_state(is_deep, travel, state, next_search)
-    logical, intent(in) :: is_deep   !! some gap of it is closed
-    real(wp), intent(in) :: travel   !! m
-    integer, intent(inout) :: state  !! of the segment
-    real(wp), intent(inout) :: next_search !! m
+  !> Judge the segments that were due by their points, which follow each other on the list; those
+  !> that do not count have no area. Points of a segment neither of whose ends nor any of whose
+  !> points is in contact are left to its neighbours, like those of a segment that is not due: so
+  !> sums over the points of a node do not depend on which segments are due.
+  pure subroutine update_segment_states(contact, n_before, memory)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: n_before !! points on the list before them
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: deepest
+    integer :: first, last, s
+    logical :: counts
 
-    if (is_deep .and. state == active) return
-    state = merge(active, separated, is_deep)
-    next_search = merge(-huge(1.0_wp), travel, is_deep)
-  end subroutine store_segment_state
+    last = n_before
+    do s = 1, contact%slave%n_segment
+      if (.not. memory%scratch%has_points(s)) cycle
+      first = last + 1
+      deepest = huge(1.0_wp)
+      associate (node => contact%slave%segments(1, s), points => memory%points)
+        do last = first, points%n
+          if (points%slave_nodes(1, last) /= node) exit
+          if (points%area(last) > 0.0_wp) deepest = min(deepest, points%gap(last))
+        end do
+        last = last - 1
+        call update_segment_state(memory, s, contact%slave%segments(:, s), deepest, counts)
+        if (counts) cycle
+        points%area(first:last) = 0.0_wp
+        if (.not. deepest < memory%closed_gap) memory%scratch%has_points(s) = .false.
+      end associate
+    end do
+  end subroutine update_segment_states
 
   !> Whether the points on a segment count. One that is in contact, or has an active end, stays.
   pure subroutine update_segment_state(memory, segment, ends, deepest, counts)
@@ -69,15 +86,10 @@ contains
     logical, intent(out) :: counts
     logical :: has_active_end
 
-    counts = .true.
     has_active_end = any(memory%slave_status%state(ends) == active)
     associate (state => memory%segment_state(segment), next_search => &
       memory%segment_search(segment))
-      if (deepest >= memory%closed_gap) then
-        state = separated
-        ! It is due as long as an end is active; without one `search_segment` has set the time.
-        if (has_active_end) next_search = memory%travel
-      else
+      if (deepest < memory%closed_gap) then
         next_search = -huge(1.0_wp)
         if (has_active_end) then
           state = active
@@ -85,6 +97,11 @@ contains
           call begin_contact(memory, segment, ends, -deepest, state)
         end if
         counts = state == active
+      else
+        state = separated
+        ! It is due as long as an end is active; without one `search_segment` has set the time.
+        if (has_active_end) next_search = memory%travel
+        counts = has_active_end
       end if
     end associate
     memory%segment_gap(segment) = deepest

@@ -1,51 +1,18 @@
 ! SPDX-License-Identifier: MIT
-!> The list of contact points and its only writer: points on slave segments one by one or in blocks,
-!> points at the active nodes of a surface all together.
+!> The list of contact points and its only writer: points on slave segments one by one, with their
+!> projections or before these are known, and points at the active nodes of a surface all together.
 module point_list_m
   use contact_state_m, only : contact_points_t, contact_status_t, make_room, n_side
-  use projection_block_m, only : projection_block_t, n_block
   use projection_m, only : projection_t, opposed_share, face_on
   use kinds_m, only : wp
-  use radii_m, only : radius_between
   use surfaces_m, only : surface_t
+  use tributary_lengths_m, only : radius_between
   implicit none
   private
-  public :: point_block_t, append_points, add_point, append_active, &
+  public :: add_point, add_slave_site, put_projections, known_projection, append_active, &
     finish_segment_points
 
-  !> Positions on slave segments that are to be points, with their projections on the master: many
-  !> at a time, so that these are formed together. Without default values, which would be written
-  !> before each use.
-  type :: point_block_t
-    integer :: n
-    integer :: ends(n_side, n_block)  !! nodes of the slave segment
-    integer :: nodes(n_side, n_block) !! of the master segment, local numbers
-    real(wp) :: xi(n_block)           !! position on the slave segment, 0 to 1
-    real(wp) :: area(n_block)         !! m
-    type(projection_block_t) :: projections
-  end type point_block_t
-
 contains
-
-  !> Append the positions of a block and empty it.
-  pure subroutine append_points(block, stiffness, points)
-    type(point_block_t), intent(inout) :: block
-    real(wp), intent(in) :: stiffness !! of all, N/m^2
-    type(contact_points_t), intent(inout) :: points
-
-    if (block%n == 0) return
-    call make_room(points, block%n)
-    associate (p => points%n + 1, n => block%n, projections => block%projections)
-      call put_side(n, block%ends, block%xi, points%slave_nodes(1, p), points%slave_weights(1, p))
-      call put_side(n, block%nodes, projections%xi, points%master_nodes(1, p), &
-        points%master_weights(1, p))
-      call put_springs(n, projections%gap, projections%normal, block%area, points%gap(p), &
-        points%normal(1, p), points%area(p))
-      points%stiffness(p:p + n - 1) = stiffness
-    end associate
-    points%n = points%n + block%n
-    block%n = 0
-  end subroutine append_points
 
   !> Append a point on a slave segment, or at an end of it.
   pure subroutine add_point(points, ends, xi, nodes, projection, area, stiffness)
@@ -56,20 +23,64 @@ contains
     type(projection_t), intent(in) :: projection !! position on that, gap and normal
     real(wp), intent(in) :: area      !! m
     real(wp), intent(in) :: stiffness !! N/m^2
+
+    call add_slave_site(points, ends, xi, area, stiffness)
+    associate (p => points%n)
+      points%master_nodes(:, p) = nodes
+      points%master_weights(:, p) = [1.0_wp - projection%xi, projection%xi]
+      points%normal(:, p) = projection%normal
+      points%gap(p) = projection%gap
+    end associate
+  end subroutine add_point
+
+  !> Append the slave side of a point whose projection is not known yet.
+  pure subroutine add_slave_site(points, ends, xi, area, stiffness)
+    type(contact_points_t), intent(inout) :: points
+    integer, intent(in) :: ends(2)    !! nodes of the slave segment
+    real(wp), intent(in) :: xi        !! position on that, 0 to 1
+    real(wp), intent(in) :: area      !! m
+    real(wp), intent(in) :: stiffness !! N/m^2
     integer :: p
 
     p = points%n + 1
     if (p > size(points%gap)) call make_room(points, 1)
     points%slave_nodes(:, p) = ends
     points%slave_weights(:, p) = [1.0_wp - xi, xi]
-    points%master_nodes(:, p) = nodes
-    points%master_weights(:, p) = [1.0_wp - projection%xi, projection%xi]
-    points%normal(:, p) = projection%normal
-    points%gap(p) = projection%gap
     points%area(p) = area
     points%stiffness(p) = stiffness
     points%n = p
-  end subroutine add_point
+  end subroutine add_slave_site
+
+  !> The projections of the last points on the list.
+  pure subroutine put_projections(points, n, segment, xi, gap, normal, segments, offset)
+    type(contact_points_t), intent(inout) :: points
+    integer, intent(in) :: n, segment(n)            !! of the master
+    real(wp), intent(in) :: xi(n), gap(n), normal(2, n)
+    integer, intent(in), contiguous :: segments(:, :)
+    integer, intent(in) :: offset                   !! local number before the first master node
+    integer :: k, p
+
+    do k = 1, n
+      p = points%n - n + k
+      points%master_nodes(:, p) = offset + segments(:, segment(k))
+      points%master_weights(:, p) = [1.0_wp - xi(k), xi(k)]
+      points%normal(:, p) = normal(:, k)
+      points%gap(p) = gap(k)
+    end do
+  end subroutine put_projections
+
+  !> The projection of an active point that the search follows.
+  pure function known_projection(status, i) result(projection)
+    type(contact_status_t), intent(in) :: status
+    integer, intent(in) :: i
+    type(projection_t) :: projection
+
+    projection%segment = status%segment(i)
+    projection%is_on = .true.
+    projection%xi = status%xi(i)
+    projection%gap = status%gap(i)
+    projection%normal = status%normal(:, i)
+  end function known_projection
 
   !> Append a point for each tracked node in contact, all of one area and stiffness. The tracked
   !> node stands on the slave side of the record, whichever surface it belongs to.
@@ -81,19 +92,22 @@ contains
     real(wp), intent(in) :: area          !! m
     real(wp), intent(in) :: stiffness     !! N/m^2 (N/m where the area is 1)
     type(contact_points_t), intent(inout) :: points
+    integer :: k, p, i
 
-    associate (n => status%n_active, p => points%n + 1)
-      if (n == 0) return
-      call make_room(points, n)
-      call put_nodes(n, status%active_points, status%segment, polyline%segments, offsets, &
-        points%slave_nodes(1, p), points%master_nodes(1, p))
-      call put_projections(n, status%active_points, status%xi, status%gap, status%normal, &
-        points%master_weights(1, p), points%gap(p), points%normal(1, p))
-      points%slave_weights(1, p:p + n - 1) = 1.0_wp
-      points%slave_weights(2, p:p + n - 1) = 0.0_wp
-      points%area(p:p + n - 1) = area
-      points%stiffness(p:p + n - 1) = stiffness
-    end associate
+    call make_room(points, status%n_active)
+    !GCC$ NOVECTOR
+    do k = 1, status%n_active
+      p = points%n + k
+      i = status%active_points(k)
+      points%slave_nodes(:, p) = offsets(1) + i
+      points%slave_weights(:, p) = [1.0_wp, 0.0_wp]
+      points%master_nodes(:, p) = offsets(2) + polyline%segments(:, status%segment(i))
+      points%master_weights(:, p) = [1.0_wp - status%xi(i), status%xi(i)]
+      points%gap(p) = status%gap(i)
+      points%normal(:, p) = status%normal(:, i)
+      points%area(p) = area
+      points%stiffness(p) = stiffness
+    end do
     points%n = points%n + status%n_active
   end subroutine append_active
 
@@ -104,20 +118,22 @@ contains
     logical, intent(in) :: is_round
     integer, intent(in) :: first                     !! of these points
     type(contact_points_t), intent(inout) :: points
+    real(wp) :: along(4), across, square
     integer :: p, n
 
-    n = points%n - first + 1
-    if (n < 1) return
-    call reduce_areas(n, points%slave_nodes(1, first), points%normal(1, first), positions, &
-      points%area(first))
-    if (is_round) then
-      do p = first, points%n
-        associate (nodes => points%slave_nodes(:, p))
-          points%area(p) = points%area(p)*radius_between(positions(:, nodes(1)), &
-            positions(:, nodes(2)), points%slave_weights(2, p))
-        end associate
-      end do
-    end if
+    !GCC$ NOVECTOR
+    do p = first, points%n
+      associate (a => points%slave_nodes(1, p), b => points%slave_nodes(2, p), &
+        normal => points%normal(:, p), area => points%area(p))
+        along = positions(:, b) - positions(:, a)
+        across = (along(2) + along(4))*normal(1) - (along(1) + along(3))*normal(2)
+        square = (along(1) + along(3))**2 + (along(2) + along(4))**2
+        if (across > 0.0_wp .or. across*across < face_on**2*square) &
+          area = area*opposed_share(across/sqrt(square))
+        if (is_round) area = area*radius_between(positions(:, a), positions(:, b), &
+          points%slave_weights(2, p))
+      end associate
+    end do
     if (all(points%area(first:points%n) > 0.0_wp)) return
     n = first - 1
     do p = first, points%n
@@ -127,25 +143,6 @@ contains
     end do
     points%n = n
   end subroutine finish_segment_points
-
-  !> Reduce areas to what is opposed to the master.
-  pure subroutine reduce_areas(n, ends, normal, positions, area)
-    integer, intent(in) :: n, ends(n_side, n)       !! of the slave segments
-    real(wp), intent(in) :: normal(2, n)            !! outward, of the master
-    real(wp), intent(in) :: positions(4, *)
-    real(wp), intent(inout) :: area(n)              !! m
-    real(wp) :: along(4), across, square
-    integer :: p
-
-    !GCC$ NOVECTOR
-    do p = 1, n
-      along = positions(:, ends(2, p)) - positions(:, ends(1, p))
-      across = (along(2) + along(4))*normal(1, p) - (along(1) + along(3))*normal(2, p)
-      square = (along(1) + along(3))**2 + (along(2) + along(4))**2
-      if (across > 0.0_wp .or. across*across < face_on**2*square) &
-        area(p) = area(p)*opposed_share(across/sqrt(square))
-    end do
-  end subroutine reduce_areas
 
   !> Move a point on the list.
   pure subroutine move_point(from, to, points)
@@ -161,61 +158,5 @@ contains
     points%area(to) = points%area(from)
     points%stiffness(to) = points%stiffness(from)
   end subroutine move_point
-
-  !> Nodes and weights of one side of some points.
-  pure subroutine put_side(n, nodes, xi, point_nodes, weights)
-    integer, intent(in) :: n, nodes(n_side, n)
-    real(wp), intent(in) :: xi(n)
-    integer, intent(inout) :: point_nodes(n_side, n)
-    real(wp), intent(inout) :: weights(n_side, n)
-    integer :: k
-
-    point_nodes = nodes
-    do k = 1, n
-      weights(1, k) = 1.0_wp - xi(k)
-      weights(2, k) = xi(k)
-    end do
-  end subroutine put_side
-
-  !> Gaps, normals and areas of some points.
-  pure subroutine put_springs(n, gap, normal, area, point_gap, point_normal, point_area)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: gap(n), normal(2, n), area(n)
-    real(wp), intent(inout) :: point_gap(n), point_normal(2, n), point_area(n)
-
-    point_gap = gap
-    point_normal = normal
-    point_area = area
-  end subroutine put_springs
-
-  !> Tracked nodes, and the nodes of the segments that they are in contact with.
-  pure subroutine put_nodes(n, active_points, segment, segments, offsets, slave_nodes, master_nodes)
-    integer, intent(in) :: n, active_points(n), segment(*), segments(n_side, *), offsets(2)
-    integer, intent(inout) :: slave_nodes(n_side, n), master_nodes(n_side, n)
-    integer :: k
-
-    !GCC$ NOVECTOR
-    do k = 1, n
-      slave_nodes(:, k) = offsets(1) + active_points(k)
-      master_nodes(:, k) = offsets(2) + segments(:, segment(active_points(k)))
-    end do
-  end subroutine put_nodes
-
-  !> Projections of tracked nodes.
-  pure subroutine put_projections(n, active_points, xi, gap, normal, weights, point_gap, &
-    point_normal)
-    integer, intent(in) :: n, active_points(n)
-    real(wp), intent(in) :: xi(*), gap(*), normal(2, *)
-    real(wp), intent(inout) :: weights(n_side, n), point_gap(n), point_normal(2, n)
-    integer :: k
-
-    !GCC$ NOVECTOR
-    do k = 1, n
-      weights(1, k) = 1.0_wp - xi(active_points(k))
-      weights(2, k) = xi(active_points(k))
-      point_gap(k) = gap(active_points(k))
-      point_normal(:, k) = normal(:, active_points(k))
-    end do
-  end subroutine put_projections
 
 end module point_list_m

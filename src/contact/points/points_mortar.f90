@@ -1,43 +1,52 @@
 ! SPDX-License-Identifier: MIT
-!> Type 6, mortar: Gauss points on each whole slave segment, pressure from the slave nodes
-!> (doc/theory/contact.md, section 5.6).
+!> Types 6 and 7, mortar and segmented mortar: Gauss points on each whole slave segment, or two on
+!> each overlap of a slave segment with a master segment; pressure from the slave nodes
+!> (doc/theory/contact.md, sections 5.6 and 5.7).
 module points_mortar_m
   use contact_state_m, only : contact_state_t, contact_status_t, active
   use contacts_m, only : contact_t
-  use projection_m, only : projection_t, nearby_projection
-  use geometry_m, only : segment_length
+  use projection_block_m, only : projection_block_t, n_block, project_block, resolve_ambiguous
+  use projection_m, only : projection_t, nearby_projection, stays_over
+  use geometry_m, only : segment_length, separation
   use kinds_m, only : wp
-  use overlaps_m, only : closest_candidate, sides_part
-  use point_list_m, only : add_point, finish_segment_points
-  use surfaces_m, only : surface_t
-  use sharp_vertices_m, only : has_folds, find_sharp_vertices, belongs_to
+  use overlap_m, only : overlap_t
+  use overlap_status_m, only : none_due, search_segment, update_segment_states, note_earliest_search
+  use overlaps_m, only : find_overlaps, room_for_overlaps, closest_candidate, sides_part
+  use point_list_m, only : add_point, add_slave_site, put_projections, known_projection, &
+    finish_segment_points
+  use sharp_vertices_m, only : has_folds, find_sharp_vertices, weight_sharp_vertices
   implicit none
   private
-  public :: points_mortar
+  public :: points_mortar, points_segmented_mortar, gauss_xi, least_part
+
+  !> Gauss points of an overlap.
+  integer, parameter :: n_gauss = 2
+  !> Where they are on 0 .. 1; both have weight one half. They integrate the product of shape
+  !> functions and a linear gap exactly up to the curvature of the surface.
+  real(wp), parameter :: gauss_xi(n_gauss) = [0.5_wp - sqrt(1.0_wp/12.0_wp), &
+    0.5_wp + sqrt(1.0_wp/12.0_wp)]
+  !> Part of a slave segment next to its ends where master nodes do not cut it: the points of an
+  !> overlap integrate a kink this close to its end to the square of this part, round-off.
+  real(wp), parameter :: least_part = 1.0e-6_wp
 
 contains
 
-  !> Generate the points of all segments that share a node with one in contact: these decide on
-  !> nodal pressures.
+  !> Type 6: the points of all segments that share a node with one in contact: these decide on nodal
+  !> pressures.
   pure subroutine points_mortar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    integer :: s, near, first
+    integer :: s, near
 
     if (memory%slave_status%n_active == 0) return
-    if (has_folds(contact)) call find_sharp_vertices(contact%slave, memory)
     call mark_ends(memory%slave_status, size(memory%segment_xi), contact%slave%segments, &
       memory%scratch%segment_near)
     do s = 1, contact%slave%n_segment
-      near = max(memory%scratch%segment_near(contact%slave%segments(1, s)), &
-        memory%scratch%segment_near(contact%slave%segments(2, s)))
-      if (near == 0) cycle
-      first = memory%points%n + 1
-      call add_segment(contact, s, near, memory)
-      if (has_folds(contact)) call move_to_ends(contact%master, first, memory)
-      if (memory%slave_status%pass%is_closed) call weigh_sides(contact, s, first, memory)
+      near = maxval(memory%scratch%segment_near(contact%slave%segments(:, s)))
+      if (near > 0) call points_on_whole_segment(contact, s, near, memory)
     end do
     call finish_segment_points(memory%positions, contact%is_round, 1, memory%points)
+    if (has_folds(contact)) call weight_sharp_vertices(contact, memory)
     memory%scratch%segment_near = 0
   end subroutine points_mortar
 
@@ -60,37 +69,36 @@ contains
     end do
   end subroutine mark_ends
 
-  !> The Gauss points of a segment, with areas as if it were opposed to the master entirely: below
-  !> zero of those that are let go or have no projection.
-  pure subroutine add_segment(contact, s, near, memory)
+  !> The Gauss points of a segment that have a projection and are not let go, with areas as if they
+  !> were opposed to the master entirely. Of closed boundaries the side next to a convex vertex
+  !> counts less, or not, as with overlaps.
+  pure subroutine points_on_whole_segment(contact, s, near, memory)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: s
     integer, intent(in) :: near !! a master segment close by
     type(contact_state_t), intent(inout) :: memory
     type(projection_t) :: projection
-    real(wp) :: length
-    integer :: ends(2), nodes(2), q, i
+    real(wp) :: length, area
+    integer :: ends(2), q, i
 
     ends = contact%slave%segments(:, s)
     length = segment_length(memory%positions(:, ends(1)), memory%positions(:, ends(2)))
     do q = 1, size(memory%segment_xi)
+      area = memory%segment_share(q)*length
+      if (.not. area > 0.0_wp) cycle
       i = (s - 1)*size(memory%segment_xi) + q
-      associate (status => memory%slave_status)
-        if (status%state(i) == active) then
-          projection%segment = status%segment(i)
-          projection%is_on = .true.
-          projection%xi = status%xi(i)
-          projection%gap = status%gap(i)
-          projection%normal = status%normal(:, i)
-        else
-          projection = find_projection(contact, memory, s, near, memory%segment_points(:, i))
-        end if
-      end associate
-      nodes = memory%n_slave + contact%master%segments(:, projection%segment)
-      call add_point(memory%points, ends, memory%segment_xi(q), nodes, projection, &
-        merge(memory%segment_share(q)*length, -1.0_wp, projection%is_on), memory%slave_penalty)
+      if (memory%slave_status%state(i) == active) then
+        projection = known_projection(memory%slave_status, i)
+      else
+        projection = find_projection(contact, memory, s, near, memory%segment_points(:, i))
+        if (.not. projection%is_on) cycle
+      end if
+      if (memory%slave_status%pass%is_closed) &
+        area = area*sides_part(contact, memory, s, projection%segment)
+      call add_point(memory%points, ends, memory%segment_xi(q), memory%n_slave &
+        + contact%master%segments(:, projection%segment), projection, area, memory%slave_penalty)
     end do
-  end subroutine add_segment
+  end subroutine points_on_whole_segment
 
   !> Projection of a separated point: it stands in front of what it is over, if at all.
   pure function find_projection(contact, memory, s, near, point) result(projection)
@@ -109,46 +117,138 @@ contains
     projection%is_on = projection%is_on .and. .not. projection%gap < 0.0_wp
   end function find_projection
 
-  !> At the tip of a fold the points at the nodes of a segment take over what the others are to give
-  !> way, as far as they have a projection.
-  pure subroutine move_to_ends(surface, first, memory)
-    type(surface_t), intent(in) :: surface
-    integer, intent(in) :: first !! of the points of the segment, the last ones on the list
+  !> Type 7: the points of all segments that may touch, then of their neighbours that can not, since
+  !> these have a part in the averaged gaps of common nodes.
+  pure subroutine points_segmented_mortar(contact, memory)
+    type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: part(2), length
+    type(overlap_t), allocatable :: overlaps(:)
+    type(projection_block_t) :: block
+    integer :: s, n
+    logical :: is_due
+
+    if (none_due(memory)) return
+    allocate (overlaps(room_for_overlaps(memory)))
+    memory%scratch%has_points = .false.
+    block%n = 0
+    do s = 1, contact%slave%n_segment
+      call search_segment(contact, memory, s, is_due)
+      if (is_due) call points_on_overlaps(contact, s, memory, overlaps, block)
+    end do
+    call put_block(contact, memory, block)
+    call update_segment_states(contact, 0, memory)
+    call note_earliest_search(memory)
+    n = memory%points%n
+    if (any(memory%points%gap(:n) < memory%closed_gap .and. memory%points%area(:n) > 0.0_wp) &
+      .or. (has_folds(contact) .and. memory%slave_status%n_active > 0)) then
+      call points_at_neighbours(contact, memory, overlaps, block)
+    else
+      memory%points%n = 0
+    end if
+    call finish_segment_points(memory%positions, contact%is_round, 1, memory%points)
+    if (has_folds(contact)) call weight_sharp_vertices(contact, memory)
+  end subroutine points_segmented_mortar
+
+  !> Neighbours of segments in contact that have no points yet.
+  pure subroutine points_at_neighbours(contact, memory, overlaps, block)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
+    type(projection_block_t), intent(inout) :: block !! empty
+    integer :: neighbours(2), s, k
+
+    do s = 1, contact%slave%n_segment
+      if (memory%segment_state(s) /= active) cycle
+      neighbours = [contact%slave%previous(s), contact%slave%next(s)]
+      do k = 1, 2
+        if (neighbours(k) == 0) cycle
+        if (.not. memory%scratch%has_points(neighbours(k))) &
+          call points_on_overlaps(contact, neighbours(k), memory, overlaps, block)
+      end do
+    end do
+    call put_block(contact, memory, block)
+  end subroutine points_at_neighbours
+
+  !> The points of one slave segment, with areas as if they were opposed to the master entirely;
+  !> their projections follow once a block of them is full.
+  pure subroutine points_on_overlaps(contact, s, memory, overlaps, block)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: s
+    type(contact_state_t), intent(inout) :: memory
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
+    type(projection_block_t), intent(inout) :: block
+    real(wp) :: own(2), other(2), way(2), xi, length
+    integer :: ends(2), nodes(2), n, k, q
+
+    memory%scratch%has_points(s) = .true.
+    ends = contact%slave%segments(:, s)
+    call find_overlaps(contact, memory, s, .false., least_part, overlaps, n)
+    own = separation(memory%positions(:, ends(2)), memory%positions(:, ends(1)))
+    length = sqrt(own(1)*own(1) + own(2)*own(2))
+    do k = 1, n
+      if (.not. overlaps(k)%share > 0.0_wp) cycle
+      if (block%n + n_gauss > n_block) call put_block(contact, memory, block)
+      nodes = memory%n_slave + contact%master%segments(:, overlaps(k)%master)
+      other = separation(memory%positions(:, nodes(2)), memory%positions(:, nodes(1)))
+      way = separation(memory%positions(:, ends(1)), memory%positions(:, nodes(1)))
+      associate (part => overlaps(k)%high - overlaps(k)%low)
+        do q = 1, n_gauss
+          xi = overlaps(k)%low + gauss_xi(q)*part
+          call add_slave_site(memory%points, ends, xi, 0.5_wp*part*length*overlaps(k)%part, &
+            memory%slave_penalty)
+          block%n = block%n + 1
+          block%segment(block%n) = overlaps(k)%master
+          block%t(:, block%n) = other
+          block%d(:, block%n) = way + xi*own
+        end do
+      end associate
+    end do
+  end subroutine points_on_overlaps
+
+  !> Project the points of a block, the last ones on the list, on the master segments of their
+  !> overlaps, or on whatever is closest there; those without a projection have no area.
+  pure subroutine put_block(contact, memory, block)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(projection_block_t), intent(inout) :: block
+
+    if (block%n == 0) return
+    call project_block(block)
+    if (block%n_ambiguous > 0) call project_ambiguous(contact, memory, block)
+    call put_projections(memory%points, block%n, block%segment, block%xi, block%gap, block%normal, &
+      contact%master%segments, memory%n_slave)
+    block%n = 0
+  end subroutine put_block
+
+  !> Points that may be nearer to a neighbour of the master segment.
+  pure subroutine project_ambiguous(contact, memory, block)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(projection_block_t), intent(inout) :: block
+    type(projection_t) :: projection
     integer :: k, p
 
-    associate (points => memory%points, ends => memory%points%slave_nodes(:, first))
-      part = maxval(memory%scratch%nodal(1, ends))
-      if (.not. part(1) > 0.0_wp) return
-      do k = 1, 2
-        p = merge(first, points%n, k == 1)
-        if (points%slave_weights(k, p) < 1.0_wp .or. points%area(p) < 0.0_wp &
-          .or. belongs_to(surface, ends(k), surface%outgoing(points%master_nodes(1, p) &
-          - memory%n_slave), points%master_weights(2, p))) part(k) = 0.0_wp
+    associate (points => memory%points, polyline => memory%positions(:, memory%n_slave + 1:))
+      call resolve_ambiguous(contact%master, polyline, block)
+      do k = 1, block%n
+        if (.not. block%ambiguous(k) > 0.0_wp) cycle
+        if (block%gap(k) >= 0.0_wp) then
+          if (stays_over(contact%master, polyline, block%t(:, k), block%d(:, k), &
+            block%segment(k))) cycle
+        end if
+        p = points%n - block%n + k
+        associate (ends => points%slave_nodes(:, p), weights => points%slave_weights(:, p))
+          projection = nearby_projection(contact%master, polyline, weights(1) &
+            *memory%positions(:, ends(1)) + weights(2)*memory%positions(:, ends(2)), &
+            block%segment(k))
+        end associate
+        block%segment(k) = projection%segment
+        block%xi(k) = projection%xi
+        block%gap(k) = projection%gap
+        block%normal(:, k) = projection%normal
+        if (.not. projection%is_on) points%area(p) = 0.0_wp
       end do
-      do p = first, points%n
-        points%area(p) = points%area(p)*(1.0_wp - dot_product(part, points%slave_weights(:, p)))
-      end do
-      length = segment_length(memory%positions(:, ends(1)), memory%positions(:, ends(2)))
-      if (part(1) > 0.0_wp) points%area(first) = 0.5_wp*part(1)*length
-      if (part(2) > 0.0_wp) points%area(points%n) = 0.5_wp*part(2)*length
     end associate
-  end subroutine move_to_ends
-
-  !> Let the points of a segment of closed boundaries count less, or not, with the side next to a
-  !> convex vertex, as overlaps do.
-  pure subroutine weigh_sides(contact, s, first, memory)
-    type(contact_t), intent(in) :: contact
-    integer, intent(in) :: s, first !! slave segment, first of its points, the last ones on the list
-    type(contact_state_t), intent(inout) :: memory
-    integer :: p
-
-    do p = first, memory%points%n
-      if (.not. memory%points%area(p) > 0.0_wp) cycle
-      memory%points%area(p) = memory%points%area(p)*sides_part(contact, memory, s, &
-        contact%master%outgoing(memory%points%master_nodes(1, p) - memory%n_slave))
-    end do
-  end subroutine weigh_sides
+  end subroutine project_ambiguous
 
 end module points_mortar_m

@@ -5,18 +5,16 @@
 module points_nts_mar_m
   use contact_state_m, only : contact_state_t, active
   use contacts_m, only : contact_t
-  use projection_m, only : projection_t, local_coordinates, opposed_share, round_off
+  use projection_m, only : projection_t, vector_of, opposed_share, round_off
   use geometry_m, only : local_coordinates_t, coordinates_on_segment, local_gap, local_normal, &
     segment_length
   use kinds_m, only : wp
-  use tributary_lengths_m, only : nodal_area
   use overlap_m, only : overlap_t
-  use overlap_status_m, only : none_due, search_segment, note_earliest_search
+  use overlap_status_m, only : none_due, search_segment, update_segment_states, note_earliest_search
   use overlaps_m, only : find_overlaps, room_for_overlaps
   use point_list_m, only : add_point, append_active, finish_segment_points
-  use radii_m, only : end_radius, radius_between
-  use segment_states_m, only : update_segment_states
   use surfaces_m, only : surface_t
+  use tributary_lengths_m, only : nodal_area, end_radius, radius_between
   implicit none
   private
   public :: points_nts_mar, is_sharp_vertex
@@ -132,34 +130,35 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: n !! points at slave nodes
-    integer :: p, node
+    integer :: p
 
-    if (count(memory%points%area(:n) > 0.0_wp) == n) return
     do p = 1, n
       if (memory%points%area(p) > 0.0_wp) cycle
-      node = memory%points%slave_nodes(1, p)
-      if (is_sharp_vertex(contact%slave, memory, node)) memory%points%area(p) = nodal_area( &
-        contact%slave, memory%positions(:, :memory%n_slave), contact%is_round, node)
+      associate (node => memory%points%slave_nodes(1, p))
+        if (is_sharp_vertex(contact%slave, memory, node)) memory%points%area(p) = nodal_area( &
+          contact%slave, memory%positions(:, :memory%n_slave), contact%is_round, node)
+      end associate
     end do
   end subroutine finish_nodes
 
-  !> Whether none of the segments at a active slave node faces the master at its projection.
+  !> Whether none of the segments at an active slave node faces the master at its projection.
   pure function is_sharp_vertex(slave, memory, node)
     type(surface_t), intent(in) :: slave
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: node
     logical :: is_sharp_vertex
-    integer :: k, s
-    type(local_coordinates_t) :: local
+    real(wp) :: t(2)
+    integer :: segments(2), k
 
     is_sharp_vertex = .true.
+    segments = [slave%incoming(node), slave%outgoing(node)]
     do k = 1, 2
-      s = merge(slave%incoming(node), slave%outgoing(node), k == 1)
-      if (s == 0) cycle
-      local = local_coordinates(slave, memory%positions(:, :memory%n_slave), &
-        memory%positions(:, node), s)
-      if (opposed_share(dot_product(local_normal(local), memory%slave_status%normal(:, node))) &
-        > 0.0_wp) is_sharp_vertex = .false.
+      if (segments(k) == 0) cycle
+      t = vector_of(slave, memory%positions, segments(k))
+      associate (normal => memory%slave_status%normal(:, node))
+        is_sharp_vertex = is_sharp_vertex .and. .not. opposed_share((t(2)*normal(1) &
+          - t(1)*normal(2))/sqrt(t(1)**2 + t(2)**2)) > 0.0_wp
+      end associate
     end do
   end function is_sharp_vertex
 

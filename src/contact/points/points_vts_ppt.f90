@@ -7,15 +7,22 @@
 module points_vts_ppt_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
-  use projection_m, only : projection_t, polyline_parameter_t, local_coordinates, project_along, &
-    round_off
+  use projection_m, only : projection_t, local_coordinates, is_over_segment, turns_gently, round_off
   use geometry_m, only : local_coordinates_t, segment_length, separation
   use kinds_m, only : wp
   use point_list_m, only : add_point
-  use radii_m, only : centroid, radius_between
+  use surfaces_m, only : surface_t
+  use tributary_lengths_m, only : centroid, radius_between
   implicit none
   private
-  public :: points_vts_ppt, end_of_half
+  public :: points_vts_ppt, ends_of_half, end_of_half, polyline_parameter_t, project_along
+
+  !> A position on a surface reached by walking.
+  type :: polyline_parameter_t
+    integer :: segment = 0
+    integer :: n_step = 0    !! segments walked to it, negative backwards
+    real(wp) :: xi = 0.0_wp
+  end type polyline_parameter_t
 
 contains
 
@@ -46,7 +53,7 @@ contains
     a = memory%positions(:, ends(1))
     b = memory%positions(:, ends(2))
     at = memory%segment_xi(2 - mod(virtual_node, 2))
-    limits = ends_of_half(contact, memory, virtual_node, a, b, at)
+    limits = ends_of_half(contact, memory, virtual_node, at)
     xi = at
     half = 0.5_wp*segment_length(a, b)
     if (contact%is_round) then
@@ -81,19 +88,20 @@ contains
 
   !> Where both ends of the half of a virtual node are on the master: on the segment below the
   !> virtual node, or where a walk from there leads.
-  pure function ends_of_half(contact, memory, virtual_node, a, b, at) result(limits)
+  pure function ends_of_half(contact, memory, virtual_node, at) result(limits)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: virtual_node
-    real(wp), intent(in) :: a(4), b(4) !! ends of the slave segment
-    real(wp), intent(in) :: at         !! where the virtual node is on that
+    real(wp), intent(in) :: at !! where the virtual node is on its slave segment
     type(polyline_parameter_t) :: limits(2)
     type(local_coordinates_t) :: local
     real(wp) :: slope
     integer :: k
 
     associate (segment => memory%slave_status%segment(virtual_node), &
-      polyline => memory%positions(:, memory%n_slave + 1:))
+      polyline => memory%positions(:, memory%n_slave + 1:), &
+      a => memory%positions(:, contact%slave%segments(1, (virtual_node + 1)/2)), &
+      b => memory%positions(:, contact%slave%segments(2, (virtual_node + 1)/2)))
       local = local_coordinates(contact%master, polyline, (1.0_wp - at)*a + at*b, segment)
       slope = dot_product(separation(b, a), local%t)
       do k = 1, 2
@@ -107,6 +115,45 @@ contains
       end do
     end associate
   end function ends_of_half
+
+  !> Project a position on a surface, starting at a segment and going on to the neighbour where it
+  !> runs over a node. It stops at the surface's end (with the usual overshoot), at a sharp corner,
+  !> and at a node that no neighbour sees it beyond.
+  pure function project_along(surface, polyline, position, start) result(eta)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in), contiguous :: polyline(:, :) !! (4, n_node) positions
+    real(wp), intent(in) :: position(4)
+    integer, intent(in) :: start
+    type(polyline_parameter_t) :: eta
+    type(local_coordinates_t) :: local, other
+    logical :: backwards
+    integer :: neighbour, i_step
+
+    eta%segment = start
+    local = local_coordinates(surface, polyline, position, start)
+    backwards = local%along < 0.0_wp
+    do i_step = 1, surface%n_segment
+      eta%xi = local%along/local%square
+      if (local%along >= 0.0_wp .and. local%along <= local%square) return
+      if (backwards .neqv. local%along < 0.0_wp) exit
+      neighbour = merge(surface%previous(eta%segment), surface%next(eta%segment), backwards)
+      if (neighbour == 0) then
+        if (.not. is_over_segment(local)) exit
+        return
+      end if
+      other = local_coordinates(surface, polyline, position, neighbour)
+      if (.not. turns_gently(local%t, other%t)) then
+        ! At a sharp convex vertex the face ends as at the end of an open surface.
+        if (is_over_segment(local) .and. merge(-1.0_wp, 1.0_wp, backwards)*(local%t(1)*other%t(2) &
+          - local%t(2)*other%t(1)) > 0.0_wp) return
+        exit
+      end if
+      local = other
+      eta%segment = neighbour
+      eta%n_step = eta%n_step + merge(-1, 1, backwards)
+    end do
+    eta%xi = max(0.0_wp, min(1.0_wp, eta%xi))
+  end function project_along
 
   !> Append a sub-segment of a half with its own length as area: it has the gap and the normal of
   !> the virtual node, and its position on the master is its centre, in axisymmetry by radius.

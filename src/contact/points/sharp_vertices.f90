@@ -3,10 +3,11 @@
 !> tip comes first, and its flanks, which are still open, would hold it off the sum. There the
 !> points of the segment give their areas to its two nodes (doc/theory/contact.md, section 5.7).
 module sharp_vertices_m
-  use contact_state_m, only : contact_state_t, make_room, active
+  use contact_state_m, only : contact_state_t, active
   use contacts_m, only : contact_t, is_tied
   use projection_m, only : projection_t, nearby_projection
   use kinds_m, only : wp
+  use point_list_m, only : add_point, known_projection
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -25,26 +26,26 @@ contains
     has_folds = contact%is_self .and. .not. is_tied(contact)
   end function has_folds
 
-  !> Let the points of segments at tips of folds give their areas to their nodes.
+  !> Let the points of segments at tips of folds give their areas to their nodes: all points of a
+  !> segment follow each other on the list.
   pure subroutine weight_sharp_vertices(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: part(2)
+    real(wp) :: part
     integer :: first, last, n
 
+    call find_sharp_vertices(contact%slave, memory)
     n = memory%points%n
     last = 0
     do while (last < n)
       first = last + 1
-      last = first
       associate (ends => memory%points%slave_nodes)
-        do while (last < n)
-          if (ends(1, last + 1) /= ends(1, first) .or. ends(2, last + 1) /= ends(2, first)) exit
-          last = last + 1
+        do last = first, n - 1
+          if (any(ends(:, last + 1) /= ends(:, first))) exit
         end do
         part = maxval(memory%scratch%nodal(1, ends(:, first)))
       end associate
-      if (part(1) > 0.0_wp) call shift_to_nodes(contact, first, last, part, memory)
+      if (part > 0.0_wp) call shift_to_nodes(contact, first, last, part, memory)
     end do
   end subroutine weight_sharp_vertices
 
@@ -119,68 +120,57 @@ contains
   pure subroutine shift_to_nodes(contact, first, last, part, memory)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: first, last !! points of the segment
-    real(wp), intent(inout) :: part(2) !! at either end
+    real(wp), intent(in) :: part
     type(contact_state_t), intent(inout) :: memory
     type(projection_t) :: projections(2)
-    real(wp) :: content(2)
-    integer :: k, p
+    real(wp) :: parts(2), content(2)
+    integer :: ends(2), k, p
 
-    do k = 1, 2
-      call find_projection(contact, memory, first, last, k, projections(k))
-      if (projections(k)%is_on) projections(k)%is_on = .not. belongs_to(contact%master, &
-        memory%points%slave_nodes(k, first), projections(k)%segment, projections(k)%xi)
-      if (.not. projections(k)%is_on) part(k) = 0.0_wp
-      content(k) = sum(memory%points%slave_weights(k, first:last)*memory%points%area(first:last))
-    end do
-    call make_room(memory%points, 2)
     associate (points => memory%points)
-      do p = first, last
-        points%area(p) = points%area(p)*(1.0_wp - dot_product(part, points%slave_weights(:, p)))
-      end do
+      ends = points%slave_nodes(:, first)
       do k = 1, 2
-        if (.not. part(k) > 0.0_wp) cycle
-        p = points%n + 1
-        points%n = p
-        points%slave_nodes(:, p) = points%slave_nodes(:, first)
-        points%slave_weights(:, p) = 0.0_wp
-        points%slave_weights(k, p) = 1.0_wp
-        points%master_nodes(:, p) = memory%n_slave + contact%master%segments(:, &
-          projections(k)%segment)
-        points%master_weights(:, p) = [1.0_wp - projections(k)%xi, projections(k)%xi]
-        points%normal(:, p) = projections(k)%normal
-        points%gap(p) = projections(k)%gap
-        points%area(p) = part(k)*content(k)
-        points%stiffness(p) = points%stiffness(first)
+        projections(k) = end_projection(contact, memory, first, last, k)
+        parts(k) = 0.0_wp
+        if (projections(k)%is_on .and. .not. belongs_to(contact%master, ends(k), &
+          projections(k)%segment, projections(k)%xi)) parts(k) = part
+        content(k) = sum(points%slave_weights(k, first:last)*points%area(first:last))
+      end do
+      do p = first, last
+        points%area(p) = points%area(p)*(1.0_wp - dot_product(parts, points%slave_weights(:, p)))
       end do
     end associate
+    do k = 1, 2
+      if (parts(k) > 0.0_wp) call add_point(memory%points, ends, real(k - 1, wp), memory%n_slave &
+        + contact%master%segments(:, projections(k)%segment), projections(k), &
+        parts(k)*content(k), memory%slave_penalty)
+    end do
   end subroutine shift_to_nodes
 
-  !> Projection of an end of a segment: that which is followed, or from the nearest of its points
-  !> on.
-  pure subroutine find_projection(contact, memory, first, last, k, projection)
+  !> Projection of the k-th end of a segment: that which is followed, or from the nearest of its
+  !> points on.
+  pure function end_projection(contact, memory, first, last, k) result(projection)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: first, last, k
-    type(projection_t), intent(out) :: projection
-    integer :: node, nearest
+    type(projection_t) :: projection
+    integer :: node, i, nearest
 
     node = memory%points%slave_nodes(k, first)
-    if (.not. memory%has%segment_points) then
-      associate (status => memory%slave_status)
-        if (status%state(node) == active) then
-          projection%segment = status%segment(node)
-          projection%is_on = .true.
-          projection%xi = status%xi(node)
-          projection%gap = status%gap(node)
-          projection%normal = status%normal(:, node)
-          return
-        end if
-      end associate
+    i = node
+    ! The first and the last of the points that type 6 follows on a segment are its ends.
+    if (memory%has%segment_points) i = merge(1, size(memory%segment_xi), k == 1) &
+      + size(memory%segment_xi)*(contact%slave%outgoing(memory%points%slave_nodes(1, first)) - 1)
+    if (memory%slave_status%state(i) == active) then
+      projection = known_projection(memory%slave_status, i)
+    else
+      nearest = first - 1 + maxloc(memory%points%slave_weights(k, first:last), 1)
+      projection = nearby_projection(contact%master, memory%positions(:, memory%n_slave + 1:), &
+        memory%positions(:, node), contact%master%outgoing(memory%points%master_nodes(1, nearest) &
+        - memory%n_slave))
+      ! What has been let go stands behind the face.
+      if (memory%has%segment_points) &
+        projection%is_on = projection%is_on .and. .not. projection%gap < 0.0_wp
     end if
-    nearest = first - 1 + maxloc(memory%points%slave_weights(k, first:last), 1)
-    projection = nearby_projection(contact%master, memory%positions(:, memory%n_slave + 1:), &
-      memory%positions(:, node), contact%master%outgoing(memory%points%master_nodes(1, nearest) &
-      - memory%n_slave))
-  end subroutine find_projection
+  end function end_projection
 
 end module sharp_vertices_m

@@ -5,8 +5,8 @@
 !> that it had before (doc/theory/contact.md, section 3.3).
 module entry_m
   use contact_state_m, only : contact_status_t, candidates_t, pass_t
-  use projection_m, only : projection_t, closest_projection, face_projection, vector_of, &
-    turns_gently, side_on, face_on, end_tolerance, round_off
+  use projection_m, only : projection_t, nearest_projection, face_projection, vector_of, &
+    turns_gently, face_on, end_tolerance, round_off
   use geometry_m, only : local_coordinates_t, coordinates_on_segment, local_gap, local_normal, &
     closest_distance, segment_length
   use kinds_m, only : wp
@@ -101,8 +101,18 @@ contains
     ! Without candidates the next list is waited for. What lists hold beyond the search radius is a
     ! matter of when they were made.
     found%distance = merge(status%reach, unpaired, found%nearest > 0)
-    if (found%nearest > 0 .and. least <= status%reach**2) &
-      call search_closest(status, own, other, positions, increments, point, i, found)
+    if (found%nearest == 0 .or. least > status%reach**2) return
+    found%projection = nearest_projection(other, positions(:, status%pass%other_at + 1:), point, &
+      found%nearest)
+    if (status%pass%is_self) then
+      if (.not. is_pair(status%pass, own, pairs, i, found%projection%segment)) then
+        ! Next to the closest candidate the surface is the point's own.
+        found%projection%segment = found%nearest
+        found%distance = min(found%distance, sqrt(least), found%lateral)
+        return
+      end if
+    end if
+    call search_closest(status, own, other, positions, increments, point, i, found)
   end function find_contact
 
   !> Motion that brings a point on the inner side of a segment's line, beyond its ends, over the
@@ -149,8 +159,8 @@ contains
     end if
   end function has_entered
 
-  !> The closest candidate: in front of it the point is separated; behind it, it is active from now
-  !> on unless it is too deep, on that or on the nearest face that is opposed to it.
+  !> The projection on what is closest: in front of it the point is separated; behind it, it is
+  !> active from now on unless it is too deep, on that or on the nearest face that is opposed to it.
   pure subroutine search_closest(status, own, other, positions, increments, point, i, found)
     type(contact_status_t), intent(in) :: status
     type(surface_t), intent(in) :: own, other
@@ -162,7 +172,6 @@ contains
     real(wp) :: limit
 
     associate (pass => status%pass, projection => found%projection)
-      projection = closest_projection(other, positions(:, pass%other_at + 1:), point, found%nearest)
       found%distance = min(status%reach, projection%distance, abs(projection%gap), found%lateral)
       if (projection%xi <= 0.0_wp .or. projection%xi >= 1.0_wp) then
         ! A face reaches a little beyond its end.
@@ -188,7 +197,8 @@ contains
         if (.not. pass%has_history) return
         previous = previous_coordinates(pass, own, other, positions, increments, i, &
           projection%segment)
-        if (found%is_active) found%offset = max(0.0_wp, min(-projection%gap, -local_gap(previous)))
+        ! In all trials of an implicit step the same.
+        if (found%is_active) found%offset = max(0.0_wp, -local_gap(previous))
         ! What lay as deep before is known.
         if (found%is_released) found%is_released = .not. (-local_gap(previous) > limit .and. &
           is_over(other, positions(:, pass%other_at + 1:), previous, projection%segment))
@@ -307,10 +317,10 @@ contains
   end function segments_of
 
   !> Whether a face is opposed to a point: its outward normal is opposite to that of one of the
-  !> point's segments within 60 degrees (points between nodes: 84 degrees), or lies opposite between
-  !> both of them at a convex vertex, by 10 degrees at least: else the nodes of a body that slides
-  !> on over a ramp would be held by the end face in front of it. At an end of an open surface the
-  !> tangent that leads out of it replaces the missing normal there.
+  !> point's segments within 60 degrees, or lies opposite between both of them at a convex vertex,
+  !> by 10 degrees at least: else the nodes of a body that slides on over a ramp would be held by
+  !> the end face in front of it. At an end of an open surface the tangent that leads out of it
+  !> replaces the missing normal there.
   pure function is_opposed(pass, own, positions, i, normal) result(opposed)
     type(pass_t), intent(in) :: pass
     type(surface_t), intent(in) :: own               !! of the points
@@ -318,7 +328,7 @@ contains
     integer, intent(in) :: i                         !! point
     real(wp), intent(in) :: normal(2)                !! outward, of the face
     logical :: opposed
-    real(wp) :: t(2, 2), normals(2, 2), limit
+    real(wp) :: t(2, 2), normals(2, 2)
     integer :: segments(2), k
 
     opposed = .false.
@@ -331,10 +341,9 @@ contains
     end do
     if (segments(1) == 0) normals(:, 1) = -t(:, 2)
     if (segments(2) == 0) normals(:, 2) = t(:, 1)
-    limit = merge(side_on, face_on, segments(1) == segments(2))
     do k = 1, 2
       if (segments(k) == 0) cycle
-      opposed = dot_product(normals(:, k), normal) < limit
+      opposed = dot_product(normals(:, k), normal) < face_on
       if (opposed) return
     end do
     ! The opposite of the normal turns counter-clockwise from the first to the second of the

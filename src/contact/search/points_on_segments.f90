@@ -7,8 +7,8 @@ module points_on_segments_m
   use geometry_m, only : segment_length
   use kinds_m, only : wp
   use quadrature_m, only : gauss_rule
-  use radii_m, only : centroid
   use surfaces_m, only : surface_t
+  use tributary_lengths_m, only : centroid
   implicit none
   private
   public :: points_at_nodes, points_at_quarters, points_at_gauss_points, start_segment_points, &

@@ -10,13 +10,12 @@ module linearisation_m
   use projection_m, only : side_on, face_on, least_excess, most_excess, round_off
   use geometry_m, only : separation
   use kinds_m, only : wp
-  use radii_m, only : radius_of
+  use tributary_lengths_m, only : radius_of
   implicit none
   private
   public :: linearised_point_t, linearised_list_t, linearised_projection_t, n_slot, append_point, &
-    difference, &
-    length_between, project, way_from, project_point, slip_of, between, share_of, side_share_of, &
-    cosine_of, radius_at, end_radius_at, centroid_of
+    difference, length_between, project, way_from, project_point, slip_of, between, &
+    cosine_between, share_of, side_share_of, radius_at, centroid_of
 
   !> Nodes that a point depends on, at most.
   integer, parameter :: n_slot = n_partial/2
@@ -33,7 +32,6 @@ module linearisation_m
     type(dual_t) :: master_xi      !! the same of the master side
     type(dual_t) :: normal(2)      !! unit, from master to slave
     type(dual_t) :: gap            !! m
-    type(dual_t) :: remaining      !! part of its depth that does not act: entry offset, m
     type(dual_t) :: area           !! m
     type(dual_t) :: length         !! what a largest traction counts times: 1, or m for type 1
   end type linearised_point_t
@@ -69,28 +67,29 @@ contains
     list%points(list%n) = point
   end subroutine append_point
 
-  !> Vector from the node in slot j to that in slot i.
-  pure function difference(positions, nodes, i, j) result(d)
-    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node)
-    integer, intent(in) :: nodes(n_slot)
+  !> Vector from the node in slot j of a point to that in slot i, m.
+  pure function difference(memory, point, i, j) result(d)
+    type(contact_state_t), intent(in) :: memory
+    type(linearised_point_t), intent(in) :: point
     integer, intent(in) :: i, j
     type(dual_t) :: d(2)
 
-    d = constant(separation(positions(:, nodes(i)), positions(:, nodes(j))))
+    d = constant(separation(memory%positions(:, point%nodes(i)), &
+      memory%positions(:, point%nodes(j))))
     d(1)%slope(2*i - 1) = 1.0_wp
     d(2)%slope(2*i) = 1.0_wp
     d(1)%slope(2*j - 1) = d(1)%slope(2*j - 1) - 1.0_wp
     d(2)%slope(2*j) = d(2)%slope(2*j) - 1.0_wp
   end function difference
 
-  !> Distance between the nodes in slots i and j.
-  pure function length_between(positions, nodes, i, j) result(length)
-    real(wp), intent(in), contiguous :: positions(:, :)
-    integer, intent(in) :: nodes(n_slot)
+  !> Distance between the nodes in slots i and j, m.
+  pure function length_between(memory, point, i, j) result(length)
+    type(contact_state_t), intent(in) :: memory
+    type(linearised_point_t), intent(in) :: point
     integer, intent(in) :: i, j
     type(dual_t) :: length, d(2)
 
-    d = difference(positions, nodes, i, j)
+    d = difference(memory, point, i, j)
     length = sqrt(d(1)*d(1) + d(2)*d(2))
   end function length_between
 
@@ -119,14 +118,14 @@ contains
 
   !> Vector from the node in slot i to the slave side of a point, which is slot 1 where slot 2 is
   !> not used.
-  pure function way_from(positions, point, i) result(d)
-    real(wp), intent(in), contiguous :: positions(:, :)
+  pure function way_from(memory, point, i) result(d)
+    type(contact_state_t), intent(in) :: memory
     type(linearised_point_t), intent(in) :: point
     integer, intent(in) :: i
     type(dual_t) :: d(2)
 
-    d = difference(positions, point%nodes, 1, i)
-    if (point%nodes(2) > 0) d = d + point%slave_xi*difference(positions, point%nodes, 2, 1)
+    d = difference(memory, point, 1, i)
+    if (point%nodes(2) > 0) d = d + point%slave_xi*difference(memory, point, 2, 1)
   end function way_from
 
   !> Gap, site and normal of a point over the segment in slots 3, 4, like those known: on the line
@@ -140,8 +139,8 @@ contains
     type(dual_t) :: d(2), t(2)
     logical :: is_corner
 
-    d = way_from(memory%positions, point, 3)
-    t = difference(memory%positions, point%nodes, 4, 3)
+    d = way_from(memory, point, 3)
+    t = difference(memory, point, 4, 3)
     projection = project(d, t)
     is_corner = .not. (abs(xi) > 0.0_wp .and. abs(xi - 1.0_wp) > 0.0_wp)
     if (is_corner) is_corner = abs(projection%xi%value - 0.5_wp) > 0.5_wp + round_off
@@ -154,7 +153,6 @@ contains
     point%master_xi = projection%xi
     point%gap = projection%gap
     point%normal = projection%normal
-    point%remaining = constant(0.0_wp)
     point%length = constant(1.0_wp)
   end subroutine project_point
 
@@ -175,13 +173,13 @@ contains
       owner = 3
       relative = relative - point%master_xi*(moved(memory, point, 4) - moved(memory, point, 3))
     end if
-    t = difference(memory%positions, point%nodes, owner + 1, owner)
+    t = difference(memory, point, owner + 1, owner)
     turn = moved(memory, point, owner + 1) - moved(memory, point, owner)
     slip = point%normal(1)*relative(2) - point%normal(2)*relative(1) &
       + point%gap*(t(2)*turn(1) - t(1)*turn(2))/(t(1)*t(1) + t(2)*t(2))
   end function slip_of
 
-  !> Displacement of the node in slot i in the step.
+  !> Displacement of the node in slot i in the step, m.
   pure function moved(memory, point, i) result(du)
     type(contact_state_t), intent(in) :: memory
     type(linearised_point_t), intent(in) :: point
@@ -193,29 +191,29 @@ contains
     du(2)%slope(2*i) = 1.0_wp
   end function moved
 
-  !> Share of a segment with the vector t that counts as opposed to a face with the given normal.
-  pure function share_of(t, normal) result(share)
-    type(dual_t), intent(in) :: t(2), normal(2)
-    type(dual_t) :: share
-
-    share = smooth_step((1.0_wp/(side_on - face_on))*(side_on - cosine_of(t, normal)))
-  end function share_of
-
-  !> Share of the less opposed of both segments at a vertex, by its cosine and that of the other.
-  pure function side_share_of(less, more) result(share)
-    type(dual_t), intent(in) :: less, more
-    type(dual_t) :: share
-
-    share = smooth_step((1.0_wp/(most_excess - least_excess))*(most_excess - (less - more)))
-  end function side_share_of
-
-  !> Cosine between the outward normals of a segment with the vector t and of a face.
-  pure function cosine_of(t, normal) result(cosine)
-    type(dual_t), intent(in) :: t(2), normal(2)
+  !> Cosine between two vectors.
+  pure function cosine_between(a, b) result(cosine)
+    type(dual_t), intent(in) :: a(2), b(2)
     type(dual_t) :: cosine
 
-    cosine = (t(2)*normal(1) - t(1)*normal(2))/sqrt(t(1)*t(1) + t(2)*t(2))
-  end function cosine_of
+    cosine = (a(1)*b(1) + a(2)*b(2))/sqrt((a(1)*a(1) + a(2)*a(2))*(b(1)*b(1) + b(2)*b(2)))
+  end function cosine_between
+
+  !> Share of a segment that counts as opposed, by the cosine between outward normals.
+  pure function share_of(cosine) result(share)
+    type(dual_t), intent(in) :: cosine
+    type(dual_t) :: share
+
+    share = smooth_step((1.0_wp/(side_on - face_on))*(side_on - cosine))
+  end function share_of
+
+  !> Share of the less opposed of both segments at a vertex, by how much its cosine is the larger.
+  pure function side_share_of(excess) result(share)
+    type(dual_t), intent(in) :: excess
+    type(dual_t) :: share
+
+    share = smooth_step((1.0_wp/(most_excess - least_excess))*(most_excess - excess))
+  end function side_share_of
 
   !> A step from 0 to 1 with slopes of zero.
   pure function smooth_step(along) result(share)
@@ -227,43 +225,32 @@ contains
   end function smooth_step
 
   !> In axisymmetry: radius at xi of the segment in slots i, j, m.
-  pure function radius_at(positions, nodes, i, j, xi) result(radius)
-    real(wp), intent(in), contiguous :: positions(:, :)
-    integer, intent(in) :: nodes(n_slot)
+  pure function radius_at(memory, point, i, j, xi) result(radius)
+    type(contact_state_t), intent(in) :: memory
+    type(linearised_point_t), intent(in) :: point
     integer, intent(in) :: i, j
     type(dual_t), intent(in) :: xi
     type(dual_t) :: radius, t(2)
 
-    radius = variable(radius_of(positions(:, nodes(i))), 2*i - 1)
-    t = difference(positions, nodes, j, i)
+    radius = variable(radius_of(memory%positions(:, point%nodes(i))), 2*i - 1)
+    t = difference(memory, point, j, i)
     radius = radius + xi*t(1)
   end function radius_at
 
-  !> Mean radius of a stretch of the segment in slots i, j as its end at `near` has it, m.
-  pure function end_radius_at(positions, nodes, i, j, near, far) result(radius)
-    real(wp), intent(in), contiguous :: positions(:, :)
-    integer, intent(in) :: nodes(n_slot)
-    integer, intent(in) :: i, j
-    type(dual_t), intent(in) :: near, far !! its ends, 0 to 1
-    type(dual_t) :: radius
-
-    radius = radius_at(positions, nodes, i, j, (1.0_wp/3.0_wp)*(2.0_wp*near + far))
-  end function end_radius_at
-
   !> Centre by radius of a stretch of the segment in slots i, j; the middle where nothing has
   !> weight.
-  pure function centroid_of(positions, nodes, i, j, low, high) result(xi)
-    real(wp), intent(in), contiguous :: positions(:, :)
-    integer, intent(in) :: nodes(n_slot)
+  pure function centroid_of(memory, point, i, j, range) result(xi)
+    type(contact_state_t), intent(in) :: memory
+    type(linearised_point_t), intent(in) :: point
     integer, intent(in) :: i, j
-    type(dual_t), intent(in) :: low, high !! its ends, 0 to 1
+    type(dual_t), intent(in) :: range(2) !! its ends, 0 to 1
     type(dual_t) :: xi, first, last
 
-    xi = 0.5_wp*(low + high)
-    first = radius_at(positions, nodes, i, j, low)
-    last = radius_at(positions, nodes, i, j, high)
+    xi = 0.5_wp*(range(1) + range(2))
+    first = radius_at(memory, point, i, j, range(1))
+    last = radius_at(memory, point, i, j, range(2))
     if (first%value + last%value > tiny(1.0_wp)) &
-      xi = xi + (1.0_wp/6.0_wp)*((high - low)*(last - first)/(first + last))
+      xi = xi + (1.0_wp/6.0_wp)*((range(2) - range(1))*(last - first)/(first + last))
   end function centroid_of
 
 end module linearisation_m

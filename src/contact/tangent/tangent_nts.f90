@@ -7,8 +7,7 @@ module tangent_nts_m
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/)
   use kinds_m, only : wp
   use linearisation_m, only : linearised_point_t, linearised_list_t, append_point, project_point, &
-    difference, length_between, share_of, side_share_of, cosine_of, end_radius_at
-  use point_tangent_m, only : parts_left
+    difference, length_between, cosine_between, share_of, side_share_of, radius_at
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -23,24 +22,29 @@ contains
     logical, intent(in) :: has_unit_area !! type 1
     type(contact_state_t), intent(in) :: memory
     type(linearised_list_t), intent(inout) :: list
-    type(linearised_point_t) :: point
-    real(wp) :: remaining(memory%points%n)
-    logical :: is_closed
+    type(linearised_point_t) :: point, plane
     integer :: p
 
-    remaining = parts_left(memory)
     do p = 1, memory%points%n
       point = linearise_node(memory, p)
-      point%remaining = constant(remaining(p))
-      if (point%site > memory%n_slave) then
-        call linearise_length(contact%master, memory%n_slave, contact%is_round, &
-          memory%master_status%pass%is_closed, memory, point)
-      else
-        is_closed = memory%slave_status%pass%is_closed
-        if (contact%is_round .or. .not. has_unit_area) &
-          call linearise_length(contact%slave, 0, contact%is_round, is_closed, memory, point)
-        if (has_unit_area) call linearise_unit(contact, is_closed, memory, point)
-      end if
+      associate (is_closed => memory%slave_status%pass%is_closed, is_round => contact%is_round)
+        if (point%site > memory%n_slave) then
+          call linearise_length(contact%master, memory%n_slave, is_round, &
+            memory%master_status%pass%is_closed, memory, point)
+        else if (is_round .or. .not. has_unit_area) then
+          call linearise_length(contact%slave, 0, is_round, is_closed, memory, point)
+        end if
+        plane = point
+        if (has_unit_area .and. is_round) then
+          call linearise_length(contact%slave, 0, .false., is_closed, memory, plane)
+          point%area = point%area/plane%area
+        end if
+        if (has_unit_area .and. contact%friction%most > 0.0_wp) then
+          call linearise_length(contact%slave, 0, .false., .false., memory, plane)
+          point%nodes = plane%nodes
+          point%length = plane%area
+        end if
+      end associate
       call append_point(list, point)
     end do
   end subroutine linearise_nodes
@@ -62,25 +66,6 @@ contains
     end associate
   end function linearise_node
 
-  !> Type 1: what its area has been made of.
-  pure subroutine linearise_unit(contact, is_closed, memory, point)
-    type(contact_t), intent(in) :: contact
-    logical, intent(in) :: is_closed
-    type(contact_state_t), intent(in) :: memory
-    type(linearised_point_t), intent(inout) :: point
-    type(linearised_point_t) :: plane
-
-    plane = point
-    if (contact%is_round) then
-      call linearise_length(contact%slave, 0, .false., is_closed, memory, plane)
-      point%area = point%area/plane%area
-    end if
-    if (.not. contact%friction%most > 0.0_wp) return
-    call linearise_length(contact%slave, 0, .false., .false., memory, plane)
-    point%nodes = plane%nodes
-    point%length = plane%area
-  end subroutine linearise_unit
-
   !> Let the area of a point at a node be the node's tributary length, the neighbours of which go
   !> into slots 5 and 6; on a closed boundary its segments count as far as they are opposed to the
   !> face.
@@ -96,23 +81,22 @@ contains
     segments = [surface%incoming(point%nodes(1) - offset), &
       surface%outgoing(point%nodes(1) - offset)]
     halves = constant(0.0_wp)
-    shares = constant(0.0_wp)
-    cosines = constant(0.0_wp)
     do k = 1, 2
       if (segments(k) == 0) cycle
       point%nodes(4 + k) = offset + surface%segments(k, segments(k))
-      halves(k) = 0.5_wp*length_between(memory%positions, point%nodes, 1, 4 + k)
-      if (by_radius) halves(k) = halves(k)*end_radius_at(memory%positions, point%nodes, 1, 4 + k, &
-        constant(0.0_wp), constant(1.0_wp))
-      if (.not. is_closed) cycle
-      t(:, k) = difference(memory%positions, point%nodes, merge(1, 6, k == 1), merge(5, 1, k == 1))
-      shares(k) = share_of(t(:, k), point%normal)
-      cosines(k) = cosine_of(t(:, k), point%normal)
+      halves(k) = 0.5_wp*length_between(memory, point, 1, 4 + k)
+      if (by_radius) halves(k) = halves(k)*radius_at(memory, point, 1, 4 + k, &
+        constant(1.0_wp/3.0_wp))
     end do
     point%area = halves(1) + halves(2)
     if (.not. is_closed .or. any(segments == 0)) return
+    do k = 1, 2
+      t(:, k) = difference(memory, point, merge(1, 6, k == 1), merge(5, 1, k == 1))
+      cosines(k) = cosine_between(t(:, k), [-point%normal(2), point%normal(1)])
+      shares(k) = share_of(cosines(k))
+    end do
     less = merge(1, 2, cosines(1)%value >= cosines(2)%value)
-    shares(less) = shares(less)*side_share_of(cosines(less), cosines(3 - less))
+    shares(less) = shares(less)*side_share_of(cosines(less) - cosines(3 - less))
     point%area = halves(1)*shares(1) + halves(2)*shares(2)
     if (maxval(shares%value) >= 1.0_wp) return
     more = maxloc(shares%value, 1)

@@ -1,11 +1,13 @@
 ! SPDX-License-Identifier: MIT
 !> Tangent of ties: the second derivative of what their springs store (doc/theory/contact.md,
-!> section 9.9). With a = d.n - a0 and b = d.t - b0 the stretches of a spring and theta the angle
-!> of its segment, grad a = grad d.n + d.t grad theta and grad b = grad d.t - d.n grad theta, the
-!> axes held in the gradients of d.
+!> section 9.9). A spring is a function of its mean separation d and of the vector of its segment,
+!> which are linear in the displacements of its nodes. With a = d.n - a0 and b = d.t - b0 its
+!> stretches and theta the angle of the segment, grad a = n grad d + d.t grad theta and grad b = t
+!> grad d - d.n grad theta.
 module tangent_ties_m
-  use assembly_m, only : product_t, start_product, add_to_row, add_to_column, finish_product
+  use assembly_m, only : product_t, start_product, add_at_node, finish_product
   use contact_state_m, only : contact_state_t, n_side
+  use dual_m, only : dual_t, variable, operator(+), operator(-), operator(*), operator(/), sqrt
   use kinds_m, only : wp
   use sparse_m, only : sparse_t, add_block
   use tiebreak_m, only : holds, holds_node
@@ -29,42 +31,58 @@ contains
     if (memory%has%nodal_pressure) call add_averages(memory, equations, matrix)
   end subroutine add_tie_tangent
 
-  !> One spring: k w (grad a grad a^T + grad b grad b^T), and of the turn of its segment under its
-  !> loads grad theta h^T + h grad theta^T, with h = fn grad(d.t) - fs grad(d.n)
-  !> - (fn d.t - fs d.n) grad(stretch of the segment) - (fn d.n + fs d.t)/2 grad theta.
+  !> One spring: k w (grad a grad a^T + grad b grad b^T), and the turn of its segment under its
+  !> loads.
   pure subroutine add_spring(memory, s, equations, matrix)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
     integer, intent(in), contiguous :: equations(:, :)
     type(sparse_t), intent(inout) :: matrix
-    real(wp), dimension(2*size_of(memory, s), 2*size_of(memory, s)) :: block
-    real(wp), dimension(2*size_of(memory, s)) :: turn, load, stretch
-    real(wp) :: fn, fs, gap, shift, tau(2)
-    integer :: rows(2*size_of(memory, s)), i
+    real(wp) :: stretches(4, 2), block(4, 4), levers(2*size_of(memory, s), 4)
+    integer :: nodes(size_of(memory, s)), rows(2*size_of(memory, s))
+
+    call linearise_spring(memory, s, stretches, block)
+    if (.not. memory%has%nodal_pressure .and. holds(memory, s)) &
+      block = block + tie_stiffness(memory, s)*matmul(stretches, transpose(stretches))
+    call find_levers(memory, s, nodes, levers)
+    rows = reshape(equations(:, nodes), [size(rows)])
+    call add_block(matrix, rows, rows, matmul(matmul(levers, block), transpose(levers)))
+  end subroutine add_spring
+
+  !> Gradients of both stretches of a spring by d and the vector of its segment (x and y of either),
+  !> and derivatives of its forces on these with the loads held: of fn grad a + fs grad b.
+  pure subroutine linearise_spring(memory, s, stretches, block)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s
+    real(wp), intent(out) :: stretches(4, 2) !! along n and t
+    real(wp), intent(out) :: block(4, 4)
     type(tie_spring_t) :: spring
+    type(dual_t) :: d(2), way(2), n(2), t(2), turn(2), length, forces(4), gradients(4, 2)
+    real(wp) :: fn, fs
+    integer :: i
 
     spring = tie_spring(memory, s)
-    associate (p => [memory%ties%first(s), memory%ties%first(s + 1) - 1], &
-      points => memory%points)
-      fn = -sum(points%pressure(p(1):p(2))*points%area(p(1):p(2)))
-      fs = sum(points%traction(p(1):p(2))*points%area(p(1):p(2)))
+    associate (points => memory%points, first => memory%ties%first(s), &
+      last => memory%ties%first(s + 1) - 1, side => memory%ties%side(s))
+      fn = -sum(points%pressure(first:last)*points%area(first:last))
+      fs = sum(points%traction(first:last)*points%area(first:last))
+      d = variable(spring%d, [1, 2])
+      way = variable(side*spring%length*spring%t, [3, 4])
+      length = sqrt(way(1)*way(1) + way(2)*way(2))
+      t = [side*way(1)/length, side*way(2)/length]
+      n = [t(2), -t(1)]
+      turn = [-side*n(1)/length, -side*n(2)/length]
     end associate
-    gap = dot_product(spring%d, spring%n)
-    shift = dot_product(spring%d, spring%t)
-    tau = turn_of(memory, s, spring)
-    turn = gradient_of(memory, s, [0.0_wp, 0.0_wp], tau)
-    load = gradient_of(memory, s, fn*spring%t - fs*spring%n, -(fn*shift - fs*gap) &
-      *memory%ties%side(s)/spring%length*spring%t - 0.5_wp*(fn*gap + fs*shift)*tau)
-    block = outer(turn, load) + outer(load, turn)
-    if (.not. memory%has%nodal_pressure .and. holds(memory, s)) then
-      do i = 1, 2
-        stretch = stretch_of(memory, s, i)
-        block = block + tie_stiffness(memory, s)*outer(stretch, stretch)
-      end do
-    end if
-    rows = reshape(equations(:, nodes_of(memory, s)), [size(rows)])
-    call add_block(matrix, rows, rows, block)
-  end subroutine add_spring
+    gradients(:2, 1) = n
+    gradients(3:, 1) = (d(1)*t(1) + d(2)*t(2))*turn
+    gradients(:2, 2) = t
+    gradients(3:, 2) = -(d(1)*n(1) + d(2)*n(2))*turn
+    stretches = gradients%value
+    forces = fn*gradients(:, 1) + fs*gradients(:, 2)
+    do i = 1, 4
+      block(i, :) = forces(i)%slope(:4)
+    end do
+  end subroutine linearise_spring
 
   !> Types 6 and 7, whose springs are points: the stretches averaged at the slave nodes.
   pure subroutine add_averages(memory, equations, matrix)
@@ -105,47 +123,26 @@ contains
     end associate
   end subroutine add_averages
 
-  !> Add a part of the gradient of a stretch to both sides of a product.
+  !> Add a part of the gradient of the i-th stretch of a spring to both sides of a product.
   pure subroutine add_stretch(memory, s, i, part, product)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s, i
     real(wp), intent(in) :: part
     type(product_t), intent(inout) :: product
-    real(wp) :: stretch(2, size_of(memory, s))
+    real(wp) :: stretches(4, 2), block(4, 4), levers(2*size_of(memory, s), 4)
+    real(wp) :: gradient(2*size_of(memory, s))
     integer :: nodes(size_of(memory, s)), k
 
     if (.not. abs(part) > 0.0_wp) return
-    nodes = nodes_of(memory, s)
-    stretch = reshape(part*stretch_of(memory, s, i), shape(stretch))
+    call linearise_spring(memory, s, stretches, block)
+    call find_levers(memory, s, nodes, levers)
+    gradient = part*matmul(levers, stretches(:, i))
     do k = 1, size(nodes)
-      call add_to_row(product, nodes(k), stretch(:, k))
-      call add_to_column(product, nodes(k), stretch(:, k))
+      associate (of_node => gradient(2*k - 1:2*k))
+        call add_at_node(product, nodes(k), of_node, of_node)
+      end associate
     end do
   end subroutine add_stretch
-
-  !> Gradient of the i-th stretch of a spring, 1 along n and 2 along t.
-  pure function stretch_of(memory, s, i) result(gradient)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: s, i
-    real(wp) :: gradient(2*size_of(memory, s))
-    type(tie_spring_t) :: spring
-
-    spring = tie_spring(memory, s)
-    associate (tau => turn_of(memory, s, spring))
-      if (i == 1) gradient = gradient_of(memory, s, spring%n, dot_product(spring%d, spring%t)*tau)
-      if (i == 2) gradient = gradient_of(memory, s, spring%t, -dot_product(spring%d, spring%n)*tau)
-    end associate
-  end function stretch_of
-
-  !> Gradient of the angle of the segment of a spring by its second node, 1/m.
-  pure function turn_of(memory, s, spring) result(tau)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: s
-    type(tie_spring_t), intent(in) :: spring
-    real(wp) :: tau(2)
-
-    tau = -memory%ties%side(s)/spring%length*spring%n
-  end function turn_of
 
   !> Nodes of a spring, some of them more than once: of its points, and of its segment.
   pure function size_of(memory, s) result(n)
@@ -156,48 +153,33 @@ contains
     n = 2*n_side*(memory%ties%first(s + 1) - memory%ties%first(s)) + 2
   end function size_of
 
-  !> These, local numbers.
-  pure function nodes_of(memory, s) result(nodes)
+  !> These, local numbers, and by how much d and the vector of the segment move with them.
+  pure subroutine find_levers(memory, s, nodes, levers)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
-    integer :: nodes(size_of(memory, s))
+    integer, intent(out) :: nodes(:)
+    real(wp), intent(out) :: levers(:, :) !! (x and y of each node, x and y of either)
+    real(wp) :: weights(size(nodes), 2)
+    integer :: p, n, k
 
-    associate (first => memory%ties%first(s), last => memory%ties%first(s + 1) - 1)
-      nodes = [memory%points%slave_nodes(:, first:last), memory%points%master_nodes(:, &
-        first:last), memory%ties%owner(:, s)]
-    end associate
-  end function nodes_of
-
-  !> Gradient of d.direction, the direction held, and of what the second node of the segment less
-  !> the first one has as `pair`.
-  pure function gradient_of(memory, s, direction, pair) result(gradient)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: s
-    real(wp), intent(in) :: direction(2), pair(2)
-    real(wp) :: gradient(2*size_of(memory, s))
-    real(wp), dimension(n_side*(memory%ties%first(s + 1) - memory%ties%first(s))) :: slave, master
-    integer :: p, n
-
+    weights = 0.0_wp
     n = 0
     associate (points => memory%points, first => memory%ties%first(s), &
       last => memory%ties%first(s + 1) - 1)
       do p = first, last
-        associate (share => points%area(p)/sum(points%area(first:last)))
-          slave(n + 1:n + n_side) = share*points%slave_weights(:, p)
-          master(n + 1:n + n_side) = -share*points%master_weights(:, p)
-        end associate
-        n = n + n_side
+        nodes(n + 1:n + 2*n_side) = [points%slave_nodes(:, p), points%master_nodes(:, p)]
+        weights(n + 1:n + 2*n_side, 1) = points%area(p)/sum(points%area(first:last)) &
+          *[points%slave_weights(:, p), -points%master_weights(:, p)]
+        n = n + 2*n_side
       end do
     end associate
-    gradient = [reshape(outer(direction, [slave, master]), [4*n]), -pair, pair]
-  end function gradient_of
-
-  !> The product a b^T.
-  pure function outer(a, b) result(product)
-    real(wp), intent(in) :: a(:), b(:)
-    real(wp) :: product(size(a), size(b))
-
-    product = spread(a, 2, size(b))*spread(b, 1, size(a))
-  end function outer
+    nodes(n + 1:) = memory%ties%owner(:, s)
+    weights(n + 1:, 2) = [-1.0_wp, 1.0_wp]
+    levers = 0.0_wp
+    do k = 1, 2
+      levers(k::2, k) = weights(:, 1)
+      levers(k::2, 2 + k) = weights(:, 2)
+    end do
+  end subroutine find_levers
 
 end module tangent_ties_m

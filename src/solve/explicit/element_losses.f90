@@ -5,7 +5,7 @@
 !> models whose points may fail.
 module element_losses_m
   use block_state_m, only : stays
-  use contact_preparation_m, only : prepare_contact
+  use contact_memory_m, only : prepare_contact, renew_contact, close_contact
   use contacts_m, only : contact_t
   use element_state_m, only : settle_erosion, count_points, first_failed
   use exposed_quads_m, only : find_exposed
@@ -15,7 +15,6 @@ module element_losses_m
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
   use node_motion_m, only : leap_t, find_factors
-  use renewal_m, only : renew_contact, close_contact
   use start_m, only : weigh_contacts
   use state_m, only : state_t
   use surface_building_m, only : surface_left

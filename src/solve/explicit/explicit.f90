@@ -7,7 +7,7 @@
 !> written belongs to one instant.
 module explicit_m
   use clock_m, only : lap, phase_elements, phase_nodes, phase_output
-  use explicit_contact_m, only : report_contact_energies, press_contacts
+  use explicit_contact_m, only : report_contact_energies, add_implicit_penalties
   use contact_check_m, only : report_contact_end
   use element_dispatch_m, only : add_tile_forces, share_tile_forces, keep_tile_forces, &
     sum_special_forces
@@ -217,8 +217,8 @@ contains
     !$omp end do
     !$omp master
     ! The step of cycle zero is found later on.
-    if (state%cycle > 0 .or. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
-      cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
+    if (state%cycle > 0 .or. cycle%leap%dt > 0.0_wp) call add_implicit_penalties(model, &
+      cycle%leap, cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
     !$omp end master
     !$omp barrier
   end subroutine press_nodes

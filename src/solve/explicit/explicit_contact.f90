@@ -1,50 +1,48 @@
 ! SPDX-License-Identifier: MIT
-!> Contact in the explicit cycle. Interfaces whose springs push by the gaps of the end of the step
-!> (PUNIT 4): after all other forces, from the velocities that these would give; how nodes of rigid
-!> bodies would move then, and how a force at one moves all others (doc/theory/contact.md, section
-!> 6.6). The log tells of interfaces whose springs make or lose energy, and of those whose forces
-!> are limited (section 6); the trapezoidal rule is the work that the explicit scheme itself does.
+!> Contact in the explicit cycle: the energy balance of the springs of each interface by the
+!> trapezoidal rule, which is the work that the explicit scheme itself does, with the warnings where
+!> they make or lose energy or where their forces are limited (doc/theory/contact.md, section 6);
+!> and implicit penalties (PUNIT 4, section 6.6), which follow all other forces: from the velocities
+!> that these give to the nodes of the interface, rigid bodies among them.
 module explicit_contact_m
   use clock_m, only : clock_t, lap, share_contact, phase_contact_force, phase_nodes
   use loads_m, only : is_active, part_damping_rate
   use contacts_m, only : penalty_implicit
-  use implicit_penalty_m, only : find_rows, pressures_ahead
+  use implicit_penalty_m, only : pressure_step_t, start_pressure_step, find_rows, pressures_ahead
   use kinds_m, only : wp
   use law_state_m, only : has_made, has_lost, energy_limit_t
   use log_m, only : log_t, warn, write_log, to_text, percent
   use model_m, only : model_t
   use node_motion_m, only : leap_t, look_ahead, solve_rigids, damping_of
-  use pressure_step_m, only : pressure_step_t, start_pressure_step
   use rigid_state_m, only : turn_of, shift_by_turn, velocity_of
   use state_m, only : state_t
   use units_m, only : per_depth
   use weighted_gaps_m, only : node_of
   implicit none
   private
-  public :: plan_looks, follow_contact, report_contact_energies, pressure_step_t, press_contacts
+  public :: plan_sampling, check_springs, report_contact_energies, add_implicit_penalties
 
-  !> Cycles between two looks at springs; at more of them the sum over all points would show in the
-  !> time of a step.
-  integer, parameter :: look_interval = 20
-  !> Share of the largest energy so far from which on energy made or lost is told.
+  !> Cycles between two samples of the springs; with shorter intervals the sum over all points would
+  !> show in the time of a step.
+  integer, parameter :: sampling_interval = 20
+  !> Share of the largest energy so far from which on energy made or lost is reported.
   real(wp), parameter :: noticed_share = 0.01_wp
-  !> Share of the largest energy so far that all interfaces together may lend to springs that were
-  !> caught loaded.
-  real(wp), parameter :: lent_share = 0.005_wp
-  !> What to look at.
+  !> Share of the largest energy so far that is admissible for springs loaded at their entry, of all
+  !> interfaces together.
+  real(wp), parameter :: entry_share = 0.005_wp
   character(*), parameter :: hint &
     = '; look at corners there, at the penalty and at the time step', not_lost &
     = ' (damping and friction are no part of it)'
-  !> Limited cycles raise `recent` by 20, others with force lower it by 1: told from here on, that
-  !> is after 50 limited cycles in a row, or more where others lie between; never where no more than
-  !> one cycle of 21 is limited.
+  !> Limited cycles raise `recent` by 20, others with force lower it by 1: a warning from here on,
+  !> that is after 50 limited cycles in a row, or more where others lie between; never where no more
+  !> than one cycle of 21 is limited.
   integer, parameter :: again_and_again = 1000
 
 contains
 
-  !> Before the contacts of a cycle: whether they look at their springs, the largest energy so far,
-  !> what may be lent, and the step to come.
-  pure subroutine plan_looks(model, writes, state)
+  !> Before the contacts of a cycle: whether they sample their springs, the largest energy so far,
+  !> the entry allowance, and the step to come.
+  pure subroutine plan_sampling(model, writes, state)
     type(model_t), intent(in) :: model
     logical, intent(in) :: writes !! this cycle writes something
     type(state_t), intent(inout) :: state
@@ -52,19 +50,19 @@ contains
     if (size(state%contacts) == 0) return
     if (state%cycle > 0) state%largest_energy = max(state%largest_energy, &
       abs(state%initial_energy + (state%external_work + sum(state%contacts%interference%work))))
-    if (writes .or. mod(state%cycle, look_interval) == 0) state%contacts%monitor%is_due = .true.
-    state%contacts%limit%entry_allowance = lent_share*state%largest_energy/size(state%contacts)
-    ! What is led takes from its guide what it needs; not so the folds of a surface with itself.
+    if (writes .or. mod(state%cycle, sampling_interval) == 0) state%contacts%monitor%is_due = .true.
+    state%contacts%limit%entry_allowance = entry_share*state%largest_energy/size(state%contacts)
+    ! Prescribed motion supplies what entries need; not so in folds of a surface with itself.
     if (size(model%conditions%motions) + size(model%conditions%rigid_motions) > 0) then
       where (.not. model%contacts%is_self) state%contacts%limit%entry_allowance = huge(1.0_wp)
     end if
     ! The step of cycle zero is not known yet.
     state%contacts%limit%coming_step = merge(state%dt, 0.0_wp, state%cycle > 0)
-  end subroutine plan_looks
+  end subroutine plan_sampling
 
   !> After the forces of an interface: what its springs have made or lost, and a warning the first
   !> time that this is much, or where forces are limited again and again.
-  subroutine follow_contact(model, i, state, log)
+  subroutine check_springs(model, i, state, log)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
     type(state_t), intent(inout) :: state
@@ -97,12 +95,12 @@ contains
           model%mesh%coordinates(:, monitor%node) + state%motion(1:2, monitor%node)
       end if
       sign_of = merge(has_made, has_lost, monitor%balance < 0.0_wp)
-      ! In the first cycles the springs hold energy that no work has been booked for yet.
+      ! In the first cycles the springs hold energy whose work is not in the balance yet.
       if (monitor%changes(sign_of)%warned .or. abs(monitor%balance) <= &
         noticed_share*max(state%largest_energy, contact%energy)) return
-      ! While an overlap grows there is nothing yet to hold it against.
+      ! While an interference ramps up there is no energy yet to compare with.
       if (contact%has%interference .and. contact%interference%remaining > 0.0_wp) return
-      ! What impacts take of implicit springs is no fault of theirs; the end tells it.
+      ! Impacts of implicit springs are plastic; the end reports their loss.
       if (sign_of == has_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) return
       monitor%changes(sign_of)%warned = .true.
       call warn(log, 'interface '//to_text(model%contacts(i)%id)//': at cycle ' &
@@ -110,7 +108,7 @@ contains
         //amount_text(model, i, sign_of, state)//hint//trim(merge(not_lost, repeat(' ', &
         len(not_lost)), sign_of == has_lost)))
     end associate
-  end subroutine follow_contact
+  end subroutine check_springs
 
   !> How often forces were limited, and by how much.
   function limit_text(limit) result(text)
@@ -175,9 +173,9 @@ contains
     end associate
   end function amount_text
 
-  !> Pressures and forces of all such interfaces. One thread: what an interface is given by another
-  !> has to be known.
-  subroutine press_contacts(model, leap, damping, velocity, clock, log, state, steps)
+  !> Pressures and forces of all interfaces with implicit penalties, one after the other: each adds
+  !> to the forces that the next one starts from.
+  subroutine add_implicit_penalties(model, leap, damping, velocity, clock, log, state, steps)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
     real(wp), intent(in) :: damping(2)         !! D per direction
@@ -186,99 +184,112 @@ contains
     type(log_t), intent(inout) :: log
     type(state_t), intent(inout) :: state
     type(pressure_step_t), intent(inout) :: steps(:) !! (interfaces) of the call before
-    real(wp) :: free(2)
-    logical :: are_solved !! rigid bodies: no two interfaces press one that moves
-    integer :: i, k
+    logical :: are_solved !! rigid bodies: no two interfaces load one that moves
+    integer :: i
 
     are_solved = .false.
     call lap(clock, phase_nodes)
     do i = 1, size(model%contacts)
       if (model%contacts(i)%penalty_unit /= penalty_implicit) cycle
       if (.not. state%contacts(i)%scratch%waits) cycle
-      if (.not. allocated(steps(i)%velocity)) then
-        call start_pressure_step(model%contacts(i), state%contacts(i), steps(i))
-        call list_company(model, state%contacts(i)%nodes, steps(i))
-      end if
-      steps(i)%dt = leap%dt
-      if (state%contacts(i)%points%n > 0) then
-        call find_rows(steps(i), state%contacts(i))
-        ! The step ahead as the nodes that have rows would make it without the interface: what a
-        ! force adds to their velocities, and these; 0 where nothing moves them.
-        do k = 1, steps(i)%rows%n_node
-          associate (l => steps(i)%rows%node(node_of, k))
-            call look_ahead(leap, state, state%contacts(i)%nodes(l), steps(i)%mobility(:, l), free)
-            steps(i)%velocity(:, l) = merge(free, 0.0_wp, steps(i)%mobility(:, l) > 0.0_wp)
-          end associate
-        end do
-        do k = 1, size(steps(i)%led, 2)
-          associate (prescribed => model%conditions%motions(steps(i)%led(1, k)))
-            if (is_active(prescribed, state%time)) steps(i)%velocity(prescribed%direction, &
-              steps(i)%led(2, k)) = velocity(steps(i)%led(1, k))
-          end associate
-        end do
-        if (size(steps(i)%riders, 2) > 0) then
-          if (.not. are_solved) call solve_rigids(model, damping, state)
-          are_solved = .true.
-          call ride(model, leap, damping, state, steps(i))
+      associate (step => steps(i), memory => state%contacts(i))
+        if (.not. allocated(step%velocity)) then
+          call start_pressure_step(model%contacts(i), memory, step)
+          call list_constrained_nodes(model, memory%nodes, step)
         end if
-      end if
-      steps(i)%dt_before = state%dt_before
-      steps(i)%cycle = state%cycle
-      steps(i)%time = state%time
-      call pressures_ahead(model%contacts(i)%friction, state%motion, steps(i), state%contacts(i), &
-        state%force_special)
+        step%dt = leap%dt
+        step%dt_before = state%dt_before
+        step%cycle = state%cycle
+        step%time = state%time
+        if (memory%points%n > 0) then
+          call find_rows(step, memory)
+          call set_free_velocities(model, leap, velocity, state, memory%nodes, step)
+          if (size(step%rigid_nodes, 2) > 0) then
+            if (.not. are_solved) call solve_rigids(model, damping, state)
+            are_solved = .true.
+            call move_rigid_nodes(model, leap, damping, state, step)
+          end if
+        end if
+        call pressures_ahead(model%contacts(i)%friction, state%motion, step, memory, &
+          state%force_special)
+      end associate
       call lap(clock, phase_contact_force)
       call share_contact(clock, i)
-      call follow_contact(model, i, state, log)
+      call check_springs(model, i, state, log)
     end do
-  end subroutine press_contacts
+  end subroutine add_implicit_penalties
 
-  !> Which motions lead which nodes of an interface, and which of its nodes belong to which body.
-  subroutine list_company(model, nodes, step)
+  !> Mobilities of the nodes that have rows, and their velocities in the step ahead without the
+  !> interface, 0 where nothing moves them; prescribed ones.
+  subroutine set_free_velocities(model, leap, velocity, state, nodes, step)
+    type(model_t), intent(in) :: model
+    type(leap_t), intent(in) :: leap
+    real(wp), intent(in) :: velocity(:)
+    type(state_t), intent(in) :: state
+    integer, intent(in) :: nodes(:)
+    type(pressure_step_t), intent(inout) :: step
+    real(wp) :: free(2)
+    integer :: k
+
+    do k = 1, step%rows%n_node
+      associate (l => step%rows%node(node_of, k))
+        call look_ahead(leap, state, nodes(l), step%mobility(:, l), free)
+        step%velocity(:, l) = merge(free, 0.0_wp, step%mobility(:, l) > 0.0_wp)
+      end associate
+    end do
+    do k = 1, size(step%prescribed, 2)
+      associate (prescribed => model%conditions%motions(step%prescribed(1, k)))
+        if (is_active(prescribed, state%time)) step%velocity(prescribed%direction, &
+          step%prescribed(2, k)) = velocity(step%prescribed(1, k))
+      end associate
+    end do
+  end subroutine set_free_velocities
+
+  !> Prescribed nodes of an interface, and its nodes of rigid bodies.
+  subroutine list_constrained_nodes(model, nodes, step)
     type(model_t), intent(in) :: model
     integer, intent(in) :: nodes(:)
     type(pressure_step_t), intent(inout) :: step
     integer :: local(model%mesh%n_node) !! number in the interface, 0: not of it
-    integer :: led(size(model%conditions%motions)), riders(3, size(nodes)), i, k, n
+    integer :: prescribed(size(model%conditions%motions)), rigid_nodes(3, size(nodes)), i, k, n
 
     local = 0
     local(nodes) = [(i, i=1, size(nodes))]
-    led = local(model%conditions%motions%node)
-    n = count(led > 0)
-    step%led = transpose(reshape([pack([(i, i=1, size(led))], led > 0), pack(led, led > 0)], &
-      [n, 2]))
+    prescribed = local(model%conditions%motions%node)
+    n = count(prescribed > 0)
+    step%prescribed = transpose(reshape([pack([(i, i=1, size(prescribed))], prescribed > 0), &
+      pack(prescribed, prescribed > 0)], [n, 2]))
     n = 0
     do i = 1, size(model%rigids)
       do k = 1, size(model%rigids(i)%nodes)
         if (local(model%rigids(i)%nodes(k)) == 0) cycle
         n = n + 1
-        riders(:, n) = [i, k, local(model%rigids(i)%nodes(k))]
+        rigid_nodes(:, n) = [i, k, local(model%rigids(i)%nodes(k))]
       end do
     end do
-    step%riders = riders(:, :n)
-    k = count([(any(riders(1, :n) == i), i=1, size(model%rigids))])
+    step%rigid_nodes = rigid_nodes(:, :n)
+    k = count([(any(rigid_nodes(1, :n) == i), i=1, size(model%rigids))])
     allocate (step%modes(2, size(nodes), 3*k))
-  end subroutine list_company
+  end subroutine list_constrained_nodes
 
-  !> Velocities of the nodes of bodies whose v(n+1/2) without the interface is known, and the modes
-  !> by which these are free to move, times the root of what a unit force along them makes.
-  subroutine ride(model, leap, damping, state, step)
+  !> Velocities v(n+1/2) without the interface of its nodes of rigid bodies, and the modes by which
+  !> these are free to move, times the root of what a unit force along them makes.
+  subroutine move_rigid_nodes(model, leap, damping, state, step)
     type(model_t), intent(in) :: model
     type(leap_t), intent(in) :: leap
     real(wp), intent(in) :: damping(2)       !! D per direction
     type(state_t), intent(in) :: state
     type(pressure_step_t), intent(inout) :: step
     real(wp) :: speed(3), arm(2), unit(3), root, rate(3)
-    logical :: is_free(3)
+    logical :: is_free(3) !! x, y and rotation of the body: neither fixed nor prescribed
     integer :: i, k, body
 
     step%n_mode = 0
     body = 0
-    do i = 1, size(step%riders, 2)
-      if (step%riders(1, i) /= body) then
+    do i = 1, size(step%rigid_nodes, 2)
+      if (step%rigid_nodes(1, i) /= body) then
         if (body > 0) step%n_mode = step%n_mode + count(is_free)
-        body = step%riders(1, i)
-        ! Which of x, y and the turn of the body are neither held nor led.
+        body = step%rigid_nodes(1, i)
         is_free = .not. model%rigids(body)%is_fixed
         do k = 1, size(model%conditions%rigid_motions)
           associate (motion => model%conditions%rigid_motions(k))
@@ -288,13 +299,11 @@ contains
         end do
         rate = damping_of(state%rigids(body), damping + part_damping_rate(model, &
           model%rigids(body)%part, state%time))
-        do k = 1, count(is_free)
-          step%modes(:, :, step%n_mode + k) = 0.0_wp
-        end do
+        step%modes(:, :, step%n_mode + 1:step%n_mode + count(is_free)) = 0.0_wp
       end if
-      associate (rigid => state%rigids(body), node => step%riders(3, i))
+      associate (rigid => state%rigids(body), node => step%rigid_nodes(3, i))
         speed = rigid%next_velocity
-        arm = rigid%arms(:, step%riders(2, i))
+        arm = rigid%arms(:, step%rigid_nodes(2, i))
         arm = arm + shift_by_turn(turn_of(rigid%place(3) + 0.5_wp*step%dt*speed(3)), arm)
         speed(3) = 2.0_wp*sin(0.5_wp*step%dt*speed(3))/step%dt
         step%velocity(:, node) = velocity_of(speed, arm)
@@ -308,6 +317,6 @@ contains
       end associate
     end do
     if (body > 0) step%n_mode = step%n_mode + count(is_free)
-  end subroutine ride
+  end subroutine move_rigid_nodes
 
 end module explicit_contact_m

@@ -11,7 +11,7 @@ module explicit_cycle_m
   use clock_m, only : lap, share_contact, phase_nodes
   use common_motion_m, only : common_velocity
   use loads_m, only : fix_nodes, update_activity, is_active
-  use explicit_contact_m, only : plan_looks, follow_contact, pressure_step_t
+  use explicit_contact_m, only : plan_sampling, check_springs
   use start_m, only : check_added_mass, weigh_contacts
   use contacts_m, only : told_as, penalty_implicit
   use element_losses_m, only : settle_elements, release_nodes, failure_watch_t, follow_failures, &
@@ -20,6 +20,7 @@ module explicit_cycle_m
   use health_m, only : tile_check_t, check_elements, are_sound, check_step, name_collapsed, &
     check_cycle
   use history_tables_m, only : table_secforc
+  use implicit_penalty_m, only : pressure_step_t
   use interface_m, only : apply_contact
   use kinds_m, only : wp
   use layout_m, only : chunk_size
@@ -162,7 +163,7 @@ contains
     if (allocated(state%node_damping)) call follow_damping(model, cycle%rates, state)
     ! What ended the cycle before is in this lap, or without contact in the one below.
     if (size(model%contacts) > 0) call lap(monitor%clock, phase_nodes)
-    call plan_looks(model, cycle%writes, state)
+    call plan_sampling(model, cycle%writes, state)
     do i = 1, size(model%contacts)
       k = told_as(model%contacts, i)
       if (k < i) call receive_tie_state(state%contacts(k), state%contacts(i))
@@ -170,7 +171,7 @@ contains
         state%dt_before, state%cycle, monitor%clock, state%contacts(i), state%force_special)
       if (k < i) call complete_handover(state%contacts(i), state%contacts(k))
       call share_contact(monitor%clock, k)
-      call follow_contact(model, i, state, monitor%log)
+      call check_springs(model, i, state, monitor%log)
     end do
     if (state%cycle > 0) call prepare_leap(model, state, cycle)
     if (allocated(state%cut_force) .and. cycle%due%tables(table_secforc)) &

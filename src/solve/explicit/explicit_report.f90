@@ -6,7 +6,7 @@ module explicit_report_m
   use common_motion_m, only : common_drive, common_velocity
   use loads_m, only : is_active
   use contact_check_m, only : report_contact_start
-  use explicit_contact_m, only : press_contacts
+  use explicit_contact_m, only : add_implicit_penalties
   use curves_m, only : curve_value
   use element_losses_m, only : settle_elements
   use element_steps_m, only : find_smallest_steps
@@ -73,8 +73,9 @@ contains
       if (model%erodes) state%elements%erosion%least_step = model%controls%dt_floor &
         *cycle%steps%first_dt/model%controls%dt_scale
       call prepare_leap(model, state, cycle)
-      if (cycle%presses .and. cycle%leap%dt > 0.0_wp) call press_contacts(model, cycle%leap, &
-        cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, cycle%pressing)
+      if (cycle%presses .and. cycle%leap%dt > 0.0_wp) call add_implicit_penalties(model, &
+        cycle%leap, cycle%damping, cycle%velocity, monitor%clock, monitor%log, state, &
+        cycle%pressing)
       call report_contact_start(model, state, monitor%log)
       if (monitor%ranks%mine == 0) call log_smallest_steps(model, state, monitor%log)
       call judge_damping(model, state%dt, monitor%log)

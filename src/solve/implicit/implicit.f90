@@ -230,10 +230,13 @@ contains
     state%external_work = state%external_work + 0.5_wp*sum((trial%external + attempt%external) &
       *attempt%motion(3:4, :))
     do i = 1, size(model%contacts)
-      call count_step(attempt%motion, state%contacts(i), attempt%contacts(i))
-      call measure_springs(attempt%contacts(i))
-      if (has_offsets(attempt%contacts(i))) &
-        call update_offsets(model%contacts(i), attempt%contacts(i))
+      associate (memory => attempt%contacts(i))
+        call count_step(attempt%motion, state%contacts(i), memory)
+        if (has_offsets(memory)) call update_offsets(model%contacts(i), memory)
+        ! Energy that springs have from fading offsets is no work of theirs: contact has made it.
+        call measure_springs(memory)
+        memory%monitor%balance = memory%energy - memory%monitor%stored
+      end associate
     end do
     if (step%is_dynamic) then
       acceleration = new_acceleration(state, step, attempt)
@@ -318,7 +321,6 @@ contains
       shot%acceleration = state%acceleration
       call fill_energies(model, state, [0.0_wp, 0.0_wp], shot)
       shot%energies%kinetic = 0.5_wp*sum(shot%velocity*mass_times(model, shot%velocity))
-      shot%energies%made = max(0.0_wp, -shot%energies%contact)
       call note_energies(model, .true., state, monitor)
       if (due%tables(table_matsum)) then
         call fill_parts(model, state%elements, shot)

@@ -8,7 +8,7 @@ module implicit_forces_m
   use clock_m, only : clock_t, lap, share_contact, phase_elements, phase_contact_force, phase_nodes
   use conditions_m, only : pressure_load_t
   use contact_state_m, only : contact_state_t
-  use contact_stiffness_m, only : add_contact_stiffness
+  use contact_dispatch_m, only : add_contact_stiffness
   use contacts_m, only : told_as
   use curves_m, only : curve_value
   use cut_forces_m, only : find_cut_forces

@@ -6,7 +6,7 @@
 module implicit_start_m
   use clock_m, only : lap, phase_solver
   use contact_check_m, only : report_contact_start
-  use contact_spring_ratios_m, only : spring_ratios
+  use contact_step_limit_m, only : spring_ratios
   use contact_springs_m, only : measure_springs
   use contact_state_m, only : contact_state_t
   use contacts_m, only : is_tied

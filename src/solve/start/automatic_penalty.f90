@@ -10,8 +10,8 @@
 module automatic_penalty_m
   use contact_log_m, only : penalty_text
   use contact_penalty_m, only : spread_of_stiffness, has_default_penalty
-  use contact_step_limit_m, only : spring_bound_t, bound_springs, bound_each, stable_step, &
-    closed_step, binding_bound, fitting_scale
+  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
+    binding_bound, fitting_scale
   use contact_state_m, only : contact_state_t
   use contacts_m, only : is_tied, penalty_factor, penalty_share
   use controls_m, only : contact_step_free, contact_step_warns
@@ -160,7 +160,11 @@ contains
 
     whole = 0.0_wp
     where (share > 0.0_wp) whole = 1.0_wp/share
-    call bound_each(model%contacts, state%contact_mass, state%contacts, whole, bounds)
+    ! Each as if there were no other one.
+    do i = 1, size(factor)
+      call bound_springs(model%contacts(i:i), state%contact_mass, state%contacts(i:i), &
+        whole(i:i), bounds(i:i))
+    end do
     factor = 1.0_wp
     where (share > 0.0_wp) factor = fitting_scale(steps(1), steps(2), bounds)
     where (model%contacts%penalty_unit == penalty_factor) factor = min(factor, 1.0_wp)

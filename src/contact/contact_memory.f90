@@ -1,33 +1,110 @@
 ! SPDX-License-Identifier: MIT
-!> An interface whose surfaces have lost elements or come to light anew: its memory is made for the
-!> surfaces that are left, and what it knew of sites that remain goes over by nodes and segments.
-module renewal_m
-  use contact_preparation_m, only : prepare_contact
+!> The memory of an interface: set up from its formulation and the deck, and carried over where its
+!> surfaces have lost elements or come to light anew: set up for the surfaces that are left, with
+!> the values of sites that remain, by nodes and segments (doc/theory/contact.md, section 3.9).
+module contact_memory_m
+  use contact_dispatch_m, only : formulation_t, formulation_of
+  use contact_penalty_m, only : set_penalties
   use contact_springs_m, only : measure_springs
-  use contact_state_m, only : contact_state_t, contact_status_t, make_room, sites_of_segment, &
+  use contact_state_m, only : contact_state_t, contact_points_t, contact_status_t, features_t, &
+    allocate_points, allocate_damping, allocate_tractions, allocate_scratch, sites_of_segment, &
     n_side, active
-  use contacts_m, only : contact_t
+  use contact_status_m, only : list_active
+  use contacts_m, only : contact_t, has_friction, is_tied, breaks, penalty_implicit
   use energy_limit_m, only : form_springs
   use gather_m, only : power_of
+  use initial_status_m, only : allocate_slave_status, allocate_master_status, allocate_segments
   use kinds_m, only : wp
+  use law_state_m, only : allocate_limit, allocate_friction, allocate_interference
   use model_m, only : model_t
+  use points_on_segments_m, only : start_segment_points, points_at_nodes
+  use sharp_vertices_m, only : has_folds
   use surfaces_m, only : surface_t
-  use contact_status_m, only : list_active
   implicit none
   private
-  public :: renew_contact, close_contact
+  public :: prepare_contact, renew_contact, close_contact
 
-  !> Where the nodes and segments of a surface have gone, 0: not there any more.
+  !> Present numbers of the previous nodes and segments of a surface, 0: gone.
   type :: passage_t
     integer, allocatable :: node(:)    !! (n_node)
     integer, allocatable :: segment(:) !! (n_segment)
-    logical, allocatable :: keeps(:)   !! (n_node) and the segment that starts there is still there
+    logical, allocatable :: keeps(:)   !! (n_node) the segment that starts there is still there
   end type passage_t
 
 contains
 
-  !> The memory of `contact` out of that of `previous`; `lost` is what the springs stored that are
-  !> not there any more.
+  !> Memory of one interface before its first search: shapes and penalties.
+  subroutine prepare_contact(contact, model, memory)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(out) :: memory
+    type(formulation_t) :: formulation
+    real(wp) :: origin(2)
+    integer :: n_slave, n_master, i
+
+    n_slave = contact%slave%n_node
+    n_master = contact%master%n_node
+    memory%n_slave = n_slave
+    memory%n_master = n_master
+    memory%nodes = [contact%slave%nodes, contact%master%nodes]
+    allocate (memory%force(2, n_slave + n_master), memory%positions(4, n_slave + n_master), &
+      source=0.0_wp)
+    origin = model%mesh%coordinates(:, memory%nodes(1))
+    if (contact%is_round) origin(1) = 0.0_wp
+    do i = 1, size(memory%nodes)
+      memory%positions(1:2, i) = model%mesh%coordinates(:, memory%nodes(i)) - origin
+    end do
+    formulation = formulation_of(contact)
+    memory%contact_law = formulation%contact_law
+    memory%has = features_of(contact, formulation, model%controls%implicit%is_on)
+    call set_penalties(contact, model, formulation%self_share, memory)
+    call start_segment_points(formulation%segment_points, contact%n_gauss, contact%is_round, &
+      has_folds(contact), contact%slave, memory)
+    call allocate_slave_status(contact, model, memory)
+    if (formulation%has_two_passes) call allocate_master_status(contact, model, memory)
+    if (memory%has%overlaps) call allocate_segments(contact, memory)
+    call allocate_points(memory%points, formulation%points_per_slave*memory%slave_status%n &
+      + formulation%points_per_master*n_master)
+    if (memory%has%nodal_pressure) allocate (memory%node_pressure(n_slave), source=0.0_wp)
+    if (memory%has%damping) then
+      call allocate_damping(memory%points)
+      allocate (memory%damping_force(2, n_slave + n_master), source=0.0_wp)
+    end if
+    if (memory%has%limit) call allocate_limit(memory%limit, n_slave + n_master)
+    if (memory%has%friction) then
+      call allocate_tractions(memory%points)
+      call allocate_friction(memory%friction, sites_of_segment(memory)*n_slave + n_master, &
+        n_slave + n_master)
+    end if
+    if (memory%has%interference) call allocate_interference(memory%interference, &
+      sites_of_segment(memory)*n_slave, n_master)
+    call allocate_scratch(memory)
+  end subroutine prepare_contact
+
+  !> Features of an interface by its formulation and by the deck. Implicit penalties have an energy
+  !> limit of their own, which needs normal forces apart from those of friction.
+  pure function features_of(contact, formulation, is_implicit) result(has)
+    type(contact_t), intent(in) :: contact
+    type(formulation_t), intent(in) :: formulation
+    logical, intent(in) :: is_implicit !! the whole run
+    type(features_t) :: has
+
+    has%segment_points = formulation%segment_points /= points_at_nodes
+    has%overlaps = formulation%covers_segments
+    has%nodal_pressure = formulation%has_nodal_pressure
+    has%damping = contact%damping > 0.0_wp
+    has%friction = has_friction(contact)
+    has%interference = allocated(contact%interference)
+    has%ties = is_tied(contact)
+    has%breaks = breaks(contact)
+    has%tie_handover = contact%behind > 0
+    has%limit = .not. (is_implicit .or. has%ties &
+      .or. contact%penalty_unit == penalty_implicit .and. .not. has%friction)
+    has%entry_offsets = contact%penalty_unit /= penalty_implicit
+  end function features_of
+
+  !> The memory of `contact` out of that of `previous`; `lost` is the energy of springs that have
+  !> gone. Points are generated anew in the next call.
   subroutine renew_contact(previous, contact, model, motion, memory, lost)
     type(contact_t), intent(in) :: previous, contact
     type(model_t), intent(in) :: model
@@ -36,27 +113,28 @@ contains
     real(wp), intent(out) :: lost                    !! J/m
     type(contact_state_t) :: old
     type(passage_t) :: sides(2)
-    integer :: stored_at
+    integer, allocatable :: now(:) !! present numbers of the nodes
 
     old = memory
     call prepare_contact(contact, model, memory)
     call match_surface(previous%slave, contact%slave, size(motion, 2), sides(1))
     call match_surface(previous%master, contact%master, size(motion, 2), sides(2))
+    now = [sides(1)%node, shifted(sides(2)%node, memory%n_slave)]
     memory%positions(3:4, :) = motion(1:2, memory%nodes)
     call carry_scalars(old, memory)
-    call carry_nodes([sides(1)%node, shifted(sides(2)%node, memory%n_slave)], old, memory)
+    call carry_nodes(now, old, memory)
     if (old%has%friction) call carry_sites(sides, old, memory)
-    call carry_points([sides(1)%node, shifted(sides(2)%node, memory%n_slave)], contact, old, memory)
     call carry_statuses(sides(1)%segment, sides(2)%segment, sides, old, memory)
     call form_springs(memory)
-    stored_at = old%monitor%node
     call measure_springs(old)
-    call measure_springs(memory)
-    lost = max(0.0_wp, old%monitor%stored - memory%monitor%stored)
+    lost = old%monitor%stored
+    call clear_lost_points(now, contact, memory%n_slave, old%points)
+    call measure_springs(old)
+    memory%monitor%stored = old%monitor%stored
+    memory%monitor%is_due = .true.
+    lost = max(0.0_wp, lost - memory%monitor%stored)
     lost = min(lost, max(0.0_wp, memory%energy + memory%limit%admissible))
     memory%energy = memory%energy - lost
-    memory%monitor%node = stored_at
-    memory%monitor%is_due = .true.
   end subroutine renew_contact
 
   !> An interface that is over keeps its account alone. The forces of the last call have done half
@@ -137,10 +215,11 @@ contains
     end do
   end subroutine match_surface
 
-  !> What an interface knows as a whole.
+  !> Values of an interface as a whole.
   pure subroutine carry_scalars(old, memory)
     type(contact_state_t), intent(in) :: old
     type(contact_state_t), intent(inout) :: memory
+    real(wp), allocatable :: inverse_mass(:, :), velocity(:, :)
 
     memory%travel = old%travel
     memory%advance = old%advance
@@ -158,18 +237,12 @@ contains
     memory%monitor = old%monitor
     memory%friction%work = old%friction%work
     memory%friction%stored = old%friction%stored
-    memory%limit%coming_step = old%limit%coming_step
+    call move_alloc(memory%limit%inverse_mass, inverse_mass)
+    call move_alloc(memory%limit%velocity, velocity)
+    memory%limit = old%limit
+    call move_alloc(inverse_mass, memory%limit%inverse_mass)
+    call move_alloc(velocity, memory%limit%velocity)
     memory%limit%recoil = huge(1.0_wp)
-    memory%limit%admissible = old%limit%admissible
-    memory%limit%admitted = old%limit%admitted
-    memory%limit%entry_allowance = old%limit%entry_allowance
-    memory%limit%largest = old%limit%largest
-    memory%limit%n_loaded = old%limit%n_loaded
-    memory%limit%n_limited = old%limit%n_limited
-    memory%limit%least_factor = old%limit%least_factor
-    memory%limit%least_time = old%limit%least_time
-    memory%limit%recent = old%limit%recent
-    memory%limit%warned = old%limit%warned
   end subroutine carry_scalars
 
   !> Values of nodes.
@@ -215,35 +288,18 @@ contains
     memory%friction%slip(to) = old%friction%slip(from)
   end subroutine carry_sites
 
-  !> Points of the last call, but for those whose nodes or segments have gone.
-  pure subroutine carry_points(now, contact, old, memory)
-    integer, intent(in) :: now(:)
+  !> Points of the last call whose nodes or segments have gone stand for no area.
+  pure subroutine clear_lost_points(now, contact, n_slave, points)
+    integer, intent(in) :: now(:)          !! present numbers of the nodes
     type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: old
-    type(contact_state_t), intent(inout) :: memory
-    integer :: p, q, slave(n_side), master(n_side)
+    integer, intent(in) :: n_slave         !! at present
+    type(contact_points_t), intent(inout) :: points
+    integer :: p
 
-    call make_room(memory%points, old%points%n)
-    associate (from => old%points, to => memory%points)
-      do p = 1, from%n
-        slave = now(from%slave_nodes(:, p))
-        master = now(from%master_nodes(:, p))
-        if (.not. (is_there(slave) .and. is_there(master))) cycle
-        q = to%n + 1
-        to%n = q
-        to%slave_nodes(:, q) = slave
-        to%master_nodes(:, q) = master
-        to%slave_weights(:, q) = from%slave_weights(:, p)
-        to%master_weights(:, q) = from%master_weights(:, p)
-        to%normal(:, q) = from%normal(:, p)
-        to%gap(q) = from%gap(p)
-        to%area(q) = from%area(p)
-        to%stiffness(q) = from%stiffness(p)
-        to%pressure(q) = from%pressure(p)
-        if (allocated(from%damping)) to%damping(q) = from%damping(p)
-        if (allocated(from%traction)) to%traction(q) = from%traction(p)
-      end do
-    end associate
+    do p = 1, points%n
+      if (.not. (is_there(now(points%slave_nodes(:, p))) &
+        .and. is_there(now(points%master_nodes(:, p))))) points%area(p) = 0.0_wp
+    end do
 
   contains
 
@@ -254,14 +310,14 @@ contains
 
       there = all(nodes > 0)
       if (.not. there .or. nodes(1) == nodes(2)) return
-      if (nodes(1) <= memory%n_slave) then
+      if (nodes(1) <= n_slave) then
         there = follows(contact%slave, nodes)
       else
-        there = follows(contact%master, nodes - memory%n_slave)
+        there = follows(contact%master, nodes - n_slave)
       end if
     end function is_there
 
-  end subroutine carry_points
+  end subroutine clear_lost_points
 
   !> Whether a segment leads from one node to the other.
   pure function follows(surface, nodes)
@@ -298,7 +354,7 @@ contains
     memory%segment_gap(slave(from)) = old%segment_gap(from)
   end subroutine carry_statuses
 
-  !> Points that are still there keep their segments if these are; all are looked at anew.
+  !> Points that remain keep their segments where these remain; all are searched anew.
   pure subroutine carry_status(old, points, segments, status)
     type(contact_status_t), intent(in) :: old
     integer, intent(in) :: points(:), segments(:) !! present numbers
@@ -320,4 +376,4 @@ contains
     call list_active(status)
   end subroutine carry_status
 
-end module renewal_m
+end module contact_memory_m

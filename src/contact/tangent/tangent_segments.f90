@@ -1,28 +1,28 @@
 ! SPDX-License-Identifier: MIT
-!> Linearised points of types 5 and 7, which move with the breakpoints of the overlaps of slave
-!> segments (doc/theory/contact.md, sections 9.4 and 9.5). Half of each overlap is the area of a
-!> point of its own at either of its ends for type 5, so that each depends on few nodes.
-module tangent_overlaps_m
-  use contact_state_m, only : contact_state_t, active
+!> Linearised points on slave segments (doc/theory/contact.md, sections 9.4 and 9.5): those of types
+!> 5 and 7 move with the breakpoints of the overlaps of their segments, those of type 6 stand at
+!> fixed sites. Half of each overlap is the area of a point of its own at either of its ends for
+!> type 5, so that each depends on few nodes.
+module tangent_segments_m
+  use assembly_m, only : nodal_share
+  use contact_state_m, only : contact_state_t, active, site_at, segment_point_at
   use contacts_m, only : contact_t
-  use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
-  use projection_m, only : projection_t, nearby_projection, round_off
+  use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
+  use projection_m, only : round_off
   use kinds_m, only : wp
   use linearisation_m, only : linearised_point_t, linearised_list_t, linearised_projection_t, &
-    append_point, &
-    difference, length_between, project, project_point, between, share_of, side_share_of, &
-    radius_at, end_radius_at
-  use nodal_tangent_m, only : nodal_share
+    append_point, difference, length_between, project, project_point, cosine_between, share_of, &
+    side_share_of, radius_at
   use overlap_m, only : overlap_t
-  use overlaps_m, only : find_overlaps, n_most_overlaps
+  use overlaps_m, only : find_overlaps, n_most_overlaps, sides_part
   use points_nts_mar_m, only : is_sharp_vertex
-  use points_segmented_mortar_m, only : gauss_xi, least_part
+  use points_mortar_m, only : gauss_xi, least_part
   use surfaces_m, only : surface_t
   use tangent_nts_m, only : linearise_node, linearise_length
   use sharp_vertices_m, only : has_folds
   implicit none
   private
-  public :: linearise_overlap_ends, linearise_gauss_points, append_share
+  public :: linearise_overlap_ends, linearise_gauss_points
 
 contains
 
@@ -47,7 +47,6 @@ contains
         if (.not. is_sharp_vertex(contact%slave, memory, node)) cycle
         point = linearise_node(memory, p)
         call linearise_length(contact%slave, 0, contact%is_round, .false., memory, point)
-        point%remaining = constant(memory%slave_status%offset(node) + depth_left(memory, node))
         call append_point(list, point)
       end associate
     end do
@@ -69,13 +68,13 @@ contains
     do k = 1, n
       if (.not. overlaps(k)%high > overlaps(k)%low) cycle
       if (.not. contact%strict .and. .not. overlaps(k)%share > 0.0_wp) cycle
-      call start_on_overlap(contact, memory, s, overlaps(:n), k, point, xi)
-      half = 0.5_wp*(xi(2) - xi(1))*length_between(memory%positions, point%nodes, 1, 2)
+      call start_on_overlap(contact, memory, s, overlaps(k), point, xi)
+      half = 0.5_wp*(xi(2) - xi(1))*length_between(memory, point, 1, 2)
       breakpoints = [overlaps(k)%first, overlaps(k)%last]
       do i = 1, 2
         point%area = half
-        if (contact%is_round) point%area = half*end_radius_at(memory%positions, point%nodes, 1, 2, &
-          xi(i), xi(3 - i))
+        if (contact%is_round) point%area = half*radius_at(memory, point, 1, 2, &
+          (1.0_wp/3.0_wp)*(2.0_wp*xi(i) + xi(3 - i)))
         associate (node => contact%slave%segments(i, s))
           if (breakpoints(i) > 0) then
             if (memory%segment_state(s) /= active) cycle
@@ -86,11 +85,7 @@ contains
             has_area(node) = .true.
           end if
         end associate
-        if (merge(overlaps(k)%part, overlaps(k)%share, contact%strict) >= 1.0_wp) then
-          call append_point(list, point)
-        else
-          call append_share(contact, memory, s, overlaps(k), .not. contact%strict, point, list)
-        end if
+        call append_share(contact, memory, s, overlaps(k), .not. contact%strict, point, list)
       end do
     end do
   end subroutine linearise_ends_on
@@ -104,23 +99,12 @@ contains
 
     point%nodes(3:4) = [node, 0]
     point%site = node
-    projection = project(difference(memory%positions, point%nodes, 3, 1), &
-      difference(memory%positions, point%nodes, 2, 1))
+    projection = project(difference(memory, point, 3, 1), difference(memory, point, 2, 1))
     point%slave_xi = projection%xi
     point%master_xi = constant(0.0_wp)
     point%gap = projection%gap
     point%normal = -projection%normal
     point%length = constant(1.0_wp)
-    associate (ends => point%nodes(:2))
-      point%remaining = between(memory%slave_status%offset(ends), point%slave_xi)
-      if (.not. memory%has%interference) return
-      if (memory%interference%depth(node) < 0.0_wp) then
-        point%remaining = point%remaining + between([depth_left(memory, ends(1)), &
-          depth_left(memory, ends(2))], point%slave_xi)
-      else
-        point%remaining = point%remaining + depth_left(memory, node)
-      end if
-    end associate
   end subroutine put_at_breakpoint
 
   !> Type 5: let the point stand at a node that is in contact, the k-th end of the slave segment.
@@ -135,84 +119,114 @@ contains
       point%site = node
       point%slave_xi = constant(k - 1.0_wp)
       call project_point(memory, status%xi(node), status%gap(node), point)
-      point%remaining = constant(status%offset(node) + depth_left(memory, node))
     end associate
   end subroutine put_at_end
 
-  !> What is left of the initial overlap of a site, m.
-  pure function depth_left(memory, site) result(remaining)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: site
-    real(wp) :: remaining
-
-    remaining = 0.0_wp
-    if (memory%has%interference) &
-      remaining = memory%interference%remaining*max(0.0_wp, memory%interference%depth(site))
-  end function depth_left
-
-  !> Type 7: the Gauss points of all overlaps.
+  !> Types 6 and 7: all points, which follow each other on the list slave segment by slave segment;
+  !> at the end of the list are points at nodes.
   pure subroutine linearise_gauss_points(contact, memory, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(linearised_list_t), intent(inout) :: list
-    logical :: has_points(contact%slave%n_segment)
-    integer :: s, first
+    integer :: s, p, first
 
-    has_points = .false.
-    has_points(contact%slave%outgoing(memory%points%slave_nodes(1, :memory%points%n))) = .true.
-    do s = 1, contact%slave%n_segment
-      if (.not. has_points(s)) cycle
+    p = 1
+    do while (p <= memory%points%n)
+      if (maxval(memory%points%slave_weights(:, p)) >= 1.0_wp) exit
+      s = contact%slave%outgoing(memory%points%slave_nodes(1, p))
       first = list%n + 1
-      call linearise_gauss_points_on(contact, memory, s, list)
+      if (memory%has%overlaps) then
+        call linearise_on_overlaps(contact, memory, s, p, list)
+      else
+        call linearise_on_whole_segment(contact, memory, s, p, list)
+      end if
       if (has_folds(contact)) call linearise_tips(memory, contact%slave%segments(:, s), first, list)
     end do
   end subroutine linearise_gauss_points
 
-  !> Type 7: those of one slave segment, as far as they count.
-  pure subroutine linearise_gauss_points_on(contact, memory, s, list)
+  !> Type 6: the points of one slave segment that are on the list.
+  pure subroutine linearise_on_whole_segment(contact, memory, s, p, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
+    integer, intent(inout) :: p !! first point of the segment on the list; then of the next one
+    type(linearised_list_t), intent(inout) :: list
+    type(linearised_point_t) :: point
+    type(overlap_t) :: sides
+    integer :: q
+
+    point%nodes(:2) = contact%slave%segments(:, s)
+    associate (points => memory%points)
+      do while (p <= points%n)
+        if (points%slave_nodes(1, p) /= point%nodes(1)) exit
+        if (maxval(points%slave_weights(:, p)) >= 1.0_wp) exit
+        point%slave_xi = constant(points%slave_weights(2, p))
+        point%site = site_at(memory, p)
+        q = segment_point_at(points%slave_weights(2, p), memory%segment_xi)
+        call put_on_segment(contact, memory, p, &
+          memory%segment_share(q)*length_between(memory, point, 1, 2), point)
+        sides%master = contact%master%outgoing(points%master_nodes(1, p) - memory%n_slave)
+        sides%part = 1.0_wp
+        if (memory%slave_status%pass%is_closed) &
+          sides%part = sides_part(contact, memory, s, sides%master)
+        sides%share = sides%part
+        call append_share(contact, memory, s, sides, .false., point, list)
+        p = p + 1
+      end do
+    end associate
+  end subroutine linearise_on_whole_segment
+
+  !> Type 7: those of one slave segment that are on the list.
+  pure subroutine linearise_on_overlaps(contact, memory, s, p, list)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s
+    integer, intent(inout) :: p !! first point of the segment on the list; then of the next one
     type(linearised_list_t), intent(inout) :: list
     type(overlap_t) :: overlaps(n_most_overlaps(memory, s))
     type(linearised_point_t) :: point
-    type(dual_t) :: xi(2), length, share
-    type(projection_t) :: projected
+    type(dual_t) :: xi(2), length
     integer :: n, k, q
 
     call find_overlaps(contact, memory, s, .false., least_part, overlaps, n)
     do k = 1, n
       if (.not. overlaps(k)%share > 0.0_wp) cycle
-      call start_on_overlap(contact, memory, s, overlaps(:n), k, point, xi)
-      length = (xi(2) - xi(1))*length_between(memory%positions, point%nodes, 1, 2)
+      call start_on_overlap(contact, memory, s, overlaps(k), point, xi)
+      length = 0.5_wp*(xi(2) - xi(1))*length_between(memory, point, 1, 2)
       do q = 1, size(gauss_xi)
+        if (p > memory%points%n) return
         point%slave_xi = xi(1) + gauss_xi(q)*(xi(2) - xi(1))
-        associate (at => point%slave_xi%value, ends => point%nodes(:2))
-          projected = nearby_projection(contact%master, memory%positions(:, memory%n_slave + 1:), &
-            (1.0_wp - at)*memory%positions(:, ends(1)) + at*memory%positions(:, ends(2)), &
-            overlaps(k)%master)
-          if (.not. projected%is_on) cycle
-          point%nodes(3:4) = memory%n_slave + contact%master%segments(:, projected%segment)
-          call project_point(memory, projected%xi, projected%gap, point)
-          point%remaining = between(memory%slave_status%offset(ends), point%slave_xi)
-        end associate
-        share = share_of(difference(memory%positions, point%nodes, 2, 1), point%normal)
-        if (.not. share%value > 0.0_wp) cycle
-        point%area = 0.5_wp*share*length
-        if (contact%is_round) point%area = point%area &
-          *radius_at(memory%positions, point%nodes, 1, 2, point%slave_xi)
-        if (overlaps(k)%part >= 1.0_wp) then
-          call append_point(list, point)
-        else
-          call append_share(contact, memory, s, overlaps(k), .false., point, list)
-        end if
+        if (memory%points%slave_nodes(1, p) /= point%nodes(1)) return
+        if (abs(memory%points%slave_weights(2, p) - point%slave_xi%value) > round_off) cycle
+        call put_on_segment(contact, memory, p, length, point)
+        call append_share(contact, memory, s, overlaps(k), .false., point, list)
+        p = p + 1
       end do
     end do
-  end subroutine linearise_gauss_points_on
+  end subroutine linearise_on_overlaps
 
-  !> Type 7: the points at the nodes of a segment at the tip of a fold, one for each point that
-  !> gives way to them. How much does is held, and so is what the area of such a point owes to its
-  !> own projection.
+  !> Types 6 and 7: let the point stand over the master segment that it has on the list; its area is
+  !> this length as far as it is opposed to that.
+  pure subroutine put_on_segment(contact, memory, p, length, point)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: p           !! number on the list
+    type(dual_t), intent(in) :: length !! m
+    type(linearised_point_t), intent(inout) :: point
+
+    associate (points => memory%points)
+      point%nodes(3:4) = points%master_nodes(:, p)
+      call project_point(memory, points%master_weights(2, p), points%gap(p), point)
+    end associate
+    point%area = length*share_of(cosine_between(difference(memory, point, 2, 1), &
+      [-point%normal(2), point%normal(1)]))
+    if (contact%is_round) &
+      point%area = point%area*radius_at(memory, point, 1, 2, point%slave_xi)
+  end subroutine put_on_segment
+
+  !> Types 6 and 7: the points at the nodes of a segment at the tip of a fold, one for each point
+  !> that gives way to them. How much does is held, and so is what the area of such a point owes to
+  !> its own projection.
   pure subroutine linearise_tips(memory, ends, first, list)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2) !! nodes of the segment
@@ -246,7 +260,6 @@ contains
         point%slave_xi = constant(real(k - 1, wp))
         call project_point(memory, memory%points%master_weights(2, at_end(k)), &
           memory%points%gap(at_end(k)), point)
-        point%remaining = constant(memory%slave_status%offset(ends(k)))
         call append_point(list, point)
       end do
       list%points(p)%area = list%points(p)%area - (shares(1) + shares(2))
@@ -269,9 +282,10 @@ contains
     end do
   end function points_at_ends
 
-  !> Append a point of whose area a share counts: itself at a constant share, and the change of the
-  !> share at a constant area as a point without area, for it depends on further nodes. The master
-  !> segment goes into slots 5, 6, the segments next to both at convex vertices into 7 and 8.
+  !> Append a point of whose area the share of an overlap counts: itself at a constant share, and
+  !> the change of the share at a constant area as a point without area, for it depends on further
+  !> nodes. The master segment goes into slots 5, 6, the segments next to both at convex vertices
+  !> into 7 and 8.
   pure subroutine append_share(contact, memory, s, overlap, is_by_master, point, list)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -281,26 +295,26 @@ contains
     type(linearised_point_t), intent(in) :: point
     type(linearised_list_t), intent(inout) :: list
     type(linearised_point_t) :: change
-    type(linearised_projection_t) :: projection
     type(dual_t) :: share, own(2), other(2)
 
     change = point
-    change%nodes(5:8) = [memory%n_slave + contact%master%segments(:, overlap%master), 0, 0]
-    own = difference(memory%positions, change%nodes, 2, 1)
-    other = difference(memory%positions, change%nodes, 6, 5)
-    share = constant(1.0_wp)
-    projection = project(own, other)
-    if (is_by_master) share = share_of(own, projection%normal)
-    if (overlap%part < 1.0_wp) then
-      call linearise_side(contact%slave, s, [0, 1, 7], memory, other, change, share)
-      call linearise_side(contact%master, overlap%master, [memory%n_slave, 5, 8], memory, own, &
-        change, share)
+    if (merge(overlap%share, overlap%part, is_by_master) < 1.0_wp) then
+      change%nodes(5:8) = [memory%n_slave + contact%master%segments(:, overlap%master), 0, 0]
+      own = difference(memory, change, 2, 1)
+      other = difference(memory, change, 6, 5)
+      share = constant(1.0_wp)
+      if (is_by_master) share = share_of(cosine_between(own, other))
+      if (overlap%part < 1.0_wp) then
+        call linearise_side(contact%slave, s, [0, 1, 7], memory, other, change, share)
+        call linearise_side(contact%master, overlap%master, [memory%n_slave, 5, 8], memory, own, &
+          change, share)
+      end if
+      change%area%value = 0.0_wp
+      change%area%slope = point%area%value*share%slope
+      call append_point(list, change)
+      change = point
+      change%area = share%value*point%area
     end if
-    change%area%value = 0.0_wp
-    change%area%slope = point%area%value*share%slope
-    call append_point(list, change)
-    change = point
-    change%area = share%value*point%area
     call append_point(list, change)
   end subroutine append_share
 
@@ -317,18 +331,18 @@ contains
     type(dual_t) :: own(2), beside(2), part
     integer :: next, held, k
 
-    own = difference(memory%positions, point%nodes, at(2) + 1, at(2))
+    own = difference(memory, point, at(2) + 1, at(2))
     do k = 1, 2
       next = merge(surface%previous(segment), surface%next(segment), k == 1)
       if (next == 0) cycle
       held = point%nodes(at(3))
       point%nodes(at(3)) = at(1) + surface%segments(k, next)
-      beside = difference(memory%positions, point%nodes, merge(at(2), at(3), k == 1), &
+      beside = difference(memory, point, merge(at(2), at(3), k == 1), &
         merge(at(3), at(2) + 1, k == 1))
       part = constant(1.0_wp)
       if (merge(-1.0_wp, 1.0_wp, k == 1)*(own(1)%value*beside(2)%value &
         - own(2)%value*beside(1)%value) > 0.0_wp) &
-        part = side_share_of(cosine_between(own, other), cosine_between(beside, other))
+        part = side_share_of(cosine_between(own, other) - cosine_between(beside, other))
       ! One slot: of two such nodes, at both ends, the second is held.
       if (held > 0) part%slope(2*at(3) - 1:2*at(3)) = 0.0_wp
       if (held > 0 .or. part%value >= 1.0_wp) point%nodes(at(3)) = held
@@ -336,69 +350,28 @@ contains
     end do
   end subroutine linearise_side
 
-  !> Cosine between two vectors.
-  pure function cosine_between(a, b) result(cosine)
-    type(dual_t), intent(in) :: a(2), b(2)
-    type(dual_t) :: cosine
-
-    cosine = (a(1)*b(1) + a(2)*b(2))/sqrt((a(1)*a(1) + a(2)*a(2))*(b(1)*b(1) + b(2)*b(2)))
-  end function cosine_between
-
   !> A point on an overlap of a slave segment, which goes into slots 1, 2; the master nodes at the
-  !> breakpoints go into slots 5 and 6, those that the overlaps before and behind it have there into
-  !> 7 and 8. Where another surface begins before one ends the breakpoint is half way between both
-  !> nodes.
-  pure subroutine start_on_overlap(contact, memory, s, overlaps, k, point, xi)
+  !> breakpoints go into slots 5 and 6.
+  pure subroutine start_on_overlap(contact, memory, s, overlap, point, xi)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s        !! slave segment
-    type(overlap_t), intent(in) :: overlaps(:)
-    integer, intent(in) :: k        !! overlap
+    type(overlap_t), intent(in) :: overlap
     type(linearised_point_t), intent(out) :: point
     type(dual_t), intent(out) :: xi(2) !! where it starts and ends
-    type(linearised_projection_t) :: own, other
-    integer :: breakpoints(4), i
-    real(wp) :: range(2)
+    type(linearised_projection_t) :: own
+    integer :: breakpoints(2), i
 
-    breakpoints = [overlaps(k)%first, overlaps(k)%last, beside(overlaps, k, -1), &
-      beside(overlaps, k, 1)]
     point%nodes(1:2) = contact%slave%segments(:, s)
     point%stiffness = memory%slave_penalty
-    where (breakpoints > 0) point%nodes(5:8) = memory%n_slave + breakpoints
-    range = [overlaps(k)%low, overlaps(k)%high]
-    xi = constant(range)
+    xi = constant([overlap%low, overlap%high])
+    breakpoints = [overlap%first, overlap%last]
     do i = 1, 2
       if (breakpoints(i) == 0) cycle
-      own = project(difference(memory%positions, point%nodes, 4 + i, 1), &
-        difference(memory%positions, point%nodes, 2, 1))
-      if (abs(own%xi%value - range(i)) <= round_off) then
-        xi(i) = own%xi
-      else if (breakpoints(2 + i) > 0) then
-        other = project(difference(memory%positions, point%nodes, 6 + i, 1), &
-          difference(memory%positions, point%nodes, 2, 1))
-        other%xi = 0.5_wp*(own%xi + other%xi)
-        if (abs(other%xi%value - range(i)) <= round_off) xi(i) = other%xi
-      end if
+      point%nodes(4 + i) = memory%n_slave + breakpoints(i)
+      own = project(difference(memory, point, 4 + i, 1), difference(memory, point, 2, 1))
+      if (abs(own%xi%value - xi(i)%value) <= round_off) xi(i) = own%xi
     end do
   end subroutine start_on_overlap
 
-  !> Master node at the near end of the next overlap that is not empty, one way or the other; 0:
-  !> none.
-  pure function beside(overlaps, k, way) result(node)
-    type(overlap_t), intent(in) :: overlaps(:)
-    integer, intent(in) :: k   !! overlap
-    integer, intent(in) :: way !! -1: before it, 1: behind it
-    integer :: node, i
-
-    node = 0
-    i = k + way
-    do while (i >= 1 .and. i <= size(overlaps))
-      if (overlaps(i)%high > overlaps(i)%low) then
-        node = merge(overlaps(i)%last, overlaps(i)%first, way < 0)
-        return
-      end if
-      i = i + way
-    end do
-  end function beside
-
-end module tangent_overlaps_m
+end module tangent_segments_m
