@@ -51,6 +51,7 @@ def penetration(ctype=5):
     deck.block("ERODE 1: an element that would bring the step below 1 % of the first one (DTMIN) leaves the mesh too.")
     deck.keyword("CONTROL_TERMINATION").card("endtim endcyc dtmin", "&endtim", 0, 0.01)
     deck.keyword("CONTROL_TIMESTEP").card("dtinit tssfac isdo tslimt dt2ms lctm erode", 0.0, 0.8, 0, 0.0, 0.0, 0, 1)
+    deck.comment("viscous hourglass control, half of the default: the stiffness form would resist the plastic flow")
     deck.keyword("CONTROL_HOURGLASS").card("ihq qh", 1, 0.05)
     energies_on(deck)
     deck.block("Output: energies, contact forces, parts (momentum over mass is the velocity), states.")

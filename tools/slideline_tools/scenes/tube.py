@@ -43,6 +43,7 @@ def tube(ctype=5):
         ("dthist", 5.0e-6, "time between the rows of the histories in s"))
     deck.block()
     deck.keyword("CONTROL_TERMINATION").card("endtim", "&endtim")
+    deck.comment("the first step is computed; each is eight tenths of the stable one")
     deck.keyword("CONTROL_TIMESTEP").card("dtinit tssfac", 0.0, 0.8)
     energies_on(deck)
     deck.block("Output: energies, contact forces, parts, the plates, and states.")
@@ -56,12 +57,13 @@ def tube(ctype=5):
     deck.keyword("MAT_PLASTIC_KINEMATIC")
     deck.card("mid ro e pr sigy etan beta", 1, 7850.0, 210.0e9, 0.3, 250.0e6, 500.0e6, 1.0)
     deck.card("src srp fs vp", 0.0, 0.0, 0.0, 0.0)
+    deck.comment("one plate moves along y alone (CON1 1: x held, CON2 7: no turn), the other not at all; E and PR serve the penalty")
     for number, held in ((2, 1), (3, 7)):
         deck.keyword("MAT_RIGID").card("mid ro e pr", number, 7850.0, 210.0e9, 0.3)
         deck.card("cmo con1 con2", 1, held, 7)
     deck.curve(1, "velocity of the plate over speed", [(0.0, 0.0), (1.0e-4, 1.0), (1.0, 1.0)])
     move_rigid(deck, 2, 2, 1, "&speed")
-    deck.block("Contact of everything with everything: SURFB 0.")
+    deck.block("Contact of everything with everything: SURFB 0. PUNIT 2: PEN is a factor on the stiffness of the elements.")
     part_set(deck, 1, "tube and plates", [1, 2, 3])
     part_contact(deck, 1, 0, "&mu")
     for number, grid in enumerate(grids, 1):

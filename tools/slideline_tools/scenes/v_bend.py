@@ -63,6 +63,7 @@ def v_bend(ctype=5):
         ("dthist", 1.0e-5, "time between the rows of the histories in s"))
     deck.block()
     deck.keyword("CONTROL_TERMINATION").card("endtim", "&endtim")
+    deck.comment("the first step is computed; each is nine tenths of the stable one")
     deck.keyword("CONTROL_TIMESTEP").card("dtinit tssfac", 0.0, 0.9)
     energies_on(deck)
     deck.block("Output: energies, contact forces, the punch, states, and the lower middle and the end of the sheet.")
@@ -76,7 +77,8 @@ def v_bend(ctype=5):
     deck.keyword("MAT_PLASTIC_KINEMATIC")
     deck.card("mid ro e pr sigy etan beta", 1, 7850.0, 210.0e9, 0.3, 250.0e6, 1.0e9, 1.0)
     deck.card("src srp fs vp", 0.0, 0.0, 0.0, 0.0)
-    deck.comment("the punch moves along y alone (CON1 1: x held, CON2 7: no turn), the die not at all")
+    deck.comment("the punch moves along y alone (CON1 1: x held, CON2 7: no turn), the die not at all; E and PR of rigid parts serve "
+                 "the penalty")
     for number, held in ((2, 1), (3, 7)):
         deck.keyword("MAT_RIGID").card("mid ro e pr", number, 7850.0, 210.0e9, 0.3)
         deck.card("cmo con1 con2", 1, held, 7)
@@ -90,7 +92,8 @@ def v_bend(ctype=5):
     deck.block("Symmetry at x = 0.")
     deck.node_set(1, "plane of symmetry", sheet.left)
     deck.spc_set(1, True, False)
-    deck.block("The sheet is the slave: its mesh is finer than those of the tools.")
+    deck.block("The sheet is the slave: its mesh is finer than those of the tools. PUNIT 2: PEN is a factor on the stiffness of "
+               "the elements.")
     for number, heading in enumerate(("sheet", "punch", "die"), 1):
         part_set(deck, number, heading, [number])
     for master in (2, 3):
