@@ -12,7 +12,7 @@ module projection_m
   public :: projection_t, local_coordinates, closest_projection, nearest_projection, &
     nearby_projection, stays_over, vector_of, face_projection, is_over_segment, follow_contact, &
     find_closest_segment, turns_gently, opposed_share, side_share, end_tolerance, gentle_turn, &
-    side_on, face_on, least_excess, most_excess, round_off
+    side_on, face_on, gentle_vertex, sharp_vertex, slave_side, master_side, round_off
 
   !> Overshoot accepted beyond the end of a surface, as a part of the segment; not clamped.
   real(wp), parameter :: end_tolerance = 0.01_wp
@@ -26,10 +26,15 @@ module projection_m
   !> surfaces). From there to `side_on` the share falls smoothly: a jump would create energy when a
   !> body turns.
   real(wp), parameter :: face_on = -0.5_wp
-  !> By how much the cosine of the more opposed of both segments at a vertex exceeds that of the
-  !> other where all of the other counts, and from where on nothing of it does: a side that stands
-  !> at 70 degrees on a face is no part of a contact that the next one is in at 20 (0.598).
-  real(wp), parameter :: least_excess = 0.1_wp, most_excess = 0.59_wp
+  !> One minus the cosine of the turn at a convex vertex up to which both of its segments count, and
+  !> from which on one counts as far as the other does not: a side that stands at 70 degrees on a
+  !> face is no part of a contact that the next one is in at 20.
+  real(wp), parameter :: gentle_vertex = 0.1_wp, sharp_vertex = 0.59_wp
+  !> Excess of the cosine of a segment at a sharp vertex over that of the other, up to which it
+  !> counts and from which on it does not. Of a slave's two segments the more opposed one counts:
+  !> the spring of a corner that rolls on a face stays as stiff as it is. Those of a master lie over
+  !> different parts of the slave.
+  real(wp), parameter :: slave_side(2) = [-0.1_wp, 0.1_wp], master_side(2) = [0.1_wp, 0.59_wp]
   !> Part of a segment next to its ends where round-off decides on which side of a node a position
   !> is.
   real(wp), parameter :: round_off = 1.0e-12_wp
@@ -380,13 +385,18 @@ contains
     end do
   end function nearer_face
 
-  !> How much of the side next to a vertex counts, 0 to 1, where the segment on the other side of
-  !> the vertex is opposed to the same face by a cosine that is so much larger.
-  pure function side_share(excess) result(share)
-    real(wp), intent(in) :: excess
+  !> How much of a segment next to a convex vertex counts, 0 to 1.
+  pure function side_share(turn, excess, range) result(share)
+    real(wp), intent(in) :: turn     !! cosine of the turn at the vertex
+    real(wp), intent(in) :: excess   !! cosine of the normals of the segment and of a face less that
+                                     !! of the other segment and the face
+    real(wp), intent(in) :: range(2) !! of the excess: all counts, nothing does if the turn is sharp
     real(wp) :: share
 
-    share = smooth_step((most_excess - excess)/(most_excess - least_excess))
+    share = 1.0_wp
+    if (turn < 1.0_wp - gentle_vertex) share = 1.0_wp - smooth_step((1.0_wp - turn &
+      - gentle_vertex)/(sharp_vertex - gentle_vertex))*smooth_step((excess - range(1)) &
+      /(range(2) - range(1)))
   end function side_share
 
   !> How much of a surface counts where its outward normal and that of the other side have this

@@ -4,7 +4,7 @@
 !> stay plane (section 5.8).
 module tributary_lengths_m
   use contact_state_m, only : contact_status_t
-  use projection_m, only : opposed_share, side_share
+  use projection_m, only : opposed_share, side_share, slave_side
   use geometry_m, only : separation
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
@@ -122,31 +122,35 @@ contains
     end associate
   end subroutine see_half
 
-  !> How much of both halves at a node counts below a face: each as far as it is opposed; of the
-  !> side at a corner less than that, or nothing (see `side_share`). Where the face stands between
-  !> both normals of a convex vertex, what is missing to the larger share counts too. At an end, as
-  !> on the axis, all counts.
+  !> How much of both halves at a node counts below a face: each as far as it is opposed, and of the
+  !> segments at a sharp vertex together one (see `side_share`). Where the face stands between both
+  !> normals of a convex vertex, what is missing to the larger share counts too. At an end, as on
+  !> the axis, all counts.
   pure function opposed_part(t, halves, normal) result(area)
     real(wp), intent(in) :: t(2, 2)    !! vectors of the segments before and after the node, m
     real(wp), intent(in) :: halves(2)
     real(wp), intent(in) :: normal(2)  !! outward, of the face
     real(wp) :: area
-    real(wp) :: shares(2), cosines(2)
+    real(wp) :: opposed(2), cosines(2), shares(2), turn
     integer :: k
 
     area = sum(halves)
     if (.not. minval(halves) > 0.0_wp) return
     do k = 1, 2
       cosines(k) = (t(2, k)*normal(1) - t(1, k)*normal(2))/sqrt(t(1, k)**2 + t(2, k)**2)
-      shares(k) = opposed_share(cosines(k))
+      opposed(k) = opposed_share(cosines(k))
     end do
-    k = maxloc(cosines, 1)
-    shares(k) = shares(k)*side_share(maxval(cosines) - minval(cosines))
-    area = dot_product(halves, shares)
-    if (maxval(shares) >= 1.0_wp) return
+    shares = 1.0_wp
+    if (t(1, 1)*t(2, 2) - t(2, 1)*t(1, 2) > 0.0_wp) then
+      turn = dot_product(t(:, 1), t(:, 2))/sqrt(sum(t(:, 1)**2)*sum(t(:, 2)**2))
+      shares = [side_share(turn, cosines(1) - cosines(2), slave_side), &
+        side_share(turn, cosines(2) - cosines(1), slave_side)]
+    end if
+    area = dot_product(halves, shares*opposed)
+    if (maxval(opposed) >= 1.0_wp) return
     ! The opposite of the normal turns from the first of both normals to the second.
     if (dot_product(t(:, 1), normal) < 0.0_wp .and. dot_product(t(:, 2), normal) > 0.0_wp) &
-      area = area + (1.0_wp - maxval(shares))*sum(halves)
+      area = area + (1.0_wp - maxval(opposed))*0.5_wp*sum(shares)*sum(halves)
   end function opposed_part
 
 end module tributary_lengths_m

@@ -8,7 +8,8 @@ module overlaps_m
   use contact_state_m, only : contact_state_t, active
   use contacts_m, only : contact_t
   use projection_m, only : projection_t, closest_projection, side_on, face_on, side_share, &
-    least_excess, opposed_share, local_coordinates, vector_of, turns_gently, round_off
+    gentle_vertex, slave_side, master_side, opposed_share, local_coordinates, vector_of, &
+    turns_gently, round_off
   use geometry_m, only : local_coordinates_t, closest_distance
   use kinds_m, only : wp
   use overlap_m, only : overlap_t, gap_at, order_overlaps
@@ -353,36 +354,38 @@ contains
     real(wp) :: part
 
     associate (master => memory%positions(:, memory%n_slave + 1:))
-      part = side_part(contact%slave, memory%positions, s, vector_of(contact%master, master, m))
+      part = side_part(contact%slave, memory%positions, s, vector_of(contact%master, master, m), &
+        slave_side)
       if (part > 0.0_wp) part = part*side_part(contact%master, master, m, &
-        vector_of(contact%slave, memory%positions, s))
+        vector_of(contact%slave, memory%positions, s), master_side)
     end associate
   end function sides_part
 
-  !> How much of a segment counts, 0 to 1: less the more a segment next to it at a convex vertex is
-  !> opposed to the segment of the other surface than it is itself (see `side_share`).
-  pure function side_part(surface, positions, segment, other) result(part)
+  !> How much of a segment counts, 0 to 1: less the more a segment next to it at a sharp convex
+  !> vertex is opposed to the segment of the other surface than it is itself (see `side_share`).
+  pure function side_part(surface, positions, segment, other, range) result(part)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, at least n_node) from this surface on
     integer, intent(in) :: segment
     real(wp), intent(in) :: other(2)                 !! segment of the other surface, m
+    real(wp), intent(in) :: range(2)                 !! see `side_share`
     real(wp) :: part
-    real(wp) :: own(2), beside(2), product, squares
+    real(wp) :: own(2), beside(2), turn, squares(2)
     integer :: k, next
 
     part = 1.0_wp
     own = vector_of(surface, positions, segment)
-    product = own(1)*other(1) + own(2)*other(2)
-    squares = (own(1)**2 + own(2)**2)*(other(1)**2 + other(2)**2)
-    ! No segment can be opposed so much more.
-    if (product**2 >= (1.0_wp - least_excess)**2*squares) return
+    squares(1) = own(1)**2 + own(2)**2
     do k = 1, 2
       next = merge(surface%previous(segment), surface%next(segment), k == 1)
       if (next == 0) cycle
       beside = vector_of(surface, positions, next)
       if (merge(-1.0_wp, 1.0_wp, k == 1)*(own(1)*beside(2) - own(2)*beside(1)) <= 0.0_wp) cycle
-      part = part*side_share(product/sqrt(squares) - (beside(1)*other(1) + beside(2)*other(2)) &
-        /sqrt((beside(1)**2 + beside(2)**2)*(other(1)**2 + other(2)**2)))
+      squares(2) = beside(1)**2 + beside(2)**2
+      turn = (own(1)*beside(1) + own(2)*beside(2))/sqrt(squares(1)*squares(2))
+      if (turn >= 1.0_wp - gentle_vertex) cycle
+      part = part*side_share(turn, dot_product(own/sqrt(squares(1)) - beside/sqrt(squares(2)), &
+        other)/sqrt(other(1)**2 + other(2)**2), range)
     end do
   end function side_part
 

@@ -7,7 +7,7 @@ module linearisation_m
   use contact_state_m, only : contact_state_t
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
     operator(/), sqrt
-  use projection_m, only : side_on, face_on, least_excess, most_excess, round_off
+  use projection_m, only : side_on, face_on, gentle_vertex, sharp_vertex, round_off
   use geometry_m, only : separation
   use kinds_m, only : wp
   use tributary_lengths_m, only : radius_of
@@ -207,12 +207,14 @@ contains
     share = smooth_step((1.0_wp/(side_on - face_on))*(side_on - cosine))
   end function share_of
 
-  !> Share of the less opposed of both segments at a vertex, by how much its cosine is the larger.
-  pure function side_share_of(excess) result(share)
-    type(dual_t), intent(in) :: excess
+  !> Share of a segment next to a convex vertex (`side_share`).
+  pure function side_share_of(turn, excess, range) result(share)
+    type(dual_t), intent(in) :: turn, excess
+    real(wp), intent(in) :: range(2)
     type(dual_t) :: share
 
-    share = smooth_step((1.0_wp/(most_excess - least_excess))*(most_excess - excess))
+    share = 1.0_wp - smooth_step((1.0_wp/(sharp_vertex - gentle_vertex))*(1.0_wp - gentle_vertex &
+      - turn))*smooth_step((1.0_wp/(range(2) - range(1)))*(excess - constant(range(1))))
   end function side_share_of
 
   !> A step from 0 to 1 with slopes of zero.

@@ -6,6 +6,7 @@ module tangent_nts_m
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/)
   use kinds_m, only : wp
+  use projection_m, only : slave_side
   use linearisation_m, only : linearised_point_t, linearised_list_t, append_point, project_point, &
     difference, length_between, cosine_between, share_of, side_share_of, radius_at
   use surfaces_m, only : surface_t
@@ -75,8 +76,8 @@ contains
     logical, intent(in) :: by_radius, is_closed
     type(contact_state_t), intent(in) :: memory
     type(linearised_point_t), intent(inout) :: point
-    type(dual_t) :: halves(2), shares(2), cosines(2), t(2, 2)
-    integer :: segments(2), less, more, k
+    type(dual_t) :: halves(2), shares(2), parts(2), cosines(2), t(2, 2), turn
+    integer :: segments(2), k
 
     segments = [surface%incoming(point%nodes(1) - offset), &
       surface%outgoing(point%nodes(1) - offset)]
@@ -95,14 +96,18 @@ contains
       cosines(k) = cosine_between(t(:, k), [-point%normal(2), point%normal(1)])
       shares(k) = share_of(cosines(k))
     end do
-    less = merge(1, 2, cosines(1)%value >= cosines(2)%value)
-    shares(less) = shares(less)*side_share_of(cosines(less) - cosines(3 - less))
-    point%area = halves(1)*shares(1) + halves(2)*shares(2)
+    parts = constant(1.0_wp)
+    if (t(1, 1)%value*t(2, 2)%value - t(2, 1)%value*t(1, 2)%value > 0.0_wp) then
+      turn = cosine_between(t(:, 1), t(:, 2))
+      parts = [side_share_of(turn, cosines(1) - cosines(2), slave_side), &
+        side_share_of(turn, cosines(2) - cosines(1), slave_side)]
+    end if
+    point%area = halves(1)*shares(1)*parts(1) + halves(2)*shares(2)*parts(2)
     if (maxval(shares%value) >= 1.0_wp) return
-    more = maxloc(shares%value, 1)
     if (dot_product(t(:, 1)%value, point%normal%value) < 0.0_wp .and. &
       dot_product(t(:, 2)%value, point%normal%value) > 0.0_wp) &
-      point%area = point%area + (1.0_wp - shares(more))*(halves(1) + halves(2))
+      point%area = point%area + 0.5_wp*(1.0_wp - shares(maxloc(shares%value, 1)))*(parts(1) &
+      + parts(2))*(halves(1) + halves(2))
   end subroutine linearise_length
 
 end module tangent_nts_m

@@ -8,7 +8,7 @@ module tangent_segments_m
   use contact_state_m, only : contact_state_t, active, site_at, segment_point_at
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
-  use projection_m, only : round_off
+  use projection_m, only : slave_side, master_side, round_off
   use kinds_m, only : wp
   use linearisation_m, only : linearised_point_t, linearised_list_t, linearised_projection_t, &
     append_point, difference, length_between, project, project_point, cosine_between, share_of, &
@@ -305,9 +305,10 @@ contains
       share = constant(1.0_wp)
       if (is_by_master) share = share_of(cosine_between(own, other))
       if (overlap%part < 1.0_wp) then
-        call linearise_side(contact%slave, s, [0, 1, 7], memory, other, change, share)
-        call linearise_side(contact%master, overlap%master, [memory%n_slave, 5, 8], memory, own, &
-          change, share)
+        call linearise_side(contact%slave, s, [0, 1, 7], slave_side, memory, other, change, &
+          share)
+        call linearise_side(contact%master, overlap%master, [memory%n_slave, 5, 8], master_side, &
+          memory, own, change, share)
       end if
       change%area%value = 0.0_wp
       change%area%slope = point%area%value*share%slope
@@ -319,11 +320,12 @@ contains
   end subroutine append_share
 
   !> Reduce a share by what segments next to a segment take at convex vertices.
-  pure subroutine linearise_side(surface, segment, at, memory, other, point, share)
+  pure subroutine linearise_side(surface, segment, at, range, memory, other, point, share)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: segment
     integer, intent(in) :: at(3)         !! local number before the surface's first node; slots: of
                                          !! the segment's first node, of a node next to it
+    real(wp), intent(in) :: range(2)     !! see `side_share`
     type(contact_state_t), intent(in) :: memory
     type(dual_t), intent(in) :: other(2) !! segment of the other surface
     type(linearised_point_t), intent(inout) :: point
@@ -342,7 +344,8 @@ contains
       part = constant(1.0_wp)
       if (merge(-1.0_wp, 1.0_wp, k == 1)*(own(1)%value*beside(2)%value &
         - own(2)%value*beside(1)%value) > 0.0_wp) &
-        part = side_share_of(cosine_between(own, other) - cosine_between(beside, other))
+        part = side_share_of(cosine_between(own, beside), cosine_between(own, other) &
+        - cosine_between(beside, other), range)
       ! One slot: of two such nodes, at both ends, the second is held.
       if (held > 0) part%slope(2*at(3) - 1:2*at(3)) = 0.0_wp
       if (held > 0 .or. part%value >= 1.0_wp) point%nodes(at(3)) = held

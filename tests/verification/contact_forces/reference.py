@@ -15,7 +15,8 @@ import numpy as np
 
 OVERSHOOT = 0.01      # of the end segment of an open surface: still projected, not clamped
 SIDE_ON, FACE_ON = -0.1, -0.5  # slave normal . master normal: not opposed above, fully below
-LESS, MUCH_LESS = 0.1, 0.59    # cosine of a side less the one of its neighbour at a corner
+GENTLE, SHARP_VERTEX = 0.1, 0.59  # 1 - cosine of the turn at a corner: both segments count, and one of them
+SLAVE_SIDE, MASTER_SIDE = (-0.1, 0.1), (0.1, 0.59)  # excess of cosines up to which it counts there, and from which not
 AVERTED = 0.25        # cosine of normals from which on a segment is no candidate
 BETWEEN = 0.17        # sine of the angle between a direction and those that it lies between
 SHALLOW = 0.25        # of the segment: how deep a point may be to change sides at a sharp corner
@@ -288,22 +289,28 @@ def facing(slave_normal, master_normal):
 
 def tributary(chain, node, normal):
     """Length (axisymmetric: its integral by the radius) of a node on a face: half of its segments; of a
-    closed boundary as far as they are opposed to the face, of the side at a corner less the more
-    its neighbour is opposed than the side itself. Where the face stands between both normals what the
-    larger share leaves of both counts too."""
+    closed boundary as far as they are opposed to the face, at a sharp corner the more opposed one alone.
+    Where the face stands between both normals what the larger share leaves of both counts too."""
     sides = chain.sides(node)
     halves = np.array([0.0 if s is None else chain.shares(s, 0.0, 1.0)[1 - side]
                        for side, s in enumerate(sides)])
     if not chain.closed:
         return np.sum(halves)
     normals = chain.normal[list(sides)]
-    cosines = normals @ normal
     shares = np.array([facing(own, normal) for own in normals])
-    shares[np.argmax(cosines)] *= 1.0 - step(np.ptp(cosines), LESS, MUCH_LESS)
-    area = halves @ shares
+    parts = np.array([corner_part(normals[way], normals[1 - way], normal, SLAVE_SIDE) for way in (0, 1)])
+    if cross(*normals) <= 0.0:
+        parts[:] = 1.0
+    area = halves @ (shares * parts)
     if cross(normals[0], -normal) > 0.0 and cross(-normal, normals[1]) > 0.0 and np.max(shares) < 1.0:
-        area += (1.0 - np.max(shares)) * np.sum(halves)
+        area += (1.0 - np.max(shares)) * np.mean(parts) * np.sum(halves)
     return area
+
+
+def corner_part(own, beside, normal, side):
+    """How much of a segment with the normal `own` counts on a face where one with the normal `beside`
+    follows at a convex corner: all where the corner is gentle."""
+    return 1.0 - step(1.0 - own @ beside, GENTLE, SHARP_VERTEX) * step((own - beside) @ normal, *side)
 
 
 def push_nodes(forces, side, stiffness):
@@ -439,17 +446,17 @@ def overlaps(slave, master, k, feet, strict=False):
 
 def sides_part(slave, k, master, m):
     """How much of slave segment k counts opposite to master segment m."""
-    return side_part(slave, k, master.normal[m]) * side_part(master, m, slave.normal[k])
+    return side_part(slave, k, master.normal[m], SLAVE_SIDE) * side_part(master, m, slave.normal[k], MASTER_SIDE)
 
 
-def side_part(chain, k, normal):
-    """How much of segment k of a closed boundary counts beside segments next to it at convex corners
-    that are opposed to a face so much more."""
+def side_part(chain, k, normal, side):
+    """How much of segment k of a closed boundary counts beside the segments next to it at convex
+    corners."""
     part = 1.0
     for way in (-1, 1) if chain.closed else ():
         other = chain.next(k, way)
         if cross(chain.normal[k], chain.normal[other]) * way > 0.0:
-            part *= 1.0 - step((chain.normal[k] - chain.normal[other]) @ normal, LESS, MUCH_LESS)
+            part *= corner_part(chain.normal[k], chain.normal[other], normal, side)
     return part
 
 
