@@ -28,7 +28,7 @@ def tube(ctype=5):
         "the axis; forces, masses and energies are per radian (times 2 pi for the whole tube). SI units (m, kg, s, N, Pa).",
         "",
         "Alexander (1960): mean force 6 Y sqrt(D) t^1.5 = 107 mm^2 Y; with Y = 2/sqrt(3) times 358 MPa, the mean flow stress "
-        "over all plastic strain of this run, 44 kN. Here 50 kN up to 48 mm, at 20 m/s and with friction. His folds are 1.9 sqrt(D t) = "
+        "over all plastic strain of this run, 44 kN. Here 50 kN up to 48 mm, at 5 m/s 46 kN, with friction. His folds are 1.9 sqrt(D t) = "
         "17 mm long without hardening, here 24 mm.",
         "",
         "Parameters can be set from the command line, for example",
