@@ -114,16 +114,13 @@ contains
     type(sparse_t), intent(inout) :: matrix !! started, not yet compressed
     integer, allocatable :: equations(:, :) !! by local number
 
-    if (memory%points%n == 0) return
+    if (memory%points%n + memory%tie_points%n == 0) return
     equations = equation(:, memory%nodes)
-    if (is_tied(contact)) then
-      call add_tie_tangent(memory, equations, matrix)
-    else
-      call add_tangent(contact, memory, equations, matrix)
-    end if
+    if (memory%tie_points%n > 0) call add_tie_tangent(memory, equations, matrix)
+    if (memory%points%n > 0) call add_tangent(contact, memory, equations, matrix)
   end subroutine add_contact_stiffness
 
-  !> Derivative of minus the forces of the points of an interface without ties.
+  !> Derivative of minus the forces of the points of contact.
   pure subroutine add_tangent(contact, memory, equations, matrix)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
