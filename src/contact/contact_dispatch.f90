@@ -7,8 +7,7 @@ module contact_dispatch_m
   use contact_law_m, only : law_penalty
   use contact_state_m, only : contact_state_t
   use contacts_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_vts_ppt, &
-    type_nts_mar, type_mortar, type_segmented_mortar, contact_t, contact_kind_t, &
-    is_tied
+    type_nts_mar, type_mortar, type_segmented_mortar, contact_t, contact_kind_t
   use kinds_m, only : wp
   use linearisation_m, only : linearised_list_t
   use points_mortar_m, only : points_mortar, points_segmented_mortar

@@ -147,8 +147,8 @@ contains
   end subroutine evaluate_contact
 
   !> One interface in an explicit step or a trial of an implicit one: positions, candidate pairs and
-  !> status, contact points, laws, nodal forces, energy. Ties have their points from the start; sites
-  !> that no tie holds are in contact.
+  !> status, contact points, laws, nodal forces, energy. Ties have their points from the start;
+  !> sites that no tie holds are in contact.
   !> Outside birth .. death the forces of the last call do their last half step of work. Implicit
   !> penalties (PUNIT 4) form their forces after those of all other interfaces
   !> (`implicit_penalty_m`).

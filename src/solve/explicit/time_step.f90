@@ -264,14 +264,13 @@ contains
   end function approach_step
 
   !> Where ECDT = 2 asks for it, and for ties unless ECDT = 1: find now and then what the springs at
-  !> the present places demand of the steps to come. So do
-  !> default penalties that ask for a smaller step.
+  !> the present places demand of the steps to come. So do default penalties that ask for a
+  !> smaller step.
   pure subroutine follow_springs(model, state, bounds)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(spring_bound_t), allocatable, intent(inout) :: bounds(:)
     logical :: counts(size(model%contacts))
-    integer :: i
 
     if (.not. has_springs(model, state%contacts)) return
     if (mod(state%cycle, refresh_interval) /= 0) return
