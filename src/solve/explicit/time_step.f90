@@ -34,6 +34,9 @@ module time_step_m
   !> Change of ln V of an element in a step beyond which the next step is shorter.
   real(wp), parameter :: largest_change = 0.1_wp
 
+  !> Part of the depth of a first contact by which bodies may come nearer in a step.
+  real(wp), parameter :: approach_share = 0.8_wp
+
   !> Cycles between two looks at the lengths that contact springs stand for.
   integer, parameter :: refresh_interval = 20
 
@@ -51,10 +54,7 @@ module time_step_m
     type(spring_bound_t), allocatable :: springs(:) !! that the step must respect; none unless ECDT
                                                     !! = 2, or there are ties or default
                                                     !! penalties that need it
-    !> Part of the depth of a first contact by which bodies may come nearer in a step.
-  real(wp), parameter :: approach_share = 0.8_wp
-
-contains
+  contains
     procedure :: visit => visit_steps
   end type step_plan_t
 
