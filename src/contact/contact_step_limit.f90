@@ -25,8 +25,8 @@ module contact_step_limit_m
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: spring_bound_t, spring_ratios, contact_ratios, bound_springs, stable_step, closed_step, &
-    opening_step, binding_bound, fitting_scale, sharpness
+  public :: spring_bound_t, spring_ratios, contact_ratios, bound_springs, stable_step, &
+    closed_step, opening_step, binding_bound, fitting_scale, sharpness
 
   !> What is known of the springs at the nodes of one interface, those of other interfaces there
   !> included.
