@@ -6,7 +6,6 @@ module check_m
   use arguments_m, only : arguments_t
   use build_info_m, only : version
   use contact_dispatch_m, only : contact_kinds
-  use contacts_m, only : n_told
   use controls_m, only : is_asked
   use deck_m, only : deck_request_t, read_deck
   use deck_report_m, only : spot_t, add_finding, json_text
@@ -61,7 +60,7 @@ contains
       if (allocated(failure)) call raise(error, failure%message, status_files)
     else if (.not. allocated(error)) then
       call show(arguments%deck//': accepted, '//counted(model%mesh%n_element, 'element')//', ' &
-        //to_text(model%mesh%n_node)//' nodes, '//counted(n_told(model%contacts), 'interface') &
+        //to_text(model%mesh%n_node)//' nodes, '//counted(size(model%contacts), 'interface') &
         //', '//counted(monitor%log%n_warning, 'warning'))
     end if
   end subroutine check_deck

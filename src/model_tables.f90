@@ -6,7 +6,7 @@ module model_tables_m
   use archive_m, only : archive_t
   use conditions_m, only : prescribed_motion_t, nodal_load_t
   use contact_dispatch_m, only : formulation_t, formulation_of
-  use contacts_m, only : kind_text, n_told
+  use contacts_m, only : kind_text
   use errors_m, only : error_t
   use hdf5_writing_m, only : hid_t, make_group, write_text
   use kinds_m, only : wp
@@ -249,7 +249,7 @@ contains
     type(formulation_t) :: formulation
     integer :: i, n
 
-    n = n_told(model%contacts)
+    n = size(model%contacts)
     titles = ''
     formulations = ''
     nodes = [integer ::]
@@ -263,7 +263,7 @@ contains
           master%nodes(reshape(master%segments, [2*master%n_segment]))]
       end associate
     end do
-    associate (contacts => model%contacts(:n))
+    associate (contacts => model%contacts)
       call table%open('interfaces', n)
       call table%put('id', [contacts%id])
       call table%put('title', titles)

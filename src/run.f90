@@ -2,7 +2,6 @@
 !> One run: deck, model, state, driver, files.
 module run_m
   use, intrinsic :: iso_fortran_env, only : output_unit
-  use contacts_m, only : n_told
   use controls_m, only : is_asked
   use arguments_m, only : arguments_t, file_stem, only_end_time, timing_by_interface, timing_off
   use build_info_m, only : version, build_type, compiler, flags
@@ -81,7 +80,7 @@ contains
     if (allocated(error)) return
     call hand_model(monitor%ranks, model, has_all)
     if (arguments%timing == timing_by_interface) &
-      call split_contact(monitor%clock, n_told(model%contacts))
+      call split_contact(monitor%clock, size(model%contacts))
     monitor%restarts%prefix = ''
     if (ranks%mine == 0) then
       monitor%restarts%directory = arguments%directory
@@ -430,7 +429,7 @@ contains
     call lap(monitor%clock, phase_output)
     call look_at_clock(monitor%clock)
     allocate (interfaces(0))
-    if (allocated(model%contacts)) interfaces = model%contacts(:n_told(model%contacts))%id
+    if (allocated(model%contacts)) interfaces = model%contacts%id
     call write_whole(monitor%restarts%prefix//'.timing.csv', &
       timing_text(monitor%clock, interfaces), problem)
     if (.not. allocated(error) .and. allocated(problem)) call move_alloc(problem, error)

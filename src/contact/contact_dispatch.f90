@@ -7,8 +7,7 @@ module contact_dispatch_m
   use contact_law_m, only : law_penalty
   use contact_state_m, only : contact_state_t
   use contacts_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_vts_ppt, &
-    type_nts_mar, type_mortar, type_segmented_mortar, contact_t, contact_kind_t, &
-    is_tied
+    type_nts_mar, type_mortar, type_segmented_mortar, contact_t, contact_kind_t
   use kinds_m, only : wp
   use linearisation_m, only : linearised_list_t
   use points_mortar_m, only : points_mortar, points_segmented_mortar
@@ -114,16 +113,13 @@ contains
     type(sparse_t), intent(inout) :: matrix !! started, not yet compressed
     integer, allocatable :: equations(:, :) !! by local number
 
-    if (memory%points%n == 0) return
+    if (memory%points%n + memory%tie_points%n == 0) return
     equations = equation(:, memory%nodes)
-    if (is_tied(contact)) then
-      call add_tie_tangent(memory, equations, matrix)
-    else
-      call add_tangent(contact, memory, equations, matrix)
-    end if
+    if (memory%tie_points%n > 0) call add_tie_tangent(memory, equations, matrix)
+    if (memory%points%n > 0) call add_tangent(contact, memory, equations, matrix)
   end subroutine add_contact_stiffness
 
-  !> Derivative of minus the forces of the points of an interface without ties.
+  !> Derivative of minus the forces of the points of contact.
   pure subroutine add_tangent(contact, memory, equations, matrix)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory

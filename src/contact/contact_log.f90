@@ -6,13 +6,12 @@ module contact_log_m
   use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t, friction_rule_t, is_tied, breaks, kind_text, &
     penalty_share, penalty_implicit
-  use law_state_m, only : is_open, is_broken
+  use law_state_m, only : is_held, is_broken
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
   use surfaces_m, only : surface_t, has_closed_chain
-  use tied_interface_m, only : tie_reach
-  use ties_m, only : tied_nodes
+  use ties_m, only : tied_nodes, tie_reach
   use units_m, only : units_t, in_units, per_depth
   implicit none
   private
@@ -43,10 +42,6 @@ contains
     character(:), allocatable :: title
     type(formulation_t) :: formulation
 
-    if (contact%behind > 0) then
-      call log_behind(contact, model%controls%units, memory, log)
-      return
-    end if
     formulation = formulation_of(contact)
     title = ''
     if (allocated(contact%title)) title = contact%title
@@ -81,13 +76,12 @@ contains
       call write_log(log, '  where a slave segment hangs over the end of the master, the master ' &
         //'nodes inside it count too and the rest carries nothing (default, IPF = 0)')
     end if
-    if (contact%damping > 0.0_wp) call write_log(log, '  damping: ' &
+    if (memory%has%damping) call write_log(log, '  damping: ' &
       //to_text(contact%damping)//' of critical')
     if (memory%has%friction) call write_log(log, '  friction: ' &
       //friction_text(contact%friction, model%controls%units))
-    if (is_tied(contact)) then
-      call log_ties(contact, model, memory, log)
-    else
+    if (memory%has%ties) call log_ties(contact, model, memory, log)
+    if (memory%has%contact) then
       call write_log(log, '  deepest first contact: '//to_text(minval( &
         memory%slave_status%point_depth))//in_units(model%controls%units, 'L')//' or less')
     end if
@@ -124,23 +118,6 @@ contains
       //to_text(soft_factor)//' or less')
   end subroutine log_implicit
 
-  !> Contact of what ties have let go; the rest has been told of the tie.
-  subroutine log_behind(contact, units, memory, log)
-    type(contact_t), intent(in) :: contact
-    type(units_t), intent(in) :: units
-    type(contact_state_t), intent(in) :: memory
-    type(log_t), intent(inout) :: log
-    character(:), allocatable :: text
-
-    text = '  behind the ties of interface '//to_text(contact%id) &
-      //': contact under the same penalty'
-    if (contact%damping > 0.0_wp) text = text//', damping '//to_text(contact%damping) &
-      //' of critical'
-    if (memory%has%friction) text = text//', friction ' &
-      //friction_text(contact%friction, units)
-    call write_log(log, text)
-  end subroutine log_behind
-
   !> `n nodes, m segments of mean length l m`.
   pure function surface_text(surface, model) result(text)
     type(surface_t), intent(in) :: surface
@@ -168,18 +145,18 @@ contains
       //to_text(10.0_wp*built_in_penalty(contact, model)/memory%slave_penalty)//' elements of ' &
       //'its surfaces, so what they hold moves apart; PEN 10 with PUNIT 2, the default, is as ' &
       //'stiff as one')
-    is_held = tied_nodes(memory, .true.)
-    n = 0
-    if (memory%has%ties) n = size(memory%ties%side)
+    is_held = tied_nodes(memory, .true., .false.)
+    n = size(memory%ties%side)
     call write_log(log, '  tied: '//to_text(count(is_held(:memory%n_slave)))//' of ' &
       //to_text(memory%n_slave)//' slave nodes, '//to_text(n) &
-      //' springs of area '//to_text(sum(memory%points%area(:memory%points%n))) &
+      //' springs of area '//to_text(sum(memory%tie_points%area(:memory%tie_points%n))) &
       //', reach '//to_text(tie_reach(contact, model)) &
       //in_units(model%controls%units, 'L'))
     if (breaks(contact)) call write_log(log, '  breaks at a tension of ' &
       //to_text(contact%strength(1))//' or a shear of '//to_text(contact%strength(2)) &
-      //in_units(model%controls%units, 'F/L^2')//', together on an ellipse')
-    if (memory%points%n == 0 .or. all(is_held(:memory%n_slave))) return
+      //in_units(model%controls%units, 'F/L^2')//', together on an ellipse; sites that have ' &
+      //'failed are in contact')
+    if (memory%tie_points%n == 0 .or. all(is_held(:memory%n_slave))) return
     if (has_closed_chain(contact%slave)) return
     n = 0
     names = ''
@@ -226,7 +203,7 @@ contains
     real(wp) :: stiffness !! of the springs of both passes, N/m^2
     real(wp) :: rows      !! compliance of the elements, m^2/N
 
-    if (is_tied(contact) .or. contact%behind > 0) return
+    if (is_tied(contact)) return
     formulation = formulation_of(contact)
     stiffness = memory%slave_penalty
     if (formulation%has_two_passes) stiffness = stiffness + memory%master_penalty
@@ -312,9 +289,9 @@ contains
       //to_text(contact%id)//': its curve of interference (LCINT) has no effect, for nothing ' &
       //'overlaps at the start')
     if (memory%points%n == 0) return
-    ! Behind ties, what these hold has no force.
+    ! What ties hold has no force of contact.
     is_loaded = .true.
-    if (contact%behind > 0) is_loaded = memory%points%pressure(:memory%points%n) > 0.0_wp
+    if (memory%has%breaks) is_loaded = memory%points%pressure(:memory%points%n) > 0.0_wp
     if (.not. any(is_loaded)) return
     p = minloc(memory%points%gap(:memory%points%n), 1, is_loaded)
     depth = round_off*memory%slave_status%reach
@@ -351,7 +328,7 @@ contains
       call write_log(log, 'interface '//to_text(contact%id)//': nothing of its ties has broken')
     else
       call write_log(log, 'interface '//to_text(contact%id)//': of its ties '//to_text(n)//' of ' &
-        //to_text(count(memory%ties%state /= is_open))//' places have broken, from time ' &
+        //to_text(count(memory%ties%state == is_held) + n)//' places have broken, from time ' &
         //to_text(memory%ties%first_break)//' to '//to_text(memory%ties%last_break) &
         //'; what they held, '//to_text(memory%ties%spent) &
         //per_depth(units, 'F L', contact%is_round)//', stays in the energy of contact')

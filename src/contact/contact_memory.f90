@@ -7,8 +7,8 @@ module contact_memory_m
   use contact_penalty_m, only : set_penalties
   use contact_springs_m, only : measure_springs
   use contact_state_m, only : contact_state_t, contact_points_t, contact_status_t, features_t, &
-    allocate_points, allocate_damping, allocate_tractions, allocate_scratch, sites_of_segment, &
-    n_side, active
+    allocate_points, allocate_damping, allocate_tractions, allocate_scratch, n_sites, &
+    sites_of_segment, n_side, active
   use contact_status_m, only : list_active
   use contacts_m, only : contact_t, has_friction, is_tied, breaks, penalty_implicit
   use energy_limit_m, only : form_springs
@@ -73,8 +73,7 @@ contains
     if (memory%has%limit) call allocate_limit(memory%limit, n_slave + n_master)
     if (memory%has%friction) then
       call allocate_tractions(memory%points)
-      call allocate_friction(memory%friction, sites_of_segment(memory)*n_slave + n_master, &
-        n_slave + n_master)
+      call allocate_friction(memory%friction, n_sites(memory), n_slave + n_master)
     end if
     if (memory%has%interference) call allocate_interference(memory%interference, &
       sites_of_segment(memory)*n_slave, n_master)
@@ -92,13 +91,13 @@ contains
     has%segment_points = formulation%segment_points /= points_at_nodes
     has%overlaps = formulation%covers_segments
     has%nodal_pressure = formulation%has_nodal_pressure
-    has%damping = contact%damping > 0.0_wp
-    has%friction = has_friction(contact)
-    has%interference = allocated(contact%interference)
     has%ties = is_tied(contact)
     has%breaks = breaks(contact)
-    has%tie_handover = contact%behind > 0
-    has%limit = .not. (is_implicit .or. has%ties &
+    has%contact = has%breaks .or. .not. has%ties
+    has%damping = has%contact .and. contact%damping > 0.0_wp
+    has%friction = has%contact .and. has_friction(contact)
+    has%interference = allocated(contact%interference)
+    has%limit = has%contact .and. .not. (is_implicit &
       .or. contact%penalty_unit == penalty_implicit .and. .not. has%friction)
     has%entry_offsets = contact%penalty_unit /= penalty_implicit
   end function features_of

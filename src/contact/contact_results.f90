@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Results of an interface for the writers: resultants, and values of its nodes.
 module contact_results_m
-  use contact_state_m, only : contact_state_t, candidates_t, active, n_side
+  use contact_state_m, only : contact_state_t, contact_points_t, candidates_t, active, n_side
   use contacts_m, only : contact_t
   use projection_m, only : projection_t, nearest_projection, follow_contact, turns_gently, vector_of
   use geometry_m, only : segment_length, coordinates_on_segment, closest_distance
@@ -14,7 +14,7 @@ module contact_results_m
   use ties_m, only : tie_spring_t, tie_spring, tied_nodes
   implicit none
   private
-  public :: interface_resultants, sides_of_corners, slave_rows, join_rows
+  public :: interface_resultants, sides_of_corners, slave_rows
 
 contains
 
@@ -25,7 +25,7 @@ contains
 
     resultants%slave_force = sum(memory%force(:, :memory%n_slave), 2)
     resultants%master_force = sum(memory%force(:, memory%n_slave + 1:), 2)
-    resultants%n_active = memory%n_active
+    resultants%n_active = memory%n_active + memory%ties%n_held
     associate (friction => memory%friction)
       resultants%energy = memory%energy + friction%stored
       resultants%friction = friction%work - friction%stored
@@ -57,21 +57,29 @@ contains
     positions(3:4, :) = motion(1:2, memory%nodes)
     rows%force = memory%force(:, :n)
     call fill_arc_lengths(contact%slave, positions(:, :n), rows%arc_length)
-    share = nodal_sums(contact%is_self, memory, memory%points%pressure)
+    share = nodal_sums(contact%is_self, memory, memory%points, memory%points%pressure)
+    if (memory%has%ties) share = share + nodal_sums(.false., memory, memory%tie_points, &
+      memory%tie_points%pressure)
     carries = abs(share) > 0.0_wp
-    if (memory%has%ties) carries = carries .or. tied_nodes(memory, .false.)
+    if (memory%has%ties) carries = carries .or. tied_nodes(memory, .true., .true.)
     rows%length = lengths_in_contact(contact%slave, positions(:, :n), contact%is_round, carries(:n))
     lengths = [rows%length, lengths_in_contact(contact%master, positions(:, n + 1:), &
       contact%is_round, carries(n + 1:))]
     lengths = max(lengths, tiny(1.0_wp))
     rows%pressure = share(:n)/lengths(:n)
     rows%master_pressure = share(n + 1:)/lengths(n + 1:)
-    do i = 1, n
-      rows%gap(i) = present_gap(contact, positions(:, n + 1:), positions(:, i), memory, i)
-    end do
+    rows%gap = 0.0_wp
+    if (memory%has%contact) then
+      do i = 1, n
+        rows%gap(i) = present_gap(contact, positions(:, n + 1:), positions(:, i), memory, i)
+      end do
+    end if
     if (.not. (memory%has%friction .or. memory%has%ties)) return
-    allocate (pull(n + memory%n_master))
-    pull = nodal_sums(contact%is_self, memory, memory%points%traction)
+    allocate (pull(n + memory%n_master), source=0.0_wp)
+    if (memory%has%friction) &
+      pull = nodal_sums(contact%is_self, memory, memory%points, memory%points%traction)
+    if (memory%has%ties) pull = pull + nodal_sums(.false., memory, memory%tie_points, &
+      memory%tie_points%traction)
     rows%friction_result%traction = pull/lengths
     do i = 1, n
       call find_state(contact%slave, 0, i, memory, rows%friction_result(i)%slip, &
@@ -84,25 +92,26 @@ contains
     if (memory%has%ties) call fill_ties(memory, rows)
   end subroutine slave_rows
 
-  !> What ties have besides: gaps and slips of nodes as means of their springs, by area, and states.
+  !> What ties have at nodes: gaps and slips as means of their springs, by area, and states. The gap
+  !> of contact stands where they do not hold.
   pure subroutine fill_ties(memory, rows)
     type(contact_state_t), intent(in) :: memory
     type(slave_result_t), intent(inout) :: rows
-    real(wp) :: nodal(2, memory%n_slave + memory%n_master)
+    real(wp) :: nodal(2, memory%n_slave + memory%n_master), slip(size(nodal, 2))
+    logical, dimension(size(nodal, 2)) :: holds, held
     integer :: i
 
-    rows%gap = 0.0_wp
-    if (memory%points%n > 0) then
-      call average_values(memory%points, memory%points%gap, size(nodal, 2), nodal)
-      rows%gap = nodal(1, :memory%n_slave)
-    end if
-    rows%friction_result%slip = mean_slips(memory)
-    rows%friction_result%state = merge(is_broken, is_open, tied_nodes(memory, .false.))
-    associate (still => tied_nodes(memory, .true.))
-      do i = 1, size(still)
-        if (still(i)) rows%friction_result(i)%state = is_held
-      end do
-    end associate
+    if (memory%tie_points%n == 0) return
+    call average_values(memory%tie_points, memory%tie_points%gap, size(nodal, 2), nodal)
+    slip = mean_slips(memory)
+    holds = tied_nodes(memory, .true., .false.)
+    held = tied_nodes(memory, .true., .true.)
+    do i = 1, size(held)
+      if (.not. held(i)) cycle
+      rows%friction_result(i)%slip = slip(i)
+      rows%friction_result(i)%state = merge(is_held, is_broken, holds(i))
+    end do
+    where (holds(:memory%n_slave)) rows%gap = nodal(1, :memory%n_slave)
   end subroutine fill_ties
 
   !> How far nodes have moved along their surfaces over the other side, against the reference
@@ -111,44 +120,21 @@ contains
   pure function mean_slips(memory) result(slip)
     type(contact_state_t), intent(in) :: memory
     real(wp) :: slip(memory%n_slave + memory%n_master)
-    real(wp) :: area(memory%n_slave + memory%n_master), along(memory%points%n)
+    real(wp) :: area(memory%n_slave + memory%n_master), along(memory%tie_points%n)
     type(tie_spring_t) :: spring
     integer :: s
 
     slip = 0.0_wp
-    if (memory%points%n == 0) return
     do s = 1, size(memory%ties%side)
       spring = tie_spring(memory, s)
       along(memory%ties%first(s):memory%ties%first(s + 1) - 1) = memory%ties%offset(2, s) &
         - dot_product(spring%d, spring%t)
     end do
-    area = nodal_sums(.false., memory, spread(1.0_wp, 1, memory%points%n))
-    where (area > 0.0_wp) slip = nodal_sums(.false., memory, along)/area
+    associate (points => memory%tie_points)
+      area = nodal_sums(.false., memory, points, spread(1.0_wp, 1, points%n))
+      where (area > 0.0_wp) slip = nodal_sums(.false., memory, points, along)/area
+    end associate
   end function mean_slips
-
-  !> The rows of a tie with those of the contact behind it: sums of forces; where the tie does not
-  !> hold, the gap of contact and, if it never did, slip and state of contact.
-  pure subroutine join_rows(behind, rows)
-    type(slave_result_t), intent(in) :: behind
-    type(slave_result_t), intent(inout) :: rows
-    integer :: i
-
-    rows%pressure = rows%pressure + behind%pressure
-    rows%force = rows%force + behind%force
-    rows%master_pressure = rows%master_pressure + behind%master_pressure
-    do i = 1, size(rows%node)
-      if (rows%friction_result(i)%state /= is_held) rows%gap(i) = behind%gap(i)
-    end do
-    if (.not. allocated(behind%friction_result)) return
-    do i = 1, size(rows%friction_result)
-      associate (own => rows%friction_result(i), other => behind%friction_result(i))
-        own%traction = own%traction + other%traction
-        if (own%state /= is_open) cycle
-        own%slip = other%slip
-        own%state = other%state
-      end associate
-    end do
-  end subroutine join_rows
 
   !> Distance along each surface from its first node, in the present shape.
   pure subroutine fill_arc_lengths(surface, positions, arc_length)
@@ -252,26 +238,25 @@ contains
   !> Values of points times their areas, shared out to the nodes on both sides: the normal forces on
   !> them of pressures, N/m, forces along their surfaces of tractions. All of a surface with itself
   !> is on the slave.
-  pure function nodal_sums(is_self, memory, values) result(share)
+  pure function nodal_sums(is_self, memory, points, values) result(share)
     logical, intent(in) :: is_self
     type(contact_state_t), intent(in) :: memory
+    type(contact_points_t), intent(in) :: points
     real(wp), intent(in), contiguous :: values(:) !! of the points, N/m^2
     real(wp) :: share(memory%n_slave + memory%n_master)
     real(wp) :: total
     integer :: p, k
 
     share = 0.0_wp
-    associate (points => memory%points)
-      do p = 1, points%n
-        total = values(p)*points%area(p)
-        do k = 1, n_side
-          share(points%slave_nodes(k, p)) = share(points%slave_nodes(k, p)) &
-            + points%slave_weights(k, p)*total
-          share(points%master_nodes(k, p)) = share(points%master_nodes(k, p)) &
-            + points%master_weights(k, p)*total
-        end do
+    do p = 1, points%n
+      total = values(p)*points%area(p)
+      do k = 1, n_side
+        share(points%slave_nodes(k, p)) = share(points%slave_nodes(k, p)) &
+          + points%slave_weights(k, p)*total
+        share(points%master_nodes(k, p)) = share(points%master_nodes(k, p)) &
+          + points%master_weights(k, p)*total
       end do
-    end associate
+    end do
     if (.not. is_self) return
     associate (n => memory%n_slave)
       share(:n) = share(:n) + share(n + 1:)

@@ -21,12 +21,12 @@ module contact_step_limit_m
   use kinds_m, only : wp
   use tributary_lengths_m, only : end_radius
   use surfaces_m, only : surface_t, open_ends
-  use ties_m, only : stiffness_of_nodes
+  use ties_m, only : stiffness_of_nodes, tied_nodes
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
-  public :: spring_bound_t, spring_ratios, bound_springs, stable_step, closed_step, opening_step, &
-    binding_bound, fitting_scale, approach_step, sharpness
+  public :: spring_bound_t, spring_ratios, contact_ratios, bound_springs, stable_step, &
+    closed_step, opening_step, binding_bound, fitting_scale, sharpness
 
   !> What is known of the springs at the nodes of one interface, those of other interfaces there
   !> included.
@@ -34,7 +34,7 @@ module contact_step_limit_m
     real(wp) :: rate = 0.0_wp     !! bound of omega^2, 1/s^2
     real(wp) :: damping = 0.0_wp  !! sum of damping fraction times omega, 1/s
     integer :: node = 0           !! where the bound is taken: index in the mesh
-    real(wp) :: closed_rate = 0.0_wp !! the part of it of ties, which never open, 1/s^2
+    real(wp) :: closed_rate = 0.0_wp !! the part of it of ties, which do not open, 1/s^2
   contains
     procedure :: visit => visit_springs
   end type spring_bound_t
@@ -49,15 +49,13 @@ module contact_step_limit_m
   !> K/m of the nodes of one interface.
   type :: ratios_t
     real(wp), allocatable :: at(:)    !! (n_slave + n_master)
+    real(wp), allocatable :: opening(:) !! (n_slave + n_master) the part of contact
     real(wp) :: c = 1.0_wp            !! share between its sides
   end type ratios_t
 
   !> How far the bounds may lie below the step that eigenvalues allow: the least of the ratios in
   !> doc/studies/stability.md.
   real(wp), parameter :: sharpness = 0.78_wp
-
-  !> Part of the depth of a first contact by which bodies may come nearer in a step.
-  real(wp), parameter :: approach_share = 0.8_wp
 
   !> Part of a slave segment that points at the end of a master may stand for beyond it.
   real(wp), parameter :: beyond_ends = 0.5_wp
@@ -83,6 +81,9 @@ contains
     are_shared = .false.
     do i = 1, size(contacts)
       ratios(i)%at = scale(i)*spring_ratios(contacts(i), mass, memories(i))
+      ratios(i)%opening = ratios(i)%at
+      if (memories(i)%has%ties) ratios(i)%opening = scale(i)*opening_ratios(contacts(i), mass, &
+        memories(i))
       call bound_interface(contacts(i), memories(i), ratios(i), bounds(i))
       if (.not. scale(i) > 0.0_wp) cycle
       associate (nodes => memories(i)%nodes, n => memories(i)%n_slave)
@@ -99,15 +100,17 @@ contains
     type(contact_state_t), intent(in) :: memory
     type(ratios_t), intent(inout) :: ratios !! out: c
     type(spring_bound_t), intent(inout) :: bound
+    real(wp) :: opens !! rate of contact alone, 1/s^2
     integer :: worst(2)
 
     associate (n => memory%n_slave)
       worst = [maxloc(ratios%at(:n), 1), n + maxloc(ratios%at(n + 1:), 1)]
+      opens = maxval(ratios%opening(:n)) + maxval(ratios%opening(n + 1:))
     end associate
     associate (most => ratios%at(worst))
       bound%rate = sum(most)
-      if (is_tied(contact)) bound%closed_rate = bound%rate
-      bound%damping = contact%damping*sqrt(bound%rate*merge(2.0_wp, 1.0_wp, contact%is_self))
+      bound%closed_rate = bound%rate - opens
+      bound%damping = contact%damping*sqrt(opens*merge(2.0_wp, 1.0_wp, contact%is_self))
       bound%node = memory%nodes(worst(merge(1, 2, most(1) >= most(2))))
       if (all(most > 0.0_wp) .and. .not. contact%is_self) ratios%c = most(2)/most(1)
     end associate
@@ -134,6 +137,7 @@ contains
     integer, intent(in) :: n_node !! of the mesh
     type(ratios_t), intent(inout) :: ratios(:)
     type(spring_bound_t), intent(inout) :: bounds(:)
+    type(ratios_t) :: closed
     real(wp), dimension(n_node) :: total, opening, damping
     integer :: i, round
 
@@ -154,7 +158,10 @@ contains
     end do
     opening = total
     do i = 1, size(memories)
-      if (is_tied(contacts(i))) call add_sides(memories(i), -1.0_wp, ratios(i), opening)
+      if (.not. memories(i)%has%ties) cycle
+      closed = ratios(i)
+      closed%at = ratios(i)%at - ratios(i)%opening
+      call add_sides(memories(i), -1.0_wp, closed, opening)
     end do
     do i = 1, size(memories)
       associate (nodes => memories(i)%nodes)
@@ -231,13 +238,43 @@ contains
   end function even_share
 
   !> Most K/m of each node, K being the sum of spring stiffness times weight, 1/s^2, for the
-  !> positions in the memory, all nodes in contact: a node of the tracked side carries at most its
-  !> tributary length in all formulations, a node of the other side `most_on_nodes`.
+  !> positions in the memory: of what ties hold, and of contact.
   pure function spring_ratios(contact, mass, memory) result(ratio)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in) :: mass(:) !! (n_node) kg/m
     type(contact_state_t), intent(in) :: memory
     real(wp) :: ratio(memory%n_slave + memory%n_master) !! slave nodes, then master nodes
+
+    ratio = opening_ratios(contact, mass, memory)
+    if (memory%has%ties) ratio = ratio + stiffness_of_nodes(memory)/mass(memory%nodes)
+  end function spring_ratios
+
+  !> The part of contact. Ties leave it, once something has broken, the nodes that they do not hold,
+  !> or not any more in part.
+  pure function opening_ratios(contact, mass, memory) result(ratio)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in) :: mass(:) !! (n_node) kg/m
+    type(contact_state_t), intent(in) :: memory
+    real(wp) :: ratio(memory%n_slave + memory%n_master)
+    logical :: counts(size(ratio))
+
+    counts = memory%has%contact
+    if (memory%has%breaks) then
+      associate (have_failed => tied_nodes(memory, .false., .true.))
+        counts = any(have_failed) .and. (have_failed .or. .not. tied_nodes(memory, .true., .false.))
+      end associate
+    end if
+    ratio = 0.0_wp
+    if (any(counts)) ratio = merge(contact_ratios(contact, mass, memory), 0.0_wp, counts)
+  end function opening_ratios
+
+  !> That of contact, all nodes touching: a node of the tracked side carries at most its tributary
+  !> length in all formulations, a node of the other side `most_on_nodes`.
+  pure function contact_ratios(contact, mass, memory) result(ratio)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in) :: mass(:) !! (n_node) kg/m
+    type(contact_state_t), intent(in) :: memory
+    real(wp) :: ratio(memory%n_slave + memory%n_master)
     type(formulation_t) :: formulation
     type(side_t) :: slave, master
     real(wp) :: overhang
@@ -252,9 +289,7 @@ contains
     associate (n => memory%n_slave)
       slave = measure_side(contact%slave, memory%positions(:, :n), contact%is_round)
       master = measure_side(contact%master, memory%positions(:, n + 1:), contact%is_round)
-      if (is_tied(contact)) then
-        ratio = stiffness_of_nodes(memory)
-      else if (formulation%has_unit_area) then
+      if (formulation%has_unit_area) then
         ratio = memory%node_penalty*node_shares(contact, slave, master)
       else
         ratio = memory%slave_penalty*[areas(contact%slave, slave, is_lonely), &
@@ -265,7 +300,7 @@ contains
       end if
     end associate
     ratio = ratio/mass(memory%nodes)
-  end function spring_ratios
+  end function contact_ratios
 
   !> Lengths and radii of a side.
   pure function measure_side(surface, positions, is_round) result(side)
@@ -387,24 +422,6 @@ contains
 
     limit = min(closed_step(element_limit, bound), opening_step(bound))
   end function stable_step
-
-  !> Step in which nothing comes deeper than a first contact may be, from the relative motion in a
-  !> step `dt`; huge where that is slow, and where the deck says what counts as a first contact
-  !> (ties, a depth of its own). Searches are no part of it: they depend on when the last one
-  !> was.
-  pure function approach_step(contact, memory, dt) result(limit)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
-    real(wp), intent(in) :: dt             !! s
-    real(wp) :: limit
-    real(wp) :: depth
-
-    limit = huge(limit)
-    if (is_tied(contact) .or. contact%search_depth > 0.0_wp) return
-    depth = min(memory%slave_status%shallowest, memory%master_status%shallowest)
-    depth = approach_share*depth
-    if (memory%advance > 0.01_wp*depth) limit = dt*(depth/memory%advance)
-  end function approach_step
 
   !> Springs that stay closed: the largest dt with
   !> (dt/element_limit)^2 + dt^2 rate/4 + dt damping <= 1, s.

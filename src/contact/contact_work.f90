@@ -15,6 +15,7 @@ module contact_work_m
 
   !> Of the previous forces, what is kept apart from the springs.
   type :: previous_work_t
+    real(wp) :: ties = 0.0_wp       !! power, W/m
     real(wp) :: damping = 0.0_wp    !! power, W/m
     real(wp) :: friction = 0.0_wp   !! power, W/m
     real(wp) :: dissipated = 0.0_wp !! by friction so far, J/m
@@ -30,6 +31,8 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(previous_work_t), intent(out) :: previous_work
 
+    if (memory%has%ties) &
+      previous_work%ties = power_of(memory%nodes, motion, memory%ties%force)
     if (memory%has%damping) &
       call take_force(memory%nodes, motion, memory%damping_force, previous_work%damping)
     if (.not. memory%has%friction) return
@@ -57,12 +60,14 @@ contains
     if (memory%has%friction) friction = friction &
       + power_of(memory%nodes, motion, memory%friction%force)
     memory%energy = memory%energy - 0.5_wp*dt*(power - damping - friction)
+    if (memory%has%ties) memory%ties%energy = memory%ties%energy - 0.5_wp*dt*(previous%ties &
+      + power_of(memory%nodes, motion, memory%ties%force))
     memory%damping_work = memory%damping_work - 0.5_wp*dt*damping
     if (memory%has%friction) then
       memory%friction%work = memory%friction%work - 0.5_wp*dt*friction
       call store_dissipated(previous%dissipated, memory%friction)
     end if
-    call follow_largest(memory%energy, memory%limit)
+    call follow_largest(memory%energy - memory%ties%energy, memory%limit)
   end subroutine apply_forces
 
   !> What is dissipated does not come back: tangential springs hold no more than the work that has

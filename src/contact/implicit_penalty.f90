@@ -97,7 +97,7 @@ contains
     type(previous_work_t) :: previous_work
 
     memory%scratch%waits = .false.
-    call store_previous_springs(memory%scratch%had_force, memory)
+    call store_previous_springs(memory)
     call store_previous_work(motion, memory%scratch%had_force, memory, previous_work)
     if (memory%points%n > 0) then
       call solve_pressures(step, memory)

@@ -6,15 +6,15 @@ module interface_m
   use candidates_m, only : update_candidates, list_candidates
   use closed_gap_m, only : closed_gap_of, gap_ahead
   use contact_dispatch_m, only : formulation_t, formulation_of, generate_points
-  use tie_handover_m, only : exclude_tied_sites, take_handover
   use contact_law_m, only : form_pressures
   use contact_log_m, only : log_contact
   use contact_memory_m, only : prepare_contact
   use contact_scatter_m, only : scatter_forces, join_passes
-  use contact_springs_m, only : begin_sampling, measure_springs, end_sampling
+  use contact_springs_m, only : begin_sampling, measure_springs, end_sampling, &
+    take_over_energy
   use contact_work_m, only : previous_work_t, store_previous_work, apply_forces
   use contact_state_m, only : contact_state_t, pass_t, separated
-  use contacts_m, only : contact_t, is_tied, penalty_implicit
+  use contacts_m, only : contact_t, breaks, penalty_implicit, tie_always
   use damping_m, only : damp_points, find_lag
   use entry_offset_m, only : has_offsets, update_offsets, faded_work
   use energy_limit_m, only : store_previous_springs, form_springs, limit_forces, admit_entry_work
@@ -24,17 +24,16 @@ module interface_m
   use others_memory_m, only : answers_t
   use interference_m, only : begin_ramp
   use kinds_m, only : wp
-  use law_state_m, only : is_held
   use law_friction_m, only : has_decay
   use log_m, only : log_t
   use model_m, only : model_t
   use points_on_segments_m, only : move_segment_points
-  use tied_interface_m, only : start_ties, tie_reach
-  use ties_m, only : hold_ties
+  use tiebreak_m, only : start_breaking
+  use ties_m, only : tie_reach, freeze_ties, hold_ties, break_ties, tie_energy
   use contact_status_m, only : update_status, reset_status
   implicit none
   private
-  public :: start_contact, resume_contact, apply_contact, evaluate_contact
+  public :: start_contact, resume_contact, apply_contact, evaluate_contact, break_at_end
 
   !> When a call is, and what it asks for.
   type :: instant_t
@@ -56,12 +55,35 @@ contains
     type(answers_t), intent(inout), optional :: answers
 
     call prepare_contact(contact, model, memory)
-    call start_search(contact, model, memory, answers)
-    if (is_tied(contact)) call start_ties(contact, model, memory)
+    if (memory%has%ties) call start_ties(contact, model, memory, answers)
+    if (memory%has%contact) call start_search(contact, model, memory, answers)
     call log_contact(contact, model, memory, log)
   end subroutine start_contact
 
-  !> Who touches whom at time zero; ties take gaps within their reach as closed.
+  !> Place the points of ties: contact points of the same rule in the reference geometry, where gaps
+  !> within reach are closed.
+  subroutine start_ties(contact, model, memory, answers)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    type(contact_state_t), intent(inout) :: memory
+    type(answers_t), intent(inout), optional :: answers
+    type(contact_t) :: tie
+    type(contact_state_t) :: placed
+    type(formulation_t) :: formulation
+
+    tie = contact
+    tie%tie = tie_always
+    call prepare_contact(tie, model, placed)
+    placed%closed_gap = tie_reach(contact, model)
+    call start_search(tie, model, placed, answers)
+    call generate_points(tie, placed)
+    call freeze_ties(contact, placed%closed_gap, placed, memory)
+    formulation = formulation_of(contact)
+    if (memory%has%breaks) call start_breaking(contact, formulation%has_unit_area, &
+      formulation%has_two_passes, memory)
+  end subroutine start_ties
+
+  !> Who touches whom at time zero.
   subroutine start_search(contact, model, memory, answers)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
@@ -69,7 +91,6 @@ contains
     type(answers_t), intent(inout), optional :: answers
 
     if (contact%birth > 0.0_wp) return
-    if (is_tied(contact)) memory%closed_gap = tie_reach(contact, model)
     call search_pairs(contact, 0, .false., memory)
     associate (n => memory%n_slave)
       if (memory%has%segment_points) then
@@ -126,7 +147,8 @@ contains
   end subroutine evaluate_contact
 
   !> One interface in an explicit step or a trial of an implicit one: positions, candidate pairs and
-  !> status, contact points, laws, nodal forces, energy. Ties have their points from the start.
+  !> status, contact points, laws, nodal forces, energy. Ties have their points from the start;
+  !> sites that no tie holds are in contact.
   !> Outside birth .. death the forces of the last call do their last half step of work. Implicit
   !> penalties (PUNIT 4) form their forces after those of all other interfaces
   !> (`implicit_penalty_m`).
@@ -142,7 +164,7 @@ contains
     type(previous_work_t) :: previous
     logical :: had_force, begins
 
-    had_force = memory%n_active > 0
+    had_force = memory%n_active + memory%ties%n_held > 0
     begins = memory%is_stale .and. now%cycle > 0
     memory%monitor%has_sampled = .false.
     if (memory%has%interference) call begin_ramp(contact, now%time, memory)
@@ -152,37 +174,34 @@ contains
       call suspend_contact(memory)
     end if
     if (present(clock)) call lap(clock, phase_contact_search)
-    if (.not. had_force .and. (memory%is_stale .or. has_broken(memory))) return
+    if (memory%is_stale .and. .not. had_force) return
 
-    if (.not. now%is_trial) call keep_previous(contact, motion, begins, memory, previous)
-    if (.not. (memory%is_stale .or. memory%has%ties)) call generate_points(contact, memory)
+    if (.not. now%is_trial) call keep_previous(contact, motion, begins, had_force, memory, previous)
+    if (memory%has%contact .and. .not. memory%is_stale) call generate_points(contact, memory)
     if (present(clock)) call lap(clock, phase_contact_pairing)
     if (memory%scratch%waits) return
 
+    if (memory%has%ties) &
+      call hold_ties(memory, merge(0.0_wp, contact%strength, now%is_trial), now%time)
+    if (memory%points%n > 0) call form_pressures(memory)
+    if (memory%points%n + memory%tie_points%n > 0 .and. .not. now%is_trial) &
+      call book_springs(now%cycle, begins, memory)
     if (memory%points%n > 0) then
-      if (memory%has%ties) then
-        call hold_ties(memory, merge(0.0_wp, contact%strength, now%is_trial), now%time)
-        if (.not. now%is_trial) call book_springs(now%cycle, begins, memory)
-      else
-        call form_pressures(memory)
-        if (memory%has%tie_handover) call exclude_tied_sites(memory)
-        if (.not. now%is_trial) call book_springs(now%cycle, begins, memory)
-        if (memory%has%friction) call tractions_at_points(contact, now, mass, memory)
-        if (memory%has%damping .and. .not. now%is_trial) call damp_points(memory%points, &
-          contact%damping, memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
-        call scatter_forces(memory)
-        if (contact%is_self) call join_passes(memory)
-      end if
-      if (had_force .or. memory%n_active > 0) call limit_forces(motion, now%time, now%dt, memory)
+      if (memory%has%friction) call tractions_at_points(contact, now, mass, memory)
+      if (memory%has%damping .and. .not. now%is_trial) call damp_points(memory%points, &
+        contact%damping, memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
+      call scatter_forces(memory)
+      if (contact%is_self) call join_passes(memory)
+      if (memory%scratch%had_force .or. memory%n_active > 0) &
+        call limit_forces(motion, now%time, now%dt, memory)
     end if
 
     if (now%is_trial) then
       call add_trial_force(memory%nodes, memory%force, force)
     else
-      if (memory%points%n > 0 .or. had_force) &
+      if (memory%points%n + memory%tie_points%n > 0 .or. had_force) &
         call apply_forces(now%dt, motion, previous, memory, force)
-      call end_sampling(had_force, memory%n_active > 0 &
-        .or. (memory%has%ties .and. memory%points%n > 0), memory%monitor)
+      call end_sampling(had_force, memory%n_active > 0 .or. memory%tie_points%n > 0, memory%monitor)
     end if
     if (present(clock)) call lap(clock, phase_contact_force)
   end subroutine step_contact
@@ -199,7 +218,7 @@ contains
     was_stale = memory%is_stale
     if (was_stale) call refresh_memory(motion, memory)
     call gather_positions(motion, memory)
-    if (memory%has%ties) return
+    if (.not. memory%has%contact) return
     if (memory%has%segment_points) call move_segment_points(contact%slave, memory%positions, &
       memory%segment_xi, memory%segment_spread, memory%segment_points, memory%travel)
     if (now%is_trial) then
@@ -216,10 +235,11 @@ contains
 
   !> Before contact points are generated: the forces of the last call are kept for their half of the
   !> work of the step.
-  pure subroutine keep_previous(contact, motion, begins, memory, previous)
+  pure subroutine keep_previous(contact, motion, begins, had_force, memory, previous)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: motion(:, :)
-    logical, intent(in) :: begins !! contact is born in this call
+    logical, intent(in) :: begins    !! contact is born in this call
+    logical, intent(in) :: had_force !! the call before, of contact or ties
     type(contact_state_t), intent(inout) :: memory
     type(previous_work_t), intent(out) :: previous
 
@@ -228,26 +248,30 @@ contains
       scratch%is_born = begins
       scratch%waits = contact%penalty_unit == penalty_implicit .and. .not. memory%is_stale
       memory%n_active = 0
-      call begin_sampling(scratch%had_force, memory%monitor)
-      if (scratch%had_force) call store_previous(memory)
+      call begin_sampling(had_force, memory%monitor)
+      if (had_force) call store_previous(memory)
       if (scratch%waits) return
-      call store_previous_springs(scratch%had_force, memory)
-      call store_previous_work(motion, scratch%had_force, memory, previous)
+      call store_previous_springs(memory)
+      call store_previous_work(motion, had_force, memory, previous)
     end associate
   end subroutine keep_previous
 
   !> What the springs hold as loaded: those loaded at time zero hold energy that no force has put
-  !> in; those born loaded may return what they hold; the work of fading offsets is lent. When the
-  !> last tie breaks there is no later look.
+  !> in; those born loaded may return what they hold; the work of fading offsets is lent.
   pure subroutine book_springs(cycle, begins, memory)
     integer, intent(in) :: cycle
     logical, intent(in) :: begins
     type(contact_state_t), intent(inout) :: memory
 
-    if (memory%has%tie_handover) call take_handover(memory)
-    if (memory%monitor%is_due .or. cycle == 0 .or. memory%has%ties .and. memory%n_active == 0) &
-      call measure_springs(memory)
-    if (cycle == 0) memory%energy = memory%monitor%stored
+    real(wp) :: load
+    integer :: node
+
+    if (memory%scratch%n_freed > 0 .and. memory%points%n > 0) call take_over_energy(memory)
+    if (memory%monitor%is_due .or. cycle == 0) call measure_springs(memory)
+    if (cycle == 0) then
+      memory%energy = memory%monitor%stored
+      if (memory%has%ties) call tie_energy(memory, memory%ties%energy, load, node)
+    end if
     if (begins) memory%limit%admissible = memory%limit%admissible + memory%monitor%stored
     if (has_offsets(memory)) call admit_entry_work(faded_work(memory), memory%limit)
   end subroutine book_springs
@@ -267,14 +291,17 @@ contains
     call form_tractions(contact, formulation%has_unit_area, now%dt, memory)
   end subroutine tractions_at_points
 
-  !> Whether it is a tie all of which has broken.
-  pure function has_broken(memory)
-    type(contact_state_t), intent(in) :: memory
-    logical :: has_broken
+  !> Break what reaches its strength in equilibrium, at the end of an implicit step.
+  pure subroutine break_at_end(contact, time, memory, n_new)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in) :: time
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(out) :: n_new !! sites that have broken
 
-    has_broken = .false.
-    if (memory%has%breaks) has_broken = .not. any(memory%ties%state == is_held)
-  end function has_broken
+    n_new = 0
+    if (breaks(contact) .and. memory%tie_points%n > 0) &
+      call break_ties(contact%strength, time, memory, n_new)
+  end subroutine break_at_end
 
   !> Add the forces of a trial to those of the mesh.
   pure subroutine add_trial_force(nodes, contact_force, force)
@@ -293,7 +320,7 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
 
-    call list_candidates(contact, memory, .true.)
+    if (memory%has%contact) call list_candidates(contact, memory, .true.)
     call form_springs(memory)
   end subroutine resume_contact
 
@@ -313,6 +340,7 @@ contains
     memory%is_stale = .true.
     memory%advance = 0.0_wp
     memory%points%n = 0
+    memory%tie_points%n = 0
   end subroutine suspend_contact
 
   !> After a time without contact: take the present positions and search all anew.

@@ -10,7 +10,7 @@ module contacts_m
   implicit none
   private
   public :: contact_t, contact_kind_t, transducer_t, friction_rule_t, has_friction, is_tied, &
-    breaks, has_shear, n_told, told_as, kind_text, most_gauss, penalty_per_node, &
+    breaks, has_shear, kind_text, most_gauss, penalty_per_node, &
     penalty_distributed, penalty_factor, penalty_share, &
     penalty_implicit, implicit_factor, tie_none, tie_always, tie_breaks, tie_factor
 
@@ -86,9 +86,6 @@ module contacts_m
     real(wp) :: tie_reach = 0.0_wp         !! what is farther apart is not tied, m; below 0 per cent
                                            !! of the mean master segment; 0 = 1 per cent
     real(wp) :: strength(2) = 0.0_wp       !! NFLS, SFLS of a tie that breaks, N/m^2
-    integer :: behind = 0                  !! above 0: contact behind the tie with that place in the
-                                           !! list, of places that the tie does not hold. Interfaces
-                                           !! of the deck come first
     type(curve_t), allocatable :: interference !! LCINT: the part of an initial overlap that acts,
                                            !! from 0 to 1
     logical :: is_round = .false.          !! axisymmetric: lengths weigh with their radius
@@ -131,24 +128,6 @@ contains
 
     breaks = contact%tie == tie_breaks
   end function breaks
-
-  !> Interfaces of the deck, which results tell of: the first ones of the list.
-  pure function n_told(contacts) result(n)
-    type(contact_t), intent(in) :: contacts(:)
-    integer :: n
-
-    n = count(contacts%behind == 0)
-  end function n_told
-
-  !> The place of the interface that the i-th one is told as.
-  pure function told_as(contacts, i) result(told)
-    type(contact_t), intent(in) :: contacts(:)
-    integer, intent(in) :: i
-    integer :: told
-
-    told = i
-    if (contacts(i)%behind > 0) told = contacts(i)%behind
-  end function told_as
 
   !> Whether an interface has tractions along its surfaces.
   elemental function has_shear(contact) result(has)
@@ -194,7 +173,6 @@ contains
     call visitor%visit('tie', self%tie)
     call visitor%visit('tie_reach', self%tie_reach)
     call visitor%fixed('strength', self%strength)
-    call visitor%visit('behind', self%behind)
     if (visitor%makes(merge(1, absent, allocated(self%interference)))) allocate (self%interference)
     if (allocated(self%interference)) call visitor%part('interference', self%interference)
     call visitor%visit('is_round', self%is_round)

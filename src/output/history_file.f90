@@ -5,7 +5,6 @@
 !> for is not made. The values are kept: the results file takes them over at the end.
 module history_file_m
   use build_info_m, only : version
-  use contacts_m, only : n_told
   use controls_m, only : is_asked
   use dyna_layouts_m, only : put_line, put_head, put_instant
   use errors_m, only : error_t
@@ -185,7 +184,7 @@ contains
           call put_entity(model%parts(i)%id, text_of(model%parts(i)%title))
         end do
       case (table_rcforc, table_sleout)
-        do i = 1, n_told(model%contacts)
+        do i = 1, size(model%contacts)
           call put_entity(model%contacts(i)%id, text_of(model%contacts(i)%title))
         end do
         if (table%i_table == table_rcforc .and. allocated(model%transducers)) then
@@ -237,7 +236,7 @@ contains
     associate (plan => model%controls%output)
       select case (history_tables(i_table)%each)
       case (each_run); n = 1
-      case (each_contact); if (allocated(model%contacts)) n = n_told(model%contacts)
+      case (each_contact); if (allocated(model%contacts)) n = size(model%contacts)
       case (each_history_node); n = length(plan%history_nodes)
       case (each_part); n = length(model%parts)
       case (each_wall); n = length(model%walls)

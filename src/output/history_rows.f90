@@ -4,7 +4,6 @@
 !> is due.
 module history_rows_m
   use controls_m, only : boundary_body_load, boundary_body_motion
-  use contacts_m, only : n_told
   use snapshot_m, only : total_energy, energy_ratio, snapshot_t, friction_result_t
   use history_file_m, only : history_t, add_row, n_each
   use history_tables_m, only : table_glstat, table_rcforc, table_nodout, table_contact, &
@@ -32,7 +31,7 @@ contains
     if (.not. table%file%is_open) return
     select case (i_table)
     case (table_rcforc)
-      do i = 1, n_told(model%contacts)
+      do i = 1, size(model%contacts)
         associate (id => model%contacts(i)%id, one => shot%interfaces(i))
           call add_side(id, side_slave, one%slave_force, one%n_active)
           call add_side(id, side_master, one%master_force, one%n_active)
@@ -151,7 +150,7 @@ contains
     real(wp) :: row_stress
     integer :: i, k
 
-    do i = 1, n_told(model%contacts)
+    do i = 1, size(model%contacts)
       associate (slave => shot%slaves(i))
         do k = 1, size(slave%node)
           friction_result = friction_result_t()

@@ -50,16 +50,14 @@ contains
     limits_step = model%controls%contact_step /= contact_step_free &
       .and. .not. model%controls%implicit%is_on
     element_limit = minval(state%elements%time_limit)
-    ! Contact behind ties has no place yet that these do not hold.
     if (.not. model%controls%implicit%is_on .and. (limits_step .or. any(is_tied(model%contacts)))) &
       call bound_springs(model%contacts, state%contact_mass, state%contacts, &
-      merge(0.0_wp, 1.0_wp, model%contacts%behind > 0 &
-      .or. model%contacts%penalty_unit == penalty_implicit), bounds)
+      merge(0.0_wp, 1.0_wp, model%contacts%penalty_unit == penalty_implicit), bounds)
     do i = 1, size(model%contacts)
       associate (contact => model%contacts(i))
-        if (.not. is_tied(contact)) then
+        if (state%contacts(i)%has%contact) &
           call report_initial_contact(contact, model, state%contacts(i), log)
-          if (contact%behind > 0) cycle
+        if (.not. is_tied(contact)) then
           if (limits_step .and. contact%penalty_unit /= penalty_implicit) &
             call tell_step(model, state, i, element_limit, bounds(i), log)
         else if (limits_step) then

@@ -8,7 +8,7 @@ module contact_judging_m
   use law_state_m, only : contact_estimate_t
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step
   use contact_results_m, only : sides_of_corners
-  use contacts_m, only : contact_t, n_told, told_as, is_tied, penalty_implicit
+  use contacts_m, only : contact_t, is_tied, penalty_implicit
   use controls_m, only : is_asked
   use history_tables_m, only : table_sleout
   use kinds_m, only : wp
@@ -16,7 +16,7 @@ module contact_judging_m
   use model_m, only : model_t
   use rows_behind_m, only : face_rows_t, find_rows, face_pressure, face_inertia, &
     elastic_energy, has_stress, others_t, find_others, face_share
-  use snapshot_filling_m, only : fill_slaves, join_slaves
+  use snapshot_filling_m, only : fill_slaves
   use snapshot_m, only : snapshot_t, interface_result_t, part_result_t
   use state_m, only : state_t
   use surfaces_m, only : surface_t
@@ -49,14 +49,11 @@ contains
     if (state%cycle == 0 .and. .not. (plots &
       .or. is_asked(model%controls%output%histories(table_sleout)))) return
     call find_rows(model, rows)
-    if (.not. plots) then
-      call fill_slaves(model, state, snapshot)
-      call join_slaves(model, snapshot)
-    end if
+    if (.not. plots) call fill_slaves(model, state, snapshot)
     element_limit = minval(state%elements%time_limit)
-    allocate (others(2*n_told(model%contacts)))
+    allocate (others(2*size(model%contacts)))
     if (rows%are_shared) call find_others(model, state, snapshot%slaves, others)
-    do i = 1, n_told(model%contacts)
+    do i = 1, size(model%contacts)
       contact = state%outlines(i)
       ! What interfaces that share nodes allow together takes too long to find for every row.
       if (.not. model%controls%implicit%is_on) then
@@ -181,7 +178,7 @@ contains
       if (is_tied(model%contacts(i))) cycle
       if (.not. allocated(bodies)) call find_bodies(model, bodies)
       associate (contact => model%contacts(i), memory => state%contacts(i), &
-        estimate => state%estimates(told_as(model%contacts, i)))
+        estimate => state%estimates(i))
         call follow_arcs(state%outlines(i), memory, estimate)
         if (state%cycle == 0) cycle
         estimate%bodies = max(estimate%bodies, sum(parts%internal, &

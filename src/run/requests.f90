@@ -4,7 +4,6 @@
 !> signal. What needs no more than the files (a line of status, histories brought up to date) is
 !> done here; the driver does the rest.
 module requests_m
-  use contacts_m, only : told_as
   use controls_m, only : end_condition_t, end_node_place, end_node_touch, end_body_place, &
     end_body_way, end_contact
   use errors_m, only : error_t
@@ -163,7 +162,7 @@ contains
           if (way >= ending%most) found = 'body '//to_text(ending%id)//' has gone ' &
             //to_text(way)//' (*TERMINATION_BODY)'
         case (end_contact)
-          call judge_contact(model, ending, state, state%quiet_since(i), found)
+          call judge_contact(ending, state, state%quiet_since(i), found)
         end select
       end associate
       if (len(found) == 0 .or. last) cycle
@@ -185,23 +184,17 @@ contains
   end function beyond
 
   !> An interface that has borne no force for long enough.
-  subroutine judge_contact(model, ending, state, since, found)
-    type(model_t), intent(in) :: model
+  subroutine judge_contact(ending, state, since, found)
     type(end_condition_t), intent(in) :: ending
     type(state_t), intent(in) :: state
     real(wp), intent(inout) :: since
     character(:), allocatable, intent(inout) :: found
     real(wp) :: force(2)
-    integer :: i
 
     if (state%time < ending%start) return
-    force = 0.0_wp
-    do i = 1, size(model%contacts)
-      if (told_as(model%contacts, i) /= ending%where) cycle
-      associate (memory => state%contacts(i))
-        force = force + sum(memory%force(:, :memory%n_slave), 2)
-      end associate
-    end do
+    associate (memory => state%contacts(ending%where))
+      force = sum(memory%force(:, :memory%n_slave), 2)
+    end associate
     if (ending%direction > 0) force(3 - ending%direction) = 0.0_wp
     if (norm2(force) > ending%threshold) then
       since = -1.0_wp

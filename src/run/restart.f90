@@ -12,13 +12,14 @@ module restart_m
   use archive_m, only : archive_t
   use checksum_m, only : add_bytes, checksum_text
   use clock_m, only : lap, phase_nodes, phase_output
-  use contact_state_m, only : contact_state_t, contact_status_t, separated, active
+  use contact_state_m, only : contact_state_t, contact_points_t, contact_status_t, separated, &
+    active, n_sites
   use contacts_m, only : contact_t
   use errors_m, only : error_t, status_files
   use files_m, only : file_exists, remove_file, unfinished
   use history_tables_m, only : history_tables, n_table, asked_by_states
   use kinds_m, only : wp, long
-  use law_state_m, only : is_open, is_held, is_broken
+  use law_state_m, only : is_open, is_held, is_beside
   use log_m, only : write_log, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, schedule_t, go_on_with
@@ -194,17 +195,17 @@ contains
     associate (relaxation => state%relaxation)
       call archive%expect('state/relaxation/n', relaxation%n == 0 .or. (relaxation%n > 0 .and. &
         model%controls%relaxation%is_on), 'a phase that the deck does not ask for')
-      fits = allocated(relaxation%velocity) .eqv. relaxation%n > 0
-      if (fits .and. relaxation%n > 0) fits = all(shape(relaxation%velocity) == &
-        [2, size(state%motion, 2)])
-      call archive%expect('state/relaxation/velocity', fits, 'another number of velocities ' &
-        //'than there are nodes')
-      call archive%expect('state/time', relaxation%n == 0 .or. .not. state%time > 0.0_wp, &
-        'a time after that of the relaxation')
+    fits = allocated(relaxation%velocity) .eqv. relaxation%n > 0
+    if (fits .and. relaxation%n > 0) fits = all(shape(relaxation%velocity) == &
+      [2, size(state%motion, 2)])
+    call archive%expect('state/relaxation/velocity', fits, 'another number of velocities ' &
+      //'than there are nodes')
+    call archive%expect('state/time', relaxation%n == 0 .or. .not. state%time > 0.0_wp, &
+      'a time after that of the relaxation')
     end associate
     do i = 1, size(state%contacts)
-      call check_contact(state%outlines(i), state%contacts(i), &
-        'state/contacts/'//to_text(i)//'/', archive)
+    call check_contact(state%outlines(i), state%contacts(i), &
+      'state/contacts/'//to_text(i)//'/', archive)
     end do
   end subroutine check_state
 
@@ -216,45 +217,47 @@ contains
     type(archive_t), intent(inout) :: archive
     integer :: n_segments(2), n_contact_point
 
-    call check_points(memory, folder//'points/', archive)
-    if (memory%has%ties) call check_ties(memory, folder//'ties/', archive)
+    call check_points(memory, memory%points, folder//'points/', archive)
+    if (memory%has%ties) then
+    call check_points(memory, memory%tie_points, folder//'tie_points/', archive)
+    call check_ties(memory, folder//'ties/', archive)
+    end if
     n_segments = [contact%slave%n_segment, contact%master%n_segment]
     n_contact_point = memory%n_slave
     if (allocated(memory%segment_xi)) n_contact_point = size(memory%segment_xi)*n_segments(1)
     call check_status(memory%slave_status, n_contact_point, n_segments(2), &
-      folder//'slave_status/', archive)
+    folder//'slave_status/', archive)
     call check_status(memory%master_status, memory%n_master, n_segments(1), &
-      folder//'master_status/', archive)
+    folder//'master_status/', archive)
   end subroutine check_contact
 
   !> The list of points: as many in all its arrays, and nodes of the interface.
-  subroutine check_points(memory, folder, archive)
+  subroutine check_points(memory, points, folder, archive)
     type(contact_state_t), intent(in) :: memory
+    type(contact_points_t), intent(in) :: points
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
     integer :: n_local
     logical :: fits
 
-    associate (points => memory%points)
-      fits = allocated(points%slave_nodes) .and. allocated(points%master_nodes) .and. &
-        allocated(points%slave_weights) .and. allocated(points%master_weights) .and. &
-        allocated(points%normal) .and. allocated(points%gap) .and. allocated(points%area) .and. &
-        allocated(points%stiffness) .and. allocated(points%pressure)
-      if (fits) fits = all([size(points%slave_nodes, 2), size(points%master_nodes, 2), &
-        size(points%slave_weights, 2), size(points%master_weights, 2), size(points%normal, 2), &
-        size(points%area), size(points%stiffness), size(points%pressure)] == size(points%gap))
-      if (fits .and. allocated(points%damping)) fits = size(points%damping) == size(points%gap)
-      if (fits .and. allocated(points%traction)) fits = size(points%traction) == size(points%gap)
-      call archive%expect(folder//'gap', fits, 'not as many values as the arrays beside it')
-      if (allocated(archive%error)) return
-      call archive%expect(folder//'n', points%n >= 0 .and. points%n <= size(points%gap), &
-        'a number beyond the length of the list')
-      n_local = memory%n_slave + memory%n_master
-      call archive%expect(folder//'slave_nodes', all(points%slave_nodes >= 1 &
-        .and. points%slave_nodes <= n_local), 'numbers that no node of the interface has')
-      call archive%expect(folder//'master_nodes', all(points%master_nodes >= 1 &
-        .and. points%master_nodes <= n_local), 'numbers that no node of the interface has')
-    end associate
+    fits = allocated(points%slave_nodes) .and. allocated(points%master_nodes) .and. &
+      allocated(points%slave_weights) .and. allocated(points%master_weights) .and. &
+      allocated(points%normal) .and. allocated(points%gap) .and. allocated(points%area) .and. &
+      allocated(points%stiffness) .and. allocated(points%pressure)
+    if (fits) fits = all([size(points%slave_nodes, 2), size(points%master_nodes, 2), &
+      size(points%slave_weights, 2), size(points%master_weights, 2), size(points%normal, 2), &
+      size(points%area), size(points%stiffness), size(points%pressure)] == size(points%gap))
+    if (fits .and. allocated(points%damping)) fits = size(points%damping) == size(points%gap)
+    if (fits .and. allocated(points%traction)) fits = size(points%traction) == size(points%gap)
+    call archive%expect(folder//'gap', fits, 'not as many values as the arrays beside it')
+    if (allocated(archive%error)) return
+    call archive%expect(folder//'n', points%n >= 0 .and. points%n <= size(points%gap), &
+      'a number beyond the length of the list')
+    n_local = memory%n_slave + memory%n_master
+    call archive%expect(folder//'slave_nodes', all(points%slave_nodes >= 1 &
+      .and. points%slave_nodes <= n_local), 'numbers that no node of the interface has')
+    call archive%expect(folder//'master_nodes', all(points%master_nodes >= 1 &
+      .and. points%master_nodes <= n_local), 'numbers that no node of the interface has')
   end subroutine check_points
 
   !> Springs of ties, as many as the deck makes: their points follow each other, nodes and places
@@ -263,22 +266,20 @@ contains
     type(contact_state_t), intent(in) :: memory
     character(*), intent(in) :: folder
     type(archive_t), intent(inout) :: archive
-    integer :: n, n_site
+    integer :: n
 
     associate (ties => memory%ties)
       n = size(ties%side)
-      n_site = memory%n_master + memory%n_slave
-      if (memory%has%segment_points) n_site = memory%n_master &
-        + size(memory%segment_xi)*memory%n_slave
       if (memory%has%breaks) then
         call archive%expect(folder//'state', all(ties%state == is_open .or. ties%state &
-          == is_held .or. ties%state == is_broken), 'numbers that mean nothing')
+          >= is_held .and. ties%state <= is_beside), 'numbers that mean nothing')
         call archive%expect(folder//'site', all(ties%site >= 1 &
-          .and. ties%site <= n_site), 'numbers that no place of the interface has')
+          .and. ties%site <= n_sites(memory)), 'numbers that no place of the interface has')
       end if
       call archive%expect(folder//'first', ties%first(1) == 1 &
-        .and. all(ties%first(2:) > ties%first(:n)) .and. (ties%first(n + 1) == memory%points%n + 1 &
-        .or. memory%points%n == 0), 'numbers that do not rise to the number of points')
+        .and. all(ties%first(2:) > ties%first(:n)) .and. (ties%first(n + 1) &
+        == memory%tie_points%n + 1 .or. memory%tie_points%n == 0), &
+        'numbers that do not rise to the number of points')
       call archive%expect(folder//'owner', all(ties%owner >= 1 .and. ties%owner &
         <= memory%n_slave + memory%n_master), 'numbers that no node of the interface has')
     end associate

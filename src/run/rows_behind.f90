@@ -3,7 +3,6 @@
 !> face; and faces that several interfaces press on: what the others put there, for the pressure
 !> that stands against that stress is that of all (doc/theory/contact.md, section 8.1).
 module rows_behind_m
-  use contacts_m, only : n_told
   use element_mass_m, only : element_shares
   use element_state_m, only : is_gone, stress_of_slot
   use kinds_m, only : wp
@@ -66,10 +65,10 @@ contains
     rows%row_of(rows%elements) = [(i, i=1, size(rows%elements))]
     call find_across(model, rows)
     ! Where elements may leave the mesh a node may come to be in more than one interface.
-    if (n_told(model%contacts) < 2) return
+    if (size(model%contacts) < 2) return
     rows%are_shared = model%erodes
     allocate (user(model%mesh%n_node), source=0)
-    do i = 1, n_told(model%contacts)
+    do i = 1, size(model%contacts)
       associate (slave => model%contacts(i)%slave%nodes, master => model%contacts(i)%master%nodes)
         rows%are_shared = rows%are_shared .or. any(user(slave) > 0) .or. any(user(master) > 0)
         user(slave) = i

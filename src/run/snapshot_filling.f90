@@ -6,11 +6,11 @@ module snapshot_filling_m
   use block_state_m, only : block_state_t
   use common_motion_m, only : fill_common
   use loads_m, only : is_active
-  use contact_results_m, only : interface_resultants, slave_rows, join_rows
+  use contact_results_m, only : interface_resultants, slave_rows
   use element_mass_m, only : element_shares
   use element_state_m, only : add_part_energies, is_gone, stress_of_slot, plastic_strain_of_slot, &
     find_heat, hoop_strain_of_slot
-  use contacts_m, only : has_shear, n_told, told_as
+  use contacts_m, only : has_shear
   use controls_m, only : is_asked
   use history_tables_m, only : table_elout, table_matsum, table_rbdout, table_spcforc
   use layout_m, only : slot_part
@@ -23,7 +23,7 @@ module snapshot_filling_m
   implicit none
   private
   public :: start_snapshot, fill_motion, find_motion, damping_at, fill_energies, fill_parts, &
-    fill_interfaces, fill_plot, fill_slaves, join_slaves
+    fill_interfaces, fill_plot, fill_slaves
 
   !> Nodes whose motion is summed at a time.
   integer, parameter :: block_size = 512
@@ -48,7 +48,7 @@ contains
     snapshot%energies%tells_mass = scales_masses(model)
     if (allocated(model%walls)) allocate (snapshot%walls(size(model%walls)))
     if (allocated(model%transducers)) allocate (snapshot%transducers(size(model%transducers)))
-    allocate (snapshot%interfaces(n_told(model%contacts)), snapshot%slaves(size(model%contacts)))
+    allocate (snapshot%interfaces(size(model%contacts)), snapshot%slaves(size(model%contacts)))
     ! Nodes with mass and a fixed degree of freedom by rising id, where their forces are asked for.
     allocate (snapshot%supports(0))
     if (is_asked(model%controls%output%histories(table_spcforc))) &
@@ -271,25 +271,11 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(snapshot_t), intent(inout) :: snapshot
-    type(interface_result_t) :: result
     logical, allocatable :: is_on(:), is_loaded(:)
     integer :: i, j, k
 
     do i = 1, size(model%contacts)
-      call interface_resultants(state%contacts(i), result)
-      if (told_as(model%contacts, i) == i) then
-        snapshot%interfaces(i) = result
-      else
-        associate (total => snapshot%interfaces(told_as(model%contacts, i)))
-          total%slave_force = total%slave_force + result%slave_force
-          total%master_force = total%master_force + result%master_force
-          total%n_active = total%n_active + result%n_active
-          total%energy = total%energy + result%energy
-          total%friction = total%friction + result%friction
-          total%damping = total%damping + result%damping
-          total%stored = total%stored + result%stored
-        end associate
-      end if
+      call interface_resultants(state%contacts(i), snapshot%interfaces(i))
     end do
     if (.not. allocated(model%transducers)) return
     allocate (is_on(size(state%mass)), is_loaded(size(state%mass)))
@@ -375,7 +361,6 @@ contains
         end do
       end associate
     end do
-    call join_slaves(model, snapshot)
   end subroutine fill_plot
 
   !> Rows of slave nodes, of each interface of the model alone.
@@ -391,16 +376,5 @@ contains
       call slave_rows(state%outlines(i), state%motion, state%contacts(i), snapshot%slaves(i))
     end do
   end subroutine fill_slaves
-
-  !> Those of contact behind ties, to the interfaces that are told.
-  subroutine join_slaves(model, snapshot)
-    type(model_t), intent(in) :: model
-    type(snapshot_t), intent(inout) :: snapshot
-    integer :: i
-
-    do i = n_told(model%contacts) + 1, size(model%contacts)
-      call join_rows(snapshot%slaves(i), snapshot%slaves(told_as(model%contacts, i)))
-    end do
-  end subroutine join_slaves
 
 end module snapshot_filling_m

@@ -94,7 +94,7 @@ contains
     if (present(others)) source%forgetters = forgetters_of(others)
     if (.not. allocated(source%error)) call source%part('state', state)
     if (.not. allocated(source%error)) call check_state(model, state, source)
-    if (.not. allocated(source%error)) call resume_contacts(model, state)
+    if (.not. allocated(source%error)) call resume_contacts(state)
     if (allocated(source%error)) then
       error = source%error
     else if (state%time - model%controls%end_time > merge(round_off, 1.0_wp, &

@@ -25,7 +25,7 @@ module contact_state_m
   private
   public :: contact_state_t, contact_points_t, contact_status_t, candidates_t, pass_t, &
     contact_scratch_t, allocate_points, allocate_damping, allocate_tractions, make_room, &
-    allocate_status, allocate_scratch, n_side, sites_of_segment, &
+    allocate_status, allocate_scratch, n_side, n_sites, sites_of_segment, &
     site_at, segment_point_at, features_t, separated, active
 
   !> Nodes of a side of a contact point (2-node segments).
@@ -130,17 +130,11 @@ module contact_state_m
     logical, allocatable :: has_points(:)   !! (slave segments) have their points
     logical :: waits = .false.              !! points are generated, forces follow once all others
                                             !! are known
-    logical :: had_force = .false.          !! the call before had some
-    logical :: is_born = .false.            !! contact begins in this call, after time zero; these
-                                            !! three only of implicit penalties
+    logical :: had_force = .false.          !! the call before had some, not of ties
+    logical :: is_born = .false.            !! contact begins in this call, after time zero
+    integer :: n_freed = 0                  !! sites that no tie holds any more since this call
+    logical, allocatable :: is_freed(:)     !! (n_site) which; only where ties break
   end type contact_scratch_t
-
-  !> What contact behind a tie takes over from it; made again by the tie after a restart.
-  type :: handover_t
-    logical, allocatable :: is_tied_site(:) !! (n_site) to the tie that holds it
-    logical, allocatable :: is_freed(:) !! (n_site) it has broken in this cycle
-    real(wp) :: handed_over = 0.0_wp    !! what springs hold that were freed loaded, J/m
-  end type handover_t
 
   !> What an interface has beside springs along the normal at its points: by its formulation and by
   !> the deck.
@@ -151,9 +145,9 @@ module contact_state_m
     logical :: damping = .false.
     logical :: friction = .false.
     logical :: interference = .false.   !! initial overlaps grow
+    logical :: contact = .false.        !! sites that no tie holds are in contact
     logical :: ties = .false.           !! it is tied
     logical :: breaks = .false.         !! ties break
-    logical :: tie_handover = .false.   !! it takes over what a tie has lost
     logical :: limit = .false.          !! its energy is limited
     logical :: entry_offsets = .false.  !! pressure acts from gap + entry offset
   end type features_t
@@ -191,7 +185,8 @@ module contact_state_m
     real(wp), allocatable :: segment_search(:) !! (slave segments) travel before which its overlaps
                                             !! can not touch, m
     real(wp) :: earliest_segment_search = -huge(1.0_wp) !! smallest of these, m
-    type(contact_points_t) :: points
+    type(contact_points_t) :: points        !! of contact
+    type(contact_points_t) :: tie_points    !! of ties: placed in the reference geometry, and frozen
     real(wp) :: closed_gap = 0.0_wp         !! gaps below it are contact, m; more than 0 only where
                                             !! a tangent of touching bodies is wanted
     real(wp), allocatable :: node_pressure(:) !! (n_slave) where pressure is formed at slave nodes,
@@ -204,15 +199,15 @@ module contact_state_m
     real(wp) :: node_penalty = 0.0_wp       !! eps of type 1, N/m
     real(wp), allocatable :: damping_force(:, :) !! (2, n_slave + n_master) the part of `force` that
                                                  !! damping has; only where there is damping
-    real(wp) :: energy = 0.0_wp             !! minus the accumulated work of the springs, J/m
+    real(wp) :: energy = 0.0_wp             !! minus the accumulated work of the springs, those of
+                                            !! ties included, J/m
     real(wp) :: damping_work = 0.0_wp       !! minus that of the damping forces
     type(friction_memory_t) :: friction     !! of sites, and its forces
     type(interference_memory_t) :: interference !! initial overlaps that grow
     type(tie_memory_t) :: ties              !! springs of a tied interface
-    type(handover_t) :: handover            !! only of contact behind a tie
     type(contact_monitor_t) :: monitor      !! whether the springs give back what they take
     type(energy_limit_t) :: limit           !! that they give back no more
-    integer :: n_active = 0                 !! points that carry pressure
+    integer :: n_active = 0                 !! points of contact that carry pressure
     logical :: rules_step = .false.         !! the step obeys the springs, which nobody has chosen
     type(contact_scratch_t) :: scratch
   contains
@@ -302,8 +297,10 @@ contains
         source=0.0_wp)
       allocate (scratch%segment_near(memory%n_slave), source=0)
       if (memory%has%limit) allocate (scratch%velocity(2, n), source=0.0_wp)
-      if (memory%has%limit .and. (memory%has%damping .or. memory%has%friction)) &
+      if (memory%has%limit .and. (memory%has%damping .or. memory%has%friction &
+        .or. memory%has%ties)) &
         allocate (scratch%spring(2, n), scratch%previous_spring(2, n), source=0.0_wp)
+      if (memory%has%breaks) allocate (scratch%is_freed(n_sites(memory)), source=.false.)
       if (memory%has%friction) then
         allocate (scratch%previous_traction(size(memory%friction%state)), source=0.0_wp)
         allocate (scratch%previous_state(size(memory%friction%state)), source=0)
@@ -312,6 +309,14 @@ contains
       allocate (scratch%has_points(size(memory%segment_state)), source=.false.)
     end associate
   end subroutine allocate_scratch
+
+  !> Sites that laws remember: slave nodes, or points of slave segments, and master nodes.
+  pure function n_sites(memory) result(n)
+    type(contact_state_t), intent(in) :: memory
+    integer :: n
+
+    n = sites_of_segment(memory)*memory%n_slave + memory%n_master
+  end function n_sites
 
   !> Sites of a slave segment that have a memory of their own.
   pure function sites_of_segment(memory) result(n)
@@ -322,21 +327,20 @@ contains
     if (memory%has%segment_points) n = size(memory%segment_xi)
   end function sites_of_segment
 
-  !> The position of a point at a node, slave or master, or between nodes.
-  pure function site_at(memory, p) result(position)
+  !> The site of a point of one of the lists: a node, slave or master, or between nodes.
+  pure function site_at(memory, points, p) result(site)
     type(contact_state_t), intent(in) :: memory
+    type(contact_points_t), intent(in) :: points
     integer, intent(in) :: p
-    integer :: position
+    integer :: site
 
-    associate (points => memory%points)
-      position = points%slave_nodes(1, p)
-      if (memory%has%segment_points) then
-        position = size(memory%segment_xi)*(position - 1) &
-          + segment_point_at(points%slave_weights(2, p), memory%segment_xi)
-      else if (position /= points%slave_nodes(2, p)) then
-        position = points%master_nodes(1, p)
-      end if
-    end associate
+    site = points%slave_nodes(1, p)
+    if (memory%has%segment_points) then
+      site = size(memory%segment_xi)*(site - 1) &
+        + segment_point_at(points%slave_weights(2, p), memory%segment_xi)
+    else if (site /= points%slave_nodes(2, p)) then
+      site = points%master_nodes(1, p)
+    end if
   end function site_at
 
   !> Which of the points of a segment stands at xi.
@@ -424,6 +428,7 @@ contains
     call visitor%visit('listed_until', self%listed_until)
     call visitor%visit('earliest_segment_search', self%earliest_segment_search)
     call visitor%part('points', self%points)
+    call visitor%part('tie_points', self%tie_points)
     call visitor%visit('closed_gap', self%closed_gap)
     call visitor%visit('node_pressure', self%node_pressure)
     call visitor%visit('force', self%force)

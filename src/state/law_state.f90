@@ -10,13 +10,16 @@ module law_state_m
   implicit none
   private
   public :: friction_memory_t, allocate_friction, is_open, sticks, slips, is_held, is_broken, &
-    interference_memory_t, allocate_interference, tie_memory_t, allocate_ties, energy_limit_t, &
-    allocate_limit, contact_monitor_t, contact_change_t, has_made, has_lost, contact_estimate_t
+    is_beside, interference_memory_t, allocate_interference, tie_memory_t, allocate_ties, &
+    energy_limit_t, allocate_limit, contact_monitor_t, contact_change_t, has_made, has_lost, &
+    contact_estimate_t
 
   !> What a site is doing.
   integer, parameter :: is_open = 0, sticks = 1, slips = 2
   !> What a tie makes of it.
   integer, parameter :: is_held = 3, is_broken = 4
+  !> Not tied itself, but upon a site that is held.
+  integer, parameter :: is_beside = 5
 
   !> Arrays are allocated for interfaces with friction alone.
   type, extends(visited_t) :: friction_memory_t
@@ -57,13 +60,17 @@ module law_state_m
                                          !! where pressure is formed there, m
     real(wp), allocatable :: pressure(:) !! (n_bond) below 0: tension, N/m^2
     real(wp), allocatable :: traction(:) !! (n_bond) N/m^2
-    integer, allocatable :: state(:)     !! (n_site) of each site of friction: open, held
-                                         !! or broken; this and the next two only where ties break
+    real(wp), allocatable :: force(:, :) !! (2, n_slave + n_master) the part of the forces that
+                                         !! they have, N/m
+    integer :: n_held = 0                !! points that they hold
+    real(wp) :: energy = 0.0_wp          !! minus the accumulated work of their forces, J/m
+    integer, allocatable :: state(:)     !! (n_site) of each site: open, held, broken or beside;
+                                         !! this and the next two only where ties break
     integer, allocatable :: site(:)      !! (n_bond) of each bond
     real(wp), allocatable :: to_stress(:) !! (n_bond) stress of the bond over pressure: 1 but for
                                          !! types 1 and 3
     real(wp) :: spent = 0.0_wp           !! what springs held that have broken, less what contact
-                                         !! behind them took over, J/m
+                                         !! there took over, J/m
     real(wp) :: first_break = 0.0_wp     !! its time, s
     real(wp) :: last_break = 0.0_wp      !! likewise
   contains
@@ -197,16 +204,18 @@ contains
     call visitor%visit('work', self%work)
   end subroutine visit_interference
 
-  !> Allocate for springs that have these first points.
-  pure subroutine allocate_ties(ties, first)
+  !> Allocate for springs that have these first points, between so many nodes.
+  pure subroutine allocate_ties(ties, first, n_node)
     type(tie_memory_t), intent(inout) :: ties
     integer, intent(in) :: first(:) !! (n_spring + 1) then the end
+    integer, intent(in) :: n_node
     integer :: n_spring
 
     n_spring = size(first) - 1
     ties%first = first
     allocate (ties%owner(2, n_spring), source=1)
-    allocate (ties%side(n_spring), ties%lag(2, n_spring), ties%offset(2, n_spring), source=0.0_wp)
+    allocate (ties%side(n_spring), ties%lag(2, n_spring), ties%offset(2, n_spring), &
+      ties%force(2, n_node), source=0.0_wp)
   end subroutine allocate_ties
 
   !> Its components.
@@ -222,6 +231,9 @@ contains
     call visitor%visit('area', self%area)
     call visitor%visit('pressure', self%pressure)
     call visitor%visit('traction', self%traction)
+    call visitor%visit('force', self%force)
+    call visitor%visit('n_held', self%n_held, 0, huge(1), 'a number below zero')
+    call visitor%visit('energy', self%energy)
     call visitor%visit('state', self%state)
     call visitor%visit('site', self%site)
     call visitor%visit('to_stress', self%to_stress)

@@ -13,7 +13,7 @@ EXEMPT = {
     "state_t": {"boundary_since": "of this run, where the file has no works",
                 "outlines": "made of the deck and the status of elements"},
     "block_state_t": {"mass_shares": "made of the deck and the status of elements"},
-    "contact_state_t": {"has": OF_THE_DECK, "handover": "told by the tie", "scratch": "nothing in it lasts to the next step",
+    "contact_state_t": {"has": OF_THE_DECK, "scratch": "nothing in it lasts to the next step",
                         "candidates": "no result depends on them", "reversed": "no result depends on them"},
     "contact_status_t": {"due": EACH_CYCLE, "faded": EACH_CYCLE, "pass": OF_THE_DECK, "reach": OF_THE_DECK},
     "schedule_t": {"end_time": "from the deck, which may change it", "curve": "kept as two arrays"},
@@ -35,7 +35,7 @@ EXEMPT = {
     "controls_t": {"implicit": "runs of several processes are explicit, its default"},
 }
 #: types of src/state that hold no memory
-WITHOUT_MEMORY = {"contact_scratch_t", "features_t", "handover_t", "candidates_t", "pass_t", "snapshot_t",
+WITHOUT_MEMORY = {"contact_scratch_t", "features_t", "candidates_t", "pass_t", "snapshot_t",
                   "interface_result_t", "part_result_t", "slave_result_t",
                   "wall_result_t", "friction_result_t", "element_result_t", "body_result_t", "section_result_t",
                   "energies_t", "others_t", "answers_t"}

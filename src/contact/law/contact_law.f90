@@ -11,6 +11,7 @@ module contact_law_m
   use kinds_m, only : wp
   use law_penalty_m, only : apply_penalty
   use nodal_average_m, only : average_values, share_out
+  use tiebreak_m, only : exclude_tied_sites
   implicit none
   private
   public :: law_t, laws, law_penalty, form_pressures, find_gaps, spring_t, n_springs, spring_at, &
@@ -61,11 +62,12 @@ contains
       if (memory%has%nodal_pressure) then
         stiffness(:memory%n_slave) = memory%slave_penalty
         call apply_law(law, memory%n_slave, stiffness, gaps, memory%node_pressure, slope, energy)
-        call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
-          points%pressure)
       else
         call apply_law(law, points%n, points%stiffness, gaps, points%pressure, slope, energy)
       end if
+      if (memory%has%breaks) call exclude_tied_sites(memory)
+      if (memory%has%nodal_pressure) call share_out(points%n, points%slave_nodes, &
+        points%slave_weights, memory%node_pressure, points%pressure)
     end associate
     if (memory%has%interference) call gather_moment(memory)
   end subroutine form_pressures
@@ -107,7 +109,7 @@ contains
         spring = spring_t(i, i, nodal(2, i)*density_of(law, memory%slave_penalty, gap), &
           nodal(2, i)*memory%node_pressure(i))
       else
-        spring = spring_t(site_at(memory, i), points%slave_nodes( &
+        spring = spring_t(site_at(memory, memory%points, i), points%slave_nodes( &
           maxloc(points%slave_weights(:, i), 1), i), &
           points%area(i)*density_of(law, points%stiffness(i), gap), &
           points%area(i)*points%pressure(i))

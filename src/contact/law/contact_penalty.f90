@@ -20,14 +20,14 @@ module contact_penalty_m
 contains
 
   !> Whether the penalty is the built-in one and nothing has scaled it: SFACT, PEN and SLSFAC at
-  !> their defaults. Ties, and contact behind them, have one of their own.
+  !> their defaults. Ties have one of their own.
   pure function has_default_penalty(contact, controls) result(has)
     type(contact_t), intent(in) :: contact
     type(controls_t), intent(in) :: controls
     logical :: has
     type(controls_t) :: default
 
-    has = contact%penalty_unit == penalty_factor .and. contact%behind == 0 &
+    has = contact%penalty_unit == penalty_factor &
       .and. .not. is_tied(contact) .and. .not. abs(contact%penalty - 1.0_wp) > 0.0_wp &
       .and. .not. abs(contact%master_penalty - 1.0_wp) > 0.0_wp &
       .and. .not. abs(controls%penalty_scale - default%penalty_scale) > 0.0_wp

@@ -41,8 +41,7 @@ contains
 
   !> Before the points are generated: the forces of the normal springs alone that acted in the cycle
   !> before, where there are others; both lists are exchanged.
-  pure subroutine store_previous_springs(had_force, memory)
-    logical, intent(in) :: had_force
+  pure subroutine store_previous_springs(memory)
     type(contact_state_t), intent(inout) :: memory
     real(wp), allocatable :: spare(:, :)
 
@@ -50,7 +49,7 @@ contains
     call move_alloc(memory%scratch%previous_spring, spare)
     call move_alloc(memory%scratch%spring, memory%scratch%previous_spring)
     call move_alloc(spare, memory%scratch%spring)
-    if (.not. had_force) memory%scratch%previous_spring = 0.0_wp
+    if (.not. memory%scratch%had_force) memory%scratch%previous_spring = 0.0_wp
   end subroutine store_previous_springs
 
   !> The forces of the normal springs alone, where there are others; after a restart too.
@@ -59,12 +58,10 @@ contains
 
     if (.not. has_other_forces(memory)) return
     associate (spring => memory%scratch%spring, n => size(memory%force))
-      if (.not. memory%has%damping) then
-        call subtract(n, memory%force, memory%friction%force, spring)
-      else
-        call subtract(n, memory%force, memory%damping_force, spring)
-        if (memory%has%friction) call subtract(n, (spring), memory%friction%force, spring)
-      end if
+      spring = memory%force
+      if (memory%has%ties) call subtract(n, memory%ties%force, spring)
+      if (memory%has%damping) call subtract(n, memory%damping_force, spring)
+      if (memory%has%friction) call subtract(n, memory%friction%force, spring)
     end associate
   end subroutine form_springs
 
@@ -73,16 +70,16 @@ contains
     type(contact_state_t), intent(in) :: memory
     logical :: has
 
-    has = memory%has%limit .and. (memory%has%damping .or. memory%has%friction)
+    has = memory%has%limit .and. (memory%has%damping .or. memory%has%friction .or. memory%has%ties)
   end function has_other_forces
 
   !> Both components of all nodes in one loop: column by column it takes twenty times as long.
-  pure subroutine subtract(n, force, part, spring)
+  pure subroutine subtract(n, part, spring)
     integer, intent(in) :: n
-    real(wp), intent(in) :: force(n), part(n)
+    real(wp), intent(in) :: part(n)
     real(wp), intent(inout) :: spring(n)
 
-    spring = force - part
+    spring = spring - part
   end subroutine subtract
 
   !> Scale the forces of the interface, with the pressures and the part of damping, by what the
@@ -99,8 +96,8 @@ contains
     associate (limit => memory%limit, scratch => memory%scratch)
       if (.not. memory%has%limit) return
       if (has_other_forces(memory)) then
-        call find_factor(memory%energy, memory%nodes, motion, dt, scratch%previous_spring, &
-          scratch%spring, scratch%velocity, limit, factor)
+        call find_factor(memory%energy - memory%ties%energy, memory%nodes, motion, dt, &
+          scratch%previous_spring, scratch%spring, scratch%velocity, limit, factor)
       else
         call find_factor(memory%energy, memory%nodes, motion, dt, scratch%previous_force, &
           memory%force, scratch%velocity, limit, factor)
@@ -228,12 +225,13 @@ contains
     end if
   end function energy_factor
 
-  !> Scale all that acts in this cycle.
+  !> Scale all that acts in this cycle but ties, which have a potential.
   pure subroutine scale_forces(factor, memory)
     real(wp), intent(in) :: factor
     type(contact_state_t), intent(inout) :: memory
 
     memory%force = factor*memory%force
+    if (memory%has%ties) memory%force = memory%force + (1.0_wp - factor)*memory%ties%force
     associate (points => memory%points)
       points%pressure(:points%n) = factor*points%pressure(:points%n)
       if (memory%has%damping) then

@@ -126,7 +126,7 @@ contains
     associate (points => memory%points, rule => contact%friction, scratch => memory%scratch)
       if (rule%most > 0.0_wp) slider%most = rule%most
       do p = 1, points%n
-        slider%site = site_at(memory, p)
+        slider%site = site_at(memory, memory%points, p)
         slider%slip = slip_at(memory, p)
         call read_previous(memory, slider)
         if (slider%before == is_open) then
@@ -166,7 +166,7 @@ contains
         point = status%active_points(k)
         p = last + 1
         last = last_sub_segment(points, p)
-        slider%site = site_at(memory, p)
+        slider%site = site_at(memory, memory%points, p)
         nodes = memory%n_slave + contact%master%segments(:, status%segment(point))
         weights = [1.0_wp - status%xi(point), status%xi(point)]
         slider%slip = slip_of(points%slave_nodes(1, p), points%slave_weights(1, p), nodes, &

@@ -46,7 +46,7 @@ contains
       end if
       do p = 1, points%n
         if (.not. points%gap(p) < 0.0_wp) cycle
-        site = site_at(memory, p)
+        site = site_at(memory, memory%points, p)
         depth(site) = max(depth(site), -points%gap(p))
       end do
     end associate
@@ -77,7 +77,7 @@ contains
     real(wp) :: depth
 
     associate (depths => memory%interference%depth, nodes => memory%points%slave_nodes(:, p))
-      depth = depths(site_at(memory, p))
+      depth = depths(site_at(memory, memory%points, p))
       if (depth < 0.0_wp) depth = sum(memory%points%slave_weights(:, p)*max(0.0_wp, depths(nodes)))
     end associate
   end function depth_at

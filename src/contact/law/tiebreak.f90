@@ -1,16 +1,17 @@
 ! SPDX-License-Identifier: MIT
 !> Ties that break (doc/theory/contact.md, section 6.4): where (s_n/NFLS)^2 +
-!> (s_t/SFLS)^2 >= 1, s_n the tension and s_t the shear of a site, it is free for good. Sites are
-!> those at which pressure is formed (law_state_m).
+!> (s_t/SFLS)^2 >= 1, s_n the tension and s_t the shear of a site, it is free for good, and in
+!> contact from then on. Sites are those at which pressure is formed (law_state_m).
 module tiebreak_m
-  use contact_state_m, only : contact_state_t, sites_of_segment, site_at
+  use contact_state_m, only : contact_state_t, n_side, n_sites, site_at
   use contacts_m, only : contact_t
-  use law_state_m, only : tie_memory_t, is_open, is_held, is_broken
+  use law_state_m, only : tie_memory_t, is_open, is_held, is_broken, is_beside
   use kinds_m, only : wp
   use tributary_lengths_m, only : nodal_area
   implicit none
   private
-  public :: start_breaking, mark_breaks, let_go, holds, holds_node
+  public :: start_breaking, mark_breaks, let_go, holds, has_failed, holds_node, &
+    is_tied_site, exclude_tied_sites
 
 contains
 
@@ -23,14 +24,13 @@ contains
     type(contact_state_t), intent(inout) :: memory
     integer :: s
 
-    associate (ties => memory%ties, points => memory%points)
-      allocate (ties%state(sites_of_segment(memory)*memory%n_slave + memory%n_master), &
-        source=is_open)
+    associate (ties => memory%ties, points => memory%tie_points)
+      allocate (ties%state(n_sites(memory)), source=is_open)
       allocate (ties%to_stress(size(ties%area)), source=1.0_wp)
       if (memory%has%nodal_pressure) then
         ties%site = [(s, s=1, memory%n_slave)]
       else
-        ties%site = [(site_at(memory, ties%first(s)), s=1, size(ties%side))]
+        ties%site = [(site_at(memory, points, ties%first(s)), s=1, size(ties%side))]
       end if
       do s = 1, size(ties%area)
         if (ties%area(s) > 0.0_wp) ties%state(ties%site(s)) = is_held
@@ -40,24 +40,58 @@ contains
           memory%positions(:, :memory%n_slave), contact%is_round, ties%site(s))
       end do
     end associate
+    call mark_beside(memory)
   end subroutine start_breaking
 
+  !> Where slave and master nodes lie upon each other type 5 has one site of the two: the other,
+  !> never tied itself, goes with it.
+  pure subroutine mark_beside(memory)
+    type(contact_state_t), intent(inout) :: memory
+    integer :: s, k
+
+    if (memory%has%segment_points .or. memory%has%nodal_pressure) return
+    associate (ties => memory%ties, points => memory%tie_points)
+      where (ties%state == is_beside) ties%state = is_open
+      do s = 1, size(ties%side)
+        if (ties%state(ties%site(s)) /= is_held) cycle
+        do k = 1, n_side
+          associate (a => points%slave_nodes(k, ties%first(s)), &
+            b => points%master_nodes(k, ties%first(s)))
+            if (points%slave_weights(k, ties%first(s)) > 0.5_wp .and. ties%state(a) == is_open) &
+              ties%state(a) = is_beside
+            if (points%master_weights(k, ties%first(s)) > 0.5_wp .and. ties%state(b) == is_open) &
+              ties%state(b) = is_beside
+          end associate
+        end do
+      end do
+    end associate
+  end subroutine mark_beside
+
   !> Mark the sites that reach their strengths under the present pressures and tractions.
-  pure subroutine mark_breaks(strength, time, ties, n_new)
+  pure subroutine mark_breaks(strength, time, memory, n_new)
     real(wp), intent(in) :: strength(2) !! NFLS, SFLS, N/m^2
     real(wp), intent(in) :: time        !! s
-    type(tie_memory_t), intent(inout) :: ties
+    type(contact_state_t), intent(inout) :: memory
     integer, intent(out) :: n_new       !! sites marked
     integer :: b
 
     n_new = 0
-    do b = 1, size(ties%site)
-      call mark(strength, ties%to_stress(b)*ties%pressure(b), ties%to_stress(b)*ties%traction(b), &
-        ties%state(ties%site(b)), n_new)
-    end do
-    if (n_new == 0) return
-    if (.not. ties%first_break > 0.0_wp) ties%first_break = time
-    ties%last_break = time
+    associate (ties => memory%ties, scratch => memory%scratch)
+      scratch%n_freed = 0
+      scratch%is_freed = is_tied_site(ties%state)
+      do b = 1, size(ties%site)
+        associate (to_stress => ties%to_stress(b))
+          call mark(strength, to_stress*ties%pressure(b), to_stress*ties%traction(b), &
+            ties%state(ties%site(b)), n_new)
+        end associate
+      end do
+      if (n_new == 0) return
+      call mark_beside(memory)
+      scratch%is_freed = scratch%is_freed .and. .not. is_tied_site(ties%state)
+      scratch%n_freed = count(scratch%is_freed)
+      if (.not. ties%first_break > 0.0_wp) ties%first_break = time
+      ties%last_break = time
+    end associate
   end subroutine mark_breaks
 
   !> One site under its stresses. Pressure does not help to break it.
@@ -91,12 +125,29 @@ contains
     associate (ties => memory%ties)
       if (.not. memory%has%breaks) return
       if (memory%has%nodal_pressure) then
-        yes = any(ties%state(memory%points%slave_nodes(:, ties%first(s))) == is_held)
+        yes = any(ties%state(memory%tie_points%slave_nodes(:, ties%first(s))) == is_held)
       else
         yes = ties%state(ties%site(s)) == is_held
       end if
     end associate
   end function holds
+
+  !> Whether a spring, or a part of it, has broken.
+  pure function has_failed(memory, s) result(yes)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s
+    logical :: yes
+
+    yes = .false.
+    associate (ties => memory%ties)
+      if (.not. memory%has%breaks) return
+      if (memory%has%nodal_pressure) then
+        yes = any(ties%state(memory%tie_points%slave_nodes(:, ties%first(s))) == is_broken)
+      else
+        yes = ties%state(ties%site(s)) == is_broken
+      end if
+    end associate
+  end function has_failed
 
   !> Whether a slave node, of types 6 and 7, still holds.
   pure function holds_node(memory, node) result(yes)
@@ -107,5 +158,29 @@ contains
     yes = .true.
     if (memory%has%breaks) yes = memory%ties%state(node) == is_held
   end function holds_node
+
+  !> Whether a tie keeps a site of this state out of contact.
+  elemental function is_tied_site(state) result(is_tied)
+    integer, intent(in) :: state
+    logical :: is_tied
+
+    is_tied = state == is_held .or. state == is_beside
+  end function is_tied_site
+
+  !> After pressures of all sites have been formed: those that ties hold have none.
+  pure subroutine exclude_tied_sites(memory)
+    type(contact_state_t), intent(inout) :: memory
+    integer :: p
+
+    associate (states => memory%ties%state, points => memory%points)
+      if (memory%has%nodal_pressure) then
+        where (is_tied_site(states(:memory%n_slave))) memory%node_pressure = 0.0_wp
+      else
+        do p = 1, points%n
+          if (is_tied_site(states(site_at(memory, points, p)))) points%pressure(p) = 0.0_wp
+        end do
+      end if
+    end associate
+  end subroutine exclude_tied_sites
 
 end module tiebreak_m

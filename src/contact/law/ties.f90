@@ -6,18 +6,20 @@
 !> gradient: -k w (a n + b t) on the slave side, the opposite on the master side, and the couple
 !> k w (b d.n - a d.t) on the segment that n and t turn with, so that the net moment vanishes.
 module ties_m
+  use contact_penalty_m, only : mean_length
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
   use contact_scatter_m, only : scatter, scatter_tractions
   use contacts_m, only : contact_t
   use geometry_m, only : separation
   use kinds_m, only : wp
+  use model_m, only : model_t
   use nodal_average_m, only : average_values, share_out
   use law_state_m, only : allocate_ties
-  use tiebreak_m, only : mark_breaks, let_go, holds
+  use tiebreak_m, only : mark_breaks, let_go, holds, has_failed
   implicit none
   private
-  public :: tie_spring_t, freeze_ties, hold_ties, tie_energy, tie_spring, tie_stiffness, &
-    stiffness_of_nodes, tied_nodes, break_ties
+  public :: tie_spring_t, tie_reach, freeze_ties, hold_ties, tie_energy, tie_spring, &
+    tie_stiffness, stiffness_of_nodes, tied_nodes, break_ties
 
   !> A spring as it stands.
   type :: tie_spring_t
@@ -29,20 +31,33 @@ module ties_m
 
 contains
 
-  !> Make springs of the points on the list, which have been placed in the reference geometry.
-  !> Points farther apart than `reach` and those without area go.
-  pure subroutine freeze_ties(contact, reach, memory)
-    type(contact_t), intent(in) :: contact !! between which they were placed
-    real(wp), intent(in) :: reach          !! m
+  !> How far apart sites may lie that are tied, m.
+  pure function tie_reach(contact, model) result(reach)
+    type(contact_t), intent(in) :: contact
+    type(model_t), intent(in) :: model
+    real(wp) :: reach
+
+    reach = contact%tie_reach
+    if (.not. abs(reach) > 0.0_wp) reach = -1.0_wp
+    if (reach < 0.0_wp) reach = -0.01_wp*reach*mean_length(contact%master, model)
+  end function tie_reach
+
+  !> Make springs of points that have been placed in the reference geometry. Points farther apart
+  !> than `reach` and those without area go.
+  pure subroutine freeze_ties(contact, reach, placed, memory)
+    type(contact_t), intent(in) :: contact         !! between which they were placed
+    real(wp), intent(in) :: reach                  !! m
+    type(contact_state_t), intent(in) :: placed    !! has the points and their status
     type(contact_state_t), intent(inout) :: memory
     type(tie_spring_t) :: spring
     integer :: s
 
-    call select_points(reach, memory%points)
-    call allocate_ties(memory%ties, spring_starts(memory))
-    associate (ties => memory%ties, points => memory%points)
+    memory%tie_points = placed%points
+    call select_points(reach, memory%tie_points)
+    call allocate_ties(memory%ties, spring_starts(memory), size(memory%nodes))
+    associate (ties => memory%ties, points => memory%tie_points)
       do s = 1, size(ties%side)
-        call find_owner(contact, s, memory)
+        call find_owner(contact, placed, s, memory)
         ties%lag(:, s) = mean_separation(memory, s, 1)
         spring = tie_spring(memory, s)
         ties%offset(:, s) = [dot_product(spring%d, spring%n), dot_product(spring%d, spring%t)]
@@ -54,6 +69,7 @@ contains
         ties%area = [(sum(points%area(ties%first(s):ties%first(s + 1) - 1)), s=1, size(ties%side))]
       end if
       allocate (ties%pressure(size(ties%area)), ties%traction(size(ties%area)), source=0.0_wp)
+      allocate (points%traction(size(points%gap)), source=0.0_wp)
     end associate
   end subroutine freeze_ties
 
@@ -86,13 +102,13 @@ contains
     integer :: p
 
     first = [integer ::]
-    do p = 1, memory%points%n
+    do p = 1, memory%tie_points%n
       if (p > 1) then
         if (is_same_spring(memory, p - 1)) cycle
       end if
       first = [first, p]
     end do
-    first = [first, memory%points%n + 1]
+    first = [first, memory%tie_points%n + 1]
   end function spring_starts
 
   !> Whether a point and the next one belong to one spring: sub-segments of one virtual node.
@@ -103,7 +119,7 @@ contains
 
     same = .false.
     if (.not. has_virtual_nodes(memory)) return
-    associate (points => memory%points)
+    associate (points => memory%tie_points)
       same = all(points%slave_nodes(:, p) == points%slave_nodes(:, p + 1)) .and. &
         .not. abs(points%slave_weights(1, p) - points%slave_weights(1, p + 1)) > 0.0_wp
     end associate
@@ -119,14 +135,15 @@ contains
 
   !> The segment that the normal of a spring belongs to: the master's, for a virtual node the one
   !> below it, or the slave's where the master side is one node.
-  pure subroutine find_owner(contact, s, memory)
+  pure subroutine find_owner(contact, placed, s, memory)
     type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: placed
     integer, intent(in) :: s
     type(contact_state_t), intent(inout) :: memory
     integer :: p, n, q
 
     p = memory%ties%first(s)
-    associate (owner => memory%ties%owner(:, s), points => memory%points)
+    associate (owner => memory%ties%owner(:, s), points => memory%tie_points)
       memory%ties%side(s) = 1.0_wp
       owner = points%master_nodes(:, p)
       if (owner(1) == owner(2)) then
@@ -135,7 +152,7 @@ contains
       else if (has_virtual_nodes(memory)) then
         n = size(memory%segment_xi)
         q = minloc(abs(memory%segment_xi - points%slave_weights(2, p)), 1)
-        owner = memory%n_slave + contact%master%segments(:, memory%slave_status%segment( &
+        owner = memory%n_slave + contact%master%segments(:, placed%slave_status%segment( &
           n*(contact%slave%outgoing(points%slave_nodes(1, p)) - 1) + q))
       end if
     end associate
@@ -152,7 +169,7 @@ contains
 
     d = 0.0_wp
     total = 0.0_wp
-    associate (points => memory%points, positions => memory%positions)
+    associate (points => memory%tie_points, positions => memory%positions)
       do p = memory%ties%first(s), memory%ties%first(s + 1) - 1
         do i = 1, n_side
           d = d + points%area(p)*( &
@@ -191,7 +208,11 @@ contains
     real(wp) :: along_n(size(springs)), along_t(size(springs)) !! stretches, m
     integer :: s, p, n_new
 
-    associate (points => memory%points, ties => memory%ties)
+    memory%scratch%n_freed = 0
+    memory%ties%n_held = 0
+    memory%ties%force = 0.0_wp
+    if (memory%tie_points%n == 0) return
+    associate (points => memory%tie_points, ties => memory%ties)
       do s = 1, size(springs)
         springs(s) = tie_spring(memory, s)
         do p = ties%first(s), ties%first(s + 1) - 1
@@ -223,7 +244,7 @@ contains
 
     call let_go(memory%ties)
     call tie_energy(memory, before, load, node)
-    call mark_breaks(strength, time, memory%ties, n_new)
+    call mark_breaks(strength, time, memory, n_new)
     if (n_new == 0) return
     call let_go(memory%ties)
     call share_loads(memory)
@@ -241,10 +262,10 @@ contains
 
     associate (first => memory%ties%first(:size(stretches)))
       if (memory%has%nodal_pressure) then
-        call average_values(memory%points, stretches, memory%n_slave, nodal)
+        call average_values(memory%tie_points, stretches, memory%n_slave, nodal)
         loads = memory%slave_penalty*nodal(1, :)
       else
-        loads = memory%points%stiffness(first)*stretches
+        loads = memory%tie_points%stiffness(first)*stretches
       end if
     end associate
   end function bond_loads
@@ -254,9 +275,8 @@ contains
     type(contact_state_t), intent(inout) :: memory
     integer :: s
 
-    associate (points => memory%points, ties => memory%ties)
+    associate (points => memory%tie_points, ties => memory%ties)
       if (memory%has%nodal_pressure) then
-        memory%node_pressure = ties%pressure
         call share_out(points%n, points%slave_nodes, points%slave_weights, ties%pressure, &
           points%pressure)
         call share_out(points%n, points%slave_nodes, points%slave_weights, ties%traction, &
@@ -270,22 +290,23 @@ contains
     end associate
   end subroutine share_loads
 
-  !> Forces of all springs: those of their points, and the couples.
+  !> Forces of all springs: those of their points, and the couples. They are the first ones of the
+  !> interface.
   pure subroutine scatter_ties(springs, memory)
     type(tie_spring_t), intent(in) :: springs(:)
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: part(2, size(memory%force, 2))
     integer :: s
 
-    part = 0.0_wp
-    call scatter(memory%points, memory%points%pressure, memory%force)
-    call scatter_tractions(memory%points, part, memory%force)
-    memory%n_active = 0
-    do s = 1, size(springs)
-      if (.not. holds(memory, s)) cycle
-      memory%n_active = memory%n_active + memory%ties%first(s + 1) - memory%ties%first(s)
-      call add_couple(springs(s), s, memory)
-    end do
+    associate (ties => memory%ties, points => memory%tie_points)
+      call scatter_tractions(points, ties%force, memory%force)
+      call scatter(points, points%pressure, memory%force)
+      do s = 1, size(springs)
+        if (.not. holds(memory, s)) cycle
+        ties%n_held = ties%n_held + ties%first(s + 1) - ties%first(s)
+        call add_couple(springs(s), s, memory)
+      end do
+      ties%force = memory%force
+    end associate
   end subroutine scatter_ties
 
   !> The moment d x load of the pair of forces of a spring is taken up by its segment.
@@ -297,7 +318,7 @@ contains
     integer :: p
 
     total = 0.0_wp
-    associate (points => memory%points, ties => memory%ties, force => memory%force)
+    associate (points => memory%tie_points, ties => memory%ties, force => memory%force)
       do p = ties%first(s), ties%first(s + 1) - 1
         total = total &
           + points%area(p)*(points%pressure(p)*spring%n - points%traction(p)*spring%t)
@@ -320,8 +341,8 @@ contains
     energy = 0.0_wp
     load = 0.0_wp
     node = 0
-    if (memory%points%n == 0) return
-    associate (points => memory%points, ties => memory%ties)
+    if (memory%tie_points%n == 0) return
+    associate (points => memory%tie_points, ties => memory%ties)
       do b = 1, size(ties%area)
         i = b
         stiffness = memory%slave_penalty
@@ -345,7 +366,7 @@ contains
     real(wp) :: stiffness
 
     associate (last => memory%ties%first(s + 1) - 1, first => memory%ties%first(s))
-      stiffness = sum(memory%points%stiffness(first:last)*memory%points%area(first:last))
+      stiffness = sum(memory%tie_points%stiffness(first:last)*memory%tie_points%area(first:last))
     end associate
   end function tie_stiffness
 
@@ -361,8 +382,8 @@ contains
     integer :: s, p, i
 
     stiffness = 0.0_wp
-    if (memory%points%n == 0) return
-    associate (points => memory%points, ties => memory%ties)
+    if (memory%tie_points%n == 0) return
+    associate (points => memory%tie_points, ties => memory%ties)
       do s = 1, size(ties%side)
         if (.not. holds(memory, s)) cycle
         spring = tie_spring(memory, s)
@@ -389,23 +410,23 @@ contains
     end associate
   end function stiffness_of_nodes
 
-  !> Which nodes of the interface a spring holds or held.
-  pure function tied_nodes(memory, still) result(is_tied)
+  !> Which nodes of the interface springs hold, or held.
+  pure function tied_nodes(memory, held, broken) result(is_tied)
     type(contact_state_t), intent(in) :: memory
-    logical, intent(in) :: still !! those that have not broken alone
+    logical, intent(in) :: held, broken !! by which springs: those that hold, or have broken in part
     logical :: is_tied(memory%n_slave + memory%n_master)
     integer :: s, p, k
 
     is_tied = .false.
-    if (memory%points%n == 0) return
+    if (memory%tie_points%n == 0) return
     do s = 1, size(memory%ties%side)
-      if (still .and. .not. holds(memory, s)) cycle
+      if (.not. ((held .and. holds(memory, s)) .or. (broken .and. has_failed(memory, s)))) cycle
       do p = memory%ties%first(s), memory%ties%first(s + 1) - 1
         do k = 1, n_side
-          if (memory%points%slave_weights(k, p) > 0.0_wp) &
-            is_tied(memory%points%slave_nodes(k, p)) = .true.
-          if (memory%points%master_weights(k, p) > 0.0_wp) &
-            is_tied(memory%points%master_nodes(k, p)) = .true.
+          if (memory%tie_points%slave_weights(k, p) > 0.0_wp) &
+            is_tied(memory%tie_points%slave_nodes(k, p)) = .true.
+          if (memory%tie_points%master_weights(k, p) > 0.0_wp) &
+            is_tied(memory%tie_points%master_nodes(k, p)) = .true.
         end do
       end do
     end do

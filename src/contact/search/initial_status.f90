@@ -6,7 +6,7 @@
 module initial_status_m
   use contact_state_m, only : contact_state_t, contact_status_t, allocate_status, separated, active
   use contact_status_m, only : list_active
-  use contacts_m, only : contact_t, is_tied
+  use contacts_m, only : contact_t, is_tied, breaks
   use element_finder_m, only : element_finder_t, start_finder, is_inside_body
   use projection_m, only : projection_t, closest_projection, local_coordinates
   use geometry_m, only : local_coordinates_t, closest_distance, local_gap, local_normal
@@ -102,7 +102,7 @@ contains
       status%segment_depth = contact%search_depth
     end if
     status%reach = max(longest, 2.0_wp*maxval(status%segment_depth))
-    if (is_tied(contact)) then
+    if (is_tied(contact) .and. .not. breaks(contact)) then
       ! What is tied its reach says alone, at whatever depth.
       status%reach = max(status%reach, contact%tie_reach, -0.01_wp*contact%tie_reach*longest)
       status%point_depth = status%reach

@@ -14,7 +14,7 @@ module assembly_m
   use law_state_m, only : is_open, slips
   use linearisation_m, only : linearised_list_t, linearised_point_t, n_slot, slip_of, between
   use sparse_m, only : sparse_t, add_block
-  use tie_handover_m, only : is_held_by_tie
+  use tiebreak_m, only : is_tied_site
   implicit none
   private
   public :: add_point_tangents, add_nodal_tangents, load_point, nodal_share, add_linearised_point, &
@@ -66,7 +66,7 @@ contains
 
     gap = loaded_gap(memory, point)
     acts = gap%value < memory%closed_gap
-    if (acts) acts = .not. is_held_by_tie(memory, point%site)
+    if (acts .and. memory%has%breaks) acts = .not. is_tied_site(memory%ties%state(point%site))
     if (.not. acts) return
     pressure = linearise_pressure(memory%contact_law, point%stiffness, gap)
     traction = constant(0.0_wp)
@@ -213,7 +213,9 @@ contains
     tractions = constant(0.0_wp)
     do i = 1, memory%n_slave
       if (.not. (gaps(i) < memory%closed_gap .and. areas(i) > 0.0_wp)) cycle
-      if (is_held_by_tie(memory, i)) cycle
+      if (memory%has%breaks) then
+        if (is_tied_site(memory%ties%state(i))) cycle
+      end if
       pressures(i) = linearise_pressure(memory%contact_law, memory%slave_penalty, &
         variable(gaps(i), of_gap))
       if (memory%has%friction) tractions(i) = linearise_friction(contact, memory, &

@@ -161,7 +161,7 @@ contains
         if (points%slave_nodes(1, p) /= point%nodes(1)) exit
         if (maxval(points%slave_weights(:, p)) >= 1.0_wp) exit
         point%slave_xi = constant(points%slave_weights(2, p))
-        point%site = site_at(memory, p)
+        point%site = site_at(memory, memory%points, p)
         q = segment_point_at(points%slave_weights(2, p), memory%segment_xi)
         call put_on_segment(contact, memory, p, &
           memory%segment_share(q)*length_between(memory, point, 1, 2), point)

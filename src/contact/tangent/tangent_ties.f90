@@ -62,7 +62,7 @@ contains
     integer :: i
 
     spring = tie_spring(memory, s)
-    associate (points => memory%points, first => memory%ties%first(s), &
+    associate (points => memory%tie_points, first => memory%ties%first(s), &
       last => memory%ties%first(s + 1) - 1, side => memory%ties%side(s))
       fn = -sum(points%pressure(first:last)*points%area(first:last))
       fs = sum(points%traction(first:last)*points%area(first:last))
@@ -91,12 +91,13 @@ contains
     type(sparse_t), intent(inout) :: matrix
     type(product_t) :: product
     real(wp) :: areas(memory%n_slave)
-    integer :: head(memory%n_slave), next(n_side, memory%points%n) ! n_side p - 2 + k, 0 at the end
+    ! n_side p - 2 + k, 0 at the end:
+    integer :: head(memory%n_slave), next(n_side, memory%tie_points%n)
     integer :: i, j, k, p, at
 
     areas = 0.0_wp
     head = 0
-    associate (points => memory%points)
+    associate (points => memory%tie_points)
       do p = points%n, 1, -1
         do k = n_side, 1, -1
           i = points%slave_nodes(k, p)
@@ -164,7 +165,7 @@ contains
 
     weights = 0.0_wp
     n = 0
-    associate (points => memory%points, first => memory%ties%first(s), &
+    associate (points => memory%tie_points, first => memory%ties%first(s), &
       last => memory%ties%first(s + 1) - 1)
       do p = first, last
         nodes(n + 1:n + 2*n_side) = [points%slave_nodes(:, p), points%master_nodes(:, p)]

@@ -38,7 +38,7 @@ contains
     do k = 1, memory%slave_status%n_active
       associate (virtual_node => memory%slave_status%active_points(k))
         point = linearise_virtual_node(contact, memory, virtual_node)
-        point%site = site_at(memory, p)
+        point%site = site_at(memory, memory%points, p)
         call linearise_sub_segments(contact, memory, virtual_node, point, sub_segments)
       end associate
       p = p + sub_segments%n

@@ -396,8 +396,8 @@ contains
     end do
   end subroutine take_strength
 
-  !> What ties do not have: an error, or without effect. Ties that break hand damping, friction and
-  !> FREQ to the contact behind them.
+  !> What ties do not have: an error, or without effect. Ties that break have damping, friction and
+  !> FREQ of contact where they have failed.
   subroutine check_tie(deck, line, contact)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line !! of the keyword

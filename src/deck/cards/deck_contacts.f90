@@ -5,7 +5,7 @@
 module deck_contacts_m
   use kinds_m, only : long, wp
   use log_m, only : to_text
-  use contacts_m, only : contact_t, contact_kind_t, friction_rule_t, is_tied, breaks, tie_none, &
+  use contacts_m, only : contact_t, contact_kind_t, is_tied, &
     penalty_implicit, penalty_share
   use surfaces_m, only : surface_t, part_at_axis
   use model_m, only : model_t
@@ -54,7 +54,6 @@ contains
       model%contacts(i) = contacts(i)%contact
     end do
     if (body%is_sound) then
-      call append_behind(model%contacts)
       if (model%erodes) call check_eroding_contacts(deck, contacts, model)
     end if
     call take_transducers(deck, transducers, body, model)
@@ -199,26 +198,6 @@ contains
     ! The choice looks at conditions and materials: they have to be sound as well.
     if (deck%report%n_error == 0) call choose_type(deck, entry%block, model, entry%contact)
   end subroutine take_surfaces
-
-  !> Contact behind each tie that breaks, with what the tie has no use for.
-  subroutine append_behind(contacts)
-    type(contact_t), allocatable, intent(inout) :: contacts(:)
-    type(contact_t) :: behind
-    integer :: i
-
-    do i = 1, size(contacts)
-      if (.not. breaks(contacts(i))) cycle
-      behind = contacts(i)
-      behind%behind = i
-      behind%tie = tie_none
-      behind%tie_reach = 0.0_wp
-      behind%target = 0.0_wp
-      contacts(i)%friction = friction_rule_t()
-      contacts(i)%damping = 0.0_wp
-      contacts(i)%search_interval = 0
-      contacts = [contacts, behind]
-    end do
-  end subroutine append_behind
 
   !> A node may stand on one side of an interface only.
   subroutine check_common_nodes(deck, entry, sides, model)

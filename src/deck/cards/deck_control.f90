@@ -6,7 +6,6 @@ module deck_control_m
   use log_m, only : to_text
   use text_m, only : upper_case
   use units_m, only : units_t, find_unit, set_force
-  use contacts_m, only : n_told
   use controls_m, only : controls_t, interval_t, is_asked, length_by_side, length_by_diagonal, &
     end_condition_t, end_node_place, end_node_touch, end_body_place, end_body_way, end_contact
   use curves_m, only : curve_t
@@ -392,7 +391,7 @@ contains
       direction=integer_of(card, 'DOF'), start=real_of(card, 'ACTIM'), &
       duration=real_of(card, 'DUR'), threshold=real_of(card, 'THRES'))
     if (any(card%bad)) return
-    ending%where = findloc(model%contacts(:n_told(model%contacts))%id, ending%id, 1)
+    ending%where = findloc(model%contacts%id, ending%id, 1)
     if (ending%where == 0) then
       if (.not. deck%incomplete) call report_field(deck, card, 'CID', &
         'is no interface of this deck')

@@ -249,7 +249,7 @@ contains
   end subroutine edit_contact
 
   !> What ties do not have passes them by, with a warning: friction, damping, a share of the largest
-  !> stable penalty. Ties that break hand friction and damping to the contact behind them.
+  !> stable penalty. Ties that break have friction and damping of contact where they have failed.
   subroutine pass_tie(deck, i_block, id, passed)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block

@@ -3,7 +3,6 @@
 !> and health after them.
 module explicit_cycle_m
   use archive_m, only : archive_t
-  use tie_handover_m, only : receive_tie_state, complete_handover
   use element_dispatch_m, only : sum_special_forces
   use load_work_m, only : find_prescribed_velocities, impose_prescribed, count_motions, &
     count_body_motions, count_boundary_loads, count_groups, apply_loads, motion_sums_t, plan_sums, &
@@ -13,7 +12,7 @@ module explicit_cycle_m
   use loads_m, only : fix_nodes, update_activity, is_active
   use explicit_contact_m, only : plan_sampling, check_springs
   use start_m, only : check_added_mass, weigh_contacts
-  use contacts_m, only : told_as, penalty_implicit
+  use contacts_m, only : penalty_implicit
   use element_losses_m, only : settle_elements, release_nodes, failure_watch_t, follow_failures, &
     follow_outlines
   use errors_m, only : error_t
@@ -150,7 +149,7 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    integer :: i, k
+    integer :: i
 
     cycle%last = is_last(cycle%steps, state%cycle, state%time) .or. cycle%last .or. &
       monitor%only_checks
@@ -165,12 +164,9 @@ contains
     if (size(model%contacts) > 0) call lap(monitor%clock, phase_nodes)
     call plan_sampling(model, cycle%writes, state)
     do i = 1, size(model%contacts)
-      k = told_as(model%contacts, i)
-      if (k < i) call receive_tie_state(state%contacts(k), state%contacts(i))
       call apply_contact(state%outlines(i), state%motion, state%contact_mass, state%time, &
         state%dt_before, state%cycle, monitor%clock, state%contacts(i), state%force_special)
-      if (k < i) call complete_handover(state%contacts(i), state%contacts(k))
-      call share_contact(monitor%clock, k)
+      call share_contact(monitor%clock, i)
       call check_springs(model, i, state, monitor%log)
     end do
     if (state%cycle > 0) call prepare_leap(model, state, cycle)

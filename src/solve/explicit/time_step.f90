@@ -9,14 +9,12 @@ module time_step_m
   use loads_m, only : is_active, scaled_step
   use contact_penalty_m, only : has_default_penalty
   use contact_state_m, only : contact_state_t
-  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, approach_step, &
-    sharpness
-  use contacts_m, only : is_tied, penalty_implicit
+  use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, sharpness
+  use contacts_m, only : contact_t, is_tied, penalty_implicit
   use controls_m, only : contact_step_rules, contact_step_free, contact_step_warns
   use curves_m, only : curve_value, curve_is_constant
   use errors_m, only : error_t, raise, status_input
   use kinds_m, only : wp
-  use law_state_m, only : is_broken
   use layout_m, only : chunk_size
   use log_m, only : log_t, warn, write_log, to_text
   use model_m, only : model_t
@@ -35,6 +33,9 @@ module time_step_m
 
   !> Change of ln V of an element in a step beyond which the next step is shorter.
   real(wp), parameter :: largest_change = 0.1_wp
+
+  !> Part of the depth of a first contact by which bodies may come nearer in a step.
+  real(wp), parameter :: approach_share = 0.8_wp
 
   !> Cycles between two looks at the lengths that contact springs stand for.
   integer, parameter :: refresh_interval = 20
@@ -244,26 +245,38 @@ contains
     state%contacts%rules_step = is_default .and. sharpness*dt > stable_step(limit, bounds)
   end subroutine obey_defaults
 
+  !> Step in which nothing comes deeper than a first contact may be, from the relative motion in a
+  !> step `dt`; huge where that is slow, and where the deck says what counts as a first contact
+  !> (ties, a depth of its own). Searches are no part of it: they depend on when the last one
+  !> was.
+  pure function approach_step(contact, memory, dt) result(limit)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in) :: dt             !! s
+    real(wp) :: limit
+    real(wp) :: depth
+
+    limit = huge(limit)
+    if (.not. memory%has%contact .or. contact%search_depth > 0.0_wp) return
+    depth = min(memory%slave_status%shallowest, memory%master_status%shallowest)
+    depth = approach_share*depth
+    if (memory%advance > 0.01_wp*depth) limit = dt*(depth/memory%advance)
+  end function approach_step
+
   !> Where ECDT = 2 asks for it, and for ties unless ECDT = 1: find now and then what the springs at
-  !> the present places demand of the steps to come. Contact behind a tie counts with it once
-  !> anything of that has broken: it has the tie's penalty, which nobody chose for contact. So do
-  !> default penalties that ask for a smaller step.
+  !> the present places demand of the steps to come. So do default penalties that ask for a
+  !> smaller step.
   pure subroutine follow_springs(model, state, bounds)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(spring_bound_t), allocatable, intent(inout) :: bounds(:)
     logical :: counts(size(model%contacts))
-    integer :: i
 
     if (.not. has_springs(model, state%contacts)) return
     if (mod(state%cycle, refresh_interval) /= 0) return
     counts = (model%controls%contact_step == contact_step_rules &
       .and. model%contacts%penalty_unit /= penalty_implicit) .or. is_tied(model%contacts) &
       .or. state%contacts%rules_step
-    do i = 1, size(counts)
-      if (model%contacts(i)%behind > 0) counts(i) = counts(i) &
-        .or. any(state%contacts(model%contacts(i)%behind)%ties%state == is_broken)
-    end do
     if (.not. allocated(bounds)) allocate (bounds(size(model%contacts)))
     call bound_springs(state%outlines, state%contact_mass, state%contacts, &
       merge(1.0_wp, 0.0_wp, counts), bounds)

@@ -26,6 +26,7 @@ module implicit_m
     new_acceleration, new_velocity, cut_sections
   use implicit_start_m, only : implicit_memory_t, begin_steps, plan_next, has_ended, &
     step_control_t, plan_step, grow_step, cut_step
+  use interface_m, only : break_at_end
   use kinds_m, only : wp
   use law_state_m, only : tie_memory_t
   use loads_m, only : damping_rates, is_active
@@ -40,7 +41,6 @@ module implicit_m
   use snapshot_filling_m, only : fill_energies, fill_parts
   use snapshot_m, only : energy_ratio
   use state_m, only : state_t
-  use tied_interface_m, only : break_at_end
   implicit none
   private
   public :: advance_implicit, report_step, reactions_work, held_energy, spent_energy, &

@@ -3,13 +3,11 @@
 !> state to a trial displacement; residual and tangent of one step (doc/theory/implicit.md, sections
 !> 1 and 2).
 module implicit_forces_m
-  use tie_handover_m, only : receive_tie_state
   use block_state_m, only : block_state_t
   use clock_m, only : clock_t, lap, share_contact, phase_elements, phase_contact_force, phase_nodes
   use conditions_m, only : pressure_load_t
   use contact_state_m, only : contact_state_t
   use contact_dispatch_m, only : add_contact_stiffness
-  use contacts_m, only : told_as
   use curves_m, only : curve_value
   use cut_forces_m, only : find_cut_forces
   use element_dispatch_m, only : add_tile_forces, share_tile_forces, keep_tile_forces, &
@@ -93,7 +91,7 @@ contains
     type(trial_t), intent(inout) :: trial
     real(wp), allocatable :: force(:, :)
     real(wp) :: body(2)
-    integer :: i, k
+    integer :: i
 
     trial%motion(3:4, :) = trial%motion(1:2, :) - state%motion(1:2, :)
     ! Element forces from the committed history.
@@ -111,12 +109,10 @@ contains
     trial%contact = 0.0_wp
     trial%contacts = state%contacts
     do i = 1, size(model%contacts)
-      k = told_as(model%contacts, i)
-      if (k < i) call receive_tie_state(trial%contacts(k), trial%contacts(i))
       call evaluate_contact(model%contacts(i), trial%motion, time, time - state%time, is_first, &
         trial%contacts(i), trial%contact)
       call lap(clock, phase_contact_force)
-      call share_contact(clock, k)
+      call share_contact(clock, i)
     end do
     call form_external_force(model, trial%motion, time, trial%external)
     if (size(model%conditions%body_loads) > 0) then
@@ -242,7 +238,7 @@ contains
       call add_contact_stiffness(model%contacts(i), trial%contacts(i), step%equations%number, &
         matrix)
       call lap(clock, phase_contact_force)
-      call share_contact(clock, told_as(model%contacts, i))
+      call share_contact(clock, i)
     end do
     do i = 1, size(model%conditions%pressures)
       call add_pressure_stiffness(model, model%conditions%pressures(i), trial%motion, step%time, &

@@ -6,10 +6,9 @@
 module implicit_start_m
   use clock_m, only : lap, phase_solver
   use contact_check_m, only : report_contact_start
-  use contact_step_limit_m, only : spring_ratios
+  use contact_step_limit_m, only : contact_ratios
   use contact_springs_m, only : measure_springs
   use contact_state_m, only : contact_state_t
-  use contacts_m, only : is_tied
   use controls_m, only : controls_t
   use cut_forces_m, only : keep_cut_chunks
   use damping_m, only : of_stuck
@@ -265,11 +264,11 @@ contains
     integer :: i
 
     do i = 1, size(model%contacts)
-      if (.not. has_decay(model%contacts(i)%friction) .or. is_tied(model%contacts(i))) cycle
+      if (.not. (has_decay(model%contacts(i)%friction) .and. state%contacts(i)%has%contact)) cycle
       undeformed = state%contacts(i)
       undeformed%positions(1:2, :) = model%mesh%coordinates(:, undeformed%nodes)
       undeformed%positions(3:4, :) = 0.0_wp
-      associate (ratio => spring_ratios(model%contacts(i), state%mass, undeformed), &
+      associate (ratio => contact_ratios(model%contacts(i), state%mass, undeformed), &
         n => undeformed%n_slave)
         state%contacts(i)%scratch%lag = 2.0_wp*of_stuck/sqrt(maxval(ratio(:n)) &
           + maxval(ratio(n + 1:)))

@@ -7,7 +7,6 @@ module newton_m
   use clock_m, only : clock_t, lap, phase_nodes, phase_solver
   use contact_scatter_m, only : add_gap_round_off
   use contact_state_m, only : contact_state_t
-  use contacts_m, only : told_as
   use controls_m, only : implicit_t
   use equations_m, only : take_free, move_prescribed
   use friction_m, only : let_hold, has_slipped
@@ -155,7 +154,6 @@ contains
 
     words = ''
     do i = 1, size(model%contacts)
-      if (told_as(model%contacts, i) < i) cycle
       associate (contact => model%contacts(i))
         if (any(contact%slave%nodes == node)) words = words//', a slave node of interface ' &
           //to_text(contact%id)

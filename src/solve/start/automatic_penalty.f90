@@ -138,7 +138,7 @@ contains
     do i = 1, size(share)
       associate (contact => model%contacts(i))
         if (contact%penalty_unit == penalty_share) share(i) = contact%penalty
-        if (contact%penalty_unit /= penalty_factor .or. contact%behind > 0 &
+        if (contact%penalty_unit /= penalty_factor &
           .or. model%controls%contact_step /= contact_step_warns .or. is_tied(contact) &
           .or. model%controls%implicit%is_on) cycle
         if (max(spread_of_stiffness(contact%slave, model), spread_of_stiffness(contact%master, &

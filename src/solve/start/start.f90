@@ -5,11 +5,10 @@
 !> law sees (doc/theory/contact.md, section 6.1). The log tells of masses what d3hsp does.
 module start_m
   use automatic_penalty_m, only : set_automatic_penalties
-  use tie_handover_m, only : receive_tie_state
   use block_state_m, only : block_state_t
   use conditions_m, only : motion_velocity
   use contact_log_m, only : log_softness
-  use contacts_m, only : is_tied, n_told, told_as
+  use contacts_m, only : is_tied
   use controls_m, only : is_asked, group_nodes
   use curves_m, only : curve_value
   use element_log_m, only : log_elements
@@ -121,10 +120,10 @@ contains
     type(answers_t), intent(inout), optional :: answers !! of the first search
     integer :: i
 
-    allocate (state%contacts(size(model%contacts)), state%estimates(n_told(model%contacts)))
+    allocate (state%contacts(size(model%contacts)), state%estimates(size(model%contacts)))
     do i = 1, size(model%contacts)
       call start_contact(model%contacts(i), model, log, state%contacts(i), answers)
-      if (.not. is_tied(model%contacts(i)) .or. state%contacts(i)%points%n > 0) cycle
+      if (.not. is_tied(model%contacts(i)) .or. state%contacts(i)%tie_points%n > 0) cycle
       call raise(error, 'interface '//to_text(model%contacts(i)%id)//' ties nothing: none of its ' &
         //to_text(state%contacts(i)%n_slave)//' slave nodes has the master within reach', &
         status_input)
@@ -179,15 +178,12 @@ contains
   end subroutine start_works
 
   !> After a restart: what interfaces make anew of the memory that has been read.
-  pure subroutine resume_contacts(model, state)
-    type(model_t), intent(in) :: model
+  pure subroutine resume_contacts(state)
     type(state_t), intent(inout) :: state
-    integer :: i, k
+    integer :: i
 
     do i = 1, size(state%contacts)
       call resume_contact(state%outlines(i), state%contacts(i))
-      k = told_as(model%contacts, i)
-      if (k < i) call receive_tie_state(state%contacts(k), state%contacts(i))
     end do
   end subroutine resume_contacts
 

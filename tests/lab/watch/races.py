@@ -40,8 +40,8 @@ PLANTS = (
           "do i_chunk = tile%first_chunk, tile%last_chunk\n",
           "do i_chunk = tile%first_chunk, min(tile%last_chunk + 1, size(model%layout%chunk_part))\n", "element/"),
     Plant("interfaces side by side add to the same nodes", "solve/explicit/explicit_cycle.f90",
-          "    do i = 1, size(model%contacts)\n      k = told_as",
-          "    !$omp parallel do private(k) num_threads(2)\n    do i = 1, size(model%contacts)\n      k = told_as",
+          "    do i = 1, size(model%contacts)\n      call apply_contact",
+          "    !$omp parallel do num_threads(2)\n    do i = 1, size(model%contacts)\n      call apply_contact",
           "contact/search/gather.f90"),
 )
 
