@@ -167,12 +167,7 @@ contains
     had_force = memory%n_active + memory%ties%n_held > 0
     begins = memory%is_stale .and. now%cycle > 0
     memory%monitor%has_sampled = .false.
-    if (memory%has%interference) call begin_ramp(contact, now%time, memory)
-    if (is_alive(contact, now%time)) then
-      call find_contacts(contact, now, motion, memory)
-    else
-      call suspend_contact(memory)
-    end if
+    call find_contacts(contact, now, motion, memory)
     if (present(clock)) call lap(clock, phase_contact_search)
     if (memory%is_stale .and. .not. had_force) return
 
@@ -181,21 +176,7 @@ contains
     if (present(clock)) call lap(clock, phase_contact_pairing)
     if (memory%scratch%waits) return
 
-    if (memory%has%ties) &
-      call hold_ties(memory, merge(0.0_wp, contact%strength, now%is_trial), now%time)
-    if (memory%points%n > 0) call form_pressures(memory)
-    if (memory%points%n + memory%tie_points%n > 0 .and. .not. now%is_trial) &
-      call book_springs(now%cycle, begins, memory)
-    if (memory%points%n > 0) then
-      if (memory%has%friction) call tractions_at_points(contact, now, mass, memory)
-      if (memory%has%damping .and. .not. now%is_trial) call damp_points(memory%points, &
-        contact%damping, memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
-      call scatter_forces(memory)
-      if (contact%is_self) call join_passes(memory)
-      if (memory%scratch%had_force .or. memory%n_active > 0) &
-        call limit_forces(motion, now%time, now%dt, memory)
-    end if
-
+    call form_forces(contact, now, motion, mass, begins, memory)
     if (now%is_trial) then
       call add_trial_force(memory%nodes, memory%force, force)
     else
@@ -206,8 +187,31 @@ contains
     if (present(clock)) call lap(clock, phase_contact_force)
   end subroutine step_contact
 
-  !> Positions and status of all points. Implicit penalties take what may touch in the step ahead as
-  !> closed.
+  !> Pressures and tractions of ties and contact points, nodal forces within the energy limit.
+  pure subroutine form_forces(contact, now, motion, mass, begins, memory)
+    type(contact_t), intent(in) :: contact
+    type(instant_t), intent(in) :: now
+    real(wp), intent(in), contiguous :: motion(:, :), mass(:)
+    logical, intent(in) :: begins !! contact is born in this call
+    type(contact_state_t), intent(inout) :: memory
+
+    if (memory%has%ties) &
+      call hold_ties(memory, merge(0.0_wp, contact%strength, now%is_trial), now%time)
+    if (memory%points%n > 0) call form_pressures(memory)
+    if (memory%points%n + memory%tie_points%n > 0 .and. .not. now%is_trial) &
+      call book_springs(now%cycle, begins, memory)
+    if (memory%points%n == 0) return
+    if (memory%has%friction) call tractions_at_points(contact, now, mass, memory)
+    if (memory%has%damping .and. .not. now%is_trial) call damp_points(memory%points, &
+      contact%damping, memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
+    call scatter_forces(memory)
+    if (contact%is_self) call join_passes(memory)
+    if (memory%scratch%had_force .or. memory%n_active > 0) &
+      call limit_forces(motion, now%time, now%dt, memory)
+  end subroutine form_forces
+
+  !> Positions and status of all points; outside birth .. death no points. Implicit penalties take
+  !> what may touch in the step ahead as closed.
   pure subroutine find_contacts(contact, now, motion, memory)
     type(contact_t), intent(in) :: contact
     type(instant_t), intent(in) :: now
@@ -215,6 +219,14 @@ contains
     type(contact_state_t), intent(inout) :: memory
     logical :: was_stale
 
+    if (memory%has%interference) call begin_ramp(contact, now%time, memory)
+    if (now%time < contact%birth .or. now%time > contact%death) then
+      memory%is_stale = .true.
+      memory%advance = 0.0_wp
+      memory%points%n = 0
+      memory%tie_points%n = 0
+      return
+    end if
     was_stale = memory%is_stale
     if (was_stale) call refresh_memory(motion, memory)
     call gather_positions(motion, memory)
@@ -323,25 +335,6 @@ contains
     if (memory%has%contact) call list_candidates(contact, memory, .true.)
     call form_springs(memory)
   end subroutine resume_contact
-
-  !> Whether a time is within birth .. death.
-  pure function is_alive(contact, time)
-    type(contact_t), intent(in) :: contact
-    real(wp), intent(in) :: time
-    logical :: is_alive
-
-    is_alive = .not. (time < contact%birth .or. time > contact%death)
-  end function is_alive
-
-  !> Outside birth .. death there are no points, and what is known of pairs is out of date.
-  pure subroutine suspend_contact(memory)
-    type(contact_state_t), intent(inout) :: memory
-
-    memory%is_stale = .true.
-    memory%advance = 0.0_wp
-    memory%points%n = 0
-    memory%tie_points%n = 0
-  end subroutine suspend_contact
 
   !> After a time without contact: take the present positions and search all anew.
   pure subroutine refresh_memory(motion, memory)
