@@ -5,7 +5,7 @@
 module contact_memory_m
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_penalty_m, only : set_penalties
-  use contact_springs_m, only : measure_springs
+  use contact_law_m, only : measure_springs
   use contact_state_m, only : contact_state_t, contact_points_t, contact_status_t, features_t, &
     allocate_points, allocate_damping, allocate_tractions, allocate_scratch, n_sites, &
     sites_of_segment, n_side, active

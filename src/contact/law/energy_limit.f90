@@ -6,7 +6,7 @@
 module energy_limit_m
   use contact_state_m, only : contact_state_t
   use law_state_m, only : energy_limit_t
-  use interference_m, only : limit_moment
+  use spring_gaps_m, only : limit_moment
   use kinds_m, only : wp
   implicit none
   private

@@ -8,12 +8,11 @@
 module ties_m
   use contact_penalty_m, only : mean_length
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
-  use contact_scatter_m, only : scatter, scatter_tractions
+  use contact_scatter_m, only : scatter, scatter_tractions, average_values, share_out
   use contacts_m, only : contact_t
   use geometry_m, only : separation
   use kinds_m, only : wp
   use model_m, only : model_t
-  use nodal_average_m, only : average_values, share_out
   use law_state_m, only : allocate_ties
   use tiebreak_m, only : mark_breaks, let_go, holds, has_failed
   implicit none
