@@ -63,6 +63,7 @@ contains
     call allocate_slave_status(contact, model, memory)
     if (formulation%has_two_passes) call allocate_master_status(contact, model, memory)
     if (memory%has%overlaps) call allocate_segments(contact, memory)
+    allocate (memory%points)
     call allocate_points(memory%points, formulation%points_per_slave*memory%slave_status%n &
       + formulation%points_per_master*n_master)
     if (memory%has%nodal_pressure) allocate (memory%node_pressure(n_slave), source=0.0_wp)

@@ -44,7 +44,7 @@ contains
 
   !> Add the forces to those of the mesh and count the work of a step, that of damping and of
   !> friction apart: half of it was done by the previous forces.
-  pure subroutine apply_forces(dt, motion, previous, memory, force)
+  subroutine apply_forces(dt, motion, previous, memory, force)
     real(wp), intent(in) :: dt
     real(wp), intent(in), contiguous :: motion(:, :)
     type(previous_work_t), intent(in) :: previous
@@ -52,7 +52,8 @@ contains
     real(wp), intent(inout), contiguous :: force(:, :)
     real(wp) :: power, damping, friction !! of previous and present forces, W/m
 
-    call add_force(memory%nodes, memory%scratch%previous_force, memory%force, motion, force, power)
+    call add_force(memory%n_slave, memory%nodes, memory%scratch%previous_force, memory%force, &
+      motion, force, power)
     damping = previous%damping
     if (memory%has%damping) damping = damping &
       + power_of(memory%nodes, motion, memory%damping_force)

@@ -87,7 +87,7 @@ contains
   end subroutine find_rows
 
   !> Pressures, nodal forces added to `force`, and the work of the step behind.
-  pure subroutine pressures_ahead(rule, motion, step, memory, force)
+  subroutine pressures_ahead(rule, motion, step, memory, force)
     type(friction_rule_t), intent(in) :: rule
     real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node) u(n), v(n-1/2)
     type(pressure_step_t), intent(inout) :: step

@@ -186,7 +186,7 @@ contains
   end subroutine step_contact
 
   !> Pressures and tractions of ties and contact points, nodal forces within the energy limit.
-  pure subroutine form_forces(contact, now, motion, mass, begins, memory)
+  subroutine form_forces(contact, now, motion, mass, begins, memory)
     type(contact_t), intent(in) :: contact
     type(instant_t), intent(in) :: now
     real(wp), intent(in), contiguous :: motion(:, :), mass(:)
@@ -210,7 +210,7 @@ contains
 
   !> Positions and status of all points; outside birth .. death no points. Implicit penalties take
   !> what may touch in the step ahead as closed.
-  pure subroutine find_contacts(contact, now, motion, memory)
+  subroutine find_contacts(contact, now, motion, memory)
     type(contact_t), intent(in) :: contact
     type(instant_t), intent(in) :: now
     real(wp), intent(in), contiguous :: motion(:, :)
@@ -352,7 +352,7 @@ contains
 
   !> Candidate pairs, and the status of the slave's points and of the master nodes where there are
   !> two passes.
-  pure subroutine search_pairs(contact, cycle, has_history, memory)
+  subroutine search_pairs(contact, cycle, has_history, memory)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: cycle
     logical, intent(in) :: has_history !! increments are those of a step

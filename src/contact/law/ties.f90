@@ -199,7 +199,7 @@ contains
 
   !> Pressures, tractions and nodal forces of all springs at the sites in the memory. Pressures
   !> below zero are tension. Springs that reach their strengths break, where any are given.
-  pure subroutine hold_ties(memory, strength, time)
+  subroutine hold_ties(memory, strength, time)
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(in) :: strength(2) !! NFLS, SFLS, N/m^2; 0 = nothing breaks now
     real(wp), intent(in) :: time        !! s
@@ -291,7 +291,7 @@ contains
 
   !> Forces of all springs: those of their points, and the couples. They are the first ones of the
   !> interface.
-  pure subroutine scatter_ties(springs, memory)
+  subroutine scatter_ties(springs, memory)
     type(tie_spring_t), intent(in) :: springs(:)
     type(contact_state_t), intent(inout) :: memory
     integer :: s

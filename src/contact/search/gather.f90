@@ -4,6 +4,7 @@
 module gather_m
   use contact_state_m, only : contact_state_t
   use kinds_m, only : wp
+  use ranges_m, only : n_ranges, first_of, last_of
   implicit none
   private
   public :: gather_positions, take_force, power_of, store_previous, add_force
@@ -13,17 +14,30 @@ contains
   !> Take the present displacements into the memory, and what each node has moved, and let its
   !> travel grow by a bound on how far any two nodes have moved relative to each other since the
   !> last call.
-  pure subroutine gather_positions(motion, memory)
+  subroutine gather_positions(motion, memory)
     real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
 
-    associate (n => size(memory%nodes), increment => memory%scratch%increment)
-      call take_positions(n, memory%nodes, motion, memory%positions, increment)
-      memory%advance = spread_of(n, increment)
-      memory%travel = memory%travel + memory%advance
-      ! That of a pause is not that of a step.
-      if (memory%is_stale) memory%advance = 0.0_wp
-    end associate
+    real(wp) :: boxes(4, n_ranges(size(memory%nodes)))
+    integer :: i, n
+
+    n = size(memory%nodes)
+    if (n_ranges(n) == 1) then
+      call gather_range(1, n, memory%nodes, motion, memory%positions, memory%scratch%increment, &
+        boxes(:, 1))
+    else
+      !$omp taskloop default(shared)
+      do i = 1, n_ranges(n)
+        call gather_range(first_of(i, n), last_of(i, n), memory%nodes, motion, memory%positions, &
+          memory%scratch%increment, boxes(:, i))
+      end do
+      !$omp end taskloop
+    end if
+    memory%advance = sqrt((maxval(boxes(3, :)) - minval(boxes(1, :)))**2 &
+      + (maxval(boxes(4, :)) - minval(boxes(2, :)))**2)
+    memory%travel = memory%travel + memory%advance
+    ! That of a pause is not that of a step.
+    if (memory%is_stale) memory%advance = 0.0_wp
   end subroutine gather_positions
 
   !> Set the forces of the last call aside. Both lists are exchanged: the previous forces are zero
@@ -66,49 +80,71 @@ contains
     end do
   end function power_of
 
-  !> Copy u of the nodes; what it has changed by.
-  pure subroutine take_positions(n, nodes, motion, positions, changes)
-    integer, intent(in) :: n, nodes(n)
+  !> Copy u of a range of nodes; what it has changed by, and the box of these changes: the diagonal
+  !> of that of all nodes bounds the relative motion.
+  pure subroutine gather_range(first, last, nodes, motion, positions, changes, box)
+    integer, intent(in) :: first, last, nodes(*)
     real(wp), intent(in) :: motion(4, *)
-    real(wp), intent(inout) :: positions(4, n), changes(2, n) !! m
-    integer :: i
-
-    !GCC$ NOVECTOR
-    do i = 1, n
-      changes(:, i) = motion(1:2, nodes(i)) - positions(3:4, i)
-      positions(3:4, i) = motion(1:2, nodes(i))
-    end do
-  end subroutine take_positions
-
-  !> The diagonal of the box of these changes bounds the relative motion.
-  pure function spread_of(n, changes) result(spread)
-    integer, intent(in) :: n
-    real(wp), intent(in) :: changes(2, n) !! m
-    real(wp) :: spread                   !! m
-    real(wp) :: low(2), high(2)
+    real(wp), intent(inout) :: positions(4, *), changes(2, *) !! m
+    real(wp), intent(out) :: box(4) !! low x, low y, high x, high y, m
+    real(wp), dimension(2) :: low, high, change
     integer :: i
 
     low = huge(1.0_wp)
     high = -huge(1.0_wp)
-    do i = 1, n
-      low = merge(changes(:, i), low, changes(:, i) < low)
-      high = merge(changes(:, i), high, changes(:, i) > high)
+    !GCC$ NOVECTOR
+    do i = first, last
+      change = motion(1:2, nodes(i)) - positions(3:4, i)
+      positions(3:4, i) = motion(1:2, nodes(i))
+      changes(:, i) = change
+      low = merge(change, low, change < low)
+      high = merge(change, high, change > high)
     end do
-    spread = sqrt((high(1) - low(1))**2 + (high(2) - low(2))**2)
-  end function spread_of
+    box = [low, high]
+  end subroutine gather_range
 
   !> Add the forces of the interface to those of the mesh. Their power and that of the previous
   !> ones, with the same velocity, are formed on the way: v is read once. The previous ones are zero
-  !> afterwards: to clear them here costs less than to go through them once more.
-  pure subroutine add_force(nodes, previous, present, motion, force, power)
-    integer, intent(in), contiguous :: nodes(:)
+  !> afterwards: to clear them here costs less than to go through them once more. Both surfaces may
+  !> have nodes in common: one follows the other.
+  subroutine add_force(n_slave, nodes, previous, present, motion, force, power)
+    integer, intent(in) :: n_slave
+    integer, intent(in), contiguous :: nodes(:) !! (n_slave + n_master)
     real(wp), intent(in) :: present(2, *), motion(4, *)
     real(wp), intent(inout) :: previous(2, *), force(2, *)
     real(wp), intent(out) :: power !! of both, W/m
+    real(wp) :: powers(n_ranges(size(nodes)))
+    integer :: i, k, before, n
+
+    power = 0.0_wp
+    before = 0
+    do k = 1, 2
+      n = merge(n_slave, size(nodes) - n_slave, k == 1)
+      if (n_ranges(n) == 1) then
+        call add_range(before + 1, before + n, nodes, previous, present, motion, force, powers(1))
+      else
+        !$omp taskloop default(shared)
+        do i = 1, n_ranges(n)
+          call add_range(before + first_of(i, n), before + last_of(i, n), nodes, previous, &
+            present, motion, force, powers(i))
+        end do
+        !$omp end taskloop
+      end if
+      power = power + sum(powers(:n_ranges(n)))
+      before = n_slave
+    end do
+  end subroutine add_force
+
+  !> The same for a range of nodes.
+  pure subroutine add_range(first, last, nodes, previous, present, motion, force, power)
+    integer, intent(in) :: first, last, nodes(*)
+    real(wp), intent(in) :: present(2, *), motion(4, *)
+    real(wp), intent(inout) :: previous(2, *), force(2, *)
+    real(wp), intent(out) :: power
     integer :: i
 
     power = 0.0_wp
-    do i = 1, size(nodes)
+    do i = first, last
       associate (v => motion(3:4, nodes(i)), total => force(:, nodes(i)))
         total(1) = total(1) + present(1, i)
         total(2) = total(2) + present(2, i)
@@ -118,6 +154,6 @@ contains
       previous(1, i) = 0.0_wp
       previous(2, i) = 0.0_wp
     end do
-  end subroutine add_force
+  end subroutine add_range
 
 end module gather_m
