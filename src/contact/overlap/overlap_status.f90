@@ -2,7 +2,7 @@
 !> Status of slave segments whose overlaps make contact points between the slave nodes: what may
 !> begin, and which segments are not due (doc/theory/contact.md, sections 3.3 and 4).
 module overlap_status_m
-  use contact_state_m, only : contact_state_t, separated, active
+  use contact_state_m, only : contact_state_t, contact_points_t, separated, active
   use contacts_m, only : contact_t
   use geometry_m, only : separation
   use kinds_m, only : wp
@@ -50,26 +50,30 @@ contains
   !> that do not count have no area. Points of a segment neither of whose ends nor any of whose
   !> points is in contact are left to its neighbours, like those of a segment that is not due: so
   !> sums over the points of a node do not depend on which segments are due.
-  pure subroutine update_segment_states(contact, n_before, memory)
+  pure subroutine update_segment_states(contact, range, n_before, memory, points, n_released)
     type(contact_t), intent(in) :: contact
-    integer, intent(in) :: n_before !! points on the list before them
+    integer, intent(in) :: range(2) !! of slave segments
+    integer, intent(in) :: n_before !! points on the list before theirs
     type(contact_state_t), intent(inout) :: memory
+    type(contact_points_t), intent(inout) :: points
+    integer, intent(inout) :: n_released !! first contacts deeper than the limit
     real(wp) :: deepest
     integer :: first, last, s
     logical :: counts
 
     last = n_before
-    do s = 1, contact%slave%n_segment
+    do s = range(1), range(2)
       if (.not. memory%scratch%has_points(s)) cycle
       first = last + 1
       deepest = huge(1.0_wp)
-      associate (node => contact%slave%segments(1, s), points => memory%points)
+      associate (node => contact%slave%segments(1, s))
         do last = first, points%n
           if (points%slave_nodes(1, last) /= node) exit
           if (points%area(last) > 0.0_wp) deepest = min(deepest, points%gap(last))
         end do
         last = last - 1
-        call update_segment_state(memory, s, contact%slave%segments(:, s), deepest, counts)
+        call update_segment_state(memory, s, contact%slave%segments(:, s), deepest, counts, &
+          n_released)
         if (counts) cycle
         points%area(first:last) = 0.0_wp
         if (.not. deepest < memory%closed_gap) memory%scratch%has_points(s) = .false.
@@ -78,12 +82,13 @@ contains
   end subroutine update_segment_states
 
   !> Whether the points on a segment count. One that is in contact, or has an active end, stays.
-  pure subroutine update_segment_state(memory, segment, ends, deepest, counts)
+  pure subroutine update_segment_state(memory, segment, ends, deepest, counts, n_released)
     type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: segment
     integer, intent(in) :: ends(2)     !! its nodes
     real(wp), intent(in) :: deepest    !! smallest gap of its points, m
     logical, intent(out) :: counts
+    integer, intent(inout) :: n_released
     logical :: has_active_end
 
     has_active_end = any(memory%slave_status%state(ends) == active)
@@ -94,7 +99,7 @@ contains
         if (has_active_end) then
           state = active
         else if (state == separated) then
-          call begin_contact(memory, segment, ends, -deepest, state)
+          call begin_contact(memory, segment, ends, -deepest, state, n_released)
         end if
         counts = state == active
       else
@@ -110,11 +115,12 @@ contains
   !> A segment neither end of which is active, behind which points have come: in contact if these
   !> have come through it since the last look, and no deeper than a first contact may be unless the
   !> step is an implicit one.
-  pure subroutine begin_contact(memory, segment, ends, depth, state)
-    type(contact_state_t), intent(inout) :: memory
+  pure subroutine begin_contact(memory, segment, ends, depth, state, n_released)
+    type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: segment, ends(2)
     real(wp), intent(in) :: depth    !! of the deepest, m
     integer, intent(inout) :: state  !! of the segment
+    integer, intent(inout) :: n_released
     logical :: is_new, is_deep
 
     associate (pass => memory%slave_status%pass)
@@ -125,8 +131,7 @@ contains
     if (.not. is_new) return
     if (is_deep) then
       ! Ends that have come as deep have been counted.
-      if (all(memory%slave_status%gap(ends) >= 0.0_wp)) &
-        memory%slave_status%n_released = memory%slave_status%n_released + 1
+      if (all(memory%slave_status%gap(ends) >= 0.0_wp)) n_released = n_released + 1
     else
       state = active
     end if

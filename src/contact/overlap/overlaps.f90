@@ -50,14 +50,15 @@ contains
     n = max(n_between, 2*(memory%candidates%first(s + 1) - memory%candidates%first(s)) + 1)
   end function n_most_overlaps
 
-  !> The same for any of them.
-  pure function room_for_overlaps(memory) result(n)
+  !> The same for any of a range of them.
+  pure function room_for_overlaps(memory, first, last) result(n)
     type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: first, last
     integer :: n
     integer :: s
 
     n = 0
-    do s = 1, size(memory%candidates%first) - 1
+    do s = first, last
       n = max(n, n_most_overlaps(memory, s))
     end do
   end function room_for_overlaps

@@ -10,7 +10,7 @@ module point_list_m
   implicit none
   private
   public :: add_point, add_slave_site, put_projections, known_projection, append_active, &
-    finish_segment_points
+    append_list, finish_segment_points
 
 contains
 
@@ -110,6 +110,28 @@ contains
     end do
     points%n = points%n + status%n_active
   end subroutine append_active
+
+  !> Append all points of another list.
+  pure subroutine append_list(list, points)
+    type(contact_points_t), intent(in) :: list
+    type(contact_points_t), intent(inout) :: points
+    integer :: n
+
+    n = list%n
+    if (n == 0) return
+    call make_room(points, n)
+    associate (first => points%n + 1, last => points%n + n)
+      points%slave_nodes(:, first:last) = list%slave_nodes(:, :n)
+      points%slave_weights(:, first:last) = list%slave_weights(:, :n)
+      points%master_nodes(:, first:last) = list%master_nodes(:, :n)
+      points%master_weights(:, first:last) = list%master_weights(:, :n)
+      points%normal(:, first:last) = list%normal(:, :n)
+      points%gap(first:last) = list%gap(:n)
+      points%area(first:last) = list%area(:n)
+      points%stiffness(first:last) = list%stiffness(:n)
+    end associate
+    points%n = points%n + n
+  end subroutine append_list
 
   !> Points on slave segments: reduce their areas to what is opposed to the master, and drop those
   !> without; in axisymmetry let them weigh with the radius where they stand.
