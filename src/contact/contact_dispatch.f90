@@ -18,7 +18,7 @@ module contact_dispatch_m
   use point_list_m, only : append_list
   use ranges_m, only : n_ranges, first_of, last_of
   use sparse_m, only : sparse_t
-  use points_on_segments_m, only : points_at_nodes, points_at_quarters, points_at_gauss_points
+  use positions_m, only : points_at_nodes, points_at_quarters, points_at_gauss_points
   use tangent_nts_m, only : linearise_nodes
   use tangent_segments_m, only : linearise_overlap_ends, linearise_gauss_points
   use tangent_ties_m, only : add_tie_tangent

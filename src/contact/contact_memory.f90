@@ -12,12 +12,12 @@ module contact_memory_m
   use contact_status_m, only : list_active
   use contacts_m, only : contact_t, has_friction, is_tied, breaks, penalty_implicit
   use energy_limit_m, only : form_springs
-  use gather_m, only : power_of
+  use contact_work_m, only : power_of
   use initial_status_m, only : allocate_slave_status, allocate_master_status, allocate_segments
   use kinds_m, only : wp
   use law_state_m, only : allocate_limit, allocate_friction, allocate_interference
   use model_m, only : model_t
-  use points_on_segments_m, only : start_segment_points, points_at_nodes
+  use positions_m, only : start_segment_points, points_at_nodes
   use sharp_vertices_m, only : has_folds
   use surfaces_m, only : surface_t
   implicit none

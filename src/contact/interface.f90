@@ -4,14 +4,13 @@ module interface_m
   use clock_m, only : clock_t, lap, phase_contact_search, phase_contact_pairing, &
     phase_contact_force
   use candidates_m, only : update_candidates, list_candidates
-  use closed_gap_m, only : closed_gap_of, gap_ahead
   use contact_dispatch_m, only : formulation_t, formulation_of, generate_points
   use contact_law_m, only : form_pressures, begin_sampling, measure_springs, end_sampling, &
     take_over_energy
   use contact_log_m, only : log_contact
   use contact_memory_m, only : prepare_contact
   use contact_scatter_m, only : scatter_forces, join_passes
-  use contact_work_m, only : previous_work_t, store_previous_work, apply_forces
+  use contact_work_m, only : previous_work_t, store_previous, store_previous_work, apply_forces
   use contact_state_m, only : contact_state_t, pass_t, separated
   use contacts_m, only : contact_t, breaks, penalty_implicit, tie_always
   use damping_m, only : damp_points, find_lag
@@ -19,13 +18,12 @@ module interface_m
   use energy_limit_m, only : store_previous_springs, form_springs, limit_forces, admit_entry_work
   use friction_m, only : start_trial_slip, take_trial_motion, form_tractions
   use initial_status_m, only : activate_deep_points, activate_deep_segments
-  use gather_m, only : gather_positions, store_previous
   use others_memory_m, only : answers_t
   use kinds_m, only : wp
   use law_friction_m, only : has_decay
   use log_m, only : log_t
   use model_m, only : model_t
-  use points_on_segments_m, only : move_segment_points
+  use positions_m, only : gather_positions, move_segment_points, closed_gap_of, gap_ahead
   use tiebreak_m, only : start_breaking
   use ties_m, only : tie_reach, freeze_ties, hold_ties, break_ties, tie_energy
   use contact_status_m, only : update_status, reset_status

@@ -9,12 +9,12 @@ module points_mortar_m
   use projection_m, only : projection_t, nearby_projection, stays_over
   use geometry_m, only : segment_length, separation
   use kinds_m, only : wp
-  use overlap_m, only : overlap_t
   use overlap_status_m, only : none_due, search_segment, update_segment_states, note_earliest_search
-  use overlaps_m, only : find_overlaps, room_for_overlaps, closest_candidate, sides_part
+  use overlaps_m, only : overlap_t, find_overlaps, room_for_overlaps
   use point_list_m, only : add_point, add_slave_site, put_projections, known_projection, &
     finish_segment_points
   use sharp_vertices_m, only : has_folds, find_sharp_vertices, weight_sharp_vertices
+  use slave_segments_m, only : closest_candidate, sides_part
   implicit none
   private
   public :: start_mortar, points_mortar, finish_mortar, points_segmented_mortar, &

@@ -9,9 +9,8 @@ module points_nts_mar_m
   use geometry_m, only : local_coordinates_t, coordinates_on_segment, local_gap, local_normal, &
     segment_length
   use kinds_m, only : wp
-  use overlap_m, only : overlap_t
   use overlap_status_m, only : none_due, search_segment, update_segment_states, note_earliest_search
-  use overlaps_m, only : find_overlaps, room_for_overlaps
+  use overlaps_m, only : overlap_t, find_overlaps, room_for_overlaps
   use point_list_m, only : add_point, append_active, finish_segment_points
   use surfaces_m, only : surface_t
   use tributary_lengths_m, only : nodal_area, end_radius, radius_between
