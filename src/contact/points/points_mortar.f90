@@ -5,13 +5,13 @@
 module points_mortar_m
   use contact_state_m, only : contact_state_t, contact_points_t, contact_status_t, active
   use contacts_m, only : contact_t
-  use projection_block_m, only : projection_block_t, n_block, project_block, resolve_ambiguous
+  use projection_block_m, only : n_block, project_block, resolve_ambiguous
   use projection_m, only : projection_t, nearby_projection, stays_over
   use geometry_m, only : segment_length, separation
   use kinds_m, only : wp
   use overlap_status_m, only : none_due, search_segment, update_segment_states, note_earliest_search
   use overlaps_m, only : overlap_t, find_overlaps, room_for_overlaps
-  use point_list_m, only : add_point, add_slave_site, put_projections, known_projection, &
+  use point_list_m, only : point_block_t, append_block, add_point, known_projection, &
     finish_segment_points
   use sharp_vertices_m, only : has_folds, find_sharp_vertices, weight_sharp_vertices
   use slave_segments_m, only : closest_candidate, sides_part
@@ -144,7 +144,7 @@ contains
     type(contact_points_t), intent(inout) :: points
     integer, intent(inout) :: n_released !! first contacts deeper than the limit
     type(overlap_t), allocatable :: overlaps(:)
-    type(projection_block_t) :: block
+    type(point_block_t) :: block
     integer :: s
     logical :: is_due
 
@@ -188,7 +188,7 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(contact_points_t), intent(inout) :: points
     type(overlap_t), allocatable :: overlaps(:)
-    type(projection_block_t) :: block
+    type(point_block_t) :: block
     integer :: neighbours(2), s, k
 
     block%n = 0
@@ -214,10 +214,10 @@ contains
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
     type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
-    type(projection_block_t), intent(inout) :: block
+    type(point_block_t), intent(inout) :: block
     type(contact_points_t), intent(inout) :: points
-    real(wp) :: own(2), other(2), way(2), xi, length
-    integer :: ends(2), nodes(2), n, k, q
+    real(wp) :: own(2), other(2), way(2), length
+    integer :: ends(2), nodes(2), n, k, q, p
 
     ends = contact%slave%segments(:, s)
     call find_overlaps(contact, memory, s, .false., least_part, overlaps, n)
@@ -229,64 +229,61 @@ contains
       nodes = memory%n_slave + contact%master%segments(:, overlaps(k)%master)
       other = separation(memory%positions(:, nodes(2)), memory%positions(:, nodes(1)))
       way = separation(memory%positions(:, ends(1)), memory%positions(:, nodes(1)))
-      associate (part => overlaps(k)%high - overlaps(k)%low)
-        do q = 1, n_gauss
+      do q = 1, n_gauss
+        p = block%n + q
+        associate (xi => block%at(p), part => overlaps(k)%high - overlaps(k)%low)
           xi = overlaps(k)%low + gauss_xi(q)*part
-          call add_slave_site(points, ends, xi, 0.5_wp*part*length*overlaps(k)%part, &
-            memory%slave_penalty)
-          block%n = block%n + 1
-          block%segment(block%n) = overlaps(k)%master
-          block%t(:, block%n) = other
-          block%d(:, block%n) = way + xi*own
-        end do
-      end associate
+          block%area(p) = 0.5_wp*part*length*overlaps(k)%part
+          block%ends(:, p) = ends
+          block%nodes(:, p) = nodes
+          block%segment(p) = overlaps(k)%master
+          block%t(:, p) = other
+          block%d(:, p) = way + xi*own
+        end associate
+      end do
+      block%n = block%n + n_gauss
     end do
   end subroutine points_on_overlaps
 
-  !> Project the points of a block, the last ones on the list, on the master segments of their
-  !> overlaps, or on whatever is closest there; those without a projection have no area.
+  !> Project the points of a block on the master segments of their overlaps, or on whatever is
+  !> closest there, and append them; those without a projection have no area.
   pure subroutine put_block(contact, memory, block, points)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    type(projection_block_t), intent(inout) :: block
+    type(point_block_t), intent(inout) :: block
     type(contact_points_t), intent(inout) :: points
 
     if (block%n == 0) return
-    call project_block(block)
-    if (block%n_ambiguous > 0) call project_ambiguous(contact, memory, block, points)
-    call put_projections(points, block%n, block%segment, block%xi, block%gap, block%normal, &
-      contact%master%segments, memory%n_slave)
-    block%n = 0
+    call project_block(block%projection_block_t)
+    if (block%n_ambiguous > 0) call project_ambiguous(contact, memory, block)
+    call append_block(block, memory%slave_penalty, points)
   end subroutine put_block
 
   !> Points that may be nearer to a neighbour of the master segment.
-  pure subroutine project_ambiguous(contact, memory, block, points)
+  pure subroutine project_ambiguous(contact, memory, block)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    type(projection_block_t), intent(inout) :: block
-    type(contact_points_t), intent(inout) :: points
+    type(point_block_t), intent(inout) :: block
     type(projection_t) :: projection
-    integer :: k, p
+    integer :: p
 
     associate (polyline => memory%positions(:, memory%n_slave + 1:))
-      call resolve_ambiguous(contact%master, polyline, block)
-      do k = 1, block%n
-        if (.not. block%ambiguous(k) > 0.0_wp) cycle
-        if (block%gap(k) >= 0.0_wp) then
-          if (stays_over(contact%master, polyline, block%t(:, k), block%d(:, k), &
-            block%segment(k))) cycle
+      call resolve_ambiguous(contact%master, polyline, block%projection_block_t)
+      do p = 1, block%n
+        if (.not. block%ambiguous(p) > 0.0_wp) cycle
+        if (block%gap(p) >= 0.0_wp) then
+          if (stays_over(contact%master, polyline, block%t(:, p), block%d(:, p), &
+            block%segment(p))) cycle
         end if
-        p = points%n - block%n + k
-        associate (ends => points%slave_nodes(:, p), weights => points%slave_weights(:, p))
-          projection = nearby_projection(contact%master, polyline, weights(1) &
-            *memory%positions(:, ends(1)) + weights(2)*memory%positions(:, ends(2)), &
-            block%segment(k))
+        associate (ends => block%ends(:, p), xi => block%at(p))
+          projection = nearby_projection(contact%master, polyline, (1.0_wp - xi) &
+            *memory%positions(:, ends(1)) + xi*memory%positions(:, ends(2)), block%segment(p))
         end associate
-        block%segment(k) = projection%segment
-        block%xi(k) = projection%xi
-        block%gap(k) = projection%gap
-        block%normal(:, k) = projection%normal
-        if (.not. projection%is_on) points%area(p) = 0.0_wp
+        block%nodes(:, p) = memory%n_slave + contact%master%segments(:, projection%segment)
+        block%xi(p) = projection%xi
+        block%gap(p) = projection%gap
+        block%normal(:, p) = projection%normal
+        if (.not. projection%is_on) block%area(p) = 0.0_wp
       end do
     end associate
   end subroutine project_ambiguous
