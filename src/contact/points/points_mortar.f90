@@ -13,7 +13,7 @@ module points_mortar_m
   use overlaps_m, only : overlap_t, find_overlaps, room_for_overlaps
   use point_list_m, only : point_block_t, append_block, add_point, known_projection, &
     finish_segment_points
-  use sharp_vertices_m, only : has_folds, find_sharp_vertices, weight_sharp_vertices
+  use sharp_vertices_m, only : has_folds, weight_sharp_vertices
   use slave_segments_m, only : closest_candidate, sides_part
   implicit none
   private
