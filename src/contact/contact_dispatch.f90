@@ -5,17 +5,20 @@
 module contact_dispatch_m
   use assembly_m, only : add_point_tangents, add_nodal_tangents
   use contact_law_m, only : law_penalty
-  use contact_state_m, only : contact_state_t
+  use contact_state_m, only : contact_state_t, contact_points_t, allocate_points
   use contacts_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_vts_ppt, &
     type_nts_mar, type_mortar, type_segmented_mortar, contact_t, contact_kind_t
   use kinds_m, only : wp
   use linearisation_m, only : linearised_list_t
-  use points_mortar_m, only : points_mortar, points_segmented_mortar
+  use points_mortar_m, only : start_mortar, points_mortar, finish_mortar, points_segmented_mortar, &
+    finish_segmented_mortar
   use points_nts_m, only : points_nts, points_nts_ar, points_two_pass_ar
-  use points_nts_mar_m, only : points_nts_mar
+  use points_nts_mar_m, only : start_nts_mar, points_nts_mar, finish_nts_mar
   use points_vts_ppt_m, only : points_vts_ppt
+  use point_list_m, only : append_list
+  use ranges_m, only : n_ranges, first_of, last_of
   use sparse_m, only : sparse_t
-  use points_on_segments_m, only : points_at_nodes, points_at_quarters, points_at_gauss_points
+  use positions_m, only : points_at_nodes, points_at_quarters, points_at_gauss_points
   use tangent_nts_m, only : linearise_nodes
   use tangent_segments_m, only : linearise_overlap_ends, linearise_gauss_points
   use tangent_ties_m, only : add_tie_tangent
@@ -87,21 +90,100 @@ contains
   end function is_strict
 
   !> Generate the contact points of one interface for the positions and pairs in its memory.
-  pure subroutine generate_points(contact, memory)
+  subroutine generate_points(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
+    type(contact_points_t), allocatable :: points
 
-    memory%points%n = 0
+    ! The list stands beside what the rules read.
+    call move_alloc(memory%points, points)
+    points%n = 0
     select case (contact%contact_type)
-    case (type_nts); call points_nts(contact, memory)
-    case (type_nts_ar); call points_nts_ar(contact, memory)
-    case (type_two_pass_ar); call points_two_pass_ar(contact, memory)
-    case (type_vts_ppt); call points_vts_ppt(contact, memory)
-    case (type_nts_mar); call points_nts_mar(contact, memory)
-    case (type_mortar); call points_mortar(contact, memory)
-    case (type_segmented_mortar); call points_segmented_mortar(contact, memory)
+    case (type_nts); call points_nts(contact, memory, points)
+    case (type_nts_ar); call points_nts_ar(contact, memory, points)
+    case (type_two_pass_ar); call points_two_pass_ar(contact, memory, points)
+    case (type_vts_ppt)
+      call points_in_ranges(contact, memory%slave_status%n_active, memory, points)
+    case (type_nts_mar)
+      call start_nts_mar(contact, memory, points)
+      call points_in_ranges(contact, contact%slave%n_segment, memory, points)
+      call finish_nts_mar(contact, memory, points)
+    case (type_mortar)
+      call start_mortar(contact, memory)
+      call points_in_ranges(contact, contact%slave%n_segment, memory, points)
+      call finish_mortar(contact, memory, points)
+    case (type_segmented_mortar)
+      call points_in_ranges(contact, contact%slave%n_segment, memory, points)
+      call finish_segmented_mortar(contact, memory, points)
     end select
+    call move_alloc(points, memory%points)
   end subroutine generate_points
+
+  !> The points of all ranges of virtual nodes or slave segments, in order. Threads share those of a
+  !> large interface: each range then has a list of its own first.
+  subroutine points_in_ranges(contact, n, memory, points)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: n !! virtual nodes or slave segments
+    type(contact_state_t), intent(inout) :: memory
+    type(contact_points_t), intent(inout) :: points
+    type(contact_points_t), allocatable :: parts(:)
+    integer :: n_released(n_ranges(n)), i
+
+    if (n_ranges(n) == 1) then
+      call points_of_range(contact, memory, 1, n, points, n_released(1))
+    else
+      call move_alloc(memory%scratch%parts, parts)
+      call start_parts(n_ranges(n), parts)
+      !$omp taskloop default(shared)
+      do i = 1, n_ranges(n)
+        call points_of_range(contact, memory, first_of(i, n), last_of(i, n), parts(i), &
+          n_released(i))
+      end do
+      !$omp end taskloop
+      do i = 1, n_ranges(n)
+        call append_list(parts(i), points)
+      end do
+      call move_alloc(parts, memory%scratch%parts)
+    end if
+    memory%slave_status%n_released = memory%slave_status%n_released + sum(n_released)
+  end subroutine points_in_ranges
+
+  !> The points of one range.
+  pure subroutine points_of_range(contact, memory, first, last, points, n_released)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: first, last
+    type(contact_points_t), intent(inout) :: points
+    integer, intent(out) :: n_released !! first contacts deeper than the limit
+
+    n_released = 0
+    select case (contact%contact_type)
+    case (type_vts_ppt); call points_vts_ppt(contact, memory, first, last, points)
+    case (type_nts_mar)
+      call points_nts_mar(contact, memory, first, last, points, n_released)
+    case (type_mortar); call points_mortar(contact, memory, first, last, points)
+    case (type_segmented_mortar)
+      call points_segmented_mortar(contact, memory, first, last, points, n_released)
+    end select
+  end subroutine points_of_range
+
+  !> Empty lists for so many ranges.
+  pure subroutine start_parts(n, parts)
+    integer, intent(in) :: n
+    type(contact_points_t), allocatable, intent(inout) :: parts(:)
+    integer :: i
+
+    if (allocated(parts)) then
+      if (size(parts) < n) deallocate (parts)
+    end if
+    if (.not. allocated(parts)) then
+      allocate (parts(n))
+      do i = 1, n
+        call allocate_points(parts(i), 0)
+      end do
+    end if
+    parts%n = 0
+  end subroutine start_parts
 
   !> Add the derivative of minus the contact forces, as evaluate_contact has left them in the
   !> memory, with respect to u (doc/theory/contact.md, section 9): exact while the points stay on

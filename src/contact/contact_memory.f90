@@ -5,19 +5,19 @@
 module contact_memory_m
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_penalty_m, only : set_penalties
-  use contact_springs_m, only : measure_springs
+  use contact_law_m, only : measure_springs
   use contact_state_m, only : contact_state_t, contact_points_t, contact_status_t, features_t, &
     allocate_points, allocate_damping, allocate_tractions, allocate_scratch, n_sites, &
     sites_of_segment, n_side, active
   use contact_status_m, only : list_active
   use contacts_m, only : contact_t, has_friction, is_tied, breaks, penalty_implicit
   use energy_limit_m, only : form_springs
-  use gather_m, only : power_of
+  use contact_work_m, only : power_of
   use initial_status_m, only : allocate_slave_status, allocate_master_status, allocate_segments
   use kinds_m, only : wp
   use law_state_m, only : allocate_limit, allocate_friction, allocate_interference
   use model_m, only : model_t
-  use points_on_segments_m, only : start_segment_points, points_at_nodes
+  use positions_m, only : start_segment_points, points_at_nodes
   use sharp_vertices_m, only : has_folds
   use surfaces_m, only : surface_t
   implicit none
@@ -63,6 +63,7 @@ contains
     call allocate_slave_status(contact, model, memory)
     if (formulation%has_two_passes) call allocate_master_status(contact, model, memory)
     if (memory%has%overlaps) call allocate_segments(contact, memory)
+    allocate (memory%points)
     call allocate_points(memory%points, formulation%points_per_slave*memory%slave_status%n &
       + formulation%points_per_master*n_master)
     if (memory%has%nodal_pressure) allocate (memory%node_pressure(n_slave), source=0.0_wp)

@@ -8,7 +8,7 @@ module contact_results_m
   use kinds_m, only : wp
   use law_state_m, only : is_open, is_held, is_broken
   use tributary_lengths_m, only : see_half
-  use nodal_average_m, only : average_values
+  use contact_scatter_m, only : average_values
   use snapshot_m, only : interface_result_t, slave_result_t, friction_result_t
   use surfaces_m, only : surface_t
   use ties_m, only : tie_spring_t, tie_spring, tied_nodes

@@ -1,17 +1,18 @@
 ! SPDX-License-Identifier: MIT
 !> The work of the forces of an interface by the trapezoidal rule: half a step by the previous
 !> forces, half by the present ones, with the velocity between them. That of damping and of friction
-!> is kept apart from that of the springs.
+!> is kept apart from that of the springs. The forces are added to those of the mesh on the way.
 module contact_work_m
   use contact_state_m, only : contact_state_t
   use energy_limit_m, only : follow_largest
   use friction_m, only : store_previous_tractions
   use law_state_m, only : friction_memory_t
-  use gather_m, only : take_force, power_of, add_force
   use kinds_m, only : wp
+  use ranges_m, only : n_ranges, first_of, last_of
   implicit none
   private
-  public :: previous_work_t, store_previous_work, apply_forces, count_step
+  public :: previous_work_t, store_previous, store_previous_work, apply_forces, count_step, &
+    clear_force, power_of, add_force
 
   !> Of the previous forces, what is kept apart from the springs.
   type :: previous_work_t
@@ -34,9 +35,9 @@ contains
     if (memory%has%ties) &
       previous_work%ties = power_of(memory%nodes, motion, memory%ties%force)
     if (memory%has%damping) &
-      call take_force(memory%nodes, motion, memory%damping_force, previous_work%damping)
+      call clear_force(memory%nodes, motion, memory%damping_force, previous_work%damping)
     if (.not. memory%has%friction) return
-    call take_force(memory%nodes, motion, memory%friction%force, previous_work%friction)
+    call clear_force(memory%nodes, motion, memory%friction%force, previous_work%friction)
     previous_work%dissipated = memory%friction%work - memory%friction%stored
     call store_previous_tractions(memory)
     if (.not. had_force) call store_dissipated(previous_work%dissipated, memory%friction)
@@ -44,7 +45,7 @@ contains
 
   !> Add the forces to those of the mesh and count the work of a step, that of damping and of
   !> friction apart: half of it was done by the previous forces.
-  pure subroutine apply_forces(dt, motion, previous, memory, force)
+  subroutine apply_forces(dt, motion, previous, memory, force)
     real(wp), intent(in) :: dt
     real(wp), intent(in), contiguous :: motion(:, :)
     type(previous_work_t), intent(in) :: previous
@@ -52,7 +53,8 @@ contains
     real(wp), intent(inout), contiguous :: force(:, :)
     real(wp) :: power, damping, friction !! of previous and present forces, W/m
 
-    call add_force(memory%nodes, memory%scratch%previous_force, memory%force, motion, force, power)
+    call add_force(memory%n_slave, memory%nodes, memory%scratch%previous_force, memory%force, &
+      motion, force, power)
     damping = previous%damping
     if (memory%has%damping) damping = damping &
       + power_of(memory%nodes, motion, memory%damping_force)
@@ -97,5 +99,98 @@ contains
     after%friction%work = before%friction%work - 0.5_wp*friction_work
     call store_dissipated(before%friction%work - before%friction%stored, after%friction)
   end subroutine count_step
+
+  !> Set the forces of the last call aside. Both lists are exchanged: the previous forces are zero
+  !> since `add_force` has taken them, or there have been none.
+  pure subroutine store_previous(memory)
+    type(contact_state_t), intent(inout) :: memory
+    real(wp), allocatable :: spare(:, :)
+
+    call move_alloc(memory%scratch%previous_force, spare)
+    call move_alloc(memory%force, memory%scratch%previous_force)
+    call move_alloc(spare, memory%force)
+  end subroutine store_previous
+
+  !> Power of nodal forces with the velocities of the nodes; the forces are zero afterwards.
+  pure subroutine clear_force(nodes, motion, force, power)
+    integer, intent(in), contiguous :: nodes(:)
+    real(wp), intent(in) :: motion(4, *)
+    real(wp), intent(inout) :: force(2, *)
+    real(wp), intent(out) :: power
+    integer :: i
+
+    power = power_of(nodes, motion, force)
+    do i = 1, size(nodes)
+      force(1, i) = 0.0_wp
+      force(2, i) = 0.0_wp
+    end do
+  end subroutine clear_force
+
+  !> The same for forces that stay.
+  pure function power_of(nodes, motion, force) result(power)
+    integer, intent(in), contiguous :: nodes(:)
+    real(wp), intent(in) :: motion(4, *)
+    real(wp), intent(in) :: force(2, *)
+    real(wp) :: power
+    integer :: i
+
+    power = 0.0_wp
+    do i = 1, size(nodes)
+      power = power + (motion(3, nodes(i))*force(1, i) + motion(4, nodes(i))*force(2, i))
+    end do
+  end function power_of
+
+  !> Add the forces of the interface to those of the mesh. Their power and that of the previous
+  !> ones, with the same velocity, are formed on the way: v is read once. The previous ones are zero
+  !> afterwards: to clear them here costs less than to go through them once more. Both surfaces may
+  !> have nodes in common: one follows the other.
+  subroutine add_force(n_slave, nodes, previous, present, motion, force, power)
+    integer, intent(in) :: n_slave
+    integer, intent(in), contiguous :: nodes(:) !! (n_slave + n_master)
+    real(wp), intent(in) :: present(2, *), motion(4, *)
+    real(wp), intent(inout) :: previous(2, *), force(2, *)
+    real(wp), intent(out) :: power !! of both, W/m
+    real(wp) :: powers(n_ranges(size(nodes)))
+    integer :: i, k, before, n
+
+    power = 0.0_wp
+    before = 0
+    do k = 1, 2
+      n = merge(n_slave, size(nodes) - n_slave, k == 1)
+      if (n_ranges(n) == 1) then
+        call add_range(before + 1, before + n, nodes, previous, present, motion, force, powers(1))
+      else
+        !$omp taskloop default(shared)
+        do i = 1, n_ranges(n)
+          call add_range(before + first_of(i, n), before + last_of(i, n), nodes, previous, &
+            present, motion, force, powers(i))
+        end do
+        !$omp end taskloop
+      end if
+      power = power + sum(powers(:n_ranges(n)))
+      before = n_slave
+    end do
+  end subroutine add_force
+
+  !> The same for a range of nodes.
+  pure subroutine add_range(first, last, nodes, previous, present, motion, force, power)
+    integer, intent(in) :: first, last, nodes(*)
+    real(wp), intent(in) :: present(2, *), motion(4, *)
+    real(wp), intent(inout) :: previous(2, *), force(2, *)
+    real(wp), intent(out) :: power
+    integer :: i
+
+    power = 0.0_wp
+    do i = first, last
+      associate (v => motion(3:4, nodes(i)), total => force(:, nodes(i)))
+        total(1) = total(1) + present(1, i)
+        total(2) = total(2) + present(2, i)
+        power = power + (v(1)*(previous(1, i) + present(1, i)) &
+          + v(2)*(previous(2, i) + present(2, i)))
+      end associate
+      previous(1, i) = 0.0_wp
+      previous(2, i) = 0.0_wp
+    end do
+  end subroutine add_range
 
 end module contact_work_m

@@ -7,8 +7,8 @@
 module implicit_penalty_m
   use complementarity_m, only : problem_t, outcome_t, set_size, solve_complementarity, is_low, &
     is_between, is_high
-  use contact_scatter_m, only : scatter_forces
-  use contact_springs_m, only : measure_springs, end_sampling
+  use contact_scatter_m, only : scatter_forces, average_values, share_out
+  use contact_law_m, only : measure_springs, end_sampling
   use contact_state_m, only : contact_state_t, contact_points_t
   use contact_work_m, only : previous_work_t, store_previous_work, apply_forces
   use contacts_m, only : contact_t, friction_rule_t
@@ -17,7 +17,6 @@ module implicit_penalty_m
   use kinds_m, only : wp
   use law_friction_m, only : coefficient_of, has_decay
   use law_state_m, only : sticks, slips
-  use nodal_average_m, only : average_values, share_out
   use weighted_gaps_m, only : rows_t, start_rows, choose_rows, form_shares, find_rates, &
     add_segment_rotation, velocities_under, is_isotropic, fill_band, node_of, along_normal, &
     along_tangent
@@ -88,7 +87,7 @@ contains
   end subroutine find_rows
 
   !> Pressures, nodal forces added to `force`, and the work of the step behind.
-  pure subroutine pressures_ahead(rule, motion, step, memory, force)
+  subroutine pressures_ahead(rule, motion, step, memory, force)
     type(friction_rule_t), intent(in) :: rule
     real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node) u(n), v(n-1/2)
     type(pressure_step_t), intent(inout) :: step

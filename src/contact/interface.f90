@@ -4,30 +4,26 @@ module interface_m
   use clock_m, only : clock_t, lap, phase_contact_search, phase_contact_pairing, &
     phase_contact_force
   use candidates_m, only : update_candidates, list_candidates
-  use closed_gap_m, only : closed_gap_of, gap_ahead
   use contact_dispatch_m, only : formulation_t, formulation_of, generate_points
-  use contact_law_m, only : form_pressures
+  use contact_law_m, only : form_pressures, begin_sampling, measure_springs, end_sampling, &
+    take_over_energy
   use contact_log_m, only : log_contact
   use contact_memory_m, only : prepare_contact
   use contact_scatter_m, only : scatter_forces, join_passes
-  use contact_springs_m, only : begin_sampling, measure_springs, end_sampling, &
-    take_over_energy
-  use contact_work_m, only : previous_work_t, store_previous_work, apply_forces
+  use contact_work_m, only : previous_work_t, store_previous, store_previous_work, apply_forces
   use contact_state_m, only : contact_state_t, pass_t, separated
   use contacts_m, only : contact_t, breaks, penalty_implicit, tie_always
   use damping_m, only : damp_points, find_lag
-  use entry_offset_m, only : has_offsets, update_offsets, faded_work
+  use spring_gaps_m, only : has_offsets, update_offsets, faded_work, begin_ramp
   use energy_limit_m, only : store_previous_springs, form_springs, limit_forces, admit_entry_work
   use friction_m, only : start_trial_slip, take_trial_motion, form_tractions
   use initial_status_m, only : activate_deep_points, activate_deep_segments
-  use gather_m, only : gather_positions, store_previous
   use others_memory_m, only : answers_t
-  use interference_m, only : begin_ramp
   use kinds_m, only : wp
   use law_friction_m, only : has_decay
   use log_m, only : log_t
   use model_m, only : model_t
-  use points_on_segments_m, only : move_segment_points
+  use positions_m, only : gather_positions, move_segment_points, closed_gap_of, gap_ahead
   use tiebreak_m, only : start_breaking
   use ties_m, only : tie_reach, freeze_ties, hold_ties, break_ties, tie_energy
   use contact_status_m, only : update_status, reset_status
@@ -167,12 +163,7 @@ contains
     had_force = memory%n_active + memory%ties%n_held > 0
     begins = memory%is_stale .and. now%cycle > 0
     memory%monitor%has_sampled = .false.
-    if (memory%has%interference) call begin_ramp(contact, now%time, memory)
-    if (is_alive(contact, now%time)) then
-      call find_contacts(contact, now, motion, memory)
-    else
-      call suspend_contact(memory)
-    end if
+    call find_contacts(contact, now, motion, memory)
     if (present(clock)) call lap(clock, phase_contact_search)
     if (memory%is_stale .and. .not. had_force) return
 
@@ -181,21 +172,7 @@ contains
     if (present(clock)) call lap(clock, phase_contact_pairing)
     if (memory%scratch%waits) return
 
-    if (memory%has%ties) &
-      call hold_ties(memory, merge(0.0_wp, contact%strength, now%is_trial), now%time)
-    if (memory%points%n > 0) call form_pressures(memory)
-    if (memory%points%n + memory%tie_points%n > 0 .and. .not. now%is_trial) &
-      call book_springs(now%cycle, begins, memory)
-    if (memory%points%n > 0) then
-      if (memory%has%friction) call tractions_at_points(contact, now, mass, memory)
-      if (memory%has%damping .and. .not. now%is_trial) call damp_points(memory%points, &
-        contact%damping, memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
-      call scatter_forces(memory)
-      if (contact%is_self) call join_passes(memory)
-      if (memory%scratch%had_force .or. memory%n_active > 0) &
-        call limit_forces(motion, now%time, now%dt, memory)
-    end if
-
+    call form_forces(contact, now, motion, mass, begins, memory)
     if (now%is_trial) then
       call add_trial_force(memory%nodes, memory%force, force)
     else
@@ -206,15 +183,46 @@ contains
     if (present(clock)) call lap(clock, phase_contact_force)
   end subroutine step_contact
 
-  !> Positions and status of all points. Implicit penalties take what may touch in the step ahead as
-  !> closed.
-  pure subroutine find_contacts(contact, now, motion, memory)
+  !> Pressures and tractions of ties and contact points, nodal forces within the energy limit.
+  subroutine form_forces(contact, now, motion, mass, begins, memory)
+    type(contact_t), intent(in) :: contact
+    type(instant_t), intent(in) :: now
+    real(wp), intent(in), contiguous :: motion(:, :), mass(:)
+    logical, intent(in) :: begins !! contact is born in this call
+    type(contact_state_t), intent(inout) :: memory
+
+    if (memory%has%ties) &
+      call hold_ties(memory, merge(0.0_wp, contact%strength, now%is_trial), now%time)
+    if (memory%points%n > 0) call form_pressures(memory)
+    if (memory%points%n + memory%tie_points%n > 0 .and. .not. now%is_trial) &
+      call book_springs(now%cycle, begins, memory)
+    if (memory%points%n == 0) return
+    if (memory%has%friction) call tractions_at_points(contact, now, mass, memory)
+    if (memory%has%damping .and. .not. now%is_trial) call damp_points(memory%points, &
+      contact%damping, memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
+    call scatter_forces(memory)
+    if (contact%is_self) call join_passes(memory)
+    if (memory%scratch%had_force .or. memory%n_active > 0) &
+      call limit_forces(motion, now%time, now%dt, memory)
+  end subroutine form_forces
+
+  !> Positions and status of all points; outside birth .. death no points. Implicit penalties take
+  !> what may touch in the step ahead as closed.
+  subroutine find_contacts(contact, now, motion, memory)
     type(contact_t), intent(in) :: contact
     type(instant_t), intent(in) :: now
     real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
     logical :: was_stale
 
+    if (memory%has%interference) call begin_ramp(contact, now%time, memory)
+    if (now%time < contact%birth .or. now%time > contact%death) then
+      memory%is_stale = .true.
+      memory%advance = 0.0_wp
+      memory%points%n = 0
+      memory%tie_points%n = 0
+      return
+    end if
     was_stale = memory%is_stale
     if (was_stale) call refresh_memory(motion, memory)
     call gather_positions(motion, memory)
@@ -324,25 +332,6 @@ contains
     call form_springs(memory)
   end subroutine resume_contact
 
-  !> Whether a time is within birth .. death.
-  pure function is_alive(contact, time)
-    type(contact_t), intent(in) :: contact
-    real(wp), intent(in) :: time
-    logical :: is_alive
-
-    is_alive = .not. (time < contact%birth .or. time > contact%death)
-  end function is_alive
-
-  !> Outside birth .. death there are no points, and what is known of pairs is out of date.
-  pure subroutine suspend_contact(memory)
-    type(contact_state_t), intent(inout) :: memory
-
-    memory%is_stale = .true.
-    memory%advance = 0.0_wp
-    memory%points%n = 0
-    memory%tie_points%n = 0
-  end subroutine suspend_contact
-
   !> After a time without contact: take the present positions and search all anew.
   pure subroutine refresh_memory(motion, memory)
     real(wp), intent(in), contiguous :: motion(:, :)
@@ -361,7 +350,7 @@ contains
 
   !> Candidate pairs, and the status of the slave's points and of the master nodes where there are
   !> two passes.
-  pure subroutine search_pairs(contact, cycle, has_history, memory)
+  subroutine search_pairs(contact, cycle, has_history, memory)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: cycle
     logical, intent(in) :: has_history !! increments are those of a step

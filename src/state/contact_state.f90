@@ -125,9 +125,11 @@ module contact_state_m
     real(wp) :: ramp_step = 0.0_wp          !! of an initial overlap in this step, as a part of it
     logical :: is_start = .false.           !! this call is that of time zero; both only where such
                                             !! overlaps grow
-    integer, allocatable :: segment_near(:) !! (n_slave) master segment near a slave node, 0 between
-                                            !! steps; only where points are at fixed positions
+    integer, allocatable :: segment_near(:) !! (n_slave) master segment near a slave node, 0: none;
+                                            !! only where points are at fixed positions
     logical, allocatable :: has_points(:)   !! (slave segments) have their points
+    type(contact_points_t), allocatable :: parts(:) !! points of ranges of slave segments, which
+                                            !! threads share
     logical :: waits = .false.              !! points are generated, forces follow once all others
                                             !! are known
     logical :: had_force = .false.          !! the call before had some, not of ties
@@ -185,7 +187,7 @@ module contact_state_m
     real(wp), allocatable :: segment_search(:) !! (slave segments) travel before which its overlaps
                                             !! can not touch, m
     real(wp) :: earliest_segment_search = -huge(1.0_wp) !! smallest of these, m
-    type(contact_points_t) :: points        !! of contact
+    type(contact_points_t), allocatable :: points !! of contact
     type(contact_points_t) :: tie_points    !! of ties: placed in the reference geometry, and frozen
     real(wp) :: closed_gap = 0.0_wp         !! gaps below it are contact, m; more than 0 only where
                                             !! a tangent of touching bodies is wanted

@@ -3,7 +3,7 @@
 
 End times are short and meshes fine enough for several tiles of 512 elements, which is what threads share;
 the scenes come into contact within the run. Every table and every dataset is compared byte for byte.
-The checked Debug build, many times slower, runs one type with one and two threads; where SLIDELINE_FULL is not 1
+A long interface is shared by threads as well. The checked Debug build, many times slower, runs one type with one and two threads; where SLIDELINE_FULL is not 1
 each scene has some of the types and three of the numbers of threads, in turn.
 """
 import importlib
@@ -39,6 +39,11 @@ def fast_sliding(kind):
         patched.setattr(scene, "PRESS", (0.0, 3.0e-6, -0.02e-3))
         patched.setattr(scene, "DRAW", (2.0e-6, 5.0e-6, 0.5e-3))
         return scene.sliding(2, kind)
+
+
+def long_interface(kind):
+    """Blocks with so many segments that threads share the contact of them."""
+    return block(kind, n_slave=601, n_master=600)
 
 
 def fine_patch(kind):
@@ -92,6 +97,8 @@ SCENES = {
                   ("endtim=1e-5", "p:dtplot=5e-6", "p:dthist=1e-6")),
     "sliding": (fast_sliding, ("endtim=6e-6", "p:dtplot=3e-6", "p:dthist=1e-6", "p:dtforc=1e-7")),
     "block": (lambda kind: block(kind, n_slave=151, n_master=150), ("endtim=0.1", "dt=5e-4")),
+    "long interface": (long_interface, ("endtim=0.02", "dt=2e-4")),
+    "long interface with friction": (long_interface, ("endtim=0.02", "dt=2e-4", "fs=0.3", "vdc=10")),
     "patch": (fine_patch, ("endtim=0.3", "p:dtplot=0.05")),
     "hertz": (lambda kind: hertz(1, kind), ("endtim=6e-6", "p:dthist=1e-6", "p:dtplot=2e-6")),
     "oblique": (oblique, ("endtim=0.06",)),

@@ -1,18 +1,21 @@
 ! SPDX-License-Identifier: MIT
-!> From points to nodal forces.
+!> Between points and nodes: gaps averaged at slave nodes and what is formed there shared out, nodal
+!> forces from what acts at points.
 module contact_scatter_m
   use contact_state_m, only : contact_points_t, contact_state_t, n_side
   use kinds_m, only : wp
+  use ranges_m, only : n_ranges, first_of, last_of
   implicit none
   private
-  public :: scatter_forces, scatter_tractions, scatter, join_passes, add_gap_round_off
+  public :: scatter_forces, scatter_tractions, scatter, join_passes, add_gap_round_off, &
+    average_values, share_out
 
 contains
 
   !> Add the forces of all points on the list to those of the interface's nodes, those of damping
   !> and of friction, which are zero before, to their own too, and count the points that carry any.
   !> Damping may leave a point with a traction alone: it counts too.
-  pure subroutine scatter_forces(memory)
+  subroutine scatter_forces(memory)
     type(contact_state_t), intent(inout) :: memory
 
     associate (points => memory%points, n => memory%points%n)
@@ -28,7 +31,7 @@ contains
 
   !> The part of tractions, which is zero before, and this added to the forces. They act along
   !> -t = (n_y, -n_x): nodes are given them along n, and turned by a right angle.
-  pure subroutine scatter_tractions(points, part, force)
+  subroutine scatter_tractions(points, part, force)
     type(contact_points_t), intent(in) :: points
     real(wp), intent(inout), contiguous :: part(:, :), force(:, :) !! (2, nodes) N/m
     real(wp) :: along_n
@@ -45,15 +48,72 @@ contains
   end subroutine scatter_tractions
 
   !> Add load*area*normal of each point to its nodes by the weights, slave side with plus and master
-  !> side with minus, in the order of the list.
-  pure subroutine scatter(points, load, force)
+  !> side with minus, in the order of the list, or of the rounds of its ranges.
+  subroutine scatter(points, load, force)
     type(contact_points_t), intent(in) :: points
     real(wp), intent(in), contiguous :: load(:)        !! (points%n or more) N/m^2
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, nodes) N/m
+    integer :: rounds(n_ranges(points%n)), i, round
 
-    call scatter_each(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
-      points%master_weights, points%normal, load, points%area, force)
+    if (n_ranges(points%n) == 1) then
+      call scatter_range(points, 1, points%n, load, force)
+      return
+    end if
+    call find_rounds(points%n, points%slave_nodes, points%master_nodes, rounds)
+    do round = 1, maxval(rounds)
+      !$omp taskloop default(shared)
+      do i = 1, n_ranges(points%n)
+        if (rounds(i) == round) call scatter_range(points, first_of(i, points%n), &
+          last_of(i, points%n), load, force)
+      end do
+      !$omp end taskloop
+    end do
   end subroutine scatter
+
+  !> The same for a range of points.
+  pure subroutine scatter_range(points, first, last, load, force)
+    type(contact_points_t), intent(in) :: points
+    integer, intent(in) :: first, last
+    real(wp), intent(in), contiguous :: load(:)
+    real(wp), intent(inout), contiguous :: force(:, :)
+
+    if (last < first) return
+    call scatter_each(last - first + 1, points%slave_nodes(1, first), &
+      points%slave_weights(1, first), points%master_nodes(1, first), &
+      points%master_weights(1, first), points%normal(1, first), load(first:), points%area(first), &
+      force)
+  end subroutine scatter_range
+
+  !> Rounds in which threads add what ranges of points give to nodes: those of one round have no
+  !> node in common, as far as the smallest and the largest number of either side show.
+  subroutine find_rounds(n, slave_nodes, master_nodes, rounds)
+    integer, intent(in) :: n !! points
+    integer, intent(in) :: slave_nodes(n_side, n), master_nodes(n_side, n)
+    integer, intent(out) :: rounds(n_ranges(n))
+    integer, dimension(2, n_ranges(n)) :: low, high !! numbers of nodes, slave and master side
+    integer :: i, j, k
+
+    !$omp taskloop default(shared)
+    do i = 1, n_ranges(n)
+      low(:, i) = [minval(slave_nodes(:, first_of(i, n):last_of(i, n))), &
+        minval(master_nodes(:, first_of(i, n):last_of(i, n)))]
+      high(:, i) = [maxval(slave_nodes(:, first_of(i, n):last_of(i, n))), &
+        maxval(master_nodes(:, first_of(i, n):last_of(i, n)))]
+    end do
+    !$omp end taskloop
+    do i = 1, n_ranges(n)
+      rounds(i) = 1
+      j = 1
+      do while (j < i)
+        if (rounds(j) == rounds(i) .and. any([(low(:, i) <= high(k, j) .and. low(k, j) &
+          <= high(:, i), k=1, 2)])) then
+          rounds(i) = rounds(i) + 1
+          j = 0
+        end if
+        j = j + 1
+      end do
+    end do
+  end subroutine find_rounds
 
   !> The same on arrays of known shape: through the list each access costs a multiplication by its
   !> stride.
@@ -124,5 +184,56 @@ contains
       end do
     end associate
   end subroutine add_gap_round_off
+
+  !> Averages of values of points at the slave nodes, g_A = sum(N_A a g)/sum(N_A a) (Fischer &
+  !> Wriggers 2005); 0 where there is no point.
+  pure subroutine average_values(points, values, n_slave, nodal)
+    type(contact_points_t), intent(in) :: points
+    real(wp), intent(in), contiguous :: values(:) !! (points%n or more)
+    integer, intent(in) :: n_slave
+    real(wp), intent(inout) :: nodal(2, *) !! (2, n_slave or more) out: averages, areas
+    integer :: node
+
+    do node = 1, n_slave
+      nodal(1, node) = 0.0_wp
+      nodal(2, node) = 0.0_wp
+    end do
+    call sum_values(points%n, points%slave_nodes, points%slave_weights, points%area, values, nodal)
+    do node = 1, n_slave
+      nodal(1, node) = nodal(1, node)/max(nodal(2, node), tiny(1.0_wp))
+    end do
+  end subroutine average_values
+
+  !> Values of points from those of the slave nodes, by the slave shape functions.
+  pure subroutine share_out(n, slave_nodes, slave_weights, at_node, at_point)
+    integer, intent(in) :: n, slave_nodes(n_side, *)
+    real(wp), intent(in) :: slave_weights(n_side, *), at_node(*)
+    real(wp), intent(inout) :: at_point(*)
+    integer :: p
+
+    !GCC$ NOVECTOR
+    do p = 1, n
+      at_point(p) = slave_weights(1, p)*at_node(slave_nodes(1, p)) &
+        + slave_weights(2, p)*at_node(slave_nodes(2, p))
+    end do
+  end subroutine share_out
+
+  !> Sums of weight times area times value, and of weight times area, by slave node.
+  pure subroutine sum_values(n, slave_nodes, slave_weights, area, values, nodal)
+    integer, intent(in) :: n, slave_nodes(n_side, *)
+    real(wp), intent(in) :: slave_weights(n_side, *), area(*), values(*)
+    real(wp), intent(inout) :: nodal(2, *)
+    real(wp) :: content(2)
+    integer :: p, k
+
+    do p = 1, n
+      content = [area(p)*values(p), area(p)]
+      do k = 1, n_side
+        associate (a => slave_nodes(k, p))
+          nodal(:, a) = nodal(:, a) + slave_weights(k, p)*content
+        end associate
+      end do
+    end do
+  end subroutine sum_values
 
 end module contact_scatter_m

@@ -9,7 +9,7 @@ module friction_m
   use law_friction_m, only : coefficient_of, has_decay, sliding_speed, return_traction, &
     holds_on
   use tributary_lengths_m, only : nodal_area
-  use nodal_average_m, only : average_values, share_out
+  use contact_scatter_m, only : average_values, share_out
   implicit none
   private
   public :: start_trial_slip, take_trial_motion, store_previous_tractions, form_tractions, &

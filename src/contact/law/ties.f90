@@ -8,12 +8,11 @@
 module ties_m
   use contact_penalty_m, only : mean_length
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
-  use contact_scatter_m, only : scatter, scatter_tractions
+  use contact_scatter_m, only : scatter, scatter_tractions, average_values, share_out
   use contacts_m, only : contact_t
   use geometry_m, only : separation
   use kinds_m, only : wp
   use model_m, only : model_t
-  use nodal_average_m, only : average_values, share_out
   use law_state_m, only : allocate_ties
   use tiebreak_m, only : mark_breaks, let_go, holds, has_failed
   implicit none
@@ -200,7 +199,7 @@ contains
 
   !> Pressures, tractions and nodal forces of all springs at the sites in the memory. Pressures
   !> below zero are tension. Springs that reach their strengths break, where any are given.
-  pure subroutine hold_ties(memory, strength, time)
+  subroutine hold_ties(memory, strength, time)
     type(contact_state_t), intent(inout) :: memory
     real(wp), intent(in) :: strength(2) !! NFLS, SFLS, N/m^2; 0 = nothing breaks now
     real(wp), intent(in) :: time        !! s
@@ -292,7 +291,7 @@ contains
 
   !> Forces of all springs: those of their points, and the couples. They are the first ones of the
   !> interface.
-  pure subroutine scatter_ties(springs, memory)
+  subroutine scatter_ties(springs, memory)
     type(tie_spring_t), intent(in) :: springs(:)
     type(contact_state_t), intent(inout) :: memory
     integer :: s

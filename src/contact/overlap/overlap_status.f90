@@ -2,17 +2,13 @@
 !> Status of slave segments whose overlaps make contact points between the slave nodes: what may
 !> begin, and which segments are not due (doc/theory/contact.md, sections 3.3 and 4).
 module overlap_status_m
-  use contact_state_m, only : contact_state_t, separated, active
+  use contact_state_m, only : contact_state_t, contact_points_t, separated, active
   use contacts_m, only : contact_t
-  use geometry_m, only : separation
+  use geometry_m, only : local_coordinates_t, coordinates_on_segment, closest_distance
   use kinds_m, only : wp
   implicit none
   private
   public :: none_due, search_segment, update_segment_states, note_earliest_search
-
-  !> Cosine between outward normals from which on segments can not come to be opposed before new
-  !> lists are made.
-  real(wp), parameter :: averted = 0.25_wp
 
 contains
 
@@ -38,7 +34,7 @@ contains
       is_due = state(ends(1)) == active .or. state(ends(2)) == active
     end associate
     if (is_due .or. memory%travel + memory%closed_gap < memory%segment_search(segment)) return
-    call see_candidates(contact, memory, segment, distance, is_due)
+    call search_row(contact, memory, segment, distance, is_due)
     is_due = is_due .or. distance < memory%closed_gap
     memory%segment_search(segment) = memory%travel + distance
     if (is_due) return
@@ -46,161 +42,153 @@ contains
     memory%segment_gap(segment) = distance
   end subroutine search_segment
 
-  !> Judge the segments that were due by their points, which follow each other on the list; those
-  !> that do not count have no area. Points of a segment neither of whose ends nor any of whose
-  !> points is in contact are left to its neighbours, like those of a segment that is not due: so
-  !> sums over the points of a node do not depend on which segments are due.
-  pure subroutine update_segment_states(contact, n_before, memory)
-    type(contact_t), intent(in) :: contact
-    integer, intent(in) :: n_before !! points on the list before them
-    type(contact_state_t), intent(inout) :: memory
-    real(wp) :: deepest
-    integer :: first, last, s
-    logical :: counts
-
-    last = n_before
-    do s = 1, contact%slave%n_segment
-      if (.not. memory%scratch%has_points(s)) cycle
-      first = last + 1
-      deepest = huge(1.0_wp)
-      associate (node => contact%slave%segments(1, s), points => memory%points)
-        do last = first, points%n
-          if (points%slave_nodes(1, last) /= node) exit
-          if (points%area(last) > 0.0_wp) deepest = min(deepest, points%gap(last))
-        end do
-        last = last - 1
-        call update_segment_state(memory, s, contact%slave%segments(:, s), deepest, counts)
-        if (counts) cycle
-        points%area(first:last) = 0.0_wp
-        if (.not. deepest < memory%closed_gap) memory%scratch%has_points(s) = .false.
-      end associate
-    end do
-  end subroutine update_segment_states
-
-  !> Whether the points on a segment count. One that is in contact, or has an active end, stays.
-  pure subroutine update_segment_state(memory, segment, ends, deepest, counts)
-    type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: segment
-    integer, intent(in) :: ends(2)     !! its nodes
-    real(wp), intent(in) :: deepest    !! smallest gap of its points, m
-    logical, intent(out) :: counts
-    logical :: has_active_end
-
-    has_active_end = any(memory%slave_status%state(ends) == active)
-    associate (state => memory%segment_state(segment), next_search => &
-      memory%segment_search(segment))
-      if (deepest < memory%closed_gap) then
-        next_search = -huge(1.0_wp)
-        if (has_active_end) then
-          state = active
-        else if (state == separated) then
-          call begin_contact(memory, segment, ends, -deepest, state)
-        end if
-        counts = state == active
-      else
-        state = separated
-        ! It is due as long as an end is active; without one `search_segment` has set the time.
-        if (has_active_end) next_search = memory%travel
-        counts = has_active_end
-      end if
-    end associate
-    memory%segment_gap(segment) = deepest
-  end subroutine update_segment_state
-
-  !> A segment neither end of which is active, behind which points have come: in contact if these
-  !> have come through it since the last look, and no deeper than a first contact may be unless the
-  !> step is an implicit one.
-  pure subroutine begin_contact(memory, segment, ends, depth, state)
-    type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: segment, ends(2)
-    real(wp), intent(in) :: depth    !! of the deepest, m
-    integer, intent(inout) :: state  !! of the segment
-    logical :: is_new, is_deep
-
-    associate (pass => memory%slave_status%pass)
-      is_new = .not. pass%has_history .or. memory%segment_gap(segment) >= 0.0_wp
-      is_deep = depth > deepest_first_contact(memory, segment, ends)
-      if (pass%has_history .and. pass%is_trial) is_deep = .false.
-    end associate
-    if (.not. is_new) return
-    if (is_deep) then
-      ! Ends that have come as deep have been counted.
-      if (all(memory%slave_status%gap(ends) >= 0.0_wp)) &
-        memory%slave_status%n_released = memory%slave_status%n_released + 1
-    else
-      state = active
-    end if
-  end subroutine begin_contact
-
-  !> Deepest first contact of a segment: that of its ends and of the least of its candidates, m.
-  pure function deepest_first_contact(memory, segment, ends) result(depth)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: segment, ends(2)
-    real(wp) :: depth
-    integer :: j
-
-    depth = minval(memory%slave_status%point_depth(ends))
-    do j = memory%candidates%first(segment), memory%candidates%first(segment + 1) - 1
-      depth = min(depth, memory%slave_status%segment_depth(memory%candidates%items(j)))
-    end do
-  end function deepest_first_contact
-
-  !> Distance from a slave segment to the candidates that are opposed to it or may come to be, m,
-  !> and whether it lies behind the line of one of them, or that behind its own, in part: two
-  !> segments that do not cross are nearest to each other at a node of one of them.
-  pure subroutine see_candidates(contact, memory, s, distance, is_behind)
+  !> Distance from a slave segment to its candidates, m, and whether it lies behind the line of one
+  !> of them, or that behind its own, in part: two segments that do not cross are nearest to each
+  !> other at a node of one of them.
+  pure subroutine search_row(contact, memory, s, distance, is_behind)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
     real(wp), intent(out) :: distance
     logical, intent(out) :: is_behind
-    real(wp) :: a(2), b(2), own(2), other(2), squares(2), across(4), product, least
-    integer :: ends(2), nodes(2), j
+    type(local_coordinates_t) :: nodes(4) !! of the slave segment from the other, and reversed
+    real(wp) :: least
+    integer :: j, i
 
     least = memory%slave_status%reach**2
     is_behind = .false.
-    ends = contact%slave%segments(:, s)
-    associate (positions => memory%positions)
-      own = separation(positions(:, ends(2)), positions(:, ends(1)))
-      squares(1) = max(own(1)**2 + own(2)**2, tiny(1.0_wp))
-      do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
-        nodes = memory%n_slave + contact%master%segments(:, memory%candidates%items(j))
-        other = separation(positions(:, nodes(2)), positions(:, nodes(1)))
-        squares(2) = max(other(1)**2 + other(2)**2, tiny(1.0_wp))
-        product = own(1)*other(1) + own(2)*other(2)
-        if (product > 0.0_wp .and. product**2 >= averted**2*(squares(1)*squares(2))) cycle
-        a = separation(positions(:, ends(1)), positions(:, nodes(1)))
-        b = separation(positions(:, ends(2)), positions(:, nodes(1)))
-        call see_node(a, other, squares(2), least, across(1))
-        call see_node(b, other, squares(2), least, across(2))
-        b = separation(positions(:, nodes(2)), positions(:, ends(1)))
-        call see_node(-a, own, squares(1), least, across(3))
-        call see_node(b, own, squares(1), least, across(4))
-        is_behind = is_behind .or. minval(across) < 0.0_wp
-        if (max(across(1)*across(2), across(3)*across(4)) <= 0.0_wp) least = 0.0_wp
+    do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
+      associate (own => contact%slave%segments(:, s), positions => memory%positions, &
+        other => memory%n_slave + contact%master%segments(:, memory%candidates%items(j)))
+        do i = 1, 2
+          nodes(i) = coordinates_on_segment(positions(:, own(i)), positions(:, other(1)), &
+            positions(:, other(2)))
+          nodes(2 + i) = coordinates_on_segment(positions(:, other(i)), positions(:, own(1)), &
+            positions(:, own(2)))
+        end do
+      end associate
+      do i = 1, 4
+        least = min(least, closest_distance(nodes(i)))
       end do
-    end associate
+      is_behind = is_behind .or. minval(nodes%across) < 0.0_wp
+      if (max(nodes(1)%across*nodes(2)%across, nodes(3)%across*nodes(4)%across) <= 0.0_wp) &
+        least = 0.0_wp
+    end do
     distance = sqrt(least)
-  end subroutine see_candidates
+  end subroutine search_row
 
-  !> A node of one segment from the other: which side it is on, and its distance to that.
-  pure subroutine see_node(d, t, square, least, across)
-    real(wp), intent(in) :: d(2), t(2) !! from the first node of the segment, and its vector, m
-    real(wp), intent(in) :: square     !! of its length, m^2
-    real(wp), intent(inout) :: least   !! square of the smallest distance so far, m^2
-    real(wp), intent(out) :: across    !! gap times length
-    real(wp) :: along
+  !> Bring the status of the segments that were due up to date by their points, which follow each
+  !> other on the list; those that do not count have no area. Points of a segment neither of whose
+  !> ends nor any of whose points is in contact are left to its neighbours, like those of a segment
+  !> that is not due: so sums over the points of a node do not depend on which segments are due.
+  pure subroutine update_segment_states(contact, range, n_before, memory, points, n_released)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: range(2) !! of slave segments
+    integer, intent(in) :: n_before !! points on the list before theirs
+    type(contact_state_t), intent(inout) :: memory
+    type(contact_points_t), intent(inout) :: points
+    integer, intent(inout) :: n_released !! first contacts deeper than the limit
+    real(wp) :: deepest, limit
+    integer :: first, last, s, p
+    logical :: has_active_end
 
-    along = d(1)*t(1) + d(2)*t(2)
-    across = d(1)*t(2) - d(2)*t(1)
-    if (along < 0.0_wp) then
-      least = min(least, d(1)**2 + d(2)**2)
-    else if (along > square) then
-      least = min(least, (d(1) - t(1))**2 + (d(2) - t(2))**2)
+    last = n_before
+    do s = range(1), range(2)
+      if (.not. memory%scratch%has_points(s)) cycle
+      associate (ends => contact%slave%segments(:, s))
+        first = last + 1
+        deepest = huge(1.0_wp)
+        p = 0
+        do last = first, points%n
+          if (points%slave_nodes(1, last) /= ends(1)) exit
+          if (.not. points%area(last) > 0.0_wp .or. points%gap(last) >= deepest) cycle
+          deepest = points%gap(last)
+          p = last
+        end do
+        last = last - 1
+        has_active_end = any(memory%slave_status%state(ends) == active)
+        limit = huge(1.0_wp)
+        if (.not. has_active_end .and. p > 0) &
+          limit = deepest_first_contact(contact, memory, ends, points%master_nodes(:, p))
+        call update_segment(memory, s, ends, deepest, limit, n_released)
+        if (has_active_end) cycle
+        if (.not. deepest < memory%closed_gap) memory%scratch%has_points(s) = .false.
+        if (memory%segment_state(s) == separated) points%area(first:last) = 0.0_wp
+      end associate
+    end do
+  end subroutine update_segment_states
+
+  !> Status of a slave segment by its deepest point. It is due as long as an end is active or a
+  !> point of it is behind a face; else `search_segment` has set the time.
+  pure subroutine update_segment(memory, segment, ends, deepest, limit, n_released)
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: segment
+    integer, intent(in) :: ends(2)     !! its nodes
+    real(wp), intent(in) :: deepest    !! smallest gap of its points, m
+    real(wp), intent(in) :: limit      !! deepest first contact there, m
+    integer, intent(inout) :: n_released
+    logical :: has_active_end
+
+    has_active_end = any(memory%slave_status%state(ends) == active)
+    associate (state => memory%segment_state(segment), next_search => &
+      memory%segment_search(segment))
+      if (.not. deepest < memory%closed_gap) then
+        state = separated
+        if (has_active_end) next_search = memory%travel
+      else
+        next_search = -huge(1.0_wp)
+        if (has_active_end) then
+          state = active
+        else if (state == separated) then
+          call begin_contact(memory, segment, ends, -deepest > limit, state, n_released)
+        end if
+      end if
+    end associate
+    memory%segment_gap(segment) = deepest
+  end subroutine update_segment
+
+  !> A segment neither end of which is active, behind which points have come: in contact if these
+  !> have come through it since the last look, and no deeper than a first contact may be unless the
+  !> step is an implicit one.
+  pure subroutine begin_contact(memory, segment, ends, is_deeper, state, n_released)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: segment, ends(2)
+    logical, intent(in) :: is_deeper !! than a first contact may be
+    integer, intent(inout) :: state  !! of the segment
+    integer, intent(inout) :: n_released
+    logical :: is_new, is_deep
+
+    associate (pass => memory%slave_status%pass)
+      is_new = .not. pass%has_history .or. memory%segment_gap(segment) >= 0.0_wp
+      is_deep = is_deeper .and. .not. (pass%has_history .and. pass%is_trial)
+    end associate
+    if (.not. is_new) return
+    if (is_deep) then
+      ! Ends that have come as deep have been counted.
+      if (all(memory%slave_status%gap(ends) >= 0.0_wp)) n_released = n_released + 1
     else
-      least = min(least, across**2/square)
+      state = active
     end if
-  end subroutine see_node
+  end subroutine begin_contact
+
+  !> Deepest first contact of a slave segment at a point of it: that of its ends and of the master
+  !> segment that the point is on, or of both at its node, m.
+  pure function deepest_first_contact(contact, memory, ends, master_nodes) result(depth)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2) !! nodes of the slave segment
+    integer, intent(in) :: master_nodes(2) !! of the point
+    real(wp) :: depth
+    integer :: segments(2), k
+
+    associate (nodes => master_nodes - memory%n_slave)
+      segments = [contact%master%outgoing(nodes(1)), contact%master%incoming(nodes(2))]
+    end associate
+    depth = minval(memory%slave_status%point_depth(ends))
+    do k = 1, 2
+      if (segments(k) > 0) depth = min(depth, memory%slave_status%segment_depth(segments(k)))
+    end do
+  end function deepest_first_contact
 
   !> After all segments have been looked at. Not asked for as long as something is active.
   pure subroutine note_earliest_search(memory)

@@ -1,16 +1,27 @@
 ! SPDX-License-Identifier: MIT
-!> The list of contact points and its only writer: points on slave segments one by one, with their
-!> projections or before these are known, and points at the active nodes of a surface all together.
+!> The list of contact points and its only writer: points on slave segments one by one or in blocks,
+!> points at the active nodes of a surface all together.
 module point_list_m
   use contact_state_m, only : contact_points_t, contact_status_t, make_room, n_side
+  use projection_block_m, only : projection_block_t, n_block
   use projection_m, only : projection_t, opposed_share, face_on
   use kinds_m, only : wp
   use surfaces_m, only : surface_t
   use tributary_lengths_m, only : radius_between
   implicit none
   private
-  public :: add_point, add_slave_site, put_projections, known_projection, append_active, &
+  public :: point_block_t, append_block, add_point, known_projection, append_active, append_list, &
     finish_segment_points
+
+  !> Positions on slave segments that are to be points, with their projections on the master: many
+  !> at a time, so that these are formed together. Without default values, which would be written
+  !> before each use.
+  type, extends(projection_block_t) :: point_block_t
+    integer :: ends(n_side, n_block)  !! nodes of the slave segment
+    integer :: nodes(n_side, n_block) !! of the master segment, local numbers
+    real(wp) :: at(n_block)           !! position on the slave segment, 0 to 1
+    real(wp) :: area(n_block)         !! m
+  end type point_block_t
 
 contains
 
@@ -24,50 +35,52 @@ contains
     real(wp), intent(in) :: area      !! m
     real(wp), intent(in) :: stiffness !! N/m^2
 
-    call add_slave_site(points, ends, xi, area, stiffness)
-    associate (p => points%n)
-      points%master_nodes(:, p) = nodes
-      points%master_weights(:, p) = [1.0_wp - projection%xi, projection%xi]
-      points%normal(:, p) = projection%normal
-      points%gap(p) = projection%gap
-    end associate
-  end subroutine add_point
-
-  !> Append the slave side of a point whose projection is not known yet.
-  pure subroutine add_slave_site(points, ends, xi, area, stiffness)
-    type(contact_points_t), intent(inout) :: points
-    integer, intent(in) :: ends(2)    !! nodes of the slave segment
-    real(wp), intent(in) :: xi        !! position on that, 0 to 1
-    real(wp), intent(in) :: area      !! m
-    real(wp), intent(in) :: stiffness !! N/m^2
     integer :: p
 
     p = points%n + 1
     if (p > size(points%gap)) call make_room(points, 1)
     points%slave_nodes(:, p) = ends
     points%slave_weights(:, p) = [1.0_wp - xi, xi]
+    points%master_nodes(:, p) = nodes
+    points%master_weights(:, p) = [1.0_wp - projection%xi, projection%xi]
+    points%normal(:, p) = projection%normal
+    points%gap(p) = projection%gap
     points%area(p) = area
     points%stiffness(p) = stiffness
     points%n = p
-  end subroutine add_slave_site
+  end subroutine add_point
 
-  !> The projections of the last points on the list.
-  pure subroutine put_projections(points, n, segment, xi, gap, normal, segments, offset)
+  !> Append the points of a block and empty it.
+  pure subroutine append_block(block, stiffness, points)
+    type(point_block_t), intent(inout) :: block
+    real(wp), intent(in) :: stiffness !! of all, N/m^2
     type(contact_points_t), intent(inout) :: points
-    integer, intent(in) :: n, segment(n)            !! of the master
-    real(wp), intent(in) :: xi(n), gap(n), normal(2, n)
-    integer, intent(in), contiguous :: segments(:, :)
-    integer, intent(in) :: offset                   !! local number before the first master node
-    integer :: k, p
 
-    do k = 1, n
-      p = points%n - n + k
-      points%master_nodes(:, p) = offset + segments(:, segment(k))
-      points%master_weights(:, p) = [1.0_wp - xi(k), xi(k)]
-      points%normal(:, p) = normal(:, k)
-      points%gap(p) = gap(k)
-    end do
-  end subroutine put_projections
+    call make_room(points, block%n)
+    associate (p => points%n + 1, last => points%n + block%n, n => block%n)
+      call store_side(n, block%ends, block%at, points%slave_nodes(1, p), points%slave_weights(1, p))
+      call store_side(n, block%nodes, block%xi, points%master_nodes(1, p), &
+        points%master_weights(1, p))
+      points%gap(p:last) = block%gap(:n)
+      points%normal(:, p:last) = block%normal(:, :n)
+      points%area(p:last) = block%area(:n)
+      points%stiffness(p:last) = stiffness
+    end associate
+    points%n = points%n + block%n
+    block%n = 0
+  end subroutine append_block
+
+  !> Nodes and weights of one side of some points.
+  pure subroutine store_side(n, nodes, xi, point_nodes, weights)
+    integer, intent(in) :: n, nodes(n_side, n)
+    real(wp), intent(in) :: xi(n)
+    integer, intent(inout) :: point_nodes(n_side, n)
+    real(wp), intent(inout) :: weights(n_side, n)
+
+    point_nodes = nodes
+    weights(1, :) = 1.0_wp - xi
+    weights(2, :) = xi
+  end subroutine store_side
 
   !> The projection of an active point that the search follows.
   pure function known_projection(status, i) result(projection)
@@ -110,6 +123,28 @@ contains
     end do
     points%n = points%n + status%n_active
   end subroutine append_active
+
+  !> Append all points of another list.
+  pure subroutine append_list(list, points)
+    type(contact_points_t), intent(in) :: list
+    type(contact_points_t), intent(inout) :: points
+    integer :: n
+
+    n = list%n
+    if (n == 0) return
+    call make_room(points, n)
+    associate (first => points%n + 1, last => points%n + n)
+      points%slave_nodes(:, first:last) = list%slave_nodes(:, :n)
+      points%slave_weights(:, first:last) = list%slave_weights(:, :n)
+      points%master_nodes(:, first:last) = list%master_nodes(:, :n)
+      points%master_weights(:, first:last) = list%master_weights(:, :n)
+      points%normal(:, first:last) = list%normal(:, :n)
+      points%gap(first:last) = list%gap(:n)
+      points%area(first:last) = list%area(:n)
+      points%stiffness(first:last) = list%stiffness(:n)
+    end associate
+    points%n = points%n + n
+  end subroutine append_list
 
   !> Points on slave segments: reduce their areas to what is opposed to the master, and drop those
   !> without; in axisymmetry let them weigh with the radius where they stand.

@@ -3,21 +3,22 @@
 !> each overlap of a slave segment with a master segment; pressure from the slave nodes
 !> (doc/theory/contact.md, sections 5.6 and 5.7).
 module points_mortar_m
-  use contact_state_m, only : contact_state_t, contact_status_t, active
+  use contact_state_m, only : contact_state_t, contact_points_t, contact_status_t, active
   use contacts_m, only : contact_t
-  use projection_block_m, only : projection_block_t, n_block, project_block, resolve_ambiguous
+  use projection_block_m, only : n_block, project_block, resolve_ambiguous
   use projection_m, only : projection_t, nearby_projection, stays_over
   use geometry_m, only : segment_length, separation
   use kinds_m, only : wp
-  use overlap_m, only : overlap_t
   use overlap_status_m, only : none_due, search_segment, update_segment_states, note_earliest_search
-  use overlaps_m, only : find_overlaps, room_for_overlaps, closest_candidate, sides_part
-  use point_list_m, only : add_point, add_slave_site, put_projections, known_projection, &
+  use overlaps_m, only : overlap_t, find_overlaps, room_for_overlaps
+  use point_list_m, only : point_block_t, append_block, add_point, known_projection, &
     finish_segment_points
-  use sharp_vertices_m, only : has_folds, find_sharp_vertices, weight_sharp_vertices
+  use sharp_vertices_m, only : has_folds, weight_sharp_vertices
+  use slave_segments_m, only : closest_candidate, sides_part
   implicit none
   private
-  public :: points_mortar, points_segmented_mortar, gauss_xi, least_part
+  public :: start_mortar, points_mortar, finish_mortar, points_segmented_mortar, &
+    finish_segmented_mortar, gauss_xi, least_part
 
   !> Gauss points of an overlap.
   integer, parameter :: n_gauss = 2
@@ -31,24 +32,41 @@ module points_mortar_m
 
 contains
 
-  !> Type 6: the points of all segments that share a node with one in contact: these decide on nodal
-  !> pressures.
-  pure subroutine points_mortar(contact, memory)
+  !> Type 6: which slave nodes have a segment in contact; these decide on nodal pressures.
+  pure subroutine start_mortar(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
+
+    call mark_ends(memory%slave_status, size(memory%segment_xi), contact%slave%segments, &
+      memory%scratch%segment_near)
+  end subroutine start_mortar
+
+  !> The points of those of a range of slave segments that have such a node.
+  pure subroutine points_mortar(contact, memory, first, last, points)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: first, last
+    type(contact_points_t), intent(inout) :: points
     integer :: s, near
 
     if (memory%slave_status%n_active == 0) return
-    call mark_ends(memory%slave_status, size(memory%segment_xi), contact%slave%segments, &
-      memory%scratch%segment_near)
-    do s = 1, contact%slave%n_segment
+    do s = first, last
       near = maxval(memory%scratch%segment_near(contact%slave%segments(:, s)))
-      if (near > 0) call points_on_whole_segment(contact, s, near, memory)
+      if (near > 0) call points_on_whole_segment(contact, memory, s, near, points)
     end do
-    call finish_segment_points(memory%positions, contact%is_round, 1, memory%points)
-    if (has_folds(contact)) call weight_sharp_vertices(contact, memory)
-    memory%scratch%segment_near = 0
+    call finish_segment_points(memory%positions, contact%is_round, 1, points)
   end subroutine points_mortar
+
+  !> Tips of folds.
+  pure subroutine finish_mortar(contact, memory, points)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(contact_points_t), intent(inout) :: points
+
+    if (memory%slave_status%n_active == 0) return
+    if (has_folds(contact)) call weight_sharp_vertices(contact, memory, points)
+    memory%scratch%segment_near = 0
+  end subroutine finish_mortar
 
   !> Note at both ends of each segment with a point in contact the master segment of the first of
   !> these points.
@@ -72,11 +90,12 @@ contains
   !> The Gauss points of a segment that have a projection and are not let go, with areas as if they
   !> were opposed to the master entirely. Of closed boundaries the side next to a convex vertex
   !> counts less, or not, as with overlaps.
-  pure subroutine points_on_whole_segment(contact, s, near, memory)
+  pure subroutine points_on_whole_segment(contact, memory, s, near, points)
     type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
     integer, intent(in) :: near !! a master segment close by
-    type(contact_state_t), intent(inout) :: memory
+    type(contact_points_t), intent(inout) :: points
     type(projection_t) :: projection
     real(wp) :: length, area
     integer :: ends(2), q, i
@@ -95,7 +114,7 @@ contains
       end if
       if (memory%slave_status%pass%is_closed) &
         area = area*sides_part(contact, memory, s, projection%segment)
-      call add_point(memory%points, ends, memory%segment_xi(q), memory%n_slave &
+      call add_point(points, ends, memory%segment_xi(q), memory%n_slave &
         + contact%master%segments(:, projection%segment), projection, area, memory%slave_penalty)
     end do
   end subroutine points_on_whole_segment
@@ -117,136 +136,154 @@ contains
     projection%is_on = projection%is_on .and. .not. projection%gap < 0.0_wp
   end function find_projection
 
-  !> Type 7: the points of all segments that may touch, then of their neighbours that can not, since
-  !> these have a part in the averaged gaps of common nodes.
-  pure subroutine points_segmented_mortar(contact, memory)
+  !> Type 7: the points of those of a range of slave segments that may touch.
+  pure subroutine points_segmented_mortar(contact, memory, first, last, points, n_released)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: first, last
+    type(contact_points_t), intent(inout) :: points
+    integer, intent(inout) :: n_released !! first contacts deeper than the limit
     type(overlap_t), allocatable :: overlaps(:)
-    type(projection_block_t) :: block
-    integer :: s, n
+    type(point_block_t) :: block
+    integer :: s
     logical :: is_due
 
     if (none_due(memory)) return
-    allocate (overlaps(room_for_overlaps(memory)))
-    memory%scratch%has_points = .false.
+    allocate (overlaps(room_for_overlaps(memory, first, last)))
     block%n = 0
-    do s = 1, contact%slave%n_segment
+    do s = first, last
       call search_segment(contact, memory, s, is_due)
-      if (is_due) call points_on_overlaps(contact, s, memory, overlaps, block)
+      memory%scratch%has_points(s) = is_due
+      if (is_due) call points_on_overlaps(contact, memory, s, overlaps, block, points)
     end do
-    call put_block(contact, memory, block)
-    call update_segment_states(contact, 0, memory)
-    call note_earliest_search(memory)
-    n = memory%points%n
-    if (any(memory%points%gap(:n) < memory%closed_gap .and. memory%points%area(:n) > 0.0_wp) &
-      .or. (has_folds(contact) .and. memory%slave_status%n_active > 0)) then
-      call points_at_neighbours(contact, memory, overlaps, block)
-    else
-      memory%points%n = 0
-    end if
-    call finish_segment_points(memory%positions, contact%is_round, 1, memory%points)
-    if (has_folds(contact)) call weight_sharp_vertices(contact, memory)
+    call put_block(contact, memory, block, points)
+    call update_segment_states(contact, [first, last], 0, memory, points, n_released)
+    call finish_segment_points(memory%positions, contact%is_round, 1, points)
   end subroutine points_segmented_mortar
 
-  !> Neighbours of segments in contact that have no points yet.
-  pure subroutine points_at_neighbours(contact, memory, overlaps, block)
+  !> If any of them touches, add the points of its neighbours that can not: these have a part in the
+  !> averaged gaps of common nodes.
+  pure subroutine finish_segmented_mortar(contact, memory, points)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
-    type(projection_block_t), intent(inout) :: block !! empty
+    type(contact_points_t), intent(inout) :: points
+    integer :: n
+
+    if (none_due(memory)) return
+    call note_earliest_search(memory)
+    n = points%n
+    if (any(memory%segment_state == active) &
+      .or. (has_folds(contact) .and. memory%slave_status%n_active > 0)) then
+      call points_at_neighbours(contact, memory, points)
+      call finish_segment_points(memory%positions, contact%is_round, n + 1, points)
+    else
+      points%n = 0
+    end if
+    if (has_folds(contact)) call weight_sharp_vertices(contact, memory, points)
+  end subroutine finish_segmented_mortar
+
+  !> Neighbours of segments in contact that have no points yet.
+  pure subroutine points_at_neighbours(contact, memory, points)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(contact_points_t), intent(inout) :: points
+    type(overlap_t), allocatable :: overlaps(:)
+    type(point_block_t) :: block
     integer :: neighbours(2), s, k
 
+    block%n = 0
     do s = 1, contact%slave%n_segment
       if (memory%segment_state(s) /= active) cycle
       neighbours = [contact%slave%previous(s), contact%slave%next(s)]
       do k = 1, 2
         if (neighbours(k) == 0) cycle
-        if (.not. memory%scratch%has_points(neighbours(k))) &
-          call points_on_overlaps(contact, neighbours(k), memory, overlaps, block)
+        if (memory%scratch%has_points(neighbours(k))) cycle
+        memory%scratch%has_points(neighbours(k)) = .true.
+        if (.not. allocated(overlaps)) &
+          allocate (overlaps(room_for_overlaps(memory, 1, contact%slave%n_segment)))
+        call points_on_overlaps(contact, memory, neighbours(k), overlaps, block, points)
       end do
     end do
-    call put_block(contact, memory, block)
+    call put_block(contact, memory, block, points)
   end subroutine points_at_neighbours
 
   !> The points of one slave segment, with areas as if they were opposed to the master entirely;
   !> their projections follow once a block of them is full.
-  pure subroutine points_on_overlaps(contact, s, memory, overlaps, block)
+  pure subroutine points_on_overlaps(contact, memory, s, overlaps, block, points)
     type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
-    type(contact_state_t), intent(inout) :: memory
     type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
-    type(projection_block_t), intent(inout) :: block
-    real(wp) :: own(2), other(2), way(2), xi, length
-    integer :: ends(2), nodes(2), n, k, q
+    type(point_block_t), intent(inout) :: block
+    type(contact_points_t), intent(inout) :: points
+    real(wp) :: own(2), other(2), way(2), length
+    integer :: ends(2), nodes(2), n, k, q, p
 
-    memory%scratch%has_points(s) = .true.
     ends = contact%slave%segments(:, s)
     call find_overlaps(contact, memory, s, .false., least_part, overlaps, n)
     own = separation(memory%positions(:, ends(2)), memory%positions(:, ends(1)))
     length = sqrt(own(1)*own(1) + own(2)*own(2))
     do k = 1, n
       if (.not. overlaps(k)%share > 0.0_wp) cycle
-      if (block%n + n_gauss > n_block) call put_block(contact, memory, block)
+      if (block%n + n_gauss > n_block) call put_block(contact, memory, block, points)
       nodes = memory%n_slave + contact%master%segments(:, overlaps(k)%master)
       other = separation(memory%positions(:, nodes(2)), memory%positions(:, nodes(1)))
       way = separation(memory%positions(:, ends(1)), memory%positions(:, nodes(1)))
-      associate (part => overlaps(k)%high - overlaps(k)%low)
-        do q = 1, n_gauss
+      do q = 1, n_gauss
+        p = block%n + q
+        associate (xi => block%at(p), part => overlaps(k)%high - overlaps(k)%low)
           xi = overlaps(k)%low + gauss_xi(q)*part
-          call add_slave_site(memory%points, ends, xi, 0.5_wp*part*length*overlaps(k)%part, &
-            memory%slave_penalty)
-          block%n = block%n + 1
-          block%segment(block%n) = overlaps(k)%master
-          block%t(:, block%n) = other
-          block%d(:, block%n) = way + xi*own
-        end do
-      end associate
+          block%area(p) = 0.5_wp*part*length*overlaps(k)%part
+          block%ends(:, p) = ends
+          block%nodes(:, p) = nodes
+          block%segment(p) = overlaps(k)%master
+          block%t(:, p) = other
+          block%d(:, p) = way + xi*own
+        end associate
+      end do
+      block%n = block%n + n_gauss
     end do
   end subroutine points_on_overlaps
 
-  !> Project the points of a block, the last ones on the list, on the master segments of their
-  !> overlaps, or on whatever is closest there; those without a projection have no area.
-  pure subroutine put_block(contact, memory, block)
+  !> Project the points of a block on the master segments of their overlaps, or on whatever is
+  !> closest there, and append them; those without a projection have no area.
+  pure subroutine put_block(contact, memory, block, points)
     type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-    type(projection_block_t), intent(inout) :: block
+    type(contact_state_t), intent(in) :: memory
+    type(point_block_t), intent(inout) :: block
+    type(contact_points_t), intent(inout) :: points
 
     if (block%n == 0) return
-    call project_block(block)
+    call project_block(block%projection_block_t)
     if (block%n_ambiguous > 0) call project_ambiguous(contact, memory, block)
-    call put_projections(memory%points, block%n, block%segment, block%xi, block%gap, block%normal, &
-      contact%master%segments, memory%n_slave)
-    block%n = 0
+    call append_block(block, memory%slave_penalty, points)
   end subroutine put_block
 
   !> Points that may be nearer to a neighbour of the master segment.
   pure subroutine project_ambiguous(contact, memory, block)
     type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-    type(projection_block_t), intent(inout) :: block
+    type(contact_state_t), intent(in) :: memory
+    type(point_block_t), intent(inout) :: block
     type(projection_t) :: projection
-    integer :: k, p
+    integer :: p
 
-    associate (points => memory%points, polyline => memory%positions(:, memory%n_slave + 1:))
-      call resolve_ambiguous(contact%master, polyline, block)
-      do k = 1, block%n
-        if (.not. block%ambiguous(k) > 0.0_wp) cycle
-        if (block%gap(k) >= 0.0_wp) then
-          if (stays_over(contact%master, polyline, block%t(:, k), block%d(:, k), &
-            block%segment(k))) cycle
+    associate (polyline => memory%positions(:, memory%n_slave + 1:))
+      call resolve_ambiguous(contact%master, polyline, block%projection_block_t)
+      do p = 1, block%n
+        if (.not. block%ambiguous(p) > 0.0_wp) cycle
+        if (block%gap(p) >= 0.0_wp) then
+          if (stays_over(contact%master, polyline, block%t(:, p), block%d(:, p), &
+            block%segment(p))) cycle
         end if
-        p = points%n - block%n + k
-        associate (ends => points%slave_nodes(:, p), weights => points%slave_weights(:, p))
-          projection = nearby_projection(contact%master, polyline, weights(1) &
-            *memory%positions(:, ends(1)) + weights(2)*memory%positions(:, ends(2)), &
-            block%segment(k))
+        associate (ends => block%ends(:, p), xi => block%at(p))
+          projection = nearby_projection(contact%master, polyline, (1.0_wp - xi) &
+            *memory%positions(:, ends(1)) + xi*memory%positions(:, ends(2)), block%segment(p))
         end associate
-        block%segment(k) = projection%segment
-        block%xi(k) = projection%xi
-        block%gap(k) = projection%gap
-        block%normal(:, k) = projection%normal
-        if (.not. projection%is_on) points%area(p) = 0.0_wp
+        block%nodes(:, p) = memory%n_slave + contact%master%segments(:, projection%segment)
+        block%xi(p) = projection%xi
+        block%gap(p) = projection%gap
+        block%normal(:, p) = projection%normal
+        if (.not. projection%is_on) block%area(p) = 0.0_wp
       end do
     end associate
   end subroutine project_ambiguous

@@ -3,60 +3,92 @@
 !> between the projections of the two ends of a slave segment, projected on that segment
 !> (doc/theory/contact.md, section 5.5).
 module points_nts_mar_m
-  use contact_state_m, only : contact_state_t, active
+  use contact_state_m, only : contact_state_t, contact_points_t
   use contacts_m, only : contact_t
   use projection_m, only : projection_t, vector_of, opposed_share, round_off
   use geometry_m, only : local_coordinates_t, coordinates_on_segment, local_gap, local_normal, &
     segment_length
   use kinds_m, only : wp
-  use overlap_m, only : overlap_t
   use overlap_status_m, only : none_due, search_segment, update_segment_states, note_earliest_search
-  use overlaps_m, only : find_overlaps, room_for_overlaps
+  use overlaps_m, only : overlap_t, find_overlaps, room_for_overlaps
   use point_list_m, only : add_point, append_active, finish_segment_points
   use surfaces_m, only : surface_t
   use tributary_lengths_m, only : nodal_area, end_radius, radius_between
   implicit none
   private
-  public :: points_nts_mar, is_sharp_vertex
+  public :: start_nts_mar, points_nts_mar, finish_nts_mar, is_sharp_vertex
 
 contains
 
-  !> Generate the points: slave nodes first; then, segment by segment, their areas and the master
-  !> nodes.
-  pure subroutine points_nts_mar(contact, memory)
+  !> The points at slave nodes, whose areas follow.
+  pure subroutine start_nts_mar(contact, memory, points)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(contact_points_t), intent(inout) :: points
+
+    call append_active(memory%slave_status, contact%master, [0, memory%n_slave], 0.0_wp, &
+      memory%slave_penalty, points)
+  end subroutine start_nts_mar
+
+  !> The points at master nodes of a range of slave segments. What a segment leaves to its ends is
+  !> in scratch%nodal, by number of the segment.
+  pure subroutine points_nts_mar(contact, memory, first, last, points, n_released)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: first, last
+    type(contact_points_t), intent(inout) :: points
+    integer, intent(inout) :: n_released !! first contacts deeper than the limit
     type(overlap_t), allocatable :: overlaps(:)
-    integer :: s, n, k
+    real(wp) :: of_ends(2)
+    integer :: s, n
     logical :: is_due
 
     if (none_due(memory)) return
-    allocate (overlaps(room_for_overlaps(memory)))
-    call append_active(memory%slave_status, contact%master, [0, memory%n_slave], 0.0_wp, &
-      memory%slave_penalty, memory%points)
-    n = memory%points%n
-    memory%scratch%nodal(1, :memory%n_slave) = 0.0_wp
-    do s = 1, contact%slave%n_segment
+    allocate (overlaps(room_for_overlaps(memory, first, last)))
+    n = points%n
+    do s = first, last
       call search_segment(contact, memory, s, is_due)
       memory%scratch%has_points(s) = is_due
-      if (is_due) call points_on_segment(contact, s, memory, overlaps)
+      of_ends = 0.0_wp
+      if (is_due) call points_on_segment(contact, memory, s, overlaps, of_ends, points)
+      memory%scratch%nodal(:, s) = of_ends
     end do
-    do k = 1, n
-      memory%points%area(k) = memory%scratch%nodal(1, memory%slave_status%active_points(k))
-    end do
-    call update_segment_states(contact, n, memory)
-    call note_earliest_search(memory)
-    call finish_segment_points(memory%positions, .false., n + 1, memory%points)
-    call finish_nodes(contact, memory, n)
+    call update_segment_states(contact, [first, last], n, memory, points, n_released)
+    call finish_segment_points(memory%positions, .false., n + 1, points)
   end subroutine points_nts_mar
+
+  !> Areas of the slave nodes, from the segments before and behind; nodes at a tip keep their whole
+  !> tributary length.
+  pure subroutine finish_nts_mar(contact, memory, points)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(contact_points_t), intent(inout) :: points
+    integer :: p
+
+    if (none_due(memory)) return
+    call note_earliest_search(memory)
+    do p = 1, memory%slave_status%n_active
+      associate (node => memory%slave_status%active_points(p), slave => contact%slave, &
+        of_ends => memory%scratch%nodal)
+        if (slave%incoming(node) > 0) points%area(p) = of_ends(2, slave%incoming(node))
+        if (slave%outgoing(node) > 0) points%area(p) = points%area(p) &
+          + of_ends(1, slave%outgoing(node))
+        if (points%area(p) > 0.0_wp) cycle
+        if (is_sharp_vertex(slave, memory, node)) points%area(p) = nodal_area(slave, &
+          memory%positions(:, :memory%n_slave), contact%is_round, node)
+      end associate
+    end do
+  end subroutine finish_nts_mar
 
   !> Divide a slave segment among its ends and the master nodes at its breakpoints: each has half of
   !> the overlap before it and half of the one behind it.
-  pure subroutine points_on_segment(contact, s, memory, overlaps)
+  pure subroutine points_on_segment(contact, memory, s, overlaps, of_ends, points)
     type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
-    type(contact_state_t), intent(inout) :: memory
     type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
+    real(wp), intent(inout) :: of_ends(2) !! areas of its ends, m
+    type(contact_points_t), intent(inout) :: points
     real(wp) :: halves(2), area, length
     integer :: ends(2), at(2), node, n, k, i
 
@@ -72,19 +104,17 @@ contains
       at = [overlaps(k)%first, overlaps(k)%last]
       do i = 1, 2
         if (at(i) == 0) then
-          associate (area_of_end => memory%scratch%nodal(1, ends(i)))
-            area_of_end = area_of_end + halves(i)
-          end associate
+          of_ends(i) = of_ends(i) + halves(i)
         else if (at(i) == node) then
           area = area + halves(i)
         else
-          call add_breakpoint(ends, node, area, memory)
+          call add_breakpoint(memory, ends, node, area, points)
           node = at(i)
           area = halves(i)
         end if
       end do
     end do
-    call add_breakpoint(ends, node, area, memory)
+    call add_breakpoint(memory, ends, node, area, points)
   end subroutine points_on_segment
 
   !> Half of an overlap, as far as it counts, for either of its ends, m; in axisymmetry weighted
@@ -107,11 +137,12 @@ contains
   end function halves_of
 
   !> Append a point at a master node with a gap that is closed.
-  pure subroutine add_breakpoint(ends, node, area, memory)
+  pure subroutine add_breakpoint(memory, ends, node, area, points)
+    type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2)     !! nodes of the slave segment
     integer, intent(in) :: node        !! of the master, 0: none
     real(wp), intent(in) :: area       !! m
-    type(contact_state_t), intent(inout) :: memory
+    type(contact_points_t), intent(inout) :: points
     type(local_coordinates_t) :: local
     type(projection_t) :: projection
 
@@ -120,26 +151,10 @@ contains
       local = coordinates_on_segment(positions(:, at), positions(:, ends(1)), positions(:, ends(2)))
       projection%gap = local_gap(local)
       projection%normal = -local_normal(local)
-      if (projection%gap < memory%closed_gap) call add_point(memory%points, ends, &
+      if (projection%gap < memory%closed_gap) call add_point(points, ends, &
         local%along/local%square, [at, at], projection, area, memory%slave_penalty)
     end associate
   end subroutine add_breakpoint
-
-  !> Nodes at a tip keep their whole tributary length.
-  pure subroutine finish_nodes(contact, memory, n)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: n !! points at slave nodes
-    integer :: p
-
-    do p = 1, n
-      if (memory%points%area(p) > 0.0_wp) cycle
-      associate (node => memory%points%slave_nodes(1, p))
-        if (is_sharp_vertex(contact%slave, memory, node)) memory%points%area(p) = nodal_area( &
-          contact%slave, memory%positions(:, :memory%n_slave), contact%is_round, node)
-      end associate
-    end do
-  end subroutine finish_nodes
 
   !> Whether none of the segments at an active slave node faces the master at its projection.
   pure function is_sharp_vertex(slave, memory, node)

@@ -5,7 +5,7 @@
 !> All sub-segments have the gap and the normal of the virtual node, so P2 holds for directions only
 !> in parallel: the net moment is not exactly zero on a kinked master.
 module points_vts_ppt_m
-  use contact_state_m, only : contact_state_t
+  use contact_state_m, only : contact_state_t, contact_points_t
   use contacts_m, only : contact_t
   use projection_m, only : projection_t, local_coordinates, is_over_segment, turns_gently, round_off
   use geometry_m, only : local_coordinates_t, segment_length, separation
@@ -26,24 +26,27 @@ module points_vts_ppt_m
 
 contains
 
-  !> Generate the points of all virtual nodes in contact.
-  pure subroutine points_vts_ppt(contact, memory)
+  !> Generate the points of a range of the virtual nodes in contact.
+  pure subroutine points_vts_ppt(contact, memory, first, last, points)
     type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: first, last
+    type(contact_points_t), intent(inout) :: points
     integer :: k
 
-    do k = 1, memory%slave_status%n_active
-      call add_sub_segments(contact, memory%slave_status%active_points(k), memory)
+    do k = first, last
+      call add_sub_segments(contact, memory, memory%slave_status%active_points(k), points)
     end do
   end subroutine points_vts_ppt
 
   !> The sub-segments of a virtual node, from the master segment below the later end of its half to
   !> that below the earlier one; they share the half by their lengths, in axisymmetry by their
   !> areas.
-  pure subroutine add_sub_segments(contact, virtual_node, memory)
+  pure subroutine add_sub_segments(contact, memory, virtual_node, points)
     type(contact_t), intent(in) :: contact
-    integer, intent(in) :: virtual_node !! virtual node
-    type(contact_state_t), intent(inout) :: memory
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: virtual_node
+    type(contact_points_t), intent(inout) :: points
     type(polyline_parameter_t) :: limits(2)
     type(projection_t) :: projection
     real(wp) :: a(4), b(4), at, xi, half
@@ -62,28 +65,26 @@ contains
     end if
     projection%gap = memory%slave_status%gap(virtual_node)
     projection%normal = memory%slave_status%normal(:, virtual_node)
-    first = memory%points%n + 1
+    first = points%n + 1
     segment = limits(1)%segment
     do i = limits(1)%n_step, limits(2)%n_step
       call add_sub_segment(contact, ends, xi, segment, [merge(limits(1)%xi, 0.0_wp, &
         i == limits(1)%n_step), merge(limits(2)%xi, 1.0_wp, i == limits(2)%n_step)], projection, &
-        memory)
+        memory, points)
       segment = contact%master%next(segment)
       ! Marks of displacements beyond all bounds need not lie on one surface.
       if (segment == 0) exit
     end do
-    associate (points => memory%points)
-      if (points%n < first) then
-        projection%xi = memory%slave_status%xi(virtual_node)
-        call add_point(points, ends, xi, memory%n_slave + contact%master%segments(:, &
-          memory%slave_status%segment(virtual_node)), projection, half, memory%slave_penalty)
-      else
-        half = half/sum(points%area(first:points%n))
-        do i = first, points%n
-          points%area(i) = half*points%area(i)
-        end do
-      end if
-    end associate
+    if (points%n < first) then
+      projection%xi = memory%slave_status%xi(virtual_node)
+      call add_point(points, ends, xi, memory%n_slave + contact%master%segments(:, &
+        memory%slave_status%segment(virtual_node)), projection, half, memory%slave_penalty)
+    else
+      half = half/sum(points%area(first:points%n))
+      do i = first, points%n
+        points%area(i) = half*points%area(i)
+      end do
+    end if
   end subroutine add_sub_segments
 
   !> Where both ends of the half of a virtual node are on the master: on the segment below the
@@ -157,14 +158,15 @@ contains
 
   !> Append a sub-segment of a half with its own length as area: it has the gap and the normal of
   !> the virtual node, and its position on the master is its centre, in axisymmetry by radius.
-  pure subroutine add_sub_segment(contact, ends, xi, segment, range, projection, memory)
+  pure subroutine add_sub_segment(contact, ends, xi, segment, range, projection, memory, points)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: ends(2)        !! nodes of the slave segment
     real(wp), intent(in) :: xi            !! position of the virtual node on that
     integer, intent(in) :: segment        !! of the master
     real(wp), intent(in) :: range(2)      !! of that
     type(projection_t), intent(inout) :: projection !! gap and normal
-    type(contact_state_t), intent(inout) :: memory
+    type(contact_state_t), intent(in) :: memory
+    type(contact_points_t), intent(inout) :: points
     real(wp) :: length
     integer :: nodes(2)
 
@@ -178,7 +180,7 @@ contains
         projection%xi = centroid(a, b, range(1), range(2))
       end if
     end associate
-    call add_point(memory%points, ends, xi, nodes, projection, length, memory%slave_penalty)
+    call add_point(points, ends, xi, nodes, projection, length, memory%slave_penalty)
   end subroutine add_sub_segment
 
   !> Ends of a half segment, the later one first: the slave runs against the master.

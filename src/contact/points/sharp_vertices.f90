@@ -3,7 +3,7 @@
 !> tip comes first, and its flanks, which are still open, would hold it off the sum. There the
 !> points of the segment give their areas to its two nodes (doc/theory/contact.md, section 5.7).
 module sharp_vertices_m
-  use contact_state_m, only : contact_state_t, active
+  use contact_state_m, only : contact_state_t, contact_points_t, active
   use contacts_m, only : contact_t, is_tied
   use projection_m, only : projection_t, nearby_projection
   use kinds_m, only : wp
@@ -28,24 +28,25 @@ contains
 
   !> Let the points of segments at tips of folds give their areas to their nodes: all points of a
   !> segment follow each other on the list.
-  pure subroutine weight_sharp_vertices(contact, memory)
+  pure subroutine weight_sharp_vertices(contact, memory, points)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
+    type(contact_points_t), intent(inout) :: points
     real(wp) :: part
     integer :: first, last, n
 
     call find_sharp_vertices(contact%slave, memory)
-    n = memory%points%n
+    n = points%n
     last = 0
     do while (last < n)
       first = last + 1
-      associate (ends => memory%points%slave_nodes)
+      associate (ends => points%slave_nodes)
         do last = first, n - 1
           if (any(ends(:, last + 1) /= ends(:, first))) exit
         end do
         part = maxval(memory%scratch%nodal(1, ends(:, first)))
       end associate
-      if (part > 0.0_wp) call shift_to_nodes(contact, first, last, part, memory)
+      if (part > 0.0_wp) call shift_to_nodes(contact, memory, first, last, part, points)
     end do
   end subroutine weight_sharp_vertices
 
@@ -117,30 +118,29 @@ contains
 
   !> Points at the nodes of a segment take a part of the areas of its points, as these weigh there,
   !> as far as the nodes have a projection.
-  pure subroutine shift_to_nodes(contact, first, last, part, memory)
+  pure subroutine shift_to_nodes(contact, memory, first, last, part, points)
     type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: first, last !! points of the segment
     real(wp), intent(in) :: part
-    type(contact_state_t), intent(inout) :: memory
+    type(contact_points_t), intent(inout) :: points
     type(projection_t) :: projections(2)
     real(wp) :: parts(2), content(2)
     integer :: ends(2), k, p
 
-    associate (points => memory%points)
-      ends = points%slave_nodes(:, first)
-      do k = 1, 2
-        projections(k) = end_projection(contact, memory, first, last, k)
-        parts(k) = 0.0_wp
-        if (projections(k)%is_on .and. .not. belongs_to(contact%master, ends(k), &
-          projections(k)%segment, projections(k)%xi)) parts(k) = part
-        content(k) = sum(points%slave_weights(k, first:last)*points%area(first:last))
-      end do
-      do p = first, last
-        points%area(p) = points%area(p)*(1.0_wp - dot_product(parts, points%slave_weights(:, p)))
-      end do
-    end associate
+    ends = points%slave_nodes(:, first)
     do k = 1, 2
-      if (parts(k) > 0.0_wp) call add_point(memory%points, ends, real(k - 1, wp), memory%n_slave &
+      projections(k) = end_projection(contact, memory, points, [first, last], k)
+      parts(k) = 0.0_wp
+      if (projections(k)%is_on .and. .not. belongs_to(contact%master, ends(k), &
+        projections(k)%segment, projections(k)%xi)) parts(k) = part
+      content(k) = sum(points%slave_weights(k, first:last)*points%area(first:last))
+    end do
+    do p = first, last
+      points%area(p) = points%area(p)*(1.0_wp - dot_product(parts, points%slave_weights(:, p)))
+    end do
+    do k = 1, 2
+      if (parts(k) > 0.0_wp) call add_point(points, ends, real(k - 1, wp), memory%n_slave &
         + contact%master%segments(:, projections(k)%segment), projections(k), &
         parts(k)*content(k), memory%slave_penalty)
     end do
@@ -148,24 +148,26 @@ contains
 
   !> Projection of the k-th end of a segment: that which is followed, or from the nearest of its
   !> points on.
-  pure function end_projection(contact, memory, first, last, k) result(projection)
+  pure function end_projection(contact, memory, points, range, k) result(projection)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: first, last, k
+    type(contact_points_t), intent(in) :: points
+    integer, intent(in) :: range(2) !! of the points of the segment
+    integer, intent(in) :: k
     type(projection_t) :: projection
     integer :: node, i, nearest
 
-    node = memory%points%slave_nodes(k, first)
+    node = points%slave_nodes(k, range(1))
     i = node
     ! The first and the last of the points that type 6 follows on a segment are its ends.
     if (memory%has%segment_points) i = merge(1, size(memory%segment_xi), k == 1) &
-      + size(memory%segment_xi)*(contact%slave%outgoing(memory%points%slave_nodes(1, first)) - 1)
+      + size(memory%segment_xi)*(contact%slave%outgoing(points%slave_nodes(1, range(1))) - 1)
     if (memory%slave_status%state(i) == active) then
       projection = known_projection(memory%slave_status, i)
     else
-      nearest = first - 1 + maxloc(memory%points%slave_weights(k, first:last), 1)
+      nearest = range(1) - 1 + maxloc(points%slave_weights(k, range(1):range(2)), 1)
       projection = nearby_projection(contact%master, memory%positions(:, memory%n_slave + 1:), &
-        memory%positions(:, node), contact%master%outgoing(memory%points%master_nodes(1, nearest) &
+        memory%positions(:, node), contact%master%outgoing(points%master_nodes(1, nearest) &
         - memory%n_slave))
       ! What has been let go stands behind the face.
       if (memory%has%segment_points) &

@@ -16,14 +16,18 @@ module candidates_m
   !> Skin: relative motion for which a list holds, as a part of the finer mean segment.
   real(wp), parameter :: skin_part = 0.5_wp
   !> Cosine between outward normals from which on segments look the same way (30 degrees). While a
-  !> list holds each of them turns by 30 degrees at most, and none comes to be opposed (96 degrees).
+  !> list holds a segment as long as the mean turns by 30 degrees at most, and none of two of these
+  !> comes to be opposed to the other (96 degrees).
   real(wp), parameter :: same_way = 0.866_wp
+  !> By how much two segments may turn together, rad, that nothing is known of but the skin.
+  real(wp), parameter :: most_turn = 1.1_wp
   !> Cells are numbered within this range; beyond it they share the outermost number.
   real(wp), parameter :: widest = 1.0e8_wp
 
   !> Segments sorted into square cells by hashing. Positions are relative to the first node.
   type :: cells_t
     real(wp) :: side                  !! of a cell, m
+    real(wp) :: skin                  !! m
     real(wp), allocatable :: t(:, :)  !! (2, n_segment) vector of each segment, m
     real(wp), allocatable :: low(:, :), high(:, :) !! (2, n_segment) corners of its box, m
     integer, allocatable :: first(:)  !! (n_bucket + 1) where each bucket starts, less 1 ...
@@ -80,7 +84,7 @@ contains
     box_distance = box_gap(memory%positions(:, :n), memory%positions(:, n + 1:))
     if (.not. restarts) memory%listed_until = memory%travel + max(skin, box_distance - radius)
     call list_pairs(contact, memory%positions, merge(radius + skin, -1.0_wp, box_distance &
-      <= radius + skin), memory%candidates)
+      <= radius + skin), skin, memory%candidates)
     if (memory%master_status%n > 0) &
       call reverse_pairs(contact%master%n_segment, memory%candidates, memory%reversed)
   end subroutine list_candidates
@@ -147,10 +151,11 @@ contains
 
   !> Fill the rows: for each slave segment the master segments whose boxes lie within a radius of
   !> its own, by rising number.
-  pure subroutine list_pairs(contact, positions, radius, candidates)
+  pure subroutine list_pairs(contact, positions, radius, skin, candidates)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_slave + n_master)
     real(wp), intent(in) :: radius                   !! m; below 0: no pair
+    real(wp), intent(in) :: skin                     !! m
     type(candidates_t), intent(inout) :: candidates
     type(cells_t) :: cells
     integer, allocatable :: listed_for(:)
@@ -161,6 +166,7 @@ contains
     n = size(contact%slave%nodes)
     allocate (listed_for(contact%master%n_segment), source=0)
     call fill_cells(contact%master, positions(:, n + 1:), radius, cells)
+    cells%skin = skin
     do s = 1, contact%slave%n_segment
       associate (ends => contact%slave%segments(:, s))
         call fill_row(contact, s, separation(positions(:, ends(1)), positions(:, n + 1)), &
@@ -314,7 +320,7 @@ contains
 
     if (max(cells%low(1, m) - box(3), cells%low(2, m) - box(4), box(1) - cells%high(1, m), &
       box(2) - cells%high(2, m)) > 0.0_wp) return
-    if (.not. is_candidate(contact, s, t, m, cells%t(:, m))) return
+    if (.not. is_candidate(contact, s, t, m, cells%t(:, m), cells%skin)) return
     n = candidates%first(s + 1) - 1
     if (n == size(candidates%items)) then
       allocate (longer(2*n), source=0)
@@ -333,21 +339,25 @@ contains
     candidates%first(s + 1) = n + 2
   end subroutine enter_pair
 
-  !> Whether a master segment may touch a slave segment: it does not look the same way, and it is
-  !> not part of the same side of the body, nor its back, and neither lies on the axis.
-  pure function is_candidate(contact, s, own, m, other) result(is)
+  !> Whether a master segment may touch a slave segment: it does not look the same way, unless they
+  !> are so short that they may turn, and it is not part of the same side of the body, nor its back,
+  !> and neither lies on the axis.
+  pure function is_candidate(contact, s, own, m, other, skin) result(is)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: s, m
     real(wp), intent(in) :: own(2), other(2) !! their vectors, m
+    real(wp), intent(in) :: skin
     logical :: is
-    real(wp) :: product
+    real(wp) :: product, lengths(2)
     integer :: own_first, own_last, first, last
 
     is = .false.
     if (is_axis_edge(contact%master, m) .or. is_axis_edge(contact%slave, s)) return
     product = own(1)*other(1) + own(2)*other(2)
     if (product > 0.0_wp) then
-      if (product**2 > same_way**2*((own(1)**2 + own(2)**2)*(other(1)**2 + other(2)**2))) return
+      lengths = [norm2(own), norm2(other)]
+      if (product > same_way*lengths(1)*lengths(2) .and. skin*(lengths(1) + lengths(2)) &
+        <= most_turn*lengths(1)*lengths(2)) return
     end if
     if (contact%slave%segment_element(s) == contact%master%segment_element(m)) return
     own_first = contact%slave%nodes(contact%slave%segments(1, s))

@@ -7,8 +7,7 @@ module assembly_m
   use contact_state_m, only : contact_state_t, n_side
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*)
-  use entry_offset_m, only : has_offsets
-  use interference_m, only : ramp_gaps
+  use spring_gaps_m, only : has_offsets, ramp_gaps
   use kinds_m, only : wp
   use law_friction_m, only : linearise_traction, goes_on
   use law_state_m, only : is_open, slips

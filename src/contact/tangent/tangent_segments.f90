@@ -13,13 +13,13 @@ module tangent_segments_m
   use linearisation_m, only : linearised_point_t, linearised_list_t, linearised_projection_t, &
     append_point, difference, length_between, project, project_point, cosine_between, share_of, &
     side_share_of, radius_at
-  use overlap_m, only : overlap_t
-  use overlaps_m, only : find_overlaps, n_most_overlaps, sides_part
+  use overlaps_m, only : overlap_t, find_overlaps, n_most_overlaps
   use points_nts_mar_m, only : is_sharp_vertex
   use points_mortar_m, only : gauss_xi, least_part
   use surfaces_m, only : surface_t
   use tangent_nts_m, only : linearise_node, linearise_length
   use sharp_vertices_m, only : has_folds
+  use slave_segments_m, only : sides_part
   implicit none
   private
   public :: linearise_overlap_ends, linearise_gauss_points

@@ -60,40 +60,25 @@ contains
     state%contacts%limit%coming_step = merge(state%dt, 0.0_wp, state%cycle > 0)
   end subroutine plan_sampling
 
-  !> After the forces of an interface: what its springs have made or lost, and a warning the first
-  !> time that this is much, or where forces are limited again and again.
+  !> After the forces of an interface: the balance of its springs where they were sampled, and a
+  !> warning the first time that they have made or lost much, or where forces are limited again and
+  !> again.
   subroutine check_springs(model, i, state, log)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
     type(state_t), intent(inout) :: state
     type(log_t), intent(inout) :: log
-    real(wp) :: change
     integer :: sign_of
 
-    associate (limit => state%contacts(i)%limit)
+    associate (contact => state%contacts(i), limit => state%contacts(i)%limit, &
+      monitor => state%contacts(i)%monitor)
       if (limit%recent >= again_and_again .and. .not. limit%warned) then
         limit%warned = .true.
-        call warn(log, 'interface '//to_text(model%contacts(i)%id)//': at cycle ' &
-          //to_text(state%cycle)//', time '//to_text(state%time)//', again and again' &
-          //limit_text(limit)//hint)
+        call warn(log, instant()//'again and again'//limit_text(limit)//hint)
       end if
-    end associate
-    associate (contact => state%contacts(i), monitor => state%contacts(i)%monitor)
       if (.not. monitor%has_sampled) return
-      ! What springs hold beyond what they were given is not returned (energy_limit).
-      monitor%stored = min(monitor%stored, max(0.0_wp, contact%energy + contact%limit%admissible))
-      change = contact%energy - monitor%stored - monitor%balance
-      monitor%balance = contact%energy - monitor%stored
-      ! What is loaded at time zero is what it stores.
+      call update_balance(model, i, state)
       if (state%cycle == 0) return
-      sign_of = merge(has_made, has_lost, change < 0.0_wp)
-      if (abs(change) > monitor%changes(sign_of)%amount) then
-        monitor%changes(sign_of)%amount = abs(change)
-        monitor%changes(sign_of)%time = state%time
-        monitor%changes(sign_of)%node = monitor%node
-        if (monitor%node > 0) monitor%changes(sign_of)%position = &
-          model%mesh%coordinates(:, monitor%node) + state%motion(1:2, monitor%node)
-      end if
       sign_of = merge(has_made, has_lost, monitor%balance < 0.0_wp)
       ! In the first cycles the springs hold energy whose work is not in the balance yet.
       if (monitor%changes(sign_of)%warned .or. abs(monitor%balance) <= &
@@ -103,12 +88,48 @@ contains
       ! Impacts of implicit springs are plastic; the end reports their loss.
       if (sign_of == has_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) return
       monitor%changes(sign_of)%warned = .true.
-      call warn(log, 'interface '//to_text(model%contacts(i)%id)//': at cycle ' &
-        //to_text(state%cycle)//', time '//to_text(state%time)//', the contact springs have ' &
+      call warn(log, instant()//'the contact springs have ' &
         //amount_text(model, i, sign_of, state)//hint//trim(merge(not_lost, repeat(' ', &
         len(not_lost)), sign_of == has_lost)))
     end associate
+
+  contains
+
+    !> The interface and the present cycle.
+    function instant() result(text)
+      character(:), allocatable :: text
+
+      text = 'interface '//to_text(model%contacts(i)%id)//': at cycle '//to_text(state%cycle) &
+        //', time '//to_text(state%time)//', '
+    end function instant
+
   end subroutine check_springs
+
+  !> The balance of sampled springs: energy of the interface minus what they store. The largest
+  !> change of either sign is kept with its place.
+  pure subroutine update_balance(model, i, state)
+    type(model_t), intent(in) :: model
+    integer, intent(in) :: i
+    type(state_t), intent(inout) :: state
+    real(wp) :: change
+
+    associate (contact => state%contacts(i), monitor => state%contacts(i)%monitor)
+      ! What springs hold beyond what they were given is not returned (energy_limit).
+      monitor%stored = min(monitor%stored, max(0.0_wp, contact%energy + contact%limit%admissible))
+      change = contact%energy - monitor%stored - monitor%balance
+      monitor%balance = contact%energy - monitor%stored
+      ! What is loaded at time zero is what it stores.
+      if (state%cycle == 0) return
+      associate (largest => monitor%changes(merge(has_made, has_lost, change < 0.0_wp)))
+        if (abs(change) <= largest%amount) return
+        largest%amount = abs(change)
+        largest%time = state%time
+        largest%node = monitor%node
+        if (monitor%node > 0) largest%position = model%mesh%coordinates(:, monitor%node) &
+          + state%motion(1:2, monitor%node)
+      end associate
+    end associate
+  end subroutine update_balance
 
   !> How often forces were limited, and by how much.
   function limit_text(limit) result(text)

@@ -6,12 +6,12 @@
 module implicit_m
   use clock_m, only : lap, phase_nodes, phase_output
   use contact_check_m, only : report_contact_end
-  use contact_springs_m, only : measure_springs
+  use contact_law_m, only : measure_springs
   use contact_work_m, only : count_step
   use contacts_m, only : breaks
   use controls_m, only : boundary_motion, group_nodes
   use cut_forces_m, only : keep_cut_chunks
-  use entry_offset_m, only : has_offsets, update_offsets
+  use spring_gaps_m, only : has_offsets, update_offsets
   use element_mass_m, only : mass_times, sum_part_motion
   use element_state_m, only : add_part_energies
   use equations_m, only : number_equations, prescribe_step, equations_t

@@ -7,7 +7,7 @@ module implicit_start_m
   use clock_m, only : lap, phase_solver
   use contact_check_m, only : report_contact_start
   use contact_step_limit_m, only : contact_ratios
-  use contact_springs_m, only : measure_springs
+  use contact_law_m, only : measure_springs
   use contact_state_m, only : contact_state_t
   use controls_m, only : controls_t
   use cut_forces_m, only : keep_cut_chunks

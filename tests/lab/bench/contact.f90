@@ -5,14 +5,15 @@
 !> `match` and `shift`: two meshes of the same size that move by 1e-6 of a segment, their nodes 1e-7 off their places:
 !> nodes opposite nodes, and opposite a place between two. `exact`: as `match`, to round-off and at rest.
 !> `slide` and `stick`: `flat` and `shift` with friction, of which all places slip and stick.
-!> usage: bench_contact [SLAVE_NODES [TYPE, 0 for all [STEPS [SCENE]]]]. Prints a row per scene, size
-!> and type: the best and the median of interleaved rounds, ns per step, slave node and point.
+!> usage: bench_contact [SLAVE_NODES [TYPE, 0 for all [STEPS [SCENE, '' for all [THREADS]]]]]. Prints a row per scene,
+!> size and type: the best and the median of interleaved rounds, ns per step, slave node and point; of this process, or
+!> with THREADS on the wall.
 program bench_contact
   use, intrinsic :: iso_fortran_env, only : output_unit
   use contact_dispatch_m, only : contact_kinds
   use contact_factories_m, only : problem_t, make_problem, line
   use interface_m, only : start_contact, apply_contact
-  use kinds_m, only : wp
+  use kinds_m, only : wp, long
   implicit none
 
   integer, parameter :: n_type = size(contact_kinds), n_round = 5, sizes(3) = [20, 1000, 100000]
@@ -25,6 +26,7 @@ program bench_contact
   !> Part of it in the scenes of meshes of the same size, and how far their nodes are off their places.
   real(wp), parameter :: creep = 1.0e-6_wp, off_place = 1.0e-7_wp
   integer :: i_scene, i_size, chosen(3) !! slave nodes, type and steps of a round asked for, 0: all
+  integer :: n_thread !! 0: one, whose own time counts
   character(20) :: argument
 
   chosen = 0
@@ -32,6 +34,11 @@ program bench_contact
     call get_command_argument(i_size, argument)
     read (argument, *) chosen(i_size)
   end do
+  n_thread = 0
+  if (command_argument_count() > size(chosen) + 1) then
+    call get_command_argument(size(chosen) + 2, argument)
+    read (argument, *) n_thread
+  end if
   argument = ''
   if (command_argument_count() > size(chosen)) call get_command_argument(size(chosen) + 1, argument)
   write (output_unit, '(a)') 'scene,slave_nodes,type,points,active,ns_step,ns_step_median,' &
@@ -131,8 +138,27 @@ contains
     end do
   end subroutine move_nodes
 
-  !> Mean time of a step, ns of this process (the machine may be shared). Moving the slave is not counted.
+  !> Mean time of a step, ns. Moving the slave is not counted. As in a run, one thread steps while the others wait, and
+  !> help, at the barrier that ends the region.
   subroutine take_steps(scene, problem, n_step, time)
+    character(*), intent(in) :: scene
+    type(problem_t), intent(inout) :: problem
+    integer, intent(in) :: n_step
+    real(wp), intent(out) :: time
+
+    if (n_thread < 2) then
+      call time_steps(scene, problem, n_step, time)
+    else
+      !$omp parallel num_threads(n_thread) default(none) shared(scene, problem, n_step, time)
+      !$omp master
+      call time_steps(scene, problem, n_step, time)
+      !$omp end master
+      !$omp end parallel
+    end if
+  end subroutine take_steps
+
+  !> The same, by one thread.
+  subroutine time_steps(scene, problem, n_step, time)
     character(*), intent(in) :: scene
     type(problem_t), intent(inout) :: problem
     integer, intent(in) :: n_step
@@ -140,20 +166,31 @@ contains
     real(wp) :: start, middle, finish
     integer :: i
 
-    call cpu_time(start)
+    start = now()
     do i = 1, n_step
       call move_slave(scene, problem)
       call apply_contact(problem%contact, problem%motion, problem%mass, 1.0e-9_wp*problem%cycle, 1.0e-9_wp, &
         problem%cycle, problem%clock, problem%memory, problem%force)
     end do
-    call cpu_time(middle)
+    middle = now()
     do i = 1, n_step
       call move_slave(scene, problem)
     end do
-    call cpu_time(finish)
+    finish = now()
     problem%cycle = problem%cycle - n_step
     time = 1.0e9_wp*((middle - start) - (finish - middle))/n_step
-  end subroutine take_steps
+  end subroutine time_steps
+
+  !> Seconds of this process (the machine may be shared), or on the wall.
+  function now() result(seconds)
+    real(wp) :: seconds
+    integer(long) :: tick, rate
+
+    call cpu_time(seconds)
+    if (n_thread == 0) return
+    call system_clock(tick, rate)
+    seconds = real(tick, wp)/real(rate, wp)
+  end function now
 
   !> To and fro over two segments.
   subroutine move_slave(scene, problem)

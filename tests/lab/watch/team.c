@@ -3,11 +3,13 @@
  *
  * The thread sanitiser knows what a POSIX barrier orders and nothing of what libgomp does inside, so with
  * libgomp it takes every barrier for a race. Linked into the program, these procedures stand before those of
- * libgomp. Regions, barriers, `!$omp master` and loops of a static schedule need no more. Whatever else the
+ * libgomp. Regions, barriers, `!$omp master`, loops of a static schedule and `taskloop` need no more: the tasks of a loop
+ * run on threads of their own, as many as the team has. Whatever else the
  * program may come to use would be taken from libgomp, for which a thread of such a team is alone.
  */
 #include <pthread.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { most = 64 };
 
@@ -55,3 +57,35 @@ void GOMP_barrier(void) {
 
 int omp_get_thread_num(void) { return me.number; }
 int omp_get_num_threads(void) { return me.team ? me.team->size : 1; }
+
+typedef struct {
+  void (*work)(void *);
+  long *data; /* first and end of its part of the loop, then what it shares */
+} task_t;
+
+static void *run_task(void *task) {
+  ((task_t *)task)->work(((task_t *)task)->data);
+  return NULL;
+}
+
+void GOMP_taskloop(void (*work)(void *), void *data, void (*copy)(void *, void *), long size, long align, unsigned flags,
+                   unsigned long n_task, int priority, long start, long end, long step) {
+  pthread_t threads[most];
+  task_t tasks[most];
+  long n = (end - start + step - 1) / step, n_part = omp_get_num_threads(), i;
+  (void)align, (void)flags, (void)n_task, (void)priority;
+  if (copy) abort();
+  if (n < n_part) n_part = n;
+  for (i = 0; i < n_part; i++) {
+    tasks[i] = (task_t){work, malloc((size_t)size)};
+    if (!tasks[i].data) abort();
+    memcpy(tasks[i].data, data, (size_t)size);
+    tasks[i].data[0] = start + step * (n * i / n_part);
+    tasks[i].data[1] = start + step * (n * (i + 1) / n_part);
+    if (pthread_create(&threads[i], NULL, run_task, &tasks[i])) abort();
+  }
+  for (i = 0; i < n_part; i++) {
+    pthread_join(threads[i], NULL);
+    free(tasks[i].data);
+  }
+}

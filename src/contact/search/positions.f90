@@ -1,23 +1,88 @@
 ! SPDX-License-Identifier: MIT
-!> Where the followed points of the slave side are: at its nodes, or at fixed positions of every
-!> segment. Points of segments move with the segment's nodes; point number (segment - 1)*(points per
-!> segment) + position.
-module points_on_segments_m
+!> Positions of an interface in each step: of its nodes, with a bound on their relative motion; of
+!> points at fixed positions of every slave segment, which move with the segment's nodes (point
+!> number (segment - 1)*(points per segment) + position); and gaps below which points are contact
+!> although they are not penetrated: touching bodies at the first tangent of an implicit step, and
+!> what may touch before the step ahead ends (doc/theory/contact.md, sections 6.6 and 9.6).
+module positions_m
+  use candidates_m, only : mean_length
   use contact_state_m, only : contact_state_t
+  use contacts_m, only : contact_t
   use geometry_m, only : segment_length
   use kinds_m, only : wp
   use quadrature_m, only : gauss_rule
+  use ranges_m, only : n_ranges, first_of, last_of
   use surfaces_m, only : surface_t
   use tributary_lengths_m, only : centroid
   implicit none
   private
-  public :: points_at_nodes, points_at_quarters, points_at_gauss_points, start_segment_points, &
-    move_segment_points
+  public :: gather_positions, points_at_nodes, points_at_quarters, points_at_gauss_points, &
+    start_segment_points, move_segment_points, closed_gap_of, gap_ahead
 
   !> Rules for the positions of points.
   integer, parameter :: points_at_nodes = 0, points_at_quarters = 1, points_at_gauss_points = 2
+  !> Gaps smaller than this part of the mean slave segment are closed.
+  real(wp), parameter :: closed_part = 1.0e-8_wp
+  !> Largest gap that counts for the step ahead, as a part of the mean slave segment: a node moves
+  !> by less in a stable step.
+  real(wp), parameter :: most_ahead = 0.5_wp
+  !> Least: a strain of that much in one step.
+  real(wp), parameter :: least_ahead = 0.02_wp
+  !> Times what nodes have moved in the last step is added to that.
+  real(wp), parameter :: ahead_factor = 2.0_wp
 
 contains
+
+  !> Copy the present displacements into the memory, and what each node has moved, and let its
+  !> travel grow by a bound on how far any two nodes have moved relative to each other since the
+  !> last call.
+  subroutine gather_positions(motion, memory)
+    real(wp), intent(in), contiguous :: motion(:, :)
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: boxes(4, n_ranges(size(memory%nodes)))
+    integer :: i, n
+
+    n = size(memory%nodes)
+    if (n_ranges(n) == 1) then
+      call gather_range(1, n, memory%nodes, motion, memory%positions, memory%scratch%increment, &
+        boxes(:, 1))
+    else
+      !$omp taskloop default(shared)
+      do i = 1, n_ranges(n)
+        call gather_range(first_of(i, n), last_of(i, n), memory%nodes, motion, memory%positions, &
+          memory%scratch%increment, boxes(:, i))
+      end do
+      !$omp end taskloop
+    end if
+    memory%advance = sqrt((maxval(boxes(3, :)) - minval(boxes(1, :)))**2 &
+      + (maxval(boxes(4, :)) - minval(boxes(2, :)))**2)
+    memory%travel = memory%travel + memory%advance
+    ! That of a pause is not that of a step.
+    if (memory%is_stale) memory%advance = 0.0_wp
+  end subroutine gather_positions
+
+  !> Copy u of a range of nodes; what it has changed by, and the box of these changes: the diagonal
+  !> of that of all nodes bounds the relative motion.
+  pure subroutine gather_range(first, last, nodes, motion, positions, changes, box)
+    integer, intent(in) :: first, last, nodes(*)
+    real(wp), intent(in) :: motion(4, *)
+    real(wp), intent(inout) :: positions(4, *), changes(2, *) !! m
+    real(wp), intent(out) :: box(4) !! low x, low y, high x, high y, m
+    real(wp), dimension(2) :: low, high, change
+    integer :: i
+
+    low = huge(1.0_wp)
+    high = -huge(1.0_wp)
+    !GCC$ NOVECTOR
+    do i = first, last
+      change = motion(1:2, nodes(i)) - positions(3:4, i)
+      positions(3:4, i) = motion(1:2, nodes(i))
+      changes(:, i) = change
+      low = merge(change, low, change < low)
+      high = merge(change, high, change > high)
+    end do
+    box = [low, high]
+  end subroutine gather_range
 
   !> Positions on each segment and the part of its length that each stands for; nothing is allocated
   !> for points at nodes, which are in `memory%positions` already.
@@ -74,7 +139,7 @@ contains
     real(wp) :: slid
 
     if (segment_spread > 0.0_wp) then
-      call lean_on_segments(slave, positions, segment_xi, segment_spread, segment_points, slid)
+      call move_by_radius(slave, positions, segment_xi, segment_spread, segment_points, slid)
       if (present(travel)) travel = travel + slid
     else
       call move_on_segments(slave%n_segment, slave%segments, size(segment_xi), segment_xi, &
@@ -83,7 +148,7 @@ contains
   end subroutine move_segment_points
 
   !> Put the points at the centres by radius of their parts of the segments.
-  pure subroutine lean_on_segments(slave, positions, segment_xi, segment_spread, segment_points, &
+  pure subroutine move_by_radius(slave, positions, segment_xi, segment_spread, segment_points, &
     slid)
     type(surface_t), intent(in) :: slave
     real(wp), intent(in), contiguous :: positions(:, :), segment_xi(:)
@@ -108,7 +173,7 @@ contains
         end do
       end associate
     end do
-  end subroutine lean_on_segments
+  end subroutine move_by_radius
 
   !> The same on arrays of known shape. Both components of a point are formed together: vectors over
   !> the few points of a segment take 2 to 4 % more of the contact of type 4.
@@ -133,4 +198,25 @@ contains
     end do
   end subroutine move_on_segments
 
-end module points_on_segments_m
+  !> The gap of an interface below which bodies touch, m.
+  pure function closed_gap_of(contact, memory) result(gap)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    real(wp) :: gap
+
+    gap = closed_part*mean_length(contact%slave, memory%positions(:, :memory%n_slave))
+  end function closed_gap_of
+
+  !> The gap that may close in the step ahead, m.
+  pure function gap_ahead(contact, is_first, memory) result(gap)
+    type(contact_t), intent(in) :: contact
+    logical, intent(in) :: is_first !! nothing is known of a step before
+    type(contact_state_t), intent(in) :: memory
+    real(wp) :: gap, segment
+
+    segment = mean_length(contact%slave, memory%positions(:, :memory%n_slave))
+    gap = most_ahead*segment
+    if (.not. is_first) gap = min(gap, least_ahead*segment + ahead_factor*memory%advance)
+  end function gap_ahead
+
+end module positions_m
