@@ -4,11 +4,16 @@
 module overlap_status_m
   use contact_state_m, only : contact_state_t, contact_points_t, separated, active
   use contacts_m, only : contact_t
-  use geometry_m, only : local_coordinates_t, coordinates_on_segment, closest_distance
+  use geometry_m, only : local_coordinates_t, coordinates_on_segment, closest_distance, separation
   use kinds_m, only : wp
+  use projection_m, only : side_on
   implicit none
   private
   public :: none_due, search_segment, update_segment_states, note_earliest_search
+
+  !> Motion by which two segments turn by a small angle together, as a part of that angle times the
+  !> product of their lengths over the sum; a little less, as they may get shorter.
+  real(wp), parameter :: way_of_turn = 0.9_wp
 
 contains
 
@@ -42,40 +47,66 @@ contains
     memory%segment_gap(segment) = distance
   end subroutine search_segment
 
-  !> Distance from a slave segment to its candidates, m, and whether it lies behind the line of one
-  !> of them, or that behind its own, in part: two segments that do not cross are nearest to each
-  !> other at a node of one of them.
+  !> Relative motion before which a slave segment can not touch a candidate, m, and whether it lies
+  !> behind the line of one that is opposed to it, or that behind its own, in part. Two segments
+  !> that do not cross are nearest to each other at a node of one of them; those that are not
+  !> opposed have to turn first.
   pure subroutine search_row(contact, memory, s, distance, is_behind)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s
     real(wp), intent(out) :: distance
     logical, intent(out) :: is_behind
-    type(local_coordinates_t) :: nodes(4) !! of the slave segment from the other, and reversed
-    real(wp) :: least
-    integer :: j, i
+    real(wp) :: own(2), other(2), squares(2), product, lengths(2), turn, least, square, across(4)
+    integer :: nodes(2), j
 
     least = memory%slave_status%reach**2
     is_behind = .false.
-    do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
-      associate (own => contact%slave%segments(:, s), positions => memory%positions, &
-        other => memory%n_slave + contact%master%segments(:, memory%candidates%items(j)))
-        do i = 1, 2
-          nodes(i) = coordinates_on_segment(positions(:, own(i)), positions(:, other(1)), &
-            positions(:, other(2)))
-          nodes(2 + i) = coordinates_on_segment(positions(:, other(i)), positions(:, own(1)), &
-            positions(:, own(2)))
-        end do
-      end associate
-      do i = 1, 4
-        least = min(least, closest_distance(nodes(i)))
+    associate (positions => memory%positions, ends => contact%slave%segments(:, s))
+      own = separation(positions(:, ends(2)), positions(:, ends(1)))
+      squares(1) = max(own(1)**2 + own(2)**2, tiny(1.0_wp))
+      do j = memory%candidates%first(s), memory%candidates%first(s + 1) - 1
+        nodes = memory%n_slave + contact%master%segments(:, memory%candidates%items(j))
+        other = separation(positions(:, nodes(2)), positions(:, nodes(1)))
+        squares(2) = max(other(1)**2 + other(2)**2, tiny(1.0_wp))
+        product = own(1)*other(1) + own(2)*other(2)
+        turn = 0.0_wp
+        if (product >= 0.0_wp .or. product**2 < side_on**2*squares(1)*squares(2)) then
+          lengths = sqrt(squares)
+          turn = way_of_turn*(product - side_on*lengths(1)*lengths(2))/sum(lengths)
+          if (turn**2 >= least) cycle
+        end if
+        call see_pair(positions, ends, nodes, square, across)
+        if (max(across(1)*across(2), across(3)*across(4)) <= 0.0_wp) square = 0.0_wp
+        least = min(least, max(square, turn**2))
+        if (.not. turn > 0.0_wp) is_behind = is_behind .or. minval(across) < 0.0_wp
       end do
-      is_behind = is_behind .or. minval(nodes%across) < 0.0_wp
-      if (max(nodes(1)%across*nodes(2)%across, nodes(3)%across*nodes(4)%across) <= 0.0_wp) &
-        least = 0.0_wp
-    end do
+    end associate
     distance = sqrt(least)
   end subroutine search_row
+
+  !> Square of the smallest distance of a node of two segments from the other one, m^2, and gaps
+  !> times lengths of the nodes.
+  pure subroutine see_pair(positions, one, other, square, across)
+    real(wp), intent(in) :: positions(4, *)   !! of the interface
+    integer, intent(in) :: one(2), other(2)   !! nodes of the segments
+    real(wp), intent(out) :: square, across(4)
+    type(local_coordinates_t) :: node
+    integer :: i
+
+    square = huge(1.0_wp)
+    do i = 1, 4
+      if (i < 3) then
+        node = coordinates_on_segment(positions(:, one(i)), positions(:, other(1)), &
+          positions(:, other(2)))
+      else
+        node = coordinates_on_segment(positions(:, other(i - 2)), positions(:, one(1)), &
+          positions(:, one(2)))
+      end if
+      square = min(square, closest_distance(node))
+      across(i) = node%across
+    end do
+  end subroutine see_pair
 
   !> Bring the status of the segments that were due up to date by their points, which follow each
   !> other on the list; those that do not count have no area. Points of a segment neither of whose

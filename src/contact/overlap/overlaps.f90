@@ -9,8 +9,8 @@ module overlaps_m
   use contacts_m, only : contact_t
   use kinds_m, only : wp
   use projection_m, only : face_on, opposed_share, vector_of, turns_gently, round_off
-  use slave_segments_m, only : slave_segment_t, projected_node_t, start_segment, projected_node, &
-    is_opposed_to_contact, sides_part, near_node
+  use slave_segments_m, only : slave_segment_t, start_segment, is_opposed_to_contact, sides_part, &
+    near_node
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -33,6 +33,13 @@ module overlaps_m
     real(wp) :: share        !! how much of it counts: 0 where the segments are not opposed
     real(wp) :: part         !! how much of it the sides at vertices leave; in `share` too
   end type overlap_t
+
+  !> A master node on a slave segment. Without default values, too.
+  type :: projected_node_t
+    integer :: number
+    real(wp) :: d(2) !! from the first end of the slave segment, m
+    real(wp) :: xi   !! on the slave segment
+  end type projected_node_t
 
 contains
 
@@ -120,7 +127,8 @@ contains
   end subroutine list_between
 
   !> Clip the listed master segments and keep those that have an overlap; candidates only where they
-  !> may touch. A node in common to two that follow each other is projected once.
+  !> may touch. A node in common to two that follow each other is projected once. Between two active
+  !> ends there are none where the surface folds.
   pure subroutine clip_masters(contact, memory, own, is_between, overlaps, n)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -129,14 +137,14 @@ contains
     type(overlap_t), intent(inout) :: overlaps(:)
     integer, intent(inout) :: n
     type(projected_node_t) :: from, to
-    type(overlap_t) :: overlap
+    type(overlap_t) :: new
     integer :: masters(n), k
 
     masters = overlaps(:n)%master
     n = 0
     to%number = 0
     do k = 1, size(masters)
-      associate (nodes => contact%master%segments(:, masters(k)))
+      associate (nodes => contact%master%segments(:, masters(k)), overlap => overlaps(n + 1))
         from = to
         if (from%number /= nodes(2)) from = projected_node(nodes(2), memory%n_slave, own, &
           memory%positions)
@@ -144,15 +152,49 @@ contains
         overlap%master = masters(k)
         call clip(contact%master, own, from, to, overlap)
         if (.not. overlap%high > overlap%low) cycle
-        overlap%gap = gaps_at_ends(own, from, to)
         if (.not. is_between) then
+          overlap%gap = gaps_at_ends(own, from, to)
           if (is_beyond(contact%master, memory, own, from, to, overlap%master)) cycle
           if (is_far_side(contact, memory, own, overlap)) cycle
         end if
       end associate
-      call insert_overlap(overlap, overlaps, n)
+      n = n + 1
+      if (n == 1) cycle
+      if (overlaps(n - 1)%high <= overlaps(n)%low) cycle
+      n = n - 1
+      if (.not. is_between) then
+        new = overlaps(n + 1)
+        call insert_overlap(new, overlaps, n)
+      else
+        n = 0
+        return
+      end if
     end do
   end subroutine clip_masters
+
+  !> A master node on a slave segment.
+  pure function projected_node(node, n_slave, own, positions) result(projected)
+    integer, intent(in) :: node          !! of the master
+    integer, intent(in) :: n_slave       !! local number before the first of these
+    type(slave_segment_t), intent(in) :: own
+    real(wp), intent(in) :: positions(4, *) !! of the interface
+    type(projected_node_t) :: projected
+
+    projected%number = node
+    projected%d = way_to(n_slave + node, own, positions)
+    projected%xi = (projected%d(1)*own%t(1) + projected%d(2)*own%t(2))/own%square
+  end function projected_node
+
+  !> Vector from the first end of a slave segment to a node, m.
+  pure function way_to(node, own, positions) result(d)
+    integer, intent(in) :: node          !! local number
+    type(slave_segment_t), intent(in) :: own
+    real(wp), intent(in) :: positions(4, *) !! of the interface
+    real(wp) :: d(2)
+
+    d(1) = (positions(1, node) - own%start(1)) + (positions(3, node) - own%start(3))
+    d(2) = (positions(2, node) - own%start(2)) + (positions(4, node) - own%start(4))
+  end function way_to
 
   !> The overlap with one master segment; empty where they are not opposed.
   pure subroutine clip(master, own, from, to, overlap)

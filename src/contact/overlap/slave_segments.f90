@@ -1,19 +1,19 @@
 ! SPDX-License-Identifier: MIT
-!> A slave segment over its candidates: the master segments below its ends, the closest one, master
-!> nodes projected on it; and how much of the side next to a convex vertex of a closed boundary
-!> counts (doc/theory/contact.md, section 3.5).
+!> A slave segment over its candidates: the master segments below its ends, the closest one; and how
+!> much of the side next to a convex vertex of a closed boundary counts (doc/theory/contact.md,
+!> section 3.5).
 module slave_segments_m
   use contact_state_m, only : contact_state_t, active
   use contacts_m, only : contact_t
-  use geometry_m, only : local_coordinates_t, closest_distance
+  use geometry_m, only : local_coordinates_t, closest_distance, separation
   use kinds_m, only : wp
   use projection_m, only : projection_t, closest_projection, side_on, side_share, gentle_vertex, &
     slave_side, master_side, local_coordinates, vector_of, turns_gently
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: slave_segment_t, projected_node_t, start_segment, projected_node, closest_candidate, &
-    is_opposed_to_contact, sides_part, near_node
+  public :: slave_segment_t, start_segment, closest_candidate, is_opposed_to_contact, sides_part, &
+    near_node
 
   !> Part of a segment within which a projection is on its node.
   real(wp), parameter :: near_node = 1.0e-9_wp
@@ -29,13 +29,6 @@ module slave_segments_m
     real(wp) :: t(2)         !! its vector, m
     real(wp) :: square       !! of its length, m^2
   end type slave_segment_t
-
-  !> A master node on a slave segment. Without default values, too.
-  type :: projected_node_t
-    integer :: number
-    real(wp) :: d(2) !! from the first end of the slave segment, m
-    real(wp) :: xi   !! on the slave segment
-  end type projected_node_t
 
 contains
 
@@ -53,36 +46,12 @@ contains
     own%is_active = memory%slave_status%state(own%ends) == active
     own%margins = merge(least_part, 0.0_wp, own%is_active)
     own%start = memory%positions(:, own%ends(1))
-    own%t = way_to(own%ends(2), own, memory%positions)
+    own%t = separation(memory%positions(:, own%ends(2)), own%start)
     own%square = max(own%t(1)**2 + own%t(2)**2, tiny(1.0_wp))
     do k = 1, 2
       own%below(k) = segment_below(contact, memory, own, k)
     end do
   end subroutine start_segment
-
-  !> A master node on a slave segment.
-  pure function projected_node(node, n_slave, own, positions) result(projected)
-    integer, intent(in) :: node          !! of the master
-    integer, intent(in) :: n_slave       !! local number before the first of these
-    type(slave_segment_t), intent(in) :: own
-    real(wp), intent(in) :: positions(4, *) !! of the interface
-    type(projected_node_t) :: projected
-
-    projected%number = node
-    projected%d = way_to(n_slave + node, own, positions)
-    projected%xi = (projected%d(1)*own%t(1) + projected%d(2)*own%t(2))/own%square
-  end function projected_node
-
-  !> Vector from the first end of a slave segment to a node, m.
-  pure function way_to(node, own, positions) result(d)
-    integer, intent(in) :: node          !! local number
-    type(slave_segment_t), intent(in) :: own
-    real(wp), intent(in) :: positions(4, *) !! of the interface
-    real(wp) :: d(2)
-
-    d(1) = (positions(1, node) - own%start(1)) + (positions(3, node) - own%start(3))
-    d(2) = (positions(2, node) - own%start(2)) + (positions(4, node) - own%start(4))
-  end function way_to
 
   !> Master segment on which the k-th end of a slave segment has its projection: of an active end
   !> that of its status, else the closest of the candidates if it is over that; 0: none. Of two that
