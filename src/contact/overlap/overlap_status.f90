@@ -4,7 +4,7 @@
 module overlap_status_m
   use contact_state_m, only : contact_state_t, contact_points_t, separated, active
   use contacts_m, only : contact_t
-  use geometry_m, only : local_coordinates_t, coordinates_on_segment, closest_distance, separation
+  use geometry_m, only : separation
   use kinds_m, only : wp
   use projection_m, only : side_on
   implicit none
@@ -57,7 +57,8 @@ contains
     integer, intent(in) :: s
     real(wp), intent(out) :: distance
     logical, intent(out) :: is_behind
-    real(wp) :: own(2), other(2), squares(2), product, lengths(2), turn, least, square, across(4)
+    real(wp) :: own(2), other(2), a(2), squares(2), lengths(2), across(4)
+    real(wp) :: product, turn, least, square
     integer :: nodes(2), j
 
     least = memory%slave_status%reach**2
@@ -76,7 +77,12 @@ contains
           turn = way_of_turn*(product - side_on*lengths(1)*lengths(2))/sum(lengths)
           if (turn**2 >= least) cycle
         end if
-        call see_pair(positions, ends, nodes, square, across)
+        square = huge(1.0_wp)
+        a = separation(positions(:, ends(1)), positions(:, nodes(1)))
+        call see_node(a, other, squares(2), square, across(1))
+        call see_node(a + own, other, squares(2), square, across(2))
+        call see_node(-a, own, squares(1), square, across(3))
+        call see_node(other - a, own, squares(1), square, across(4))
         if (max(across(1)*across(2), across(3)*across(4)) <= 0.0_wp) square = 0.0_wp
         least = min(least, max(square, turn**2))
         if (.not. turn > 0.0_wp) is_behind = is_behind .or. minval(across) < 0.0_wp
@@ -85,28 +91,24 @@ contains
     distance = sqrt(least)
   end subroutine search_row
 
-  !> Square of the smallest distance of a node of two segments from the other one, m^2, and gaps
-  !> times lengths of the nodes.
-  pure subroutine see_pair(positions, one, other, square, across)
-    real(wp), intent(in) :: positions(4, *)   !! of the interface
-    integer, intent(in) :: one(2), other(2)   !! nodes of the segments
-    real(wp), intent(out) :: square, across(4)
-    type(local_coordinates_t) :: node
-    integer :: i
+  !> A node of one segment seen from another one: which side it is on, and its distance to that.
+  pure subroutine see_node(d, t, square, least, across)
+    real(wp), intent(in) :: d(2), t(2) !! from the first node of the segment, and its vector, m
+    real(wp), intent(in) :: square     !! of its length, m^2
+    real(wp), intent(inout) :: least   !! square of the smallest distance so far, m^2
+    real(wp), intent(out) :: across    !! gap times length
+    real(wp) :: along
 
-    square = huge(1.0_wp)
-    do i = 1, 4
-      if (i < 3) then
-        node = coordinates_on_segment(positions(:, one(i)), positions(:, other(1)), &
-          positions(:, other(2)))
-      else
-        node = coordinates_on_segment(positions(:, other(i - 2)), positions(:, one(1)), &
-          positions(:, one(2)))
-      end if
-      square = min(square, closest_distance(node))
-      across(i) = node%across
-    end do
-  end subroutine see_pair
+    along = d(1)*t(1) + d(2)*t(2)
+    across = d(1)*t(2) - d(2)*t(1)
+    if (along < 0.0_wp) then
+      least = min(least, d(1)**2 + d(2)**2)
+    else if (along > square) then
+      least = min(least, (d(1) - t(1))**2 + (d(2) - t(2))**2)
+    else
+      least = min(least, across**2/square)
+    end if
+  end subroutine see_node
 
   !> Bring the status of the segments that were due up to date by their points, which follow each
   !> other on the list; those that do not count have no area. Points of a segment neither of whose

@@ -77,7 +77,7 @@ contains
                                       !! `n_most_overlaps`
     integer, intent(out) :: n
     type(slave_segment_t) :: own
-    integer :: k
+    integer :: masters(n_between), k
 
     call start_segment(contact, memory, s, least_part, own)
     n = 0
@@ -88,16 +88,15 @@ contains
       return
     end if
     if (contact%master%n_segment > short_surface .and. all(own%is_active)) then
-      call list_between(own, contact%master%previous, overlaps, n)
-      call clip_masters(contact, memory, own, .true., overlaps, n)
+      call list_between(own, contact%master%previous, masters, n)
+      call clip_masters(contact, memory, own, .true., masters(:n), overlaps, n)
     end if
     if (n == 0) then
       ! The candidates from the last on, as the slave runs against the master.
       associate (first => memory%candidates%first(s), last => memory%candidates%first(s + 1) - 1)
-        n = last - first + 1
-        overlaps(:n)%master = memory%candidates%items(last:first:-1)
+        call clip_masters(contact, memory, own, .false., memory%candidates%items(last:first:-1), &
+          overlaps, n)
       end associate
-      call clip_masters(contact, memory, own, .false., overlaps, n)
     end if
     if (.not. memory%slave_status%pass%is_closed) return
     do k = 1, n
@@ -108,10 +107,10 @@ contains
 
   !> The master segments from below one active end to below the other; none where these are too many
   !> or do not follow each other.
-  pure subroutine list_between(own, previous, overlaps, n)
+  pure subroutine list_between(own, previous, masters, n)
     type(slave_segment_t), intent(in) :: own
     integer, intent(in) :: previous(*) !! master segment before each
-    type(overlap_t), intent(inout) :: overlaps(*)
+    integer, intent(inout) :: masters(n_between)
     integer, intent(out) :: n
     integer :: m
 
@@ -119,28 +118,28 @@ contains
     m = own%below(1)
     do while (m > 0 .and. n < n_between)
       n = n + 1
-      overlaps(n)%master = m
+      masters(n) = m
       if (m == own%below(2)) return
       m = previous(m)
     end do
     n = 0
   end subroutine list_between
 
-  !> Clip the listed master segments and keep those that have an overlap; candidates only where they
-  !> may touch. A node in common to two that follow each other is projected once. Between two active
-  !> ends there are none where the surface folds.
-  pure subroutine clip_masters(contact, memory, own, is_between, overlaps, n)
+  !> Clip master segments to the slave segment and keep those that have an overlap; candidates only
+  !> where they may touch. A node in common to two that follow each other is projected once. Between
+  !> two active ends there are none where the surface folds.
+  pure subroutine clip_masters(contact, memory, own, is_between, masters, overlaps, n)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(slave_segment_t), intent(in) :: own
     logical, intent(in) :: is_between !! the segments are those between two active ends
+    integer, intent(in) :: masters(:)
     type(overlap_t), intent(inout) :: overlaps(:)
-    integer, intent(inout) :: n
+    integer, intent(out) :: n
     type(projected_node_t) :: from, to
     type(overlap_t) :: new
-    integer :: masters(n), k
+    integer :: k
 
-    masters = overlaps(:n)%master
     n = 0
     to%number = 0
     do k = 1, size(masters)
