@@ -9,7 +9,7 @@ module implicit_penalty_m
     is_between, is_high
   use contact_scatter_m, only : scatter_forces, average_values, share_out
   use contact_law_m, only : measure_springs, end_sampling
-  use contact_state_m, only : contact_state_t, contact_points_t
+  use contact_state_m, only : contact_state_t
   use contact_work_m, only : previous_work_t, store_previous_work, apply_forces
   use contacts_m, only : contact_t, friction_rule_t
   use energy_limit_m, only : energy_factor, scale_forces, count_cycle, returned_t, slack, &
@@ -17,9 +17,8 @@ module implicit_penalty_m
   use kinds_m, only : wp
   use law_friction_m, only : coefficient_of, has_decay
   use law_state_m, only : sticks, slips
-  use weighted_gaps_m, only : rows_t, start_rows, choose_rows, form_shares, find_rates, &
-    add_segment_rotation, velocities_under, is_isotropic, fill_band, node_of, along_normal, &
-    along_tangent
+  use weighted_gaps_m, only : rows_t, start_rows, choose_rows, form_shares, find_rates, find_slips, &
+    velocities_under, fill_band, along_normal, along_tangent
   implicit none
   private
   public :: pressure_step_t, start_pressure_step, find_rows, pressures_ahead
@@ -45,7 +44,6 @@ module implicit_penalty_m
     real(wp), allocatable :: modes(:, :, :) !! (2, n_slave + n_master, n_mode or more) velocities of
                                             !! them, times the root of what a unit force makes
     real(wp), allocatable :: gap(:)         !! (n_slave) mean gaps, m
-    real(wp), allocatable :: diagonal(:)    !! (rows) W(i, i) of the rows alone
     type(rows_t) :: rows
     type(problem_t) :: problem
   end type pressure_step_t
@@ -68,7 +66,7 @@ contains
     associate (n_node => memory%n_slave + memory%n_master, n_slave => memory%n_slave)
       allocate (step%velocity(2, n_node), step%mobility(2, n_node), step%loaded(2, n_node), &
         step%previous_velocity(2, n_node), source=0.0_wp)
-      allocate (step%gap(n_slave), step%diagonal(n_slave))
+      allocate (step%gap(n_slave))
       call start_rows(n_slave, n_node, step%rows)
     end associate
   end subroutine start_pressure_step
@@ -82,7 +80,7 @@ contains
       call average_values(memory%points, memory%points%gap, memory%n_slave, nodal)
       step%gap = nodal(1, :memory%n_slave)
       call choose_rows(memory%n_slave, nodal, memory%node_pressure, memory%closed_gap, step%rows)
-      if (step%rows%n > 0) call form_shares(memory%points, step%rows)
+      call form_shares(memory%points, step%rows)
     end associate
   end subroutine find_rows
 
@@ -214,7 +212,6 @@ contains
     type(pressure_step_t), intent(inout) :: step
     type(contact_state_t), intent(inout) :: memory
     type(outcome_t) :: outcome
-    integer :: i
 
     associate (rows => step%rows, problem => step%problem, points => memory%points)
       if (rows%n > 0) then
@@ -224,9 +221,8 @@ contains
         call solve_complementarity(problem, outcome)
       end if
       memory%node_pressure = 0.0_wp
-      do i = 1, rows%n
-        memory%node_pressure(rows%slave(i)) = problem%x(i)*rows%inverse(i)
-      end do
+      if (rows%n > 0) memory%node_pressure(rows%slave(:rows%n)) = problem%x(:rows%n) &
+        *rows%inverse(:rows%n)
       call share_out(points%n, points%slave_nodes, points%slave_weights, memory%node_pressure, &
         points%pressure)
     end associate
@@ -236,22 +232,16 @@ contains
   !> diagonal, and how they move rigid bodies.
   pure subroutine set_matrix(step, direction, stiffness)
     type(pressure_step_t), intent(inout) :: step
-    integer, intent(in) :: direction    !! along_normal, or along_tangent after that
+    integer, intent(in) :: direction    !! along_normal or along_tangent
     real(wp), intent(in) :: stiffness   !! times the step, N s/m^2; 0: they have no compliance
     integer :: i, at, m
 
-    associate (rows => step%rows, problem => step%problem, band => step%problem%band)
-      if (direction == along_normal .or. .not. is_isotropic(rows%n_node, rows%node, &
-        step%mobility)) then
-        call fill_band(rows, direction, step%mobility, band)
-        do i = 1, rows%n
-          step%diagonal(i) = band((rows%width + 1)*(i - 1) + 1)
-        end do
-      end if
+    associate (rows => step%rows, problem => step%problem)
+      call fill_band(rows, direction, step%mobility, problem%band)
       do i = 1, rows%n
         at = (rows%width + 1)*(i - 1) + 1
-        band(at) = step%diagonal(i)
-        if (stiffness > 0.0_wp) band(at) = band(at) + rows%inverse(i)/stiffness
+        if (stiffness > 0.0_wp) &
+          problem%band(at) = problem%band(at) + rows%inverse(i)/stiffness
       end do
       do m = 1, step%n_mode
         call find_rates(rows, direction, step%modes(:, :, m), problem%column((m - 1)*rows%n + 1))
@@ -264,16 +254,15 @@ contains
   pure subroutine set_gap_rates(step, pressure)
     type(pressure_step_t), intent(inout) :: step
     real(wp), intent(in) :: pressure(:) !! (n_slave) of the step before, N/m^2
-    real(wp) :: opens, closes           !! per m of gap, 1/s
+    real(wp) :: closes                  !! per m of overlap, 1/s
     integer :: i
 
-    opens = 1.0_wp/step%dt
     closes = merge(recovered, 1.0_wp, step%is_stiff)/step%dt
     associate (rows => step%rows, problem => step%problem)
       call find_rates(rows, along_normal, step%velocity, problem%r)
       do i = 1, rows%n
         associate (gap => step%gap(rows%slave(i)))
-          problem%r(i) = problem%r(i) + merge(closes, opens, gap < 0.0_wp)*gap
+          problem%r(i) = problem%r(i) + merge(closes, 1.0_wp/step%dt, gap < 0.0_wp)*gap
         end associate
         problem%low(i) = 0.0_wp
         problem%high(i) = huge(1.0_wp)
@@ -282,121 +271,82 @@ contains
     end associate
   end subroutine set_gap_rates
 
-  !> Tractions of slave nodes and points, once pressures are known.
+  !> Tractions of slave nodes and points, once pressures are known: x is minus kappa times the
+  !> traction, its slack what is left of the slip rate beside the spring.
   pure subroutine solve_tractions(rule, step, memory)
     type(friction_rule_t), intent(in) :: rule
     type(pressure_step_t), intent(inout) :: step
     type(contact_state_t), intent(inout) :: memory
     type(outcome_t) :: outcome
+    real(wp) :: stiffness !! of the tangential springs, N/m^2
+    integer :: m
 
-    call find_bounds(rule, step, memory)
-    call velocities_under(step%rows, step%mobility, step%problem%x, step%velocity, step%loaded)
-    call add_mode_velocities(step)
-    call find_slips(step%rows, memory%points, memory%positions, step%loaded, step%problem%r)
-    call set_matrix(step, along_tangent, rule%stiffness*memory%slave_penalty*step%dt)
-    call guess_tractions(rule, memory, step)
-    call solve_complementarity(step%problem, outcome)
-    call store_tractions(rule, step, memory)
-    associate (points => memory%points)
+    stiffness = rule%stiffness*memory%slave_penalty
+    associate (rows => step%rows, problem => step%problem, points => memory%points)
+      call set_bounds(rule, step, memory)
+      call velocities_under(rows, step%mobility, problem%x, step%velocity, step%loaded)
+      do m = 1, step%n_mode
+        step%loaded = step%loaded + step%modes(:, :, m)*dot_product(problem%x(:rows%n), &
+          problem%column((m - 1)*rows%n + 1:m*rows%n))
+      end do
+      call set_matrix(step, along_tangent, stiffness*step%dt)
+      call find_slips(rows, points, memory%positions, step%loaded, problem%r)
+      if (stiffness > 0.0_wp) problem%r(:rows%n) = problem%r(:rows%n) &
+        + memory%scratch%previous_traction(rows%slave(:rows%n))/(stiffness*step%dt)
+      call solve_complementarity(problem, outcome)
+      call store_tractions(stiffness, step, memory)
       call share_out(points%n, points%slave_nodes, points%slave_weights, &
         memory%friction%traction, points%traction)
     end associate
   end subroutine solve_tractions
 
   !> Largest tractions of the rows times kappa, by the speeds of sliding of the step behind: what
-  !> stuck did not slide, however its spring moved.
-  pure subroutine find_bounds(rule, step, memory)
+  !> stuck did not slide, however its spring moved. What slipped is guessed to slip.
+  pure subroutine set_bounds(rule, step, memory)
     type(friction_rule_t), intent(in) :: rule
     type(pressure_step_t), intent(inout) :: step
     type(contact_state_t), intent(in) :: memory
+    real(wp) :: slip(step%rows%n), speed
     integer :: i
 
-    associate (n => step%rows%n, problem => step%problem)
-      problem%high(:n) = coefficient_of(rule, 0.0_wp)*problem%x(:n)
-      if (has_decay(rule) .and. step%dt_before > 0.0_wp) then
-        call find_slips(step%rows, memory%points, memory%positions, memory%scratch%increment, &
-          problem%r)
-        do i = 1, n
-          if (memory%scratch%previous_state(step%rows%slave(i)) == sticks) cycle
-          problem%high(i) = coefficient_of(rule, abs(problem%r(i))/step%dt_before)*problem%x(i)
-        end do
-      end if
-      if (rule%most > 0.0_wp) &
-        problem%high(:n) = min(problem%high(:n), rule%most/step%rows%inverse(:n))
-    end associate
-  end subroutine find_bounds
-
-  !> Add the velocities that the pressures give to rigid bodies.
-  pure subroutine add_mode_velocities(step)
-    type(pressure_step_t), intent(inout) :: step
-    real(wp) :: speed
-    integer :: j, k
-
-    associate (n => step%problem%n)
-      do k = 1, step%n_mode
-        speed = dot_product(step%problem%column((k - 1)*n + 1:k*n), step%problem%x(:n))
-        do j = 1, step%rows%n_node
-          associate (node => step%rows%node(node_of, j))
-            step%loaded(:, node) = step%loaded(:, node) + step%modes(:, node, k)*speed
-          end associate
-        end do
-      end do
-    end associate
-  end subroutine add_mode_velocities
-
-  !> Mean slips of the rows by motions of the nodes.
-  pure subroutine find_slips(rows, points, positions, motion, slip)
-    type(rows_t), intent(in) :: rows
-    type(contact_points_t), intent(in) :: points
-    real(wp), intent(in), contiguous :: positions(:, :), motion(:, :) !! motion in m or m/s
-    real(wp), intent(inout), contiguous :: slip(:)                 !! in the unit of motion
-
-    call find_rates(rows, along_tangent, motion, slip)
-    call add_segment_rotation(rows, points, positions, motion, slip)
-  end subroutine find_slips
-
-  !> The problem, whose r is the slips: x is minus kappa times the traction, its slack what is left
-  !> of the slip rate beside the spring. What slipped is guessed to slip.
-  pure subroutine guess_tractions(rule, memory, step)
-    type(friction_rule_t), intent(in) :: rule
-    type(contact_state_t), intent(in) :: memory
-    type(pressure_step_t), intent(inout) :: step
-    real(wp) :: stiffness
-    integer :: i, node
-
-    stiffness = rule%stiffness*memory%slave_penalty*step%dt
-    associate (problem => step%problem, previous => memory%scratch%previous_traction)
+    slip = 0.0_wp
+    if (has_decay(rule) .and. step%dt_before > 0.0_wp) call find_slips(step%rows, memory%points, &
+      memory%positions, memory%scratch%increment, slip)
+    associate (problem => step%problem)
       do i = 1, step%rows%n
-        node = step%rows%slave(i)
-        if (stiffness > 0.0_wp) problem%r(i) = problem%r(i) + previous(node)/stiffness
-        problem%low(i) = -problem%high(i)
-        problem%at(i) = is_between
-        if (memory%scratch%previous_state(node) == slips .or. .not. problem%high(i) > 0.0_wp) &
-          problem%at(i) = merge(is_low, is_high, previous(node) > 0.0_wp)
+        associate (before => memory%scratch%previous_state(step%rows%slave(i)), &
+          high => problem%high(i))
+          speed = merge(0.0_wp, abs(slip(i)), before == sticks)/max(step%dt_before, tiny(1.0_wp))
+          high = coefficient_of(rule, speed)*problem%x(i)
+          if (rule%most > 0.0_wp) high = min(high, rule%most/step%rows%inverse(i))
+          problem%low(i) = -high
+          problem%at(i) = is_between
+          if (before == slips .or. .not. high > 0.0_wp) problem%at(i) = merge(is_low, is_high, &
+            memory%scratch%previous_traction(step%rows%slave(i)) > 0.0_wp)
+        end associate
       end do
     end associate
-  end subroutine guess_tractions
+  end subroutine set_bounds
 
   !> Tractions, states and slips of the slave nodes, and what their tangential springs store.
-  pure subroutine store_tractions(rule, step, memory)
-    type(friction_rule_t), intent(in) :: rule
+  pure subroutine store_tractions(stiffness, step, memory)
+    real(wp), intent(in) :: stiffness !! of the tangential springs, N/m^2
     type(pressure_step_t), intent(in) :: step
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: stiffness, rate
+    real(wp) :: rate
     integer :: i, node
 
-    stiffness = rule%stiffness*memory%slave_penalty
     associate (problem => step%problem, friction => memory%friction, &
       previous => memory%scratch%previous_traction)
       do i = 1, step%rows%n
         node = step%rows%slave(i)
         if (.not. memory%node_pressure(node) > 0.0_wp) cycle
-        associate (kappa => memory%scratch%nodal(2, node), traction => friction%traction(node))
-          traction = -problem%x(i)/kappa
+        associate (inverse => step%rows%inverse(i), traction => friction%traction(node))
+          traction = -problem%x(i)*inverse
           rate = problem%slack(i)
           if (stiffness > 0.0_wp) then
             rate = rate + (traction - previous(node))/(stiffness*step%dt)
-            friction%stored = friction%stored + kappa*traction**2/(2.0_wp*stiffness)
+            friction%stored = friction%stored + traction**2/(2.0_wp*stiffness*inverse)
           end if
           friction%slip(node) = friction%slip(node) + rate*step%dt
           friction%state(node) = merge(sticks, slips, problem%at(i) == is_between)

@@ -12,13 +12,10 @@ module complementarity_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: problem_t, outcome_t, set_size, solve_complementarity, is_low, is_between, is_high, &
-    n_spare
+  public :: problem_t, outcome_t, set_size, solve_complementarity, is_low, is_between, is_high
 
   !> Where a force is.
   integer, parameter :: is_low = -1, is_between = 0, is_high = 1
-  !> Room behind the band, the columns and r, for those who fill them some numbers at a time.
-  integer, parameter :: n_spare = 3
 
   !> A problem, its solution and room to solve it; arrays may be longer than they have to be.
   type :: problem_t
@@ -95,10 +92,10 @@ contains
     integer, intent(in) :: n
 
     if (allocated(list)) then
-      if (size(list) >= n + n_spare) return
+      if (size(list) >= n) return
       deallocate (list)
     end if
-    allocate (list(n + n/2 + n_spare))
+    allocate (list(n + n/2))
   end subroutine provide
 
   !> Solve for x.

@@ -13,7 +13,7 @@ module friction_m
   implicit none
   private
   public :: start_trial_slip, take_trial_motion, store_previous_tractions, form_tractions, &
-    has_slipped, let_hold
+    has_slipped, let_hold, slip_of
 
   !> One site in a step.
   type :: slider_t

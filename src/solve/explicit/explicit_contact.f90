@@ -17,7 +17,6 @@ module explicit_contact_m
   use rigid_state_m, only : turn_of, shift_by_turn, velocity_of
   use state_m, only : state_t
   use units_m, only : per_depth
-  use weighted_gaps_m, only : node_of
   implicit none
   private
   public :: plan_sampling, check_springs, report_contact_energies, add_implicit_penalties
@@ -252,11 +251,10 @@ contains
     real(wp) :: free(2)
     integer :: k
 
-    do k = 1, step%rows%n_node
-      associate (l => step%rows%node(node_of, k))
-        call look_ahead(leap, state, nodes(l), step%mobility(:, l), free)
-        step%velocity(:, l) = merge(free, 0.0_wp, step%mobility(:, l) > 0.0_wp)
-      end associate
+    do k = 1, size(nodes)
+      if (step%rows%last(k) == 0) cycle
+      call look_ahead(leap, state, nodes(k), step%mobility(:, k), free)
+      step%velocity(:, k) = merge(free, 0.0_wp, step%mobility(:, k) > 0.0_wp)
     end do
     do k = 1, size(step%prescribed, 2)
       associate (prescribed => model%conditions%motions(step%prescribed(1, k)))
