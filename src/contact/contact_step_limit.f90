@@ -16,7 +16,7 @@
 module contact_step_limit_m
   use contact_dispatch_m, only : formulation_t, formulation_of, is_strict
   use contact_state_m, only : contact_state_t
-  use contacts_m, only : contact_t, is_tied
+  use contacts_m, only : contact_t
   use geometry_m, only : segment_length
   use kinds_m, only : wp
   use tributary_lengths_m, only : end_radius
@@ -48,9 +48,7 @@ module contact_step_limit_m
 
   !> K/m of the nodes of one interface.
   type :: ratios_t
-    real(wp), allocatable :: at(:)    !! (n_slave + n_master)
-    real(wp), allocatable :: opening(:) !! (n_slave + n_master) the part of contact
-    real(wp) :: c = 1.0_wp            !! share between its sides
+    real(wp), allocatable :: at(:) !! (n_slave + n_master)
   end type ratios_t
 
   !> How far the bounds may lie below the step that eigenvalues allow: the least of the ratios in
@@ -60,9 +58,12 @@ module contact_step_limit_m
   !> Part of a slave segment that points at the end of a master may stand for beyond it.
   real(wp), parameter :: beyond_ends = 0.5_wp
 
-  !> Rounds over all interfaces, and halvings of the interval of log c: any c is safe, more only
-  !> sharpen the bound.
-  integer, parameter :: n_round = 20, n_halving = 40
+  !> Most rounds over all interfaces, and how far sides may be loaded unlike after them: any c is
+  !> safe, more rounds only sharpen the bound.
+  integer, parameter :: n_round = 40
+  real(wp), parameter :: even = 1.0e-6_wp
+  !> The c, or 1/c, of an interface of which one side alone has springs.
+  real(wp), parameter :: beyond_all = 1.0e30_wp
 
 contains
 
@@ -73,121 +74,82 @@ contains
     type(contact_state_t), intent(in) :: memories(:)
     real(wp), intent(in) :: scale(:)                     !! (n_interface) 0 or more
     type(spring_bound_t), intent(out) :: bounds(:)       !! (n_interface)
-    type(ratios_t) :: ratios(size(contacts))
-    integer :: side_at(size(mass)), i
-    logical :: are_shared
+    type(ratios_t), dimension(size(contacts)) :: ratios, opening
+    real(wp), dimension(size(mass)) :: total, opens, damping
+    integer :: i
 
-    side_at = 0
-    are_shared = .false.
+    damping = 0.0_wp
     do i = 1, size(contacts)
       ratios(i)%at = scale(i)*spring_ratios(contacts(i), mass, memories(i))
-      ratios(i)%opening = ratios(i)%at
-      if (memories(i)%has%ties) ratios(i)%opening = scale(i)*opening_ratios(contacts(i), mass, &
+      opening(i) = ratios(i)
+      if (memories(i)%has%ties) opening(i)%at = scale(i)*opening_ratios(contacts(i), mass, &
         memories(i))
-      call bound_interface(contacts(i), memories(i), ratios(i), bounds(i))
-      if (.not. scale(i) > 0.0_wp) cycle
-      associate (nodes => memories(i)%nodes, n => memories(i)%n_slave)
-        call mark_nodes(nodes(:n), 2*i - 1, side_at, are_shared)
-        call mark_nodes(nodes(n + 1:), 2*i, side_at, are_shared)
+      associate (most => most_of_sides(memories(i)%n_slave, opening(i)%at))
+        call add_once(memories(i)%nodes, contacts(i)%damping*sqrt(sum(most) &
+          *merge(2.0_wp, 1.0_wp, contacts(i)%is_self)), damping)
       end associate
     end do
-    if (are_shared) call join_interfaces(contacts, memories, size(mass), ratios, bounds)
-  end subroutine bound_springs
-
-  !> Bound of one interface whose sides share no nodes: A + B.
-  pure subroutine bound_interface(contact, memory, ratios, bound)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
-    type(ratios_t), intent(inout) :: ratios !! out: c
-    type(spring_bound_t), intent(inout) :: bound
-    real(wp) :: opens !! rate of contact alone, 1/s^2
-    integer :: worst(2)
-
-    associate (n => memory%n_slave)
-      worst = [maxloc(ratios%at(:n), 1), n + maxloc(ratios%at(n + 1:), 1)]
-      opens = maxval(ratios%opening(:n)) + maxval(ratios%opening(n + 1:))
-    end associate
-    associate (most => ratios%at(worst))
-      bound%rate = sum(most)
-      bound%closed_rate = bound%rate - opens
-      bound%damping = contact%damping*sqrt(opens*merge(2.0_wp, 1.0_wp, contact%is_self))
-      bound%node = memory%nodes(worst(merge(1, 2, most(1) >= most(2))))
-      if (all(most > 0.0_wp) .and. .not. contact%is_self) ratios%c = most(2)/most(1)
-    end associate
-  end subroutine bound_interface
-
-  !> Mark the nodes of a side; those that another side has marked are shared.
-  pure subroutine mark_nodes(nodes, side, side_at, are_shared)
-    integer, intent(in) :: nodes(:), side
-    integer, intent(inout) :: side_at(:)   !! (n_node of the mesh) 0: none
-    logical, intent(inout) :: are_shared
-    integer :: k
-
-    do k = 1, size(nodes)
-      are_shared = are_shared .or. all(side_at(nodes(k)) /= [0, side])
-      side_at(nodes(k)) = side
-    end do
-  end subroutine mark_nodes
-
-  !> Interfaces that share nodes: the c of each in turn evens out its sides, as the others stand.
-  !> A surface with itself has each node on both sides, evenly.
-  pure subroutine join_interfaces(contacts, memories, n_node, ratios, bounds)
-    type(contact_t), intent(in) :: contacts(:)
-    type(contact_state_t), intent(in) :: memories(:)
-    integer, intent(in) :: n_node !! of the mesh
-    type(ratios_t), intent(inout) :: ratios(:)
-    type(spring_bound_t), intent(inout) :: bounds(:)
-    type(ratios_t) :: closed
-    real(wp), dimension(n_node) :: total, opening, damping
-    integer :: i, round
-
-    total = 0.0_wp
-    damping = 0.0_wp
-    do i = 1, size(memories)
-      call add_sides(memories(i), 1.0_wp, ratios(i), total)
-      call add_once(memories(i)%nodes, bounds(i)%damping, damping)
-    end do
-    do round = 1, n_round
-      do i = 1, size(memories)
-        if (contacts(i)%is_self) cycle
-        call add_sides(memories(i), -1.0_wp, ratios(i), total)
-        ratios(i)%c = even_share(ratios(i), memories(i)%n_slave, &
-          max(total(memories(i)%nodes), 0.0_wp))
-        call add_sides(memories(i), 1.0_wp, ratios(i), total)
-      end do
-    end do
-    opening = total
-    do i = 1, size(memories)
-      if (.not. memories(i)%has%ties) cycle
-      closed = ratios(i)
-      closed%at = ratios(i)%at - ratios(i)%opening
-      call add_sides(memories(i), -1.0_wp, closed, opening)
-    end do
-    do i = 1, size(memories)
+    call add_up(contacts, memories, ratios, total)
+    opens = total
+    if (any(memories%has%ties)) call add_up(contacts, memories, opening, opens)
+    do i = 1, size(contacts)
       associate (nodes => memories(i)%nodes)
         bounds(i)%rate = maxval(total(nodes))
-        bounds(i)%closed_rate = merge(bounds(i)%rate, bounds(i)%rate - maxval(opening(nodes)), &
-          is_tied(contacts(i)))
-        bounds(i)%node = nodes(maxloc(total(nodes), 1))
+        bounds(i)%closed_rate = bounds(i)%rate
+        if (memories(i)%has%contact) bounds(i)%closed_rate = bounds(i)%rate - maxval(opens(nodes))
+        bounds(i)%node = nodes(maxloc(ratios(i)%at, 1))
         bounds(i)%damping = maxval(damping(nodes))
       end associate
     end do
-  end subroutine join_interfaces
+  end subroutine bound_springs
 
-  !> The part of an interface in the sums of its nodes, times `sign`.
-  pure subroutine add_sides(memory, sign, ratios, total)
-    type(contact_state_t), intent(in) :: memory
-    real(wp), intent(in) :: sign
-    type(ratios_t), intent(in) :: ratios
-    real(wp), intent(inout) :: total(:) !! (n_node of the mesh)
-    real(wp) :: load(size(memory%nodes))
-    integer :: k
+  !> The sum over the interfaces at each node of the mesh. The c of all are evened out together:
+  !> each goes half the way, by its logarithm, to where the two sides of its interface would be
+  !> loaded alike. An interface alone is there from the start. A surface with itself has each node
+  !> on both sides, evenly; where one side has no springs the other bears them alone.
+  pure subroutine add_up(contacts, memories, ratios, total)
+    type(contact_t), intent(in) :: contacts(:)
+    type(contact_state_t), intent(in) :: memories(:)
+    type(ratios_t), intent(in) :: ratios(:)
+    real(wp), intent(out) :: total(:) !! (n_node of the mesh)
+    real(wp), dimension(size(ratios)) :: c, uneven
+    real(wp) :: most(2)
+    integer :: i, k, round
 
-    load = weighted(ratios, memory%n_slave, ratios%c)
-    do k = 1, size(load)
-      total(memory%nodes(k)) = total(memory%nodes(k)) + sign*load(k)
+    c = 1.0_wp
+    do i = 1, size(ratios)
+      most = most_of_sides(memories(i)%n_slave, ratios(i)%at)
+      if (.not. contacts(i)%is_self) c(i) = min(max(most(2)/max(most(1), tiny(1.0_wp)), &
+        1.0_wp/beyond_all), beyond_all)
     end do
-  end subroutine add_sides
+    do round = 1, n_round
+      total = 0.0_wp
+      do i = 1, size(ratios)
+        associate (nodes => memories(i)%nodes, at => ratios(i)%at, n => memories(i)%n_slave)
+          do k = 1, size(nodes)
+            total(nodes(k)) = total(nodes(k)) + (1.0_wp + merge(c(i), 1.0_wp/c(i), k <= n))*at(k)
+          end do
+        end associate
+      end do
+      uneven = 1.0_wp
+      do i = 1, size(ratios)
+        if (contacts(i)%is_self .or. c(i) <= 1.0_wp/beyond_all .or. c(i) >= beyond_all) cycle
+        most = most_of_sides(memories(i)%n_slave, total(memories(i)%nodes))
+        uneven(i) = most(2)/most(1)
+      end do
+      if (all(abs(uneven - 1.0_wp) < even)) return
+      c = c*sqrt(uneven)
+    end do
+  end subroutine add_up
+
+  !> The most on the slave nodes and on the master nodes of an interface.
+  pure function most_of_sides(n_slave, values) result(most)
+    integer, intent(in) :: n_slave
+    real(wp), intent(in) :: values(:) !! (n_slave + n_master) 0 or more
+    real(wp) :: most(2)
+
+    most = max(0.0_wp, [maxval(values(:n_slave)), maxval(values(n_slave + 1:))])
+  end function most_of_sides
 
   !> Add a value to each of some nodes once, though some stand there several times.
   pure subroutine add_once(nodes, value, total)
@@ -202,40 +164,6 @@ contains
       total(nodes(k)) = before(k) + value
     end do
   end subroutine add_once
-
-  !> (1 + c) K/m of slave nodes and (1 + 1/c) K/m of master nodes.
-  pure function weighted(ratios, n_slave, c)
-    type(ratios_t), intent(in) :: ratios
-    integer, intent(in) :: n_slave
-    real(wp), intent(in) :: c
-    real(wp) :: weighted(size(ratios%at))
-
-    weighted(:n_slave) = (1.0_wp + c)*ratios%at(:n_slave)
-    weighted(n_slave + 1:) = (1.0_wp + 1.0_wp/c)*ratios%at(n_slave + 1:)
-  end function weighted
-
-  !> The c for which both sides of an interface are loaded alike, on top of what others put on the
-  !> nodes.
-  pure function even_share(ratios, n_slave, others) result(c)
-    type(ratios_t), intent(in) :: ratios
-    integer, intent(in) :: n_slave
-    real(wp), intent(in) :: others(:) !! (n_slave + n_master)
-    real(wp) :: c
-    real(wp) :: low, high, load(size(others))
-    integer :: i
-
-    low = log(ratios%c) - 10.0_wp
-    high = low + 20.0_wp
-    do i = 1, n_halving
-      c = exp(0.5_wp*(low + high))
-      load = others + weighted(ratios, n_slave, c)
-      if (maxval(load(:n_slave)) > maxval(load(n_slave + 1:))) then
-        high = log(c)
-      else
-        low = log(c)
-      end if
-    end do
-  end function even_share
 
   !> Most K/m of each node, K being the sum of spring stiffness times weight, 1/s^2, for the
   !> positions in the memory: of what ties hold, and of contact.
