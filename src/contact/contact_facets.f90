@@ -22,14 +22,16 @@ module contact_facets_m
   !> Curvature at one end of a segment, as a part of that at the other, below which the one is flat.
   real(wp), parameter :: flat = 0.1_wp
 
-  !> Arcs that the segments of a surface stand for.
+  !> Arcs that the segments of both surfaces stand for, those of the slave first.
   type :: arcs_t
-    real(wp), allocatable :: curvature(:) !! (n_segment) 1/m
-    real(wp), allocatable :: chord(:)     !! (n_segment) length of the segment, m
-    real(wp), allocatable :: unlike(:)    !! (n_segment) curvature of both surfaces together, where
-                                          !! it is loaded, 1/m
-    logical, allocatable :: meets_corner(:) !! (n_segment) and may stand for a coarse arc
-    logical, allocatable :: is_loaded(:)  !! (n_segment)
+    real(wp), allocatable :: curvature(:)   !! (segments) 1/m
+    real(wp), allocatable :: chord(:)       !! (segments) length of the segment, m
+    real(wp), allocatable :: height(:)      !! (segments) how far the arc stands off it, m
+    real(wp), allocatable :: unlike(:)      !! (segments) curvature of both surfaces together, where
+                                            !! it is loaded, 1/m
+    logical, allocatable :: meets_corner(:) !! (segments) and may stand for a coarse arc
+    logical, allocatable :: is_loaded(:)    !! (segments)
+    integer, allocatable :: beside(:, :)    !! (2, nodes) segments before and behind each, 0: none
   end type arcs_t
 
 contains
@@ -41,16 +43,19 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(contact_estimate_t), intent(inout) :: estimate
-    type(arcs_t) :: arcs(2) !! of slave and master
+    type(arcs_t) :: arcs
     real(wp) :: deepest
-    integer :: p
+    integer :: p, k
 
-    associate (points => memory%points, n => memory%n_slave)
+    associate (points => memory%points, n => memory%n_slave, m => contact%slave%n_segment)
       if (.not. any(points%gap(:points%n) < 0.0_wp)) return
-      call find_arcs(contact%slave, memory%positions(:, :n), arcs(1))
-      call find_arcs(contact%master, memory%positions(:, n + 1:), arcs(2))
-      if (.not. (any(abs(arcs(1)%curvature) > 0.0_wp) &
-        .or. any(abs(arcs(2)%curvature) > 0.0_wp))) return
+      k = m + contact%master%n_segment
+      allocate (arcs%curvature(k), arcs%chord(k), arcs%height(k), arcs%unlike(k), source=0.0_wp)
+      allocate (arcs%meets_corner(k), arcs%is_loaded(k), source=.false.)
+      allocate (arcs%beside(2, size(memory%nodes)), source=0)
+      call find_arcs(contact%slave, [0, 0], memory%positions(:, :n), arcs)
+      call find_arcs(contact%master, [n, m], memory%positions(:, n + 1:), arcs)
+      if (.not. any(abs(arcs%curvature) > 0.0_wp)) return
       deepest = 0.0_wp
       do p = 1, points%n
         if (.not. points%gap(p) < 0.0_wp) cycle
@@ -58,28 +63,31 @@ contains
         if (points%pressure(p) > 0.0_wp .or. memory%has%interference) &
           call sample_point(contact, points, p, arcs, deepest, estimate)
       end do
+      if (any(arcs%is_loaded)) estimate%penetration = max(estimate%penetration, deepest &
+        + max(flattening(contact%slave, 0, arcs), flattening(contact%master, m, arcs)))
     end associate
-    if (any(arcs(1)%is_loaded) .or. any(arcs(2)%is_loaded)) estimate%penetration = &
-      max(estimate%penetration, deepest + max(flattening(contact%slave, arcs(1)), &
-      flattening(contact%master, arcs(2))))
   end subroutine follow_arcs
 
   !> The arcs of one surface.
-  pure subroutine find_arcs(surface, positions, arcs)
+  pure subroutine find_arcs(surface, before, positions, arcs)
     type(surface_t), intent(in) :: surface
+    integer, intent(in) :: before(2)        !! nodes and segments of surfaces before it
     real(wp), intent(in) :: positions(:, :) !! (4, n_node) X, Y, u_x, u_y
-    type(arcs_t), intent(out) :: arcs
-    integer :: s, n
+    type(arcs_t), intent(inout) :: arcs
+    integer :: s
 
-    n = surface%n_segment
-    allocate (arcs%curvature(n), arcs%chord(n), arcs%unlike(n), source=0.0_wp)
-    allocate (arcs%meets_corner(n), arcs%is_loaded(n), source=.false.)
-    call find_curvatures(surface, positions, arcs%curvature, arcs%meets_corner)
-    do s = 1, n
-      associate (ends => surface%segments(:, s))
-        arcs%chord(s) = norm2(positions(1:2, ends(2)) - positions(1:2, ends(1)))
-      end associate
-    end do
+    associate (first => before(2) + 1, last => before(2) + surface%n_segment)
+      call find_curvatures(surface, positions, arcs%curvature(first:last), &
+        arcs%meets_corner(first:last))
+      do s = 1, surface%n_segment
+        associate (ends => surface%segments(:, s))
+          arcs%chord(before(2) + s) = norm2(positions(1:2, ends(2)) - positions(1:2, ends(1)))
+          arcs%beside(2, before(1) + ends(1)) = before(2) + s
+          arcs%beside(1, before(1) + ends(2)) = before(2) + s
+        end associate
+      end do
+      arcs%height(first:last) = arc_height(arcs%curvature(first:last), arcs%chord(first:last))
+    end associate
   end subroutine find_arcs
 
   !> One point that is loaded: the segments that it is on, either of which may be of either surface
@@ -88,115 +96,84 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_points_t), intent(in) :: points
     integer, intent(in) :: p
-    type(arcs_t), intent(inout) :: arcs(2)
+    type(arcs_t), intent(inout) :: arcs
     real(wp), intent(inout) :: deepest !! penetration of arcs, m
     type(contact_estimate_t), intent(inout) :: estimate
-    integer :: k, side(2), segment(2), nodes(n_side, 2)
-    real(wp) :: weights(n_side, 2), curvature(2), off
-    logical :: meets_corner(2)
+    integer :: segments(2), k
+    real(wp) :: weights(n_side, 2), off
 
-    nodes = reshape([points%slave_nodes(:, p), points%master_nodes(:, p)], [n_side, 2])
     weights = reshape([points%slave_weights(:, p), points%master_weights(:, p)], [n_side, 2])
-    associate (n => contact%slave%n_node)
-      side = merge(1, 2, nodes(1, :) <= n)
+    segments = [segment_at(arcs, points%slave_nodes(:, p), weights(:, 1)), &
+      segment_at(arcs, points%master_nodes(:, p), weights(:, 2))]
+    if (any(segments == 0)) return
+    associate (curvature => arcs%curvature(segments), height => arcs%height(segments), &
+      meets_corner => arcs%meets_corner(segments))
+      if (.not. any(abs(curvature) > 0.0_wp)) return
+      off = 0.5_wp*sum(curvature*arcs%chord(segments)**2*max(product(weights, 1), 0.0_wp))
       do k = 1, 2
-        if (side(k) == 1) then
-          segment(k) = segment_at(contact%slave, arcs(1), nodes(:, k), weights(:, k))
-        else
-          segment(k) = segment_at(contact%master, arcs(2), nodes(:, k) - n, weights(:, k))
-        end if
+        arcs%is_loaded(segments(k)) = .true.
+        if (.not. any(meets_corner)) arcs%unlike(segments(k)) = abs(sum(curvature))
       end do
-    end associate
-    if (any(segment == 0)) return
-    curvature = [(arcs(side(k))%curvature(segment(k)), k=1, 2)]
-    meets_corner = [(arcs(side(k))%meets_corner(segment(k)), k=1, 2)]
-    if (.not. any(abs(curvature) > 0.0_wp)) return
-    off = 0.0_wp
-    do k = 1, 2
-      associate (arc => arcs(side(k)), i => segment(k))
-        off = off + 0.5_wp*curvature(k)*arc%chord(i)**2*max(product(weights(:, k)), 0.0_wp)
-        arc%is_loaded(i) = .true.
-        if (.not. any(meets_corner)) arc%unlike(i) = abs(sum(curvature))
-      end associate
-    end do
-    ! That of the arcs: what facets add is no measure of itself.
-    deepest = max(deepest, off - points%gap(p))
-    ! Of a facet that turns by more, nobody knows by how much it is off.
-    if (any(meets_corner .and. product(weights, 1) > at_node)) &
-      off = maxval([(height_of(arcs(side(k)), segment(k)), k=1, 2)])
-    estimate%facet_error = max(estimate%facet_error, abs(off))
-    do k = 1, 2
-      if (.not. height_of(arcs(side(k)), segment(k)) > estimate%arc_height) cycle
-      estimate%arc_height = height_of(arcs(side(k)), segment(k))
+      ! That of the arcs: what facets add is no measure of itself.
+      deepest = max(deepest, off - points%gap(p))
+      ! Of a facet that turns by more, nobody knows by how much it is off.
+      if (any(meets_corner .and. product(weights, 1) > at_node)) off = maxval(height)
+      estimate%facet_error = max(estimate%facet_error, abs(off))
+      k = maxloc(height, 1)
+      if (.not. height(k) > estimate%arc_height) return
+      estimate%arc_height = height(k)
       estimate%arc_curvature = abs(curvature(k))
-      estimate%arc_side = side(k)
-    end do
+      estimate%arc_side = merge(1, 2, segments(k) <= contact%slave%n_segment)
+    end associate
   end subroutine sample_point
 
   !> The segment that a position is on; of those beside the node that it is at, the one with the
   !> higher arc, the first one of equal ones (round-off is no choice); 0: none.
-  pure function segment_at(surface, arcs, nodes, weights) result(segment)
-    type(surface_t), intent(in) :: surface
+  pure function segment_at(arcs, nodes, weights) result(segment)
     type(arcs_t), intent(in) :: arcs
-    integer, intent(in) :: nodes(n_side)     !! local numbers in the surface
+    integer, intent(in) :: nodes(n_side)
     real(wp), intent(in) :: weights(n_side)
     integer :: segment
-    integer :: beside(2), k, main
+    integer :: main, here, k
 
     main = maxloc(weights, 1)
-    beside = [surface%incoming(nodes(main)), surface%outgoing(nodes(main))]
     segment = 0
     do k = 1, 2
-      if (beside(k) == 0) cycle
-      if (minval(weights) > at_node .and. &
-        .not. any(surface%segments(:, beside(k)) == nodes(3 - main))) cycle
+      here = arcs%beside(k, nodes(main))
+      if (here == 0) cycle
+      if (minval(weights) > at_node .and. all(arcs%beside(:, nodes(3 - main)) /= here)) cycle
       if (segment > 0) then
-        if (.not. height_of(arcs, beside(k)) > (1.0_wp + at_node)*height_of(arcs, segment)) cycle
+        if (.not. arcs%height(here) > (1.0_wp + at_node)*arcs%height(segment)) cycle
       end if
-      segment = beside(k)
+      segment = here
     end do
   end function segment_at
 
-  !> How far the arc of a segment stands off it, m.
-  pure real(wp) function height_of(arcs, segment)
-    type(arcs_t), intent(in) :: arcs
-    integer, intent(in) :: segment
-
-    height_of = arc_height(arcs%curvature(segment), arcs%chord(segment))
-  end function height_of
-
-  !> The largest way by which bodies of unlike curvature are flattened where they touch: the arc of
-  !> both curvatures over a run of loaded segments, up to one radian of it.
-  pure function flattening(surface, arcs) result(way)
+  !> The way by which bodies of unlike curvature are flattened where they touch: the arc of both
+  !> curvatures over the mean run of loaded segments, up to one radian of it.
+  pure function flattening(surface, offset, arcs) result(way)
     type(surface_t), intent(in) :: surface
+    integer, intent(in) :: offset !! segments of surfaces before it
     type(arcs_t), intent(in) :: arcs
     real(wp) :: way !! m
     real(wp) :: length, unlike, bend
-    logical :: is_left(surface%n_segment)
-    integer :: i, s, k
+    integer :: s, n_run
+    logical :: goes_on
 
-    way = 0.0_wp
-    is_left = arcs%is_loaded
-    do i = 0, 2*surface%n_segment - 1
-      s = 1 + modulo(i, surface%n_segment)
-      ! What is loaded all round has no first segment: any one, the second time.
-      if (i == s - 1 .and. surface%previous(s) > 0) then
-        if (arcs%is_loaded(surface%previous(s))) cycle
-      end if
-      length = 0.0_wp
-      unlike = 0.0_wp
-      bend = tiny(1.0_wp)
-      k = s
-      do while (k > 0)
-        if (.not. is_left(k)) exit
-        is_left(k) = .false.
-        length = length + arcs%chord(k)
-        unlike = max(unlike, arcs%unlike(k))
-        bend = max(bend, abs(arcs%curvature(k)))
-        k = surface%next(k)
-      end do
-      way = max(way, arc_height(unlike, min(length, 1.0_wp/bend)))
+    length = 0.0_wp
+    unlike = 0.0_wp
+    bend = tiny(1.0_wp)
+    n_run = 0
+    do s = 1, surface%n_segment
+      if (.not. arcs%is_loaded(offset + s)) cycle
+      goes_on = surface%previous(s) > 0
+      if (goes_on) goes_on = arcs%is_loaded(offset + surface%previous(s))
+      if (.not. goes_on) n_run = n_run + 1
+      length = length + arcs%chord(offset + s)
+      unlike = max(unlike, arcs%unlike(offset + s))
+      bend = max(bend, abs(arcs%curvature(offset + s)))
     end do
+    way = arc_height(unlike, min(length/max(1, n_run), 1.0_wp/bend))
   end function flattening
 
   !> At the end: a warning where arcs stand off their segments by much of the penetration, and gaps

@@ -8,15 +8,15 @@ module contact_log_m
     penalty_share, penalty_implicit
   use law_state_m, only : is_held, is_broken
   use kinds_m, only : wp
-  use log_m, only : log_t, write_log, warn, to_text
+  use log_m, only : log_t, write_log, warn, to_text, percent
   use model_m, only : model_t
   use surfaces_m, only : surface_t, has_closed_chain
   use ties_m, only : tied_nodes, tie_reach
   use units_m, only : units_t, in_units, per_depth
   implicit none
   private
-  public :: log_contact, penalty_text, report_initial_contact, report_released, report_tie_step, &
-    report_broken, log_softness
+  public :: log_contact, penalty_text, report_initial_contact, report_tie_step, report_end, &
+    log_softness
 
   !> Part of the search reach below which a penetration at time zero is round-off, that of
   !> coordinates written with some eight digits included.
@@ -177,13 +177,10 @@ contains
     real(wp), intent(in) :: element_limit, limit !! s
     type(log_t), intent(inout) :: log
     character(:), allocatable :: text
-    character(8) :: share
 
-    write (share, '(ss,f0.1)') 100.0_wp*(1.0_wp - limit/element_limit)
-    if (share(1:1) == '.') share = '0'//share
     text = 'interface '//to_text(id)//': with its ties the stable step is '//to_text(limit) &
-      //', of the elements alone '//to_text(element_limit)//': the ties cost '//trim(share) &
-      //' % of the step'
+      //', of the elements alone '//to_text(element_limit)//': the ties cost ' &
+      //percent(element_limit - limit, element_limit)//' of the step'
     if (limit < dear_share*element_limit) then
       call warn(log, text//'; a softer tie (PEN, SFACT) costs less')
     else
@@ -314,38 +311,31 @@ contains
       //'; it is kept, so that the run starts with these forces')
   end subroutine report_initial_contact
 
-  !> How much of a tie has broken, at the end of the run.
-  subroutine report_broken(contact, units, memory, log)
+  !> At the end of the run: how much of a tie has broken, and a warning of first contacts that were
+  !> too deep and were let go.
+  subroutine report_end(contact, units, memory, log)
     type(contact_t), intent(in) :: contact
     type(units_t), intent(in) :: units
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
+    character(:), allocatable :: name
     integer :: n
 
+    name = 'interface '//to_text(contact%id)//': '
+    n = memory%slave_status%n_released + memory%master_status%n_released
+    if (n > 0) call warn(log, name//to_text(n) &
+      //' first contacts were deeper than the limit and were released; SRCH sets the limit')
     if (.not. breaks(contact)) return
     n = count(memory%ties%state == is_broken)
     if (n == 0) then
-      call write_log(log, 'interface '//to_text(contact%id)//': nothing of its ties has broken')
+      call write_log(log, name//'nothing of its ties has broken')
     else
-      call write_log(log, 'interface '//to_text(contact%id)//': of its ties '//to_text(n)//' of ' &
+      call write_log(log, name//'of its ties '//to_text(n)//' of ' &
         //to_text(count(memory%ties%state == is_held) + n)//' places have broken, from time ' &
         //to_text(memory%ties%first_break)//' to '//to_text(memory%ties%last_break) &
         //'; what they held, '//to_text(memory%ties%spent) &
         //per_depth(units, 'F L', contact%is_round)//', stays in the energy of contact')
     end if
-  end subroutine report_broken
-
-  !> Warn of first contacts that were too deep and were let go, at the end of the run.
-  subroutine report_released(contact, memory, log)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
-    type(log_t), intent(inout) :: log
-    integer :: n
-
-    n = memory%slave_status%n_released + memory%master_status%n_released
-    if (n == 0) return
-    call warn(log, 'interface '//to_text(contact%id)//': '//to_text(n) &
-      //' first contacts were deeper than the limit and were released; SRCH sets the limit')
-  end subroutine report_released
+  end subroutine report_end
 
 end module contact_log_m

@@ -40,8 +40,9 @@ contains
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, v
     type(contact_state_t), intent(in) :: memory
     type(slave_result_t), intent(inout) :: rows
-    real(wp), allocatable :: positions(:, :), share(:), pull(:), lengths(:)
-    logical, allocatable :: carries(:)
+    real(wp), dimension(memory%n_slave + memory%n_master) :: share, lengths
+    real(wp) :: positions(4, memory%n_slave + memory%n_master)
+    logical :: carries(memory%n_slave + memory%n_master)
     integer :: i, n
 
     n = memory%n_slave
@@ -49,11 +50,9 @@ contains
       rows%node = contact%slave%nodes
       allocate (rows%arc_length(n), rows%gap(n), rows%pressure(n), rows%force(2, n), &
         rows%length(n), rows%master_pressure(memory%n_master))
-      if (memory%has%friction .or. memory%has%ties) allocate (rows%friction_result(n &
-        + memory%n_master))
+      if (memory%has%friction .or. memory%has%ties) allocate (rows%friction_result(size(share)))
     end if
-    allocate (positions, source=memory%positions)
-    allocate (share(n + memory%n_master))
+    positions(1:2, :) = memory%positions(1:2, :)
     positions(3:4, :) = motion(1:2, memory%nodes)
     rows%force = memory%force(:, :n)
     call fill_arc_lengths(contact%slave, positions(:, :n), rows%arc_length)
@@ -63,31 +62,23 @@ contains
     carries = abs(share) > 0.0_wp
     if (memory%has%ties) carries = carries .or. tied_nodes(memory, .true., .true.)
     rows%length = lengths_in_contact(contact%slave, positions(:, :n), contact%is_round, carries(:n))
-    lengths = [rows%length, lengths_in_contact(contact%master, positions(:, n + 1:), &
-      contact%is_round, carries(n + 1:))]
-    lengths = max(lengths, tiny(1.0_wp))
+    lengths = max(tiny(1.0_wp), [rows%length, lengths_in_contact(contact%master, &
+      positions(:, n + 1:), contact%is_round, carries(n + 1:))])
     rows%pressure = share(:n)/lengths(:n)
     rows%master_pressure = share(n + 1:)/lengths(n + 1:)
     rows%gap = 0.0_wp
-    if (memory%has%contact) then
-      do i = 1, n
-        rows%gap(i) = present_gap(contact, positions(:, n + 1:), positions(:, i), memory, i)
-      end do
-    end if
-    if (.not. (memory%has%friction .or. memory%has%ties)) return
-    allocate (pull(n + memory%n_master), source=0.0_wp)
-    if (memory%has%friction) &
-      pull = nodal_sums(contact%is_self, memory, memory%points, memory%points%traction)
-    if (memory%has%ties) pull = pull + nodal_sums(.false., memory, memory%tie_points, &
-      memory%tie_points%traction)
-    rows%friction_result%traction = pull/lengths
-    do i = 1, n
-      call find_state(contact%slave, 0, i, memory, rows%friction_result(i)%slip, &
-        rows%friction_result(i)%state)
+    do i = 1, merge(n, 0, memory%has%contact)
+      rows%gap(i) = present_gap(contact, positions(:, n + 1:), positions(:, i), memory, i)
     end do
-    do i = 1, memory%n_master
-      call find_state(contact%master, n, i, memory, rows%friction_result(n + i)%slip, &
-        rows%friction_result(n + i)%state)
+    if (.not. (memory%has%friction .or. memory%has%ties)) return
+    share = 0.0_wp
+    if (memory%has%friction) &
+      share = nodal_sums(contact%is_self, memory, memory%points, memory%points%traction)
+    if (memory%has%ties) share = share + nodal_sums(.false., memory, memory%tie_points, &
+      memory%tie_points%traction)
+    rows%friction_result = [(friction_result_t(traction=share(i)/lengths(i)), i=1, size(share))]
+    do i = 1, merge(size(share), 0, memory%has%friction)
+      call find_state(contact, i, memory, rows%friction_result(i))
     end do
     if (memory%has%ties) call fill_ties(memory, rows)
   end subroutine slave_rows
@@ -202,37 +193,32 @@ contains
     end do
   end function lengths_in_contact
 
-  !> Slip and state of a node. With virtual nodes: of those next to it, the mean slip, and slip if
-  !> one slips.
-  pure subroutine find_state(surface, offset, i, memory, slip, state)
-    type(surface_t), intent(in) :: surface
-    integer, intent(in) :: offset, i !! see above; node of the surface
+  !> Slip and state of a node, where friction has any. With virtual nodes: of those next to it, the
+  !> mean slip, and slip if one slips.
+  pure subroutine find_state(contact, i, memory, found)
+    type(contact_t), intent(in) :: contact
+    integer, intent(in) :: i !! number in the interface
     type(contact_state_t), intent(in) :: memory
-    real(wp), intent(out) :: slip
-    integer, intent(out) :: state
+    type(friction_result_t), intent(inout) :: found
     integer :: near(2), n
 
-    near = offset + i
+    near = i
     if (memory%has%segment_points .and. .not. memory%has%nodal_pressure) then
-      slip = 0.0_wp
-      state = is_open
-      if (offset > 0 .or. max(surface%incoming(i), surface%outgoing(i)) == 0) return
-      n = size(memory%segment_xi)
-      near = n*(i - 1) + 1
-      if (surface%incoming(i) > 0) near(2) = n*surface%segments(1, surface%incoming(i))
-      if (surface%outgoing(i) == 0) near(1) = near(2)
-    end if
-    if (.not. memory%has%friction) then
-      slip = 0.0_wp
-      state = is_open
-      return
+      if (i > memory%n_slave) return
+      associate (before => contact%slave%incoming(i), behind => contact%slave%outgoing(i))
+        if (max(before, behind) == 0) return
+        n = size(memory%segment_xi)
+        near = n*(i - 1) + 1
+        if (before > 0) near(2) = n*contact%slave%segments(1, before)
+        if (behind == 0) near(1) = near(2)
+      end associate
     end if
     ! Slips are those of the slave side along the master's surface, which runs the other way.
     ! At a corner the side next to it has no contact.
     if (count(memory%friction%state(near) == is_open) == 1) &
       near = near(maxloc(memory%friction%state(near), 1))
-    slip = -0.5_wp*(memory%friction%slip(near(1)) + memory%friction%slip(near(2)))
-    state = maxval(memory%friction%state(near))
+    found%slip = -0.5_wp*(memory%friction%slip(near(1)) + memory%friction%slip(near(2)))
+    found%state = maxval(memory%friction%state(near))
   end subroutine find_state
 
   !> Values of points times their areas, shared out to the nodes on both sides: the normal forces on

@@ -19,7 +19,7 @@ module contact_step_limit_m
   use contacts_m, only : contact_t
   use geometry_m, only : segment_length
   use kinds_m, only : wp
-  use tributary_lengths_m, only : end_radius
+  use tributary_lengths_m, only : end_radius, nodal_area
   use surfaces_m, only : surface_t, open_ends
   use ties_m, only : stiffness_of_nodes, tied_nodes
   use visitor_m, only : visited_t, visitor_t
@@ -43,6 +43,7 @@ module contact_step_limit_m
   type :: side_t
     real(wp), allocatable :: length(:) !! (n_segment) m
     real(wp), allocatable :: radius(:) !! (n_node) m; 1 in the plane
+    real(wp), allocatable :: area(:)   !! (n_node) tributary length, m; by radius, m^2
     real(wp) :: slope = 0.0_wp         !! most change of the radius by length: 1; 0 in the plane
   end type side_t
 
@@ -204,7 +205,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     real(wp) :: ratio(memory%n_slave + memory%n_master)
     type(formulation_t) :: formulation
-    type(side_t) :: slave, master
+    type(side_t) :: slave, plane, master
     real(wp) :: overhang
     logical :: is_lonely
 
@@ -215,58 +216,61 @@ contains
     if (contact%is_round .and. allocated(memory%segment_xi)) &
       is_lonely = size(memory%segment_xi) == 1
     associate (n => memory%n_slave)
-      slave = measure_side(contact%slave, memory%positions(:, :n), contact%is_round)
-      master = measure_side(contact%master, memory%positions(:, n + 1:), contact%is_round)
+      slave = measure_side(contact%slave, memory%positions(:, :n), contact%is_round, is_lonely)
+      master = measure_side(contact%master, memory%positions(:, n + 1:), contact%is_round, &
+        .false.)
       if (formulation%has_unit_area) then
-        ratio = memory%node_penalty*node_shares(contact, slave, master)
+        plane = measure_side(contact%slave, memory%positions(:, :n), .false., .false.)
+        ratio = memory%node_penalty*node_shares(contact, slave, plane, master)
       else
-        ratio = memory%slave_penalty*[areas(contact%slave, slave, is_lonely), &
+        ratio = memory%slave_penalty*[slave%area, &
           most_on_nodes(contact%master, master, maxval(slave%length), overhang, is_lonely)]
         if (formulation%has_two_passes) ratio = ratio + memory%master_penalty &
           *[most_on_nodes(contact%slave, slave, maxval(master%length), overhang, .false.), &
-          areas(contact%master, master, .false.)]
+          master%area]
       end if
     end associate
     ratio = ratio/mass(memory%nodes)
   end function contact_ratios
 
-  !> Lengths and radii of a side.
-  pure function measure_side(surface, positions, is_round) result(side)
+  !> Lengths, radii and areas of a side; where one Gauss point stands alone on a segment areas are
+  !> no less than half of each neighbouring segment by the radius of its middle.
+  pure function measure_side(surface, positions, is_round, is_lonely) result(side)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in) :: positions(:, :) !! (4, n_node)
-    logical, intent(in) :: is_round
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node)
+    logical, intent(in) :: is_round, is_lonely
     type(side_t) :: side
+    real(wp) :: middle(surface%n_node)
     integer :: i
 
-    allocate (side%length(surface%n_segment), side%radius(surface%n_node))
+    allocate (side%length(surface%n_segment))
+    side%radius = [(1.0_wp, i=1, surface%n_node)]
+    if (is_round) side%radius = positions(1, :) + positions(3, :)
+    if (is_round) side%slope = 1.0_wp
+    middle = 0.0_wp
     do i = 1, surface%n_segment
       associate (ends => surface%segments(:, i))
         side%length(i) = segment_length(positions(:, ends(1)), positions(:, ends(2)))
+        middle(ends) = middle(ends) + 0.25_wp*side%length(i)*sum(side%radius(ends))
       end associate
     end do
-    side%radius = 1.0_wp
-    if (.not. is_round) return
-    side%radius = positions(1, :) + positions(3, :)
-    side%slope = 1.0_wp
+    side%area = [(nodal_area(surface, positions, is_round, i), i=1, surface%n_node)]
+    if (is_lonely) side%area = max(side%area, middle)
   end function measure_side
 
   !> Type 1, where each slave node has the same spring: how much of it each node of both sides can
   !> get, by its hat function over segments of length h with slave nodes at equal distances s and
   !> one at the node itself: s/2 and sum(s (1 - i s/h), i s < h) for each neighbouring segment, and
   !> at ends what lies beyond, over s. In axisymmetry slave nodes weigh with their mean radius, m.
-  pure function node_shares(contact, slave, master) result(share)
+  pure function node_shares(contact, slave, plane, master) result(share)
     type(contact_t), intent(in) :: contact
-    type(side_t), intent(in) :: slave, master
+    type(side_t), intent(in) :: slave, plane, master !! plane: the slave without radii
     real(wp) :: share(size(slave%radius) + size(master%radius))
     real(wp) :: s, largest(size(master%radius)) !! radius on the segments at each node, m
-    type(side_t) :: plane
     integer :: i, n, n_slave
 
     n_slave = size(slave%radius)
-    plane = slave
-    plane%radius = 1.0_wp
-    share(:n_slave) = areas(contact%slave, slave, .false.) &
-      /max(areas(contact%slave, plane, .false.), tiny(1.0_wp))
+    share(:n_slave) = slave%area/max(plane%area, tiny(1.0_wp))
     share(n_slave + 1:) = beyond_ends*open_ends(contact%master)
     largest = 0.0_wp
     s = minval(slave%length)
@@ -280,28 +284,6 @@ contains
     end do
     share(n_slave + 1:) = share(n_slave + 1:)*(largest + slave%slope*maxval(slave%length)/3.0_wp)
   end function node_shares
-
-  !> Tributary areas of the nodes of a side; where one Gauss point stands alone on a segment no less
-  !> than half of each neighbouring segment by the radius of its middle.
-  pure function areas(surface, side, is_lonely)
-    type(surface_t), intent(in) :: surface
-    type(side_t), intent(in) :: side
-    logical, intent(in) :: is_lonely
-    real(wp) :: areas(surface%n_node)
-    real(wp) :: middle(surface%n_node), radii(2)
-    integer :: i
-
-    areas = 0.0_wp
-    middle = 0.0_wp
-    do i = 1, surface%n_segment
-      associate (ends => surface%segments(:, i))
-        radii = side%radius(ends)
-        areas(ends) = areas(ends) + 0.5_wp*side%length(i)*end_radius(radii, radii(2:1:-1))
-        middle(ends) = middle(ends) + 0.25_wp*side%length(i)*sum(radii)
-      end associate
-    end do
-    if (is_lonely) areas = max(areas, middle)
-  end function areas
 
   !> Most length, or area by radius, that points of the other side can put on each node by its hat
   !> function over segments of length h, at distances up to s or integrating segments of up to s:

@@ -17,8 +17,8 @@ module implicit_penalty_m
   use kinds_m, only : wp
   use law_friction_m, only : coefficient_of, has_decay
   use law_state_m, only : sticks, slips
-  use weighted_gaps_m, only : rows_t, start_rows, choose_rows, form_shares, find_rates, find_slips, &
-    velocities_under, fill_band, along_normal, along_tangent
+  use weighted_gaps_m, only : rows_t, start_rows, choose_rows, form_shares, find_rates, &
+    find_slips, velocities_under, fill_band, along_normal, along_tangent
   implicit none
   private
   public :: pressure_step_t, start_pressure_step, find_rows, pressures_ahead
@@ -36,7 +36,6 @@ module implicit_penalty_m
     real(wp), allocatable :: mobility(:, :) !! (2, n_slave + n_master) velocity from a force of 1
     real(wp), allocatable :: loaded(:, :)   !! (2, n_slave + n_master) v(n+1/2) with pressures, of
                                             !! nodes that have rows
-    real(wp), allocatable :: previous_velocity(:, :) !! (2, n_slave + n_master) v(n-1/2)
     integer, allocatable :: prescribed(:, :) !! (2, :) prescribed motions, and their nodes
     integer, allocatable :: rigid_nodes(:, :) !! (3, :) rigid bodies, the number of a node in it,
                                             !! and the node
@@ -65,7 +64,7 @@ contains
     step%is_stiff = contact%penalty < 0.0_wp
     associate (n_node => memory%n_slave + memory%n_master, n_slave => memory%n_slave)
       allocate (step%velocity(2, n_node), step%mobility(2, n_node), step%loaded(2, n_node), &
-        step%previous_velocity(2, n_node), source=0.0_wp)
+        source=0.0_wp)
       allocate (step%gap(n_slave))
       call start_rows(n_slave, n_node, step%rows)
     end associate
@@ -98,7 +97,7 @@ contains
     call store_previous_work(motion, memory%scratch%had_force, memory, previous_work)
     if (memory%points%n > 0) then
       call solve_pressures(step, memory)
-      call store_spring_energy(step, memory)
+      call admit_energy(step, memory)
       if (memory%has%friction) then
         memory%points%traction(:memory%points%n) = 0.0_wp
         if (step%rows%n > 0) call solve_tractions(rule, step, memory)
@@ -120,41 +119,31 @@ contains
   end subroutine pressures_ahead
 
   !> Energy of the springs where it is due; those loaded at time zero hold energy that no force has
-  !> put in, and those without compliance hold none.
-  pure subroutine store_spring_energy(step, memory)
-    type(pressure_step_t), intent(in) :: step
-    type(contact_state_t), intent(inout) :: memory
-
-    if (memory%monitor%is_due .or. step%cycle == 0 .or. memory%scratch%is_born) then
-      call measure_springs(memory)
-      if (step%is_stiff) memory%monitor%stored = 0.0_wp
-    end if
-    if (step%cycle == 0) memory%energy = memory%monitor%stored
-    call admit_energy(step, memory)
-  end subroutine store_spring_energy
-
-  !> The energy of springs that are born loaded is admissible. Without compliance they hold none:
-  !> a penetration from the start is taken back at any energy, and from then on contact may return
-  !> what it has taken.
+  !> put in, and those without compliance hold none. The energy of springs that are born loaded is
+  !> admissible; without compliance a penetration from the start is taken back at any energy, and
+  !> from then on contact may return what it has taken.
   pure subroutine admit_energy(step, memory)
     type(pressure_step_t), intent(in) :: step
     type(contact_state_t), intent(inout) :: memory
     real(wp) :: left(memory%n_slave) !! mean gaps without the compliance of the springs, m
-    logical :: overlaps
+    logical :: begins, overlaps
 
-    associate (limit => memory%limit, begins => step%cycle == 0 .or. memory%scratch%is_born)
+    begins = step%cycle == 0 .or. memory%scratch%is_born
+    if (memory%monitor%is_due .or. begins) then
+      call measure_springs(memory)
+      if (step%is_stiff) memory%monitor%stored = 0.0_wp
+    end if
+    if (step%cycle == 0) memory%energy = memory%monitor%stored
+    associate (limit => memory%limit)
       if (.not. step%is_stiff) then
         if (memory%scratch%is_born) limit%admissible = memory%monitor%stored
-        return
-      end if
-      if (.not. (begins .or. limit%admissible >= huge(1.0_wp))) return
-      left = step%gap
-      if (memory%slave_penalty > 0.0_wp) left = left &
-        + memory%node_pressure/(recovered*memory%slave_penalty)
-      overlaps = any(left < -overlap*memory%closed_gap)
-      if (begins) then
+      else if (begins .or. limit%admissible >= huge(1.0_wp)) then
+        left = step%gap
+        if (memory%slave_penalty > 0.0_wp) left = left &
+          + memory%node_pressure/(recovered*memory%slave_penalty)
+        overlaps = any(left < -overlap*memory%closed_gap)
         if (overlaps) limit%admissible = huge(1.0_wp)
-      else if (.not. overlaps) then
+        if (begins .or. overlaps) return
         limit%admissible = max(0.0_wp, -memory%energy)
         limit%largest = 0.0_wp
       end if
@@ -164,47 +153,38 @@ contains
   !> Energy limit (section 6.1): areas and normals change while corners turn. The step to come is
   !> known here, and so is the energy that it returns.
   pure subroutine limit_return(step, motion, memory)
-    type(pressure_step_t), intent(inout) :: step
+    type(pressure_step_t), intent(in) :: step
     real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
-    type(returned_t) :: returned
-    real(wp) :: previous_power, factor
-    integer :: i
+    real(wp), dimension(2, size(memory%nodes)) :: velocity, forces, previous
+    type(returned_t) :: returned !! by normal forces with the factor one in both half steps
+    real(wp) :: factor
+    integer :: k
 
-    do i = 1, size(memory%nodes)
-      step%previous_velocity(:, i) = motion(3:4, memory%nodes(i))
-    end do
+    velocity = motion(3:4, memory%nodes)
     if (memory%has%friction) then
-      returned = work_of(step, memory%scratch%spring)
-      previous_power = sum(memory%scratch%previous_spring*step%previous_velocity)
+      forces = memory%scratch%spring
+      previous = memory%scratch%previous_spring
     else
-      returned = work_of(step, memory%force)
-      previous_power = sum(memory%scratch%previous_force*step%previous_velocity)
+      forces = memory%force
+      previous = memory%scratch%previous_force
     end if
+    returned%behind = 0.5_wp*step%dt_before*sum(forces*velocity)
+    returned%ahead = 0.5_wp*step%dt*sum(forces*step%velocity)
+    returned%recoil = 0.5_wp*step%dt*sum(forces**2*step%mobility)
+    do k = 1, step%n_mode
+      returned%recoil = returned%recoil + 0.5_wp*step%dt*sum(step%modes(:, :, k)*forces)**2
+    end do
     associate (limit => memory%limit)
       factor = energy_factor(returned, memory%energy + limit%admissible &
-        - 0.5_wp*step%dt_before*previous_power + slack*limit%largest + limit%entry_allowance)
+        - 0.5_wp*step%dt_before*sum(previous*velocity) + slack*limit%largest &
+        + limit%entry_allowance)
       call count_cycle(factor, step%time, limit)
     end associate
     if (.not. factor < 1.0_wp) return
     call scale_forces(factor, memory)
     call form_springs(memory)
   end subroutine limit_return
-
-  !> Work of normal forces with the factor one in both half steps.
-  pure function work_of(step, forces) result(returned)
-    type(pressure_step_t), intent(in) :: step
-    real(wp), intent(in), contiguous :: forces(:, :) !! (2, n_slave + n_master) N/m
-    type(returned_t) :: returned
-    integer :: k
-
-    returned%behind = 0.5_wp*step%dt_before*sum(forces*step%previous_velocity)
-    returned%ahead = 0.5_wp*step%dt*sum(forces*step%velocity)
-    returned%recoil = 0.5_wp*step%dt*sum(forces**2*step%mobility)
-    do k = 1, step%n_mode
-      returned%recoil = returned%recoil + 0.5_wp*step%dt*sum(step%modes(:, :, k)*forces)**2
-    end do
-  end function work_of
 
   !> Pressures of the slave nodes: P = kappa p >= 0, and what is left of each mean gap at the end of
   !> the step beside the spring, r + W P >= 0, one of them zero.

@@ -3,8 +3,7 @@
 module contact_check_m
   use contact_facets_m, only : report_facets
   use contact_judging_m, only : parts_behind, of_noise
-  use contact_log_m, only : report_initial_contact, report_released, report_tie_step, &
-    report_broken
+  use contact_log_m, only : report_end, report_initial_contact, report_tie_step
   use contacts_m, only : contact_t, is_tied, penalty_factor, penalty_share, penalty_implicit
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
     opening_step, binding_bound, fitting_scale, sharpness
@@ -151,8 +150,7 @@ contains
       end associate
     end do
     do i = 1, size(model%contacts)
-      call report_released(model%contacts(i), state%contacts(i), log)
-      call report_broken(model%contacts(i), model%controls%units, state%contacts(i), log)
+      call report_end(model%contacts(i), model%controls%units, state%contacts(i), log)
       associate (friction => state%contacts(i)%friction)
         if (abs(friction%work) > 0.0_wp) call write_log(log, 'interface ' &
           //to_text(model%contacts(i)%id)//': friction has dissipated ' &
