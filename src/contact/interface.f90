@@ -341,10 +341,7 @@ contains
     memory%listed_until = -huge(1.0_wp)
     call reset_status(memory%slave_status)
     call reset_status(memory%master_status)
-    if (memory%has%overlaps) then
-      memory%segment_state = separated
-      memory%segment_gap = huge(1.0_wp)
-    end if
+    if (memory%has%overlaps) memory%segment_state = separated
     memory%is_stale = .false.
   end subroutine refresh_memory
 

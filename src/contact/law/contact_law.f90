@@ -6,7 +6,8 @@
 module contact_law_m
   use contact_state_m, only : contact_state_t, site_at
   use dual_m, only : dual_t
-  use spring_gaps_m, only : has_offsets, add_offsets, take_overlaps, ramp_gaps, gather_moment
+  use spring_gaps_m, only : has_offsets, limit_new_offsets, add_offsets, take_overlaps, &
+    ramp_gaps, gather_moment
   use kinds_m, only : wp
   use law_penalty_m, only : apply_penalty
   use law_state_m, only : contact_monitor_t
@@ -58,6 +59,9 @@ contains
     real(wp), dimension(max(memory%points%n, memory%n_slave)) :: gaps, stiffness, slope, energy
 
     if (memory%has%interference .and. memory%scratch%is_start) call take_overlaps(memory)
+    if (has_offsets(memory) .and. memory%has%nodal_pressure .and. .not. &
+      (memory%has%segment_points .or. memory%slave_status%pass%is_trial)) &
+      call limit_new_offsets(memory)
     call find_gaps(memory, gaps)
     associate (points => memory%points, law => memory%contact_law)
       if (memory%has%nodal_pressure) then

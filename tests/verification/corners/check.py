@@ -7,6 +7,7 @@ import os
 import numpy as np
 
 from contact_types import MOMENT_FREE, TYPES
+from meshes import Deck, grid, rotate
 from scene import FAMILIES, Scene, measure
 
 #: Most energy that contact may make, over E0.
@@ -80,7 +81,30 @@ def check_rubbing(run, family, seed, kind):
     run.check(f"{name}: total / E0", energy["total"] / start, 1.0)
 
 
+def rolling_deck(kind):
+    """A rigid square of 2 x 2 quads strikes a plate with a corner at 41 degrees and rolls over on to its side."""
+    end, turn = 0.44, np.radians(21.0)
+    deck = Deck(f"rolling corner, type {kind}").control(2.0 * end, scale=0.5).output(glstat=end / 200)
+    square, quads = grid(2, 2, 1.0, 1.0)
+    deck.part(1).add("*MAT_RIGID", (1, 1000.0, 1.0e7, 0.3), (1, 0, 0), (0.0,))
+    deck.mesh(rotate(square, np.radians(41.0)) + (0.03, 1.0e-9), quads, part=1)
+    deck.add("*INITIAL_VELOCITY_RIGID_BODY", (1, 0.0, -0.3, 0.0, 0.0, 0.0, -turn / end))
+    plate, quads = grid(4, 2, 4.0, 1.0, (-2.0, -1.0))
+    nodes = deck.part(2).elastic(1000.0, 1.0e9, 0.3, 2).mesh(plate, quads, part=2)
+    deck.fix(nodes[:5], 1, 1).hourglass(4, 0.05).add("*SET_PART_LIST", (1,), (1,)).add("*SET_PART_LIST", (2,), (2,))
+    return deck.add("*CONTACT_2D_SLIDELINE", (1, 2, kind, 2, 1.0e5)).add("*DATABASE_SLEOUT", (end / 200,))
+
+
+def check_rolling(run, kind):
+    """The spring of a corner that goes on from one side to the other stays as it is: it gives back what it took."""
+    springs = run.program(rolling_deck(kind), name=f"rolling_{kind}").table("sleout")
+    run.check(f"{TYPES[kind]}, rolling corner: made or lost / largest stored",
+              np.max(np.abs(springs["energy"] - springs["stored"])) / np.max(springs["stored"]), 0.001)
+
+
 def check(run):
+    for kind in (2, 3, 6, 7):
+        check_rolling(run, kind)
     chosen = FIXED if run.is_full else FEW
     judge(run, measure_all(run, [Scene(family, seed) for family, seeds in chosen.items() for seed in seeds]))
     for family, seed in RUBBED if run.is_full else RUBBED[:1]:
