@@ -10,19 +10,18 @@ module contact_dispatch_m
     type_nts_mar, type_mortar, type_segmented_mortar, contact_t, contact_kind_t
   use kinds_m, only : wp
   use linearisation_m, only : linearised_list_t
-  use points_mortar_m, only : start_mortar, points_mortar, finish_mortar, points_segmented_mortar, &
+  use points_mortar_m, only : points_mortar, finish_mortar, points_segmented_mortar, &
     finish_segmented_mortar
-  use points_nts_m, only : points_nts, points_nts_ar, points_two_pass_ar
-  use points_nts_mar_m, only : start_nts_mar, points_nts_mar, finish_nts_mar
+  use points_nts_m, only : points_nts, points_nts_ar, points_at_slave_nodes, points_nts_mar, &
+    finish_nts_mar
   use points_vts_ppt_m, only : points_vts_ppt
   use point_list_m, only : append_list
   use ranges_m, only : n_ranges, first_of, last_of
   use sparse_m, only : sparse_t
   use positions_m, only : points_at_nodes, points_at_quarters, points_at_gauss_points
-  use tangent_nts_m, only : linearise_nodes
+  use tangent_nodes_m, only : linearise_nodes, add_vts_ppt_tangent
   use tangent_segments_m, only : linearise_overlap_ends, linearise_gauss_points
   use tangent_ties_m, only : add_tie_tangent
-  use tangent_vts_ppt_m, only : add_vts_ppt_tangent
   implicit none
   private
   public :: contact_kinds, formulation_t, formulation_of, is_strict, generate_points, &
@@ -100,16 +99,14 @@ contains
     points%n = 0
     select case (contact%contact_type)
     case (type_nts); call points_nts(contact, memory, points)
-    case (type_nts_ar); call points_nts_ar(contact, memory, points)
-    case (type_two_pass_ar); call points_two_pass_ar(contact, memory, points)
+    case (type_nts_ar, type_two_pass_ar); call points_nts_ar(contact, memory, points)
     case (type_vts_ppt)
       call points_in_ranges(contact, memory%slave_status%n_active, memory, points)
     case (type_nts_mar)
-      call start_nts_mar(contact, memory, points)
+      call points_at_slave_nodes(contact, memory, points)
       call points_in_ranges(contact, contact%slave%n_segment, memory, points)
       call finish_nts_mar(contact, memory, points)
     case (type_mortar)
-      call start_mortar(contact, memory)
       call points_in_ranges(contact, contact%slave%n_segment, memory, points)
       call finish_mortar(contact, memory, points)
     case (type_segmented_mortar)

@@ -7,7 +7,7 @@ module contact_results_m
   use geometry_m, only : segment_length, coordinates_on_segment, closest_distance
   use kinds_m, only : wp
   use law_state_m, only : is_open, is_held, is_broken
-  use tributary_lengths_m, only : see_half
+  use tributary_lengths_m, only : find_half
   use contact_scatter_m, only : average_values
   use snapshot_m, only : interface_result_t, slave_result_t, friction_result_t
   use surfaces_m, only : surface_t
@@ -187,7 +187,7 @@ contains
           if (s == 0) cycle
           if (carries(i) .and. is_side(s)) cycle
         end associate
-        call see_half(surface, positions, is_round, i, k, t, half)
+        call find_half(surface, positions, is_round, i, k, t, half)
         lengths(i) = lengths(i) + half
       end do
     end do

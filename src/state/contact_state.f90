@@ -126,8 +126,6 @@ module contact_state_m
     real(wp) :: ramp_step = 0.0_wp          !! of an initial overlap in this step, as a part of it
     logical :: is_start = .false.           !! this call is that of time zero; both only where such
                                             !! overlaps grow
-    integer, allocatable :: segment_near(:) !! (n_slave) master segment near a slave node, 0: none;
-                                            !! only where points are at fixed positions
     logical, allocatable :: has_points(:)   !! (slave segments) have their points
     type(contact_points_t), allocatable :: parts(:) !! points of ranges of slave segments, which
                                             !! threads share
@@ -299,7 +297,6 @@ contains
     associate (scratch => memory%scratch, n => memory%n_slave + memory%n_master)
       allocate (scratch%previous_force(2, n), scratch%nodal(2, n), scratch%increment(2, n), &
         source=0.0_wp)
-      allocate (scratch%segment_near(memory%n_slave), source=0)
       if (memory%has%limit) allocate (scratch%velocity(2, n), source=0.0_wp)
       if (memory%has%limit .and. (memory%has%damping .or. memory%has%friction &
         .or. memory%has%ties)) &

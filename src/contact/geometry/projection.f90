@@ -4,7 +4,8 @@
 !> contact on the face through which it came (doc/theory/contact.md, section 3). Many positions at a
 !> time go through projection_block, which leaves to this module what needs a decision.
 module projection_m
-  use geometry_m, only : local_coordinates_t, coordinates_on_segment, closest_distance, local_normal
+  use geometry_m, only : local_coordinates_t, coordinates_on_segment, closest_distance, &
+    local_normal, separation
   use kinds_m, only : wp
   use surfaces_m, only : surface_t, meets_axis
   implicit none
@@ -27,8 +28,8 @@ module projection_m
   !> body turns.
   real(wp), parameter :: face_on = -0.5_wp
   !> One minus the cosine of the turn at a convex vertex up to which both of its segments count, and
-  !> from which on one counts as far as the other does not: a side that stands at 70 degrees on a
-  !> face is no part of a contact that the next one is in at 20.
+  !> from which on one counts as far as the other does not: a side at 70 degrees to a face has no
+  !> part in a contact that the next one is in at 20.
   real(wp), parameter :: gentle_vertex = 0.1_wp, sharp_vertex = 0.59_wp
   !> Excess of the cosine of a segment at a sharp vertex over that of the other, up to which it
   !> counts and from which on it does not. Of a slave's two segments the more opposed one counts:
@@ -211,7 +212,7 @@ contains
     real(wp) :: t(2)
 
     associate (a => surface%segments(1, segment), b => surface%segments(2, segment))
-      t = (polyline(1:2, b) - polyline(1:2, a)) + (polyline(3:4, b) - polyline(3:4, a))
+      t = separation(polyline(:, b), polyline(:, a))
     end associate
   end function vector_of
 
@@ -244,7 +245,6 @@ contains
     type(local_coordinates_t), intent(in) :: local
     integer, intent(in) :: segment
     type(projection_t) :: projection
-
     real(wp) :: length
 
     length = sqrt(local%square)
@@ -252,8 +252,7 @@ contains
     projection%is_on = is_over_segment(local)
     projection%xi = local%along/local%square
     projection%gap = local%across/length
-    projection%normal(1) = local%t(2)/length
-    projection%normal(2) = -local%t(1)/length
+    projection%normal = [local%t(2), -local%t(1)]/length
     if (local%along >= 0.0_wp .and. local%along <= local%square) then
       projection%distance = abs(projection%gap)
     else

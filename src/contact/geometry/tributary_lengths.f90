@@ -10,7 +10,7 @@ module tributary_lengths_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: radius_of, end_radius, radius_between, centroid, see_half, nodal_area, put_lengths
+  public :: radius_of, end_radius, radius_between, centroid, find_half, nodal_area, find_nodal_areas
 
 contains
 
@@ -65,7 +65,7 @@ contains
     integer :: k
 
     do k = 1, 2
-      call see_half(surface, positions, is_round, i_node, k, t, halves(k))
+      call find_half(surface, positions, is_round, i_node, k, t, halves(k))
     end do
     area = halves(1) + halves(2)
   end function nodal_area
@@ -73,7 +73,7 @@ contains
   !> Tributary lengths of the active nodes of a surface, m: half of each of their segments; in
   !> axisymmetry as above, m^2 per radian. On a closed boundary segments count as far as they are
   !> opposed to the face below the node. A segment between two active nodes is seen once.
-  pure subroutine put_lengths(surface, positions, is_round, status, areas)
+  pure subroutine find_nodal_areas(surface, positions, is_round, status, areas)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface
     logical, intent(in) :: is_round
@@ -90,19 +90,19 @@ contains
           t(:, 1) = t(:, 2)
           halves(1) = halves(2)
         else
-          call see_half(surface, positions, is_round, node, 1, t(:, 1), halves(1))
+          call find_half(surface, positions, is_round, node, 1, t(:, 1), halves(1))
         end if
-        call see_half(surface, positions, is_round, node, 2, t(:, 2), halves(2))
+        call find_half(surface, positions, is_round, node, 2, t(:, 2), halves(2))
         seen = surface%outgoing(node)
         areas(k) = halves(1) + halves(2)
         if (status%pass%is_closed) areas(k) = opposed_part(t, halves, status%normal(:, node))
       end associate
     end do
-  end subroutine put_lengths
+  end subroutine find_nodal_areas
 
   !> The segment before (1) or after (2) a node: its vector, m, and half of its length, in
   !> axisymmetry weighted with the radius; zero where there is none.
-  pure subroutine see_half(surface, positions, is_round, i_node, k, t, half)
+  pure subroutine find_half(surface, positions, is_round, i_node, k, t, half)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: positions(:, :)
     logical, intent(in) :: is_round
@@ -120,7 +120,7 @@ contains
       if (is_round) half = half*end_radius(radius_of(positions(:, i_node)), &
         radius_of(positions(:, ends(k))))
     end associate
-  end subroutine see_half
+  end subroutine find_half
 
   !> How much of both halves at a node counts below a face: each as far as it is opposed, and of the
   !> segments at a sharp vertex together one (see `side_share`). Where the face stands between both

@@ -3,7 +3,7 @@
 !> each overlap of a slave segment with a master segment; pressure from the slave nodes
 !> (doc/theory/contact.md, sections 5.6 and 5.7).
 module points_mortar_m
-  use contact_state_m, only : contact_state_t, contact_points_t, contact_status_t, active
+  use contact_state_m, only : contact_state_t, contact_points_t, active
   use contacts_m, only : contact_t
   use projection_block_m, only : n_block, project_block, resolve_ambiguous
   use projection_m, only : projection_t, nearby_projection, stays_over
@@ -17,8 +17,8 @@ module points_mortar_m
   use slave_segments_m, only : closest_candidate, sides_part
   implicit none
   private
-  public :: start_mortar, points_mortar, finish_mortar, points_segmented_mortar, &
-    finish_segmented_mortar, gauss_xi, least_part
+  public :: points_mortar, finish_mortar, points_segmented_mortar, finish_segmented_mortar, &
+    gauss_xi, least_part
 
   !> Gauss points of an overlap.
   integer, parameter :: n_gauss = 2
@@ -32,16 +32,8 @@ module points_mortar_m
 
 contains
 
-  !> Type 6: which slave nodes have a segment in contact; these decide on nodal pressures.
-  pure subroutine start_mortar(contact, memory)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-
-    call mark_ends(memory%slave_status, size(memory%segment_xi), contact%slave%segments, &
-      memory%scratch%segment_near)
-  end subroutine start_mortar
-
-  !> The points of those of a range of slave segments that have such a node.
+  !> Type 6: the points of those of a range of slave segments that have a node in common with a
+  !> segment in contact: the pressures of these nodes act on them.
   pure subroutine points_mortar(contact, memory, first, last, points)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -51,7 +43,7 @@ contains
 
     if (memory%slave_status%n_active == 0) return
     do s = first, last
-      near = maxval(memory%scratch%segment_near(contact%slave%segments(:, s)))
+      near = master_near(contact, memory, s)
       if (near > 0) call points_on_whole_segment(contact, memory, s, near, points)
     end do
     call finish_segment_points(memory%positions, contact%is_round, 1, points)
@@ -65,27 +57,25 @@ contains
 
     if (memory%slave_status%n_active == 0) return
     if (has_folds(contact)) call weight_sharp_vertices(contact, memory, points)
-    memory%scratch%segment_near = 0
   end subroutine finish_mortar
 
-  !> Note at both ends of each segment with a point in contact the master segment of the first of
-  !> these points.
-  pure subroutine mark_ends(status, m, ends, near)
-    type(contact_status_t), intent(in) :: status
-    integer, intent(in) :: m          !! points of a segment
-    integer, intent(in) :: ends(2, *) !! of the slave
-    integer, intent(inout) :: near(*) !! (n_slave)
-    integer :: k, s, last
+  !> A master segment below a point in contact on a slave segment or one next to it, 0: none.
+  pure function master_near(contact, memory, s) result(near)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s !! slave segment
+    integer :: near
+    integer :: segments(3), k, i
 
-    last = 0
-    do k = 1, status%n_active
-      if (status%active_points(k) <= last) cycle
-      s = 1 + (status%active_points(k) - 1)/m
-      last = s*m
-      near(ends(1, s)) = status%segment(status%active_points(k))
-      near(ends(2, s)) = status%segment(status%active_points(k))
+    near = 0
+    segments = [contact%slave%previous(s), s, contact%slave%next(s)]
+    do k = 1, 3
+      do i = (segments(k) - 1)*size(memory%segment_xi) + 1, segments(k)*size(memory%segment_xi)
+        if (i < 1) cycle
+        if (memory%slave_status%state(i) == active) near = memory%slave_status%segment(i)
+      end do
     end do
-  end subroutine mark_ends
+  end function master_near
 
   !> The Gauss points of a segment that have a projection and are not let go, with areas as if they
   !> were opposed to the master entirely. Of closed boundaries the side next to a convex vertex
@@ -156,7 +146,7 @@ contains
       memory%scratch%has_points(s) = is_due
       if (is_due) call points_on_overlaps(contact, memory, s, overlaps, block, points)
     end do
-    call put_block(contact, memory, block, points)
+    call append_projected(contact, memory, block, points)
     call update_segment_states(contact, [first, last], 0, memory, points, n_released)
     call finish_segment_points(memory%positions, contact%is_round, 1, points)
   end subroutine points_segmented_mortar
@@ -204,7 +194,7 @@ contains
         call points_on_overlaps(contact, memory, neighbours(k), overlaps, block, points)
       end do
     end do
-    call put_block(contact, memory, block, points)
+    call append_projected(contact, memory, block, points)
   end subroutine points_at_neighbours
 
   !> The points of one slave segment, with areas as if they were opposed to the master entirely;
@@ -225,7 +215,7 @@ contains
     length = sqrt(own(1)*own(1) + own(2)*own(2))
     do k = 1, n
       if (.not. overlaps(k)%share > 0.0_wp) cycle
-      if (block%n + n_gauss > n_block) call put_block(contact, memory, block, points)
+      if (block%n + n_gauss > n_block) call append_projected(contact, memory, block, points)
       nodes = memory%n_slave + contact%master%segments(:, overlaps(k)%master)
       other = separation(memory%positions(:, nodes(2)), memory%positions(:, nodes(1)))
       way = separation(memory%positions(:, ends(1)), memory%positions(:, nodes(1)))
@@ -247,7 +237,7 @@ contains
 
   !> Project the points of a block on the master segments of their overlaps, or on whatever is
   !> closest there, and append them; those without a projection have no area.
-  pure subroutine put_block(contact, memory, block, points)
+  pure subroutine append_projected(contact, memory, block, points)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(point_block_t), intent(inout) :: block
@@ -257,7 +247,7 @@ contains
     call project_block(block%projection_block_t)
     if (block%n_ambiguous > 0) call project_ambiguous(contact, memory, block)
     call append_block(block, memory%slave_penalty, points)
-  end subroutine put_block
+  end subroutine append_projected
 
   !> Points that may be nearer to a neighbour of the master segment.
   pure subroutine project_ambiguous(contact, memory, block)

@@ -1,21 +1,29 @@
 ! SPDX-License-Identifier: MIT
-!> Types 1 to 3, classical NTS, NTS-AR and two-pass NTS-AR: a point at each slave node in contact;
-!> in the second pass at each master node over the slave surface (doc/theory/contact.md, sections
-!> 5.1 to 5.3).
+!> Points at nodes in contact: types 1 to 3, classical NTS, NTS-AR and two-pass NTS-AR, and type 5,
+!> NTS-mAR, which is type 2 with a modified tributary length, and in addition the master nodes
+!> between the projections of the two ends of a slave segment, projected on that segment
+!> (doc/theory/contact.md, sections 5.1 to 5.3 and 5.5).
 module points_nts_m
   use contact_state_m, only : contact_state_t, contact_points_t
   use contacts_m, only : contact_t
+  use projection_m, only : projection_t, vector_of, opposed_share, round_off
+  use geometry_m, only : local_coordinates_t, coordinates_on_segment, local_gap, local_normal, &
+    segment_length
   use kinds_m, only : wp
-  use tributary_lengths_m, only : put_lengths
-  use point_list_m, only : append_active
+  use overlap_status_m, only : none_due, search_segment, update_segment_states, note_earliest_search
+  use overlaps_m, only : overlap_t, find_overlaps, room_for_overlaps
+  use point_list_m, only : add_point, append_active, finish_segment_points
+  use surfaces_m, only : surface_t
+  use tributary_lengths_m, only : nodal_area, find_nodal_areas, end_radius, radius_between
   implicit none
   private
-  public :: points_nts, points_nts_ar, points_two_pass_ar
+  public :: points_nts, points_nts_ar, points_at_slave_nodes, points_nts_mar, finish_nts_mar, &
+    is_sharp_vertex
 
 contains
 
-  !> Type 1: a spring of eps [N/m] at each node, whatever the mesh; in axisymmetry times the mean
-  !> radius of its tributary length.
+  !> Type 1: a spring of eps [N/m] at each slave node, whatever the mesh; in axisymmetry times the
+  !> mean radius of its tributary length.
   pure subroutine points_nts(contact, memory, points)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
@@ -27,37 +35,186 @@ contains
     if (.not. contact%is_round) return
     associate (slave_positions => memory%positions(:, :memory%n_slave), &
       areas => points%area(:points%n))
-      call put_lengths(contact%slave, slave_positions, .true., memory%slave_status, areas)
-      call put_lengths(contact%slave, slave_positions, .false., memory%slave_status, lengths)
+      call find_nodal_areas(contact%slave, slave_positions, .true., memory%slave_status, areas)
+      call find_nodal_areas(contact%slave, slave_positions, .false., memory%slave_status, lengths)
       areas = areas/max(lengths, tiny(1.0_wp))
     end associate
   end subroutine points_nts
 
-  !> Type 2: the tributary length of the node as area.
+  !> Types 2 and 3: the tributary length of each node as area. Where master nodes are tracked too
+  !> these have points over the slave surface; nothing is halved.
   pure subroutine points_nts_ar(contact, memory, points)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(contact_points_t), intent(inout) :: points
+    integer :: first
+
+    call points_at_slave_nodes(contact, memory, points)
+    call find_nodal_areas(contact%slave, memory%positions(:, :memory%n_slave), contact%is_round, &
+      memory%slave_status, points%area(:points%n))
+    if (memory%master_status%n == 0) return
+    first = points%n + 1
+    call append_active(memory%master_status, contact%slave, [memory%n_slave, 0], 0.0_wp, &
+      memory%master_penalty, points)
+    call find_nodal_areas(contact%master, memory%positions(:, memory%n_slave + 1:), &
+      contact%is_round, memory%master_status, points%area(first:points%n))
+  end subroutine points_nts_ar
+
+  !> A point at each slave node in contact, whose area follows.
+  pure subroutine points_at_slave_nodes(contact, memory, points)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(contact_points_t), intent(inout) :: points
 
     call append_active(memory%slave_status, contact%master, [0, memory%n_slave], 0.0_wp, &
       memory%slave_penalty, points)
-    call put_lengths(contact%slave, memory%positions(:, :memory%n_slave), contact%is_round, &
-      memory%slave_status, points%area(:points%n))
-  end subroutine points_nts_ar
+  end subroutine points_at_slave_nodes
 
-  !> Type 3: type 2, and again with the roles of slave and master exchanged; nothing is halved.
-  pure subroutine points_two_pass_ar(contact, memory, points)
+  !> Type 5: the points at master nodes of a range of slave segments. What a segment leaves to its
+  !> ends is in scratch%nodal, by number of the segment.
+  pure subroutine points_nts_mar(contact, memory, first, last, points, n_released)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    integer, intent(in) :: first, last
+    type(contact_points_t), intent(inout) :: points
+    integer, intent(inout) :: n_released !! first contacts deeper than the limit
+    type(overlap_t), allocatable :: overlaps(:)
+    real(wp) :: of_ends(2)
+    integer :: s, n
+    logical :: is_due
+
+    if (none_due(memory)) return
+    allocate (overlaps(room_for_overlaps(memory, first, last)))
+    n = points%n
+    do s = first, last
+      call search_segment(contact, memory, s, is_due)
+      memory%scratch%has_points(s) = is_due
+      of_ends = 0.0_wp
+      if (is_due) call points_on_segment(contact, memory, s, overlaps, of_ends, points)
+      memory%scratch%nodal(:, s) = of_ends
+    end do
+    call update_segment_states(contact, [first, last], n, memory, points, n_released)
+    call finish_segment_points(memory%positions, .false., n + 1, points)
+  end subroutine points_nts_mar
+
+  !> Type 5: areas of the slave nodes, from the segments before and behind; nodes at a tip keep
+  !> their whole tributary length.
+  pure subroutine finish_nts_mar(contact, memory, points)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+    type(contact_points_t), intent(inout) :: points
+    integer :: p
+
+    if (none_due(memory)) return
+    call note_earliest_search(memory)
+    do p = 1, memory%slave_status%n_active
+      associate (node => memory%slave_status%active_points(p), slave => contact%slave, &
+        of_ends => memory%scratch%nodal)
+        if (slave%incoming(node) > 0) points%area(p) = of_ends(2, slave%incoming(node))
+        if (slave%outgoing(node) > 0) points%area(p) = points%area(p) &
+          + of_ends(1, slave%outgoing(node))
+        if (points%area(p) > 0.0_wp) cycle
+        if (is_sharp_vertex(slave, memory, node)) points%area(p) = nodal_area(slave, &
+          memory%positions(:, :memory%n_slave), contact%is_round, node)
+      end associate
+    end do
+  end subroutine finish_nts_mar
+
+  !> Divide a slave segment among its ends and the master nodes at its breakpoints: each has half of
+  !> the overlap before it and half of the one behind it.
+  pure subroutine points_on_segment(contact, memory, s, overlaps, of_ends, points)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: s
+    type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
+    real(wp), intent(inout) :: of_ends(2) !! areas of its ends, m
     type(contact_points_t), intent(inout) :: points
-    integer :: first
+    real(wp) :: halves(2), area, length
+    integer :: ends(2), at(2), node, n, k, i
 
-    call points_nts_ar(contact, memory, points)
-    first = points%n + 1
-    call append_active(memory%master_status, contact%slave, [memory%n_slave, 0], 0.0_wp, &
-      memory%master_penalty, points)
-    call put_lengths(contact%master, memory%positions(:, memory%n_slave + 1:), contact%is_round, &
-      memory%master_status, points%area(first:points%n))
-  end subroutine points_two_pass_ar
+    ends = contact%slave%segments(:, s)
+    call find_overlaps(contact, memory, s, contact%strict, round_off, overlaps, n)
+    length = segment_length(memory%positions(:, ends(1)), memory%positions(:, ends(2)))
+    node = 0
+    area = 0.0_wp
+    do k = 1, n
+      if (.not. overlaps(k)%high > overlaps(k)%low) cycle
+      halves = halves_of(contact, memory%positions(:, ends(1)), memory%positions(:, ends(2)), &
+        length, overlaps(k))
+      at = [overlaps(k)%first, overlaps(k)%last]
+      do i = 1, 2
+        if (at(i) == 0) then
+          of_ends(i) = of_ends(i) + halves(i)
+        else if (at(i) == node) then
+          area = area + halves(i)
+        else
+          call add_breakpoint(memory, ends, node, area, points)
+          node = at(i)
+          area = halves(i)
+        end if
+      end do
+    end do
+    call add_breakpoint(memory, ends, node, area, points)
+  end subroutine points_on_segment
+
+  !> Half of an overlap, as far as it counts, for either of its ends, m; in axisymmetry weighted
+  !> by the radius, so that they differ. With the strict rule all but sides of corners counts.
+  pure function halves_of(contact, a, b, length, overlap) result(halves)
+    type(contact_t), intent(in) :: contact
+    real(wp), intent(in) :: a(4), b(4)     !! ends of the slave segment
+    real(wp), intent(in) :: length         !! of that, m
+    type(overlap_t), intent(in) :: overlap
+    real(wp) :: halves(2)
+    real(wp) :: low, high
+
+    halves = 0.5_wp*(overlap%high - overlap%low)*length
+    halves = halves*merge(overlap%part, overlap%share, contact%strict)
+    if (.not. contact%is_round) return
+    low = radius_between(a, b, overlap%low)
+    high = radius_between(a, b, overlap%high)
+    halves(1) = halves(1)*end_radius(low, high)
+    halves(2) = halves(2)*end_radius(high, low)
+  end function halves_of
+
+  !> Append a point at a master node with a gap that is closed.
+  pure subroutine add_breakpoint(memory, ends, node, area, points)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: ends(2)     !! nodes of the slave segment
+    integer, intent(in) :: node        !! of the master, 0: none
+    real(wp), intent(in) :: area       !! m
+    type(contact_points_t), intent(inout) :: points
+    type(local_coordinates_t) :: local
+    type(projection_t) :: projection
+
+    if (node == 0 .or. .not. area > 0.0_wp) return
+    associate (positions => memory%positions, at => memory%n_slave + node)
+      local = coordinates_on_segment(positions(:, at), positions(:, ends(1)), positions(:, ends(2)))
+      projection%gap = local_gap(local)
+      projection%normal = -local_normal(local)
+      if (projection%gap < memory%closed_gap) call add_point(points, ends, &
+        local%along/local%square, [at, at], projection, area, memory%slave_penalty)
+    end associate
+  end subroutine add_breakpoint
+
+  !> Whether none of the segments at an active slave node faces the master at its projection.
+  pure function is_sharp_vertex(slave, memory, node)
+    type(surface_t), intent(in) :: slave
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: node
+    logical :: is_sharp_vertex
+    real(wp) :: t(2)
+    integer :: segments(2), k
+
+    is_sharp_vertex = .true.
+    segments = [slave%incoming(node), slave%outgoing(node)]
+    do k = 1, 2
+      if (segments(k) == 0) cycle
+      t = vector_of(slave, memory%positions, segments(k))
+      associate (normal => memory%slave_status%normal(:, node))
+        is_sharp_vertex = is_sharp_vertex .and. .not. opposed_share((t(2)*normal(1) &
+          - t(1)*normal(2))/sqrt(t(1)**2 + t(2)**2)) > 0.0_wp
+      end associate
+    end do
+  end function is_sharp_vertex
 
 end module points_nts_m

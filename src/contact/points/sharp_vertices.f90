@@ -89,10 +89,10 @@ contains
     end do
   end subroutine find_sharp_vertices
 
-  !> The same for the ways along the surface to a node and from it on, at the start and now: the
+  !> How much gives way at a node, by the segments before and behind it at the start and now: the
   !> turn outwards, as far as it has come since the start.
   pure function sharpness(previous, ways) result(part)
-    real(wp), intent(in), dimension(2, 2) :: previous, ways !! (x and y, to and from the node) m
+    real(wp), intent(in), dimension(2, 2) :: previous, ways !! (x and y, before and behind) m
     real(wp) :: part
     real(wp) :: turn(2), turn_before(2), cosine ! cosine and sine, times lengths
 

@@ -29,7 +29,7 @@ module linearisation_m
     integer :: site = 0            !! of its traction, and of the tie that it may be left to
     real(wp) :: stiffness = 0.0_wp !! N/m^2 (N/m for type 1)
     type(dual_t) :: slave_xi       !! weights of slots 1, 2 are (1 - xi, xi)
-    type(dual_t) :: master_xi      !! the same of the master side
+    type(dual_t) :: master_xi      !! of the master slots, likewise
     type(dual_t) :: normal(2)      !! unit, from master to slave
     type(dual_t) :: gap            !! m
     type(dual_t) :: area           !! m

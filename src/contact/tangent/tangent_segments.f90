@@ -14,10 +14,10 @@ module tangent_segments_m
     append_point, difference, length_between, project, project_point, cosine_between, share_of, &
     side_share_of, radius_at
   use overlaps_m, only : overlap_t, find_overlaps, n_most_overlaps
-  use points_nts_mar_m, only : is_sharp_vertex
+  use points_nts_m, only : is_sharp_vertex
   use points_mortar_m, only : gauss_xi, least_part
   use surfaces_m, only : surface_t
-  use tangent_nts_m, only : linearise_node, linearise_length
+  use tangent_nodes_m, only : linearise_node, linearise_length
   use sharp_vertices_m, only : has_folds
   use slave_segments_m, only : sides_part
   implicit none
@@ -78,10 +78,10 @@ contains
         associate (node => contact%slave%segments(i, s))
           if (breakpoints(i) > 0) then
             if (memory%segment_state(s) /= active) cycle
-            call put_at_breakpoint(memory, memory%n_slave + breakpoints(i), point)
+            call move_to_breakpoint(memory, memory%n_slave + breakpoints(i), point)
           else
             if (memory%slave_status%state(node) /= active) cycle
-            call put_at_end(contact, memory, node, i, point)
+            call move_to_end(contact, memory, node, i, point)
             has_area(node) = .true.
           end if
         end associate
@@ -91,7 +91,7 @@ contains
   end subroutine linearise_ends_on
 
   !> Type 5: let the point stand at a master node behind the slave segment, with the normal of that.
-  pure subroutine put_at_breakpoint(memory, node, point)
+  pure subroutine move_to_breakpoint(memory, node, point)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: node !! local number
     type(linearised_point_t), intent(inout) :: point
@@ -105,10 +105,10 @@ contains
     point%gap = projection%gap
     point%normal = -projection%normal
     point%length = constant(1.0_wp)
-  end subroutine put_at_breakpoint
+  end subroutine move_to_breakpoint
 
   !> Type 5: let the point stand at a node that is in contact, the k-th end of the slave segment.
-  pure subroutine put_at_end(contact, memory, node, k, point)
+  pure subroutine move_to_end(contact, memory, node, k, point)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: node, k
@@ -120,7 +120,7 @@ contains
       point%slave_xi = constant(k - 1.0_wp)
       call project_point(memory, status%xi(node), status%gap(node), point)
     end associate
-  end subroutine put_at_end
+  end subroutine move_to_end
 
   !> Types 6 and 7: all points, which follow each other on the list slave segment by slave segment;
   !> at the end of the list are points at nodes.
@@ -163,7 +163,7 @@ contains
         point%slave_xi = constant(points%slave_weights(2, p))
         point%site = site_at(memory, memory%points, p)
         q = segment_point_at(points%slave_weights(2, p), memory%segment_xi)
-        call put_on_segment(contact, memory, p, &
+        call move_over_segment(contact, memory, p, &
           memory%segment_share(q)*length_between(memory, point, 1, 2), point)
         sides%master = contact%master%outgoing(points%master_nodes(1, p) - memory%n_slave)
         sides%part = 1.0_wp
@@ -198,7 +198,7 @@ contains
         point%slave_xi = xi(1) + gauss_xi(q)*(xi(2) - xi(1))
         if (memory%points%slave_nodes(1, p) /= point%nodes(1)) return
         if (abs(memory%points%slave_weights(2, p) - point%slave_xi%value) > round_off) cycle
-        call put_on_segment(contact, memory, p, length, point)
+        call move_over_segment(contact, memory, p, length, point)
         call append_share(contact, memory, s, overlaps(k), .false., point, list)
         p = p + 1
       end do
@@ -207,7 +207,7 @@ contains
 
   !> Types 6 and 7: let the point stand over the master segment that it has on the list; its area is
   !> this length as far as it is opposed to that.
-  pure subroutine put_on_segment(contact, memory, p, length, point)
+  pure subroutine move_over_segment(contact, memory, p, length, point)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: p           !! number on the list
@@ -222,7 +222,7 @@ contains
       [-point%normal(2), point%normal(1)]))
     if (contact%is_round) &
       point%area = point%area*radius_at(memory, point, 1, 2, point%slave_xi)
-  end subroutine put_on_segment
+  end subroutine move_over_segment
 
   !> Types 6 and 7: the points at the nodes of a segment at the tip of a fold, one for each point
   !> that gives way to them. How much does is held, and so is what the area of such a point owes to
