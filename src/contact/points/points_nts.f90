@@ -20,11 +20,12 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(contact_points_t), intent(inout) :: points
-    real(wp) :: lengths(memory%slave_status%n_active)
+    real(wp), allocatable :: lengths(:)
 
     call append_active(memory%slave_status, contact%master, [0, memory%n_slave], 1.0_wp, &
       memory%node_penalty, points)
     if (.not. contact%is_round) return
+    allocate (lengths(points%n))
     associate (slave_positions => memory%positions(:, :memory%n_slave), &
       areas => points%area(:points%n))
       call put_lengths(contact%slave, slave_positions, .true., memory%slave_status, areas)
