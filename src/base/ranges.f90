@@ -7,7 +7,7 @@ module ranges_m
   use kinds_m, only : long
   implicit none
   private
-  public :: n_ranges, first_of, last_of
+  public :: n_ranges, first_of, last_of, most_ranges
 
   !> Least length of a range, and most ranges of a loop.
   integer, parameter :: least_length = 128, most_ranges = 64

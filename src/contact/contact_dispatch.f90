@@ -16,7 +16,7 @@ module contact_dispatch_m
     finish_nts_mar
   use points_vts_ppt_m, only : points_vts_ppt
   use point_list_m, only : append_list
-  use ranges_m, only : n_ranges, first_of, last_of
+  use ranges_m, only : n_ranges, first_of, last_of, most_ranges
   use sparse_m, only : sparse_t
   use positions_m, only : points_at_nodes, points_at_quarters, points_at_gauss_points
   use tangent_nodes_m, only : linearise_nodes, add_vts_ppt_tangent
@@ -124,25 +124,26 @@ contains
     type(contact_state_t), intent(inout) :: memory
     type(contact_points_t), intent(inout) :: points
     type(contact_points_t), allocatable :: parts(:)
-    integer :: n_released(n_ranges(n)), i
+    integer :: n_released(most_ranges), i, n_range
 
-    if (n_ranges(n) == 1) then
+    n_range = n_ranges(n)
+    if (n_range == 1) then
       call points_of_range(contact, memory, 1, n, points, n_released(1))
     else
       call move_alloc(memory%scratch%parts, parts)
-      call start_parts(n_ranges(n), parts)
+      call start_parts(n_range, parts)
       !$omp taskloop default(shared)
-      do i = 1, n_ranges(n)
+      do i = 1, n_range
         call points_of_range(contact, memory, first_of(i, n), last_of(i, n), parts(i), &
           n_released(i))
       end do
       !$omp end taskloop
-      do i = 1, n_ranges(n)
+      do i = 1, n_range
         call append_list(parts(i), points)
       end do
       call move_alloc(parts, memory%scratch%parts)
     end if
-    memory%slave_status%n_released = memory%slave_status%n_released + sum(n_released)
+    memory%slave_status%n_released = memory%slave_status%n_released + sum(n_released(:n_range))
   end subroutine points_in_ranges
 
   !> The points of one range.

@@ -8,7 +8,7 @@ module contact_work_m
   use friction_m, only : store_previous_tractions
   use law_state_m, only : friction_memory_t
   use kinds_m, only : wp
-  use ranges_m, only : n_ranges, first_of, last_of
+  use ranges_m, only : n_ranges, first_of, last_of, most_ranges
   implicit none
   private
   public :: previous_work_t, store_previous, store_previous_work, apply_forces, count_step, &
@@ -150,7 +150,7 @@ contains
     real(wp), intent(in) :: present(2, *), motion(4, *)
     real(wp), intent(inout) :: previous(2, *), force(2, *)
     real(wp), intent(out) :: power !! of both, W/m
-    real(wp) :: powers(n_ranges(size(nodes)))
+    real(wp) :: powers(most_ranges)
     integer :: i, k, before, n
 
     power = 0.0_wp

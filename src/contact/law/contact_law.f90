@@ -56,14 +56,16 @@ contains
   !> Pressures of all points on the list, before damping.
   pure subroutine form_pressures(memory)
     type(contact_state_t), intent(inout) :: memory
-    real(wp), dimension(max(memory%points%n, memory%n_slave)) :: gaps, stiffness, slope, energy
+    ! In one array: allocating each costs as much as the law of ten points.
+    real(wp) :: sites(max(memory%points%n, memory%n_slave), 4)
 
     if (memory%has%interference .and. memory%scratch%is_start) call take_overlaps(memory)
     if (has_offsets(memory) .and. memory%has%nodal_pressure .and. .not. &
       (memory%has%segment_points .or. memory%slave_status%pass%is_trial)) &
       call limit_new_offsets(memory)
-    call find_gaps(memory, gaps)
-    associate (points => memory%points, law => memory%contact_law)
+    associate (points => memory%points, law => memory%contact_law, gaps => sites(:, 1), &
+      stiffness => sites(:, 2), slope => sites(:, 3), energy => sites(:, 4))
+      call find_gaps(memory, gaps)
       if (memory%has%nodal_pressure) then
         stiffness(:memory%n_slave) = memory%slave_penalty
         call apply_law(law, memory%n_slave, stiffness, gaps, memory%node_pressure, slope, energy)

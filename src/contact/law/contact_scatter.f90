@@ -4,7 +4,6 @@
 module contact_scatter_m
   use contact_state_m, only : contact_points_t, contact_state_t, n_side
   use kinds_m, only : wp
-  use ranges_m, only : n_ranges, first_of, last_of
   implicit none
   private
   public :: scatter_forces, scatter_tractions, scatter, join_passes, add_gap_round_off, &
@@ -15,7 +14,7 @@ contains
   !> Add the forces of all points on the list to those of the interface's nodes, those of damping
   !> and of friction, which are zero before, to their own too, and count the points that carry any.
   !> Damping may leave a point with a traction alone: it counts too.
-  subroutine scatter_forces(memory)
+  pure subroutine scatter_forces(memory)
     type(contact_state_t), intent(inout) :: memory
 
     associate (points => memory%points, n => memory%points%n)
@@ -31,7 +30,7 @@ contains
 
   !> The part of tractions, which is zero before, and this added to the forces. They act along
   !> -t = (n_y, -n_x): nodes are given them along n, and turned by a right angle.
-  subroutine scatter_tractions(points, part, force)
+  pure subroutine scatter_tractions(points, part, force)
     type(contact_points_t), intent(in) :: points
     real(wp), intent(inout), contiguous :: part(:, :), force(:, :) !! (2, nodes) N/m
     real(wp) :: along_n
@@ -48,72 +47,15 @@ contains
   end subroutine scatter_tractions
 
   !> Add load*area*normal of each point to its nodes by the weights, slave side with plus and master
-  !> side with minus, in the order of the list, or of the rounds of its ranges.
-  subroutine scatter(points, load, force)
+  !> side with minus, in the order of the list.
+  pure subroutine scatter(points, load, force)
     type(contact_points_t), intent(in) :: points
     real(wp), intent(in), contiguous :: load(:)        !! (points%n or more) N/m^2
     real(wp), intent(inout), contiguous :: force(:, :) !! (2, nodes) N/m
-    integer :: rounds(n_ranges(points%n)), i, round
 
-    if (n_ranges(points%n) == 1) then
-      call scatter_range(points, 1, points%n, load, force)
-      return
-    end if
-    call find_rounds(points%n, points%slave_nodes, points%master_nodes, rounds)
-    do round = 1, maxval(rounds)
-      !$omp taskloop default(shared)
-      do i = 1, n_ranges(points%n)
-        if (rounds(i) == round) call scatter_range(points, first_of(i, points%n), &
-          last_of(i, points%n), load, force)
-      end do
-      !$omp end taskloop
-    end do
+    call scatter_each(points%n, points%slave_nodes, points%slave_weights, points%master_nodes, &
+      points%master_weights, points%normal, load, points%area, force)
   end subroutine scatter
-
-  !> The same for a range of points.
-  pure subroutine scatter_range(points, first, last, load, force)
-    type(contact_points_t), intent(in) :: points
-    integer, intent(in) :: first, last
-    real(wp), intent(in), contiguous :: load(:)
-    real(wp), intent(inout), contiguous :: force(:, :)
-
-    if (last < first) return
-    call scatter_each(last - first + 1, points%slave_nodes(1, first), &
-      points%slave_weights(1, first), points%master_nodes(1, first), &
-      points%master_weights(1, first), points%normal(1, first), load(first:), points%area(first), &
-      force)
-  end subroutine scatter_range
-
-  !> Rounds in which threads add what ranges of points give to nodes: those of one round have no
-  !> node in common, as far as the smallest and the largest number of either side show.
-  subroutine find_rounds(n, slave_nodes, master_nodes, rounds)
-    integer, intent(in) :: n !! points
-    integer, intent(in) :: slave_nodes(n_side, n), master_nodes(n_side, n)
-    integer, intent(out) :: rounds(n_ranges(n))
-    integer, dimension(2, n_ranges(n)) :: low, high !! numbers of nodes, slave and master side
-    integer :: i, j, k
-
-    !$omp taskloop default(shared)
-    do i = 1, n_ranges(n)
-      low(:, i) = [minval(slave_nodes(:, first_of(i, n):last_of(i, n))), &
-        minval(master_nodes(:, first_of(i, n):last_of(i, n)))]
-      high(:, i) = [maxval(slave_nodes(:, first_of(i, n):last_of(i, n))), &
-        maxval(master_nodes(:, first_of(i, n):last_of(i, n)))]
-    end do
-    !$omp end taskloop
-    do i = 1, n_ranges(n)
-      rounds(i) = 1
-      j = 1
-      do while (j < i)
-        if (rounds(j) == rounds(i) .and. any([(low(:, i) <= high(k, j) .and. low(k, j) &
-          <= high(:, i), k=1, 2)])) then
-          rounds(i) = rounds(i) + 1
-          j = 0
-        end if
-        j = j + 1
-      end do
-    end do
-  end subroutine find_rounds
 
   !> The same on arrays of known shape: through the list each access costs a multiplication by its
   !> stride.

@@ -8,7 +8,7 @@ module energy_limit_m
   use law_state_m, only : energy_limit_t
   use spring_gaps_m, only : limit_moment
   use kinds_m, only : wp
-  use ranges_m, only : n_ranges, first_of, last_of
+  use ranges_m, only : n_ranges, first_of, last_of, most_ranges
   implicit none
   private
   public :: store_previous_springs, form_springs, limit_forces, follow_largest, admit_entry_work, &
@@ -22,11 +22,12 @@ module energy_limit_m
     real(wp) :: recoil = 0.0_wp !! there, by the acceleration that the forces make themselves
   end type returned_t
 
-  !> Sums over the nodes of an interface.
+  !> Sums over the nodes of an interface. Without default values, which would be written before
+  !> each use.
   type :: power_sums_t
-    real(wp) :: present = 0.0_wp !! F.v, W/m
-    real(wp) :: previous = 0.0_wp !! F-.v, of the forces of the cycle before
-    real(wp) :: recoil = 0.0_wp  !! F.F/m, N^2/kg
+    real(wp) :: present  !! F.v, W/m
+    real(wp) :: previous !! F-.v, of the forces of the cycle before
+    real(wp) :: recoil   !! F.F/m, N^2/kg
   end type power_sums_t
 
   !> Share of the largest energy so far that may be returned beyond what is stored: bodies that
@@ -159,20 +160,22 @@ contains
     real(wp), intent(in), dimension(2*n) :: previous, present, inverse_mass !! x and y of each node
     real(wp), intent(inout) :: velocity(2*n)
     type(power_sums_t), intent(out) :: sums
-    type(power_sums_t) :: parts(n_ranges(n))
-    integer :: i
+    type(power_sums_t) :: parts(most_ranges)
+    integer :: i, n_range
 
-    if (n_ranges(n) == 1) then
+    n_range = n_ranges(n)
+    if (n_range == 1) then
       call sum_range(1, n, nodes, motion, previous, present, inverse_mass, velocity, sums)
       return
     end if
     !$omp taskloop default(shared)
-    do i = 1, n_ranges(n)
+    do i = 1, n_range
       call sum_range(first_of(i, n), last_of(i, n), nodes, motion, previous, present, &
         inverse_mass, velocity, parts(i))
     end do
     !$omp end taskloop
-    sums = power_sums_t(sum(parts%present), sum(parts%previous), sum(parts%recoil))
+    sums = power_sums_t(sum(parts(:n_range)%present), sum(parts(:n_range)%previous), &
+      sum(parts(:n_range)%recoil))
   end subroutine sum_powers
 
   !> The same for a range of nodes. One loop gathers, the other goes through lists that lie in one

@@ -9,7 +9,7 @@ module overlap_status_m
   use projection_m, only : side_on
   implicit none
   private
-  public :: none_due, search_segment, update_segment_states, note_earliest_search
+  public :: none_due, search_segments, update_segment_states, note_earliest_search
 
   !> Motion by which two segments turn by a small angle together, as a part of that angle times the
   !> product of their lengths over the sum; a little less, as they may get shorter.
@@ -26,26 +26,31 @@ contains
       .and. memory%travel + memory%closed_gap < memory%earliest_segment_search
   end function none_due
 
-  !> Whether a slave segment may touch: an end of it is active, or its next search time has come and
-  !> something is behind it or behind what it is opposed to. Else that time is put off.
-  pure subroutine search_segment(contact, memory, segment, is_due)
+  !> Which of a range of slave segments may touch: an end is active, or the next search time has
+  !> come and something is behind the segment or behind what it is opposed to. Else that time is put
+  !> off.
+  pure subroutine search_segments(contact, first, last, memory)
     type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: segment
-    logical, intent(out) :: is_due
-    real(wp) :: distance
+    integer, intent(in) :: first, last
+    type(contact_state_t), intent(inout) :: memory !! out: `scratch%has_points` of those
+    real(wp) :: travel, distance
+    integer :: s
 
-    associate (state => memory%slave_status%state, ends => contact%slave%segments(:, segment))
-      is_due = state(ends(1)) == active .or. state(ends(2)) == active
-    end associate
-    if (is_due .or. memory%travel + memory%closed_gap < memory%segment_search(segment)) return
-    call search_row(contact, memory, segment, distance, is_due)
-    is_due = is_due .or. distance < memory%closed_gap
-    memory%segment_search(segment) = memory%travel + distance
-    if (is_due) return
-    memory%segment_state(segment) = separated
-    memory%segment_gap(segment) = distance
-  end subroutine search_segment
+    travel = memory%travel + memory%closed_gap
+    do s = first, last
+      associate (state => memory%slave_status%state, ends => contact%slave%segments(:, s), &
+        is_due => memory%scratch%has_points(s))
+        is_due = state(ends(1)) == active .or. state(ends(2)) == active
+        if (is_due .or. travel < memory%segment_search(s)) cycle
+        call search_row(contact, memory, s, distance, is_due)
+        is_due = is_due .or. distance < memory%closed_gap
+        memory%segment_search(s) = memory%travel + distance
+        if (is_due) cycle
+        memory%segment_state(s) = separated
+        memory%segment_gap(s) = distance
+      end associate
+    end do
+  end subroutine search_segments
 
   !> Relative motion before which a slave segment can not touch a candidate, m, and whether it lies
   !> behind the line of one that is opposed to it, or that behind its own, in part. Two segments
@@ -139,11 +144,12 @@ contains
           p = last
         end do
         last = last - 1
-        has_active_end = any(memory%slave_status%state(ends) == active)
+        has_active_end = memory%slave_status%state(ends(1)) == active &
+          .or. memory%slave_status%state(ends(2)) == active
         limit = huge(1.0_wp)
         if (.not. has_active_end .and. p > 0) &
           limit = deepest_first_contact(contact, memory, ends, points%master_nodes(:, p))
-        call update_segment(memory, s, ends, deepest, limit, n_released)
+        call update_segment(memory, s, ends, has_active_end, deepest, limit, n_released)
         if (has_active_end) cycle
         if (.not. deepest < memory%closed_gap) memory%scratch%has_points(s) = .false.
         if (memory%segment_state(s) == separated) points%area(first:last) = 0.0_wp
@@ -152,17 +158,16 @@ contains
   end subroutine update_segment_states
 
   !> Status of a slave segment by its deepest point. It is due as long as an end is active or a
-  !> point of it is behind a face; else `search_segment` has set the time.
-  pure subroutine update_segment(memory, segment, ends, deepest, limit, n_released)
+  !> point of it is behind a face; else `search_segments` has set the time.
+  pure subroutine update_segment(memory, segment, ends, has_active_end, deepest, limit, n_released)
     type(contact_state_t), intent(inout) :: memory
     integer, intent(in) :: segment
     integer, intent(in) :: ends(2)     !! its nodes
+    logical, intent(in) :: has_active_end
     real(wp), intent(in) :: deepest    !! smallest gap of its points, m
     real(wp), intent(in) :: limit      !! deepest first contact there, m
     integer, intent(inout) :: n_released
-    logical :: has_active_end
 
-    has_active_end = any(memory%slave_status%state(ends) == active)
     associate (state => memory%segment_state(segment), next_search => &
       memory%segment_search(segment))
       if (.not. deepest < memory%closed_gap) then

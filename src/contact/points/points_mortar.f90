@@ -9,7 +9,8 @@ module points_mortar_m
   use projection_m, only : projection_t, nearby_projection, stays_over
   use geometry_m, only : segment_length, separation
   use kinds_m, only : wp
-  use overlap_status_m, only : none_due, search_segment, update_segment_states, note_earliest_search
+  use overlap_status_m, only : none_due, search_segments, update_segment_states, &
+    note_earliest_search
   use overlaps_m, only : overlap_t, find_overlaps, room_for_overlaps
   use point_list_m, only : point_block_t, append_block, add_point, known_projection, &
     finish_segment_points
@@ -136,15 +137,14 @@ contains
     type(overlap_t), allocatable :: overlaps(:)
     type(point_block_t) :: block
     integer :: s
-    logical :: is_due
 
     if (none_due(memory)) return
     allocate (overlaps(room_for_overlaps(memory, first, last)))
     block%n = 0
+    call search_segments(contact, first, last, memory)
     do s = first, last
-      call search_segment(contact, memory, s, is_due)
-      memory%scratch%has_points(s) = is_due
-      if (is_due) call points_on_overlaps(contact, memory, s, overlaps, block, points)
+      if (memory%scratch%has_points(s)) &
+        call points_on_overlaps(contact, memory, s, overlaps, block, points)
     end do
     call append_projected(contact, memory, block, points)
     call update_segment_states(contact, [first, last], 0, memory, points, n_released)

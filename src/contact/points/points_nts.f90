@@ -7,10 +7,10 @@ module points_nts_m
   use contact_state_m, only : contact_state_t, contact_points_t
   use contacts_m, only : contact_t
   use projection_m, only : projection_t, vector_of, opposed_share, round_off
-  use geometry_m, only : local_coordinates_t, coordinates_on_segment, local_gap, local_normal, &
-    segment_length
+  use geometry_m, only : separation
   use kinds_m, only : wp
-  use overlap_status_m, only : none_due, search_segment, update_segment_states, note_earliest_search
+  use overlap_status_m, only : none_due, search_segments, update_segment_states, &
+    note_earliest_search
   use overlaps_m, only : overlap_t, find_overlaps, room_for_overlaps
   use point_list_m, only : add_point, append_active, finish_segment_points
   use surfaces_m, only : surface_t
@@ -28,11 +28,12 @@ contains
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(contact_points_t), intent(inout) :: points
-    real(wp) :: lengths(memory%slave_status%n_active)
+    real(wp), allocatable :: lengths(:)
 
     call append_active(memory%slave_status, contact%master, [0, memory%n_slave], 1.0_wp, &
       memory%node_penalty, points)
     if (.not. contact%is_round) return
+    allocate (lengths(points%n))
     associate (slave_positions => memory%positions(:, :memory%n_slave), &
       areas => points%area(:points%n))
       call find_nodal_areas(contact%slave, slave_positions, .true., memory%slave_status, areas)
@@ -81,16 +82,15 @@ contains
     type(overlap_t), allocatable :: overlaps(:)
     real(wp) :: of_ends(2)
     integer :: s, n
-    logical :: is_due
 
     if (none_due(memory)) return
     allocate (overlaps(room_for_overlaps(memory, first, last)))
     n = points%n
+    call search_segments(contact, first, last, memory)
     do s = first, last
-      call search_segment(contact, memory, s, is_due)
-      memory%scratch%has_points(s) = is_due
       of_ends = 0.0_wp
-      if (is_due) call points_on_segment(contact, memory, s, overlaps, of_ends, points)
+      if (memory%scratch%has_points(s)) &
+        call points_on_segment(contact, memory, s, overlaps, of_ends, points)
       memory%scratch%nodal(:, s) = of_ends
     end do
     call update_segment_states(contact, [first, last], n, memory, points, n_released)
@@ -129,12 +129,13 @@ contains
     type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
     real(wp), intent(inout) :: of_ends(2) !! areas of its ends, m
     type(contact_points_t), intent(inout) :: points
-    real(wp) :: halves(2), area, length
+    real(wp) :: t(2), halves(2), area, length
     integer :: ends(2), at(2), node, n, k, i
 
     ends = contact%slave%segments(:, s)
     call find_overlaps(contact, memory, s, contact%strict, round_off, overlaps, n)
-    length = segment_length(memory%positions(:, ends(1)), memory%positions(:, ends(2)))
+    t = separation(memory%positions(:, ends(2)), memory%positions(:, ends(1)))
+    length = sqrt(t(1)**2 + t(2)**2)
     node = 0
     area = 0.0_wp
     do k = 1, n
@@ -148,13 +149,13 @@ contains
         else if (at(i) == node) then
           area = area + halves(i)
         else
-          call add_breakpoint(memory, ends, node, area, points)
+          call add_breakpoint(memory, ends, t, node, area, points)
           node = at(i)
           area = halves(i)
         end if
       end do
     end do
-    call add_breakpoint(memory, ends, node, area, points)
+    call add_breakpoint(memory, ends, t, node, area, points)
   end subroutine points_on_segment
 
   !> Half of an overlap, as far as it counts, for either of its ends, m; in axisymmetry weighted
@@ -177,22 +178,25 @@ contains
   end function halves_of
 
   !> Append a point at a master node with a gap that is closed.
-  pure subroutine add_breakpoint(memory, ends, node, area, points)
+  pure subroutine add_breakpoint(memory, ends, t, node, area, points)
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: ends(2)     !! nodes of the slave segment
+    real(wp), intent(in) :: t(2)       !! vector of that, m
     integer, intent(in) :: node        !! of the master, 0: none
     real(wp), intent(in) :: area       !! m
     type(contact_points_t), intent(inout) :: points
-    type(local_coordinates_t) :: local
     type(projection_t) :: projection
+    real(wp) :: d(2), square
 
     if (node == 0 .or. .not. area > 0.0_wp) return
     associate (positions => memory%positions, at => memory%n_slave + node)
-      local = coordinates_on_segment(positions(:, at), positions(:, ends(1)), positions(:, ends(2)))
-      projection%gap = local_gap(local)
-      projection%normal = -local_normal(local)
-      if (projection%gap < memory%closed_gap) call add_point(points, ends, &
-        local%along/local%square, [at, at], projection, area, memory%slave_penalty)
+      d = separation(positions(:, at), positions(:, ends(1)))
+      square = max(t(1)**2 + t(2)**2, tiny(1.0_wp))
+      projection%gap = (d(1)*t(2) - d(2)*t(1))/sqrt(square)
+      if (.not. projection%gap < memory%closed_gap) return
+      projection%normal = [-t(2), t(1)]/sqrt(square)
+      call add_point(points, ends, (d(1)*t(1) + d(2)*t(2))/square, [at, at], projection, area, &
+        memory%slave_penalty)
     end associate
   end subroutine add_breakpoint
 

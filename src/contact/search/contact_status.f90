@@ -8,19 +8,20 @@ module contact_status_m
   use projection_m, only : projection_t, follow_contact, gentle_turn
   use projection_block_m, only : projection_block_t, n_block, project_block, resolve_ambiguous
   use kinds_m, only : wp
-  use ranges_m, only : n_ranges, first_of, last_of
+  use ranges_m, only : n_ranges, first_of, last_of, most_ranges
   use surfaces_m, only : surface_t
   implicit none
   private
   public :: update_status, list_active, reset_status
 
-  !> What points of a range that were due change beside their own status.
+  !> What points of a range that were due change beside their own status. Without default values,
+  !> which would be written before each use.
   type :: changes_t
-    integer :: first = 1, last = 0          !! range of the list of those due
-    integer :: n_released = 0               !! first contacts deeper than the limit
-    logical :: has_offset = .false.         !! some entry offset is above 0
-    logical :: has_changed = .false.        !! some point has become active or separated
-    real(wp) :: earliest_search = huge(1.0_wp) !! next search time of the first of them, m
+    integer :: first, last     !! range of the list of those due
+    integer :: n_released      !! first contacts deeper than the limit
+    logical :: has_offset      !! some entry offset is above 0
+    logical :: has_changed     !! some point has become active or separated
+    real(wp) :: earliest_search !! next search time of the first of them, m
   end type changes_t
 
 contains
@@ -35,9 +36,9 @@ contains
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     real(wp), intent(in), contiguous :: increments(:, :) !! (2, n_node) displacements of the step, m
     real(wp), intent(in), contiguous :: points(:, :)    !! (4, n) positions of the points
-    type(changes_t) :: changes(n_ranges(status%n))
+    type(changes_t) :: changes(most_ranges)
     real(wp) :: travel
-    integer :: n_left, n_due, i
+    integer :: n_left, n_due, n, i
 
     if (status%has_offset) status%is_new = .false.
     n_left = 0
@@ -49,23 +50,24 @@ contains
     n_due = n_left
     if (.not. travel < status%earliest_search) call list_due(status%n, status%next_search, travel, &
       status%earliest_search, status%due, n_due)
-    do i = 1, n_ranges(n_due)
-      changes(i)%first = first_of(i, n_due)
-      changes(i)%last = last_of(i, n_due)
+    n = n_ranges(n_due)
+    do i = 1, n
+      changes(i) = changes_t(first_of(i, n_due), last_of(i, n_due), 0, .false., .false., &
+        huge(1.0_wp))
     end do
-    if (n_ranges(n_due) == 1) then
+    if (n == 1) then
       call search_due(status, own, other, pairs, positions, increments, points, changes(1))
     else
       !$omp taskloop default(shared)
-      do i = 1, n_ranges(n_due)
+      do i = 1, n
         call search_due(status, own, other, pairs, positions, increments, points, changes(i))
       end do
       !$omp end taskloop
     end if
-    status%n_released = status%n_released + sum(changes%n_released)
-    status%has_offset = status%has_offset .or. any(changes%has_offset)
-    status%earliest_search = min(status%earliest_search, minval(changes%earliest_search))
-    if (any(changes%has_changed)) call list_active(status)
+    status%n_released = status%n_released + sum(changes(:n)%n_released)
+    status%has_offset = status%has_offset .or. any(changes(:n)%has_offset)
+    status%earliest_search = min(status%earliest_search, minval(changes(:n)%earliest_search))
+    if (any(changes(:n)%has_changed)) call list_active(status)
   end subroutine update_status
 
   !> The points that need a decision or are due, one by one.
@@ -117,7 +119,7 @@ contains
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: polyline(:, :), points(:, :)
     integer, intent(out) :: n_left    !! points that were not kept
-    integer :: n_of_range(n_ranges(status%n_active)), i, n
+    integer :: n_of_range(most_ranges), i, n
 
     n = status%n_active
     if (n_ranges(n) == 1) then

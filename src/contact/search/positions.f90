@@ -11,7 +11,7 @@ module positions_m
   use geometry_m, only : segment_length
   use kinds_m, only : wp
   use quadrature_m, only : gauss_rule
-  use ranges_m, only : n_ranges, first_of, last_of
+  use ranges_m, only : n_ranges, first_of, last_of, most_ranges
   use surfaces_m, only : surface_t
   use tributary_lengths_m, only : centroid
   implicit none
@@ -39,23 +39,24 @@ contains
   subroutine gather_positions(motion, memory)
     real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: boxes(4, n_ranges(size(memory%nodes)))
-    integer :: i, n
+    real(wp) :: boxes(4, most_ranges)
+    integer :: i, n, n_range
 
     n = size(memory%nodes)
-    if (n_ranges(n) == 1) then
+    n_range = n_ranges(n)
+    if (n_range == 1) then
       call gather_range(1, n, memory%nodes, motion, memory%positions, memory%scratch%increment, &
         boxes(:, 1))
     else
       !$omp taskloop default(shared)
-      do i = 1, n_ranges(n)
+      do i = 1, n_range
         call gather_range(first_of(i, n), last_of(i, n), memory%nodes, motion, memory%positions, &
           memory%scratch%increment, boxes(:, i))
       end do
       !$omp end taskloop
     end if
-    memory%advance = sqrt((maxval(boxes(3, :)) - minval(boxes(1, :)))**2 &
-      + (maxval(boxes(4, :)) - minval(boxes(2, :)))**2)
+    memory%advance = sqrt((maxval(boxes(3, :n_range)) - minval(boxes(1, :n_range)))**2 &
+      + (maxval(boxes(4, :n_range)) - minval(boxes(2, :n_range)))**2)
     memory%travel = memory%travel + memory%advance
     ! That of a pause is not that of a step.
     if (memory%is_stale) memory%advance = 0.0_wp
