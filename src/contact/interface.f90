@@ -239,7 +239,7 @@ contains
     if (memory%has%segment_points) call move_segment_points(contact%slave, memory%positions, &
       memory%segment_xi, memory%segment_spread, memory%segment_points, memory%travel)
     if (now%is_trial) then
-      memory%scratch%increment = motion(3:4, memory%nodes)
+      if (memory%has%friction) memory%scratch%increment = motion(3:4, memory%nodes)
       if (now%closes) memory%closed_gap = closed_gap_of(contact, memory)
     else if (contact%penalty_unit == penalty_implicit) then
       memory%closed_gap = gap_ahead(contact, now%cycle == 0 .or. was_stale, memory)
