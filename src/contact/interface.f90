@@ -4,7 +4,7 @@ module interface_m
   use clock_m, only : clock_t, lap, phase_contact_search, phase_contact_pairing, &
     phase_contact_force
   use candidates_m, only : update_candidates, list_candidates
-  use contact_dispatch_m, only : formulation_t, formulation_of, generate_points
+  use contact_dispatch_m, only : generate_points
   use contact_law_m, only : form_pressures, begin_sampling, measure_springs, end_sampling, &
     take_over_energy
   use contact_log_m, only : log_contact
@@ -64,7 +64,6 @@ contains
     type(answers_t), intent(inout), optional :: answers
     type(contact_t) :: tie
     type(contact_state_t) :: placed
-    type(formulation_t) :: formulation
 
     tie = contact
     tie%tie = tie_always
@@ -73,9 +72,7 @@ contains
     call start_search(tie, model, placed, answers)
     call generate_points(tie, placed)
     call freeze_ties(contact, placed%closed_gap, placed, memory)
-    formulation = formulation_of(contact)
-    if (memory%has%breaks) call start_breaking(contact, formulation%has_unit_area, &
-      formulation%has_two_passes, memory)
+    if (memory%has%breaks) call start_breaking(contact, memory)
   end subroutine start_ties
 
   !> Who touches whom at time zero.
