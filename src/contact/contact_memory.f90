@@ -92,6 +92,7 @@ contains
     has%segment_points = formulation%segment_points /= points_at_nodes
     has%overlaps = formulation%covers_segments
     has%nodal_pressure = formulation%has_nodal_pressure
+    has%unit_area = formulation%has_unit_area
     has%ties = is_tied(contact)
     has%breaks = breaks(contact)
     has%contact = has%breaks .or. .not. has%ties

@@ -178,8 +178,8 @@ contains
     if (memory%has%ties) ratio = ratio + stiffness_of_nodes(memory)/mass(memory%nodes)
   end function spring_ratios
 
-  !> The part of contact. Ties leave it, once something has broken, the nodes that they do not hold,
-  !> or not any more in part.
+  !> The part of contact. Ties that break leave it the nodes that they do not hold, or not any more
+  !> in part, from the start where slave nodes are among them.
   pure function opening_ratios(contact, mass, memory) result(ratio)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in) :: mass(:) !! (n_node) kg/m
@@ -188,11 +188,9 @@ contains
     logical :: counts(size(ratio))
 
     counts = memory%has%contact
-    if (memory%has%breaks) then
-      associate (have_failed => tied_nodes(memory, .false., .true.))
-        counts = any(have_failed) .and. (have_failed .or. .not. tied_nodes(memory, .true., .false.))
-      end associate
-    end if
+    if (memory%has%breaks) counts = tied_nodes(memory, .false., .true.) &
+      .or. .not. tied_nodes(memory, .true., .false.)
+    counts = counts .and. any(counts(:memory%n_slave))
     ratio = 0.0_wp
     if (any(counts)) ratio = merge(contact_ratios(contact, mass, memory), 0.0_wp, counts)
   end function opening_ratios

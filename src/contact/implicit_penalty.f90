@@ -15,7 +15,7 @@ module implicit_penalty_m
   use energy_limit_m, only : energy_factor, scale_forces, count_cycle, returned_t, slack, &
     store_previous_springs, form_springs
   use kinds_m, only : wp
-  use law_friction_m, only : coefficient_of, has_decay
+  use friction_m, only : coefficient_of, has_decay
   use law_state_m, only : sticks, slips
   use weighted_gaps_m, only : rows_t, start_rows, choose_rows, form_shares, find_rates, &
     find_slips, velocities_under, fill_band, along_normal, along_tangent

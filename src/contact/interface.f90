@@ -4,7 +4,7 @@ module interface_m
   use clock_m, only : clock_t, lap, phase_contact_search, phase_contact_pairing, &
     phase_contact_force
   use candidates_m, only : update_candidates, list_candidates
-  use contact_dispatch_m, only : formulation_t, formulation_of, generate_points
+  use contact_dispatch_m, only : generate_points
   use contact_law_m, only : form_pressures, begin_sampling, measure_springs, end_sampling, &
     take_over_energy
   use contact_log_m, only : log_contact
@@ -16,11 +16,10 @@ module interface_m
   use damping_m, only : damp_points, find_lag
   use spring_gaps_m, only : has_offsets, update_offsets, faded_work, begin_ramp
   use energy_limit_m, only : store_previous_springs, form_springs, limit_forces, admit_entry_work
-  use friction_m, only : start_trial_slip, take_trial_motion, form_tractions
+  use friction_m, only : store_previous_tractions, form_tractions, has_decay
   use initial_status_m, only : activate_deep_points, activate_deep_segments
   use others_memory_m, only : answers_t
   use kinds_m, only : wp
-  use law_friction_m, only : has_decay
   use log_m, only : log_t
   use model_m, only : model_t
   use positions_m, only : gather_positions, move_segment_points, closed_gap_of, gap_ahead
@@ -65,7 +64,6 @@ contains
     type(answers_t), intent(inout), optional :: answers
     type(contact_t) :: tie
     type(contact_state_t) :: placed
-    type(formulation_t) :: formulation
 
     tie = contact
     tie%tie = tie_always
@@ -74,9 +72,7 @@ contains
     call start_search(tie, model, placed, answers)
     call generate_points(tie, placed)
     call freeze_ties(contact, placed%closed_gap, placed, memory)
-    formulation = formulation_of(contact)
-    if (memory%has%breaks) call start_breaking(contact, formulation%has_unit_area, &
-      formulation%has_two_passes, memory)
+    if (memory%has%breaks) call start_breaking(contact, memory)
   end subroutine start_ties
 
   !> Who touches whom at time zero.
@@ -137,7 +133,11 @@ contains
     memory%n_active = 0
     memory%force = 0.0_wp
     memory%closed_gap = 0.0_wp
-    if (memory%has%friction) call start_trial_slip(dt, memory)
+    if (memory%has%friction) then
+      memory%scratch%dt = dt
+      memory%friction%force = 0.0_wp
+      call store_previous_tractions(memory)
+    end if
     call step_contact(contact, instant_t(time, dt, is_trial=.true., closes=is_first), motion, &
       [real(wp) ::], memory, force)
   end subroutine evaluate_contact
@@ -197,7 +197,13 @@ contains
     if (memory%points%n + memory%tie_points%n > 0 .and. .not. now%is_trial) &
       call book_springs(now%cycle, begins, memory)
     if (memory%points%n == 0) return
-    if (memory%has%friction) call tractions_at_points(contact, now, mass, memory)
+    if (memory%has%friction) then
+      ! Where the coefficient decays, explicit steps damp what sticks.
+      if (has_decay(contact%friction) .and. now%dt > 0.0_wp .and. .not. now%is_trial) call &
+        find_lag(memory%points, memory%nodes, mass, contact%is_self, now%dt, &
+        memory%scratch%nodal, memory%scratch%lag)
+      call form_tractions(contact, now%dt, memory)
+    end if
     if (memory%has%damping .and. .not. now%is_trial) call damp_points(memory%points, &
       contact%damping, memory%nodes, motion, mass, contact%is_self, memory%scratch%nodal)
     call scatter_forces(memory)
@@ -230,7 +236,7 @@ contains
     if (memory%has%segment_points) call move_segment_points(contact%slave, memory%positions, &
       memory%segment_xi, memory%segment_spread, memory%segment_points, memory%travel)
     if (now%is_trial) then
-      if (memory%has%friction) call take_trial_motion(motion, memory)
+      if (memory%has%friction) memory%scratch%increment = motion(3:4, memory%nodes)
       if (now%closes) memory%closed_gap = closed_gap_of(contact, memory)
     else if (contact%penalty_unit == penalty_implicit) then
       memory%closed_gap = gap_ahead(contact, now%cycle == 0 .or. was_stale, memory)
@@ -283,21 +289,6 @@ contains
     if (begins) memory%limit%admissible = memory%limit%admissible + memory%monitor%stored
     if (has_offsets(memory)) call admit_entry_work(faded_work(memory), memory%limit)
   end subroutine book_springs
-
-  !> Friction tractions. Where the coefficient decays, explicit steps damp those that stick.
-  pure subroutine tractions_at_points(contact, now, mass, memory)
-    type(contact_t), intent(in) :: contact
-    type(instant_t), intent(in) :: now
-    real(wp), intent(in), contiguous :: mass(:)
-    type(contact_state_t), intent(inout) :: memory
-    type(formulation_t) :: formulation
-
-    if (has_decay(contact%friction) .and. now%dt > 0.0_wp .and. .not. now%is_trial) &
-      call find_lag(memory%points, memory%nodes, mass, contact%is_self, now%dt, &
-      memory%scratch%nodal, memory%scratch%lag)
-    formulation = formulation_of(contact)
-    call form_tractions(contact, formulation%has_unit_area, now%dt, memory)
-  end subroutine tractions_at_points
 
   !> Break what reaches its strength in equilibrium, at the end of an implicit step.
   pure subroutine break_at_end(contact, time, memory, n_new)

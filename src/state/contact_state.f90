@@ -123,6 +123,8 @@ module contact_state_m
     real(wp), allocatable :: previous_traction(:) !! (n_site) of the call before; this and the next
                                             !! only where there is friction
     integer, allocatable :: previous_state(:) !! (n_site) the same
+    real(wp), allocatable :: at_sites(:)    !! (n_site) areas of points so far, m, or tractions at
+                                            !! slave nodes, N/m^2; only where there is friction
     real(wp) :: ramp_step = 0.0_wp          !! of an initial overlap in this step, as a part of it
     logical :: is_start = .false.           !! this call is that of time zero; both only where such
                                             !! overlaps grow
@@ -143,6 +145,7 @@ module contact_state_m
     logical :: segment_points = .false. !! points between nodes are followed
     logical :: overlaps = .false.       !! points are made of overlaps of segments
     logical :: nodal_pressure = .false. !! pressure is formed at slave nodes
+    logical :: unit_area = .false.      !! the penalty is N/m per node, pressures are forces
     logical :: damping = .false.
     logical :: friction = .false.
     logical :: interference = .false.   !! initial overlaps grow
@@ -303,7 +306,8 @@ contains
         allocate (scratch%spring(2, n), scratch%previous_spring(2, n), source=0.0_wp)
       if (memory%has%breaks) allocate (scratch%is_freed(n_sites(memory)), source=.false.)
       if (memory%has%friction) then
-        allocate (scratch%previous_traction(size(memory%friction%state)), source=0.0_wp)
+        allocate (scratch%previous_traction(size(memory%friction%state)), &
+          scratch%at_sites(size(memory%friction%state)), source=0.0_wp)
         allocate (scratch%previous_state(size(memory%friction%state)), source=0)
       end if
       if (.not. memory%has%overlaps) return

@@ -1,15 +1,14 @@
 ! SPDX-License-Identifier: MIT
 !> The only file that knows the contact laws: from the gap of a site to the pressure there, and what
 !> the springs store. Where these sites are, at the points or at the slave nodes, the row of the
-!> formulation says; the pressure of every point is kept on the list. Adding a law is a file
-!> law_*.f90, a row of `laws` and its `case` (doc/add_a_law.md).
+!> formulation says; the pressure of every point is kept on the list. Adding a law is a procedure
+!> like apply_penalty, a row of `laws` and a `case` (doc/add_a_law.md).
 module contact_law_m
   use contact_state_m, only : contact_state_t, site_at
   use dual_m, only : dual_t
   use spring_gaps_m, only : has_offsets, limit_new_offsets, add_offsets, take_overlaps, &
     ramp_gaps, gather_moment
   use kinds_m, only : wp
-  use law_penalty_m, only : apply_penalty
   use law_state_m, only : contact_monitor_t
   use contact_scatter_m, only : average_values, share_out
   use tiebreak_m, only : exclude_tied_sites, is_tied_site
@@ -52,6 +51,20 @@ contains
     case (law_penalty); call apply_penalty(n, stiffness, gap, pressure, slope, energy)
     end select
   end subroutine apply_law
+
+  !> The penalty law: a spring at each site, which pushes and never pulls. It stores the integral of
+  !> the pressure over the way from closing.
+  pure subroutine apply_penalty(n, stiffness, gap, pressure, slope, energy)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: stiffness(n), gap(n) !! N/m^2, m
+    real(wp), intent(inout) :: pressure(n)       !! N/m
+    real(wp), intent(inout) :: slope(n)          !! N/m^2, < 0, also where the gap is zero or open
+    real(wp), intent(inout) :: energy(n)         !! J/m^2
+
+    pressure = stiffness*max(0.0_wp, -gap)
+    slope = -stiffness
+    energy = 0.5_wp*stiffness*max(0.0_wp, -gap)**2
+  end subroutine apply_penalty
 
   !> Pressures of all points on the list, before damping.
   pure subroutine form_pressures(memory)

@@ -60,10 +60,13 @@ contains
 
     if (.not. has_other_forces(memory)) return
     associate (spring => memory%scratch%spring, n => size(memory%force))
-      spring = memory%force
+      if (memory%has%friction) then
+        call difference(n, memory%force, memory%friction%force, spring)
+      else
+        spring = memory%force
+      end if
       if (memory%has%ties) call subtract(n, memory%ties%force, spring)
       if (memory%has%damping) call subtract(n, memory%damping_force, spring)
-      if (memory%has%friction) call subtract(n, memory%friction%force, spring)
     end associate
   end subroutine form_springs
 
@@ -83,6 +86,15 @@ contains
 
     spring = spring - part
   end subroutine subtract
+
+  !> The same without a copy before.
+  pure subroutine difference(n, force, part, spring)
+    integer, intent(in) :: n
+    real(wp), intent(in) :: force(n), part(n)
+    real(wp), intent(inout) :: spring(n)
+
+    spring = force - part
+  end subroutine difference
 
   !> Scale the forces of the interface, with the pressures and the part of damping, by what the
   !> springs may return; before they are added to those of the mesh and their work is counted.

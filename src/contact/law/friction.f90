@@ -1,23 +1,33 @@
 ! SPDX-License-Identifier: MIT
 !> Friction of an interface (doc/theory/contact.md, section 6.2): slip of each site in a step, and
-!> the tractions of all points from it. Only where the deck asks for friction.
+!> the tractions of all points from it, of tangential springs that slip at a limit (regularised
+!> Coulomb). Only where the deck asks for friction.
 module friction_m
-  use contact_state_m, only : contact_state_t, contact_points_t, n_side, site_at
-  use contacts_m, only : contact_t, friction_rule_t
-  use law_state_m, only : friction_memory_t, is_open, sticks, slips
-  use kinds_m, only : wp
-  use law_friction_m, only : coefficient_of, has_decay, sliding_speed, return_traction, &
-    holds_on
-  use tributary_lengths_m, only : nodal_area
   use contact_scatter_m, only : average_values, share_out
+  use contact_state_m, only : contact_state_t, n_side, site_at
+  use contacts_m, only : contact_t, friction_rule_t
+  use dual_m, only : dual_t, operator(+), operator(-), operator(*)
+  use kinds_m, only : wp
+  use law_state_m, only : is_open, sticks, slips
+  use tributary_lengths_m, only : nodal_area
   implicit none
   private
-  public :: start_trial_slip, take_trial_motion, store_previous_tractions, form_tractions, &
-    has_slipped, let_hold, slip_of
+  public :: store_previous_tractions, form_tractions, has_slipped, let_hold, coefficient_of, &
+    has_decay, sliding_speed, slider_t, return_slider, linearise_traction, goes_on, slip_of
+
+  !> What slips on in the first tangent of a step, in which nothing has moved yet.
+  integer, parameter :: goes_on = -1
+  !> What slips where the tangent of slipping is singular: its spring stands for it.
+  integer, parameter :: holds_on = -2
+
+  !> Passes of Newton's method for the speed of sliding. Where two roots all but meet each halves
+  !> the error.
+  integer, parameter :: most_passes = 100
 
   !> One site in a step.
   type :: slider_t
     integer :: site                   !! on the lists of friction
+    real(wp) :: area                  !! that it stands for, m
     real(wp) :: slip                  !! of the step, m
     real(wp) :: previous              !! traction before, N/m^2
     integer :: before                 !! state before
@@ -30,26 +40,6 @@ module friction_m
   end type slider_t
 
 contains
-
-  !> Before the points of a trial of an implicit step are placed: friction goes on from the last
-  !> converged step.
-  pure subroutine start_trial_slip(dt, memory)
-    real(wp), intent(in) :: dt                       !! of the step, s
-    type(contact_state_t), intent(inout) :: memory
-
-    memory%scratch%dt = dt
-    memory%friction%force = 0.0_wp
-    call store_previous_tractions(memory)
-  end subroutine start_trial_slip
-
-  !> The displacements that it goes on with: all of the step.
-  pure subroutine take_trial_motion(motion, memory)
-    real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u, and u minus that of the start
-                                                     !! of the step
-    type(contact_state_t), intent(inout) :: memory
-
-    memory%scratch%increment = motion(3:4, memory%nodes)
-  end subroutine take_trial_motion
 
   !> Whether any site slipped at the end of the last step.
   pure function has_slipped(contacts)
@@ -96,156 +86,108 @@ contains
     memory%friction%stored = 0.0_wp
   end subroutine store_previous_tractions
 
-  !> Tractions of all points, whose pressures are those of the springs alone.
-  pure subroutine form_tractions(contact, has_unit_area, dt, memory)
+  !> Tractions of all points, whose pressures are those of the springs alone. Each point is a site;
+  !> in types 6 and 7 slave nodes are, with slips averaged as gaps are.
+  pure subroutine form_tractions(contact, dt, memory)
     type(contact_t), intent(in) :: contact
-    logical, intent(in) :: has_unit_area !! pressures are forces, N/m
-    real(wp), intent(in) :: dt           !! step that led to u, s
+    real(wp), intent(in) :: dt !! step that led to u, s
     type(contact_state_t), intent(inout) :: memory
+    type(slider_t) :: slider
+    integer :: i
 
-    if (memory%has%nodal_pressure) then
-      call tractions_at_slave_nodes(contact%friction, dt, memory)
-    else if (memory%has%segment_points) then
-      call tractions_at_virtual_nodes(contact, dt, memory)
-    else
-      call tractions_at_points(contact, has_unit_area, dt, memory)
-    end if
+    call find_slips(contact, memory)
+    associate (points => memory%points, rule => contact%friction, lag => memory%scratch%lag, &
+      acting => memory%scratch%at_sites)
+      if (rule%most > 0.0_wp) slider%most = rule%most
+      if (memory%has%nodal_pressure) then
+        call average_values(points, points%traction, memory%n_slave, memory%scratch%nodal)
+        do i = 1, memory%n_slave
+          call read_node(rule, memory, i, slider)
+          call return_slider(rule, [dt, lag], slider)
+          acting(i) = slider%traction + slider%drag
+          call store_state(slider, memory)
+        end do
+        call share_out(points%n, points%slave_nodes, points%slave_weights, acting, points%traction)
+        return
+      end if
+      do i = 1, points%n
+        call read_point(rule, memory, i, slider)
+        if (memory%has%unit_area .and. rule%most > 0.0_wp) slider%most = rule%most*nodal_area( &
+          contact%slave, memory%positions(:, :memory%n_slave), .false., slider%site)
+        call return_slider(rule, [dt, lag], slider)
+        points%traction(i) = slider%traction + slider%drag
+        call store_state(slider, memory)
+      end do
+    end associate
   end subroutine form_tractions
 
-  !> Types 1, 2, 3 and 5: each point is a site. A master node that was none of the points then
-  !> starts from what the two ends of its slave segment had (of nothing it would lose that part of
-  !> the shear), and goes on sliding where one of them slid.
-  pure subroutine tractions_at_points(contact, has_unit_area, dt, memory)
+  !> Slips of all points, which wait where tractions will be. All sub-segments of a virtual node
+  !> have that of its projection.
+  pure subroutine find_slips(contact, memory)
     type(contact_t), intent(in) :: contact
-    logical, intent(in) :: has_unit_area
-    real(wp), intent(in) :: dt
     type(contact_state_t), intent(inout) :: memory
-    type(slider_t) :: slider
-    integer :: p
+    real(wp) :: weights(n_side)
+    integer :: nodes(n_side), p, point
 
-    associate (points => memory%points, rule => contact%friction, scratch => memory%scratch)
-      if (rule%most > 0.0_wp) slider%most = rule%most
+    associate (points => memory%points, status => memory%slave_status)
       do p = 1, points%n
-        slider%site = site_at(memory, memory%points, p)
-        slider%slip = slip_at(memory, p)
-        call read_previous(memory, slider)
-        if (slider%before == is_open) then
-          associate (nodes => points%slave_nodes(:, p))
-            slider%previous = sum(points%slave_weights(:, p)*scratch%previous_traction(nodes))
-            if (any(scratch%previous_state(nodes) == slips)) slider%before = slips
+        nodes = points%master_nodes(:, p)
+        weights = points%master_weights(:, p)
+        if (memory%has%segment_points .and. .not. memory%has%nodal_pressure) then
+          associate (node => points%slave_nodes(1, p))
+            point = site_at(memory, points, p) &
+              + size(memory%segment_xi)*(status%pass%segment_at(node) - node)
           end associate
+          nodes = memory%n_slave + contact%master%segments(:, status%segment(point))
+          weights = [1.0_wp - status%xi(point), status%xi(point)]
         end if
-        slider%pressure = points%pressure(p)
-        slider%stiffness = rule%stiffness*points%stiffness(p)
-        if (has_unit_area .and. rule%most > 0.0_wp) slider%most = rule%most*nodal_area( &
-          contact%slave, memory%positions(:, :memory%n_slave), .false., slider%site)
-        call return_slider(rule, [dt, scratch%lag], slider)
-        points%traction(p) = slider%traction + slider%drag
-        call store_state(slider, points%area(p), scratch%nodal(1, slider%site), memory%friction)
+        points%traction(p) = slip_of(points%slave_nodes(1, p), points%slave_weights(1, p), &
+          nodes, weights, points%normal(1, p), points%gap(p), memory%scratch%increment, &
+          memory%positions)
       end do
     end associate
-  end subroutine tractions_at_points
+  end subroutine find_slips
 
-  !> Type 4, and whatever presses at points between nodes: virtual nodes, with the projection of
-  !> each; all its sub-segments, which follow each other in the order of the points in contact, have
-  !> its traction.
-  pure subroutine tractions_at_virtual_nodes(contact, dt, memory)
-    type(contact_t), intent(in) :: contact
-    real(wp), intent(in) :: dt
-    type(contact_state_t), intent(inout) :: memory
-    type(slider_t) :: slider
-    real(wp) :: weights(n_side), none
-    integer :: nodes(n_side), point, k, p, last
-
-    last = 0
-    associate (points => memory%points, rule => contact%friction, &
-      status => memory%slave_status)
-      if (rule%most > 0.0_wp) slider%most = rule%most
-      slider%stiffness = rule%stiffness*memory%slave_penalty
-      do k = 1, status%n_active
-        point = status%active_points(k)
-        p = last + 1
-        last = last_sub_segment(points, p)
-        slider%site = site_at(memory, memory%points, p)
-        nodes = memory%n_slave + contact%master%segments(:, status%segment(point))
-        weights = [1.0_wp - status%xi(point), status%xi(point)]
-        slider%slip = slip_of(points%slave_nodes(1, p), points%slave_weights(1, p), nodes, &
-          weights, points%normal(1, p), points%gap(p), memory%scratch%increment, memory%positions)
-        call read_previous(memory, slider)
-        slider%pressure = points%pressure(p)
-        call return_slider(rule, [dt, memory%scratch%lag], slider)
-        points%traction(p:last) = slider%traction + slider%drag
-        call store_state(slider, sum(points%area(p:last)), none, memory%friction)
-      end do
-    end associate
-  end subroutine tractions_at_virtual_nodes
-
-  !> The last sub-segment of a point: another one has another node or stands elsewhere on its
-  !> segment.
-  pure function last_sub_segment(points, first) result(last)
-    type(contact_points_t), intent(in) :: points
-    integer, intent(in) :: first
-    integer :: last
-
-    do last = first, points%n - 1
-      if (points%slave_nodes(1, last + 1) /= points%slave_nodes(1, first)) return
-      if (abs(points%slave_weights(2, last + 1) - points%slave_weights(2, first)) > 0.0_wp) return
-    end do
-  end function last_sub_segment
-
-  !> Types 6 and 7: slave nodes, with slips averaged as gaps are.
-  pure subroutine tractions_at_slave_nodes(rule, dt, memory)
+  !> A slave node as a site, with the averages of its points.
+  pure subroutine read_node(rule, memory, i, slider)
     type(friction_rule_t), intent(in) :: rule
-    real(wp), intent(in) :: dt
-    type(contact_state_t), intent(inout) :: memory
-    type(slider_t) :: slider
-    real(wp) :: acting(memory%n_slave) !! N/m^2
-    real(wp) :: none
-    integer :: p, i
-
-    if (rule%most > 0.0_wp) slider%most = rule%most
-    slider%stiffness = rule%stiffness*memory%slave_penalty
-    acting = 0.0_wp
-    associate (points => memory%points, nodal => memory%scratch%nodal)
-      do p = 1, points%n
-        points%traction(p) = slip_at(memory, p)
-      end do
-      call average_values(points, points%traction, memory%n_slave, nodal)
-      do i = 1, memory%n_slave
-        if (.not. memory%node_pressure(i) > 0.0_wp) cycle
-        slider%site = i
-        slider%slip = nodal(1, i)
-        call read_previous(memory, slider)
-        slider%pressure = memory%node_pressure(i)
-        call return_slider(rule, [dt, memory%scratch%lag], slider)
-        acting(i) = slider%traction + slider%drag
-        call store_state(slider, nodal(2, i), none, memory%friction)
-      end do
-      call share_out(points%n, points%slave_nodes, points%slave_weights, acting, points%traction)
-    end associate
-  end subroutine tractions_at_slave_nodes
-
-  !> What a site had before the step.
-  pure subroutine read_previous(memory, slider)
     type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: i
     type(slider_t), intent(inout) :: slider
 
-    slider%previous = memory%scratch%previous_traction(slider%site)
-    slider%before = memory%scratch%previous_state(slider%site)
-  end subroutine read_previous
+    slider%site = i
+    slider%slip = memory%scratch%nodal(1, i)
+    slider%area = memory%scratch%nodal(2, i)
+    slider%pressure = memory%node_pressure(i)
+    slider%stiffness = rule%stiffness*memory%slave_penalty
+    slider%previous = memory%scratch%previous_traction(i)
+    slider%before = memory%scratch%previous_state(i)
+  end subroutine read_node
 
-  !> Slip of a step of a point on the list, m.
-  pure function slip_at(memory, p) result(slip)
+  !> A point as a site. A master node that was none of the points starts from what the two ends of
+  !> its slave segment had (of nothing it would lose that part of the shear), and goes on sliding
+  !> where one of them slid.
+  pure subroutine read_point(rule, memory, p, slider)
+    type(friction_rule_t), intent(in) :: rule
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: p
-    real(wp) :: slip
+    type(slider_t), intent(inout) :: slider
 
-    associate (points => memory%points)
-      slip = slip_of(points%slave_nodes(1, p), points%slave_weights(1, p), &
-        points%master_nodes(1, p), points%master_weights(1, p), points%normal(1, p), &
-        points%gap(p), memory%scratch%increment, memory%positions)
+    associate (points => memory%points, scratch => memory%scratch)
+      slider%site = site_at(memory, points, p)
+      slider%slip = points%traction(p)
+      slider%area = points%area(p)
+      slider%pressure = points%pressure(p)
+      slider%stiffness = rule%stiffness*points%stiffness(p)
+      slider%previous = scratch%previous_traction(slider%site)
+      slider%before = scratch%previous_state(slider%site)
+      if (slider%before /= is_open .or. memory%has%segment_points) return
+      associate (nodes => points%slave_nodes(:, p))
+        slider%previous = sum(points%slave_weights(:, p)*scratch%previous_traction(nodes))
+        if (any(scratch%previous_state(nodes) == slips)) slider%before = slips
+      end associate
     end associate
-  end function slip_at
+  end subroutine read_point
 
   !> Slip of a step of the slave side of a point over its master side, along t = (-n_y, n_x), m: the
   !> motion of the projection over the segment that has the normal, L d(xi) (doc/theory/contact.md,
@@ -278,34 +220,24 @@ contains
       + gap*(t(2)*change(1) - t(1)*change(2))/max(t(1)*t(1) + t(2)*t(2), tiny(1.0_wp))
   end function slip_of
 
-  !> Traction and state of a site after a step.
+  !> Traction and state of a site after a step. Where the coefficient depends on the speed, what
+  !> slides has that of its speed, and what sticks and did so before is damped, up to its limit. A
+  !> damped site slides where its spring and both together are beyond the limit, so that tractions
+  !> do not jump between the two.
   pure subroutine return_slider(rule, times, slider)
     type(friction_rule_t), intent(in) :: rule
     real(wp), intent(in) :: times(2) !! the step and the lag of what is damped, s
     type(slider_t), intent(inout) :: slider
-    real(wp) :: limit
+    real(wp) :: limit, trial, damped, speed
 
     slider%drag = 0.0_wp
     slider%traction = 0.0_wp
     if (.not. slider%pressure > 0.0_wp) return
     limit = min(coefficient_of(rule, 0.0_wp)*slider%pressure, slider%most)
-    call return_traction(slider%previous + slider%stiffness*slider%slip, limit, slider%traction, &
-      slider%state)
-    if (has_decay(rule) .and. times(1) > 0.0_wp .and. slider%stiffness > 0.0_wp) &
-      call slow_down(rule, times, limit, slider)
-  end subroutine return_slider
-
-  !> The traction of a site that slides, at the speed of its sliding, and damping of one that
-  !> sticks and did so before, up to its limit. A damped site slides where its spring and both
-  !> together are beyond the limit, so that tractions do not jump between the two.
-  pure subroutine slow_down(rule, times, limit, slider)
-    type(friction_rule_t), intent(in) :: rule
-    real(wp), intent(in) :: times(2) !! the step and the lag of what is damped, s
-    real(wp), intent(in) :: limit    !! of what sticks, N/m^2
-    type(slider_t), intent(inout) :: slider
-    real(wp) :: trial, damped, speed
-
     trial = slider%previous + slider%stiffness*slider%slip
+    slider%traction = sign(min(abs(trial), limit), trial)
+    slider%state = merge(slips, sticks, abs(trial) > limit)
+    if (.not. (has_decay(rule) .and. times(1) > 0.0_wp .and. slider%stiffness > 0.0_wp)) return
     damped = trial
     if (slider%before == sticks) damped = trial + times(2)/times(1)*slider%stiffness*slider%slip
     speed = sliding_speed(rule, min(abs(trial), damped*sign(1.0_wp, trial)), slider%pressure, &
@@ -319,34 +251,162 @@ contains
       slider%state = sticks
       slider%drag = sign(min(abs(damped), limit), damped) - trial
     end if
-  end subroutine slow_down
+  end subroutine return_slider
 
   !> What a site remembers of a step, and what its spring holds. Further points at one site, of a
   !> node where bodies lie over each other, go on from what it had, and leave it their mean.
-  pure subroutine store_state(slider, area, total, friction)
+  pure subroutine store_state(slider, memory)
     type(slider_t), intent(in) :: slider
-    real(wp), intent(in) :: area     !! of the points, m
-    real(wp), intent(inout) :: total !! area of the site so far, m; set by its first point
-    type(friction_memory_t), intent(inout) :: friction
+    type(contact_state_t), intent(inout) :: memory
 
     if (.not. slider%pressure > 0.0_wp) return
-    friction%stored = friction%stored + area*slider%traction**2/(2.0_wp*slider%stiffness)
-    associate (traction => friction%traction(slider%site), state => friction%state(slider%site))
-      if (state == is_open) then
-        friction%slip(slider%site) = friction%slip(slider%site) + slider%slip
-        traction = slider%traction
-        state = slider%state
-        total = area
+    associate (friction => memory%friction, site => slider%site, &
+      area => memory%scratch%at_sites(slider%site))
+      friction%stored = friction%stored &
+        + slider%area*slider%traction**2/(2.0_wp*slider%stiffness)
+      if (friction%state(site) == is_open) then
+        friction%slip(site) = friction%slip(site) + slider%slip
+        friction%traction(site) = slider%traction
+        friction%state(site) = slider%state
+        if (.not. memory%has%nodal_pressure) area = slider%area
         return
       end if
-      if (total + area > 0.0_wp) then
-        traction = (total*traction + area*slider%traction)/(total + area)
-      else
-        traction = slider%traction
-      end if
-      state = max(slider%state, state)
-      total = total + area
+      area = area + slider%area
+      friction%traction(site) = friction%traction(site) + slider%area/max(area, tiny(area)) &
+        *(slider%traction - friction%traction(site))
+      friction%state(site) = max(slider%state, friction%state(site))
     end associate
   end subroutine store_state
+
+  !> Coefficient of friction at a speed of sliding: FD + (FS - FD) exp(-DC speed).
+  pure function coefficient_of(rule, speed) result(coefficient)
+    type(friction_rule_t), intent(in) :: rule
+    real(wp), intent(in) :: speed !! m/s, >= 0
+    real(wp) :: coefficient
+
+    coefficient = rule%sliding + (rule%at_rest - rule%sliding)
+    ! The exponential costs as much as all the rest.
+    if (rule%decay > 0.0_wp) coefficient = rule%sliding &
+      + (rule%at_rest - rule%sliding)*exp(-rule%decay*speed)
+  end function coefficient_of
+
+  !> Whether the coefficient depends on the speed of sliding.
+  pure function has_decay(rule)
+    type(friction_rule_t), intent(in) :: rule
+    logical :: has_decay
+
+    has_decay = rule%decay > 0.0_wp .and. abs(rule%at_rest - rule%sliding) > 0.0_wp
+  end function has_decay
+
+  !> Speed of sliding of a site, m/s: that of the slip that does not come back, by v = (trial -
+  !> limit(v))/stiffness with limit(v) = min(mu(v) p, most); 0 where it sticks
+  !> (doc/theory/contact.md, section 6.2).
+  pure function sliding_speed(rule, trial, pressure, most, stiffness, slid) result(speed)
+    type(friction_rule_t), intent(in) :: rule
+    real(wp), intent(in) :: trial     !! size of the trial traction, N/m^2
+    real(wp), intent(in) :: pressure  !! N/m^2, > 0
+    real(wp), intent(in) :: most      !! largest traction whatever the pressure, N/m^2
+    real(wp), intent(in) :: stiffness !! tangential, times the step, N s/m^3, > 0
+    logical, intent(in) :: slid       !! the same way in the step before
+    real(wp) :: speed
+    real(wp) :: x, previous, beyond, height, fall
+    integer :: pass
+
+    speed = 0.0_wp
+    ! With x = DC v: x + height exp(-x) = beyond, whose left side is least at x = log(height).
+    beyond = rule%decay*(trial - rule%sliding*pressure)/stiffness
+    height = rule%decay*(rule%at_rest - rule%sliding)*pressure/stiffness
+    if (trial <= min(coefficient_of(rule, speed)*pressure, most)) then
+      if (.not. (slid .and. height > 1.0_wp)) return
+      if (beyond < 1.0_wp + log(height)) return
+    else if (trial > most) then
+      speed = (trial - most)/stiffness
+      if (coefficient_of(rule, speed)*pressure >= most) return
+    end if
+    ! Where the coefficient falls the left side is convex, and Newton's method comes down to its
+    ! last root from the right; where it rises the left side is concave and increases, and it comes
+    ! up to its only one from the left. Neither passes the root.
+    x = merge(beyond, 0.0_wp, height > 0.0_wp)
+    do pass = 1, most_passes
+      previous = x
+      fall = height*exp(-x)
+      if (fall >= 1.0_wp) exit
+      x = x - (x + fall - beyond)/(1.0_wp - fall)
+      if (abs(x - previous) <= 2.0_wp*spacing(x)) exit
+    end do
+    speed = max(x, 0.0_wp)/rule%decay
+  end function sliding_speed
+
+  !> The traction of a site in contact with its derivatives. One that touches without pressure has
+  !> none yet, and sticks.
+  pure function linearise_traction(rule, previous, slip, pressure, stiffness, most, times, before) &
+      result(traction)
+    type(friction_rule_t), intent(in) :: rule
+    type(dual_t), intent(in) :: previous !! traction before, N/m^2
+    type(dual_t), intent(in) :: slip     !! of the step, m
+    type(dual_t), intent(in) :: pressure !! N/m^2
+    real(wp), intent(in) :: stiffness    !! tangential, N/m^3
+    type(dual_t), intent(in) :: most     !! largest traction whatever the pressure, N/m^2
+    real(wp), intent(in) :: times(2)     !! step that made the slip, and lag of what sticks, s
+    integer, intent(in) :: before        !! state before; `goes_on`: at the limit, wherever the
+                                         !! trial is
+    type(dual_t) :: traction
+    type(dual_t) :: trial, damped, limit
+    real(wp) :: speed
+
+    traction = stiffness*slip
+    if (.not. pressure%value > 0.0_wp) then
+      traction%value = 0.0_wp
+      return
+    end if
+    traction = previous + traction
+    trial = sign(1.0_wp, traction%value)*traction
+    limit = coefficient_of(rule, 0.0_wp)*pressure
+    if (most%value < limit%value) limit = most
+    if (before == holds_on) then
+      traction%value = sign(min(limit%value, trial%value), traction%value)
+      return
+    end if
+    speed = 0.0_wp
+    if (has_decay(rule) .and. stiffness*times(1) > 0.0_wp) then
+      if (before == sticks) then
+        damped = traction + (times(2)/times(1)*stiffness)*slip
+        if (sign(1.0_wp, traction%value)*damped%value < trial%value) &
+          trial = sign(1.0_wp, traction%value)*damped
+        traction = damped
+      end if
+      speed = sliding_speed(rule, trial%value, pressure%value, most%value, stiffness*times(1), &
+        (before == slips .or. before == goes_on) .and. traction%value*previous%value > 0.0_wp)
+    end if
+    if (speed > 0.0_wp) then
+      limit = linearise_sliding_limit(rule, speed, trial, pressure, most, stiffness*times(1))
+    else if (.not. (abs(traction%value) > limit%value .or. before == goes_on)) then
+      return
+    end if
+    traction = sign(1.0_wp, traction%value)*limit
+  end function linearise_traction
+
+  !> The limit at a speed of sliding with its derivatives, from those of the equation that the speed
+  !> solves.
+  pure function linearise_sliding_limit(rule, speed, trial, pressure, most, stiffness) result(limit)
+    type(friction_rule_t), intent(in) :: rule
+    real(wp), intent(in) :: speed     !! m/s
+    type(dual_t), intent(in) :: trial !! size of the trial traction, N/m^2
+    type(dual_t), intent(in) :: pressure, most
+    real(wp), intent(in) :: stiffness !! tangential, times the step, N s/m^3
+    type(dual_t) :: limit
+    real(wp) :: coefficient, fall
+
+    coefficient = coefficient_of(rule, speed)
+    limit = coefficient*pressure
+    if (.not. most%value > limit%value) then
+      limit = most
+      return
+    end if
+    ! Not as steep as where two roots meet.
+    fall = rule%decay*(coefficient - rule%sliding)*pressure%value/stiffness
+    limit%slope = limit%slope - fall/max(1.0_wp - fall, sqrt(epsilon(fall))) &
+      *(trial%slope - limit%slope)
+  end function linearise_sliding_limit
 
 end module friction_m

@@ -10,17 +10,15 @@ module tiebreak_m
   use tributary_lengths_m, only : nodal_area
   implicit none
   private
-  public :: start_breaking, mark_breaks, let_go, holds, has_failed, holds_node, &
-    is_tied_site, exclude_tied_sites
+  public :: start_breaking, mark_breaks, let_go, has_state, is_tied_site, exclude_tied_sites
 
 contains
 
   !> All sites that springs hold, and what makes their pressures stresses of the bond: those of
   !> type 1 are forces, and two passes share it by their penalties. Sites are in the reference
   !> geometry.
-  pure subroutine start_breaking(contact, has_unit_area, has_two_passes, memory)
+  pure subroutine start_breaking(contact, memory)
     type(contact_t), intent(in) :: contact
-    logical, intent(in) :: has_unit_area, has_two_passes !! of the formulation
     type(contact_state_t), intent(inout) :: memory
     integer :: s
 
@@ -34,9 +32,9 @@ contains
       end if
       do s = 1, size(ties%area)
         if (ties%area(s) > 0.0_wp) ties%state(ties%site(s)) = is_held
-        if (has_two_passes) ties%to_stress(s) = (memory%slave_penalty + memory%master_penalty) &
-          /points%stiffness(ties%first(s))
-        if (has_unit_area) ties%to_stress(s) = ties%area(s)/nodal_area(contact%slave, &
+        if (memory%master_status%n > 0) ties%to_stress(s) = (memory%slave_penalty &
+          + memory%master_penalty)/points%stiffness(ties%first(s))
+        if (memory%has%unit_area) ties%to_stress(s) = ties%area(s)/nodal_area(contact%slave, &
           memory%positions(:, :memory%n_slave), contact%is_round, ties%site(s))
       end do
     end associate
@@ -115,49 +113,22 @@ contains
     end where
   end subroutine let_go
 
-  !> Whether a spring still holds anything.
-  pure function holds(memory, s) result(yes)
+  !> Whether a spring, or a part of it, is held or broken.
+  pure function has_state(memory, s, state) result(yes)
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: s
+    integer, intent(in) :: s, state !! is_held or is_broken
     logical :: yes
 
-    yes = .true.
+    yes = state == is_held
+    if (.not. memory%has%breaks) return
     associate (ties => memory%ties)
-      if (.not. memory%has%breaks) return
       if (memory%has%nodal_pressure) then
-        yes = any(ties%state(memory%tie_points%slave_nodes(:, ties%first(s))) == is_held)
+        yes = any(ties%state(memory%tie_points%slave_nodes(:, ties%first(s))) == state)
       else
-        yes = ties%state(ties%site(s)) == is_held
+        yes = ties%state(ties%site(s)) == state
       end if
     end associate
-  end function holds
-
-  !> Whether a spring, or a part of it, has broken.
-  pure function has_failed(memory, s) result(yes)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: s
-    logical :: yes
-
-    yes = .false.
-    associate (ties => memory%ties)
-      if (.not. memory%has%breaks) return
-      if (memory%has%nodal_pressure) then
-        yes = any(ties%state(memory%tie_points%slave_nodes(:, ties%first(s))) == is_broken)
-      else
-        yes = ties%state(ties%site(s)) == is_broken
-      end if
-    end associate
-  end function has_failed
-
-  !> Whether a slave node, of types 6 and 7, still holds.
-  pure function holds_node(memory, node) result(yes)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: node
-    logical :: yes
-
-    yes = .true.
-    if (memory%has%breaks) yes = memory%ties%state(node) == is_held
-  end function holds_node
+  end function has_state
 
   !> Whether a tie keeps a site of this state out of contact.
   elemental function is_tied_site(state) result(is_tied)

@@ -13,8 +13,8 @@ module ties_m
   use geometry_m, only : separation
   use kinds_m, only : wp
   use model_m, only : model_t
-  use law_state_m, only : allocate_ties
-  use tiebreak_m, only : mark_breaks, let_go, holds, has_failed
+  use law_state_m, only : allocate_ties, is_held, is_broken
+  use tiebreak_m, only : mark_breaks, let_go, has_state
   implicit none
   private
   public :: tie_spring_t, tie_reach, freeze_ties, hold_ties, tie_energy, tie_spring, &
@@ -300,7 +300,7 @@ contains
       call scatter_tractions(points, ties%force, memory%force)
       call scatter(points, points%pressure, memory%force)
       do s = 1, size(springs)
-        if (.not. holds(memory, s)) cycle
+        if (.not. has_state(memory, s, is_held)) cycle
         ties%n_held = ties%n_held + ties%first(s + 1) - ties%first(s)
         call add_couple(springs(s), s, memory)
       end do
@@ -384,7 +384,7 @@ contains
     if (memory%tie_points%n == 0) return
     associate (points => memory%tie_points, ties => memory%ties)
       do s = 1, size(ties%side)
-        if (.not. holds(memory, s)) cycle
+        if (.not. has_state(memory, s, is_held)) cycle
         spring = tie_spring(memory, s)
         turn = norm2(spring%d)/spring%length
         do p = ties%first(s), ties%first(s + 1) - 1
@@ -419,7 +419,8 @@ contains
     is_tied = .false.
     if (memory%tie_points%n == 0) return
     do s = 1, size(memory%ties%side)
-      if (.not. ((held .and. holds(memory, s)) .or. (broken .and. has_failed(memory, s)))) cycle
+      if (.not. ((held .and. has_state(memory, s, is_held)) &
+        .or. (broken .and. has_state(memory, s, is_broken)))) cycle
       do p = memory%ties%first(s), memory%ties%first(s + 1) - 1
         do k = 1, n_side
           if (memory%tie_points%slave_weights(k, p) > 0.0_wp) &

@@ -9,7 +9,7 @@ module assembly_m
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*)
   use spring_gaps_m, only : has_offsets, ramp_gaps
   use kinds_m, only : wp
-  use law_friction_m, only : linearise_traction, goes_on
+  use friction_m, only : linearise_traction, goes_on
   use law_state_m, only : is_open, slips
   use linearisation_m, only : linearised_list_t, linearised_point_t, n_slot, slip_of, between
   use sparse_m, only : sparse_t, add_block

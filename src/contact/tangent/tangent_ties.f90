@@ -9,8 +9,9 @@ module tangent_ties_m
   use contact_state_m, only : contact_state_t, n_side
   use dual_m, only : dual_t, variable, operator(+), operator(-), operator(*), operator(/), sqrt
   use kinds_m, only : wp
+  use law_state_m, only : is_held
   use sparse_m, only : sparse_t, add_block
-  use tiebreak_m, only : holds, holds_node
+  use tiebreak_m, only : has_state
   use ties_m, only : tie_spring_t, tie_spring, tie_stiffness
   implicit none
   private
@@ -42,7 +43,7 @@ contains
     integer :: nodes(size_of(memory, s)), rows(2*size_of(memory, s))
 
     call linearise_spring(memory, s, stretches, block)
-    if (.not. memory%has%nodal_pressure .and. holds(memory, s)) &
+    if (.not. memory%has%nodal_pressure .and. has_state(memory, s, is_held)) &
       block = block + tie_stiffness(memory, s)*matmul(stretches, transpose(stretches))
     call find_levers(memory, s, nodes, levers)
     rows = reshape(equations(:, nodes), [size(rows)])
@@ -108,7 +109,10 @@ contains
       end do
       call start_product(product, size(equations, 2))
       do i = 1, memory%n_slave
-        if (.not. areas(i) > 0.0_wp .or. .not. holds_node(memory, i)) cycle
+        if (.not. areas(i) > 0.0_wp) cycle
+        if (memory%has%breaks) then
+          if (memory%ties%state(i) /= is_held) cycle
+        end if
         do j = 1, 2
           at = head(i)
           do while (at > 0)

@@ -18,7 +18,7 @@ module implicit_start_m
   use implicit_forces_m, only : trial_t, start_trial, net_force, cut_sections, assemble_forces, &
     step_t
   use kinds_m, only : wp
-  use law_friction_m, only : has_decay
+  use friction_m, only : has_decay
   use linear_solver_m, only : report_t, solve_linear
   use loads_m, only : damping_rates
   use log_m, only : log_t, write_log, warn, to_text
