@@ -93,7 +93,6 @@ module contact_state_m
                                              !! can not touch; huge while active
     real(wp), allocatable :: faded(:)        !! (n) scratch: by which offsets have faded in this
                                              !! call, m
-    logical, allocatable :: is_new(:)        !! (n) scratch: has got its offset in this call
     logical :: has_offset = .false.          !! some offset is above 0
     integer :: n_released = 0                !! first contacts deeper than the limit so far
     real(wp), allocatable :: point_depth(:)  !! (n) deepest first contact of a point, m
@@ -289,7 +288,6 @@ contains
     allocate (status%xi(n), status%gap(n), status%normal(2, n), status%point_depth(n), &
       status%segment_depth(n_segment), source=0.0_wp)
     allocate (status%offset(n), status%faded(n), source=0.0_wp)
-    allocate (status%is_new(n), source=.false.)
     allocate (status%next_search(n), source=-huge(1.0_wp))
   end subroutine allocate_status
 

@@ -15,7 +15,7 @@ EXEMPT = {
     "block_state_t": {"mass_shares": "made of the deck and the status of elements"},
     "contact_state_t": {"has": OF_THE_DECK, "scratch": "nothing in it lasts to the next step",
                         "candidates": "no result depends on them", "reversed": "no result depends on them"},
-    "contact_status_t": {"due": EACH_CYCLE, "faded": EACH_CYCLE, "is_new": EACH_CYCLE, "pass": OF_THE_DECK, "reach": OF_THE_DECK},
+    "contact_status_t": {"due": EACH_CYCLE, "faded": EACH_CYCLE, "pass": OF_THE_DECK, "reach": OF_THE_DECK},
     "schedule_t": {"end_time": "from the deck, which may change it", "curve": "kept as two arrays"},
     "histories_t": {"tables": "rows one table after another"},
     "explicit_cycle_t": dict.fromkeys((

@@ -6,8 +6,7 @@
 module contact_law_m
   use contact_state_m, only : contact_state_t, site_at
   use dual_m, only : dual_t
-  use spring_gaps_m, only : has_offsets, limit_new_offsets, add_offsets, take_overlaps, &
-    ramp_gaps, gather_moment
+  use spring_gaps_m, only : has_offsets, add_offsets, take_overlaps, ramp_gaps, gather_moment
   use kinds_m, only : wp
   use law_state_m, only : contact_monitor_t
   use contact_scatter_m, only : average_values, share_out
@@ -73,9 +72,6 @@ contains
     real(wp) :: sites(max(memory%points%n, memory%n_slave), 4)
 
     if (memory%has%interference .and. memory%scratch%is_start) call take_overlaps(memory)
-    if (has_offsets(memory) .and. memory%has%nodal_pressure .and. .not. &
-      (memory%has%segment_points .or. memory%slave_status%pass%is_trial)) &
-      call limit_new_offsets(memory)
     associate (points => memory%points, law => memory%contact_law, gaps => sites(:, 1), &
       stiffness => sites(:, 2), slope => sites(:, 3), energy => sites(:, 4))
       call find_gaps(memory, gaps)

@@ -18,8 +18,8 @@ module spring_gaps_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: has_offsets, update_offsets, limit_new_offsets, add_offsets, faded_work, begin_ramp, &
-    take_overlaps, ramp_gaps, gather_moment, limit_moment
+  public :: has_offsets, update_offsets, add_offsets, faded_work, begin_ramp, take_overlaps, &
+    ramp_gaps, gather_moment, limit_moment
 
   !> Least slope by which an offset fades with the slip.
   real(wp), parameter :: ramp = 0.05_wp
@@ -118,36 +118,6 @@ contains
       end if
     end associate
   end function value_at
-
-  !> An averaged spring keeps the pressure that it had when its node comes in beside a face: the
-  !> segment next to that may have loaded it already. The offset takes off what the entry adds.
-  pure subroutine limit_new_offsets(memory)
-    type(contact_state_t), intent(inout) :: memory
-    real(wp) :: sums(3, memory%n_slave) !! of areas, gaps without the new offset, and its part, m
-    real(wp) :: area, gap
-    integer :: p, k, i
-
-    associate (points => memory%points, status => memory%slave_status)
-      if (.not. any(status%is_new)) return
-      sums = 0.0_wp
-      do p = 1, points%n
-        do k = 1, 2
-          associate (node => points%slave_nodes(k, p), weight => points%slave_weights(k, p))
-            if (.not. status%is_new(node)) cycle
-            area = weight*points%area(p)
-            gap = points%gap(p) + value_at(memory, status%offset, memory%master_status%offset, p) &
-              - weight*status%offset(node)
-            sums(:, node) = sums(:, node) + area*[1.0_wp, gap, weight]
-          end associate
-        end do
-      end do
-      do i = 1, memory%n_slave
-        if (.not. sums(3, i) > 0.0_wp) cycle
-        status%offset(i) = min(status%offset(i), max(0.0_wp, -sums(2, i) &
-          - sums(1, i)*memory%node_pressure(i)/memory%slave_penalty)/sums(3, i))
-      end do
-    end associate
-  end subroutine limit_new_offsets
 
   !> Add the entry offsets of all contact points on the list to their gaps.
   pure subroutine add_offsets(memory, gaps)

@@ -40,7 +40,6 @@ contains
     real(wp) :: travel
     integer :: n_left, n_due, n, i
 
-    if (status%has_offset) status%is_new = .false.
     n_left = 0
     if (status%n_active > 0) call follow_active(status, other, &
       positions(:, status%pass%other_at + 1:), points, n_left)
@@ -259,7 +258,6 @@ contains
     call store_projection(status, i, found%projection)
     if (found%is_released) changes%n_released = changes%n_released + 1
     if (found%is_active .or. .not. status%pass%is_trial) status%offset(i) = found%offset
-    status%is_new(i) = found%offset > 0.0_wp
     changes%has_offset = changes%has_offset .or. found%offset > 0.0_wp
     if (found%is_active) then
       status%state(i) = active
