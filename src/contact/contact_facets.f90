@@ -12,7 +12,7 @@ module contact_facets_m
   private
   public :: follow_arcs, report_facets, find_curvatures, arc_height
 
-  !> Part of the largest penetration from which on what facets put gaps off by is told.
+  !> Part of the largest penetration above which the error of gaps by facets is reported.
   real(wp), parameter :: noticed_part = 0.1_wp
   !> Weight of the other node up to which a point is at a node, and part by which heights are equal.
   real(wp), parameter :: at_node = 1.0e-6_wp

@@ -6,7 +6,7 @@ module interface_m
   use candidates_m, only : update_candidates, list_candidates
   use contact_dispatch_m, only : generate_points
   use contact_law_m, only : form_pressures, begin_sampling, measure_springs, end_sampling, &
-    take_over_energy
+    add_tie_energy
   use contact_log_m, only : log_contact
   use contact_memory_m, only : prepare_contact
   use contact_scatter_m, only : scatter_forces, join_passes
@@ -271,7 +271,7 @@ contains
   end subroutine keep_previous
 
   !> What the springs hold as loaded: those loaded at time zero hold energy that no force has put
-  !> in; those born loaded may return what they hold; the work of fading offsets is lent.
+  !> in; those born loaded may return what they hold; the work of fading offsets is admitted.
   pure subroutine book_springs(cycle, begins, memory)
     integer, intent(in) :: cycle
     logical, intent(in) :: begins
@@ -280,7 +280,7 @@ contains
     real(wp) :: load
     integer :: node
 
-    if (memory%scratch%n_freed > 0 .and. memory%points%n > 0) call take_over_energy(memory)
+    if (memory%scratch%n_freed > 0 .and. memory%points%n > 0) call add_tie_energy(memory)
     if (memory%monitor%is_due .or. cycle == 0) call measure_springs(memory)
     if (cycle == 0) then
       memory%energy = memory%monitor%stored

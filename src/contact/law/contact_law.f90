@@ -6,7 +6,7 @@
 module contact_law_m
   use contact_state_m, only : contact_state_t, site_at
   use dual_m, only : dual_t
-  use spring_gaps_m, only : has_offsets, add_offsets, take_overlaps, ramp_gaps, gather_moment
+  use spring_gaps_m, only : has_offsets, add_offsets, store_overlaps, ramp_gaps, gather_moment
   use kinds_m, only : wp
   use law_state_m, only : contact_monitor_t
   use contact_scatter_m, only : average_values, share_out
@@ -15,7 +15,7 @@ module contact_law_m
   implicit none
   private
   public :: law_t, laws, law_penalty, form_pressures, find_gaps, spring_t, n_springs, spring_at, &
-    linearise_pressure, density_of, begin_sampling, measure_springs, end_sampling, take_over_energy
+    linearise_pressure, density_of, begin_sampling, measure_springs, end_sampling, add_tie_energy
 
   !> A law.
   type :: law_t
@@ -71,7 +71,7 @@ contains
     ! In one array: allocating each costs as much as the law of ten points.
     real(wp) :: sites(max(memory%points%n, memory%n_slave), 4)
 
-    if (memory%has%interference .and. memory%scratch%is_start) call take_overlaps(memory)
+    if (memory%has%interference .and. memory%scratch%is_start) call store_overlaps(memory)
     associate (points => memory%points, law => memory%contact_law, gaps => sites(:, 1), &
       stiffness => sites(:, 2), slope => sites(:, 3), energy => sites(:, 4))
       call find_gaps(memory, gaps)
@@ -157,7 +157,7 @@ contains
     density = energy(1)
   end function density_of
 
-  !> Before the points are generated: springs are looked at when that is due, and in the first call
+  !> Before the points are generated: springs are sampled when that is due, and in the first call
   !> with contact.
   pure subroutine begin_sampling(had_force, monitor)
     logical, intent(in) :: had_force !! the call before had
@@ -196,10 +196,9 @@ contains
     end associate
   end subroutine measure_springs
 
-  !> What springs of contact hold at sites that have just been freed while loaded: the ties have
-  !> taken it in, and give it up. What they hold beyond that, of surfaces that lay within each other
-  !> from the start, nobody has put in: it may be returned.
-  pure subroutine take_over_energy(memory)
+  !> Energy of contact springs at sites whose ties have just failed under pressure: it comes from the
+  !> energy of the ties. Energy beyond that, of initial penetrations, is admissible.
+  pure subroutine add_tie_energy(memory)
     type(contact_state_t), intent(inout) :: memory
     real(wp) :: gaps(max(memory%points%n, memory%n_slave)), held, given
     type(spring_t) :: spring
@@ -217,7 +216,7 @@ contains
       ties%energy = ties%energy - given
       limit%admissible = limit%admissible + (held - given)
     end associate
-  end subroutine take_over_energy
+  end subroutine add_tie_energy
 
   !> After the forces are known: whether there has been a look. Contact that has opened stores
   !> nothing.

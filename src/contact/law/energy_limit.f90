@@ -128,7 +128,7 @@ contains
   end subroutine limit_forces
 
   !> The factor of this cycle. The sums that are formed in each cycle bound what may be returned;
-  !> only where that is too much, most often just before contact opens, all is looked at.
+  !> only where that is too much, most often just before contact opens, all is summed.
   subroutine find_factor(energy, nodes, motion, dt, previous, present, velocity, limit, factor)
     real(wp), intent(in) :: energy       !! of the springs up to the cycle before, J/m
     integer, intent(in), contiguous :: nodes(:)
@@ -303,7 +303,7 @@ contains
     limit%least_time = time
   end subroutine count_cycle
 
-  !> Grant springs that were caught loaded what they hold, as far as the loan goes.
+  !> Admit the energy of springs that became active loaded, up to the allowance of entries.
   pure subroutine admit_entry_work(energy, limit)
     real(wp), intent(in) :: energy !! J/m
     type(energy_limit_t), intent(inout) :: limit

@@ -18,7 +18,7 @@ module spring_gaps_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: has_offsets, update_offsets, add_offsets, faded_work, begin_ramp, take_overlaps, &
+  public :: has_offsets, update_offsets, add_offsets, faded_work, begin_ramp, store_overlaps, &
     ramp_gaps, gather_moment, limit_moment
 
   !> Least slope by which an offset fades with the slip.
@@ -164,7 +164,7 @@ contains
   end subroutine begin_ramp
 
   !> At time zero, with the points generated: how deep the sites are.
-  pure subroutine take_overlaps(memory)
+  pure subroutine store_overlaps(memory)
     type(contact_state_t), intent(inout) :: memory
     integer :: p, site
 
@@ -180,7 +180,7 @@ contains
         depth(site) = max(depth(site), -points%gap(p))
       end do
     end associate
-  end subroutine take_overlaps
+  end subroutine store_overlaps
 
   !> Add what does not act yet to the gaps of points or slave nodes.
   pure subroutine ramp_gaps(memory, gaps)

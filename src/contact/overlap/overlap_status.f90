@@ -228,7 +228,7 @@ contains
     end do
   end function deepest_first_contact
 
-  !> After all segments have been looked at. Not asked for as long as something is active.
+  !> After the search of all segments. Not needed as long as something is active.
   pure subroutine note_earliest_search(memory)
     type(contact_state_t), intent(inout) :: memory
 

@@ -37,7 +37,7 @@ module candidates_m
 contains
 
   !> List the candidate pairs anew when the bodies have moved through the skin, or when FREQ asks
-  !> for it; then every separated point is looked at.
+  !> for it; then every separated point is due.
   pure subroutine update_candidates(contact, cycle, memory)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: cycle
@@ -57,7 +57,7 @@ contains
     memory%earliest_segment_search = -huge(1.0_wp)
   end subroutine update_candidates
 
-  !> Have every separated point looked at in this call.
+  !> Make every separated point due in this call.
   pure subroutine search_all(status)
     type(contact_status_t), intent(inout) :: status
 
@@ -67,7 +67,7 @@ contains
   end subroutine search_all
 
   !> All pairs within the search radius, the motion of this call, and the skin. Boxes farther apart
-  !> are looked at again when they can have come that near.
+  !> are searched again when they can have come that near.
   pure subroutine list_candidates(contact, memory, restarts)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory

@@ -280,7 +280,7 @@ contains
     status%normal(:, i) = projection%normal
   end subroutine store_projection
 
-  !> Start anew: all points are separated and looked at in the next call.
+  !> Start anew: all points are separated and due in the next call.
   pure subroutine reset_status(status)
     type(contact_status_t), intent(inout) :: status
 

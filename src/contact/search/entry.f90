@@ -6,7 +6,7 @@
 module entry_m
   use contact_state_m, only : contact_status_t, candidates_t, pass_t
   use projection_m, only : projection_t, nearest_projection, face_projection, vector_of, &
-    turns_gently, face_on, end_tolerance, round_off
+    turns_gently, side_on, face_on, end_tolerance, round_off
   use geometry_m, only : local_coordinates_t, coordinates_on_segment, local_gap, local_normal, &
     closest_distance, segment_length
   use kinds_m, only : wp
@@ -317,10 +317,10 @@ contains
   end function segments_of
 
   !> Whether a face is opposed to a point: its outward normal is opposite to that of one of the
-  !> point's segments within 60 degrees, or lies opposite between both of them at a convex vertex,
-  !> by 10 degrees at least: else the nodes of a body that slides on over a ramp would be held by
-  !> the end face in front of it. At an end of an open surface the tangent that leads out of it
-  !> replaces the missing normal there.
+  !> point's segments within 60 degrees (points between nodes: 84 degrees, or steep flanks would have
+  !> none), or lies opposite between both of them at a convex vertex, by 10 degrees at least: else the
+  !> nodes of a body that slides on over a ramp would be held by the end face in front of it. At an
+  !> end of an open surface the tangent that leads out of it replaces the missing normal there.
   pure function is_opposed(pass, own, positions, i, normal) result(opposed)
     type(pass_t), intent(in) :: pass
     type(surface_t), intent(in) :: own               !! of the points
@@ -328,7 +328,7 @@ contains
     integer, intent(in) :: i                         !! point
     real(wp), intent(in) :: normal(2)                !! outward, of the face
     logical :: opposed
-    real(wp) :: t(2, 2), normals(2, 2)
+    real(wp) :: t(2, 2), normals(2, 2), limit
     integer :: segments(2), k
 
     opposed = .false.
@@ -341,9 +341,10 @@ contains
     end do
     if (segments(1) == 0) normals(:, 1) = -t(:, 2)
     if (segments(2) == 0) normals(:, 2) = t(:, 1)
+    limit = merge(side_on, face_on, segments(1) == segments(2))
     do k = 1, 2
       if (segments(k) == 0) cycle
-      opposed = dot_product(normals(:, k), normal) < face_on
+      opposed = dot_product(normals(:, k), normal) < limit
       if (opposed) return
     end do
     ! The opposite of the normal turns counter-clockwise from the first to the second of the
