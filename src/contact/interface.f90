@@ -160,7 +160,7 @@ contains
     type(previous_work_t) :: previous
     logical :: had_force, begins
 
-    had_force = memory%n_active + memory%ties%n_held > 0
+    had_force = memory%n_active > 0 .or. memory%ties%n_held > 0
     begins = memory%is_stale .and. now%cycle > 0
     memory%monitor%has_sampled = .false.
     call find_contacts(contact, now, motion, memory)
