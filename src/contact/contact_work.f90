@@ -8,7 +8,6 @@ module contact_work_m
   use friction_m, only : store_previous_tractions
   use law_state_m, only : friction_memory_t
   use kinds_m, only : wp
-  use ranges_m, only : n_ranges, first_of, last_of, most_ranges
   implicit none
   private
   public :: previous_work_t, store_previous, store_previous_work, apply_forces, count_step, &
@@ -45,7 +44,7 @@ contains
 
   !> Add the forces to those of the mesh and count the work of a step, that of damping and of
   !> friction apart: half of it was done by the previous forces.
-  subroutine apply_forces(dt, motion, previous, memory, force)
+  pure subroutine apply_forces(dt, motion, previous, memory, force)
     real(wp), intent(in) :: dt
     real(wp), intent(in), contiguous :: motion(:, :)
     type(previous_work_t), intent(in) :: previous
@@ -53,8 +52,7 @@ contains
     real(wp), intent(inout), contiguous :: force(:, :)
     real(wp) :: power, damping, friction !! of previous and present forces, W/m
 
-    call add_force(memory%n_slave, memory%nodes, memory%scratch%previous_force, memory%force, &
-      motion, force, power)
+    call add_force(memory%nodes, memory%scratch%previous_force, memory%force, motion, force, power)
     damping = previous%damping
     if (memory%has%damping) damping = damping &
       + power_of(memory%nodes, motion, memory%damping_force)
@@ -142,46 +140,17 @@ contains
 
   !> Add the forces of the interface to those of the mesh. Their power and that of the previous
   !> ones, with the same velocity, are formed on the way: v is read once. The previous ones are zero
-  !> afterwards: to clear them here costs less than to go through them once more. Both surfaces may
-  !> have nodes in common: one follows the other.
-  subroutine add_force(n_slave, nodes, previous, present, motion, force, power)
-    integer, intent(in) :: n_slave
-    integer, intent(in), contiguous :: nodes(:) !! (n_slave + n_master)
+  !> afterwards: to clear them here costs less than to go through them once more. By one thread: a
+  !> node may be on both surfaces, and an eroded surface may pass through a node twice.
+  pure subroutine add_force(nodes, previous, present, motion, force, power)
+    integer, intent(in), contiguous :: nodes(:)
     real(wp), intent(in) :: present(2, *), motion(4, *)
     real(wp), intent(inout) :: previous(2, *), force(2, *)
     real(wp), intent(out) :: power !! of both, W/m
-    real(wp) :: powers(most_ranges)
-    integer :: i, k, before, n
-
-    power = 0.0_wp
-    before = 0
-    do k = 1, 2
-      n = merge(n_slave, size(nodes) - n_slave, k == 1)
-      if (n_ranges(n) == 1) then
-        call add_range(before + 1, before + n, nodes, previous, present, motion, force, powers(1))
-      else
-        !$omp taskloop default(shared)
-        do i = 1, n_ranges(n)
-          call add_range(before + first_of(i, n), before + last_of(i, n), nodes, previous, &
-            present, motion, force, powers(i))
-        end do
-        !$omp end taskloop
-      end if
-      power = power + sum(powers(:n_ranges(n)))
-      before = n_slave
-    end do
-  end subroutine add_force
-
-  !> The same for a range of nodes.
-  pure subroutine add_range(first, last, nodes, previous, present, motion, force, power)
-    integer, intent(in) :: first, last, nodes(*)
-    real(wp), intent(in) :: present(2, *), motion(4, *)
-    real(wp), intent(inout) :: previous(2, *), force(2, *)
-    real(wp), intent(out) :: power
     integer :: i
 
     power = 0.0_wp
-    do i = first, last
+    do i = 1, size(nodes)
       associate (v => motion(3:4, nodes(i)), total => force(:, nodes(i)))
         total(1) = total(1) + present(1, i)
         total(2) = total(2) + present(2, i)
@@ -191,6 +160,6 @@ contains
       previous(1, i) = 0.0_wp
       previous(2, i) = 0.0_wp
     end do
-  end subroutine add_range
+  end subroutine add_force
 
 end module contact_work_m
