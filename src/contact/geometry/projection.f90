@@ -275,9 +275,9 @@ contains
 
   !> Projection at the node between two segments, neither of which has the point over it. Outside of
   !> a convex corner the gap is the distance. Inside of a re-entrant one it is minus the distance
-  !> and the normal points from the point to the node, so that P2 holds. The mean normal
-  !> separates both sides. The projection is that of the segment to whose normal its own is nearer, whose
-  !> line is farther away: either has the node.
+  !> and the normal points from the point to the node, so that P2 holds. The mean normal separates
+  !> both sides. The projection is that of the segment to whose normal its own is nearer, whose line
+  !> is farther away: either has the node.
   pure function vertex_projection(local, other, segments) result(projection)
     type(local_coordinates_t), intent(in) :: local !! from a segment
     type(local_coordinates_t), intent(in) :: other !! from its neighbour at the corner

@@ -196,8 +196,8 @@ contains
     end associate
   end subroutine measure_springs
 
-  !> Energy of contact springs at sites whose ties have just failed under pressure: it comes from the
-  !> energy of the ties. Energy beyond that, of initial penetrations, is admissible.
+  !> Energy of contact springs at sites whose ties have just failed under pressure: it comes from
+  !> the energy of the ties. Energy beyond that, of initial penetrations, is admissible.
   pure subroutine add_tie_energy(memory)
     type(contact_state_t), intent(inout) :: memory
     real(wp) :: gaps(max(memory%points%n, memory%n_slave)), held, given

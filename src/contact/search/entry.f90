@@ -317,10 +317,11 @@ contains
   end function segments_of
 
   !> Whether a face is opposed to a point: its outward normal is opposite to that of one of the
-  !> point's segments within 60 degrees (points between nodes: 84 degrees, or steep flanks would have
-  !> none), or lies opposite between both of them at a convex vertex, by 10 degrees at least: else the
-  !> nodes of a body that slides on over a ramp would be held by the end face in front of it. At an
-  !> end of an open surface the tangent that leads out of it replaces the missing normal there.
+  !> point's segments within 60 degrees (points between nodes: 84 degrees, or steep flanks would
+  !> have none), or lies opposite between both of them at a convex vertex, by 10 degrees at least:
+  !> else the nodes of a body that slides on over a ramp would be held by the end face in front of
+  !> it. At an end of an open surface the tangent that leads out of it replaces the missing normal
+  !> there.
   pure function is_opposed(pass, own, positions, i, normal) result(opposed)
     type(pass_t), intent(in) :: pass
     type(surface_t), intent(in) :: own               !! of the points
