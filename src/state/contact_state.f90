@@ -447,7 +447,7 @@ contains
     call visitor%visit('damping_work', self%damping_work)
     call visitor%part('monitor', self%monitor)
     call visitor%part('limit', self%limit)
-    call visitor%visit('n_active', self%n_active, 0, huge(1), 'a number below zero')
+    call visitor%visit('n_active', self%n_active, 0, huge(1)/2, 'a number of points out of range')
     call visitor%visit('rules_step', self%rules_step)
   end subroutine visit_contact
 

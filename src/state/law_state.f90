@@ -232,7 +232,7 @@ contains
     call visitor%visit('pressure', self%pressure)
     call visitor%visit('traction', self%traction)
     call visitor%visit('force', self%force)
-    call visitor%visit('n_held', self%n_held, 0, huge(1), 'a number below zero')
+    call visitor%visit('n_held', self%n_held, 0, huge(1)/2, 'a number of points out of range')
     call visitor%visit('energy', self%energy)
     call visitor%visit('state', self%state)
     call visitor%visit('site', self%site)
