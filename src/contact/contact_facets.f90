@@ -25,7 +25,7 @@ module contact_facets_m
   !> Arcs that the segments of both surfaces stand for, those of the slave first.
   type :: arcs_t
     real(wp), allocatable :: curvature(:)   !! (segments) 1/m
-    real(wp), allocatable :: chord(:)       !! (segments) length of the segment, m
+    real(wp), allocatable :: secant(:)       !! (segments) length of the segment, m
     real(wp), allocatable :: height(:)      !! (segments) how far the arc stands off it, m
     real(wp), allocatable :: unlike(:)      !! (segments) curvature of both surfaces together, where
                                             !! it is loaded, 1/m
@@ -50,7 +50,7 @@ contains
     associate (points => memory%points, n => memory%n_slave, m => contact%slave%n_segment)
       if (.not. any(points%gap(:points%n) < 0.0_wp)) return
       k = m + contact%master%n_segment
-      allocate (arcs%curvature(k), arcs%chord(k), arcs%height(k), arcs%unlike(k), source=0.0_wp)
+      allocate (arcs%curvature(k), arcs%secant(k), arcs%height(k), arcs%unlike(k), source=0.0_wp)
       allocate (arcs%meets_corner(k), arcs%is_loaded(k), source=.false.)
       allocate (arcs%beside(2, size(memory%nodes)), source=0)
       call find_arcs(contact%slave, [0, 0], memory%positions(:, :n), arcs)
@@ -81,12 +81,12 @@ contains
         arcs%meets_corner(first:last))
       do s = 1, surface%n_segment
         associate (ends => surface%segments(:, s))
-          arcs%chord(before(2) + s) = norm2(positions(1:2, ends(2)) - positions(1:2, ends(1)))
+          arcs%secant(before(2) + s) = norm2(positions(1:2, ends(2)) - positions(1:2, ends(1)))
           arcs%beside(2, before(1) + ends(1)) = before(2) + s
           arcs%beside(1, before(1) + ends(2)) = before(2) + s
         end associate
       end do
-      arcs%height(first:last) = arc_height(arcs%curvature(first:last), arcs%chord(first:last))
+      arcs%height(first:last) = arc_height(arcs%curvature(first:last), arcs%secant(first:last))
     end associate
   end subroutine find_arcs
 
@@ -109,7 +109,7 @@ contains
     associate (curvature => arcs%curvature(segments), height => arcs%height(segments), &
       meets_corner => arcs%meets_corner(segments))
       if (.not. any(abs(curvature) > 0.0_wp)) return
-      off = 0.5_wp*sum(curvature*arcs%chord(segments)**2*max(product(weights, 1), 0.0_wp))
+      off = 0.5_wp*sum(curvature*arcs%secant(segments)**2*max(product(weights, 1), 0.0_wp))
       do k = 1, 2
         arcs%is_loaded(segments(k)) = .true.
         if (.not. any(meets_corner)) arcs%unlike(segments(k)) = abs(sum(curvature))
@@ -169,7 +169,7 @@ contains
       goes_on = surface%previous(s) > 0
       if (goes_on) goes_on = arcs%is_loaded(offset + surface%previous(s))
       if (.not. goes_on) n_run = n_run + 1
-      length = length + arcs%chord(offset + s)
+      length = length + arcs%secant(offset + s)
       unlike = max(unlike, arcs%unlike(offset + s))
       bend = max(bend, abs(arcs%curvature(offset + s)))
     end do
@@ -262,12 +262,12 @@ contains
     is_corner = dot_product(a, b) < corner*norm2(a)*norm2(b)
   end subroutine curvature_at_end
 
-  !> How far an arc stands off the middle of its chord, m.
-  pure elemental function arc_height(curvature, chord) result(height)
-    real(wp), intent(in) :: curvature, chord !! 1/m, m
+  !> How far an arc stands off the middle of its secant, m.
+  pure elemental function arc_height(curvature, secant) result(height)
+    real(wp), intent(in) :: curvature, secant !! 1/m, m
     real(wp) :: height
 
-    height = 0.125_wp*abs(curvature)*chord**2
+    height = 0.125_wp*abs(curvature)*secant**2
   end function arc_height
 
 end module contact_facets_m

@@ -61,13 +61,13 @@ contains
     logical, intent(in) :: is_round
     integer, intent(in) :: i_node
     real(wp) :: area
-    real(wp) :: t(2), halves(2)
+    real(wp) :: t(2), half_lengths(2)
     integer :: k
 
     do k = 1, 2
-      call find_half(surface, positions, is_round, i_node, k, t, halves(k))
+      call find_half(surface, positions, is_round, i_node, k, t, half_lengths(k))
     end do
-    area = halves(1) + halves(2)
+    area = half_lengths(1) + half_lengths(2)
   end function nodal_area
 
   !> Tributary lengths of the active nodes of a surface, m: half of each of their segments; in
@@ -79,23 +79,23 @@ contains
     logical, intent(in) :: is_round
     type(contact_status_t), intent(in) :: status     !! of its nodes
     real(wp), intent(inout), contiguous :: areas(:)  !! (n_active)
-    real(wp) :: t(2, 2), halves(2)
+    real(wp) :: t(2, 2), half_lengths(2)
     integer :: k, seen
 
     seen = 0
-    halves = 0.0_wp
+    half_lengths = 0.0_wp
     do k = 1, status%n_active
       associate (node => status%active_points(k))
         if (seen > 0 .and. seen == surface%incoming(node) .and. .not. is_round) then
           t(:, 1) = t(:, 2)
-          halves(1) = halves(2)
+          half_lengths(1) = half_lengths(2)
         else
-          call find_half(surface, positions, is_round, node, 1, t(:, 1), halves(1))
+          call find_half(surface, positions, is_round, node, 1, t(:, 1), half_lengths(1))
         end if
-        call find_half(surface, positions, is_round, node, 2, t(:, 2), halves(2))
+        call find_half(surface, positions, is_round, node, 2, t(:, 2), half_lengths(2))
         seen = surface%outgoing(node)
-        areas(k) = halves(1) + halves(2)
-        if (status%pass%is_closed) areas(k) = opposed_part(t, halves, status%normal(:, node))
+        areas(k) = half_lengths(1) + half_lengths(2)
+        if (status%pass%is_closed) areas(k) = opposed_part(t, half_lengths, status%normal(:, node))
       end associate
     end do
   end subroutine find_nodal_areas
@@ -122,20 +122,20 @@ contains
     end associate
   end subroutine find_half
 
-  !> How much of both halves at a node counts below a face: each as far as it is opposed, and of the
-  !> segments at a sharp vertex together one (see `side_share`). Where the face stands between both
+  !> Part of the halves of both segments at a node that counts below a face: each as far as it is
+  !> opposed, segments at a sharp vertex together one (see `side_share`). Where the face stands between both
   !> normals of a convex vertex, what is missing to the larger share counts too. At an end, as on
   !> the axis, all counts.
-  pure function opposed_part(t, halves, normal) result(area)
+  pure function opposed_part(t, half_lengths, normal) result(area)
     real(wp), intent(in) :: t(2, 2)    !! vectors of the segments before and after the node, m
-    real(wp), intent(in) :: halves(2)
+    real(wp), intent(in) :: half_lengths(2)
     real(wp), intent(in) :: normal(2)  !! outward, of the face
     real(wp) :: area
     real(wp) :: opposed(2), cosines(2), shares(2), turn
     integer :: k
 
-    area = sum(halves)
-    if (.not. minval(halves) > 0.0_wp) return
+    area = sum(half_lengths)
+    if (.not. minval(half_lengths) > 0.0_wp) return
     do k = 1, 2
       cosines(k) = (t(2, k)*normal(1) - t(1, k)*normal(2))/sqrt(t(1, k)**2 + t(2, k)**2)
       opposed(k) = opposed_share(cosines(k))
@@ -146,11 +146,11 @@ contains
       shares = [side_share(turn, cosines(1) - cosines(2), slave_side), &
         side_share(turn, cosines(2) - cosines(1), slave_side)]
     end if
-    area = dot_product(halves, shares*opposed)
+    area = dot_product(half_lengths, shares*opposed)
     if (maxval(opposed) >= 1.0_wp) return
     ! The opposite of the normal turns from the first of both normals to the second.
     if (dot_product(t(:, 1), normal) < 0.0_wp .and. dot_product(t(:, 2), normal) > 0.0_wp) &
-      area = area + (1.0_wp - maxval(opposed))*0.5_wp*sum(shares)*sum(halves)
+      area = area + (1.0_wp - maxval(opposed))*0.5_wp*sum(shares)*sum(half_lengths)
   end function opposed_part
 
 end module tributary_lengths_m

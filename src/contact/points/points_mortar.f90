@@ -50,7 +50,7 @@ contains
     call finish_segment_points(memory%positions, contact%is_round, 1, points)
   end subroutine points_mortar
 
-  !> Tips of folds.
+  !> Type 6: areas of the points at sharp vertices.
   pure subroutine finish_mortar(contact, memory, points)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory

@@ -129,7 +129,7 @@ contains
     type(overlap_t), intent(inout), contiguous :: overlaps(:) !! room
     real(wp), intent(inout) :: of_ends(2) !! areas of its ends, m
     type(contact_points_t), intent(inout) :: points
-    real(wp) :: t(2), halves(2), area, length
+    real(wp) :: t(2), half_lengths(2), area, length
     integer :: ends(2), at(2), node, n, k, i
 
     ends = contact%slave%segments(:, s)
@@ -140,18 +140,18 @@ contains
     area = 0.0_wp
     do k = 1, n
       if (.not. overlaps(k)%high > overlaps(k)%low) cycle
-      halves = halves_of(contact, memory%positions(:, ends(1)), memory%positions(:, ends(2)), &
-        length, overlaps(k))
+      half_lengths = half_lengths_of(contact, memory%positions(:, ends(1)), &
+        memory%positions(:, ends(2)), length, overlaps(k))
       at = [overlaps(k)%first, overlaps(k)%last]
       do i = 1, 2
         if (at(i) == 0) then
-          of_ends(i) = of_ends(i) + halves(i)
+          of_ends(i) = of_ends(i) + half_lengths(i)
         else if (at(i) == node) then
-          area = area + halves(i)
+          area = area + half_lengths(i)
         else
           call add_breakpoint(memory, ends, t, node, area, points)
           node = at(i)
-          area = halves(i)
+          area = half_lengths(i)
         end if
       end do
     end do
@@ -160,22 +160,22 @@ contains
 
   !> Half of an overlap, as far as it counts, for either of its ends, m; in axisymmetry weighted
   !> by the radius, so that they differ. With the strict rule all but sides of corners counts.
-  pure function halves_of(contact, a, b, length, overlap) result(halves)
+  pure function half_lengths_of(contact, a, b, length, overlap) result(half_lengths)
     type(contact_t), intent(in) :: contact
     real(wp), intent(in) :: a(4), b(4)     !! ends of the slave segment
     real(wp), intent(in) :: length         !! of that, m
     type(overlap_t), intent(in) :: overlap
-    real(wp) :: halves(2)
+    real(wp) :: half_lengths(2)
     real(wp) :: low, high
 
-    halves = 0.5_wp*(overlap%high - overlap%low)*length
-    halves = halves*merge(overlap%part, overlap%share, contact%strict)
+    half_lengths = 0.5_wp*(overlap%high - overlap%low)*length
+    half_lengths = half_lengths*merge(overlap%part, overlap%share, contact%strict)
     if (.not. contact%is_round) return
     low = radius_between(a, b, overlap%low)
     high = radius_between(a, b, overlap%high)
-    halves(1) = halves(1)*end_radius(low, high)
-    halves(2) = halves(2)*end_radius(high, low)
-  end function halves_of
+    half_lengths(1) = half_lengths(1)*end_radius(low, high)
+    half_lengths(2) = half_lengths(2)*end_radius(high, low)
+  end function half_lengths_of
 
   !> Append a point at a master node with a gap that is closed.
   pure subroutine add_breakpoint(memory, ends, t, node, area, points)

@@ -18,7 +18,7 @@ module sharp_vertices_m
 
 contains
 
-  !> Whether tips of folds count as such, where averages do: a surface in contact with itself.
+  !> Whether sharp vertices count as such, where averages do: a surface in contact with itself.
   elemental function has_folds(contact)
     type(contact_t), intent(in) :: contact
     logical :: has_folds
@@ -26,7 +26,7 @@ contains
     has_folds = contact%is_self .and. .not. is_tied(contact)
   end function has_folds
 
-  !> Let the points of segments at tips of folds give their areas to their nodes: all points of a
+  !> Let the points of segments at sharp vertices give their areas to their nodes: all points of a
   !> segment follow each other on the list.
   pure subroutine weight_sharp_vertices(contact, memory, points)
     type(contact_t), intent(in) :: contact

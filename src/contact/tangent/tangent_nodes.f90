@@ -83,20 +83,20 @@ contains
     logical, intent(in) :: by_radius, is_closed
     type(contact_state_t), intent(in) :: memory
     type(linearised_point_t), intent(inout) :: point
-    type(dual_t) :: halves(2), shares(2), parts(2), cosines(2), t(2, 2), turn
+    type(dual_t) :: half_lengths(2), shares(2), parts(2), cosines(2), t(2, 2), turn
     integer :: segments(2), k
 
     segments = [surface%incoming(point%nodes(1) - offset), &
       surface%outgoing(point%nodes(1) - offset)]
-    halves = constant(0.0_wp)
+    half_lengths = constant(0.0_wp)
     do k = 1, 2
       if (segments(k) == 0) cycle
       point%nodes(4 + k) = offset + surface%segments(k, segments(k))
-      halves(k) = 0.5_wp*length_between(memory, point, 1, 4 + k)
-      if (by_radius) halves(k) = halves(k)*radius_at(memory, point, 1, 4 + k, &
+      half_lengths(k) = 0.5_wp*length_between(memory, point, 1, 4 + k)
+      if (by_radius) half_lengths(k) = half_lengths(k)*radius_at(memory, point, 1, 4 + k, &
         constant(1.0_wp/3.0_wp))
     end do
-    point%area = halves(1) + halves(2)
+    point%area = half_lengths(1) + half_lengths(2)
     if (.not. is_closed .or. any(segments == 0)) return
     do k = 1, 2
       t(:, k) = difference(memory, point, merge(1, 6, k == 1), merge(5, 1, k == 1))
@@ -109,12 +109,12 @@ contains
       parts = [side_share_of(turn, cosines(1) - cosines(2), slave_side), &
         side_share_of(turn, cosines(2) - cosines(1), slave_side)]
     end if
-    point%area = halves(1)*shares(1)*parts(1) + halves(2)*shares(2)*parts(2)
+    point%area = half_lengths(1)*shares(1)*parts(1) + half_lengths(2)*shares(2)*parts(2)
     if (maxval(shares%value) >= 1.0_wp) return
     if (dot_product(t(:, 1)%value, point%normal%value) < 0.0_wp .and. &
       dot_product(t(:, 2)%value, point%normal%value) > 0.0_wp) &
       point%area = point%area + 0.5_wp*(1.0_wp - shares(maxloc(shares%value, 1)))*(parts(1) &
-      + parts(2))*(halves(1) + halves(2))
+      + parts(2))*(half_lengths(1) + half_lengths(2))
   end subroutine linearise_length
 
   !> Type 4: all virtual nodes in contact. Their sub-segments follow each other on the list.
