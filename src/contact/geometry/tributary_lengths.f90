@@ -123,9 +123,9 @@ contains
   end subroutine find_half
 
   !> Part of the halves of both segments at a node that counts below a face: each as far as it is
-  !> opposed, segments at a sharp vertex together one (see `side_share`). Where the face stands between both
-  !> normals of a convex vertex, what is missing to the larger share counts too. At an end, as on
-  !> the axis, all counts.
+  !> opposed, segments at a sharp vertex together one (see `side_share`). Where the face stands
+  !> between both normals of a convex vertex, what is missing to the larger share counts too. At an
+  !> end, as on the axis, all counts.
   pure function opposed_part(t, half_lengths, normal) result(area)
     real(wp), intent(in) :: t(2, 2)    !! vectors of the segments before and after the node, m
     real(wp), intent(in) :: half_lengths(2)
