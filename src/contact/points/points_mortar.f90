@@ -66,14 +66,17 @@ contains
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: s !! slave segment
     integer :: near
-    integer :: segments(3), k, i
+    integer :: segments(3), m, k, i
 
     near = 0
-    segments = [contact%slave%previous(s), s, contact%slave%next(s)]
+    m = size(memory%segment_xi)
+    segments = [s, contact%slave%previous(s), contact%slave%next(s)]
     do k = 1, 3
-      do i = (segments(k) - 1)*size(memory%segment_xi) + 1, segments(k)*size(memory%segment_xi)
-        if (i < 1) cycle
-        if (memory%slave_status%state(i) == active) near = memory%slave_status%segment(i)
+      if (segments(k) == 0) cycle
+      do i = (segments(k) - 1)*m + 1, segments(k)*m
+        if (memory%slave_status%state(i) /= active) cycle
+        near = memory%slave_status%segment(i)
+        return
       end do
     end do
   end function master_near
