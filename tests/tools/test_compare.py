@@ -94,6 +94,14 @@ def test_late_start_fails():
     assert "start" in failed(compare(table(time=TIME[50:]), table()))
 
 
+def test_the_floor_is_a_share_of_the_largest_component():
+    """Round-off in a component that should be 0 is no difference; of a column without partner it is one."""
+    noise = 2.0e-11 * np.cos(np.pi * TIME)
+    report = compare(table(fx=noise, fy=1.0e4 * TIME, energy=noise), table(fx=-noise, fy=1.0e4 * TIME, energy=-noise))
+    assert {check.column for check in report.checks if not check.passed} == {"energy"}
+    assert not compare(table(fx=30.0 * TIME, fy=1.0e4 * TIME), table(fx=0.0 * TIME, fy=1.0e4 * TIME)).passed
+
+
 def test_atol_replaces_the_floor():
     noise = table(1.0e-15 * np.cos(7.0 * TIME))
     zero = table(0.0 * TIME)

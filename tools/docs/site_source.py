@@ -2,7 +2,7 @@
 """Puts the pages of the documentation site together: python site_source.py FOLDER
 
 FOLDER/pages gets the Markdown of the repository (links and names of files turned to what they are
-on the site) and the generated keyword pages; FOLDER/mkdocs.yml the settings with the navigation.
+on the site), the generated keyword pages and the tables of messages; FOLDER/mkdocs.yml the settings with the navigation.
 The page of a verification case begins with the title of its case.toml and ends with all its checks, where its results are
 in build/release/verification.
 """
@@ -14,6 +14,7 @@ import shutil
 import sys
 
 import keyword_pages
+import messages
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "verification"))
@@ -119,7 +120,7 @@ def navigation(folder, keywords):
                    {"Glossary": "glossary.md"}, {"Building": "building.md"}, {"Meshes": "meshes.md"},
                    {"Coming from LS-DYNA": "coming_from_ls_dyna.md"},
                    {"What was let go": "let_go.md"},
-                   {"Results": "results.md"}, {"Python tools": "tools.md"}, {"Reliability": "reliability.md"},
+                   {"Results": "results.md"}, {"Messages": "messages.md"}, {"Python tools": "tools.md"}, {"Reliability": "reliability.md"},
                    {"Changelog": "changelog.md"}]},
         {"Keywords": ["keywords/index.md", {"All on one page": "keywords.md"},
                       {"Example decks": "examples/index.md"},
@@ -163,6 +164,8 @@ def make(build):
     for case, report in read_reports(RESULTS).items():
         if (page := folder / "cases" / f"{case}.md").exists():
             page.write_text(page.read_text(encoding="utf-8") + all_checks(report), encoding="utf-8")
+    with (folder / "messages.md").open("a", encoding="utf-8") as page:
+        page.write(f"\n{messages.tables()}")
     (folder / "fortran_interface.md").write_text(FORTRAN, encoding="utf-8")
     shutil.copytree(ROOT / "doc/pictures", folder / "pictures")
     shutil.copy(ROOT / "doc/site.css", folder)

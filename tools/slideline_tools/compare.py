@@ -2,10 +2,11 @@
 """Compare a history table with a reference, column by column and entity by entity.
 
 Each column is judged by five measures (see MEASURES), counts without the impulse. The allowed
-difference of a value is `atol + rtol |reference|`; `atol` is `floor` times the column's maximum in
-the reference unless it is given. Series are compared on the times of the reference, the result being interpolated.
+difference of a value is `atol + rtol |reference|`; unless `atol` is given it is `floor` times the largest value of the
+column in the reference, or of all components of its vector or tensor (`fx` and `fy`; `sxx` to `sxy`). Series are compared on the times of the reference, the result being interpolated.
 """
 import dataclasses
+import re
 import typing
 
 import numpy as np
@@ -17,6 +18,8 @@ MEASURES = ("values", "peak", "time of peak", "impulse", "final")
 COVERAGE = ("start", "end")  # first and last time: always judged
 #: counts and codes: an integral over time says nothing
 WITHOUT_IMPULSE = INTEGER_COLUMNS + ("state",)
+#: what names a component: `fx`, `momentum_y`, `sxy`
+COMPONENT = re.compile(r"([xyz]{2}|[xyz])$")
 
 
 class Unusable(UserError):
@@ -27,19 +30,19 @@ class Unusable(UserError):
 class Tolerance:
     """What may differ.
 
-    `rtol` relative to the reference; `floor` as a fraction of the column's largest reference
-    value; `atol` absolute, instead of the floor; `time` for the time of the peak, as a fraction
+    `rtol` relative to the reference; `floor` as a fraction of the largest reference value of the
+    column and its other components; `atol` absolute, instead of the floor; `time` for the time of the peak, as a fraction
     of the time span; `measures` those that are judged.
     """
 
     rtol: float = 1.0e-3
     floor: float = 1.0e-3
-    atol: float = None
+    atol: float | None = None
     time: float = 1.0e-2
     measures: tuple = MEASURES
 
     def absolute(self, largest):
-        """The absolute part for a column whose largest reference value is given."""
+        """The absolute part for a quantity whose largest reference value is given."""
         return self.floor * largest if self.atol is None else self.atol
 
 
@@ -119,11 +122,17 @@ def compare(result, reference, columns=None, tolerances=None, default=Tolerance(
     checks = []
     for column in columns:
         tolerance = (tolerances or {}).get(column, default)
-        atol = tolerance.absolute(float(np.max(np.abs(reference[column]))))
+        atol = tolerance.absolute(max(float(np.max(np.abs(reference[name]))) for name in components(column, reference)))
         for entity, rows in theirs.items():
             label = reference.entity_label(entity)
             checks += series_checks(column, label, ours[entity], rows, tolerance, atol)
     return Report(reference.name, checks)
+
+
+def components(column, table):
+    """The columns of the vector or tensor that a column is a component of, or the column alone."""
+    stem = COMPONENT.sub("", column)
+    return [name for name in table.value_columns if name == column or COMPONENT.sub("", name) == stem != column]
 
 
 def require_usable(table, role, columns):

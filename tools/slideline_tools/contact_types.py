@@ -15,7 +15,7 @@ IMPLICIT, HARD = "7i", "7h"
 IMPLICIT_PENALTIES = {IMPLICIT: 10.0, HARD: -1.0}
 
 #: All that is compared, with names.
-SERIES = {**TYPES, IMPLICIT: "PUNIT 4", HARD: "PUNIT 4, PEN < 0"}
+SERIES: dict = {**TYPES, IMPLICIT: "PUNIT 4", HARD: "PUNIT 4, PEN < 0"}
 
 
 def in_order(some):

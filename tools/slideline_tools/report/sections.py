@@ -36,7 +36,7 @@ def all_sections(run: Gathered, names: list[str], states: list[str], scale: floa
     """Those that have something. Fields that were asked for by name must be there; where a table
     lacks a column, the section says so."""
     chosen = chosen_states(run, states)
-    found = {"Summary": (summary,), "Warnings": (warnings,), "Energies": (energies,),
+    found: dict[str, tuple] = {"Summary": (summary,), "Warnings": (warnings,), "Energies": (energies,),
              "Contact": (contact, chosen), "Rigid walls": (walls,),
              "Fields": (fields, names, chosen, scale),
              "Nodes, elements, bodies and boundaries": (asked,),
