@@ -107,7 +107,7 @@ contains
     end do
     call table%open('deck', 1)
     call table%put('title', text_of(model%controls%title)//new)
-    call table%put('axisymmetric', [merge(1, 0, model%is_round)])
+    call table%put('axisymmetric', [merge(1, 0, model%is_axisymmetric)])
     associate (parts => model%parts, materials => model%materials, sets => model%node_sets, &
       curves => model%curves, n => size(model%parts))
       call table%open('parts', n)

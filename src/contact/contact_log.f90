@@ -266,7 +266,7 @@ contains
       factor = factor//' and '//to_text(memory%master_penalty/estimate)
     end if
     text = text//'; '//factor//' times the built-in estimate'
-    if (model%is_round) text = text &
+    if (model%is_axisymmetric) text = text &
       //' (per unit length of the circumference: times the radius, per radian)'
   end function penalty_text
 
@@ -307,7 +307,7 @@ contains
     end if
     call warn(log, 'interface '//to_text(contact%id)//': initial penetration'//text//', force of ' &
       //'that point '//to_text(memory%points%pressure(p)*memory%points%area(p)) &
-      //per_depth(model%controls%units, 'F', model%is_round) &
+      //per_depth(model%controls%units, 'F', model%is_axisymmetric) &
       //'; it is kept, so that the run starts with these forces')
   end subroutine report_initial_contact
 
@@ -334,7 +334,7 @@ contains
         //to_text(count(memory%ties%state == is_held) + n)//' places have broken, from time ' &
         //to_text(memory%ties%first_break)//' to '//to_text(memory%ties%last_break) &
         //'; what they held, '//to_text(memory%ties%spent) &
-        //per_depth(units, 'F L', contact%is_round)//', stays in the energy of contact')
+        //per_depth(units, 'F L', contact%is_axisymmetric)//', stays in the energy of contact')
     end if
   end subroutine report_end
 

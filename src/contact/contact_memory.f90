@@ -50,7 +50,7 @@ contains
     allocate (memory%force(2, n_slave + n_master), memory%positions(4, n_slave + n_master), &
       source=0.0_wp)
     origin = model%mesh%coordinates(:, memory%nodes(1))
-    if (contact%is_round) origin(1) = 0.0_wp
+    if (contact%is_axisymmetric) origin(1) = 0.0_wp
     do i = 1, size(memory%nodes)
       memory%positions(1:2, i) = model%mesh%coordinates(:, memory%nodes(i)) - origin
     end do
@@ -58,8 +58,8 @@ contains
     memory%contact_law = formulation%contact_law
     memory%has = features_of(contact, formulation, model%controls%implicit%is_on)
     call set_penalties(contact, model, formulation%self_share, memory)
-    call start_segment_points(formulation%segment_points, contact%n_gauss, contact%is_round, &
-      has_folds(contact), contact%slave, memory)
+    call start_segment_points(formulation%segment_points, contact%n_gauss, &
+      contact%is_axisymmetric, has_folds(contact), contact%slave, memory)
     call allocate_slave_status(contact, model, memory)
     if (formulation%has_two_passes) call allocate_master_status(contact, model, memory)
     if (memory%has%overlaps) call allocate_segments(contact, memory)

@@ -61,9 +61,10 @@ contains
       memory%tie_points%pressure)
     carries = abs(share) > 0.0_wp
     if (memory%has%ties) carries = carries .or. tied_nodes(memory, .true., .true.)
-    rows%length = lengths_in_contact(contact%slave, positions(:, :n), contact%is_round, carries(:n))
+    rows%length = lengths_in_contact(contact%slave, positions(:, :n), contact%is_axisymmetric, &
+      carries(:n))
     lengths = max(tiny(1.0_wp), [rows%length, lengths_in_contact(contact%master, &
-      positions(:, n + 1:), contact%is_round, carries(n + 1:))])
+      positions(:, n + 1:), contact%is_axisymmetric, carries(n + 1:))])
     rows%pressure = share(:n)/lengths(:n)
     rows%master_pressure = share(n + 1:)/lengths(n + 1:)
     rows%gap = 0.0_wp
@@ -169,10 +170,10 @@ contains
 
   !> Tributary lengths of the nodes of a surface, m, in axisymmetry m^2 per radian: half of both
   !> segments; at a sharp vertex half of the one under contact alone.
-  pure function lengths_in_contact(surface, positions, is_round, carries) result(lengths)
+  pure function lengths_in_contact(surface, positions, is_axisymmetric, carries) result(lengths)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface
-    logical, intent(in) :: is_round
+    logical, intent(in) :: is_axisymmetric
     logical, intent(in) :: carries(:)                !! (n_node) has contact force, or is tied
     real(wp) :: lengths(surface%n_node)
     real(wp) :: t(2), half
@@ -187,7 +188,7 @@ contains
           if (s == 0) cycle
           if (carries(i) .and. is_side(s)) cycle
         end associate
-        call find_half(surface, positions, is_round, i, k, t, half)
+        call find_half(surface, positions, is_axisymmetric, i, k, t, half)
         lengths(i) = lengths(i) + half
       end do
     end do

@@ -211,11 +211,12 @@ contains
     overhang = beyond_ends
     if (formulation%covers_segments .and. .not. is_strict(contact)) overhang = 0.0_wp
     is_lonely = .false.
-    if (contact%is_round .and. allocated(memory%segment_xi)) &
+    if (contact%is_axisymmetric .and. allocated(memory%segment_xi)) &
       is_lonely = size(memory%segment_xi) == 1
     associate (n => memory%n_slave)
-      slave = measure_side(contact%slave, memory%positions(:, :n), contact%is_round, is_lonely)
-      master = measure_side(contact%master, memory%positions(:, n + 1:), contact%is_round, &
+      slave = measure_side(contact%slave, memory%positions(:, :n), contact%is_axisymmetric, &
+        is_lonely)
+      master = measure_side(contact%master, memory%positions(:, n + 1:), contact%is_axisymmetric, &
         .false.)
       if (formulation%has_unit_area) then
         plane = measure_side(contact%slave, memory%positions(:, :n), .false., .false.)
@@ -233,18 +234,18 @@ contains
 
   !> Lengths, radii and areas of a side; where one Gauss point stands alone on a segment areas are
   !> no less than half of each neighbouring segment by the radius of its middle.
-  pure function measure_side(surface, positions, is_round, is_lonely) result(side)
+  pure function measure_side(surface, positions, is_axisymmetric, is_lonely) result(side)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node)
-    logical, intent(in) :: is_round, is_lonely
+    logical, intent(in) :: is_axisymmetric, is_lonely
     type(side_t) :: side
     real(wp) :: middle(surface%n_node)
     integer :: i
 
     allocate (side%length(surface%n_segment))
     side%radius = [(1.0_wp, i=1, surface%n_node)]
-    if (is_round) side%radius = positions(1, :) + positions(3, :)
-    if (is_round) side%slope = 1.0_wp
+    if (is_axisymmetric) side%radius = positions(1, :) + positions(3, :)
+    if (is_axisymmetric) side%slope = 1.0_wp
     middle = 0.0_wp
     do i = 1, surface%n_segment
       associate (ends => surface%segments(:, i))
@@ -252,7 +253,7 @@ contains
         middle(ends) = middle(ends) + 0.25_wp*side%length(i)*sum(side%radius(ends))
       end associate
     end do
-    side%area = [(nodal_area(surface, positions, is_round, i), i=1, surface%n_node)]
+    side%area = [(nodal_area(surface, positions, is_axisymmetric, i), i=1, surface%n_node)]
     if (is_lonely) side%area = max(side%area, middle)
   end function measure_side
 

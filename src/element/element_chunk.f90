@@ -1,23 +1,23 @@
 ! SPDX-License-Identifier: MIT
 !> Work arrays of one chunk of quads, plane or round. All quantities of a one-point quad follow from
-!> the two diagonals d31 = x3 - x1, d42 = x4 - x2, from h.x = x1 - x2 + x3 - x4 and in round bodies
-!> from the sum s of the radii.
+!> the two diagonals d31 = x3 - x1, d42 = x4 - x2, from h.x = x1 - x2 + x3 - x4 and in axisymmetric
+!> bodies from the sum s of the radii.
 module element_chunk_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size, local_kind
   implicit none
   private
-  public :: element_chunk_t, n_round_reference, reference_sum, reference_inverse, reference_mass, &
+  public :: element_chunk_t, n_axisym_reference, reference_sum, reference_inverse, reference_mass, &
     gather_motion, scatter_forces
 
-  !> Streams of the reference shape of round quads: those of plane ones, the sum of the radii, the
-  !> inverse of the volume, and per node density over mass.
+  !> Streams of the reference shape of axisymmetric quads: those of plane ones, the sum of the
+  !> radii, the inverse of the volume, and per node density over mass.
   integer, parameter :: reference_sum = 7, reference_inverse = 8, reference_mass = 9, &
-    n_round_reference = 12
+    n_axisym_reference = 12
 
   !> One chunk.
   type :: element_chunk_t
-    logical :: is_round
+    logical :: is_axisymmetric
     real(wp) :: u31(2, chunk_size), v31(2, chunk_size) !! u and v of node 3 minus node 1
     real(wp) :: u42(2, chunk_size), v42(2, chunk_size) !! of node 4 minus node 2
     real(wp) :: hu(2, chunk_size), hv(2, chunk_size)   !! of node 1 - node 2 + node 3 - node 4
@@ -39,9 +39,10 @@ module element_chunk_m
     real(wp), dimension(2, chunk_size) :: force3, force4 !! x, y of nodes 3, 4 without hourglass
     real(wp) :: swing(2, chunk_size) !! hourglass amplitude q_x, q_y
     real(wp), dimension(chunk_size) :: resistance !! hourglass force over gamma.v, or its integral
-    ! What follows round quads have besides: x is the radius r, y the axis z. Of the gradients of
-    ! the volume `rad` is what belongs to dv_r/dr, `axi` to d/dz, `mean` to v_r/r (integrals of N_a
-    ! over A), each for the patterns d31, d42, h (s: all four nodes); mid_area is a volume.
+    ! What follows axisymmetric quads have besides: x is the radius r, y the axis z. Of the
+    ! gradients of the volume `rad` is what belongs to dv_r/dr, `axi` to d/dz, `mean` to v_r/r
+    ! (integrals of N_a over A), each for the patterns d31, d42, h (s: all four nodes); mid_area is
+    ! a volume.
     real(wp), dimension(chunk_size) :: us, vs !! sums of u_r and of v_r, 0 in padding. No pairs: a
                                               !! loop that reads one of two has a remainder
     real(wp), dimension(chunk_size) :: hoop   !! force in r on each of the four nodes
@@ -57,15 +58,15 @@ contains
   !> loops read without a remainder. The loop over elements stays scalar: each node is one 32-byte
   !> load, where a vectorised gather would be several times slower. Of axisymmetric quads the sums
   !> of the radial motion too; all nodes of padding are one: it carries no strain.
-  pure subroutine gather_motion(is_round, nodes, motion, chunk)
-    logical, intent(in) :: is_round
+  pure subroutine gather_motion(is_axisymmetric, nodes, motion, chunk)
+    logical, intent(in) :: is_axisymmetric
     integer, intent(in) :: nodes(4, chunk_size)
     real(wp), intent(in) :: motion(4, *)             !! all nodes: u_x, u_y, v_x, v_y
     type(element_chunk_t), intent(inout) :: chunk
     real(wp) :: d31(4), d42(4), h(4), s(4)
     integer :: i, k
 
-    chunk%is_round = is_round
+    chunk%is_axisymmetric = is_axisymmetric
     !GCC$ NOVECTOR
     do i = 1, chunk_size
       !$omp simd simdlen(4)
@@ -81,7 +82,7 @@ contains
       chunk%v42(:, i) = d42(3:4)
       chunk%hu(:, i) = h(1:2)
       chunk%hv(:, i) = h(3:4)
-      if (.not. is_round) cycle
+      if (.not. is_axisymmetric) cycle
       ! All four at a time, told in so many words: two of the sums are not asked for.
       !$omp simd simdlen(4)
       do k = 1, 4
@@ -90,7 +91,7 @@ contains
       chunk%us(i) = s(1)
       chunk%vs(i) = s(3)
     end do
-    if (.not. is_round) return
+    if (.not. is_axisymmetric) return
     do i = chunk_size, 1, -1
       if (nodes(1, i) /= nodes(3, i)) exit
       chunk%us(i) = 0.0_wp
@@ -111,7 +112,7 @@ contains
     real(wp) :: hoop
     integer :: i, k, n(4)
 
-    if (.not. chunk%is_round) then
+    if (.not. chunk%is_axisymmetric) then
       do i = 1, n_element
         n = local(:, i)
         !$omp simd simdlen(2)

@@ -11,7 +11,7 @@ module element_dispatch_m
   use layout_m, only : layout_t, chunk_size, local_kind, tile_t
   use model_m, only : model_t
   use packed_buffer_m, only : packed_buffer_t, start_loading, start_unloading, choose_slots
-  use parts_m, only : section_t, form_full, form_round_full
+  use parts_m, only : section_t, form_full, form_axisym_full
   use quad_m, only : advance_chunk
   use quad_points_m, only : n_point
   implicit none
@@ -26,7 +26,7 @@ contains
     type(section_t), intent(in) :: section
     integer :: n
 
-    n = merge(n_point, 1, any(section%element_form == [form_full, form_round_full]))
+    n = merge(n_point, 1, any(section%element_form == [form_full, form_axisym_full]))
   end function point_count
 
   !> Advance all elements of one tile by the step `dt` that led here and sum their internal forces

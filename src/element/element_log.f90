@@ -39,11 +39,11 @@ contains
         if (point_count(model%sections(part%section)) == 1) then
           text = trim(merge('round, volume weighted one-point quads', &
             'one-point quads                       ', &
-            model%is_round))//', '//trim(forms(part%hourglass%form))//' hourglass control ' &
+            model%is_axisymmetric))//', '//trim(forms(part%hourglass%form))//' hourglass control ' &
             //to_text(part%hourglass%coefficient)
         else
           text = trim(merge('round fully integrated quads', 'fully integrated quads      ', &
-            model%is_round))//' (2x2 points), '//trim(merge('mean dilatation           ', &
+            model%is_axisymmetric))//' (2x2 points), '//trim(merge('mean dilatation           ', &
             'volumetric strain by point', has_mean_dilatation(model%materials(part%material))))
         end if
         call write_log(log, 'part '//to_text(part%id)//': '//text//', bulk viscosity Q1 ' &
@@ -53,14 +53,15 @@ contains
         ruling = merge(ruling_assumed, ruling_coefficient, part%hourglass%form == hourglass_assumed)
         share = ruling/max(part%hourglass%coefficient, ruling)
         if (part%hourglass%form /= hourglass_viscous) share = sqrt(share)
-        if (share < 1.0_wp .and. .not. model%is_round) call warn(log, 'part '//to_text(part%id) &
+        if (share < 1.0_wp .and. .not. model%is_axisymmetric) call warn(log, &
+          'part '//to_text(part%id) &
           //': hourglass control of QM '//to_text(part%hourglass%coefficient)//' lowers the ' &
           //'stable step, that of squares to '//to_text(share)//' of L/c; QM up to ' &
           //to_text(ruling)//' would not')
-        if (model%is_round .and. part%hourglass%form == hourglass_stiffness &
+        if (model%is_axisymmetric .and. part%hourglass%form == hourglass_stiffness &
           .and. history_size(model%materials(part%material)) > 0) call warn(log, 'part ' &
-          //to_text(part%id)//': stiffness hourglass control makes round bodies too stiff in ' &
-          //'plastic flow; the viscous form (IHQ 1 to 3) does not')
+          //to_text(part%id)//': stiffness hourglass control makes axisymmetric bodies too stiff ' &
+          //'in plastic flow; the viscous form (IHQ 1 to 3) does not')
       end associate
     end do
     call tell_of_viscosity(model, log)

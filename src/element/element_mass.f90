@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Masses. Lumped: a quarter of each quad, a third of each triangle to its nodes; in round bodies
-!> the row sums of the consistent mass. Consistent: rho times the integral of N_a N_b over the
-!> initial shape, which 2x2 Gauss points integrate exactly for quads and triangles; of N_a N_b r in
-!> round bodies, of one degree more than 2x2 points hold: 3x3.
+!> Masses. Lumped: a quarter of each quad, a third of each triangle to its nodes; in axisymmetric
+!> bodies the row sums of the consistent mass. Consistent: rho times the integral of N_a N_b over
+!> the initial shape, which 2x2 Gauss points integrate exactly for quads and triangles; of N_a N_b r
+!> in axisymmetric bodies, of one degree more than 2x2 points hold: 3x3.
 module element_mass_m
   use kinds_m, only : wp
   use layout_m, only : slot_part
@@ -110,8 +110,8 @@ contains
     integer :: b, k
 
     x = model%mesh%coordinates(:, model%mesh%element_nodes(:, i))
-    if (model%is_round) then
-      mass = round_mass(x)
+    if (model%is_axisymmetric) then
+      mass = axisym_mass(x)
     else
       areas = point_areas(x)
       mass = 0.0_wp
@@ -170,7 +170,7 @@ contains
     x = model%mesh%coordinates(:, nodes)
     corners = merge(3, 4, nodes(4) == nodes(3))
     associate (density => model%materials(model%parts(part)%material)%density)
-      if (model%is_round) then
+      if (model%is_axisymmetric) then
         shares = density*node_volumes(x, corners == 3)
       else
         shares = density*(0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
@@ -194,7 +194,7 @@ contains
   end function node_volumes
 
   !> Integrals of N_a N_b r over one quad or triangle, per radian: 3x3 Gauss points are exact.
-  pure function round_mass(x) result(mass)
+  pure function axisym_mass(x) result(mass)
     real(wp), intent(in) :: x(2, 4) !! corners, x(1, :) the radii
     real(wp) :: mass(4, 4)
     real(wp), parameter :: outer = sqrt(0.15_wp)
@@ -217,7 +217,7 @@ contains
         end do
       end do
     end do
-  end function round_mass
+  end function axisym_mass
 
   !> Volume of element i at the start, per radian, and its first moments.
   pure function element_volume(mesh, i) result(moments)

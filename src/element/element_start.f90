@@ -2,7 +2,7 @@
 !> Element state at time zero.
 module element_start_m
   use block_state_m, only : block_state_t
-  use element_chunk_m, only : n_round_reference, reference_inverse, reference_mass, reference_sum
+  use element_chunk_m, only : n_axisym_reference, reference_inverse, reference_mass, reference_sum
   use element_dispatch_m, only : point_count
   use element_mass_m, only : node_volumes
   use element_state_m, only : start_erosion
@@ -26,7 +26,8 @@ contains
     type(block_state_t), intent(out) :: elements
     integer :: n_chunk, k
 
-    allocate (elements%reference(model%layout%n_slot, merge(n_round_reference, 6, model%is_round)))
+    allocate (elements%reference(model%layout%n_slot, merge(n_axisym_reference, 6, &
+      model%is_axisymmetric)))
     allocate (elements%deviator(model%layout%n_slot, 3))
     ! Chunks of rigid parts come after these.
     n_chunk = model%layout%tiles(size(model%layout%tiles))%last_chunk
@@ -68,7 +69,7 @@ contains
   subroutine fill_reference(model, from, to, reference)
     type(model_t), intent(in) :: model
     integer, intent(in) :: from, to            !! slots
-    real(wp), intent(inout) :: reference(:, :) !! (n_slot, 6 or n_round_reference)
+    real(wp), intent(inout) :: reference(:, :) !! (n_slot, 6 or n_axisym_reference)
     real(wp), parameter :: much = 1.0e6_wp
     real(wp) :: x(2, 4), volumes(4)
     integer :: i, first, n
@@ -86,7 +87,7 @@ contains
         reference(i, 1:2) = x(:, 3) - x(:, 1)
         reference(i, 3:4) = x(:, 4) - x(:, 2)
         reference(i, 5:6) = (x(:, 1) - x(:, 2)) + (x(:, 3) - x(:, 4))
-        if (.not. model%is_round) cycle
+        if (.not. model%is_axisymmetric) cycle
         volumes = node_volumes(x, nodes(4) == nodes(3))
         reference(i, reference_sum) = sum(x(1, :))
         reference(i, reference_inverse) = 1.0_wp/sum(volumes)

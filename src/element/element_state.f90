@@ -178,7 +178,7 @@ contains
           i_chunk))%material))) n = n_point
       end if
       u = motion(1:2, nodes)
-      if (n > 1 .or. model%is_round) then
+      if (n > 1 .or. model%is_axisymmetric) then
         call ratios_of_points(elements, slot, u, stretch, start)
         if (n > 1) return
         ! 2x2 points integrate the volume of the element without error.
@@ -203,7 +203,7 @@ contains
     real(wp) :: stretch(n_point), start(n_point)
     real(wp), parameter :: none(2, 4) = 0.0_wp
 
-    if (model%is_round) then
+    if (model%is_axisymmetric) then
       call ratios_of_points(elements, slot, none, stretch, start)
       volume = sum(start)
     else

@@ -74,23 +74,23 @@ contains
     integer :: first, i
 
     first = (i_chunk - 1)*chunk_size + 1
-    call gather_motion(model%is_round, model%layout%slot_nodes(1, first), motion, chunk)
+    call gather_motion(model%is_axisymmetric, model%layout%slot_nodes(1, first), motion, chunk)
     call form_shape(elements%reference(first, 1), size(elements%reference, 1), chunk)
     call form_increments(dt, chunk, unused)
     if (elements%point_start(i_chunk) > 0) then
-      call start_points(chunk%is_round, point, sums)
+      call start_points(chunk%is_axisymmetric, point, sums)
       do i = 1, n_point
         call move_point(i_chunk, i, dt, elements, chunk, point, unused, sums)
       end do
-    else if (chunk%is_round) then
+    else if (chunk%is_axisymmetric) then
       associate (part => model%parts(model%layout%chunk_part(i_chunk)))
         call form_resistance(model%materials(part%material), part%hourglass, chunk)
       end associate
     end if
-    if (size(now) > 1 .and. chunk%is_round) shape = chunk
+    if (size(now) > 1 .and. chunk%is_axisymmetric) shape = chunk
     call limit_elements(model, i_chunk, now(1), elements, chunk, sums, steps)
     do i = 2, size(now)
-      if (chunk%is_round) chunk = shape ! the limits of triangles change it
+      if (chunk%is_axisymmetric) chunk = shape ! the limits of triangles change it
       call limit_elements(model, i_chunk, now(i), elements, chunk, sums, at_moduli)
       steps(i) = at_moduli(i)
     end do

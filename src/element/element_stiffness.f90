@@ -28,7 +28,7 @@ module element_stiffness_m
     [n_pattern, 8]), wp)
   real(wp), parameter :: part = 1.0_wp/24.0_wp
 
-  !> Integrals over a quad of r d/dr, of r d/dz and of 1, pattern by pattern (`form_round_shape`).
+  !> Integrals over a quad of r d/dr, of r d/dz and of 1, pattern by pattern (`form_axisym_shape`).
   type :: integrals_t
     type(dual_t) :: volume, rad(3), axi(3), mean(3)
   end type integrals_t
@@ -49,7 +49,7 @@ contains
     real(wp) :: block(8, 8), du(2, 4)
     integer :: equations(8), i_chunk, slot
 
-    element = new_element(model%is_round)
+    element = new_element(model%is_axisymmetric)
     do i_chunk = 1, model%layout%n_chunk
       associate (part => model%parts(model%layout%chunk_part(i_chunk)), &
         material => model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
@@ -150,7 +150,7 @@ contains
         growth(i) = change%h(i) - products(gradient(i, 1), middle%h(1), gradient(i, 2), middle%h(2))
       end do
       hoop = constant(0.0_wp)
-      if (element%is_round) then
+      if (element%is_axisymmetric) then
         call form_integrals(.true., middle, over)
         do i = 1, 2
           gradient(i, 1) = (products(over%rad(1), change%a(i), over%rad(2), change%b(i)) &
@@ -162,12 +162,12 @@ contains
           + over%mean(3)*change%s)/over%volume
       end if
       area = twice_area(now)
-      call form_integrals(element%is_round, now, over)
+      call form_integrals(element%is_axisymmetric, now, over)
       call find_stress(material, gradient, hoop, pressure_of(material%bulk, &
         sum(start_volumes(element)), over%volume), element%points(1), stress, cosine)
       call find_resistance(material, hourglass, element, growth, cosine, q)
       ! The mean radius, and what h contributes to a and b in gamma.
-      if (element%is_round) then
+      if (element%is_axisymmetric) then
         hoop = 2.0_wp*over%volume/area
         q(1) = hoop*q(1)
         q(2) = hoop*q(2)
@@ -188,14 +188,14 @@ contains
   end subroutine form_one_point_force
 
   !> Integrals over a quad; a plane one has unit depth.
-  pure subroutine form_integrals(is_round, shape, over)
-    logical, intent(in) :: is_round
+  pure subroutine form_integrals(is_axisymmetric, shape, over)
+    logical, intent(in) :: is_axisymmetric
     type(shape_t), intent(in) :: shape
     type(integrals_t), intent(out) :: over
     type(dual_t) :: s, h(2)
 
     associate (a => shape%a, b => shape%b)
-      if (.not. is_round) then
+      if (.not. is_axisymmetric) then
         over%rad = [0.5_wp*b(2), (-0.5_wp)*a(2), constant(0.0_wp)]
         over%axi = [(-0.5_wp)*b(1), 0.5_wp*a(1), constant(0.0_wp)]
         over%mean = constant(0.0_wp)

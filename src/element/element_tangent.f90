@@ -27,7 +27,7 @@ module element_tangent_m
 
   !> One element in a step.
   type :: element_t
-    logical :: is_round
+    logical :: is_axisymmetric
     real(wp) :: x(2, 4)                 !! corners at time zero
     real(wp) :: u(2, 4)                 !! displacement
     type(shape_t) :: now, middle, change !! present and mid-step shape, increment in the step
@@ -38,11 +38,11 @@ module element_tangent_m
 contains
 
   !> An element whose shapes have the slopes of the patterns, and no values yet.
-  pure function new_element(is_round) result(element)
-    logical, intent(in) :: is_round
+  pure function new_element(is_axisymmetric) result(element)
+    logical, intent(in) :: is_axisymmetric
     type(element_t) :: element
 
-    element%is_round = is_round
+    element%is_axisymmetric = is_axisymmetric
     associate (now => element%now, middle => element%middle)
       now%a = variable([0.0_wp, 0.0_wp], [1, 2])
       now%b = variable([0.0_wp, 0.0_wp], [3, 4])
@@ -68,15 +68,15 @@ contains
   end subroutine take_values
 
   !> Diagonals of point `k`, and its radius where one is asked for.
-  pure subroutine form_place(k, is_round, shape, place)
+  pure subroutine form_place(k, is_axisymmetric, shape, place)
     integer, intent(in) :: k
-    logical, intent(in) :: is_round
+    logical, intent(in) :: is_axisymmetric
     type(shape_t), intent(in) :: shape
     type(shape_t), intent(inout) :: place
 
     place%a = along(shape%a, shift(1, k), shape%h)
     place%b = along(shape%b, shift(2, k), shape%h)
-    if (.not. is_round) return
+    if (.not. is_axisymmetric) return
     place%s%value = 0.25_wp*shape%s%value + along_a(k)*shape%a(1)%value &
       + along_b(k)*shape%b(1)%value + along_h(k)*shape%h(1)%value
     place%s%slope = 0.25_wp*shape%s%slope + along_a(k)*shape%a(1)%slope &
@@ -132,9 +132,9 @@ contains
     start = start_volumes(element)
     volume = constant(0.0_wp)
     do k = 1, n_point
-      call form_place(k, element%is_round, element%now, places(k))
+      call form_place(k, element%is_axisymmetric, element%now, places(k))
       volumes(k) = twice_area(places(k))
-      if (element%is_round) volumes(k) = volumes(k)*places(k)%s
+      if (element%is_axisymmetric) volumes(k) = volumes(k)*places(k)%s
       volumes(k) = 0.125_wp*volumes(k)
       volume = along(volume, 1.0_wp, volumes(k))
     end do
@@ -150,7 +150,7 @@ contains
     end if
     force = constant(0.0_wp)
     do k = 1, n_point
-      call add_point_force(k, element%is_round, places(k), stress(:, k), force)
+      call add_point_force(k, element%is_axisymmetric, places(k), stress(:, k), force)
     end do
   end subroutine form_full_force
 
@@ -160,7 +160,7 @@ contains
     real(wp) :: start(n_point)
 
     start = point_areas(element%x)
-    if (element%is_round) start = start*matmul(element%x(1, :), shape_at_points)
+    if (element%is_axisymmetric) start = start*matmul(element%x(1, :), shape_at_points)
   end function start_volumes
 
   !> Cauchy stress xx yy xy and zz (hoop) of a point of several.
@@ -178,7 +178,7 @@ contains
       call form_gradient(place, change%a%value + shift(1, k)*change%h%value, &
         change%b%value + shift(2, k)*change%h%value, gradient)
       hoop = constant(0.0_wp)
-      if (element%is_round) then
+      if (element%is_axisymmetric) then
         growth = 0.25_wp*change%s%value + along_a(k)*change%a(1)%value &
           + along_b(k)*change%b(1)%value + along_h(k)*change%h(1)%value
         radius = place%s%value - 0.5_wp*growth
@@ -191,9 +191,9 @@ contains
 
   !> Add the forces sigma B of a point, a quarter of the area and the radius its weight, and that of
   !> the hoop stress.
-  pure subroutine add_point_force(k, is_round, place, stress, force)
+  pure subroutine add_point_force(k, is_axisymmetric, place, stress, force)
     integer, intent(in) :: k
-    logical, intent(in) :: is_round
+    logical, intent(in) :: is_axisymmetric
     type(shape_t), intent(in) :: place
     type(dual_t), intent(in) :: stress(4)
     type(dual_t), intent(inout) :: force(n_pattern)
@@ -205,7 +205,7 @@ contains
     f(2) = cross(stress(3), place%b(2), stress(2), place%b(1))
     f(3) = cross(stress(3), place%a(1), stress(1), place%a(2))
     f(4) = cross(stress(2), place%a(1), stress(3), place%a(2))
-    if (is_round) then
+    if (is_axisymmetric) then
       hoop = stress(4)*twice_area(place)
       force(1) = along(force(1), weight*along_a(k), hoop)
       force(3) = along(force(3), weight*along_b(k), hoop)
@@ -331,7 +331,7 @@ contains
     mean = sum(start)*mean
     do k = 1, n_point
       ratio = (1.0_wp/start(k))*volumes(k)
-      call form_place(k, element%is_round, moved, place)
+      call form_place(k, element%is_axisymmetric, moved, place)
       call find_kirchhoff_stress(rubber, power(theta/ratio, 2.0_wp/3.0_wp), k, element, place, &
         stress(:, k))
       middle = (1.0_wp/3.0_wp)*((stress(1, k) + stress(2, k)) + stress(4, k))
@@ -374,7 +374,7 @@ contains
       b(2) = scale*products(f(2, 1), f(2, 1), f(2, 2), f(2, 2))
       b(3) = scale*products(f(1, 1), f(2, 1), f(1, 2), f(2, 2))
       b(4) = scale
-      if (element%is_round) then
+      if (element%is_axisymmetric) then
         factor = (1.0_wp/dot_product(shape_at_points(:, k), x(1, :)))*moved%s + 1.0_wp
         b(4) = scale*(factor*factor)
       end if

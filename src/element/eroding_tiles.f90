@@ -86,7 +86,7 @@ contains
       chunk%force3(:, i) = 0.0_wp
       chunk%force4(:, i) = 0.0_wp
       chunk%swing(:, i) = 0.0_wp
-      if (chunk%is_round) chunk%hoop(i) = 0.0_wp
+      if (chunk%is_axisymmetric) chunk%hoop(i) = 0.0_wp
     end do
   end subroutine advance_eroding_chunk
 
@@ -121,7 +121,7 @@ contains
       v = motion(3:4, model%layout%slot_nodes(:, slot))
       share = dot_product(chunk%force3(:, i), v(:, 3) - v(:, 1)) + dot_product(chunk%force4(:, i), &
         v(:, 4) - v(:, 2)) + dot_product(chunk%swing(:, i), v(:, 1) - v(:, 2) + v(:, 3) - v(:, 4))
-      if (chunk%is_round) share = share + chunk%hoop(i)*sum(v(1, :))
+      if (chunk%is_axisymmetric) share = share + chunk%hoop(i)*sum(v(1, :))
       share = 0.5_wp*dt*share
       if (elements%eos_state(i_eos + 2*chunk_size + i - 1) > -1.0_wp .and. abs(share) &
         <= huge(1.0_wp)) then

@@ -45,7 +45,7 @@ contains
         end where
       end if
       if (hourglass%form == hourglass_assumed) then
-        if (chunk%is_round) call form_resistance(material, hourglass, chunk)
+        if (chunk%is_axisymmetric) call form_resistance(material, hourglass, chunk)
         call resist_by_assumed_strain(material, hourglass, stress, memory(x), memory(y), chunk, &
           work)
       else
@@ -82,8 +82,8 @@ contains
 
   !> Force over gamma.v, (Q_h rho c sqrt(A)/4); or over its integral,
   !> (Q_h/4)(K + 4G/3)((B_x.B_x + B_y.B_y)/A); or a bound of that for assumed strain,
-  !> QM E/(16 (1 - nu^2)) (2/(3A)) S with S the spread of the diagonals, which round bodies alone
-  !> need. In round bodies all of them times V/A.
+  !> QM E/(16 (1 - nu^2)) (2/(3A)) S with S the spread of the diagonals, which axisymmetric bodies
+  !> alone need. In axisymmetric bodies all of them times V/A.
   pure subroutine form_resistance(material, hourglass, chunk)
     type(material_t), intent(in) :: material
     type(hourglass_t), intent(in) :: hourglass
@@ -93,7 +93,7 @@ contains
 
     if (hourglass%form == hourglass_viscous) then
       factor = 0.25_wp*hourglass%coefficient*material%density*material%sound_speed
-      if (chunk%is_round) then
+      if (chunk%is_axisymmetric) then
         !$omp simd
         do i = 1, chunk_size
           chunk%resistance(i) = factor*chunk%volume(i)*(chunk%inverse_area(i)*sqrt(chunk%area(i)))
@@ -122,7 +122,7 @@ contains
           + chunk%y42(i)**2)
       end do
     end if
-    if (chunk%is_round) then
+    if (chunk%is_axisymmetric) then
       chunk%resistance = chunk%resistance*chunk%volume*chunk%inverse_area**2
     else
       chunk%resistance = chunk%resistance*chunk%inverse_area
@@ -241,7 +241,7 @@ contains
       sine = scale*sine
       added_x = mxx*grown_x + mxy*grown_y
       added_y = mxy*grown_x + myy*grown_y
-      ! In round bodies `mid_area` is the volume per radian.
+      ! In axisymmetric bodies `mid_area` is the volume per radian.
       chunk%hourglass_work(i) = chunk%mid_area(i)/area*((stress_x(i) + 0.5_wp*added_x)*grown_x &
         + (stress_y(i) + 0.5_wp*added_y)*grown_y)
       work = work + chunk%hourglass_work(i)
@@ -250,7 +250,7 @@ contains
       chunk%qx(i) = cosine*stress_x(i) - sine*stress_y(i)
       chunk%qy(i) = sine*stress_x(i) + cosine*stress_y(i)
     end do
-    if (.not. chunk%is_round) return
+    if (.not. chunk%is_axisymmetric) return
     ! The force of the plane times the mean radius V/A.
     !$omp simd private(weight)
     do i = 1, chunk_size

@@ -16,9 +16,9 @@ module quad_m
   use model_m, only : model_t
   use parts_m, only : hourglass_t, material_t, gives_pressure
   use quad_plain_m, only : is_plain, advance_plain
-  use quad_kinematics_m, only : form_shape, form_increments, form_forces, form_round_forces, &
+  use quad_kinematics_m, only : form_shape, form_increments, form_forces, form_axisym_forces, &
     form_rubber_forces, add_pressure_forces, inverse_start
-  use quad_points_m, only : n_point, round_point_t, step_sums_t, form_point, form_radii, &
+  use quad_points_m, only : n_point, axisym_point_t, step_sums_t, form_point, form_radii, &
     add_hoop_strain, add_hoop_force, add_point_force, add_point_sums, form_row_sums
   use stable_step_m, only : moduli_t, moduli_of, stable_step, axisymmetric_step, full_step, &
     axisymmetric_full_step
@@ -33,7 +33,7 @@ module quad_m
   !> deviator times volume.
   type :: sums_t
     type(step_sums_t) :: step
-    type(round_point_t) :: places(n_point)
+    type(axisym_point_t) :: places(n_point)
     real(wp) :: deviator(chunk_size, 3)
   end type sums_t
 
@@ -57,13 +57,13 @@ contains
       model%materials(model%parts(model%layout%chunk_part(i_chunk))%material))
       if (elements%point_start(i_chunk) == 0) then
         if (is_plain(model, part, material, elements)) then
-          chunk%is_round = .false.
+          chunk%is_axisymmetric = .false.
           call advance_plain(i_chunk, nodes, motion, material, part%hourglass%coefficient, dt, &
             elements, chunk)
           return
         end if
       end if
-      call gather_motion(model%is_round, nodes, motion, chunk)
+      call gather_motion(model%is_axisymmetric, nodes, motion, chunk)
       call form_shape(elements%reference((i_chunk - 1)*chunk_size + 1, 1), &
         size(elements%reference, 1), chunk)
       elements%volume_change(i_chunk) = 0.0_wp
@@ -109,12 +109,12 @@ contains
         elements, chunk, stress)
     end if
     call resist(i_chunk, material, hourglass, stress, elements, chunk)
-    if (.not. chunk%is_round) then
+    if (.not. chunk%is_axisymmetric) then
       call form_forces(stress, chunk)
     else if (allocated(material%rubber)) then
       call form_rubber_forces(stress, chunk)
     else
-      call form_round_forces(stress, chunk)
+      call form_axisym_forces(stress, chunk)
     end if
   end subroutine advance_one_point
 
@@ -137,16 +137,16 @@ contains
     chunk%force3 = 0.0_wp
     chunk%force4 = 0.0_wp
     chunk%swing = 0.0_wp
-    if (chunk%is_round) chunk%hoop = 0.0_wp
+    if (chunk%is_axisymmetric) chunk%hoop = 0.0_wp
     sums%deviator = 0.0_wp
-    call start_points(chunk%is_round, point, sums)
+    call start_points(chunk%is_axisymmetric, point, sums)
     do k = 1, n_point
       call advance_point(i_chunk, k, material, dt, elements, chunk, point, sums)
     end do
     ! The mean deviator, for output.
     first = (i_chunk - 1)*chunk_size + 1
     inverse = chunk%inverse_area
-    if (chunk%is_round) inverse = chunk%inverse_volume
+    if (chunk%is_axisymmetric) inverse = chunk%inverse_volume
     do j = 1, 3
       elements%deviator(first:first + chunk_size - 1, j) = sums%deviator(:, j)*inverse
     end do
@@ -172,14 +172,14 @@ contains
     first = (i_chunk - 1)*chunk_size + 1
     n_slot = size(elements%reference, 1)
     associate (hourglass => model%parts(model%layout%chunk_part(i_chunk))%hourglass)
-      if (elements%point_start(i_chunk) > 0 .and. chunk%is_round) then
+      if (elements%point_start(i_chunk) > 0 .and. chunk%is_axisymmetric) then
         call form_row_sums(elements%reference(first, reference_mass), n_slot, sums%places, &
           sums%step)
         call axisymmetric_full_step(now, hourglass, chunk, sums%step, limits(1), limits(2), single)
       else if (elements%point_start(i_chunk) > 0) then
         call full_step(now, hourglass, model%layout%slot_nodes(1, first), chunk, sums%step, &
           limits(1), limits(2), single)
-      else if (chunk%is_round) then
+      else if (chunk%is_axisymmetric) then
         call axisymmetric_step(now, hourglass, elements%reference(first, reference_mass), n_slot, &
           chunk, limits(1), limits(2), single)
       else
@@ -221,17 +221,17 @@ contains
   end subroutine form_mean_pressure
 
   !> Nothing summed yet, and what no point has of an element: hourglass patterns.
-  pure subroutine start_points(is_round, point, sums)
-    logical, intent(in) :: is_round
+  pure subroutine start_points(is_axisymmetric, point, sums)
+    logical, intent(in) :: is_axisymmetric
     type(element_chunk_t), intent(inout) :: point
     type(sums_t), intent(inout) :: sums
 
-    point%is_round = .false.
+    point%is_axisymmetric = .false.
     point%hu = 0.0_wp
     point%hv = 0.0_wp
     point%qx = 0.0_wp
     point%qy = 0.0_wp
-    if (is_round) return
+    if (is_axisymmetric) return
     sums%step%h = 0.0_wp
     sums%step%volume = huge(1.0_wp)
   end subroutine start_points
@@ -261,7 +261,7 @@ contains
     if (allocated(elements%retardation)) call add_damping(i_chunk, k, material, &
       .not. has_mean_dilatation(material), elements, point, stress)
     call form_forces(stress, point)
-    if (chunk%is_round) call add_hoop_force(k, sums%places(k), stress, point, chunk)
+    if (chunk%is_axisymmetric) call add_hoop_force(k, sums%places(k), stress, point, chunk)
     call add_point_force(k, point, chunk)
   end subroutine advance_point
 
@@ -283,7 +283,7 @@ contains
     call form_shape(reference, chunk_size, point)
     call form_increments(dt, point, stress)
     point%mid_area = 0.25_wp*point%mid_area
-    if (chunk%is_round) then
+    if (chunk%is_axisymmetric) then
       call form_radii(k, elements%reference(first, 1), stride, chunk, point, sums%places(k))
       call add_hoop_strain(dt, sums%places(k), point, stress)
       point%trace = 0.0_wp

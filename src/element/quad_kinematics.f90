@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> Kinematics and forces of the one-point quad, plane or round (gradients averaged over its volume:
-!> doc/theory/elements.md, "Round bodies").
+!> doc/theory/elements.md, "Axisymmetric bodies").
 !> With B_x3 = y42/2, B_y3 = -x42/2, B_x4 = -y31/2, B_y4 = x31/2 (and opposite signs at nodes 1 and
 !> 2): A = (x31 y42 - x42 y31)/2, L_ix = (v31 y42 - v42 y31)/(2A), L_iy = (x31 v42 - x42 v31)/(2A).
-!> In round bodies, a = d31 and b = d42, the volume per radian is (in these patterns)
+!> In axisymmetric bodies, a = d31 and b = d42, the volume per radian is (in these patterns)
 !>   V = s A/4 + (h_r (a_r b_z + b_r a_z) - 2 a_r b_r h_z)/24.
 module quad_kinematics_m
   use kinds_m, only : wp
@@ -12,8 +12,8 @@ module quad_kinematics_m
   use stress_chunk_m, only : stress_chunk_t
   implicit none
   private
-  public :: form_shape, form_present_shape, form_round_shape, form_increments, &
-    form_plane_increments, form_round_increments, form_forces, form_round_forces, &
+  public :: form_shape, form_present_shape, form_axisym_shape, form_increments, &
+    form_plane_increments, form_axisym_increments, form_forces, form_axisym_forces, &
     add_pressure_forces, inverse_start, form_gradient, form_rubber_forces
 
   real(wp), parameter :: part = 1.0_wp/24.0_wp, eighth = 0.125_wp
@@ -26,8 +26,8 @@ contains
     real(wp), intent(in) :: reference(stride, *)  !! first slot of this chunk
     type(element_chunk_t), intent(inout) :: chunk
 
-    if (chunk%is_round) then
-      call form_round_shape(reference, stride, chunk)
+    if (chunk%is_axisymmetric) then
+      call form_axisym_shape(reference, stride, chunk)
     else
       call form_present_shape(reference, stride, chunk)
     end if
@@ -39,8 +39,8 @@ contains
     type(element_chunk_t), intent(inout) :: chunk
     type(stress_chunk_t), intent(inout) :: stress   !! increments and rotation out
 
-    if (chunk%is_round) then
-      call form_round_increments(dt, chunk, stress)
+    if (chunk%is_axisymmetric) then
+      call form_axisym_increments(dt, chunk, stress)
     else
       call form_plane_increments(dt, chunk, stress)
     end if
@@ -51,7 +51,7 @@ contains
     type(element_chunk_t), intent(in) :: chunk
     real(wp) :: inverse(chunk_size)
 
-    if (chunk%is_round) then
+    if (chunk%is_axisymmetric) then
       inverse = (1.0_wp + chunk%stretch)*chunk%inverse_volume
     else
       inverse = (1.0_wp + chunk%stretch)*chunk%inverse_area
@@ -164,11 +164,11 @@ contains
     end do
   end subroutine form_forces
 
-  !> Of round quads: present volume and its gradients, V/V0 - 1. V - V0 is formed from the
+  !> Of axisymmetric quads: present volume and its gradients, V/V0 - 1. V - V0 is formed from the
   !> displacement, so that a nearly undeformed element keeps all digits of its strain. The hourglass
   !> pattern, (b x h)/(2 A) and (h x a)/(2 A) of the diagonals, is -12/A and 12/A times the
   !> gradients M: who needs it takes them.
-  pure subroutine form_round_shape(reference, stride, chunk)
+  pure subroutine form_axisym_shape(reference, stride, chunk)
     integer, intent(in) :: stride                 !! length of one stream
     real(wp), intent(in) :: reference(stride, *)  !! first slot of this chunk, see `element_chunk`
     type(element_chunk_t), intent(inout) :: chunk !! patterns, area and `stretch` out
@@ -226,12 +226,12 @@ contains
       chunk%inverse_volume(i) = both*area
       chunk%inverse_area(i) = both*volume
     end do
-  end subroutine form_round_shape
+  end subroutine form_axisym_shape
 
   !> Strain increments, spin and hourglass velocity of the step, from the shape half a step ago.
   !> The hoop rate is taken from both rates in the plane: laws see the same deviator, their D_zz
   !> is 0.
-  pure subroutine form_round_increments(dt, chunk, stress)
+  pure subroutine form_axisym_increments(dt, chunk, stress)
     real(wp), intent(in) :: dt                    !! step that led here
     type(element_chunk_t), intent(inout) :: chunk !! trace, gamma.v and mid-step volume out
     type(stress_chunk_t), intent(inout) :: stress !! increments and rotation out
@@ -254,7 +254,7 @@ contains
       hr = part*(chunk%hx(i) - back*chunk%hv(1, i))
       hz = part*(chunk%hy(i) - back*chunk%hv(2, i))
       s = chunk%radii(i) - eighth*back*chunk%vs(i)
-      ! The gradients of `form_round_shape`; `area` is twice the area.
+      ! The gradients of `form_axisym_shape`; `area` is twice the area.
       first = ar*bz
       second = br*az
       area = first - second
@@ -303,11 +303,11 @@ contains
       stress%dyy(i) = mean - lrr
       stress%dxy(i) = cosine*shear + sine*half
     end do
-  end subroutine form_round_increments
+  end subroutine form_axisym_increments
 
   !> Nodal forces f_ra = b_ra s_rr + b_za s_rz + M_a s_tt, f_za = b_ra s_rz + b_za s_zz, and
   !> q gamma_a: the parts of the diagonals, of h, and that of all four nodes.
-  pure subroutine form_round_forces(stress, chunk)
+  pure subroutine form_axisym_forces(stress, chunk)
     type(stress_chunk_t), intent(in) :: stress
     type(element_chunk_t), intent(inout) :: chunk !! forces out
     real(wp) :: rr, zz, rz, tt, qr, qz
@@ -329,7 +329,7 @@ contains
       chunk%swing(2, i) = chunk%rad_h(i)*rz + chunk%axi_h(i)*zz + chunk%qy(i)
       chunk%hoop(i) = chunk%mean_s(i)*tt
     end do
-  end subroutine form_round_forces
+  end subroutine form_axisym_forces
 
   !> Add the forces of the pressure that all points of an element share, of whose volume they sum
   !> the gradient without error.
@@ -338,7 +338,7 @@ contains
     real(wp) :: half
     integer :: i
 
-    if (.not. chunk%is_round) then
+    if (.not. chunk%is_axisymmetric) then
       !$omp simd private(half)
       do i = 1, chunk_size
         half = 0.5_wp*chunk%pressure(i)
@@ -373,7 +373,7 @@ contains
     real(wp) :: x31, y31, x42, y42, factor, g(6)
     integer :: i
 
-    if (.not. chunk%is_round) then
+    if (.not. chunk%is_axisymmetric) then
       !$omp simd private(x31, y31, x42, y42, factor)
       do i = 1, chunk_size
         x31 = chunk%x31(i) - chunk%u31(1, i)
@@ -399,7 +399,7 @@ contains
     call finish_gradient(chunk%stretch, stress)
   end subroutine form_gradient
 
-  !> `rad` and `axi` of the patterns a, b, h at time zero (see `form_round_shape`).
+  !> `rad` and `axi` of the patterns a, b, h at time zero (see `form_axisym_shape`).
   pure function start_gradients(chunk, i) result(g)
     type(element_chunk_t), intent(in) :: chunk
     integer, intent(in) :: i
@@ -442,10 +442,10 @@ contains
     end do
   end subroutine finish_gradient
 
-  !> Nodal forces of a one-point round quad that are the derivative of W: with F of the plane the
-  !> mean over the reference volume and F_33 = J/det F,
+  !> Nodal forces of a one-point axisymmetric quad that are the derivative of W: with F of the plane
+  !> the mean over the reference volume and F_33 = J/det F,
   !>   dW V0 = (sigma - s_33 1) : (dF J F^-1) V0 + s_33 dV,
-  !> so that gradients of time zero, J F^-T of them, stand where `form_round_forces` has present
+  !> so that gradients of time zero, J F^-T of them, stand where `form_axisym_forces` has present
   !> ones.
   pure subroutine form_rubber_forces(stress, chunk)
     type(stress_chunk_t), intent(in) :: stress

@@ -57,8 +57,8 @@ contains
     logical :: yes
 
     associate (hourglass => part%hourglass)
-      yes = (is_elastic(material) .or. returns_radially(material)) .and. .not. model%is_round &
-        .and. hourglass%form == hourglass_viscous &
+      yes = (is_elastic(material) .or. returns_radially(material)) .and. &
+        .not. model%is_axisymmetric .and. hourglass%form == hourglass_viscous &
         .and. .not. hourglass%coefficient > harmless_coefficient &
         .and. .not. (hourglass%quadratic > 0.0_wp .or. hourglass%linear > 0.0_wp) &
         .and. .not. (allocated(elements%retardation) .or. allocated(elements%erosion)) &

@@ -10,7 +10,7 @@ module quad_points_m
   implicit none
   private
   public :: n_point, shift, shape_at_points, form_point, add_point_force, point_ratios, &
-    point_areas, round_point_t, form_radii, add_hoop_strain, add_hoop_force, &
+    point_areas, axisym_point_t, form_radii, add_hoop_strain, add_hoop_force, &
     along_a, along_b, along_h, step_sums_t, add_point_sums, form_row_sums
 
   !> Points of a quad.
@@ -31,13 +31,14 @@ module quad_points_m
     along_b(n_point) = 2.0_wp*g*[0.0_wp, -1.0_wp, 0.0_wp, 1.0_wp], &
     along_h(n_point) = [1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp]/12.0_wp
 
-  !> What a point of round quads has besides: its radius, and what the stable step takes of it.
-  type :: round_point_t
+  !> What a point of axisymmetric quads has besides: its radius, and what the stable step takes of
+  !> it.
+  type :: axisym_point_t
     real(wp), dimension(chunk_size) :: radius, speed     !! r and v_r, now
     real(wp), dimension(chunk_size) :: volume            !! that it stands for, now
     real(wp), dimension(chunk_size) :: stretch           !! J - 1
     real(wp), dimension(chunk_size) :: c33, c44, c34     !! products of the gradients of d31, d42
-  end type round_point_t
+  end type axisym_point_t
 
   !> Values at the nodes from those at the points: of its own, of the two beside it, of the far one.
   real(wp), parameter :: own_share = 0.25_wp*(1.0_wp + sqrt(3.0_wp))**2, &
@@ -46,8 +47,8 @@ module quad_points_m
   real(wp), parameter :: on_axis = 1.0e-12_wp
 
   !> What the stable step takes of the points. Of plane quads the scalar matrix in d31, d42 and h.x
-  !> (11 22 12 13 23 33), of round ones the largest row sums of H and T (`axisymmetric_full_step`);
-  !> smallest J.
+  !> (11 22 12 13 23 33), of axisymmetric ones the largest row sums of H and T
+  !> (`axisymmetric_full_step`); smallest J.
   type :: step_sums_t
     real(wp) :: h(chunk_size, 6)
     real(wp), dimension(chunk_size) :: plane, hoop
@@ -104,8 +105,8 @@ contains
 
   !> J - 1 at the points of one element, and the initial area, or volume per radian, that each of
   !> them stands for.
-  pure subroutine point_ratios(is_round, reference, u, stretch, start)
-    logical, intent(in) :: is_round
+  pure subroutine point_ratios(is_axisymmetric, reference, u, stretch, start)
+    logical, intent(in) :: is_axisymmetric
     real(wp), intent(in) :: reference(reference_sum) !! X31 Y31 X42 Y42 h.X h.Y, and of axisymmetric
                                                      !! quads the sum of the radii
     real(wp), intent(in) :: u(2, 4)                  !! displacement of the nodes
@@ -124,7 +125,7 @@ contains
       ! J - 1 from the displacement, so that no digit of a small strain is lost.
       stretch(k) = 0.25_wp*(signed_area(p, e) + signed_area(d, q + e))/start(k)
     end do
-    if (.not. is_round) return
+    if (.not. is_axisymmetric) return
     do k = 1, n_point
       radius = 0.25_wp*reference(reference_sum) + along_a(k)*reference(1) &
         + along_b(k)*reference(3) + along_h(k)*reference(5)
@@ -163,7 +164,7 @@ contains
     real(wp), intent(in) :: reference(stride, *) !! first slot of the chunk
     type(element_chunk_t), intent(in) :: chunk
     type(element_chunk_t), intent(inout) :: point !! `volume` and `stretch` out
-    type(round_point_t), intent(inout) :: place
+    type(axisym_point_t), intent(inout) :: place
     real(wp) :: start, growth, factor
     integer :: i
 
@@ -188,11 +189,11 @@ contains
     end do
   end subroutine form_radii
 
-  !> The hoop rate in the mid-step shape, as `form_round_increments` has it; the share of the point
+  !> The hoop rate in the mid-step shape, as `form_axisym_increments` has it; the share of the point
   !> in the mid-step area becomes that in the volume.
   pure subroutine add_hoop_strain(dt, place, point, stress)
     real(wp), intent(in) :: dt
-    type(round_point_t), intent(in) :: place
+    type(axisym_point_t), intent(in) :: place
     type(element_chunk_t), intent(inout) :: point
     type(stress_chunk_t), intent(inout) :: stress
     real(wp) :: radius, hoop
@@ -213,7 +214,7 @@ contains
   !> Weigh the plane force of point `k` with its radius and add the force of the hoop stress.
   pure subroutine add_hoop_force(k, place, stress, point, chunk)
     integer, intent(in) :: k
-    type(round_point_t), intent(in) :: place
+    type(axisym_point_t), intent(in) :: place
     type(stress_chunk_t), intent(in) :: stress
     type(element_chunk_t), intent(inout) :: point   !! pressure in; force in and out
     type(element_chunk_t), intent(inout) :: chunk
@@ -265,7 +266,7 @@ contains
   pure subroutine form_row_sums(inverse_mass, stride, points, sums)
     integer, intent(in) :: stride
     real(wp), intent(in) :: inverse_mass(stride, *)
-    type(round_point_t), intent(in) :: points(n_point)
+    type(axisym_point_t), intent(in) :: points(n_point)
     type(step_sums_t), intent(inout) :: sums
     real(wp), dimension(chunk_size, 6) :: s
     real(wp), dimension(chunk_size, 4) :: t, is_off
@@ -333,7 +334,7 @@ contains
 
   !> 1 at nodes off the axis, 0 on it.
   pure subroutine mark_off_axis(points, is_off)
-    type(round_point_t), intent(in) :: points(n_point)
+    type(axisym_point_t), intent(in) :: points(n_point)
     real(wp), intent(out) :: is_off(chunk_size, 4)
     real(wp) :: least
     integer :: i, a

@@ -159,7 +159,7 @@ contains
     !$omp simd private(factor, third, x, y, shear_part) reduction(+ : sum)
     do i = 1, chunk_size
       factor = inverse*times(i)
-      ! Rates of a round body stand here less the hoop rate, which leaves their deviator.
+      ! Rates of an axisymmetric body stand here less the hoop rate, which leaves their deviator.
       third = (stress%dxx(i) + stress%dyy(i))/3.0_wp
       x = stress%dxx(i) - third
       y = stress%dyy(i) - third

@@ -46,8 +46,8 @@ contains
   end subroutine add_nodal_loads
 
   !> Pressures at `time` on the present geometry, half of that on an edge to each node: against the
-  !> outward normal (t_y, -t_x). On a round body per radian: with the edge times (2 r_a + r_b)/6 to
-  !> node a.
+  !> outward normal (t_y, -t_x). On an axisymmetric body per radian: with the edge times (2 r_a +
+  !> r_b)/6 to node a.
   subroutine add_pressures(model, motion, time, force)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)    !! (4, n_node)
@@ -63,7 +63,7 @@ contains
         edge = (x(:, b) - x(:, a)) + (motion(1:2, b) - motion(1:2, a))
         half = 0.5_wp*load%scale*curve_value(model%curves(load%curve), time - load%arrival) &
           *[-edge(2), edge(1)]
-        if (model%is_round) then
+        if (model%is_axisymmetric) then
           radii = x(1, load%nodes) + motion(1, load%nodes)
           force(:, a) = force(:, a) + half*(2.0_wp*radii(1) + radii(2))/3.0_wp
           force(:, b) = force(:, b) + half*(radii(1) + 2.0_wp*radii(2))/3.0_wp

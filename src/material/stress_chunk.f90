@@ -17,7 +17,8 @@ module stress_chunk_m
     real(wp), dimension(chunk_size) :: sxx, syy, sxy !! deviator, s_zz = -(s_xx + s_yy); before the
                                                      !! law the old one, turned
     real(wp), dimension(chunk_size) :: work          !! work of the deviator per volume in this step
-    logical :: has_hoop = .false.                    !! of a round body: D_xx and D_yy stand above
+    logical :: has_hoop = .false.                    !! of an axisymmetric body: D_xx and D_yy stand
+                                                     !! above
     real(wp), dimension(chunk_size) :: hoop          !! less the hoop rate, and this is dt times it
     real(wp), dimension(chunk_size) :: mean, ratio   !! mean stress at the start of the step, V/V0
                                                      !! in its middle; only where there is an EOS

@@ -88,7 +88,7 @@ module contacts_m
     real(wp) :: strength(2) = 0.0_wp       !! NFLS, SFLS of a tie that breaks, N/m^2
     type(curve_t), allocatable :: interference !! LCINT: the part of an initial overlap that acts,
                                            !! from 0 to 1
-    logical :: is_round = .false.          !! axisymmetric: lengths weigh with their radius
+    logical :: is_axisymmetric = .false.   !! axisymmetric: lengths weigh with their radius
     logical :: is_self = .false.           !! SURFB 0: one surface with itself; both sides are it
   contains
     procedure :: visit => visit_contact
@@ -175,7 +175,7 @@ contains
     call visitor%fixed('strength', self%strength)
     if (visitor%makes(merge(1, absent, allocated(self%interference)))) allocate (self%interference)
     if (allocated(self%interference)) call visitor%part('interference', self%interference)
-    call visitor%visit('is_round', self%is_round)
+    call visitor%visit('is_axisymmetric', self%is_axisymmetric)
     call visitor%visit('is_self', self%is_self)
   end subroutine visit_contact
 

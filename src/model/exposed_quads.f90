@@ -34,7 +34,7 @@ contains
     integer :: i, k
 
     allocate (shares(4, model%mesh%n_element), source=0.0_wp)
-    if (model%is_round) return
+    if (model%is_axisymmetric) return
     allocate (mass(model%mesh%n_node), source=0.0_wp)
     allocate (is_surrounded(model%mesh%n_node), source=.true.)
     shares = corner_masses(model, is_left)

@@ -69,8 +69,8 @@ module model_m
     type(wall_t), allocatable :: walls(:)       !! only where the deck has any
     type(controls_t) :: controls
     logical :: erodes = .false.   !! elements may leave the mesh
-    logical :: is_round = .false. !! axisymmetric: x is the radius, y the axis; forces, masses and
-                                  !! energies per radian
+    logical :: is_axisymmetric = .false. !! axisymmetric: x is the radius, y the axis; forces,
+                                  !! masses and energies per radian
   contains
     procedure :: visit => visit_model
   end type model_t
@@ -104,7 +104,7 @@ contains
     call visitor%each('walls', self%walls)
     call visitor%part('controls', self%controls)
     call visitor%visit('erodes', self%erodes)
-    call visitor%visit('is_round', self%is_round)
+    call visitor%visit('is_axisymmetric', self%is_axisymmetric)
   end subroutine visit_model
 
   !> (n_node) nodes that some element has, so that they have mass.

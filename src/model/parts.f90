@@ -11,15 +11,15 @@ module parts_m
   private
   public :: part_t, section_t, material_t, hourglass_t, has_memory_of_heat, &
     may_fail, gives_pressure, law_mooney_rivlin, law_blatz_ko, law_crushable_foam, &
-    form_one_point, form_full, form_round_one_point, form_round_full, law_elastic, law_plastic, &
+    form_one_point, form_full, form_axisym_one_point, form_axisym_full, law_elastic, law_plastic, &
     law_piecewise, law_johnson_cook, law_hot_johnson_cook, law_null, &
     hourglass_viscous, hourglass_stiffness, hourglass_assumed, spall_pressure, spall_stress, &
     spall_tension, johnson_cook_t, rubber_t, mooney_rivlin, blatz_ko, blatz_ko_poisson, &
     erosion_t, asks_for_strain, asks_for_stress
 
   !> Element forms. Only the element dispatcher asks for them.
-  integer, parameter :: form_one_point = 1, form_full = 2, form_round_one_point = 3, &
-    form_round_full = 4
+  integer, parameter :: form_one_point = 1, form_full = 2, form_axisym_one_point = 3, &
+    form_axisym_full = 4
   !> Material laws. Only the material dispatcher asks for them.
   integer, parameter :: law_elastic = 1, law_plastic = 2, law_piecewise = 3, &
     law_johnson_cook = 4, law_crushable_foam = 5, law_hot_johnson_cook = 6, law_null = 7, &
@@ -35,7 +35,7 @@ module parts_m
     integer :: id = 0                          !! user id
     integer :: element_form = form_one_point   !! one of the `form_` constants
     logical :: is_full = .false.               !! full integration
-    logical :: is_round = .false.              !! axisymmetric
+    logical :: is_axisymmetric = .false.       !! axisymmetric
   end type section_t
 
   !> Constants of Johnson and Cook (1983, 1985), flow stress, heat and damage:

@@ -98,13 +98,13 @@ contains
   end function in_units
 
   !> The same of what plane bodies have per unit of their depth and axisymmetric ones per radian.
-  pure function per_depth(units, form, is_round) result(text)
+  pure function per_depth(units, form, is_axisymmetric) result(text)
     type(units_t), intent(in) :: units
     character(*), intent(in) :: form
-    logical, intent(in) :: is_round
+    logical, intent(in) :: is_axisymmetric
     character(:), allocatable :: text
 
-    if (is_round) then
+    if (is_axisymmetric) then
       text = in_units(units, form)//' per radian'
     else
       text = in_units(units, form//'/L')

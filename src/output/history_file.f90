@@ -163,7 +163,8 @@ contains
     allocate (table%waiting(size(table%is_kept), n_row))
     call put_line(table%text, ' '//text_of(model%controls%title))
     call put_line(table%text, '                         slideline (version '//version//')     ' &
-      //trim(merge('axisymmetric, per radian    ', 'plane strain, per unit depth', model%is_round)))
+      //trim(merge('axisymmetric, per radian    ', 'plane strain, per unit depth', &
+      model%is_axisymmetric)))
     call put_legend(table, model)
     call put_head(table%i_table, table%text)
     call flush_lines(table%text, error)

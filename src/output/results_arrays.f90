@@ -36,7 +36,7 @@ module results_arrays_m
 
   !> What a model has where a field is in its file: anything; friction or ties that shear; a round
   !> body; a material with a memory of heat; elements that may leave the mesh.
-  integer, parameter :: of_all = 1, of_shear = 2, of_round = 3, of_heat = 4, of_erosion = 5
+  integer, parameter :: of_all = 1, of_shear = 2, of_axisym = 3, of_heat = 4, of_erosion = 5
 
   !> A field of points or cells.
   type :: field_t
@@ -62,7 +62,7 @@ module results_arrays_m
     field_t('CellData/plastic_strain', 0, .true., of_all), &
     field_t('CellData/pressure', 0, .true., of_all), &
     field_t('CellData/mises', 0, .true., of_all), &
-    field_t('CellData/hoop_strain', 0, .true., of_round), &
+    field_t('CellData/hoop_strain', 0, .true., of_axisym), &
     field_t('CellData/temperature', 0, .true., of_heat), &
     field_t('CellData/damage', 0, .true., of_heat), &
     field_t('CellData/eroded', 0, .true., of_erosion)]

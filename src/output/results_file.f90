@@ -56,7 +56,7 @@ contains
     if (.not. goes_on) call remove_file(path, error)
     if (allocated(error)) return
     allocate (file%times(n_planned))
-    has = [.true., any(has_shear(model%contacts)), model%is_round, &
+    has = [.true., any(has_shear(model%contacts)), model%is_axisymmetric, &
       any(has_memory_of_heat(model%materials)), model%erodes] ! by the needs of fields
     file%which = pack([(i, i=1, size(fields))], has(fields%needs))
     call create_file(file, error)
@@ -131,7 +131,7 @@ contains
   end subroutine take_name
 
   !> Append the fields, nodes in deck order; what is missing is zero. Stress is xx yy zz xy yz xz,
-  !> of round bodies zz is the hoop stress.
+  !> of axisymmetric bodies zz is the hoop stress.
   subroutine append_fields(file, model, snapshot, error)
     type(results_file_t), intent(inout), target :: file
     type(model_t), intent(in) :: model

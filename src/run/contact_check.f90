@@ -155,7 +155,7 @@ contains
         if (abs(friction%work) > 0.0_wp) call write_log(log, 'interface ' &
           //to_text(model%contacts(i)%id)//': friction has dissipated ' &
           //to_text(friction%work - friction%stored) &
-          //per_depth(model%controls%units, 'F L', model%is_round))
+          //per_depth(model%controls%units, 'F L', model%is_axisymmetric))
       end associate
     end do
   end subroutine report_contact_end

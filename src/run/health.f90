@@ -355,7 +355,7 @@ contains
     integer :: i, n, last
     real(wp) :: radius, least
 
-    if (told .or. .not. model%is_round) return
+    if (told .or. .not. model%is_axisymmetric) return
     n = 0
     last = 1
     least = 0.0_wp

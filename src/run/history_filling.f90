@@ -158,7 +158,7 @@ contains
       a = place_of(model, state, section%edges(1, i))
       b = place_of(model, state, section%edges(2, i))
       length = norm2(b - a)
-      if (model%is_round) then
+      if (model%is_axisymmetric) then
         result%area = result%area + 0.5_wp*length*(a(1) + b(1))
         result%centroid = result%centroid + length/6.0_wp*((2.0_wp*a(1) + b(1))*a + (a(1) &
           + 2.0_wp*b(1))*b)

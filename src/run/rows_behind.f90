@@ -261,7 +261,7 @@ contains
         d42 = place_of(model, state, nodes(4)) - place_of(model, state, nodes(2))
         volume = 0.5_wp*(d31(1)*d42(2) - d42(1)*d31(2))
         centre = centre_of(model, state, element)
-        if (model%is_round) volume = volume*centre(1)
+        if (model%is_axisymmetric) volume = volume*centre(1)
         mean = sum(s(:3))/3.0_wp
         shear_square = sum((s(:3) - mean)**2) + 2.0_wp*s(4)**2
         energy = 0.0_wp
@@ -365,7 +365,7 @@ contains
 
     at = model%mesh%coordinates(:, nodes) + state%motion(1:2, nodes)
     share = 0.5_wp*norm2(at(:, 2) - at(:, 1))
-    if (model%is_round) share = share*(at(1, :) + sum(at(1, :)))/3.0_wp
+    if (model%is_axisymmetric) share = share*(at(1, :) + sum(at(1, :)))/3.0_wp
   end function face_share
 
 end module rows_behind_m

@@ -68,7 +68,7 @@ contains
     allocate (snapshot%stress(6, n_element), source=0.0_wp)
     if (has_history) &
       allocate (snapshot%plastic_strain(n_element), source=0.0_wp)
-    if (model%is_round) allocate (snapshot%hoop_strain(n_element), source=0.0_wp)
+    if (model%is_axisymmetric) allocate (snapshot%hoop_strain(n_element), source=0.0_wp)
     if (any(has_memory_of_heat(model%materials))) allocate (snapshot%temperature(n_element), &
       snapshot%damage(n_element), source=0.0_wp)
     if (model%erodes) allocate (snapshot%eroded(n_element), source=0.0_wp)
@@ -314,7 +314,8 @@ contains
       if (allocated(snapshot%plastic_strain)) &
         snapshot%plastic_strain(i) = plastic_strain_of_slot(model, state%elements, slot)
       if (model%erodes) snapshot%eroded(i) = merge(1.0_wp, 0.0_wp, is_gone(state%elements, slot))
-      if (model%is_round) snapshot%hoop_strain(i) = hoop_strain_of_slot(model, state%motion, slot)
+      if (model%is_axisymmetric) snapshot%hoop_strain(i) = hoop_strain_of_slot(model, &
+        state%motion, slot)
       if (allocated(snapshot%damage)) call find_heat(model, state%elements, slot, &
         snapshot%temperature(i), snapshot%damage(i))
     end do

@@ -74,7 +74,7 @@ module snapshot_m
   !> One element of the histories.
   type :: element_result_t
     integer :: part = 0                !! user id
-    real(wp) :: stress(4) = 0.0_wp     !! xx yy zz xy; of round bodies rr zz hoop rz
+    real(wp) :: stress(4) = 0.0_wp     !! xx yy zz xy; of axisymmetric bodies rr zz hoop rz
     real(wp) :: plastic_strain = 0.0_wp
     logical :: is_gone = .false.       !! it has left the mesh
   end type element_result_t
@@ -92,7 +92,7 @@ module snapshot_m
     real(wp) :: force(2) = 0.0_wp
     real(wp) :: moment = 0.0_wp    !! about z through the centroid
     real(wp) :: centroid(2) = 0.0_wp
-    real(wp) :: area = 0.0_wp      !! length times unit depth; of round bodies per radian
+    real(wp) :: area = 0.0_wp      !! length times unit depth; of axisymmetric bodies per radian
   end type section_result_t
 
   !> Friction at a node of an interface.
@@ -143,7 +143,7 @@ module snapshot_m
                                                  !! node
     real(wp), allocatable :: stress(:, :)        !! (6, n_element) xx yy zz xy yz xz
     real(wp), allocatable :: plastic_strain(:)   !! (n_element)
-    real(wp), allocatable :: hoop_strain(:)      !! (n_element) of round bodies
+    real(wp), allocatable :: hoop_strain(:)      !! (n_element) of axisymmetric bodies
     real(wp), allocatable :: temperature(:)      !! (n_element) this and the next only where some
     real(wp), allocatable :: damage(:)           !! material keeps them
     real(wp), allocatable :: eroded(:)           !! (n_element) 1: has left the mesh; only where

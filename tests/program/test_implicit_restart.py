@@ -135,10 +135,10 @@ def test_scene_goes_on_to_the_same_bits(slideline, tmp_path, scene, kind):
         assert sorted(path.name for path in rest.glob("job.dump*")) == dumps[thread - 1:]
 
 
-@pytest.mark.parametrize("is_round", [False, True])
-def test_assumed_strain_goes_on_to_the_same_bits(slideline, tmp_path, is_round):
+@pytest.mark.parametrize("is_axisymmetric", [False, True])
+def test_assumed_strain_goes_on_to_the_same_bits(slideline, tmp_path, is_axisymmetric):
     deck = struck(4)
-    deck.lines[deck.lines.index("*SECTION_SHELL") + 1] = "1,15" if is_round else "1,13"
+    deck.lines[deck.lines.index("*SECTION_SHELL") + 1] = "1,15" if is_axisymmetric else "1,13"
     run_whole(slideline, deck.hourglass(6, 1.0), dump=23)
     whole = tmp_path / "whole"
     assert (whole / "job.log").read_text().count("assumed strain hourglass control") == 2

@@ -9,14 +9,14 @@ from test_restart import assert_same, histories, part_of, with_files
 OVERLAP = 1.0e-3
 
 
-def pressed(kind, static=None, is_round=False, whole=False, friction=0.2, curve=((0.0, 0.0), (0.02, 1.0)),
+def pressed(kind, static=None, is_axisymmetric=False, whole=False, friction=0.2, curve=((0.0, 0.0), (0.02, 1.0)),
             overlap=OVERLAP, card=None):
     """Two blocks of unlike columns that overlap; top and bottom held. In the middle of the curve a file is written."""
     deck = implicit(0.03, 0.003, dynamic=not static) if static is not None else Deck("overlapping blocks").control(0.03)
     deck.hourglass(4, 0.05)
     columns, rows = ((40, 28), 16) if static is None else ((7, 5), 3)
     for part in (1, 2):
-        if is_round:
+        if is_axisymmetric:
             deck.add("*PART", f"part {part}", (part, 1, part))
             deck.add("*SECTION_SHELL", (1, 15), (1.0,)) if part == 1 else None
         else:
@@ -34,7 +34,7 @@ def pressed(kind, static=None, is_round=False, whole=False, friction=0.2, curve=
     return deck.add("*DATABASE_SLEOUT", (1.0e-3,)).text()
 
 
-CASES = [(scene, kind) for turn, scene in enumerate(({}, {"whole": True}, {"is_round": True})) for kind in some_types(turn)
+CASES = [(scene, kind) for turn, scene in enumerate(({}, {"whole": True}, {"is_axisymmetric": True})) for kind in some_types(turn)
          if not scene or kind in (4, 5, 7)]
 
 

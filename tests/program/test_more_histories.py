@@ -12,7 +12,7 @@ from erosion_decks import penetration
 from history_decks import HISTORIES, busy_block
 from impact_decks import plates
 from meshes import Deck, grid
-from round_decks import rings
+from axisymmetric_decks import rings
 
 #: what a run that goes on tells of
 GOING_ON = ("secforc", "bndout", "nodfor")

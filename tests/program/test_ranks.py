@@ -4,7 +4,7 @@
 The program is the one of the tests of a Release build where MPI is installed (slideline_mpi, named by
 SLIDELINE_MPI): the objects of the ordinary program linked with the other module of src/parallel. One process of it
 is held against two to eight, more than the machine may have. Each scene has another type and its own features:
-loads, damping, gravity, walls, rigid bodies, points that fail, friction, round bodies, elements that leave, one
+loads, damping, gravity, walls, rigid bodies, points that fail, friction, axisymmetric bodies, elements that leave, one
 surface with itself, masses that grow, all histories; there are more tiles than processes, and fewer.
 """
 import contextlib
@@ -24,7 +24,7 @@ from erosion_decks import penetration
 from history_decks import busy_block
 from impact_decks import plates
 from meshes import Deck, grid
-from round_decks import rings
+from axisymmetric_decks import rings
 from test_contact_fineness import blow
 from test_requests import wait_for
 from test_same_bits import anvil, everything
@@ -68,14 +68,14 @@ def settling():
     return deck.output(plot=2.0e-3, glstat=2.0e-4, matsum=1.0e-3).text()
 
 
-def struck(is_round):
+def struck(is_axisymmetric):
     """A bar of bands of three materials, struck at one end: its tiles wake one after the other, with all that damping, points,
     hourglass forms, bulk viscosity and an equation of state remember."""
     n_x, n_y = 900, 12
     deck = Deck("a bar that is struck").add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_TIMESTEP", (0.0, 0.6))
     deck.hourglass(4, 0.05).add("*CONTROL_BULK_VISCOSITY", (1.5, 0.06))
-    deck.add("*SECTION_SHELL", (1, 15 if is_round else 13), (1.0,))
-    deck.add("*SECTION_SHELL", (2, 15 if is_round else 13, None, 4), (1.0,))
+    deck.add("*SECTION_SHELL", (1, 15 if is_axisymmetric else 13), (1.0,))
+    deck.add("*SECTION_SHELL", (2, 15 if is_axisymmetric else 13, None, 4), (1.0,))
     deck.add("*PART", "copper", (1, 1, 1, 7)).add("*PART", "steel", (2, 2, 2)).add("*PART", "lead", (3, 1, 3))
     deck.add("*MAT_JOHNSON_COOK", (1, 8930.0, 46.0e9), (9.0e7, 2.92e8, 0.31, 0.025, 1.09, 1356.0, 293.0, 1.0),
              (383.0,), (0.0,))
@@ -85,7 +85,7 @@ def struck(is_round):
     coordinates[450::n_x + 1, 0] += 0.0004  # the step is that of elements in a tile that sleeps
     deck.add("*NODE", *[(k + 1, x, y) for k, (x, y) in enumerate(coordinates)])
     deck.add("*ELEMENT_SHELL", *[(k + 1, 1 + k % n_x // 15 % 3, *[node + 1 for node in quad]) for k, quad in enumerate(quads)])
-    if not is_round:
+    if not is_axisymmetric:
         deck.curve(2, [(0.0, 50.0), (1.0, 50.0)]).add("*DAMPING_GLOBAL", (2,)).add("*DAMPING_PART_STIFFNESS", (3, 0.1))
     deck.node_set(1, [1 + i + j * (n_x + 1) for j in range(n_y + 1) for i in range(6)]).add("*INITIAL_VELOCITY", (1,), (30.0, 9.0))
     return deck.output(plot=1.5e-5, glstat=3.0e-6, matsum=3.0e-6).text()

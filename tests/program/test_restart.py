@@ -16,7 +16,7 @@ from conftest import by_turns, drop, numbers
 from erosion_decks import penetration
 from impact_decks import plates
 from meshes import Deck, grid
-from round_decks import rings
+from axisymmetric_decks import rings
 from seal_decks import seal, settled
 from test_repeatability import large_drop
 

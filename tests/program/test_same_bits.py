@@ -17,7 +17,7 @@ from conftest import by_turns, is_full
 from erosion_decks import penetration
 from impact_decks import plates
 from meshes import Deck, grid, rotate
-from round_decks import rings
+from axisymmetric_decks import rings
 
 from slideline_tools.contact_types import ALL_TYPES
 from slideline_tools.scenes import block, collision, hertz, oblique, patch, patch_grids

@@ -23,15 +23,15 @@ def fork(deck, part, turned=False, away=0.0):
     return x, deck.mesh(x + [away, 0.0], numbers_of.reshape(quads.shape), part=part)
 
 
-def forks(kind, friction=0.0, keyword=None, is_round=False):
+def forks(kind, friction=0.0, keyword=None, is_axisymmetric=False):
     """Two forks, one upside down on the other, whose arms are driven together, or rings of that section; all in one part
     set."""
     deck = Deck("two forks").control(0.25, scale=0.6).hourglass(4, 0.1)
-    deck.add("*SECTION_SHELL", (1, 15 if is_round else 13), (1.0,))
+    deck.add("*SECTION_SHELL", (1, 15 if is_axisymmetric else 13), (1.0,))
     moving = []
     for part in (1, 2):
         deck.part(part).elastic(1000.0, 1.0e6, 0.3, part)
-        x, ids = fork(deck, part, part == 2, 4.0 if is_round else 0.0)
+        x, ids = fork(deck, part, part == 2, 4.0 if is_axisymmetric else 0.0)
         speed = np.where(x[:, 0] < 0.45, 2.0, -2.0) * np.abs(x[:, 1] - (0.0, 2.5)[part - 1])
         moving += [(int(n), a, (1.0, -1.0)[part - 1]) for n, a in zip(ids, speed)]
     deck.add("*INITIAL_VELOCITY_NODE", *moving).add("*SET_PART_LIST", (9,), (1, 2))
@@ -59,9 +59,9 @@ def folded(kind):
     return deck.output(plot=0.2, glstat=0.1, rcforc=0.1).text()
 
 
-@pytest.mark.parametrize("kind, is_round", [*((kind, False) for kind in some_types(0)), (5, True)])
-def test_same_bits_after_a_restart_and_with_threads(slideline, tmp_path, kind, is_round):
-    text = with_files(forks(kind, friction=0.2, is_round=is_round), dump=60)
+@pytest.mark.parametrize("kind, is_axisymmetric", [*((kind, False) for kind in some_types(0)), (5, True)])
+def test_same_bits_after_a_restart_and_with_threads(slideline, tmp_path, kind, is_axisymmetric):
+    text = with_files(forks(kind, friction=0.2, is_axisymmetric=is_axisymmetric), dump=60)
     for threads in threads_of(kind):
         done = slideline(f"d=on{threads}", f"ncpu={threads}", "perthread=1", deck=text)
         assert done.returncode == 0, done.stderr

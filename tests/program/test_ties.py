@@ -18,7 +18,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "lab/fuzz"))
 import fuzz_restarts  # noqa: E402
 
 
-def tied(kind, columns=(40, 28), keyword=None, whole=False, is_round=False, gap=0.0, static=None, overhang=0.0,
+def tied(kind, columns=(40, 28), keyword=None, whole=False, is_axisymmetric=False, gap=0.0, static=None, overhang=0.0,
          strength=None):
     """Two blocks of 16 rows, unlike columns, `gap` apart, the upper one drawn up and aside by its top;
     with a strength (NFLS, SFLS) the tie breaks, with friction behind it."""
@@ -26,7 +26,7 @@ def tied(kind, columns=(40, 28), keyword=None, whole=False, is_round=False, gap=
     deck.hourglass(4, 0.05)
     rows = 16 if static is None else 3
     for part in (1, 2):
-        if is_round:
+        if is_axisymmetric:
             deck.add("*PART", f"part {part}", (part, 1, part))
             deck.add("*SECTION_SHELL", (1, 15), (1.0,)) if part == 1 else None
         else:
@@ -47,16 +47,16 @@ def tied(kind, columns=(40, 28), keyword=None, whole=False, is_round=False, gap=
     deck.fix(lower[:columns[1] + 1], 1, 1)
     deck.curve(1, [(0.0, 0.0), (0.02, 1.0), (1.0, 1.5)])
     # by radius in rings, whose nodes on the axis stand for no area
-    deck.add("*LOAD_NODE_POINT", *[(int(n), dof, 1, 2.0e4 / columns[0] * (k / columns[0] if is_round else 1.0))
+    deck.add("*LOAD_NODE_POINT", *[(int(n), dof, 1, 2.0e4 / columns[0] * (k / columns[0] if is_axisymmetric else 1.0))
                                    for k, n in enumerate(upper[-columns[0] - 1:]) if k > 0
-                                   for dof in ((2,) if is_round else (1, 2))])
+                                   for dof in ((2,) if is_axisymmetric else (1, 2))])
     deck.output(plot=0.01 if static is None else 0.2, glstat=1.0e-3, rcforc=1.0e-3)
     return deck.add("*DATABASE_SLEOUT", (1.0e-3,)).text()
 
 
 SCENES = {
     "blocks": {}, "with a gap": {"gap": 0.003}, "whole outlines": {"whole": True, "gap": 0.002},
-    "rings": {"is_round": True, "gap": 0.002},
+    "rings": {"is_axisymmetric": True, "gap": 0.002},
 }
 
 

@@ -143,7 +143,7 @@ def test_colour_bar_has_round_ticks(low, high, beyond):
     ticks = np.array([tick for tick in bar.get_ticks() if low <= tick <= high])
     step = np.diff(ticks)
     assert 3 <= len(ticks) <= 7 and np.allclose(step, step[0])
-    assert min(abs(step[0] / 10.0 ** np.floor(np.log10(step[0])) - round_one) for round_one in (1, 2, 2.5, 5, 10)) < 1e-9
+    assert min(abs(step[0] / 10.0 ** np.floor(np.log10(step[0])) - axisym_one) for axisym_one in (1, 2, 2.5, 5, 10)) < 1e-9
     assert np.allclose(ticks / step[0], np.round(ticks / step[0])) and bar.extend == beyond
     plots.plt.close(figure)
 

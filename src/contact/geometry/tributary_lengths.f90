@@ -55,17 +55,17 @@ contains
 
   !> What a node of a surface stands for: half of its segments, m; in axisymmetry the integral of
   !> the radius by its hat function, l (2 r_i + r_j)/6 of each segment, m^2 per radian.
-  pure function nodal_area(surface, positions, is_round, i_node) result(area)
+  pure function nodal_area(surface, positions, is_axisymmetric, i_node) result(area)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface
-    logical, intent(in) :: is_round
+    logical, intent(in) :: is_axisymmetric
     integer, intent(in) :: i_node
     real(wp) :: area
     real(wp) :: t(2), half_lengths(2)
     integer :: k
 
     do k = 1, 2
-      call find_half(surface, positions, is_round, i_node, k, t, half_lengths(k))
+      call find_half(surface, positions, is_axisymmetric, i_node, k, t, half_lengths(k))
     end do
     area = half_lengths(1) + half_lengths(2)
   end function nodal_area
@@ -73,10 +73,10 @@ contains
   !> Tributary lengths of the active nodes of a surface, m: half of each of their segments; in
   !> axisymmetry as above, m^2 per radian. On a closed boundary segments count as far as they are
   !> opposed to the face below the node. A segment between two active nodes is seen once.
-  pure subroutine find_nodal_areas(surface, positions, is_round, status, areas)
+  pure subroutine find_nodal_areas(surface, positions, is_axisymmetric, status, areas)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of this surface
-    logical, intent(in) :: is_round
+    logical, intent(in) :: is_axisymmetric
     type(contact_status_t), intent(in) :: status     !! of its nodes
     real(wp), intent(inout), contiguous :: areas(:)  !! (n_active)
     real(wp) :: t(2, 2), half_lengths(2)
@@ -86,13 +86,13 @@ contains
     half_lengths = 0.0_wp
     do k = 1, status%n_active
       associate (node => status%active_points(k))
-        if (seen > 0 .and. seen == surface%incoming(node) .and. .not. is_round) then
+        if (seen > 0 .and. seen == surface%incoming(node) .and. .not. is_axisymmetric) then
           t(:, 1) = t(:, 2)
           half_lengths(1) = half_lengths(2)
         else
-          call find_half(surface, positions, is_round, node, 1, t(:, 1), half_lengths(1))
+          call find_half(surface, positions, is_axisymmetric, node, 1, t(:, 1), half_lengths(1))
         end if
-        call find_half(surface, positions, is_round, node, 2, t(:, 2), half_lengths(2))
+        call find_half(surface, positions, is_axisymmetric, node, 2, t(:, 2), half_lengths(2))
         seen = surface%outgoing(node)
         areas(k) = half_lengths(1) + half_lengths(2)
         if (status%pass%is_closed) areas(k) = opposed_part(t, half_lengths, status%normal(:, node))
@@ -102,10 +102,10 @@ contains
 
   !> The segment before (1) or after (2) a node: its vector, m, and half of its length, in
   !> axisymmetry weighted with the radius; zero where there is none.
-  pure subroutine find_half(surface, positions, is_round, i_node, k, t, half)
+  pure subroutine find_half(surface, positions, is_axisymmetric, i_node, k, t, half)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: positions(:, :)
-    logical, intent(in) :: is_round
+    logical, intent(in) :: is_axisymmetric
     integer, intent(in) :: i_node, k
     real(wp), intent(out) :: t(2), half
     integer :: s
@@ -117,7 +117,7 @@ contains
     associate (ends => surface%segments(:, s))
       t = separation(positions(:, ends(2)), positions(:, ends(1)))
       half = 0.5_wp*sqrt(t(1)*t(1) + t(2)*t(2))
-      if (is_round) half = half*end_radius(radius_of(positions(:, i_node)), &
+      if (is_axisymmetric) half = half*end_radius(radius_of(positions(:, i_node)), &
         radius_of(positions(:, ends(k))))
     end associate
   end subroutine find_half

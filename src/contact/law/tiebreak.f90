@@ -35,7 +35,7 @@ contains
         if (memory%master_status%n > 0) ties%to_stress(s) = (memory%slave_penalty &
           + memory%master_penalty)/points%stiffness(ties%first(s))
         if (memory%has%unit_area) ties%to_stress(s) = ties%area(s)/nodal_area(contact%slave, &
-          memory%positions(:, :memory%n_slave), contact%is_round, ties%site(s))
+          memory%positions(:, :memory%n_slave), contact%is_axisymmetric, ties%site(s))
       end do
     end associate
     call mark_beside(memory)

@@ -148,9 +148,9 @@ contains
 
   !> Points on slave segments: reduce their areas to what is opposed to the master, and drop those
   !> without; in axisymmetry let them weigh with the radius where they stand.
-  pure subroutine finish_segment_points(positions, is_round, first, points)
+  pure subroutine finish_segment_points(positions, is_axisymmetric, first, points)
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
-    logical, intent(in) :: is_round
+    logical, intent(in) :: is_axisymmetric
     integer, intent(in) :: first                     !! of these points
     type(contact_points_t), intent(inout) :: points
     real(wp) :: along(4), across, square
@@ -165,7 +165,7 @@ contains
         square = (along(1) + along(3))**2 + (along(2) + along(4))**2
         if (across > 0.0_wp .or. across*across < face_on**2*square) &
           area = area*opposed_share(across/sqrt(square))
-        if (is_round) area = area*radius_between(positions(:, a), positions(:, b), &
+        if (is_axisymmetric) area = area*radius_between(positions(:, a), positions(:, b), &
           points%slave_weights(2, p))
       end associate
     end do

@@ -47,7 +47,7 @@ contains
       near = master_near(contact, memory, s)
       if (near > 0) call points_on_whole_segment(contact, memory, s, near, points)
     end do
-    call finish_segment_points(memory%positions, contact%is_round, 1, points)
+    call finish_segment_points(memory%positions, contact%is_axisymmetric, 1, points)
   end subroutine points_mortar
 
   !> Type 6: areas of the points at sharp vertices.
@@ -151,7 +151,7 @@ contains
     end do
     call append_projected(contact, memory, block, points)
     call update_segment_states(contact, [first, last], 0, memory, points, n_released)
-    call finish_segment_points(memory%positions, contact%is_round, 1, points)
+    call finish_segment_points(memory%positions, contact%is_axisymmetric, 1, points)
   end subroutine points_segmented_mortar
 
   !> If any of them touches, add the points of its neighbours that can not: these have a part in the
@@ -168,7 +168,7 @@ contains
     if (any(memory%segment_state == active) &
       .or. (has_folds(contact) .and. memory%slave_status%n_active > 0)) then
       call points_at_neighbours(contact, memory, points)
-      call finish_segment_points(memory%positions, contact%is_round, n + 1, points)
+      call finish_segment_points(memory%positions, contact%is_axisymmetric, n + 1, points)
     else
       points%n = 0
     end if

@@ -32,7 +32,7 @@ contains
 
     call append_active(memory%slave_status, contact%master, [0, memory%n_slave], 1.0_wp, &
       memory%node_penalty, points)
-    if (.not. contact%is_round) return
+    if (.not. contact%is_axisymmetric) return
     allocate (lengths(points%n))
     associate (slave_positions => memory%positions(:, :memory%n_slave), &
       areas => points%area(:points%n))
@@ -51,14 +51,14 @@ contains
     integer :: first
 
     call points_at_slave_nodes(contact, memory, points)
-    call find_nodal_areas(contact%slave, memory%positions(:, :memory%n_slave), contact%is_round, &
-      memory%slave_status, points%area(:points%n))
+    call find_nodal_areas(contact%slave, memory%positions(:, :memory%n_slave), &
+      contact%is_axisymmetric, memory%slave_status, points%area(:points%n))
     if (memory%master_status%n == 0) return
     first = points%n + 1
     call append_active(memory%master_status, contact%slave, [memory%n_slave, 0], 0.0_wp, &
       memory%master_penalty, points)
     call find_nodal_areas(contact%master, memory%positions(:, memory%n_slave + 1:), &
-      contact%is_round, memory%master_status, points%area(first:points%n))
+      contact%is_axisymmetric, memory%master_status, points%area(first:points%n))
   end subroutine points_nts_ar
 
   !> A point at each slave node in contact, whose area follows.
@@ -115,7 +115,7 @@ contains
           + of_ends(1, slave%outgoing(node))
         if (points%area(p) > 0.0_wp) cycle
         if (is_sharp_vertex(slave, memory, node)) points%area(p) = nodal_area(slave, &
-          memory%positions(:, :memory%n_slave), contact%is_round, node)
+          memory%positions(:, :memory%n_slave), contact%is_axisymmetric, node)
       end associate
     end do
   end subroutine finish_nts_mar
@@ -170,7 +170,7 @@ contains
 
     half_lengths = 0.5_wp*(overlap%high - overlap%low)*length
     half_lengths = half_lengths*merge(overlap%part, overlap%share, contact%strict)
-    if (.not. contact%is_round) return
+    if (.not. contact%is_axisymmetric) return
     low = radius_between(a, b, overlap%low)
     high = radius_between(a, b, overlap%high)
     half_lengths(1) = half_lengths(1)*end_radius(low, high)

@@ -59,7 +59,7 @@ contains
     limits = ends_of_half(contact, memory, virtual_node, at)
     xi = at
     half = 0.5_wp*segment_length(a, b)
-    if (contact%is_round) then
+    if (contact%is_axisymmetric) then
       xi = centroid(a, b, end_of_half(at, 2), end_of_half(at, 1))
       half = half*radius_between(a, b, at)
     end if
@@ -175,7 +175,7 @@ contains
     associate (a => memory%positions(:, nodes(1)), b => memory%positions(:, nodes(2)))
       projection%xi = 0.5_wp*(range(1) + range(2))
       length = (range(2) - range(1))*segment_length(a, b)
-      if (contact%is_round) then
+      if (contact%is_axisymmetric) then
         length = length*radius_between(a, b, projection%xi)
         projection%xi = centroid(a, b, range(1), range(2))
       end if

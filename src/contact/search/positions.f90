@@ -87,10 +87,10 @@ contains
 
   !> Positions on each segment and the part of its length that each stands for; nothing is allocated
   !> for points at nodes, which are in `memory%positions` already.
-  pure subroutine start_segment_points(rule, n_gauss, is_round, has_ends, slave, memory)
+  pure subroutine start_segment_points(rule, n_gauss, is_axisymmetric, has_ends, slave, memory)
     integer, intent(in) :: rule    !! one of the constants above
     integer, intent(in) :: n_gauss !! Gauss points of a segment
-    logical, intent(in) :: is_round
+    logical, intent(in) :: is_axisymmetric
     logical, intent(in) :: has_ends !! beside Gauss points both nodes of each segment
     type(surface_t), intent(in) :: slave
     type(contact_state_t), intent(inout) :: memory
@@ -107,7 +107,7 @@ contains
     case (points_at_quarters)
       memory%segment_xi(:) = [0.25_wp, 0.75_wp]
       memory%segment_share = 0.5_wp
-      if (is_round) memory%segment_spread = 0.5_wp
+      if (is_axisymmetric) memory%segment_spread = 0.5_wp
     case (points_at_gauss_points)
       memory%segment_xi([1, n]) = [0.0_wp, 1.0_wp]
       memory%segment_share([1, n]) = 0.0_wp

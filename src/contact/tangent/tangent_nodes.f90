@@ -35,15 +35,16 @@ contains
 
     do p = 1, memory%points%n
       point = linearise_node(memory, p)
-      associate (is_closed => memory%slave_status%pass%is_closed, is_round => contact%is_round)
+      associate (is_closed => memory%slave_status%pass%is_closed, &
+        is_axisymmetric => contact%is_axisymmetric)
         if (point%site > memory%n_slave) then
-          call linearise_length(contact%master, memory%n_slave, is_round, &
+          call linearise_length(contact%master, memory%n_slave, is_axisymmetric, &
             memory%master_status%pass%is_closed, memory, point)
-        else if (is_round .or. .not. has_unit_area) then
-          call linearise_length(contact%slave, 0, is_round, is_closed, memory, point)
+        else if (is_axisymmetric .or. .not. has_unit_area) then
+          call linearise_length(contact%slave, 0, is_axisymmetric, is_closed, memory, point)
         end if
         plane = point
-        if (has_unit_area .and. is_round) then
+        if (has_unit_area .and. is_axisymmetric) then
           call linearise_length(contact%slave, 0, .false., is_closed, memory, plane)
           point%area = point%area/plane%area
         end if
@@ -158,7 +159,7 @@ contains
       point%stiffness = memory%slave_penalty
       point%slave_xi = constant(at)
       point%area = 0.5_wp*length_between(memory, point, 1, 2)
-      if (contact%is_round) then
+      if (contact%is_axisymmetric) then
         point%area = point%area*radius_at(memory, point, 1, 2, point%slave_xi)
         point%slave_xi = centroid_of(memory, point, 1, 2, &
           constant([end_of_half(at, 2), end_of_half(at, 1)]))
@@ -234,7 +235,7 @@ contains
 
     sub_segment%master_xi = 0.5_wp*(range(1) + range(2))
     sub_segment%area = (range(2) - range(1))*length_between(memory, sub_segment, 5, 6)
-    if (.not. contact%is_round) return
+    if (.not. contact%is_axisymmetric) return
     sub_segment%area = sub_segment%area*radius_at(memory, sub_segment, 5, 6, sub_segment%master_xi)
     sub_segment%master_xi = centroid_of(memory, sub_segment, 5, 6, range)
   end subroutine set_range

@@ -46,7 +46,7 @@ contains
         if (has_area(node)) cycle
         if (.not. is_sharp_vertex(contact%slave, memory, node)) cycle
         point = linearise_node(memory, p)
-        call linearise_length(contact%slave, 0, contact%is_round, .false., memory, point)
+        call linearise_length(contact%slave, 0, contact%is_axisymmetric, .false., memory, point)
         call append_point(list, point)
       end associate
     end do
@@ -73,7 +73,7 @@ contains
       breakpoints = [overlaps(k)%first, overlaps(k)%last]
       do i = 1, 2
         point%area = half
-        if (contact%is_round) point%area = half*radius_at(memory, point, 1, 2, &
+        if (contact%is_axisymmetric) point%area = half*radius_at(memory, point, 1, 2, &
           (1.0_wp/3.0_wp)*(2.0_wp*xi(i) + xi(3 - i)))
         associate (node => contact%slave%segments(i, s))
           if (breakpoints(i) > 0) then
@@ -220,7 +220,7 @@ contains
     end associate
     point%area = length*share_of(cosine_between(difference(memory, point, 2, 1), &
       [-point%normal(2), point%normal(1)]))
-    if (contact%is_round) &
+    if (contact%is_axisymmetric) &
       point%area = point%area*radius_at(memory, point, 1, 2, point%slave_xi)
   end subroutine move_over_segment
 

@@ -57,8 +57,8 @@ contains
       if (model%erodes) call check_eroding_contacts(deck, contacts, model)
     end if
     call take_transducers(deck, transducers, body, model)
-    if (body%is_sound .and. model%is_round) then
-      model%contacts%is_round = .true.
+    if (body%is_sound .and. model%is_axisymmetric) then
+      model%contacts%is_axisymmetric = .true.
       do i = 1, size(model%contacts)
         associate (slave => model%contacts(i)%slave, master => model%contacts(i)%master, &
           radii => model%mesh%coordinates(1, :))

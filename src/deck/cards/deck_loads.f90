@@ -98,7 +98,7 @@ contains
     integer, allocatable :: nodes(:)
     integer :: i
 
-    if (.not. model%is_round .or. model%mesh%n_node == 0) return
+    if (.not. model%is_axisymmetric .or. model%mesh%n_node == 0) return
     associate (radius => model%mesh%coordinates(1, :), conditions => model%conditions)
       is_rim = radius > 0.0_wp .and. radius < bore_share*maxval(radius) &
         .and. .not. mark_rigid_nodes(model%rigids, model%mesh%n_node)
@@ -127,7 +127,7 @@ contains
       call load_axes(deck, card, along(:2))
       along(3) = merge(1.0_wp, 0.0_wp, integer_of(card, 'DOF') == 7)
       if (body == 0 .or. curve == 0) cycle
-      if (model%is_round .and. any(abs(along([1, 3])) > 0.0_wp)) &
+      if (model%is_axisymmetric .and. any(abs(along([1, 3])) > 0.0_wp)) &
         call report_field(deck, card, 'DOF', across_axis)
       if (.not. allocated(model%conditions%rigid_loads)) allocate (model%conditions%rigid_loads(0))
       do k = 1, 3
@@ -227,7 +227,7 @@ contains
       call find_id(deck, a_curve, card, 'LCID', load%curve)
       load%direction = merge(2, 1, deck%blocks(blocks(i))%name == 'LOAD_BODY_Y')
       load%scale = real_of(card, 'SF')
-      if (model%is_round .and. load%direction == 1) call report_field(deck, card, 'LCID', &
+      if (model%is_axisymmetric .and. load%direction == 1) call report_field(deck, card, 'LCID', &
         ': *LOAD_BODY_X acts across the axis of an axisymmetric deck; *LOAD_BODY_Y acts along it')
       if (load%curve > 0) model%conditions%body_loads = [model%conditions%body_loads, load]
     end do

@@ -44,7 +44,7 @@ contains
       is_sound = .false.
     sound = deck%report%n_error == n_before .and. model%mesh%n_node > 0 &
       .and. model%mesh%n_element > 0 .and. all(is_sound) .and. all(model%mesh%element_part > 0)
-    if (model%is_round .and. model%mesh%n_node > 0) call settle_axis(deck, model%mesh)
+    if (model%is_axisymmetric .and. model%mesh%n_node > 0) call settle_axis(deck, model%mesh)
   end subroutine read_mesh
 
   !> *NODE: id, coordinates in one plane, and boundary code.

@@ -8,7 +8,7 @@ module deck_part_m
   use eos_m, only : eos_t
   use model_m, only : model_t
   use parts_m, only : section_t, hourglass_t, part_t, hourglass_viscous, hourglass_stiffness, &
-    hourglass_assumed, form_one_point, form_full, form_round_one_point, form_round_full
+    hourglass_assumed, form_one_point, form_full, form_axisym_one_point, form_axisym_full
   use deck_ids_m, only : a_part, a_section, a_material, an_hourglass, an_element
   use deck_lines_m, only : deck_t, place_t, blocks_of, count_rows, line_text, line_error, &
     line_warning, flag_blank
@@ -118,10 +118,10 @@ contains
         call check_form(deck, card)
         section%id = integer_of(card, 'SECID')
         section%is_full = integer_of(card, 'NIP') == 4
-        section%is_round = integer_of(card, 'ELFORM') == 15
+        section%is_axisymmetric = integer_of(card, 'ELFORM') == 15
         section%element_form = merge(form_full, form_one_point, section%is_full)
-        if (section%is_round) section%element_form = merge(form_round_full, form_round_one_point, &
-          section%is_full)
+        if (section%is_axisymmetric) section%element_form = merge(form_axisym_full, &
+          form_axisym_one_point, section%is_full)
         call define(deck, a_section, card, n)
         if (n > 0) sections(n) = section
       end do
@@ -227,22 +227,23 @@ contains
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
     character(*), parameter :: forms(2) = ['plane strain (ELFORM 13)', 'axisymmetry (ELFORM 15) ']
-    logical :: is_round(size(model%parts)), is_known(size(model%parts))
+    logical :: is_axisymmetric(size(model%parts)), is_known(size(model%parts))
     integer :: i, first
 
     is_known = model%parts%section > 0
-    is_round = .false.
+    is_axisymmetric = .false.
     do i = 1, size(model%parts)
-      if (is_known(i)) is_round(i) = model%sections(model%parts(i)%section)%is_round
+      if (is_known(i)) is_axisymmetric(i) = model%sections(model%parts(i)%section)%is_axisymmetric
     end do
-    model%is_round = any(is_round)
+    model%is_axisymmetric = any(is_axisymmetric)
     if (.not. any(is_known)) return
     first = findloc(is_known, .true., dim=1)
     do i = 1, size(model%parts)
-      if (.not. is_known(i) .or. (is_round(i) .eqv. is_round(first))) cycle
+      if (.not. is_known(i) .or. (is_axisymmetric(i) .eqv. is_axisymmetric(first))) cycle
       call reject_field(deck, place_t(deck%maps(a_part)%lines(i), 2, 'SECID'), 'is a section of ' &
-        //trim(forms(merge(2, 1, is_round(i))))//', but part '//to_text(model%parts(first)%id) &
-        //' is of '//trim(forms(merge(2, 1, is_round(first))))//': a deck is of one kind')
+        //trim(forms(merge(2, 1, &
+        is_axisymmetric(i))))//', but part '//to_text(model%parts(first)%id) &
+        //' is of '//trim(forms(merge(2, 1, is_axisymmetric(first))))//': a deck is of one kind')
     end do
   end subroutine settle_form
 
@@ -279,7 +280,7 @@ contains
           if (twins(part%section) == 0) then
             twin = model%sections(part%section)
             twin%is_full = .true.
-            twin%element_form = merge(form_round_full, form_full, twin%is_round)
+            twin%element_form = merge(form_axisym_full, form_full, twin%is_axisymmetric)
             model%sections = [model%sections, twin]
             twins(part%section) = size(model%sections)
           end if
@@ -311,7 +312,7 @@ contains
         associate (body => model%rigids(i))
           body%part = parts(i)
           body%is_fixed = model%materials(model%parts(parts(i))%material)%is_fixed
-          if (model%is_round) body%is_fixed([1, 3]) = .true.
+          if (model%is_axisymmetric) body%is_fixed([1, 3]) = .true.
           is_there = .false.
           do k = 1, mesh%n_element
             if (mesh%element_part(k) == parts(i)) is_there(mesh%element_nodes(:, k)) = .true.

@@ -79,7 +79,7 @@ contains
     logical :: is_there(model%mesh%n_node)
 
     is_there = .false.
-    if (model%is_round) is_there = .not. model%mesh%coordinates(1, :) > 0.0_wp
+    if (model%is_axisymmetric) is_there = .not. model%mesh%coordinates(1, :) > 0.0_wp
   end function mark_axis
 
   !> (n_node) nodes that some element has, all where elements have been refused.
@@ -286,7 +286,7 @@ contains
           //'(CID) and cannot be moved by this card too'
         if (fixed(motion%direction, motion%node)) message = &
           'is fixed in this direction and cannot be moved by this card too'
-        if (model%is_round .and. motion%direction == 1 .and. .not. &
+        if (model%is_axisymmetric .and. motion%direction == 1 .and. .not. &
           model%mesh%coordinates(1, motion%node) > 0.0_wp) message = &
           'lies on the axis (x = 0) of an axisymmetric deck and can not move in r'
         if (.not. is_massive(motion%node)) message = &
@@ -311,7 +311,7 @@ contains
     call find_body(deck, card, model, '; *BOUNDARY_PRESCRIBED_MOTION_SET moves nodes', motion%node)
     if (motion%node == 0 .or. motion%curve == 0) return
     if (motion%direction == 7) motion%direction = 3
-    if (model%is_round .and. motion%direction /= 2) then
+    if (model%is_axisymmetric .and. motion%direction /= 2) then
       call report_field(deck, card, 'DOF', across_axis)
     else if (model%rigids(motion%node)%is_fixed(motion%direction)) then
       call report_field(deck, card, 'DOF', 'is fixed by CON1 or CON2 of the part''s *MAT_RIGID ' &

@@ -57,7 +57,7 @@ contains
     i = merge(lines(2), lines(1), lines(2) > 0)
     if (model%controls%implicit%is_on .and. .not. model%controls%implicit%is_dynamic) call &
       line_warning(deck, i, 'static velocity', 'an initial velocity has no effect in statics')
-    if (model%is_round) then
+    if (model%is_axisymmetric) then
       held = pack([(node, node=1, model%mesh%n_node)], abs(velocity(1, :)) > 0.0_wp &
         .and. (mark_axis(model) .or. mark_rigid_nodes(model%rigids, model%mesh%n_node)))
       velocity(1, held) = 0.0_wp
@@ -129,7 +129,7 @@ contains
     end if
     if (any(card%bad) .or. any(axis%bad)) return
     if (first_line == 0) first_line = card%line
-    if (model%is_round .and. abs(spin) > 0.0_wp) call report_field(deck, card, 'OMEGA', &
+    if (model%is_axisymmetric .and. abs(spin) > 0.0_wp) call report_field(deck, card, 'OMEGA', &
       'turns bodies of revolution out of their plane: axisymmetric parts take no spin')
     if (real_of(axis, 'NZ') < 0.0_wp) spin = -spin
     ahead = reals_of(card, 'VX', 'VY')
@@ -189,7 +189,8 @@ contains
         model%rigids(body)%has_velocity = .true.
         model%rigids(body)%velocity = [reals_of(card, 'VX', 'VY'), real_of(card, 'VZR')]
         associate (velocity => model%rigids(body)%velocity)
-          if (model%is_round .and. any(abs(velocity([1, 3])) > 0.0_wp)) call report_field(deck, &
+          if (model%is_axisymmetric .and. any(abs(velocity([1, 3])) > 0.0_wp)) call &
+            report_field(deck, &
             card, trim(merge('VX ', 'VZR', abs(velocity(1)) > 0.0_wp)), across_axis)
         end associate
       end if

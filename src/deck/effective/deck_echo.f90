@@ -37,8 +37,8 @@ contains
     call write_log(log, 'mesh: '//to_text(model%mesh%n_node)//' nodes, ' &
       //to_text(model%mesh%n_element)//' elements, '//trim(merge( &
       'axisymmetric about x = 0, forces, masses and energies per radian', &
-      'plane strain, unit depth                                        ', model%is_round)))
-    if (model%is_round) call write_log(log, 'axis: ' &
+      'plane strain, unit depth                                        ', model%is_axisymmetric)))
+    if (model%is_axisymmetric) call write_log(log, 'axis: ' &
       //to_text(count(.not. model%mesh%coordinates(1, :) > 0.0_wp)) &
       //' node(s) at r = 0 keep to it (u_r = 0); rigid bodies move along it alone')
     do i = 1, size(model%parts)

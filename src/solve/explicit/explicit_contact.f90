@@ -158,8 +158,8 @@ contains
         if (sign_of == has_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) then
           ! Impact is plastic within the first row of elements.
           if (monitor%balance > 0.0_wp) call write_log(log, name//': impacts have taken ' &
-            //to_text(monitor%balance)//per_depth(model%controls%units, 'F L', model%is_round) &
-            //', '//percent(monitor%balance, state%largest_energy) &
+            //to_text(monitor%balance)//per_depth(model%controls%units, 'F L', &
+            model%is_axisymmetric) //', '//percent(monitor%balance, state%largest_energy) &
             //' of the largest energy so far; finer meshes lose less')
         else if (abs(monitor%balance) > noticed_share*state%largest_energy .and. state%cycle &
           > 0) then

@@ -93,10 +93,10 @@ contains
     type(packed_buffer_t) :: buffer
 
     one = motion_of(model%layout, model%layout%tiles(i_tile), state%motion)
-    ! Each element of a round body is strained by a radial motion, and damping of parts is not that
-    ! of one tile.
+    ! Each element of an axisymmetric body is strained by a radial motion, and damping of parts is
+    ! not that of one tile.
     goes_on = moves_as_one(model%layout, model%layout%tiles(i_tile), one, state%motion)
-    if (model%is_round) goes_on = goes_on .and. same_bits(one(1:3:2), [0.0_wp, 0.0_wp])
+    if (model%is_axisymmetric) goes_on = goes_on .and. same_bits(one(1:3:2), [0.0_wp, 0.0_wp])
     if (allocated(state%node_damping)) &
       goes_on = goes_on .and. same_bits(one(3:4), [0.0_wp, 0.0_wp])
     do i = model%layout%tiles(i_tile)%first_node, model%layout%tiles(i_tile)%last_node

@@ -352,7 +352,7 @@ contains
             v42 = next(:, nodes(4)) - next(:, nodes(2))
             rate = (v31(1)*x42(2) - v42(1)*x31(2) + x31(1)*v42(2) - x42(1)*v31(2)) &
               /(x31(1)*x42(2) - x42(1)*x31(2))
-            if (model%is_round) rate = rate + sum(next(1, nodes)) &
+            if (model%is_axisymmetric) rate = rate + sum(next(1, nodes)) &
               /sum(model%mesh%coordinates(1, nodes) + state%motion(1, nodes))
           end associate
           change = max(change, leap%dt*abs(rate))

@@ -253,7 +253,7 @@ contains
   end subroutine assemble_tangent
 
   !> Minus the derivative of a pressure, which turns and stretches with its edge, and grows with its
-  !> radius on a round body.
+  !> radius on an axisymmetric body.
   subroutine add_pressure_stiffness(model, load, motion, time, equations, matrix)
     type(model_t), intent(in) :: model
     type(pressure_load_t), intent(in) :: load
@@ -273,7 +273,7 @@ contains
     block([1, 3], 4) = half
     block([2, 4], 1) = half
     block([2, 4], 3) = -half
-    if (model%is_round) then
+    if (model%is_axisymmetric) then
       ! Node 1 gets (2 r_1 + r_2)/3 of the plane half, node 2 (r_1 + 2 r_2)/3.
       x = model%mesh%coordinates(:, load%nodes) + motion(1:2, load%nodes)
       force = half*[x(2, 1) - x(2, 2), x(1, 2) - x(1, 1)]

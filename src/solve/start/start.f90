@@ -389,7 +389,7 @@ contains
       associate (nodes => model%mesh%element_nodes(:, i))
         associate (x => model%mesh%coordinates(:, nodes), &
           corners => merge(3, 4, nodes(4) == nodes(3)))
-          if (model%is_round) then
+          if (model%is_axisymmetric) then
             sums(:, k) = sums(:, k) + model%materials(model%parts(k)%material)%density &
               *element_volume(model%mesh, i)
             cycle

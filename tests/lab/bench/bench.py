@@ -77,7 +77,7 @@ def describe_machine(program):
             "program": " ".join(version.stdout.split())}
 
 
-def run_round(options, work, samples):
+def run_axisymmetric(options, work, samples):
     """One measurement of everything."""
     unit_deck = options.out / "decks" / "unit.k"
 
@@ -139,7 +139,7 @@ def main():
             samples.add(variant, value, Units(1.0, {1: 1.0}))
     for number in range(1 if options.quick else options.rounds):
         print(f"round {number + 1}", flush=True)
-        run_round(options, work, samples)
+        run_axisymmetric(options, work, samples)
         write_summary(samples, options.out / "bench.csv")
     rows = write_summary(samples, options.out / "bench.csv")
     (options.out / "machine.json").write_text(

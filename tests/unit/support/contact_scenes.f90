@@ -95,7 +95,7 @@ contains
       master(1, :) = master(1, :) + radius
     end if
     call make_problem(problem, slave, master, 0.3_wp)
-    problem%contact%is_round = present(radius)
+    problem%contact%is_axisymmetric = present(radius)
     problem%motion(1:2, :size(u, 2)) = matmul(rotation, u)
     problem%contact%contact_type = types(1, i)
     problem%contact%penalty = penalty

@@ -156,9 +156,9 @@ def rules_of(run, rules, number):
     return [*(rule for rule in rules if rule.kind != 6), mortar[number % len(mortar)]]
 
 
-def one_interface_each(run, name, pairs, rules, what, least=0.8, is_round=False):
+def one_interface_each(run, name, pairs, rules, what, least=0.8, is_axisymmetric=False):
     """Every rule on bodies of its own, all in one deck."""
-    scene = Scene(name, is_round=is_round)
+    scene = Scene(name, is_axisymmetric=is_axisymmetric)
     for number, pair in enumerate(pairs):
         for rule in rules_of(run, rules, number):
             scene.add(pair, rule)
@@ -179,16 +179,16 @@ def axisymmetric(run):
     # Not turned a closed pair is one of ties.
     pairs = beside_the_axis([dataclasses.replace(pair, angle=0.0) for pair in designed_pairs()
                              if not pair.closed], [0.0])
-    one_interface_each(run, "discs", pairs, RULES, "axisymmetric, from the axis on", is_round=True)
+    one_interface_each(run, "discs", pairs, RULES, "axisymmetric, from the axis on", is_axisymmetric=True)
     one_interface_each(run, "rings", beside_the_axis(designed_pairs(), RADII), RULES,
-                       "axisymmetric, rings", is_round=True)
+                       "axisymmetric, rings", is_axisymmetric=True)
     rng = np.random.default_rng(SEED + 5)
     pairs = beside_the_axis([random_pair(rng, number) for number in range(N_RANDOM)], RADII)
-    one_interface_each(run, "random_rings", pairs, RULES, "axisymmetric, random", is_round=True)
+    one_interface_each(run, "random_rings", pairs, RULES, "axisymmetric, random", is_axisymmetric=True)
     rng = np.random.default_rng(SEED + 6)
     pairs = beside_the_axis([random_pair(rng, number, closed=True) for number in range(N_CLOSED)], RADII)
     one_interface_each(run, "closed_rings", pairs, [rule for rule in MAIN_RULES if not rule.strict],
-                       "axisymmetric, closed chains", is_round=True)
+                       "axisymmetric, closed chains", is_axisymmetric=True)
 
 
 def penalty_units(run):

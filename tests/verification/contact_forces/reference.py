@@ -39,14 +39,14 @@ def step(value, low, high):
 class Chain:
     """Nodes (n, 2) in walking order and whether the last is joined to the first.
 
-    `thick`: of the body behind each segment (closed boundaries). `is_round`: axisymmetric, x is the
+    `thick`: of the body behind each segment (closed boundaries). `is_axisymmetric`: axisymmetric, x is the
     radius: lengths weigh with it.
     """
 
-    def __init__(self, x, closed=False, thick=None, is_round=False):
+    def __init__(self, x, closed=False, thick=None, is_axisymmetric=False):
         self.x = np.asarray(x, dtype=float)
         self.closed = closed
-        self.is_round = is_round
+        self.is_axisymmetric = is_axisymmetric
         n = len(self.x)
         first = np.arange(n if closed else n - 1)
         self.nodes = np.stack([first, (first + 1) % n], axis=1)
@@ -82,7 +82,7 @@ class Chain:
 
     def radius(self, k, at):
         """In axisymmetry; 1 in the plane."""
-        return self.start[k, 0] + at * self.length[k] * self.tangent[k, 0] if self.is_round else 1.0
+        return self.start[k, 0] + at * self.length[k] * self.tangent[k, 0] if self.is_axisymmetric else 1.0
 
     def integral(self, k, left, right, values):
         """Of values(at) over a stretch of a segment, by three Gauss points: exact for all that is asked."""
@@ -92,13 +92,13 @@ class Chain:
 
     def weight(self, k, left, right):
         """Of a stretch of a segment."""
-        if not self.is_round:
+        if not self.is_axisymmetric:
             return (right - left) * self.length[k]
         return self.integral(k, left, right, np.ones_like)
 
     def centre(self, k, left, right):
         """Of a stretch of a segment, by weight; on the axis, where there is none, the middle."""
-        if not self.is_round:
+        if not self.is_axisymmetric:
             return 0.5 * (left + right)
         weight = self.weight(k, left, right)
         return self.integral(k, left, right, lambda at: at) / weight if weight else 0.5 * (left + right)
@@ -106,7 +106,7 @@ class Chain:
     def shares(self, k, left, right):
         """What either end of a stretch has of its weight: the integral by its hat function there."""
         size = right - left
-        if not self.is_round:
+        if not self.is_axisymmetric:
             return 0.5 * size * self.length[k], 0.5 * size * self.length[k]
         return (self.integral(k, left, right, lambda at: (right - at) / size),
                 self.integral(k, left, right, lambda at: (at - left) / size))

@@ -43,16 +43,16 @@ class Interface:
     slave: np.ndarray   # rows of the deck's node list, in walking order
     master: np.ndarray
     estimate: float
-    is_round: bool = False
+    is_axisymmetric: bool = False
 
     def chains(self, initial, displacement=None):
         """Slave and master chain at time zero and now."""
-        near = initial[self.slave[0]] * [0.0 if self.is_round else 1.0, 1.0]
-        start = [Chain(initial[side] - near, self.pair.closed, is_round=self.is_round)
+        near = initial[self.slave[0]] * [0.0 if self.is_axisymmetric else 1.0, 1.0]
+        start = [Chain(initial[side] - near, self.pair.closed, is_axisymmetric=self.is_axisymmetric)
                  for side in (self.slave, self.master)]
         moved = displacement if displacement is not None else np.zeros_like(initial)
         now = [Chain(chain.x + moved[side], self.pair.closed, thickness(chain) if self.pair.closed else None,
-                     self.is_round) for chain, side in zip(start, (self.slave, self.master))]
+                     self.is_axisymmetric) for chain, side in zip(start, (self.slave, self.master))]
         return start, now
 
     def compare(self, initial, found, displacement=None, offsets=None):
@@ -78,11 +78,11 @@ def thickness(chain):
 class Scene:
     """A deck with many pairs, each with its own bodies and interface."""
 
-    def __init__(self, title, end=END, dt=None, is_round=False):
+    def __init__(self, title, end=END, dt=None, is_axisymmetric=False):
         self.deck = Deck(title)
         self.deck.control(end, dt)
-        self.is_round = is_round
-        self.deck.add("*SECTION_SHELL", (1, 15 if is_round else 13), (1.0,))
+        self.is_axisymmetric = is_axisymmetric
+        self.deck.add("*SECTION_SHELL", (1, 15 if is_axisymmetric else 13), (1.0,))
         self.deck.elastic(RHO, YOUNG, POISSON, 1)
         self.deck.output(plot=end)
         self.nodes = np.zeros((0, 2))
@@ -127,7 +127,7 @@ class Scene:
             sets.append(self.n_set if parts else -self.n_set)
         self.deck.add("*CONTACT_2D_SLIDELINE", (*sets, rule.kind, rule.gauss, rule.penalty),
                       (0.0, 1.0e20, rule.unit, rule.back or None, 0.0, int(rule.strict)))
-        self.interfaces.append(Interface(pair, rule, *chains, estimate(), self.is_round))
+        self.interfaces.append(Interface(pair, rule, *chains, estimate(), self.is_axisymmetric))
         return chains, parts
 
 

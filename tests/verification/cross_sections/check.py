@@ -135,7 +135,7 @@ def check_two_materials(run):
     run.check("secforc, two materials: moment", table["moment"], [moment])
 
 
-def check_round(run, points):
+def check_axisymmetric(run, points):
     """A solid cylinder in uniaxial strain along its axis: all per radian."""
     n_x, n_y, radius, stretch = 5, 4, 0.5, 0.1
     deck = Deck("cylinder").control(1.0, dt=0.01)
@@ -193,5 +193,5 @@ def check(run):
         check_balance(run, kind)
     check_two_materials(run)
     for points in (None, 4):
-        check_round(run, points)
+        check_axisymmetric(run, points)
     check_erosion(run)

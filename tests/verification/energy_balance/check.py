@@ -201,7 +201,7 @@ def check_variable_steps(run):
 
 def squares(title, form=13, points=None, hourglass=(1, 0.1), bulk=None, law=None):
     """4 x 4 free squares with velocities of short waves, TSSFAC 0.9, or under bulk viscosity a constant step (one that
-    jumps moves the balance); of round bodies the inner radius is 4."""
+    jumps moves the balance); of axisymmetric bodies the inner radius is 4."""
     deck = Deck(title).control(200 * 0.7757, dt=0.3 if bulk else None).hourglass(*hourglass)
     if bulk:
         deck.add("*CONTROL_BULK_VISCOSITY", bulk)

@@ -114,11 +114,11 @@ def check_least_step(run):
             run.true("and the other element stays", gone[-1, 1] < 0.5)
 
 
-def falling_squares(friction, is_damped, is_round):
+def falling_squares(friction, is_damped, is_axisymmetric):
     """Squares that come to a wall in one cycle after another and all leave in the same one."""
     deck, step, speed, last = Deck("squares on a wall"), 1.0e-6, 100.0, 12
     deck.control(2 * last * step, dt=step)
-    deck.add("*SECTION_SHELL", (1, 15 if is_round else 13), (1.0,))
+    deck.add("*SECTION_SHELL", (1, 15 if is_axisymmetric else 13), (1.0,))
     deck.add("*PART", "squares", (1, 1, 1))
     deck.elastic(RHO, YOUNG, POISSON)
     deck.add("*MAT_ADD_EROSION", (1,), (None,) * 7 + ((last - 0.5) * step,))
@@ -137,9 +137,9 @@ def falling_squares(friction, is_damped, is_round):
 
 def check_walls(run):
     """Nodes that lose their last element while a wall pushes them: what the wall does on them yet goes with them."""
-    for friction, is_damped, is_round in ((0.0, False, False), (0.3, True, False), (0.3, True, True)):
-        name = f"wall_{friction:g}_{'damped_' if is_damped else ''}{'round' if is_round else 'plane'}"
-        table = run.program(falling_squares(friction, is_damped, is_round), name=name).table("glstat")
+    for friction, is_damped, is_axisymmetric in ((0.0, False, False), (0.3, True, False), (0.3, True, True)):
+        name = f"wall_{friction:g}_{'damped_' if is_damped else ''}{'round' if is_axisymmetric else 'plane'}"
+        table = run.program(falling_squares(friction, is_damped, is_axisymmetric), name=name).table("glstat")
         kept = table["total"] - table["external_work"]
         run.check(f"{name}: balance of squares that leave as they meet a wall", kept, kept[0])
         run.true(f"{name}: all have left", table["kinetic"][-1] == 0.0 and table["eroded"][-1] > 0.0)
@@ -202,7 +202,7 @@ def check_led(run):
         run.true(f"{name}: both have left", table["eroded"][-1] > 0.0 and abs(table["kinetic"][-1]) == 0.0)
 
 
-def plate_and_rod(speed, is_round, is_rigid, radius=0.04, fail=0.4, is_self=False):
+def plate_and_rod(speed, is_axisymmetric, is_rigid, radius=0.04, fail=0.4, is_self=False):
     """A blunt rod, 80 mm long and of 10 mm radius, on a clamped plate of 12 mm."""
     deck = Deck("penetration")
     end = 30.0e-3 / speed
@@ -210,18 +210,18 @@ def plate_and_rod(speed, is_round, is_rigid, radius=0.04, fail=0.4, is_self=Fals
     deck.add("*CONTROL_TIMESTEP", (0.0, 0.8, 0, 0.0, 0.0, 0, 1))
     deck.add("*PART", "plate", (1, 1, 1))
     deck.add("*PART", "rod", (2, 1, 2))
-    deck.add("*SECTION_SHELL", (1, 15 if is_round else 13), (1.0,))
+    deck.add("*SECTION_SHELL", (1, 15 if is_axisymmetric else 13), (1.0,))
     deck.add("*MAT_PLASTIC_KINEMATIC", (1, RHO, YOUNG, POISSON, 6.0e8, 1.0e9, 1.0), (0.0, 0.0, fail))
     if is_rigid:
         deck.add("*MAT_RIGID", (2, RHO, YOUNG, POISSON))
     else:
         deck.add("*MAT_PLASTIC_KINEMATIC", (2, RHO, YOUNG, POISSON, 1.5e9, 5.0e9, 1.0), (0.0,))
-    sides = 1 if is_round else 2
-    left = 0.0 if is_round else -1.0
-    plate = deck.mesh(*grid(sides * 24 if is_round else 40, 8, sides * radius, 0.012, (left * radius, 0.0)), part=1)
+    sides = 1 if is_axisymmetric else 2
+    left = 0.0 if is_axisymmetric else -1.0
+    plate = deck.mesh(*grid(sides * 24 if is_axisymmetric else 40, 8, sides * radius, 0.012, (left * radius, 0.0)), part=1)
     rod = deck.mesh(*grid(sides * 5, 10, sides * 0.01, 0.08, (left * 0.01, 0.012)), part=2)
-    n = (sides * 24 if is_round else 40) + 1
-    edge = list(plate[n - 1::n]) + ([] if is_round else list(plate[::n]))
+    n = (sides * 24 if is_axisymmetric else 40) + 1
+    edge = list(plate[n - 1::n]) + ([] if is_axisymmetric else list(plate[::n]))
     deck.fix(edge, x=1, y=1)
     for number, parts in ((1, (1,)), (2, (2,)), (3, (1, 2))):
         deck.add("*SET_PART_LIST", (number,), parts if len(parts) > 1 else (*parts, None))
@@ -234,10 +234,10 @@ def plate_and_rod(speed, is_round, is_rigid, radius=0.04, fail=0.4, is_self=Fals
     return deck.output(glstat=end / 100, matsum=end / 100)
 
 
-def residual(run, speed, is_round, is_rigid, **options):
+def residual(run, speed, is_axisymmetric, is_rigid, **options):
     """Velocity behind the plate; the balance on the way."""
-    name = f"{'round' if is_round else 'plane'}_{'rigid' if is_rigid else 'deformable'}{'_self' if options else ''}_{speed:g}"
-    result = run.program(plate_and_rod(speed, is_round, is_rigid, **options), name=name)
+    name = f"{'round' if is_axisymmetric else 'plane'}_{'rigid' if is_rigid else 'deformable'}{'_self' if options else ''}_{speed:g}"
+    result = run.program(plate_and_rod(speed, is_axisymmetric, is_rigid, **options), name=name)
     table = result.table("glstat")
     run.check(f"{name}: balance with what has gone", table["total"], table["total"][0])
     run.true(f"{name}: elements have gone", table["eroded"][-1] > 0.01 * table["total"][0])
@@ -255,10 +255,10 @@ def check_penetration(run):
     for speed in speeds:
         run.check(f"round, rigid, {speed:g} m/s: residual velocity",
                   residual(run, speed, True, True), share * np.sqrt(speed ** 2 - square))
-    for is_round, is_rigid, options in ((False, True, {}), (True, False, {}), (False, False, {}), (False, False, {"is_self": True})):
-        run.report(f"{'round' if is_round else 'plane'}, {'rigid' if is_rigid else 'deformable'}"
+    for is_axisymmetric, is_rigid, options in ((False, True, {}), (True, False, {}), (False, False, {}), (False, False, {"is_self": True})):
+        run.report(f"{'round' if is_axisymmetric else 'plane'}, {'rigid' if is_rigid else 'deformable'}"
                    f"{', one surface with itself' if options else ''}, 300 m/s: residual velocity",
-                   residual(run, 300.0, is_round, is_rigid, **options), "m/s")
+                   residual(run, 300.0, is_axisymmetric, is_rigid, **options), "m/s")
 
 
 def check(run):

@@ -102,7 +102,7 @@ def check_flow(run):
             run.check(f"{kind}{name}: heat of plastic work", rise[1:], heat)
 
 
-def check_round(run):
+def check_axisymmetric(run):
     """In one column, u_r = 0 at both sides is uniaxial strain: the plane element has the same stresses."""
     path = (np.zeros(401), np.linspace(0.0, -0.1, 401))
     for law, eos in (("015", 0), ("015", 1)):
@@ -333,7 +333,7 @@ def check_piston(run):
 
 def check(run):
     check_flow(run)
-    check_round(run)
+    check_axisymmetric(run)
     check_heat(run)
     check_damage(run)
     check_failure(run)

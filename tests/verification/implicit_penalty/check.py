@@ -68,17 +68,17 @@ def stresses(result, nodes, areas, sign):
 def check_uniform(run):
     """A wave through the interface: the pressure stays uniform on both sides, in each state; of discs over the parts of the
     circle that nodes have."""
-    for sizes, penalty, young, is_round in (((5, 4), RIGID, YOUNG, False), ((4, 7), DEFAULT, YOUNG, False),
+    for sizes, penalty, young, is_axisymmetric in (((5, 4), RIGID, YOUNG, False), ((4, 7), DEFAULT, YOUNG, False),
                                             ((8, 3), RIGID, 10.0 * YOUNG, False), ((3, 8), DEFAULT, 0.1 * YOUNG, False),
                                             ((5, 4), RIGID, YOUNG, True), ((3, 8), DEFAULT, 0.1 * YOUNG, True)):
         deck, slave, master = pressed(sizes, penalty, ALWAYS, young=young)
-        text, count = re.subn(r"(\*SECTION_SHELL\n1,)13", r"\g<1>15" if is_round else r"\g<1>13", deck.text())
+        text, count = re.subn(r"(\*SECTION_SHELL\n1,)13", r"\g<1>15" if is_axisymmetric else r"\g<1>13", deck.text())
         assert count == 1
         result = run.program(text)
-        name = f"{'discs' if is_round else 'blocks'} {sizes[0]}/{sizes[1]}, PEN {penalty:g}, E {young:g}"
+        name = f"{'discs' if is_axisymmetric else 'blocks'} {sizes[0]}/{sizes[1]}, PEN {penalty:g}, E {young:g}"
         for side, nodes, n, sign in (("slave", slave, sizes[0], 1.0), ("master", master, sizes[1], -1.0)):
             x = np.linspace(0.0, 1.0, n + 1)
-            areas = ring_areas(np.column_stack([x, 0.0 * x])) if is_round else hat_areas(x)
+            areas = ring_areas(np.column_stack([x, 0.0 * x])) if is_axisymmetric else hat_areas(x)
             stress, mean = (values[..., 1] for values in stresses(result, nodes, areas, sign))
             run.check(f"{name}, {side}: largest mean pressure", mean.max(), 1.0)
             run.check(f"{name}, {side}: deviation", np.abs(stress - mean[:, None]).max() / mean.max(), 0.0)

@@ -44,7 +44,7 @@ def driver(deck, end, steps, points):
     return deck
 
 
-def round_fit(kind, rows, interference, held=True, grows=True, steps=0, penalty=PENALTY, columns=8):
+def axisymmetric_fit(kind, rows, interference, held=True, grows=True, steps=0, penalty=PENALTY, columns=8):
     """A shaft too thick by the interference in a hub, ELFORM 15; the overlap grows over a third of the run."""
     end = 1.0 if steps else DECAY / 6.0
     deck = driver(Deck(f"round press fit, type {kind}"), end, steps, (15,))
@@ -83,7 +83,7 @@ def plane_fit(kind, columns, interference, grows=True, steps=10, rows=8, outline
     return deck.output(plot=end, glstat=every, rcforc=every), rings[0][:, -1], rings[1][:, 0]
 
 
-def round_pressure(result, nodes):
+def axisymmetric_pressure(result, nodes):
     """Radial contact force over the integral of r by the hat functions of a straight chain in y."""
     force = np.abs(result.points("contact_force")[-1, nodes - 1, 0])
     place = result.points("Points")[-1, nodes - 1]
@@ -104,12 +104,12 @@ def check_growth(run, name, result, pressure, interference, area, tol):
     run.check(f"{name}: energy balance", energy["total"][-1], energy["external_work"][-1])
 
 
-def check_round(run, kind, steps, held=True, penalty=PENALTY):
+def check_axisymmetric(run, kind, steps, held=True, penalty=PENALTY):
     name = f"round, {TYPES[kind]}, {'static' if steps else 'explicit'}, ends {'held' if held else 'free'}"
-    deck, shaft, hub = round_fit(kind, (4, 5), SMALL, held, steps=steps, penalty=penalty)
+    deck, shaft, hub = axisymmetric_fit(kind, (4, 5), SMALL, held, steps=steps, penalty=penalty)
     result = run.program(deck)
     wanted = lame(SMALL, held, springs=springs_of(kind, penalty))
-    sides = {"shaft": round_pressure(result, shaft), "hub": round_pressure(result, hub)}
+    sides = {"shaft": axisymmetric_pressure(result, shaft), "hub": axisymmetric_pressure(result, hub)}
     for side, pressure in sides.items():
         if kind in PASS_PATCH:
             run.check(f"{name}: pressure on the {side}", pressure, wanted)
@@ -156,9 +156,9 @@ def check_plane(run, kind, columns, steps=10, outlines=False, interference=1.0e-
 
 def check(run):
     for kind in TYPES:
-        check_round(run, kind, 0)
-        check_round(run, kind, 10)
-        check_round(run, kind, 0, held=False)
+        check_axisymmetric(run, kind, 0)
+        check_axisymmetric(run, kind, 10)
+        check_axisymmetric(run, kind, 0, held=False)
         check_plane(run, kind, (16, 16))
     for kind in sorted(PASS_PATCH):
         check_plane(run, kind, (64, 48), interference=3.0e-3)

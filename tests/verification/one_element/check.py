@@ -15,11 +15,11 @@ N_STEP, SEEDS = 60, (1, 2, 3)
 REFUSALS = ("this material is not available in slideline", "equations of state are not available in slideline")
 
 
-def deck_of(case, histories, dt, is_round):
+def deck_of(case, histories, dt, is_axisymmetric):
     """A part of one element for each motion; every corner on curves with a point at each step."""
-    deck = Deck(f"{case.name}, {'round' if is_round else 'plane'}")
+    deck = Deck(f"{case.name}, {'round' if is_axisymmetric else 'plane'}")
     deck.control(case.end, dt=dt)
-    deck.add("*SECTION_SHELL", (1, 15 if is_round else 13), (1.0,))
+    deck.add("*SECTION_SHELL", (1, 15 if is_axisymmetric else 13), (1.0,))
     case.cards(deck)
     times = dt * np.arange(N_STEP + 1)
     for part, history in enumerate(histories, 1):
@@ -68,25 +68,25 @@ def scale_of(wanted, quantity):
 
 
 @functools.cache
-def motion(path, seed, is_round, dt, options):
+def motion(path, seed, is_axisymmetric, dt, options):
     """Corner positions and the steps between them; most laws share them."""
-    history = path(seed, N_STEP, is_round, **dict(options))
-    return history, list(driver.steps(history, dt, is_round))
+    history = path(seed, N_STEP, is_axisymmetric, **dict(options))
+    return history, list(driver.steps(history, dt, is_axisymmetric))
 
 
-def go_through(run, case, seeds, is_round):
+def go_through(run, case, seeds, is_axisymmetric):
     """All seeds in one run; whether a motion reaches what is to be compared."""
-    dt, shape = case.end / N_STEP, "round" if is_round else "plane"
-    motions = [motion(case.path, seed, is_round, dt, tuple(case.motion.items())) for seed in seeds]
+    dt, shape = case.end / N_STEP, "round" if is_axisymmetric else "plane"
+    motions = [motion(case.path, seed, is_axisymmetric, dt, tuple(case.motion.items())) for seed in seeds]
     histories = [history for history, _ in motions]
-    result = run.program(deck_of(case, histories, dt, is_round),
+    result = run.program(deck_of(case, histories, dt, is_axisymmetric),
                          name=f"{case.name} {shape} {seeds[0]}".replace(" ", "_").replace(",", ""))
     pairs, reached = [], False
     for part, (history, steps) in enumerate(motions, 1):
         expected = driver.follow(case.law(), steps)
         reached = case.reached(expected) or reached
         pairs.append((of_program(result, part, case.fields),
-                      of_driver(expected, driver.volume(history[0], is_round), case.fields)))
+                      of_driver(expected, driver.volume(history[0], is_axisymmetric), case.fields)))
         if case.name.endswith("failure strain"):
             # An element that has left the mesh has taken its energy along.
             stays = result.cells("eroded")[:, part - 1].ravel() < 0.5
@@ -151,8 +151,8 @@ def check_eos(run):
 def sweep(run, seed, count):
     """`count` new motions of each law."""
     for case in known(run):
-        for is_round in (False, True):
-            go_through(run, case, range(seed, seed + count), is_round)
+        for is_axisymmetric in (False, True):
+            go_through(run, case, range(seed, seed + count), is_axisymmetric)
 
 
 def check(run):
@@ -160,5 +160,5 @@ def check(run):
     check_rubber(run, "Blatz-Ko", cases.laws.BlatzKo(1.0e6))
     check_eos(run)
     for case in known(run):
-        reached = [go_through(run, case, SEEDS, is_round) for is_round in (False, True)]
+        reached = [go_through(run, case, SEEDS, is_axisymmetric) for is_axisymmetric in (False, True)]
         run.true(f"{case.name}: plane and round motions reach what is to be compared", all(reached))

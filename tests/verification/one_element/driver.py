@@ -2,7 +2,7 @@
 """One quad with given corner positions, plane strain or axisymmetric: full 3x3 tensors, nothing saved.
 
 Written from the documents alone (README.md), apart from the program. The third axis is out of the plane: the
-thickness, or the hoop of a round body.
+thickness, or the hoop of an axisymmetric body.
 """
 import numpy as np
 
@@ -27,29 +27,29 @@ def shapes(xi, eta):
     return n, d
 
 
-def at_points(corners, is_round):
+def at_points(corners, is_axisymmetric):
     """For each Gauss point of quads corners[..., 4, 2]: functions, derivatives, Jacobian, weighted area, weight."""
     for xi, eta, weight in GAUSS:
         n, d = shapes(xi, eta)
         jacobian = d @ corners
-        radius = corners[..., 0] @ n if is_round else np.ones(corners.shape[:-2])
+        radius = corners[..., 0] @ n if is_axisymmetric else np.ones(corners.shape[:-2])
         yield n, d, jacobian, weight * np.linalg.det(jacobian), radius
 
 
-def volume(corners, is_round):
+def volume(corners, is_axisymmetric):
     """Area of the section, or the integral of r over it."""
-    return sum(area * radius for _, _, _, area, radius in at_points(corners, is_round))
+    return sum(area * radius for _, _, _, area, radius in at_points(corners, is_axisymmetric))
 
 
-def mean_gradient(corners, values, is_round):
+def mean_gradient(corners, values, is_axisymmetric):
     """Volume mean of d(values)_i/dx_j over the shapes `corners`; round: with the mean of values_r/r as the 33 part."""
     gradient = np.zeros(np.broadcast_shapes(corners.shape[:-2], values.shape[:-2]) + (3, 3))
-    for n, d, jacobian, area, radius in at_points(corners, is_round):
+    for n, d, jacobian, area, radius in at_points(corners, is_axisymmetric):
         local = np.linalg.solve(jacobian, np.broadcast_to(d, jacobian.shape[:-1] + (4,))) @ values
         gradient[..., :2, :2] += (area * radius)[..., None, None] * np.swapaxes(local, -1, -2)
-        if is_round:
+        if is_axisymmetric:
             gradient[..., 2, 2] += area * (values[..., 0] @ n)
-    return gradient / volume(corners, is_round)[..., None, None]
+    return gradient / volume(corners, is_axisymmetric)[..., None, None]
 
 
 def turn(angle):
@@ -80,13 +80,13 @@ class Step:
         return self.rotation @ tensor @ self.rotation.T
 
 
-def steps(history, dt, is_round):
+def steps(history, dt, is_axisymmetric):
     """The steps along corner positions history[step, corner, 2]."""
     middle = 0.5 * (history[1:] + history[:-1])
-    velocity_gradients = mean_gradient(middle, np.diff(history, axis=0) / dt, is_round)
-    first = volume(history[0], is_round)
-    ratio, middle_ratio = volume(history, is_round) / first, volume(middle, is_round) / first
-    gradients = mean_gradient(history[0], history, is_round)
+    velocity_gradients = mean_gradient(middle, np.diff(history, axis=0) / dt, is_axisymmetric)
+    first = volume(history[0], is_axisymmetric)
+    ratio, middle_ratio = volume(history, is_axisymmetric) / first, volume(middle, is_axisymmetric) / first
+    gradients = mean_gradient(history[0], history, is_axisymmetric)
     # the 33 part of F is what makes det F the volume ratio
     gradients[:, 2, 2] = ratio / np.linalg.det(gradients[:, :2, :2])
     lengths = np.sqrt(volume(history, False))
@@ -107,6 +107,6 @@ def follow(law, path):
     return {name: np.array([row[name] for row in rows]) for name in names}
 
 
-def drive(law, history, dt, is_round=False):
+def drive(law, history, dt, is_axisymmetric=False):
     """Follow corner positions history[step, corner, 2] with a constant step."""
-    return follow(law, steps(history, dt, is_round))
+    return follow(law, steps(history, dt, is_axisymmetric))

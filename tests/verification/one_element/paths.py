@@ -18,15 +18,15 @@ def exponential(half_difference, shear):
                      np.stack([share * shear, c - share * half_difference], -1)], -2)
 
 
-def first_shape(rng, is_round):
+def first_shape(rng, is_axisymmetric):
     corners = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]) + rng.uniform(-0.12, 0.12, (4, 2))
-    return corners + [3.0 if is_round else 0.0, 0.0]
+    return corners + [3.0 if is_axisymmetric else 0.0, 0.0]
 
 
-def general(seed, n_step, is_round, stretch=0.25, volume=0.1, turn=1.0, pattern=0.03):
+def general(seed, n_step, is_axisymmetric, stretch=0.25, volume=0.1, turn=1.0, pattern=0.03):
     """Stretch, shear, change of volume, rotation and a little of the hourglass pattern."""
     rng = np.random.default_rng(seed)
-    first = first_shape(rng, is_round)
+    first = first_shape(rng, is_axisymmetric)
     centre = first.mean(axis=0)
     time = np.linspace(0.0, 1.0, n_step + 1)
     motion = exponential(wave(rng, time, stretch), wave(rng, time, stretch))
@@ -42,10 +42,10 @@ def general(seed, n_step, is_round, stretch=0.25, volume=0.1, turn=1.0, pattern=
     return history + first - history[0]
 
 
-def homogeneous(seed, n_step, is_round, stretch=0.25, volume=0.1):
-    """The same F everywhere: in the plane any F, of a round body r = a R, z = b Z + c R."""
+def homogeneous(seed, n_step, is_axisymmetric, stretch=0.25, volume=0.1):
+    """The same F everywhere: in the plane any F, of an axisymmetric body r = a R, z = b Z + c R."""
     rng = np.random.default_rng(seed)
-    if not is_round:
+    if not is_axisymmetric:
         return general(seed, n_step, False, stretch, volume, pattern=0.0)
     first = first_shape(rng, True)
     time = np.linspace(0.0, 1.0, n_step + 1)

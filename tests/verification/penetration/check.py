@@ -43,19 +43,19 @@ def tensor(x, y):
     return [(a, b) for b in y for a in x], grid_quads(len(x) - 1, len(y) - 1)
 
 
-def plate_and_rod(speed, size, is_round=True, is_rigid=True):
+def plate_and_rod(speed, size, is_axisymmetric=True, is_rigid=True):
     """`size`: elements of the plate where it shears. The rod: rigid, or of the steel of the tests as a bilinear law."""
     deck = Deck("blunt rod on a plate of Weldox 460 E")
     end = 22.0e-3 / speed
     deck.add("*CONTROL_TERMINATION", (end, 0, 0.01))
     deck.add("*CONTROL_TIMESTEP", (0.0, 0.8, 0, 0.0, 0.0, 0, 1))
     deck.add("*CONTROL_HOURGLASS", (1, 0.05))
-    deck.add("*SECTION_SHELL", (1, 15 if is_round else 13), (1.0,))
+    deck.add("*SECTION_SHELL", (1, 15 if is_axisymmetric else 13), (1.0,))
     deck.add("*PART", "plate", (1, 1, 1)).add("*PART", "rod", (2, 1, 2))
     deck.add("*MAT_JOHNSON_COOK", (1, DENSITY, YOUNG / (2.0 * (1.0 + POISSON)), YOUNG, POISSON, 0.0, 1.0),
              (490.0e6, 383.0e6, 0.45, 0.0114, 0.94, 1800.0, 293.0, 5.0e-4),
              (HEAT / SHARE, 0.0, 0.0, 0.0, 0.0705, 1.732, -0.54, -0.015), (0.0,))
-    left = 0.0 if is_round else -1.0
+    left = 0.0 if is_axisymmetric else -1.0
     rod_density = MASS / (np.pi * RADIUS ** 2 * LENGTH)
     if is_rigid:
         deck.add("*MAT_RIGID", (2, rod_density, 204.0e9, POISSON))
@@ -65,7 +65,7 @@ def plate_and_rod(speed, size, is_round=True, is_rigid=True):
     plate = deck.mesh(*tensor(x, np.linspace(0.0, THICK, round(THICK / size) + 1)), part=1)
     across = np.linspace(left * RADIUS, RADIUS, round((1.0 - left) * RADIUS / (2.0 * size)) + 1)
     rod = deck.mesh(*tensor(across, THICK + np.linspace(0.0, LENGTH, round(LENGTH / (4.0 * size)) + 1)), part=2)
-    edge = plate.reshape(-1, len(x))[:, [-1] if is_round else [0, -1]].ravel()
+    edge = plate.reshape(-1, len(x))[:, [-1] if is_axisymmetric else [0, -1]].ravel()
     deck.fix(edge, x=1, y=1)
     deck.add("*SET_PART_LIST", (1,), (1, None)).add("*SET_PART_LIST", (2,), (2, None))
     deck.add("*CONTACT_2D_SLIDELINE", (1, 2, 5, 2, 1.0), (0.0, 1.0e20, 2))

@@ -36,7 +36,7 @@ def struck_bar(length, cycles):
     return deck.output(plot=cycles * dt / 5.0, glstat=cycles * dt / 20.0)
 
 
-def two_bars(cycles, is_round):
+def two_bars(cycles, is_axisymmetric):
     """One flies and hits the end of another, a little aside (in a body of revolution along the axis)."""
     n, gap = (100, WIDTH), 0.25 * SIZE
     dt = 0.5 * SIZE / SOUND
@@ -46,17 +46,17 @@ def two_bars(cycles, is_round):
     for k in range(2):
         origin = (k * (n[0] * SIZE + gap), 0.3 * k * SIZE)
         coordinates, quads = grid(*n, n[0] * SIZE, WIDTH * SIZE, origin)
-        if is_round:
+        if is_axisymmetric:
             coordinates, quads = coordinates[:, ::-1], [quad[::-1] for quad in quads]
         bars.append(deck.mesh(coordinates, quads).reshape(WIDTH + 1, -1))
-    if is_round:
+    if is_axisymmetric:
         deck.lines[deck.lines.index("*SECTION_SHELL") + 1] = "1,15"
         deck.fix(np.concatenate([bars[0][0]]), x=1)
-    deck.node_set(1, bars[0][::-1, -1] if is_round else bars[0][:, -1])
-    deck.node_set(2, bars[1][:, 0] if is_round else bars[1][::-1, 0])
+    deck.node_set(1, bars[0][::-1, -1] if is_axisymmetric else bars[0][:, -1])
+    deck.node_set(2, bars[1][:, 0] if is_axisymmetric else bars[1][::-1, 0])
     deck.node_set(3, bars[0].ravel())
     speed = gap / (0.2 * cycles * dt)
-    deck.add("*INITIAL_VELOCITY", (3,), (0.0, speed) if is_round else (speed, 0.3 * speed))
+    deck.add("*INITIAL_VELOCITY", (3,), (0.0, speed) if is_axisymmetric else (speed, 0.3 * speed))
     deck.contact(1, 2, 7, 1.0, unit=1)
     return deck.output(plot=cycles * dt / 5.0, glstat=cycles * dt / 20.0, matsum=cycles * dt / 20.0,
                        rcforc=cycles * dt / 20.0, nodout=cycles * dt / 20.0, nodes=bars[0][0, :3])
@@ -108,9 +108,9 @@ def check_bar(run):
 
 
 def check_flight(run):
-    for name, is_round in (("flight", False), ("round_flight", True)):
+    for name, is_axisymmetric in (("flight", False), ("axisym_flight", True)):
         cycles = 160
-        result = same_files(run, name, two_bars(cycles, is_round), "ncpu=2")
+        result = same_files(run, name, two_bars(cycles, is_axisymmetric), "ncpu=2")
         # The gap closes in a fifth of the cycles.
         count_steps(run, name, result, cycles, 100, cycles // 5 - 1)
         force = result.table("rcforc")

@@ -393,7 +393,7 @@ def check_foam(run):
 
 
 def check_isotropic_crush(run):
-    """Uniform pressing in and out of the plane of a round body: the pressure is the curve's value, whatever PR."""
+    """Uniform pressing in and out of the plane of an axisymmetric body: the pressure is the curve's value, whatever PR."""
     result = run.program(driven(foam(0.3), [uniform([[0.8, 0.0], [0.0, 0.8]])], (15, 4)), name="foam_pressed")
     volume = (1.0 - 0.2 * np.linspace(0.0, 1.0, 11)[2:]) ** 3
     run.check("foam: pressure of uniform pressing", result.cells("pressure")[2:, 0].ravel(),

@@ -11,9 +11,9 @@ from patch_layouts import MESHES
 STEP = 2.0e-4
 
 
-def as_two_interfaces(kind, bodies, end, friction, is_round):
+def as_two_interfaces(kind, bodies, end, friction, is_axisymmetric):
     """The same bodies with the interfaces (1, 2) and (2, 1) at half the penalty, type 3 once at all of it."""
-    deck = scenes.free_bodies(bodies, end, STEP, is_round)
+    deck = scenes.free_bodies(bodies, end, STEP, is_axisymmetric)
     for slave, master in ((1, 2), (2, 1))[:1 if kind == 3 else 2]:
         half = scenes.PENALTY * (1.0 if kind == 3 else 0.5)
         deck.add("*CONTACT_2D_SLIDELINE", (slave, master, kind, 3, half, friction), (0.0, 1.0e20, 0 if kind == 1 else 1))
@@ -22,12 +22,12 @@ def as_two_interfaces(kind, bodies, end, friction, is_round):
 
 def check_two_bodies(run, kind):
     bodies, end = scenes.octagons(1, 2, 2, cells=3), 0.15
-    for friction, is_round in [(0.0, False), (0.3, False), (0.3, True)][:3 if kind in PASS_PATCH else 2]:
-        pair = run.program(as_two_interfaces(kind, bodies, end, friction, is_round))
-        deck = scenes.with_itself(scenes.free_bodies(bodies, end, STEP, is_round), (1, 2), kind, scenes.PENALTY,
+    for friction, is_axisymmetric in [(0.0, False), (0.3, False), (0.3, True)][:3 if kind in PASS_PATCH else 2]:
+        pair = run.program(as_two_interfaces(kind, bodies, end, friction, is_axisymmetric))
+        deck = scenes.with_itself(scenes.free_bodies(bodies, end, STEP, is_axisymmetric), (1, 2), kind, scenes.PENALTY,
                                   0 if kind == 1 else 1, friction)
         both = run.program(deck)
-        name = f"type {kind}, two {'rings' if is_round else 'bodies'}, friction {friction}"
+        name = f"type {kind}, two {'rings' if is_axisymmetric else 'bodies'}, friction {friction}"
         run.check(f"{name}: energy in the springs, most / initial",
                   np.max(both.table("glstat")["contact"]) / both.table("glstat")["total"][0], 0.01)
         run.check(f"{name}: velocities", both.points("velocity"), pair.points("velocity"))
@@ -132,10 +132,10 @@ def check_ring(run, kind):
     run.report(f"{name}: turned by half a turn, at the end", error[-1], "m; round-off decides which of two like faces counts")
 
 
-def check_tube(run, kind, is_round, text="", **words):
-    deck, x, quads = scenes.tube(kind, is_round, **words)
+def check_tube(run, kind, is_axisymmetric, text="", **words):
+    deck, x, quads = scenes.tube(kind, is_axisymmetric, **words)
     result = run.program(deck)
-    name = f"type {kind}, folding {'tube' if is_round else 'strip'}{text}"
+    name = f"type {kind}, folding {'tube' if is_axisymmetric else 'strip'}{text}"
     table = check_energy(run, name, result)
     run.true(f"{name}: ends normally", "N o r m a l" in result.stdout)
     run.check(f"{name}: contact makes no energy, over the work done",
@@ -190,9 +190,9 @@ def check(run):
         check_patch(run, kind)
         check_discs(run, kind)
         check_ring(run, kind)
-    for kind, is_round in run.cover(TYPES, (False, True), strength=1):
-        check_tube(run, kind, is_round, " one element thick, crushed by 0.9", layers=1, points=4, crushed=0.9,
-                   speed=60.0 if is_round else 100.0)
+    for kind, is_axisymmetric in run.cover(TYPES, (False, True), strength=1):
+        check_tube(run, kind, is_axisymmetric, " one element thick, crushed by 0.9", layers=1, points=4, crushed=0.9,
+                   speed=60.0 if is_axisymmetric else 100.0)
     for kind in (5, 6, 7):
         check_tube(run, kind, True, " of two one-point elements, crushed by 0.9", crushed=0.9)
     check_mean_force(run, 5)

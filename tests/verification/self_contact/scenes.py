@@ -34,13 +34,13 @@ def octagons(rows, columns, seed, order=None, mirrored=False, cells=2, renumbere
     return [found[k] for k in (order if order is not None else range(len(found)))]
 
 
-def free_bodies(bodies, end, dt, is_round=False):
+def free_bodies(bodies, end, dt, is_axisymmetric=False):
     """A deck with these bodies, part by part, or rings of them about an axis 4 m away; the contact is the caller's."""
     deck = Deck(f"{len(bodies)} bodies")
     deck.control(end, dt=dt).hourglass(4, 0.1)
-    deck.add("*SECTION_SHELL", (1, 15 if is_round else 13), (1.0,))
+    deck.add("*SECTION_SHELL", (1, 15 if is_axisymmetric else 13), (1.0,))
     for part, (x, quads, velocity) in enumerate(bodies, start=1):
-        x = x + [4.0 if is_round else 0.0, 0.0]
+        x = x + [4.0 if is_axisymmetric else 0.0, 0.0]
         deck.part(part).elastic(RHO, YOUNG, POISSON, part)
         deck.node_set(part, deck.mesh(x, quads, part=part))
         deck.add("*SET_PART_LIST", (part,), (part,)).add("*INITIAL_VELOCITY", (part,), velocity.tolist())
@@ -131,14 +131,14 @@ def ring(kind, columns=64, layers=2):
     return with_itself(deck, (1, 2, 3), kind, 10.0, 2).output(plot=0.1, glstat=0.01), *stacked(meshes)
 
 
-def tube(kind, is_round, crushed=0.55, layers=2, points=None, speed=60.0, rows=48, hardening=500.0):
+def tube(kind, is_axisymmetric, crushed=0.55, layers=2, points=None, speed=60.0, rows=48, hardening=500.0):
     """Mild steel in mm, ms, N: a tube of radius 20 and thickness 1 (or a strip clamped at its ends), crushed between two
     plates; its upper end goes with the plate. `layers` of elements, with `points` integration points; `hardening`: ETAN."""
     radius, length, end = 20.0, 40.0, crushed * 40.0 / speed
     x, quads = grid(layers, rows, 1.0, length, (radius - 0.5, 0.0))
     x[:, 0] += 0.15 * np.exp(-((x[:, 1] - 0.85 * length) / (0.06 * length)) ** 2)
-    deck = Deck(f"a folding {'tube' if is_round else 'strip'}, type {kind}").control(end).hourglass(3, 0.05)
-    deck.add("*SECTION_SHELL", (1, 15 if is_round else 13, None, points), (1.0,)).part()
+    deck = Deck(f"a folding {'tube' if is_axisymmetric else 'strip'}, type {kind}").control(end).hourglass(3, 0.05)
+    deck.add("*SECTION_SHELL", (1, 15 if is_axisymmetric else 13, None, points), (1.0,)).part()
     for material, stress in ((1, 300.0), (2, 3.0e4), (3, 3.0e4)):
         deck.plastic(7.8e-3, 2.0e5, POISSON, stress, hardening, material=material)
     ids = deck.mesh(x, quads)

@@ -137,7 +137,7 @@ class Model:
             told = {name: {column: values(array) for column, array in sorted(table.items(), key=order_of)}
                     for name, table in stream["model"].items()}
         self.title = told["deck"]["title"][0]
-        self.is_round = bool(told["deck"]["axisymmetric"][0])
+        self.is_axisymmetric = bool(told["deck"]["axisymmetric"][0])
         self.warnings = list(warnings)
         self.node_ids = start.point_field("node_id")[0].astype(int)
         self.points = start.points[0][:, :2]

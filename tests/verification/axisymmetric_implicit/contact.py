@@ -14,7 +14,7 @@ PENALTIES = (1.0e3, 1.0e6, 1.0e8)
 LAYOUTS = ("5/4", "7/5 non-uniform", "slave segments over three and four master segments, 2/7")
 
 
-def round_deck(title, end, step, parts=1):
+def axisymmetric_deck(title, end, step, parts=1):
     deck = Deck(title).add("*CONTROL_TERMINATION", (end,))
     deck.add("*CONTROL_IMPLICIT_GENERAL", (1, step)).add("*SECTION_SHELL", (1, 15, None, 4), (1.0,))
     for part in range(1, parts + 1):
@@ -23,7 +23,7 @@ def round_deck(title, end, step, parts=1):
 
 
 def patch_deck(title, meshes, poisson, size, inner, columns):
-    deck = round_deck(title, 1.0, 1.0, 2)
+    deck = axisymmetric_deck(title, 1.0, 1.0, 2)
     for part in (1, 2):
         deck.elastic(1000.0, 1.0e6, poisson, part)
     ids = [deck.mesh(points + np.array([inner, 0.0]), quads, part=k + 1)
@@ -90,7 +90,7 @@ def check_compound(run, kind):
     modulus, total = young / (1.0 - poisson ** 2), []
     name = f"{TYPES[kind]}, shaft in a hub"
     for n in (4, 8):
-        deck = round_deck("shaft in a hub", 1.0, 1.0, 2)
+        deck = axisymmetric_deck("shaft in a hub", 1.0, 1.0, 2)
         bodies = [deck.elastic(1000.0, young, poisson, k + 1).mesh(*grid(n, rows, 1.0, 1.0, (inner, 0.0)), part=k + 1)
                   .reshape(-1, n + 1) for k, (rows, inner) in enumerate(((7, 0.0), (5, 1.0)))]
         for body in bodies:
@@ -124,7 +124,7 @@ def check_rubbing(run, kind):
     """The shaft, pressed by its hub, is pushed through it until all slips; it starts back by the way, so that the ends are flush
     at the end. Axial forces are then mu times the radial ones at every node of both sides, and uniform where these are."""
     friction, way, pressure, penalty = 0.3, 3.0e-3, 1.0, 1.0e4
-    deck = round_deck("shaft pushed through a hub", 2.0, 0.25, 2)
+    deck = axisymmetric_deck("shaft pushed through a hub", 2.0, 0.25, 2)
     bodies = [deck.elastic(1000.0, 1.0e6, 0.3, k + 1).mesh(*grid(2, rows, 1.0, 1.0, (inner, -way * (k == 0))), part=k + 1)
               .reshape(-1, 3) for k, (rows, inner) in enumerate(((7, 0.0), (5, 1.0)))]
     deck.fix(bodies[1].ravel(), y=1)

@@ -3,7 +3,7 @@
 import numpy as np
 
 import contact
-from contact import round_deck
+from contact import axisymmetric_deck
 from meshes import Deck, grid
 
 YOUNG, POISSON, RHO, INNER, OUTER = 1000.0, 0.3, 1.0, 1.0, 2.0
@@ -19,7 +19,7 @@ def load(deck, ids, pairs, size, end=1.0):
 def tube_deck(n, poisson=POISSON, pressure=PRESSURE, steps=1, inner=INNER):
     """A tube of n by 2 quads, ends held, pressed from within; from the outside where it is solid."""
     coordinates, quads = grid(n, 2, OUTER - inner, 2.0 / n, (inner, 0.0))
-    deck = round_deck("Lame's tube", 1.0, 1.0 / steps)
+    deck = axisymmetric_deck("Lame's tube", 1.0, 1.0 / steps)
     ids = deck.mesh(coordinates, quads)
     deck.fix(ids, y=1)
     pairs = [((j + 1) * (n + 1), j * (n + 1)) if inner else (j * (n + 1) + n, (j + 1) * (n + 1) + n) for j in range(2)]
@@ -94,7 +94,7 @@ def check_gravity(run):
     """A column on the floor, nu 0: each node as far down as a rod's, though its load is that of a ring."""
     height, n, pull = 2.0, 5, 1.0e-6
     coordinates, quads = grid(3, n, 1.0, height)
-    deck = round_deck("column", 1.0, 1.0).elastic(RHO, YOUNG, 0.0)
+    deck = axisymmetric_deck("column", 1.0, 1.0).elastic(RHO, YOUNG, 0.0)
     ids = deck.mesh(coordinates, quads)
     deck.fix(ids[:4], y=1).curve(1, [(0.0, 0.0), (1.0, pull)]).add("*LOAD_BODY_Y", (1, 1.0))
     result = run.program(deck.output(plot=1.0, glstat=1.0))
@@ -131,7 +131,7 @@ def check_breathing(run):
     period = 2.0 * np.pi / omega
     counts, errors = (40, 80, 160), []
     for count in counts:
-        deck = round_deck("breathing ring", 2.0 * period, period / count).elastic(RHO, YOUNG, 0.0)
+        deck = axisymmetric_deck("breathing ring", 2.0 * period, period / count).elastic(RHO, YOUNG, 0.0)
         deck.add("*CONTROL_IMPLICIT_DYNAMICS", (1,)).add("*CONTROL_IMPLICIT_SPECTRAL_RADIUS", (1.0,))
         ids = deck.mesh(*grid(1, 1, thick, thick, (mean - 0.5 * thick, 0.0)))
         deck.fix(ids, y=1)
@@ -154,7 +154,7 @@ def disc_let_go(run, n, is_implicit, end=0.1, steps=400):
     """A disc of 3 n by 2 n quads on a smooth floor, let go with radial and axial speed; its outer upper corner."""
     coordinates, quads = grid(3 * n, 2 * n, 1.5, 1.0)
     if is_implicit:
-        deck = round_deck("disc", end, end / steps)
+        deck = axisymmetric_deck("disc", end, end / steps)
         deck.add("*CONTROL_IMPLICIT_DYNAMICS", (1,)).add("*CONTROL_IMPLICIT_SPECTRAL_RADIUS", (1.0,))
     else:
         deck = Deck("disc").control(end, dt=end / steps)

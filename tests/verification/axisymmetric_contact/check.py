@@ -44,7 +44,7 @@ class Bodies:
             static_patch.Blocks(*columns, YOUNG), RHO, penalty)
         sound = np.sqrt(YOUNG * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson)) / RHO)
         thin = min(np.min(quad_areas(*part) / longest_sides(*part)) for part in (upper, lower))
-        # Round bodies are a little stiffer than plane ones: a third off their steps.
+        # Axisymmetric bodies are a little stiffer than plane ones: a third off their steps.
         step = min(1.0 / high, 0.6 / springs, 0.5 * thin / sound)
         low *= 0.7
         self.deck = deck = Deck(title)

@@ -13,7 +13,7 @@ PRESSURE = 1.0e-6
 TAYLOR = pathlib.Path(__file__).resolve().parents[3] / "input/taylor/taylor.k"
 
 
-def round_deck(title, end, points=1):
+def axisymmetric_deck(title, end, points=1):
     deck = Deck(title)
     deck.control(end)
     deck.add("*PART", "body", (1, 1, 1))
@@ -32,7 +32,7 @@ def tube(run, n, points, form="quads"):
     coordinates, quads = grid(n, 2, OUTER - INNER, 2.0 / n, (INNER, 0.0))
     if form == "triangles":
         quads = [three for a, b, c, d in quads for three in ((a, b, c, c), (a, c, d, d))]
-    deck = round_deck("Lame's tube", 4.0, points)
+    deck = axisymmetric_deck("Lame's tube", 4.0, points)
     deck.elastic(RHO, YOUNG, POISSON)
     ids = deck.mesh(coordinates, quads)
     deck.fix(ids, y=1)
@@ -87,7 +87,7 @@ def check_sphere(run, points):
     name = f"sphere, {points} point(s)"
     for n in sizes:
         coordinates, quads = sphere(n)
-        deck = round_deck("hollow sphere", 4.0, points)
+        deck = axisymmetric_deck("hollow sphere", 4.0, points)
         deck.elastic(RHO, YOUNG, POISSON)
         ids = deck.mesh(coordinates, quads)
         deck.fix(ids[:n + 1], y=1)
@@ -134,7 +134,7 @@ def bar_frequency(run, n, number, guess):
     """Of a standing wave, n quads over the radius: fitted to ten periods of its middle."""
     length = np.pi / number
     coordinates, quads = grid(n, int(round(length * n)), 1.0, length)
-    deck = round_deck("bar with radial inertia", 10.2 * 2.0 * np.pi / guess)
+    deck = axisymmetric_deck("bar with radial inertia", 10.2 * 2.0 * np.pi / guess)
     deck.elastic(RHO, YOUNG, POISSON)
     ids = deck.mesh(coordinates, quads)
     deck.fix([*ids[:n + 1], *ids[-n - 1:]], y=1)
@@ -247,7 +247,7 @@ def check_ring(run):
     free = force / stiffness
     for points in (1, 4):
         for share in (None, 0.25):
-            deck = round_deck("pushed ring", 9.0, points).elastic(RHO, YOUNG, 0.0)
+            deck = axisymmetric_deck("pushed ring", 9.0, points).elastic(RHO, YOUNG, 0.0)
             ids = deck.mesh(*grid(1, 1, thick, thick, (radius - 0.5 * thick, 0.0)))
             deck.fix(ids, y=1).curve(1, [(0.0, 0.0), (3.0, 1.0), (1.0e9, 1.0)])
             deck.add("*LOAD_NODE_POINT", *[(int(node), 1, 1, 0.25 * force) for node in ids])
