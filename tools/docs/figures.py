@@ -4,8 +4,8 @@
     build/venv/bin/python tools/docs/figures.py [--program build/release/slideline]
 
 writes doc/pictures/draw.png, first_deck.svg, first_model.png,
-first_stress.png, first_history.png, contact_points.svg, taylor.png and the
-drawings of doc/theory/contact.md.
+first_stress.png, first_history.png, contact_points.svg, taylor.png,
+speed_accuracy.svg and the drawings of doc/theory/contact.md.
 """
 import argparse
 import pathlib
@@ -396,6 +396,32 @@ def energy_limit_figure():
     save(figure, "contact_energy_limit.svg")
 
 
+# --- speed against accuracy: the published table -----------------------------------------------
+
+def speed_accuracy_figure():
+    """Error over contact time of the seven types, both over type 1, as doc/studies/speed_accuracy.md gives them."""
+    page = (ROOT / "doc/studies/speed_accuracy.md").read_text(encoding="utf-8")
+    head, *rows = [[cell.strip() for cell in line.strip("| ").split("|")] for line in page.splitlines()
+                   if re.match(r"\| (type \| exact pressure|\d \w)", line)][:1 + len(TYPES)]
+    figure, panels = plt.subplots(1, 3, figsize=(9.0, 3.2), sharey=True)
+    for axes, name in zip(panels, ("Hertz profile", "sliding roughness", "plastic work")):
+        for row in rows:
+            time, error = float(row[head.index("contact time")].split()[0]), float(row[head.index(name)])
+            is_exact = row[1] == "yes"
+            axes.plot(time, error, "o", markersize=13, color=MASTER, markerfacecolor=MASTER if is_exact else "white")
+            axes.text(time, error, row[0].split()[0], ha="center", va="center_baseline", fontsize=9, color="white" if is_exact else INK)
+        axes.set(yscale="log", xlim=(0.8, 2.8), ylim=(0.05, 1.5), xlabel="contact time over type 1")
+        axes.set_yticks([0.1, 0.3, 1.0], ["0.1", "0.3", "1"])
+        axes.set_title(name, fontsize=10, loc="left", color=INK)
+        axes.grid(True, linewidth=0.3, color="#bbbbbb")
+        for side in ("top", "right"):
+            axes.spines[side].set_visible(False)
+    panels[0].set_ylabel("error over type 1")
+    figure.text(0.5, -0.02, "lower left is better; filled: transmits a uniform pressure exactly", fontsize=9, ha="center", color=INK)
+    figure.tight_layout()
+    save(figure, "speed_accuracy.svg")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", default=str(ROOT / "build/release/slideline"))
@@ -404,7 +430,7 @@ def main():
         collision(program)
         first_deck(program, pathlib.Path(folder))
         contact_points(program, pathlib.Path(folder))
-        for draw in (projection_figure, candidates_figure, entry_figure, overlaps_figure, energy_limit_figure):
+        for draw in (projection_figure, candidates_figure, entry_figure, overlaps_figure, energy_limit_figure, speed_accuracy_figure):
             draw()
         taylor(run(program, ROOT / "input/taylor/taylor.k", pathlib.Path(folder)), PICTURES / "taylor.png")
 
