@@ -56,6 +56,7 @@ module arguments_m
     '  punit=U pent=P vdc=D        unit of the penalty, that of the master pass, damping', &
     '  fs=M fd=M dc=C vc=T tfac=R  friction: coefficients, decay, largest stress, spring', &
     '  target=E                    with ctype=0: the largest estimate of the error', &
+    '  smooth=DEGREES              segments that turn by less stand for arcs (0: 16; -1: none)', &
     '  endtim=T dt=DT tssfac=F     end time, constant step, safety factor', &
     '  p:NAME=VALUE                a *PARAMETER of the deck', &
     '', &

@@ -2,6 +2,7 @@
 !> Segments that stand for arcs: by how much these facets put gaps off beside the penetration. Where
 !> that is much, they make the pressure (doc/theory/contact.md, section 8.2).
 module contact_facets_m
+  use arcs_m, only : find_curvatures, sagitta
   use law_state_m, only : contact_estimate_t
   use contact_state_m, only : contact_state_t, contact_points_t, n_side
   use contacts_m, only : contact_t
@@ -10,17 +11,15 @@ module contact_facets_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: follow_arcs, report_facets, find_curvatures, arc_height
+  public :: follow_arcs, report_facets
 
   !> Part of the largest penetration above which the error of gaps by facets is reported.
   real(wp), parameter :: noticed_part = 0.1_wp
   !> Weight of the other node up to which a point is at a node, and part by which heights are equal.
   real(wp), parameter :: at_node = 1.0e-6_wp
 
-  !> Cosine of 16 degrees: what turns by more is a corner (24 segments on a circle turn by 15).
-  real(wp), parameter :: corner = 0.961261695938319_wp
-  !> Curvature at one end of a segment, as a part of that at the other, below which the one is flat.
-  real(wp), parameter :: flat = 0.1_wp
+  !> Turns of more than 16 degrees are corners (24 segments on a circle turn by 15).
+  real(wp), parameter :: largest_turn = 16.0_wp/180.0_wp*acos(-1.0_wp)
 
   !> Arcs that the segments of both surfaces stand for, those of the slave first.
   type :: arcs_t
@@ -48,6 +47,7 @@ contains
     integer :: p, k
 
     associate (points => memory%points, n => memory%n_slave, m => contact%slave%n_segment)
+      if (memory%has%arcs) return
       if (.not. any(points%gap(:points%n) < 0.0_wp)) return
       k = m + contact%master%n_segment
       allocate (arcs%curvature(k), arcs%secant(k), arcs%height(k), arcs%unlike(k), source=0.0_wp)
@@ -77,7 +77,7 @@ contains
     integer :: s
 
     associate (first => before(2) + 1, last => before(2) + surface%n_segment)
-      call find_curvatures(surface, positions, arcs%curvature(first:last), &
+      call find_curvatures(surface, positions, largest_turn, arcs%curvature(first:last), &
         arcs%meets_corner(first:last))
       do s = 1, surface%n_segment
         associate (ends => surface%segments(:, s))
@@ -86,7 +86,7 @@ contains
           arcs%beside(1, before(1) + ends(2)) = before(2) + s
         end associate
       end do
-      arcs%height(first:last) = arc_height(arcs%curvature(first:last), arcs%secant(first:last))
+      arcs%height(first:last) = sagitta(arcs%curvature(first:last), arcs%secant(first:last))
     end associate
   end subroutine find_arcs
 
@@ -173,7 +173,7 @@ contains
       unlike = max(unlike, arcs%unlike(offset + s))
       bend = max(bend, abs(arcs%curvature(offset + s)))
     end do
-    way = arc_height(unlike, min(length/max(1, n_run), 1.0_wp/bend))
+    way = sagitta(unlike, min(length/max(1, n_run), 1.0_wp/bend))
   end function flattening
 
   !> At the end: a warning where arcs stand off their segments by much of the penetration, and gaps
@@ -209,65 +209,5 @@ contains
 
     segments_of = 2.0_wp*acos(-1.0_wp)/sqrt(8.0_wp*curvature*height)
   end function segments_of
-
-  !> Curvature of the arc that each segment of a surface stands for: the mean of those at its ends,
-  !> of circles through three nodes each; 0 where one end is a corner, flat, or bent the other way;
-  !> at an end of an open surface that of the other end.
-  pure subroutine find_curvatures(surface, positions, curvature, meets_corner)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in) :: positions(:, :)   !! (at least 2, n_node) X, Y at time zero, m
-    real(wp), intent(out) :: curvature(:)     !! (n_segment) 1/m, above 0 where the body is convex
-    logical, intent(out) :: meets_corner(:)   !! (n_segment) at either end
-    real(wp) :: at_end(surface%n_segment), ends(2)
-    logical :: is_corner(surface%n_segment)
-    integer :: s
-
-    at_end = 0.0_wp
-    is_corner = .false.
-    do s = 1, surface%n_segment
-      if (surface%next(s) > 0) call curvature_at_end(surface, positions, s, at_end(s), is_corner(s))
-    end do
-    curvature = 0.0_wp
-    meets_corner = is_corner
-    do s = 1, surface%n_segment
-      associate (before => surface%previous(s))
-        ends = at_end(s)
-        if (before > 0) then
-          meets_corner(s) = meets_corner(s) .or. is_corner(before)
-          ends(1) = at_end(before)
-          if (surface%next(s) == 0) ends(2) = ends(1)
-        end if
-      end associate
-      if (meets_corner(s) .or. product(sign([1.0_wp, 1.0_wp], ends)) < 0.0_wp) cycle
-      if (minval(abs(ends)) >= flat*maxval(abs(ends))) curvature(s) = 0.5_wp*sum(ends)
-    end do
-  end subroutine find_curvatures
-
-  !> Curvature of the circle through the nodes of a segment and the next one, and whether the turn
-  !> between them is a corner.
-  pure subroutine curvature_at_end(surface, positions, segment, curvature, is_corner)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in) :: positions(:, :)
-    integer, intent(in) :: segment
-    real(wp), intent(out) :: curvature !! 1/m
-    logical, intent(out) :: is_corner
-    real(wp) :: a(2), b(2)
-
-    associate (one => surface%segments(:, segment), &
-      two => surface%segments(:, surface%next(segment)))
-      a = positions(1:2, one(2)) - positions(1:2, one(1))
-      b = positions(1:2, two(2)) - positions(1:2, two(1))
-    end associate
-    curvature = 2.0_wp*(a(1)*b(2) - a(2)*b(1))/max(tiny(1.0_wp), norm2(a)*norm2(b)*norm2(a + b))
-    is_corner = dot_product(a, b) < corner*norm2(a)*norm2(b)
-  end subroutine curvature_at_end
-
-  !> How far an arc stands off the middle of its secant, m.
-  pure elemental function arc_height(curvature, secant) result(height)
-    real(wp), intent(in) :: curvature, secant !! 1/m, m
-    real(wp) :: height
-
-    height = 0.125_wp*abs(curvature)*secant**2
-  end function arc_height
 
 end module contact_facets_m

@@ -3,6 +3,7 @@
 !> surfaces have lost elements or come to light anew: set up for the surfaces that are left, with
 !> the values of sites that remain, by nodes and segments (doc/theory/contact.md, section 3.9).
 module contact_memory_m
+  use arcs_m, only : prepare_arcs
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_penalty_m, only : set_penalties
   use contact_law_m, only : measure_springs
@@ -58,6 +59,7 @@ contains
     memory%contact_law = formulation%contact_law
     memory%has = features_of(contact, formulation, model%controls%implicit%is_on)
     call set_penalties(contact, model, formulation%self_share, memory)
+    if (memory%has%contact .and. contact%largest_turn > 0.0_wp) call prepare_arcs(contact, memory)
     call start_segment_points(formulation%segment_points, contact%n_gauss, &
       contact%is_axisymmetric, has_folds(contact), contact%slave, memory)
     call allocate_slave_status(contact, model, memory)

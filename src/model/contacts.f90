@@ -76,6 +76,8 @@ module contacts_m
     real(wp) :: damping = 0.0_wp           !! VDC as a fraction of critical
     real(wp) :: birth = 0.0_wp             !! TBIRTH
     real(wp) :: death = 1.0e20_wp          !! TDEATH
+    real(wp) :: largest_turn = 0.0_wp      !! SMOOTH: segments that turn by less stand for arcs, rad;
+                                           !! 0: none do
     logical :: strict = .false.            !! IPF = 1: strict rule, of kinds that have one
     integer :: search_interval = 0         !! FREQ, cycles between global searches; 0 = the
                                            !! program's choice
@@ -166,6 +168,7 @@ contains
     call visitor%visit('damping', self%damping)
     call visitor%visit('birth', self%birth)
     call visitor%visit('death', self%death)
+    call visitor%visit('largest_turn', self%largest_turn)
     call visitor%visit('strict', self%strict)
     call visitor%visit('search_interval', self%search_interval)
     call visitor%visit('search_depth', self%search_depth)

@@ -24,9 +24,9 @@ module contact_state_m
   implicit none
   private
   public :: contact_state_t, contact_points_t, contact_status_t, candidates_t, pass_t, &
-    contact_scratch_t, allocate_points, allocate_damping, allocate_tractions, make_room, &
+    contact_scratch_t, arcs_t, allocate_points, allocate_damping, allocate_tractions, make_room, &
     allocate_status, allocate_scratch, n_side, n_sites, sites_of_segment, &
-    site_at, segment_point_at, features_t, separated, active
+    site_at, segment_point_at, touching_gap, features_t, separated, active
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
@@ -138,6 +138,18 @@ module contact_state_m
     logical, allocatable :: is_freed(:)     !! (n_site) which; only where ties break
   end type contact_scratch_t
 
+  !> Arcs that segments stand for, by the initial mesh; a restart finds them again.
+  type :: arcs_t
+    real(wp), allocatable :: share(:, :)  !! (2, n_slave + n_master) of the turns at both ends of the
+                                          !! segment that starts at a node its arc has so much; 0:
+                                          !! flat
+    real(wp), allocatable :: turn(:)      !! (n_slave + n_master) tangent of half the turn at a node
+                                          !! at time zero, above 0 where the body is convex
+    integer, allocatable :: beside(:, :)  !! (2, n_slave + n_master) nodes before and behind, 0: none
+    real(wp) :: allowance = 0.0_wp        !! how far arcs of both sides stand off their segments at
+                                          !! most, together, m
+  end type arcs_t
+
   !> What an interface has beside springs along the normal at its points: by its formulation and by
   !> the deck.
   type :: features_t
@@ -153,6 +165,7 @@ module contact_state_m
     logical :: breaks = .false.         !! ties break
     logical :: limit = .false.          !! its energy is limited
     logical :: entry_offsets = .false.  !! pressure acts from gap + entry offset
+    logical :: arcs = .false.           !! segments stand for arcs
   end type features_t
 
   !> Memory of one interface.
@@ -188,10 +201,12 @@ module contact_state_m
     real(wp), allocatable :: segment_search(:) !! (slave segments) travel before which its overlaps
                                             !! can not touch, m
     real(wp) :: earliest_segment_search = -huge(1.0_wp) !! smallest of these, m
+    type(arcs_t) :: arcs                    !! of curved segments; only where these are smoothed
     type(contact_points_t), allocatable :: points !! of contact
     type(contact_points_t) :: tie_points    !! of ties: placed in the reference geometry, and frozen
-    real(wp) :: closed_gap = 0.0_wp         !! gaps below it are contact, m; more than 0 only where
-                                            !! a tangent of touching bodies is wanted
+    real(wp) :: closed_gap = 0.0_wp         !! gaps of segments below it make contact points, m; more
+                                            !! than 0 only where a tangent of touching bodies is
+                                            !! wanted, or segments stand for arcs
     real(wp), allocatable :: node_pressure(:) !! (n_slave) where pressure is formed at slave nodes,
                                             !! N/m
     real(wp), allocatable :: force(:, :)    !! (2, n_slave + n_master) contact forces of the last
@@ -345,6 +360,15 @@ contains
       site = points%master_nodes(1, p)
     end if
   end function site_at
+
+  !> Gap of contact points below which they count as closed, m; more than 0 only where a tangent of
+  !> touching bodies is wanted.
+  pure function touching_gap(memory) result(gap)
+    type(contact_state_t), intent(in) :: memory
+    real(wp) :: gap
+
+    gap = memory%closed_gap - memory%arcs%allowance
+  end function touching_gap
 
   !> Which of the points of a segment stands at xi.
   pure function segment_point_at(xi, segment_xi) result(q)

@@ -3,10 +3,12 @@
 !> the tractions of all points from it, of tangential springs that slip at a limit (regularised
 !> Coulomb). Only where the deck asks for friction.
 module friction_m
+  use arcs_m, only : arc_projection_t, project_virtual_node
   use contact_scatter_m, only : average_values, share_out
   use contact_state_m, only : contact_state_t, n_side, site_at
   use contacts_m, only : contact_t, friction_rule_t
   use dual_m, only : dual_t, operator(+), operator(-), operator(*)
+  use geometry_m, only : separation
   use kinds_m, only : wp
   use law_state_m, only : is_open, sticks, slips
   use tributary_lengths_m, only : nodal_area
@@ -126,7 +128,7 @@ contains
   pure subroutine find_slips(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: weights(n_side)
+    real(wp) :: weights(n_side), distance
     integer :: nodes(n_side), p, point
 
     associate (points => memory%points, status => memory%slave_status)
@@ -140,13 +142,47 @@ contains
           end associate
           nodes = memory%n_slave + contact%master%segments(:, status%segment(point))
           weights = [1.0_wp - status%xi(point), status%xi(point)]
+          if (memory%has%arcs) call follow_virtual_node(contact, memory, p, weights)
         end if
+        distance = points%gap(p)
+        if (memory%has%arcs) distance = distance_along(points%slave_nodes(:, p), &
+          points%slave_weights(:, p), nodes, weights, points%normal(:, p), memory%positions)
         points%traction(p) = slip_of(points%slave_nodes(1, p), points%slave_weights(1, p), &
-          nodes, weights, points%normal(1, p), points%gap(p), memory%scratch%increment, &
+          nodes, weights, points%normal(1, p), distance, memory%scratch%increment, &
           memory%positions)
       end do
     end associate
   end subroutine find_slips
+
+  !> Weights of the projection of the virtual node that a point belongs to, between arcs.
+  pure subroutine follow_virtual_node(contact, memory, p, weights)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: p
+    real(wp), intent(inout) :: weights(n_side)
+    type(arc_projection_t) :: projection
+    integer :: nodes(n_side)
+    logical :: is_curved
+
+    call project_virtual_node(contact, memory, memory%points, p, projection, nodes, is_curved)
+    if (is_curved) weights = weights + [-projection%xi, projection%xi]
+  end subroutine follow_virtual_node
+
+  !> Distance of both sides of a point along its normal, m: that of the secants, where gaps are those
+  !> of arcs.
+  pure function distance_along(slave_nodes, slave_weights, master_nodes, master_weights, normal, &
+      positions) result(distance)
+    integer, intent(in) :: slave_nodes(n_side), master_nodes(n_side)
+    real(wp), intent(in) :: slave_weights(n_side), master_weights(n_side), normal(2)
+    real(wp), intent(in) :: positions(:, :) !! (4, n_node) of the interface
+    real(wp) :: distance
+    real(wp) :: d(2)
+
+    d = separation(positions(:, slave_nodes(1)), positions(:, master_nodes(1))) &
+      + slave_weights(2)*separation(positions(:, slave_nodes(2)), positions(:, slave_nodes(1))) &
+      - master_weights(2)*separation(positions(:, master_nodes(2)), positions(:, master_nodes(1)))
+    distance = dot_product(d, normal)
+  end function distance_along
 
   !> A slave node as a site, with the averages of its points.
   pure subroutine read_node(rule, memory, i, slider)
@@ -194,11 +230,11 @@ contains
   !> section 6.2). That segment is the master's, or the slave's where the master side is one node.
   !> Its second term takes off what the turn of that segment moves at a distance; without it a
   !> rotation of all would slip.
-  pure function slip_of(slave_nodes, slave_weights, master_nodes, master_weights, normal, gap, &
-      du, positions) result(slip)
+  pure function slip_of(slave_nodes, slave_weights, master_nodes, master_weights, normal, &
+      distance, du, positions) result(slip)
     integer, intent(in) :: slave_nodes(n_side), master_nodes(n_side)
     real(wp), intent(in) :: slave_weights(n_side), master_weights(n_side)
-    real(wp), intent(in) :: normal(2), gap      !! m
+    real(wp), intent(in) :: normal(2), distance !! m, of both sides along the normal
     real(wp), intent(in) :: du(2, *)            !! increments of the nodes, m
     real(wp), intent(in) :: positions(4, *)     !! of the nodes
     real(wp) :: slip
@@ -217,7 +253,7 @@ contains
     t = along(1:2) + along(3:4)
     change = du(:, b) - du(:, a)
     slip = normal(1)*relative(2) - normal(2)*relative(1) &
-      + gap*(t(2)*change(1) - t(1)*change(2))/max(t(1)*t(1) + t(2)*t(2), tiny(1.0_wp))
+      + distance*(t(2)*change(1) - t(1)*change(2))/max(t(1)*t(1) + t(2)*t(2), tiny(1.0_wp))
   end function slip_of
 
   !> Traction and state of a site after a step. Where the coefficient depends on the speed, what

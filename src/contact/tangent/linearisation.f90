@@ -4,7 +4,8 @@
 !> doc/theory/contact.md, section 9). What the formulations make of these, areas above all, is
 !> built from the same parts. All in dual numbers, so that each formula stands here once.
 module linearisation_m
-  use contact_state_m, only : contact_state_t
+  use arcs_m, only : arc_shape_t, present_shape, is_flat, flat_arc, steepest
+  use contact_state_m, only : contact_state_t, touching_gap
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
     operator(/), sqrt
   use projection_m, only : side_on, face_on, gentle_vertex, sharp_vertex, round_off
@@ -14,7 +15,7 @@ module linearisation_m
   implicit none
   private
   public :: linearised_point_t, linearised_list_t, linearised_projection_t, n_slot, append_point, &
-    difference, length_between, project, way_from, project_point, slip_of, between, &
+    difference, length_between, project, way_from, project_point, project_on_arcs, slip_of, between, &
     cosine_between, share_of, side_share_of, radius_at, centroid_of
 
   !> Nodes that a point depends on, at most.
@@ -32,6 +33,8 @@ module linearisation_m
     type(dual_t) :: master_xi      !! of the master slots, likewise
     type(dual_t) :: normal(2)      !! unit, from master to slave
     type(dual_t) :: gap            !! m
+    type(dual_t) :: distance       !! of both sides along the normal, m; the gap but between arcs
+    type(dual_t) :: shift          !! m, along the master: what arcs add to the projection
     type(dual_t) :: area           !! m
     type(dual_t) :: length         !! what a largest traction counts times: 1, or m for type 1
   end type linearised_point_t
@@ -143,18 +146,83 @@ contains
     t = difference(memory, point, 4, 3)
     projection = project(d, t)
     is_corner = .not. (abs(xi) > 0.0_wp .and. abs(xi - 1.0_wp) > 0.0_wp)
+    if (memory%has%arcs) is_corner = is_corner &
+      .and. is_flat(present_shape(memory, point%nodes(3)))
     if (is_corner) is_corner = abs(projection%xi%value - 0.5_wp) > 0.5_wp + round_off
-    if (is_corner .and. abs(gap) > max(memory%closed_gap, tiny(1.0_wp))) then
+    if (is_corner .and. abs(gap) > max(touching_gap(memory), tiny(1.0_wp))) then
       projection%xi = constant(xi)
       d = d - xi*t
       projection%gap = sign(1.0_wp, gap)*sqrt(d(1)*d(1) + d(2)*d(2))
       projection%normal = [d(1)/projection%gap, d(2)/projection%gap]
     end if
+    point%distance = projection%gap
+    point%shift = constant(0.0_wp)
+    if (memory%has%arcs) call project_on_arcs(memory, point, 3, d, t, projection)
     point%master_xi = projection%xi
     point%gap = projection%gap
     point%normal = projection%normal
     point%length = constant(1.0_wp)
   end subroutine project_point
+
+  !> Let a projection on a segment be that on its arc, of a point on the arc of its own segment
+  !> (`arcs_m`). The shapes of arcs are held, though they change with nodes beside the segment: that
+  !> is a sixteenth of their motion.
+  pure subroutine project_on_arcs(memory, point, owner, d, t, projection)
+    type(contact_state_t), intent(in) :: memory
+    type(linearised_point_t), intent(inout) :: point !! out: its distance
+    integer, intent(in) :: owner        !! first slot of the segment
+    type(dual_t), intent(in) :: d(2)    !! from its first node to the point, m
+    type(dual_t), intent(in) :: t(2)    !! the segment, m
+    type(linearised_projection_t), intent(inout) :: projection
+    type(dual_t) :: own(2), off(2), length, unit(2), normal(2), across, sine, cosine, height
+    type(arc_shape_t) :: shape, own_shape
+
+    shape = present_shape(memory, point%nodes(owner))
+    own_shape = flat_arc
+    if (owner == 3 .and. point%nodes(2) > 0) then
+      if (point%slave_xi%value*(1.0_wp - point%slave_xi%value) > 0.0_wp) &
+        own_shape = present_shape(memory, point%nodes(1))
+    end if
+    if (is_flat(shape) .and. is_flat(own_shape)) return
+    off = constant([0.0_wp, 0.0_wp])
+    if (.not. is_flat(own_shape)) then
+      own = difference(memory, point, 2, 1)
+      call find_height(own_shape, point%slave_xi, height, sine)
+      off = [height*own(2), -(height*own(1))]
+    end if
+    length = sqrt(t(1)*t(1) + t(2)*t(2))
+    unit = [t(1)/length, t(2)/length]
+    normal = [unit(2), -unit(1)]
+    across = d(1)*normal(1) + d(2)*normal(2)
+    call find_height(shape, ((d(1) + off(1))*unit(1) + (d(2) + off(2))*unit(2))/length, height, &
+      sine)
+    cosine = sqrt(1.0_wp - sine*sine)
+    projection%gap = (across + off(1)*normal(1) + off(2)*normal(2) - height*length)*cosine
+    projection%normal = [normal(1)*cosine - unit(1)*sine, normal(2)*cosine - unit(2)*sine]
+    point%shift = across*sine/cosine
+    projection%xi = (d(1)*unit(1) + d(2)*unit(2) + point%shift)/length
+    point%distance = across/cosine
+  end subroutine project_on_arcs
+
+  !> Height of an arc over its secant as a part of the length of that, and the sine of its angle to
+  !> it (`arcs_m`).
+  pure subroutine find_height(shape, xi, height, sine)
+    type(arc_shape_t), intent(in) :: shape
+    type(dual_t), intent(in) :: xi
+    type(dual_t), intent(out) :: height, sine
+    type(dual_t) :: x, circle
+    real(wp) :: end_sine
+
+    x = xi
+    if (abs(xi%value - 0.5_wp) > 0.5_wp) x = constant(merge(0.0_wp, 1.0_wp, xi%value < 0.5_wp))
+    circle = shape%bend*(0.5_wp - x)
+    if (abs(circle%value) > steepest) circle = constant(sign(steepest, circle%value))
+    end_sine = min(0.5_wp*abs(shape%bend), steepest)
+    sine = circle + shape%skew*(1.0_wp - 6.0_wp*x*(1.0_wp - x))
+    if (abs(sine%value) > steepest) sine = constant(sign(steepest, sine%value))
+    height = x*(1.0_wp - x)*(constant(shape%bend)/(sqrt(1.0_wp - circle*circle) + sqrt(1.0_wp &
+      - end_sine**2)) + shape%skew*(1.0_wp - 2.0_wp*x)) + (xi - x)*sine/sqrt(1.0_wp - sine*sine)
+  end subroutine find_height
 
   !> Slip of a point in the step over the segment in slots 3, 4, m: L d(xi). Where slot 4 is not
   !> used the segment that has the normal is the slave's.
@@ -176,7 +244,7 @@ contains
     t = difference(memory, point, owner + 1, owner)
     turn = moved(memory, point, owner + 1) - moved(memory, point, owner)
     slip = point%normal(1)*relative(2) - point%normal(2)*relative(1) &
-      + point%gap*(t(2)*turn(1) - t(1)*turn(2))/(t(1)*t(1) + t(2)*t(2))
+      + point%distance*(t(2)*turn(1) - t(1)*turn(2))/(t(1)*t(1) + t(2)*t(2))
   end function slip_of
 
   !> Displacement of the node in slot i in the step, m.

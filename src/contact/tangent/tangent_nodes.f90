@@ -235,9 +235,13 @@ contains
 
     sub_segment%master_xi = 0.5_wp*(range(1) + range(2))
     sub_segment%area = (range(2) - range(1))*length_between(memory, sub_segment, 5, 6)
-    if (.not. contact%is_axisymmetric) return
-    sub_segment%area = sub_segment%area*radius_at(memory, sub_segment, 5, 6, sub_segment%master_xi)
-    sub_segment%master_xi = centroid_of(memory, sub_segment, 5, 6, range)
+    if (contact%is_axisymmetric) then
+      sub_segment%area = sub_segment%area*radius_at(memory, sub_segment, 5, 6, &
+        sub_segment%master_xi)
+      sub_segment%master_xi = centroid_of(memory, sub_segment, 5, 6, range)
+    end if
+    if (memory%has%arcs) sub_segment%master_xi = sub_segment%master_xi &
+      + sub_segment%shift/length_between(memory, sub_segment, 5, 6)
   end subroutine set_range
 
   !> Share out the force of a virtual node by the sub-segments' lengths: each share at a constant

@@ -11,8 +11,8 @@ module tangent_segments_m
   use projection_m, only : slave_side, master_side, round_off
   use kinds_m, only : wp
   use linearisation_m, only : linearised_point_t, linearised_list_t, linearised_projection_t, &
-    append_point, difference, length_between, project, project_point, cosine_between, share_of, &
-    side_share_of, radius_at
+    append_point, difference, length_between, project, project_point, project_on_arcs, &
+    cosine_between, share_of, side_share_of, radius_at
   use overlaps_m, only : overlap_t, find_overlaps, n_most_overlaps
   use points_nts_m, only : is_sharp_vertex
   use points_mortar_m, only : gauss_xi, least_part
@@ -96,10 +96,15 @@ contains
     integer, intent(in) :: node !! local number
     type(linearised_point_t), intent(inout) :: point
     type(linearised_projection_t) :: projection
+    type(dual_t) :: d(2), t(2)
 
     point%nodes(3:4) = [node, 0]
     point%site = node
-    projection = project(difference(memory, point, 3, 1), difference(memory, point, 2, 1))
+    d = difference(memory, point, 3, 1)
+    t = difference(memory, point, 2, 1)
+    projection = project(d, t)
+    point%distance = projection%gap
+    if (memory%has%arcs) call project_on_arcs(memory, point, 1, d, t, projection)
     point%slave_xi = projection%xi
     point%master_xi = constant(0.0_wp)
     point%gap = projection%gap

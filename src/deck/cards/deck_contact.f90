@@ -44,6 +44,10 @@ module deck_contact_m
   !> How near to 0 and 1 the ends of a curve of interference must be: that is round-off of factors.
   real(wp), parameter :: round_off = 1.0e-12_wp
 
+  !> One degree, rad, and the largest turn of segments that stand for arcs where the deck does not
+  !> say (SMOOTH 0): 24 segments on a circle turn by 15 degrees.
+  real(wp), parameter :: degree = acos(-1.0_wp)/180.0_wp, usual_turn = 16.0_wp*degree
+
 contains
 
   !> One interface, or one *CONTACT_2D_FORCE_TRANSDUCER: a surface on which forces are added up.
@@ -122,6 +126,7 @@ contains
       call take_sides(deck, name, entry)
       if (name == transducer) return
       contact%contact_type = stock_type(name)
+      contact%largest_turn = usual_turn
       select case (name)
       case (our_own)
         call take_slideline(deck, cards, contact)
@@ -229,6 +234,10 @@ contains
     if (contact%search_depth < 0.0_wp .and. all(integer_of(cards(3), 'TIE') /= [tie_always, &
       tie_breaks])) call report_field(deck, cards(2), 'SRCH', 'is negative')
     contact%target = real_of(cards(3), 'TARGET')
+    select case (integer_of(cards(3), 'SMOOTH'))
+    case (-1); contact%largest_turn = 0.0_wp
+    case (1:89); contact%largest_turn = integer_of(cards(3), 'SMOOTH')*degree
+    end select
   end subroutine take_slideline
 
   !> LCINT: the curve by which an initial overlap grows, which must lead from 0 to 1.

@@ -15,12 +15,12 @@ module deck_overrides_m
     check_words, contact_names, run_names
 
   !> Values of interfaces, fields of *CONTACT_2D_SLIDELINE; the others are those of the run.
-  character(6), parameter :: contact_names(12) = [character(6) :: 'CTYPE', 'NGAUSS', 'PEN', &
-    'PUNIT', 'PENT', 'VDC', 'FS', 'FD', 'DC', 'VC', 'TFAC', 'TARGET']
+  character(6), parameter :: contact_names(13) = [character(6) :: 'CTYPE', 'NGAUSS', 'PEN', &
+    'PUNIT', 'PENT', 'VDC', 'FS', 'FD', 'DC', 'VC', 'TFAC', 'TARGET', 'SMOOTH']
   character(6), parameter :: run_names(3) = [character(6) :: 'ENDTIM', 'DT', 'TSSFAC']
   !> Those that may be 0, whole numbers, and friction.
   character(6), parameter :: zero_names(5) = [character(6) :: 'VDC', 'FS', 'FD', 'DC', 'VC'], &
-    whole_names(3) = [character(6) :: 'CTYPE', 'NGAUSS', 'PUNIT'], &
+    whole_names(4) = [character(6) :: 'CTYPE', 'NGAUSS', 'PUNIT', 'SMOOTH'], &
     friction_names(5) = [character(6) :: 'FS', 'FD', 'DC', 'VC', 'TFAC']
 
 contains
@@ -100,8 +100,8 @@ contains
       mistake = value_mistake(word)
     else
       mistake = ' is not known: endtim=, dt=, tssfac=; ctype=, ngauss=, pen=, punit=, pent=, ' &
-        //'vdc=, fs=, fd=, dc=, vc=, tfac=, target= for all interfaces or, as in ctype.2=, for ' &
-        //'one; p:NAME= for a parameter'
+        //'vdc=, fs=, fd=, dc=, vc=, tfac=, target=, smooth= for all interfaces or, as in ctype.2=, ' &
+        //'for one; p:NAME= for a parameter'
     end if
   end subroutine take_apart
 

@@ -67,6 +67,7 @@ module deck_schema_m
     'PENT a penalty (above 0; blank and 0 mean PEN)', &
     'TFAC a tangential over the normal penalty', &
     'TARGET a target of the estimate of contact (above 0, below 1)', &
+    'SMOOTH the largest turn between segments of a round surface in degrees (0 is 16, -1: none)', &
     'VDC a damping in per cent of critical', &
     'IPF 0 or 1 (the strict rule of type 5)', &
     'FREQ a number of cycles between two searches', &

@@ -1,0 +1,377 @@
+! SPDX-License-Identifier: MIT
+!> Arcs that the segments of round surfaces stand for: their curvatures from the initial mesh, and
+!> contact points between arcs in place of between their secants (doc/theory/contact.md, section
+!> 5.9). Forces still go to the two nodes of a segment by linear functions.
+module arcs_m
+  use contact_state_m, only : arcs_t, contact_state_t, contact_points_t, n_side, segment_point_at
+  use contacts_m, only : contact_t
+  use geometry_m, only : separation
+  use kinds_m, only : wp
+  use surfaces_m, only : surface_t
+  implicit none
+  private
+  public :: prepare_arcs, find_curvatures, sagitta, curve_points, arc_shape_t, arc_projection_t, &
+    project_virtual_node, present_shape, is_flat, flat_arc, steepest
+
+  !> Curvature at one end of a segment, as a part of that at the other, below which the one is flat.
+  real(wp), parameter :: flat = 0.1_wp
+  !> The same below which the end is where a line meets the arc: the surface turns by half there.
+  real(wp), parameter :: tangent = 0.75_wp
+  !> Largest sine of the angle between an arc and its secant, beyond which nothing is smoothed.
+  real(wp), parameter :: steepest = 0.9_wp
+  !> Present over initial turn up to which arcs follow it, and from which on there are none: a plastic
+  !> hinge is a corner.
+  real(wp), parameter :: followed = 1.5_wp, hinge = 3.0_wp
+  !> Parts of the turn at a node that the arc of a segment has there: all where a line meets the arc,
+  !> else half. At the end of an open surface it is the mirror image of the other end.
+  real(wp), parameter :: all_of_it = 1.0_wp, half = 0.5_wp, mirrored = -1.0_wp
+
+  !> Shape of an arc over its secant: the sine of its angle to the secant is
+  !> bend (1/2 - xi) + skew (1 - 6 xi (1 - xi)): normals of neighbours meet at their node.
+  type :: arc_shape_t
+    real(wp) :: bend !! kappa L
+    real(wp) :: skew
+  end type arc_shape_t
+
+  !> Shape of a flat segment.
+  type(arc_shape_t), parameter :: flat_arc = arc_shape_t(0.0_wp, 0.0_wp)
+
+  !> Projection of a point on the arc over a secant. Without default values, which would be written
+  !> before each use.
+  type :: arc_projection_t
+    real(wp) :: xi        !! on the secant: where the force acts
+    real(wp) :: gap       !! m, to the arc
+    real(wp) :: normal(2) !! of the arc, outward
+  end type arc_projection_t
+
+contains
+
+  !> Arcs of both surfaces of an interface; none where all segments are flat.
+  pure subroutine prepare_arcs(contact, memory)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(inout) :: memory
+
+    associate (arcs => memory%arcs)
+      allocate (arcs%share(2, size(memory%nodes)), arcs%turn(size(memory%nodes)), source=0.0_wp)
+      allocate (arcs%beside(2, size(memory%nodes)), source=0)
+      call add_surface(contact%slave, contact%largest_turn, 0, memory%positions, arcs)
+      call add_surface(contact%master, contact%largest_turn, memory%n_slave, memory%positions, arcs)
+      memory%has%arcs = arcs%allowance > 0.0_wp
+      memory%closed_gap = arcs%allowance
+    end associate
+  end subroutine prepare_arcs
+
+  !> Arcs of one surface. How far they stand off their secants has a margin for what they bend.
+  pure subroutine add_surface(surface, largest_turn, before, positions, arcs)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in) :: largest_turn    !! rad
+    integer, intent(in) :: before           !! local number before its first node
+    real(wp), intent(in) :: positions(:, :) !! (4, n_node) of the interface
+    type(arcs_t), intent(inout) :: arcs
+    real(wp) :: curvature(surface%n_segment), highest
+    logical :: meets_corner(surface%n_segment)
+    integer :: s, k, neighbours(2)
+
+    call find_curvatures(surface, positions(:, before + 1:), largest_turn, curvature, meets_corner)
+    do s = 1, surface%n_segment
+      associate (ends => before + surface%segments(:, s))
+        arcs%beside(2, ends(1)) = ends(2)
+        arcs%beside(1, ends(2)) = ends(1)
+      end associate
+    end do
+    do s = before + 1, before + surface%n_node
+      if (all(arcs%beside(:, s) > 0)) arcs%turn(s) = half_turn( &
+        positions(1:2, s) - positions(1:2, arcs%beside(1, s)), &
+        positions(1:2, arcs%beside(2, s)) - positions(1:2, s))
+    end do
+    highest = 0.0_wp
+    do s = 1, surface%n_segment
+      if (.not. abs(curvature(s)) > 0.0_wp) cycle
+      neighbours = [surface%previous(s), surface%next(s)]
+      associate (ends => before + surface%segments(:, s))
+        highest = max(highest, sagitta(curvature(s), norm2(positions(1:2, ends(2)) &
+          - positions(1:2, ends(1)))))
+        do k = 1, 2
+          associate (share => arcs%share(k, ends(1)))
+            share = half
+            if (neighbours(k) == 0) then
+              share = mirrored
+            else if (.not. abs(curvature(neighbours(k))) > 0.0_wp .and. &
+              abs(arcs%turn(ends(k))) < tangent*abs(arcs%turn(ends(3 - k)))) then
+              share = all_of_it
+            end if
+          end associate
+        end do
+      end associate
+    end do
+    arcs%allowance = arcs%allowance + followed*highest
+  end subroutine add_surface
+
+  !> Tangent of half the turn from one segment to the next.
+  pure function half_turn(a, b) result(turn)
+    real(wp), intent(in) :: a(2), b(2) !! these, m
+    real(wp) :: turn
+
+    turn = (a(1)*b(2) - a(2)*b(1))/max(tiny(1.0_wp), sqrt((a(1)**2 + a(2)**2)*(b(1)**2 &
+      + b(2)**2)) + (a(1)*b(1) + a(2)*b(2)))
+  end function half_turn
+
+  !> Curvature of the arc that each segment of a surface stands for: the mean of those at its ends,
+  !> kappa_i = 2 (a x b)/(|a| |b| |a + b|) of the circle through three nodes; 0 where one end is a
+  !> corner, flat, or bent the other way; at an end of an open surface, and where a line meets the
+  !> arc, that of the other end.
+  pure subroutine find_curvatures(surface, positions, largest_turn, curvature, meets_corner)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in) :: positions(:, :)   !! (at least 2, n_node) X, Y at time zero, m
+    real(wp), intent(in) :: largest_turn      !! between two segments, rad; more is a corner
+    real(wp), intent(out) :: curvature(:)     !! (n_segment) 1/m, above 0 where the body is convex
+    logical, intent(out) :: meets_corner(:)   !! (n_segment) at either end
+    real(wp) :: at_end(surface%n_segment), ends(2), beyond(2)
+    logical :: is_corner(surface%n_segment)
+    integer :: s
+
+    at_end = 0.0_wp
+    is_corner = .false.
+    do s = 1, surface%n_segment
+      if (surface%next(s) > 0) call curvature_at_end(surface, positions, s, largest_turn, &
+        at_end(s), is_corner(s))
+    end do
+    curvature = 0.0_wp
+    meets_corner = is_corner
+    do s = 1, surface%n_segment
+      associate (before => surface%previous(s), after => surface%next(s))
+        ends = at_end(s)
+        beyond = 0.0_wp
+        if (after > 0) beyond(2) = at_end(after)
+        if (before > 0) then
+          meets_corner(s) = meets_corner(s) .or. is_corner(before)
+          ends(1) = at_end(before)
+          if (surface%previous(before) > 0) beyond(1) = at_end(surface%previous(before))
+          if (after == 0) ends(2) = ends(1)
+        end if
+      end associate
+      if (meets_corner(s) .or. product(sign([1.0_wp, 1.0_wp], ends)) < 0.0_wp) cycle
+      if (minval(abs(ends)) < flat*maxval(abs(ends))) cycle
+      curvature(s) = 0.5_wp*sum(ends)
+      associate (k => minloc(abs(ends), 1))
+        if (abs(ends(k)) < tangent*abs(ends(3 - k)) .and. abs(beyond(k)) < flat*abs(ends(k))) &
+          curvature(s) = ends(3 - k)
+      end associate
+    end do
+  end subroutine find_curvatures
+
+  !> Curvature of the circle through the nodes of a segment and the next one, and whether the turn
+  !> between them is a corner.
+  pure subroutine curvature_at_end(surface, positions, segment, largest_turn, curvature, is_corner)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in) :: positions(:, :)
+    integer, intent(in) :: segment
+    real(wp), intent(in) :: largest_turn !! rad
+    real(wp), intent(out) :: curvature !! 1/m
+    logical, intent(out) :: is_corner
+    real(wp) :: a(2), b(2)
+
+    associate (one => surface%segments(:, segment), &
+      two => surface%segments(:, surface%next(segment)))
+      a = positions(1:2, one(2)) - positions(1:2, one(1))
+      b = positions(1:2, two(2)) - positions(1:2, two(1))
+    end associate
+    curvature = 2.0_wp*(a(1)*b(2) - a(2)*b(1))/max(tiny(1.0_wp), norm2(a)*norm2(b)*norm2(a + b))
+    is_corner = dot_product(a, b) < cos(largest_turn)*norm2(a)*norm2(b)
+  end subroutine curvature_at_end
+
+  !> How far an arc stands off the middle of its secant, m.
+  pure elemental function sagitta(curvature, secant) result(height)
+    real(wp), intent(in) :: curvature, secant !! 1/m, m
+    real(wp) :: height
+
+    height = 0.125_wp*abs(curvature)*secant**2
+  end function sagitta
+
+  !> Shape of the arc of a segment at present: at each end it turns by its part of what the surface
+  !> turns there.
+  pure function present_shape(memory, first) result(shape)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: first !! node where the segment starts, local number
+    type(arc_shape_t) :: shape
+    real(wp) :: sines(2)
+
+    shape = flat_arc
+    associate (share => memory%arcs%share(:, first))
+      if (.not. abs(share(1)) > 0.0_wp) return
+      sines = 0.0_wp
+      if (share(1) > 0.0_wp) sines(1) = sine_at(memory, first, share(1))
+      if (share(2) > 0.0_wp) sines(2) = sine_at(memory, memory%arcs%beside(2, first), share(2))
+      where (share < 0.0_wp) sines = sines([2, 1])
+    end associate
+    shape = arc_shape_t(sines(1) + sines(2), 0.5_wp*(sines(1) - sines(2)))
+  end function present_shape
+
+  !> Sine of a part of the present turn at a node, of a surface that is still bent there.
+  pure function sine_at(memory, node, share) result(sine)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: node
+    real(wp), intent(in) :: share
+    real(wp) :: sine
+    real(wp) :: turn, ratio
+
+    associate (positions => memory%positions, beside => memory%arcs%beside(:, node))
+      turn = half_turn(separation(positions(:, node), positions(:, beside(1))), &
+        separation(positions(:, beside(2)), positions(:, node)))
+    end associate
+    ratio = turn/memory%arcs%turn(node)
+    if (ratio <= 0.0_wp .or. ratio >= hinge) turn = 0.0_wp
+    if (ratio > followed) turn = turn*(hinge - ratio)/(hinge - followed)
+    if (share < all_of_it) then
+      sine = turn/sqrt(1.0_wp + turn**2)
+    else
+      sine = 2.0_wp*turn/(1.0_wp + turn**2)
+    end if
+  end function sine_at
+
+  !> Whether a segment is flat.
+  pure function is_flat(shape)
+    type(arc_shape_t), intent(in) :: shape
+    logical :: is_flat
+
+    is_flat = .not. (abs(shape%bend) > 0.0_wp .or. abs(shape%skew) > 0.0_wp)
+  end function is_flat
+
+  !> Height of an arc over its secant as a part of the length of that, and the sine of its angle to
+  !> it. Beyond the ends both arcs of a node go on along its tangent.
+  pure subroutine find_height(shape, xi, height, sine)
+    type(arc_shape_t), intent(in) :: shape
+    real(wp), intent(in) :: xi
+    real(wp), intent(out) :: height, sine
+    real(wp) :: x, circle, end_sine
+
+    x = max(0.0_wp, min(1.0_wp, xi))
+    circle = shape%bend*(0.5_wp - x)
+    end_sine = min(0.5_wp*abs(shape%bend), steepest)
+    sine = max(-steepest, min(steepest, circle + shape%skew*(1.0_wp - 6.0_wp*x*(1.0_wp - x))))
+    height = x*(1.0_wp - x)*(shape%bend/(sqrt(1.0_wp - min(circle**2, steepest**2)) &
+      + sqrt(1.0_wp - end_sine**2)) + shape%skew*(1.0_wp - 2.0_wp*x)) &
+      + (xi - x)*sine/sqrt(1.0_wp - sine**2)
+  end subroutine find_height
+
+  !> Projection on the arc over a secant t of length L, from that of the point on the secant, at the
+  !> distance d and xi: with the height s of the arc there and its angle beta, g = (d - s) cos(beta),
+  !> n turned by -beta; the force acts along n, for the point on its own secant at
+  !> xi + d tan(beta)/L, so that it has no moment. A circle has sin(beta) = kappa L (1/2 - xi).
+  pure function project_on_arc(t, d, off, shape) result(projection)
+    real(wp), intent(in) :: t(2)   !! secant, m
+    real(wp), intent(in) :: d(2)   !! from its first node to the point on its own secant, m
+    real(wp), intent(in) :: off(2) !! from there to the point on its own arc, m
+    type(arc_shape_t), intent(in) :: shape
+    type(arc_projection_t) :: projection
+    real(wp) :: length, unit(2), normal(2), xi, sine, cosine, across, height
+
+    length = sqrt(t(1)**2 + t(2)**2)
+    unit = t/length
+    normal = [unit(2), -unit(1)]
+    across = d(1)*normal(1) + d(2)*normal(2)
+    xi = ((d(1) + off(1))*unit(1) + (d(2) + off(2))*unit(2))/length
+    call find_height(shape, xi, height, sine)
+    cosine = sqrt(1.0_wp - sine**2)
+    projection%gap = (across + (off(1)*normal(1) + off(2)*normal(2)) - height*length)*cosine
+    projection%normal = normal*cosine - unit*sine
+    projection%xi = (d(1)*unit(1) + d(2)*unit(2) + across*sine/cosine)/length
+  end function project_on_arc
+
+  !> Let all points of an interface stand between arcs: gaps, normals and where forces act on the
+  !> segments that have the normals. Points between flat segments keep their bits.
+  pure subroutine curve_points(contact, memory, points)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(contact_points_t), intent(inout) :: points
+    type(arc_projection_t) :: projection
+    integer :: nodes(n_side), p
+    logical :: is_curved
+
+    do p = 1, points%n
+      if (memory%has%segment_points .and. .not. memory%has%nodal_pressure) then
+        nodes = points%master_nodes(:, p)
+        call project_virtual_node(contact, memory, points, p, projection, nodes, is_curved)
+        if (.not. is_curved) cycle
+        ! All sub-segments of a virtual node move along the master together.
+        points%master_weights(2, p) = points%master_weights(2, p) + projection%xi &
+          *secant_length(memory, nodes)/secant_length(memory, points%master_nodes(:, p))
+        points%master_weights(1, p) = 1.0_wp - points%master_weights(2, p)
+      else if (points%master_nodes(1, p) /= points%master_nodes(2, p)) then
+        call project_on_arcs(memory, points%slave_nodes(:, p), &
+          points%slave_weights(2, p), points%master_nodes(:, p), projection, is_curved)
+        if (.not. is_curved) cycle
+        points%master_weights(:, p) = [1.0_wp - projection%xi, projection%xi]
+      else
+        call project_on_arcs(memory, points%master_nodes(:, p), &
+          points%master_weights(2, p), points%slave_nodes(:, p), projection, is_curved)
+        if (.not. is_curved) cycle
+        points%slave_weights(:, p) = [1.0_wp - projection%xi, projection%xi]
+        projection%normal = -projection%normal
+      end if
+      points%gap(p) = projection%gap
+      points%normal(:, p) = projection%normal
+    end do
+  end subroutine curve_points
+
+  !> Projection of a point at xi between two nodes of its own surface on the arc of a segment of the
+  !> other one.
+  pure subroutine project_on_arcs(memory, own, own_xi, other, projection, is_curved)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: own(n_side), other(n_side) !! local numbers; own: one node twice, or both
+                                                      !! of a segment
+    real(wp), intent(in) :: own_xi
+    type(arc_projection_t), intent(out) :: projection
+    logical, intent(out) :: is_curved !! either segment; else there is no projection
+    type(arc_shape_t) :: shape, own_shape
+    real(wp) :: t(2), d(2), off(2), height, sine
+
+    shape = present_shape(memory, other(1))
+    own_shape = flat_arc
+    if (own(1) /= own(2) .and. own_xi*(1.0_wp - own_xi) > 0.0_wp) &
+      own_shape = present_shape(memory, own(1))
+    is_curved = .not. (is_flat(shape) .and. is_flat(own_shape))
+    if (.not. is_curved) return
+    call find_height(own_shape, own_xi, height, sine)
+    associate (positions => memory%positions)
+      t = separation(positions(:, own(2)), positions(:, own(1)))
+      d = separation(positions(:, own(1)), positions(:, other(1))) + own_xi*t
+      off = height*[t(2), -t(1)]
+      t = separation(positions(:, other(2)), positions(:, other(1)))
+    end associate
+    projection = project_on_arc(t, d, off, shape)
+  end subroutine project_on_arcs
+
+  !> The same of the virtual node that a point of type 4 belongs to; xi is counted from its
+  !> projection on the secant.
+  pure subroutine project_virtual_node(contact, memory, points, p, projection, nodes, is_curved)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(contact_points_t), intent(in) :: points
+    integer, intent(in) :: p
+    type(arc_projection_t), intent(out) :: projection
+    integer, intent(out) :: nodes(n_side) !! of the master segment
+    logical, intent(out) :: is_curved
+    integer :: point
+
+    associate (node => points%slave_nodes(1, p), status => memory%slave_status, &
+      n => size(memory%segment_xi))
+      point = n*(status%pass%segment_at(node) - 1) &
+        + segment_point_at(points%slave_weights(2, p), memory%segment_xi)
+      nodes = memory%n_slave + contact%master%segments(:, status%segment(point))
+      call project_on_arcs(memory, points%slave_nodes(:, p), &
+        points%slave_weights(2, p), nodes, projection, is_curved)
+      projection%xi = projection%xi - status%xi(point)
+    end associate
+  end subroutine project_virtual_node
+
+  !> Length of a segment, m.
+  pure function secant_length(memory, nodes) result(length)
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: nodes(n_side) !! local numbers
+    real(wp) :: length
+
+    length = norm2(separation(memory%positions(:, nodes(2)), memory%positions(:, nodes(1))))
+  end function secant_length
+
+end module arcs_m
