@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Results of an interface for the writers: resultants, and values of its nodes.
 module contact_results_m
+  use arcs_m, only : arc_projection_t, project_on_arcs
   use contact_state_m, only : contact_state_t, contact_points_t, candidates_t, active, n_side
   use contacts_m, only : contact_t
   use projection_m, only : projection_t, nearest_projection, follow_contact, turns_gently, vector_of
@@ -48,8 +49,8 @@ contains
     n = memory%n_slave
     if (.not. allocated(rows%node)) then
       rows%node = contact%slave%nodes
-      allocate (rows%arc_length(n), rows%gap(n), rows%pressure(n), rows%force(2, n), &
-        rows%length(n), rows%master_pressure(memory%n_master))
+      allocate (rows%arc_length(n), rows%gap(n), rows%offset(n), rows%pressure(n), &
+        rows%force(2, n), rows%length(n), rows%master_pressure(memory%n_master))
       if (memory%has%friction .or. memory%has%ties) allocate (rows%friction_result(size(share)))
     end if
     positions(1:2, :) = memory%positions(1:2, :)
@@ -68,8 +69,10 @@ contains
     rows%pressure = share(:n)/lengths(:n)
     rows%master_pressure = share(n + 1:)/lengths(n + 1:)
     rows%gap = 0.0_wp
+    rows%offset = 0.0_wp
     do i = 1, merge(n, 0, memory%has%contact)
       rows%gap(i) = present_gap(contact, positions(:, n + 1:), positions(:, i), memory, i)
+      rows%offset(i) = offset_at(contact, memory, i)
     end do
     if (.not. (memory%has%friction .or. memory%has%ties)) return
     share = 0.0_wp
@@ -282,6 +285,29 @@ contains
       if (projection%is_on) gap = projection%gap
     end associate
   end function present_gap
+
+  !> What arcs and entries add to the gap of a slave node in contact, m.
+  pure function offset_at(contact, memory, i) result(offset)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    integer, intent(in) :: i !! node of the slave surface
+    real(wp) :: offset
+    type(arc_projection_t) :: projection
+    integer :: point
+    logical :: is_curved
+
+    offset = 0.0_wp
+    if (memory%is_stale .or. max(contact%slave%incoming(i), contact%slave%outgoing(i)) == 0) return
+    point = point_at_node(contact%slave, memory, i)
+    associate (status => memory%slave_status)
+      if (status%state(point) /= active) return
+      offset = status%offset(point)
+      if (.not. memory%has%arcs) return
+      call project_on_arcs(memory, [i, i], 0.0_wp, memory%n_slave &
+        + contact%master%segments(:, status%segment(point)), projection, is_curved)
+      if (is_curved) offset = offset + projection%offset
+    end associate
+  end function offset_at
 
   !> The candidate of the segments at a slave node that is next to it, 0: none.
   pure function nearest_candidate(contact, polyline, position, candidates, i) result(nearest)

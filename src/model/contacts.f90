@@ -76,8 +76,8 @@ module contacts_m
     real(wp) :: damping = 0.0_wp           !! VDC as a fraction of critical
     real(wp) :: birth = 0.0_wp             !! TBIRTH
     real(wp) :: death = 1.0e20_wp          !! TDEATH
-    real(wp) :: largest_turn = 0.0_wp      !! SMOOTH: segments that turn by less stand for arcs, rad;
-                                           !! 0: none do
+    real(wp) :: largest_turn = 0.0_wp      !! SMOOTH: segments that turn by less stand for arcs,
+                                           !! rad; 0: none do
     logical :: strict = .false.            !! IPF = 1: strict rule, of kinds that have one
     integer :: search_interval = 0         !! FREQ, cycles between global searches; 0 = the
                                            !! program's choice

@@ -162,7 +162,8 @@ contains
               real([model%contacts(i)%id, model%mesh%node_id(node)], wp), slave%arc_length(k), &
               model%mesh%coordinates(:, node) + shot%displacement(:, node), slave%gap(k), &
               slave%pressure(k), slave%force(:, k), slave%length(k), friction_result%traction, &
-              friction_result%slip, real(friction_result%state, wp), row_stress])
+              friction_result%slip, real(friction_result%state, wp), row_stress, &
+              slave%offset(k)])
           end associate
         end do
       end associate

@@ -140,12 +140,12 @@ module contact_state_m
 
   !> Arcs that segments stand for, by the initial mesh; a restart finds them again.
   type :: arcs_t
-    real(wp), allocatable :: share(:, :)  !! (2, n_slave + n_master) of the turns at both ends of the
-                                          !! segment that starts at a node its arc has so much; 0:
-                                          !! flat
+    real(wp), allocatable :: share(:, :)  !! (2, n_slave + n_master) parts of the turns at both ends
+                                          !! of the segment that starts at a node, which its arc
+                                          !! has; 0: flat
     real(wp), allocatable :: turn(:)      !! (n_slave + n_master) tangent of half the turn at a node
                                           !! at time zero, above 0 where the body is convex
-    integer, allocatable :: beside(:, :)  !! (2, n_slave + n_master) nodes before and behind, 0: none
+    integer, allocatable :: beside(:, :)  !! (2, n_slave + n_master) nodes before and behind, or 0
     real(wp) :: allowance = 0.0_wp        !! how far arcs of both sides stand off their segments at
                                           !! most, together, m
   end type arcs_t
@@ -204,9 +204,9 @@ module contact_state_m
     type(arcs_t) :: arcs                    !! of curved segments; only where these are smoothed
     type(contact_points_t), allocatable :: points !! of contact
     type(contact_points_t) :: tie_points    !! of ties: placed in the reference geometry, and frozen
-    real(wp) :: closed_gap = 0.0_wp         !! gaps of segments below it make contact points, m; more
-                                            !! than 0 only where a tangent of touching bodies is
-                                            !! wanted, or segments stand for arcs
+    real(wp) :: closed_gap = 0.0_wp         !! gaps of segments below it make contact points, m;
+                                            !! more than 0 only where a tangent of touching bodies
+                                            !! is wanted, or segments stand for arcs
     real(wp), allocatable :: node_pressure(:) !! (n_slave) where pressure is formed at slave nodes,
                                             !! N/m
     real(wp), allocatable :: force(:, :)    !! (2, n_slave + n_master) contact forces of the last

@@ -106,7 +106,8 @@ module snapshot_m
   type :: slave_result_t
     integer, allocatable :: node(:)        !! node indices
     real(wp), allocatable :: arc_length(:) !! along the slave chain
-    real(wp), allocatable :: gap(:)        !! 0 when unpaired
+    real(wp), allocatable :: gap(:)        !! of segments; 0 when unpaired
+    real(wp), allocatable :: offset(:)     !! added to it where pressure is formed: arcs and entry
     real(wp), allocatable :: pressure(:)   !! normal force / competence length, 0 where inactive
     real(wp), allocatable :: force(:, :)   !! (2, n_slave) contact force from all points
     real(wp), allocatable :: length(:)     !! competence length, current

@@ -11,19 +11,19 @@ module arcs_m
   implicit none
   private
   public :: prepare_arcs, find_curvatures, sagitta, curve_points, arc_shape_t, arc_projection_t, &
-    project_virtual_node, present_shape, is_flat, flat_arc, steepest
+    project_on_arcs, project_virtual_node, present_shape, is_flat, flat_arc, steepest
 
-  !> Curvature at one end of a segment, as a part of that at the other, below which the one is flat.
+  !> Curvature at one end of a segment, as a part of that at the other, below which it is flat.
   real(wp), parameter :: flat = 0.1_wp
   !> The same below which the end is where a line meets the arc: the surface turns by half there.
   real(wp), parameter :: tangent = 0.75_wp
   !> Largest sine of the angle between an arc and its secant, beyond which nothing is smoothed.
   real(wp), parameter :: steepest = 0.9_wp
-  !> Present over initial turn up to which arcs follow it, and from which on there are none: a plastic
-  !> hinge is a corner.
+  !> Present over initial turn up to which arcs follow it, and from which on there are none: a
+  !> plastic hinge is a corner.
   real(wp), parameter :: followed = 1.5_wp, hinge = 3.0_wp
-  !> Parts of the turn at a node that the arc of a segment has there: all where a line meets the arc,
-  !> else half. At the end of an open surface it is the mirror image of the other end.
+  !> Parts of the turn at a node that the arc of a segment has there: all where a line meets the
+  !> arc, else half. At the end of an open surface it is the mirror image of the other end.
   real(wp), parameter :: all_of_it = 1.0_wp, half = 0.5_wp, mirrored = -1.0_wp
 
   !> Shape of an arc over its secant: the sine of its angle to the secant is
@@ -41,6 +41,7 @@ module arcs_m
   type :: arc_projection_t
     real(wp) :: xi        !! on the secant: where the force acts
     real(wp) :: gap       !! m, to the arc
+    real(wp) :: offset    !! of that from the gap of the secants, m
     real(wp) :: normal(2) !! of the arc, outward
   end type arc_projection_t
 
@@ -255,8 +256,8 @@ contains
   end subroutine find_height
 
   !> Projection on the arc over a secant t of length L, from that of the point on the secant, at the
-  !> distance d and xi: with the height s of the arc there and its angle beta, g = (d - s) cos(beta),
-  !> n turned by -beta; the force acts along n, for the point on its own secant at
+  !> distance d and xi: with the height s of the arc there and its angle beta, g = (d - s) cos(beta)
+  !> and n turned by -beta; the force acts along n, for the point on its own secant at
   !> xi + d tan(beta)/L, so that it has no moment. A circle has sin(beta) = kappa L (1/2 - xi).
   pure function project_on_arc(t, d, off, shape) result(projection)
     real(wp), intent(in) :: t(2)   !! secant, m
@@ -274,6 +275,7 @@ contains
     call find_height(shape, xi, height, sine)
     cosine = sqrt(1.0_wp - sine**2)
     projection%gap = (across + (off(1)*normal(1) + off(2)*normal(2)) - height*length)*cosine
+    projection%offset = projection%gap - across
     projection%normal = normal*cosine - unit*sine
     projection%xi = (d(1)*unit(1) + d(2)*unit(2) + across*sine/cosine)/length
   end function project_on_arc
@@ -285,34 +287,96 @@ contains
     type(contact_state_t), intent(in) :: memory
     type(contact_points_t), intent(inout) :: points
     type(arc_projection_t) :: projection
+    integer :: p, last
+    logical :: is_curved
+
+    p = 1
+    do while (p <= points%n)
+      last = p
+      if (memory%has%segment_points .and. .not. memory%has%nodal_pressure) then
+        call curve_virtual_node(contact, memory, points, p, last)
+      else if (points%master_nodes(1, p) /= points%master_nodes(2, p)) then
+        call project_on_arcs(memory, points%slave_nodes(:, p), points%slave_weights(2, p), &
+          points%master_nodes(:, p), projection, is_curved)
+        if (is_curved) then
+          points%master_weights(:, p) = [1.0_wp - projection%xi, projection%xi]
+          points%gap(p) = projection%gap
+          points%normal(:, p) = projection%normal
+        end if
+      else
+        call project_on_arcs(memory, points%master_nodes(:, p), points%master_weights(2, p), &
+          points%slave_nodes(:, p), projection, is_curved)
+        if (is_curved) then
+          points%slave_weights(:, p) = [1.0_wp - projection%xi, projection%xi]
+          points%gap(p) = projection%gap
+          points%normal(:, p) = -projection%normal
+        end if
+      end if
+      p = last + 1
+    end do
+  end subroutine curve_points
+
+  !> Type 4: the sub-segments of a virtual node, which follow each other, have its gap and normal,
+  !> and move along the master together until their resultant acts along the normal.
+  pure subroutine curve_virtual_node(contact, memory, points, first, last)
+    type(contact_t), intent(in) :: contact
+    type(contact_state_t), intent(in) :: memory
+    type(contact_points_t), intent(inout) :: points
+    integer, intent(in) :: first
+    integer, intent(out) :: last
+    type(arc_projection_t) :: projection
+    real(wp) :: lever, along, t(2), d(2)
     integer :: nodes(n_side), p
     logical :: is_curved
 
-    do p = 1, points%n
-      if (memory%has%segment_points .and. .not. memory%has%nodal_pressure) then
-        nodes = points%master_nodes(:, p)
-        call project_virtual_node(contact, memory, points, p, projection, nodes, is_curved)
-        if (.not. is_curved) cycle
-        ! All sub-segments of a virtual node move along the master together.
-        points%master_weights(2, p) = points%master_weights(2, p) + projection%xi &
-          *secant_length(memory, nodes)/secant_length(memory, points%master_nodes(:, p))
-        points%master_weights(1, p) = 1.0_wp - points%master_weights(2, p)
-      else if (points%master_nodes(1, p) /= points%master_nodes(2, p)) then
-        call project_on_arcs(memory, points%slave_nodes(:, p), &
-          points%slave_weights(2, p), points%master_nodes(:, p), projection, is_curved)
-        if (.not. is_curved) cycle
-        points%master_weights(:, p) = [1.0_wp - projection%xi, projection%xi]
-      else
-        call project_on_arcs(memory, points%master_nodes(:, p), &
-          points%master_weights(2, p), points%slave_nodes(:, p), projection, is_curved)
-        if (.not. is_curved) cycle
-        points%slave_weights(:, p) = [1.0_wp - projection%xi, projection%xi]
-        projection%normal = -projection%normal
-      end if
+    last = first
+    do while (last < points%n)
+      if (points%slave_nodes(1, last + 1) /= points%slave_nodes(1, first) &
+        .or. abs(points%slave_weights(2, last + 1) - points%slave_weights(2, first)) > 0.0_wp) exit
+      last = last + 1
+    end do
+    call project_virtual_node(contact, memory, points, first, projection, nodes, is_curved)
+    if (.not. is_curved) return
+    lever = 0.0_wp
+    along = 0.0_wp
+    do p = first, last
       points%gap(p) = projection%gap
       points%normal(:, p) = projection%normal
+      call sides_of_point(memory, points, p, d, t)
+      lever = lever + points%area(p)*cross(projection%normal, d)
+      along = along + points%area(p)*cross(projection%normal, t/norm2(t))
     end do
-  end subroutine curve_points
+    do p = first, last
+      call sides_of_point(memory, points, p, d, t)
+      points%master_weights(2, p) = points%master_weights(2, p) + lever/(along*norm2(t))
+      points%master_weights(1, p) = 1.0_wp - points%master_weights(2, p)
+    end do
+  end subroutine curve_virtual_node
+
+  !> Vector from the master side of a point to its slave side, and its master segment, m.
+  pure subroutine sides_of_point(memory, points, p, d, t)
+    type(contact_state_t), intent(in) :: memory
+    type(contact_points_t), intent(in) :: points
+    integer, intent(in) :: p
+    real(wp), intent(out) :: d(2), t(2)
+
+    associate (positions => memory%positions, slave => points%slave_nodes(:, p), &
+      master => points%master_nodes(:, p))
+      t = separation(positions(:, slave(2)), positions(:, slave(1)))
+      d = separation(positions(:, slave(1)), positions(:, master(1))) &
+        + points%slave_weights(2, p)*t
+      t = separation(positions(:, master(2)), positions(:, master(1)))
+      d = d - points%master_weights(2, p)*t
+    end associate
+  end subroutine sides_of_point
+
+  !> z component of the cross product.
+  pure function cross(a, b)
+    real(wp), intent(in) :: a(2), b(2)
+    real(wp) :: cross
+
+    cross = a(1)*b(2) - a(2)*b(1)
+  end function cross
 
   !> Projection of a point at xi between two nodes of its own surface on the arc of a segment of the
   !> other one.
@@ -364,14 +428,5 @@ contains
       projection%xi = projection%xi - status%xi(point)
     end associate
   end subroutine project_virtual_node
-
-  !> Length of a segment, m.
-  pure function secant_length(memory, nodes) result(length)
-    type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: nodes(n_side) !! local numbers
-    real(wp) :: length
-
-    length = norm2(separation(memory%positions(:, nodes(2)), memory%positions(:, nodes(1))))
-  end function secant_length
 
 end module arcs_m

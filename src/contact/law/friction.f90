@@ -168,8 +168,8 @@ contains
     if (is_curved) weights = weights + [-projection%xi, projection%xi]
   end subroutine follow_virtual_node
 
-  !> Distance of both sides of a point along its normal, m: that of the secants, where gaps are those
-  !> of arcs.
+  !> Distance of both sides of a point along its normal, m: that of the secants, where gaps are
+  !> those of arcs.
   pure function distance_along(slave_nodes, slave_weights, master_nodes, master_weights, normal, &
       positions) result(distance)
     integer, intent(in) :: slave_nodes(n_side), master_nodes(n_side)

@@ -15,7 +15,8 @@ module linearisation_m
   implicit none
   private
   public :: linearised_point_t, linearised_list_t, linearised_projection_t, n_slot, append_point, &
-    difference, length_between, project, way_from, project_point, project_on_arcs, slip_of, between, &
+    difference, length_between, project, way_from, project_point, project_on_arcs, slip_of, &
+    between, &
     cosine_between, share_of, side_share_of, radius_at, centroid_of
 
   !> Nodes that a point depends on, at most.

@@ -137,7 +137,7 @@ contains
       associate (virtual_node => memory%slave_status%active_points(k))
         point = linearise_virtual_node(contact, memory, virtual_node)
         point%site = site_at(memory, memory%points, p)
-        call linearise_sub_segments(contact, memory, virtual_node, point, sub_segments)
+        call linearise_sub_segments(contact, memory, virtual_node, p, point, sub_segments)
       end associate
       p = p + sub_segments%n
       call load_point(contact, memory, point, acts, pressure, traction)
@@ -170,10 +170,11 @@ contains
 
   !> Its sub-segments, as they are generated: the master side of each in slots 5, 6, its own length
   !> there as area. Without any all goes to the virtual node's own projection.
-  pure subroutine linearise_sub_segments(contact, memory, virtual_node, point, sub_segments)
+  pure subroutine linearise_sub_segments(contact, memory, virtual_node, p, point, sub_segments)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: virtual_node
+    integer, intent(in) :: p !! the first of them on the list of points
     type(linearised_point_t), intent(in) :: point
     type(linearised_list_t), intent(inout) :: sub_segments
     type(linearised_point_t) :: sub_segment
@@ -195,7 +196,7 @@ contains
             end_of_half(at, i), limits(i))
         end do
         if (range(2)%value - range(1)%value > round_off) then
-          call set_range(contact, memory, range, sub_segment)
+          call set_range(contact, memory, range, p + sub_segments%n, sub_segment)
           call append_point(sub_segments, sub_segment)
         end if
         segment = contact%master%next(segment)
@@ -227,10 +228,11 @@ contains
   end function linearise_parameter
 
   !> Let a sub-segment be this range of the segment in slots 5, 6.
-  pure subroutine set_range(contact, memory, range, sub_segment)
+  pure subroutine set_range(contact, memory, range, p, sub_segment)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(in) :: memory
     type(dual_t), intent(in) :: range(2)
+    integer, intent(in) :: p !! its number on the list of points
     type(linearised_point_t), intent(inout) :: sub_segment
 
     sub_segment%master_xi = 0.5_wp*(range(1) + range(2))
@@ -240,8 +242,12 @@ contains
         sub_segment%master_xi)
       sub_segment%master_xi = centroid_of(memory, sub_segment, 5, 6, range)
     end if
-    if (memory%has%arcs) sub_segment%master_xi = sub_segment%master_xi &
-      + sub_segment%shift/length_between(memory, sub_segment, 5, 6)
+    if (memory%has%arcs) then
+      sub_segment%master_xi = sub_segment%master_xi &
+        + sub_segment%shift/length_between(memory, sub_segment, 5, 6)
+      ! Where it is on the list, which the resultant of all of them decides.
+      sub_segment%master_xi%value = memory%points%master_weights(2, p)
+    end if
   end subroutine set_range
 
   !> Share out the force of a virtual node by the sub-segments' lengths: each share at a constant

@@ -100,8 +100,8 @@ contains
       mistake = value_mistake(word)
     else
       mistake = ' is not known: endtim=, dt=, tssfac=; ctype=, ngauss=, pen=, punit=, pent=, ' &
-        //'vdc=, fs=, fd=, dc=, vc=, tfac=, target=, smooth= for all interfaces or, as in ctype.2=, ' &
-        //'for one; p:NAME= for a parameter'
+        //'vdc=, fs=, fd=, dc=, vc=, tfac=, target=, smooth= for all interfaces or, as in ' &
+        //'ctype.2=, for one; p:NAME= for a parameter'
     end if
   end subroutine take_apart
 

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: MIT
+"""Round bodies are round: press fits of faceted circles against Lame, shafts that turn in a bore, fits that spin as one."""
+import re
+
+import numpy as np
+
+from contact_types import TYPES
+from meshes import Deck, angular_momentum, lumped_mass
+
+BORE, OUTER, HOLE = 1.0, 2.0, 0.5
+#: Radial displacement per pressure of both rings together, E 1, nu 0.3, plane strain (Lame): interference / pressure.
+COMPLIANCE = 1.0e-3 / 3.296703e-4
+
+
+def ring(inner, outer, rows, facets, first=0.0, angle=2.0 * np.pi):
+    """Nodes and quads of a ring, or a part of one, ray by ray; rays of a whole ring close."""
+    whole = angle >= 2.0 * np.pi
+    rays = facets if whole else facets + 1
+    turns = first + angle * np.arange(rays) / facets
+    radii = np.linspace(inner, outer, rows + 1)
+    nodes = np.array([(r * np.cos(t), r * np.sin(t)) for t in turns for r in radii])
+    quads = [[k * (rows + 1) + i, k * (rows + 1) + i + 1, (k + 1) % rays * (rows + 1) + i + 1, (k + 1) % rays * (rows + 1) + i]
+             for k in range(facets) for i in range(rows)]
+    return nodes, np.array(quads)
+
+
+class Fit:
+    """A hollow shaft in a hub; the springs have the stiffness of one facet of the hub."""
+
+    def __init__(self, facets, interference, rows, first=0.0, angle=2.0 * np.pi):
+        self.deck = Deck("shaft in a hub")
+        for part in (1, 2):
+            self.deck.part(part, points=4).elastic(1.0, 1.0, 0.3, part)
+        meshes = [ring(HOLE, BORE + interference, rows, facets[0], first, angle), ring(BORE, OUTER, 2 * rows, facets[1], 0.0, angle)]
+        self.shaft = self.deck.mesh(*meshes[0], part=1).reshape(-1, rows + 1)
+        self.hub = self.deck.mesh(*meshes[1], part=2).reshape(-1, 2 * rows + 1)
+        self.start = np.vstack([mesh[0] for mesh in meshes])
+        self.quads = np.vstack([meshes[0][1], meshes[1][1] + self.shaft.size])
+        self.facets, self.angle = facets, angle
+        self.springs = facets[1] / angle
+
+    def contact(self, kind, friction=0.0, damping=0.0, ramp=None, extra=None):
+        """The shaft is the slave."""
+        closed = self.angle >= 2.0 * np.pi
+        slave, master = self.shaft[:, -1], self.hub[::-1, 0]
+        self.deck.node_set(1, [*slave, *slave[:int(closed)]]).node_set(2, [*master, *master[:int(closed)]])
+        penalty, unit = (self.springs * self.angle / self.facets[0], 0) if kind == 1 else (self.springs, 1)
+        if ramp:
+            self.deck.curve(1, ramp)
+        self.deck.add("*CONTACT_2D_SLIDELINE", (-1, -2, kind, 2, penalty, friction, friction), (None, None, unit, None, damping),
+                      (None, None, None, None, None, 1 if ramp else None, None, extra))
+
+    def pressure(self, kind, interference):
+        """Lame in series with the springs; two passes are two layers."""
+        springs = self.springs * (2.0 if kind == 3 else 1.0)
+        return interference / (1.0 / springs + COMPLIANCE)
+
+    def found(self, result):
+        """Mean pressure of shaft and hub, and the root mean square of the nodal ones about it, over it."""
+        force, place = result.points("contact_force")[-1], result.points("Points")[-1]
+        means, spread = [], []
+        for nodes in (self.shaft[:, -1] - 1, self.hub[:, 0] - 1):
+            radius = np.hypot(place[nodes, 0], place[nodes, 1])
+            radial = np.abs(np.einsum("ij,ij->i", force[nodes, :2], place[nodes, :2]) / radius)
+            share = np.full(len(nodes), self.angle / (len(nodes) if self.angle >= 6.0 else len(nodes) - 1))
+            if self.angle < 6.0:
+                share[[0, -1]] *= 0.5
+            means.append(radial.sum() / self.angle)
+            spread.append(np.sqrt(np.mean((radial / share / means[-1] - 1.0) ** 2)))
+        return np.array(means), np.array(spread)
+
+
+def check_fits(run):
+    """A quarter with symmetry, static; 24 against 30 facets as whole rings."""
+    interference = 1.0e-3
+    for facets in ((12, 15), (15, 12), (24, 30), "24/30", "60/60, half a pitch"):
+        whole = isinstance(facets, str)
+        counts = tuple(map(int, re.findall(r"\d+", facets))) if whole else facets
+        label = facets if whole else f"{4 * counts[0]}/{4 * counts[1]}"
+        for kind in TYPES:
+            fit = Fit(counts, interference, 6, np.pi / 60.0 if "pitch" in label else 0.0, 2.0 * np.pi if whole else 0.5 * np.pi)
+            fit.deck.add("*CONTROL_TERMINATION", (1.0,)).add("*CONTROL_IMPLICIT_GENERAL", (1, 0.25))
+            fit.deck.add("*CONTROL_IMPLICIT_DYNAMICS", (0,))
+            for body, column in ((fit.shaft, 0), (fit.hub, -1)):
+                if whole:
+                    half = len(body) // 2
+                    fit.deck.fix([int(body[0, column]), int(body[half, column])], y=1)
+                else:
+                    fit.deck.fix(body[0], y=1).fix(body[-1], x=1)
+            if whole:
+                fit.deck.fix([int(fit.shaft[counts[0] // 4, 0])], x=1)
+            fit.contact(kind, ramp=[(0.0, 0.0), (1.0, 1.0)])
+            result = run.program(fit.deck.output(plot=1.0))
+            mean, spread = fit.found(result)
+            size = 0.02 if label == "24/30" else 0.003 if counts[0] == 24 else 0.01
+            run.check(f"{TYPES[kind]}, {label}: mean pressure over that of Lame", mean / fit.pressure(kind, interference), 1.0,
+                      tol=size)
+            if kind in (4, 5, 7):
+                run.check(f"{TYPES[kind]}, {label}: nodal pressures over their mean, root mean square", spread, 0.0,
+                          tol=3.0 * size if label == "24/30" else 2.0 * size)
+
+
+def momentum(fit, result, nodes):
+    """Angular momentum of some nodes about the origin at all states, over the first."""
+    mass = lumped_mass(fit.start, fit.quads, 1.0)
+    values = np.array([angular_momentum(mass[nodes], x[nodes], v[nodes])
+                       for x, v in zip(result.points("Points")[..., :2], result.points("velocity")[..., :2])])
+    return values / values[0]
+
+
+def spin(run, kind, facets, interference, both, turns, *, friction=0.0, damping=0.0, extra=None):
+    """A shaft that spins, or shaft and hub as one, explicit."""
+    speed = 0.02
+    end = 2.0 * np.pi * turns / speed
+    fit = Fit(facets, interference, 3)
+    fit.deck.control(end, scale=0.8)
+    moves = np.arange(fit.shaft.size + (fit.hub.size if both else 0))
+    if not both:
+        fit.deck.fix(fit.hub[:, -1], x=1, y=1)
+    fit.deck.add("*INITIAL_VELOCITY_NODE", *[(int(k + 1), -speed * fit.start[k, 1], speed * fit.start[k, 0]) for k in moves])
+    fit.contact(kind, friction, damping, [(0.0, 0.0), (end / 20.0, 1.0), (2.0 * end, 1.0)], extra)
+    result = run.program(fit.deck.output(plot=end / 10.0))
+    return momentum(fit, result, moves)
+
+
+def check_spin(run):
+    """Without friction the bore takes nothing from the shaft; what spins as one keeps its spin, damped or held by friction."""
+    for kind in TYPES:
+        name = TYPES[kind]
+        run.check(f"{name}: spin of a shaft in a bore after three turns", spin(run, kind, (26, 30), 2.0e-3, False, 3.0)[-1], 1.0,
+                  tol=3.0e-4 if kind in (4, 6) else 1.0e-4)
+        run.check(f"{name}: spin of a damped fit after a turn", spin(run, kind, (26, 30), 1.0e-3, True, 1.0, damping=20.0)[-1], 1.0,
+                  tol=1.0e-4)
+        run.check(f"{name}: spin of a fit held by friction after a turn and a half",
+                  spin(run, kind, (13, 15), 1.0e-3, True, 1.5, friction=0.3, extra=29)[-1], 1.0, tol=1.5e-4)
+
+
+def check(run):
+    check_fits(run)
+    check_spin(run)
