@@ -253,15 +253,15 @@ def projection_figure():
     surface(axes, [b, a], MASTER)
     t = (b - a) / np.hypot(*(b - a))
     n = np.array([t[1], -t[0]])
-    foot = a + 0.45 * (b - a)
-    x = foot - 0.22 * n
+    projected = a + 0.45 * (b - a)
+    x = projected - 0.22 * n
     axes.plot(*x, "o", color=SLAVE, markersize=6)
-    axes.plot(*np.array([x, foot]).T, ":", color=INK, linewidth=1.2)
+    axes.plot(*np.array([x, projected]).T, ":", color=INK, linewidth=1.2)
     axes.text(*(x + [0.03, -0.07]), "x", fontsize=11, color=SLAVE)
-    axes.text(*(0.5 * (x + foot) + [-0.24, -0.03]), r"$g < 0$", fontsize=10, color=INK)
-    arrow(axes, foot, foot + 0.3 * n, text=r"$n$")
+    axes.text(*(0.5 * (x + projected) + [-0.24, -0.03]), r"$g < 0$", fontsize=10, color=INK)
+    arrow(axes, projected, projected + 0.3 * n, text=r"$n$")
     arrow(axes, a, a + 0.3 * t, text=r"$t$", shift=(-0.02, 0.05))
-    axes.text(*(foot + [0.03, 0.04]), r"$\xi$", fontsize=11, color=INK)
+    axes.text(*(projected + [0.03, 0.04]), r"$\xi$", fontsize=11, color=INK)
     bare(axes, "projection", (-0.1, -0.4), (1.15, 0.65))
     for axes, apex, title, text, where in (
             (panels[1], 0.3, "convex vertex", "closest: the vertex, g > 0", (0.5, 0.3)),

@@ -11,7 +11,7 @@ from slideline_tools.plots import PAGE_WIDTH, STYLE, colour_bar, draw_field, plt
 from slideline_tools.results import read
 from slideline_tools.studies.common import save_small
 
-#: Final radius of the foot and length in mm of converged codes: tests/verification/taylor_bar.
+#: Final radius of the impact end and length in mm of converged codes: tests/verification/taylor_bar.
 CODES = {"radius": (7.22, 7.24), "length": (21.42, 21.43)}
 MM = 1.0e3
 #: Nodes of the deck that radius and length are read from.

@@ -19,11 +19,6 @@ SCENES = {  # name -> what it is, refinement levels, Gauss points of type 6 (no 
     "symmetric_plate": ("plate on two pins under a step load", "", 0),
     "taylor": ("copper rod on a rigid wall, axisymmetric, without contact", "", 0),
     "taylor_johnson_cook": ("steel rod that warms on a rigid wall, axisymmetric", "", 0),
-    "hopkinson": ("split Hopkinson pressure bar, axisymmetric", "", 0),
-    "penetration": ("blunt rod through a steel plate, axisymmetric, erosion", "", 0),
-    "seal": ("hollow rubber seal that closes on itself", "", 0),
-    "tube": ("folding tube, axisymmetric", "", 0),
-    "v_bend": ("sheet bent by a rigid punch, springback", "", 0),
 }
 STATIC = ("--static", {"action": "store_true",
                        "help": "static steps of the implicit method, not damping to rest"})
@@ -55,8 +50,6 @@ OWN_OPTIONS = {
                ("--rows", {"type": int, "help": "elements along 32.4 mm (100)"})),
     "taylor_johnson_cook": (("--columns", {"type": int, "help": "elements along the radius of 3.2 mm (5)"}),
                             ("--rows", {"type": int, "help": "elements along 32.4 mm (50)"})),
-    **{name: (("--ctype", {"type": int, "help": "contact type in the deck (5)"}),)
-       for name in ("hopkinson", "penetration", "seal", "tube", "v_bend")},
 }
 #: what the parser sets beside the options of a scene
 OTHERS = ("command", "scene", "output", "run")

@@ -99,12 +99,12 @@ def draw(runs, level):
     for row, (_, more, less, _) in enumerate(found):
         whole = runs.loc[(more, level), "seconds"]
         for name, shift in ((more, -0.2), (less, 0.2)):
-            foot = 0.0
+            start = 0.0
             for phase, colour in zip(PHASES, COLOURS):
                 width = runs.loc[(name, level), phase] / whole
-                axes.barh(row + shift, width, 0.36, foot, color=colour,
+                axes.barh(row + shift, width, 0.36, start, color=colour,
                           label=phase if row == 0 and name == more else None)
-                foot += width
+                start += width
         saved = percent(1.0 - runs.loc[(less, level), "seconds"] / whole)
         axes.annotate(f"saves {saved}", (1.01, row), va="center", fontsize=7)
     axes.set_yticks(range(len(found)), [step[0] for step in found])
