@@ -18,7 +18,7 @@ module interface_m
   use energy_limit_m, only : store_previous_springs, form_springs, limit_forces, admit_entry_work
   use friction_m, only : store_previous_tractions, form_tractions, has_decay
   use initial_status_m, only : activate_deep_points, activate_deep_segments
-  use others_memory_m, only : answers_t
+  use remote_state_m, only : inside_tests_t
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
@@ -42,26 +42,26 @@ module interface_m
 contains
 
   !> Set up the memory of one interface at time zero and tell the log what was understood.
-  subroutine start_contact(contact, model, log, memory, answers)
+  subroutine start_contact(contact, model, log, memory, inside_tests)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
     type(contact_state_t), intent(out) :: memory
-    type(answers_t), intent(inout), optional :: answers
+    type(inside_tests_t), intent(inout), optional :: inside_tests
 
     call prepare_contact(contact, model, memory)
-    if (memory%has%ties) call start_ties(contact, model, memory, answers)
-    if (memory%has%contact) call start_search(contact, model, memory, answers)
+    if (memory%has%ties) call start_ties(contact, model, memory, inside_tests)
+    if (memory%has%contact) call start_search(contact, model, memory, inside_tests)
     call log_contact(contact, model, memory, log)
   end subroutine start_contact
 
   !> Place the points of ties: contact points of the same rule in the reference geometry, where gaps
   !> within reach are closed.
-  subroutine start_ties(contact, model, memory, answers)
+  subroutine start_ties(contact, model, memory, inside_tests)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
-    type(answers_t), intent(inout), optional :: answers
+    type(inside_tests_t), intent(inout), optional :: inside_tests
     type(contact_t) :: tie
     type(contact_state_t) :: placed
 
@@ -69,34 +69,34 @@ contains
     tie%tie = tie_always
     call prepare_contact(tie, model, placed)
     placed%closed_gap = tie_reach(contact, model)
-    call start_search(tie, model, placed, answers)
+    call start_search(tie, model, placed, inside_tests)
     call generate_points(tie, placed)
     call freeze_ties(contact, placed%closed_gap, placed, memory)
     if (memory%has%breaks) call start_breaking(contact, memory)
   end subroutine start_ties
 
   !> Who touches whom at time zero.
-  subroutine start_search(contact, model, memory, answers)
+  subroutine start_search(contact, model, memory, inside_tests)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
-    type(answers_t), intent(inout), optional :: answers
+    type(inside_tests_t), intent(inout), optional :: inside_tests
 
     if (contact%birth > 0.0_wp) return
     call search_pairs(contact, 0, .false., memory)
     associate (n => memory%n_slave)
       if (memory%has%segment_points) then
         call activate_deep_points(memory%slave_status, model, contact%slave, contact%master, &
-          memory%positions, memory%segment_points, answers)
+          memory%positions, memory%segment_points, inside_tests)
       else
         call activate_deep_points(memory%slave_status, model, contact%slave, contact%master, &
-          memory%positions, memory%positions(:, :n), answers)
+          memory%positions, memory%positions(:, :n), inside_tests)
       end if
       if (memory%master_status%n > 0) call activate_deep_points(memory%master_status, model, &
-        contact%master, contact%slave, memory%positions, memory%positions(:, n + 1:), answers)
+        contact%master, contact%slave, memory%positions, memory%positions(:, n + 1:), inside_tests)
     end associate
     if (memory%has%overlaps) &
-      call activate_deep_segments(contact, model, memory, answers)
+      call activate_deep_segments(contact, model, memory, inside_tests)
     ! Points that lie deep need pairs as deep.
     memory%listed_until = -huge(1.0_wp)
   end subroutine start_search

@@ -31,7 +31,7 @@ module history_file_m
   !> One table.
   type :: history_t
     integer :: i_table = 0                  !! one of `table_`
-    logical :: tells_mass = .false.         !! masses are scaled
+    logical :: has_mass_scaling = .false.   !! masses are scaled
     logical, allocatable :: is_kept(:)      !! (columns of `history_tables`) those that this run has
     character(20), allocatable :: names(:)  !! (n_column)
     integer, allocatable :: kinds(:)        !! (n_column) `kind_` of each
@@ -60,24 +60,25 @@ contains
     type(histories_t), intent(out) :: histories
     type(model_t), intent(in) :: model
     integer :: k
-    logical :: is_wanted, tells_mass
+    logical :: is_wanted, has_mass_scaling
 
-    tells_mass = abs(model%controls%mass_step) > 0.0_wp .and. .not. model%controls%implicit%is_on
+    has_mass_scaling = abs(model%controls%mass_step) > 0.0_wp .and. &
+      .not. model%controls%implicit%is_on
     do k = 1, n_table
       is_wanted = n_each(model, k) > 0
       if (history_tables(k)%asked == asked_alone) is_wanted = is_wanted .and. &
         is_asked(model%controls%output%histories(k))
       if (history_tables(k)%asked == asked_by_states) is_wanted = is_wanted .and. &
         is_asked(model%controls%output%plot)
-      if (is_wanted) call plan_table(histories%tables(k), k, tells_mass, model%erodes)
+      if (is_wanted) call plan_table(histories%tables(k), k, has_mass_scaling, model%erodes)
     end do
   end subroutine plan_histories
 
   !> The columns of a table, which has no rows and no file yet.
-  subroutine plan_table(table, i_table, tells_mass, erodes)
+  subroutine plan_table(table, i_table, has_mass_scaling, erodes)
     type(history_t), intent(out) :: table
     integer, intent(in) :: i_table    !! one of `table_`
-    logical, intent(in) :: tells_mass !! masses are scaled
+    logical, intent(in) :: has_mass_scaling !! masses are scaled
     logical, intent(in) :: erodes     !! elements may leave the mesh
     character(len(history_tables%columns) + 1) :: left
     integer :: i, n, last
@@ -85,13 +86,14 @@ contains
 
     left = trim(history_tables(i_table)%columns)//','
     table%i_table = i_table
-    table%tells_mass = tells_mass
+    table%has_mass_scaling = has_mass_scaling
     n = count([(scan(left(i:i), ',;') == 1, i=1, len(left))])
     allocate (table%is_kept(n), table%names(n), table%kinds(n))
     is_beside = .false.
     do i = 1, n
       last = scan(left, ',;') - 1
-      table%is_kept(i) = (tells_mass .or. left(1:1) /= '+') .and. (erodes .or. left(1:1) /= '-')
+      table%is_kept(i) = (has_mass_scaling .or. left(1:1) /= '+') .and. (erodes .or. left(1:1) &
+        /= '-')
       if (table%is_kept(i) .and. .not. is_beside) table%n_csv = table%n_csv + 1
       table%kinds(i) = kind_real
       if (index(left(:last), '#') > 0) table%kinds(i) = kind_integer
@@ -274,7 +276,8 @@ contains
     table%waiting(:, table%n_waiting) = values
     if (table%n_waiting < size(table%waiting, 2)) return
     table%n_waiting = 0
-    call put_instant(table%i_table, table%control, table%tells_mass, table%waiting, table%text)
+    call put_instant(table%i_table, table%control, table%has_mass_scaling, table%waiting, &
+      table%text)
     call keep_up(table%text)
   end subroutine add_row
 

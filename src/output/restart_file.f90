@@ -187,7 +187,7 @@ contains
     archive%folder = ''
     archive%is_read = .true.
     archive%judges = .true.
-    call judge_file(path, reason)
+    call check_file(path, reason)
     if (.not. allocated(reason)) then
       call open_library(status)
       if (status >= 0) call h5fopen_f(path, H5F_ACC_RDONLY_F, archive%id, status)
@@ -198,7 +198,7 @@ contains
   end subroutine open_restart
 
   !> Why a file is no restart file to go on from; `reason` stays unset when it is one.
-  subroutine judge_file(path, reason)
+  subroutine check_file(path, reason)
     character(*), intent(in) :: path
     character(:), allocatable, intent(out) :: reason
     character(head_size) :: head
@@ -245,7 +245,7 @@ contains
       reason = 'it is damaged (it has another length than its head says)'
       if (length < expected) reason = 'it is truncated'
     end if
-  end subroutine judge_file
+  end subroutine check_file
 
   !> Close a file that was read.
   subroutine close_restart(archive, error)

@@ -20,7 +20,7 @@ module progress_m
     write_status, timing_text
 
   !> Cycles between two looks at a clock that takes no laps.
-  integer, parameter :: look_cycles = 64
+  integer, parameter :: clock_cycles = 64
   !> Seconds between two refreshes on a terminal, and between two lines in a pipe.
   real(wp), parameter :: terminal_interval = 0.25_wp, pipe_interval = 10.0_wp
   !> Lines in a pipe before the end of a run, at most: thousands of runs write into one file.
@@ -81,14 +81,14 @@ contains
     real(wp), intent(in) :: time, dt, ratio
     logical :: is_due
 
-    if (steps_are_long .or. mod(cycle, look_cycles) == 0) call look_at_clock(clock)
+    if (steps_are_long .or. mod(cycle, clock_cycles) == 0) call look_at_clock(clock)
     is_due = clock%last >= progress%next_tick
     if (progress%status_interval > 0 .and. .not. progress%terminal) &
       is_due = is_due .or. mod(cycle, progress%status_interval) == 0
     if (is_due) then
       call show_progress(progress, clock, cycle, time, dt, ratio, '')
     else if (clock%last >= progress%next_file) then
-      call keep_status(progress, clock, cycle, time, dt, ratio)
+      call store_progress(progress, clock, cycle, time, dt, ratio)
     end if
   end subroutine follow_progress
 
@@ -109,7 +109,7 @@ contains
 
     call system_clock(now)
     progress%next_tick = now + progress%wait
-    call keep_status(progress, clock, cycle, time, dt, ratio)
+    call store_progress(progress, clock, cycle, time, dt, ratio)
     if (progress%is_quiet) return
     if (progress%terminal) then
       share = min(1.0_wp, time/progress%end_time)
@@ -228,7 +228,7 @@ contains
   end function fixed
 
   !> Take new numbers, and write them when the last file is old enough.
-  subroutine keep_status(progress, clock, cycle, time, dt, ratio)
+  subroutine store_progress(progress, clock, cycle, time, dt, ratio)
     type(progress_t), intent(inout) :: progress
     type(clock_t), intent(in) :: clock
     integer, intent(in) :: cycle
@@ -241,7 +241,7 @@ contains
     progress%ratio = ratio
     call system_clock(now)
     if (now >= progress%next_file) call write_status(progress, clock, 'running')
-  end subroutine keep_status
+  end subroutine store_progress
 
   !> Write the file status.out: how far a run is and how long it may take.
   subroutine write_status(progress, clock, state)

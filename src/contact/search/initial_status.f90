@@ -13,7 +13,7 @@ module initial_status_m
   use entry_m, only : is_opposed, segments_of
   use kinds_m, only : wp
   use model_m, only : model_t
-  use others_memory_m, only : answers_t
+  use remote_state_m, only : inside_tests_t
   use surfaces_m, only : surface_t, has_closed_chain
   implicit none
   private
@@ -139,26 +139,26 @@ contains
   !> Points deeper than a first contact may be that lie inside an element behind the other surface
   !> are active on the closest face that is opposed to them; on a closed boundary no deeper than the
   !> element behind that face is thick, else it is the far side of the body.
-  subroutine activate_deep_points(status, model, own, other, positions, points, answers)
+  subroutine activate_deep_points(status, model, own, other, positions, points, inside_tests)
     type(contact_status_t), intent(inout) :: status
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: own, other
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     real(wp), intent(in), contiguous :: points(:, :) !! (4, n) positions of the points
-    type(answers_t), intent(inout), optional :: answers
+    type(inside_tests_t), intent(inout), optional :: inside_tests
     type(element_finder_t) :: finder
     type(projection_t) :: projection
     logical :: inside
     integer :: i, segments(2), at
 
     at = status%pass%other_at
-    call begin_asking(model, other%segment_element, own%nodes, finder, answers)
+    call begin_asking(model, other%segment_element, own%nodes, finder, inside_tests)
     do i = 1, status%n
       segments = segments_of(own, status%pass%n_on_segment, i)
       if (status%state(i) == active .or. maxval(segments) == 0) cycle
       call ask_inside(finder, model, model%mesh%coordinates(:, other%nodes(1)) &
         + (points(1:2, i) - positions(1:2, at + 1)), own%nodes(carriers(own, segments)), inside, &
-        answers)
+        inside_tests)
       if (.not. inside) cycle
       projection = closest_opposed(status, model, own, other, positions, points(:, i), i)
       if (projection%segment == 0) cycle
@@ -211,20 +211,22 @@ contains
 
   !> Slave segments with a master node deep inside the body behind them are in contact from the
   !> start: of these the closest one of which the node is behind.
-  subroutine activate_deep_segments(contact, model, memory, answers)
+  subroutine activate_deep_segments(contact, model, memory, inside_tests)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
-    type(answers_t), intent(inout), optional :: answers
+    type(inside_tests_t), intent(inout), optional :: inside_tests
     type(element_finder_t) :: finder
     logical :: inside
     integer :: i, s, nearest
     real(wp) :: square, least
 
-    call begin_asking(model, contact%slave%segment_element, contact%master%nodes, finder, answers)
+    call begin_asking(model, contact%slave%segment_element, contact%master%nodes, finder, &
+      inside_tests)
     do i = 1, contact%master%n_node
       associate (node => contact%master%nodes(i))
-        call ask_inside(finder, model, model%mesh%coordinates(:, node), [node], inside, answers)
+        call ask_inside(finder, model, model%mesh%coordinates(:, node), [node], inside, &
+          inside_tests)
         if (.not. inside) cycle
         nearest = 0
         least = huge(1.0_wp)
@@ -256,47 +258,48 @@ contains
     end if
   end function carriers
 
-  !> Know the bodies behind a surface, unless the answers are.
-  pure subroutine begin_asking(model, members, nodes, finder, answers)
+  !> Know the bodies behind a surface, unless the inside_tests are.
+  pure subroutine begin_asking(model, members, nodes, finder, inside_tests)
     type(model_t), intent(in) :: model
     integer, intent(in) :: members(:) !! elements behind the surface
     integer, intent(in) :: nodes(:)   !! of the surface whose positions are asked about
     type(element_finder_t), intent(out) :: finder
-    type(answers_t), intent(in), optional :: answers
+    type(inside_tests_t), intent(in), optional :: inside_tests
 
-    if (present(answers)) then
-      if (answers%are_given) return
+    if (present(inside_tests)) then
+      if (inside_tests%are_given) return
     end if
     call start_finder(model, members, nodes, finder)
   end subroutine begin_asking
 
   !> The next answer (`is_inside_body`).
-  pure subroutine ask_inside(finder, model, x, carriers, inside, answers)
+  pure subroutine ask_inside(finder, model, x, carriers, inside, inside_tests)
     type(element_finder_t), intent(in) :: finder
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: x(2)
     integer, intent(in) :: carriers(:)
     logical, intent(out) :: inside
-    type(answers_t), intent(inout), optional :: answers
+    type(inside_tests_t), intent(inout), optional :: inside_tests
     logical, allocatable :: more(:)
 
-    if (.not. present(answers)) then
+    if (.not. present(inside_tests)) then
       inside = is_inside_body(finder, model, x, carriers)
       return
     end if
-    answers%n = answers%n + 1
-    if (answers%are_given) then
-      inside = answers%is_inside(answers%n)
+    inside_tests%n = inside_tests%n + 1
+    if (inside_tests%are_given) then
+      inside = inside_tests%is_inside(inside_tests%n)
       return
     end if
     inside = is_inside_body(finder, model, x, carriers)
-    if (.not. allocated(answers%is_inside)) allocate (answers%is_inside(64), source=.false.)
-    if (answers%n > size(answers%is_inside)) then
-      allocate (more(2*answers%n), source=.false.)
-      more(:answers%n - 1) = answers%is_inside
-      call move_alloc(more, answers%is_inside)
+    if (.not. allocated(inside_tests%is_inside)) allocate (inside_tests%is_inside(64), &
+      source=.false.)
+    if (inside_tests%n > size(inside_tests%is_inside)) then
+      allocate (more(2*inside_tests%n), source=.false.)
+      more(:inside_tests%n - 1) = inside_tests%is_inside
+      call move_alloc(more, inside_tests%is_inside)
     end if
-    answers%is_inside(answers%n) = inside
+    inside_tests%is_inside(inside_tests%n) = inside
   end subroutine ask_inside
 
 end module initial_status_m

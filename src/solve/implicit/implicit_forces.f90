@@ -10,7 +10,7 @@ module implicit_forces_m
   use contact_dispatch_m, only : add_contact_stiffness
   use curves_m, only : curve_value
   use cut_forces_m, only : find_cut_forces
-  use element_dispatch_m, only : add_tile_forces, share_tile_forces, keep_tile_forces, &
+  use element_dispatch_m, only : add_tile_forces, scatter_tile_forces, store_tile_forces, &
     sum_special_forces
   use element_mass_m, only : mass_times, add_mass
   use element_stiffness_m, only : add_stiffness
@@ -100,8 +100,8 @@ contains
     do i = 1, size(model%layout%tiles)
       associate (tile => model%layout%tiles(i))
         call add_tile_forces(model, tile, trial%motion, unit_step, trial%elements, force)
-        call share_tile_forces(tile, force, trial%slots)
-        call keep_tile_forces(tile, force, trial%internal)
+        call scatter_tile_forces(tile, force, trial%slots)
+        call store_tile_forces(tile, force, trial%internal)
       end associate
     end do
     call sum_special_forces(model%layout, trial%slots, 1, model%layout%n_special, trial%internal)
