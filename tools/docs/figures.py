@@ -4,7 +4,7 @@
     build/venv/bin/python tools/docs/figures.py [--program build/release/slideline]
 
 writes doc/pictures/draw.png, first_deck.svg, first_model.png,
-first_stress.png, first_history.png, contact_points.svg, taylor.png,
+first_stress.png, first_history.png, contact_points.svg,
 speed_accuracy.svg and the drawings of doc/theory/contact.md.
 """
 import argparse
@@ -23,7 +23,6 @@ import numpy as np  # noqa: E402
 from slideline_tools import cli  # noqa: E402
 from slideline_tools.contact_types import TYPES  # noqa: E402
 from slideline_tools.results import read  # noqa: E402
-from taylor import taylor  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PICTURES = ROOT / "doc/pictures"
@@ -432,7 +431,6 @@ def main():
         contact_points(program, pathlib.Path(folder))
         for draw in (projection_figure, candidates_figure, entry_figure, overlaps_figure, energy_limit_figure, speed_accuracy_figure):
             draw()
-        taylor(run(program, ROOT / "input/taylor/taylor.k", pathlib.Path(folder)), PICTURES / "taylor.png")
 
 
 if __name__ == "__main__":
