@@ -8,11 +8,11 @@ from slideline_tools.scenes.oblique import oblique, oblique_grids
 from slideline_tools.scenes.patch import patch, patch_grids
 from slideline_tools.scenes.sliding import sliding, sliding_grids
 from slideline_tools.scenes.symmetric_plate import symmetric_plate, symmetric_plate_grid
-from slideline_tools.scenes.taylor import taylor, taylor_grid, taylor_johnson_cook
+from slideline_tools.scenes.taylor import taylor, taylor_grid
 
 __all__ = ["block", "block_grids", "collision", "collision_grids", "committed_decks", "hertz", "hertz_grids", "oblique",
            "oblique_grids", "patch", "patch_grids", "sliding", "sliding_grids", "symmetric_plate", "symmetric_plate_grid",
-           "taylor", "taylor_grid", "taylor_johnson_cook"]
+           "taylor", "taylor_grid"]
 
 
 def committed_decks():
@@ -32,7 +32,6 @@ def committed_decks():
             yield (f"symmetric_plate/plate_{n_x}x{n_y}_{law}.k",
                    symmetric_plate(n_x, n_y, elastoplastic=law == "elastoplastic"))
     yield "taylor/taylor.k", taylor()
-    yield "taylor/taylor_johnson_cook.k", taylor_johnson_cook()
 
 
 def suffix(level):
