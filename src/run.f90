@@ -6,7 +6,7 @@ module run_m
   use arguments_m, only : arguments_t, file_stem, only_end_time, timing_by_interface, timing_off
   use build_info_m, only : version, build_type, compiler, flags
   use checksum_m, only : add_bytes, checksum_text
-  use clock_m, only : lap, start_clock, look_at_clock, split_contact, elapsed_seconds, &
+  use clock_m, only : lap, start_clock, read_clock, track_interfaces, elapsed_seconds, &
     phase_input, phase_output
   use contact_dispatch_m, only : contact_kinds
   use deck_m, only : deck_request_t, read_deck
@@ -28,14 +28,14 @@ module run_m
   use rank_partition_m, only : distribute_model, distribute_start, release_remote
   use ranks_m, only : ranks_t, share_error
   use relaxation_m, only : relax, switch_loads
-  use renumber_m, only : renumber_model, forget_start
+  use renumber_m, only : renumber_model, release_start_data
   use restart_file_m, only : open_restart
   use restart_m, only : remove_old_files
   use restart_plan_m, only : restarts_t, check_names, switch_path
   use restart_reading_m, only : read_restart_run, read_restart_state, find_restart_states, &
     check_other_components, restore_outputs
   use results_file_m, only : run_info_t
-  use system_m, only : catch_stops, give_back_memory, limit_processor
+  use system_m, only : catch_stops, release_memory, limit_processor
   use source_version_m, only : source_version
   use start_m, only : start_state
   use state_m, only : state_t
@@ -59,7 +59,7 @@ contains
 
     has_ended = .false.
     monitor%ranks = ranks
-    monitor%log%is_mute = ranks%mine > 0
+    monitor%log%is_silent = ranks%mine > 0
     call start_clock(monitor%clock)
     monitor%clock%is_on = arguments%timing /= timing_off
     monitor%progress%is_quiet = arguments%quiet
@@ -80,7 +80,7 @@ contains
     if (allocated(error)) return
     call distribute_model(monitor%ranks, model, has_all)
     if (arguments%timing == timing_by_interface) &
-      call split_contact(monitor%clock, size(model%contacts))
+      call track_interfaces(monitor%clock, size(model%contacts))
     monitor%restarts%prefix = ''
     if (ranks%mine == 0) then
       monitor%restarts%directory = arguments%directory
@@ -110,8 +110,8 @@ contains
     end if
     has_ended = .true.
     call close_log(monitor%log)
-    if (.not. allocated(error) .and. allocated(monitor%log%trouble)) &
-      call move_alloc(monitor%log%trouble, error)
+    if (.not. allocated(error) .and. allocated(monitor%log%first_error)) &
+      call move_alloc(monitor%log%first_error, error)
     call share_error(ranks, error)
   end subroutine run_deck
 
@@ -303,8 +303,8 @@ contains
     if (allocated(error)) return
     ! The loads of relaxation alone (SIDR 1) no longer act.
     if (any(model%curves%phase == 1)) call switch_loads(model, 1)
-    call forget_start(model)
-    call give_back_memory()
+    call release_start_data(model)
+    call release_memory()
     if (monitor%restarts%is_restart) call restore_outputs(model, state, monitor, error)
     ! Behind relaxation a run begins at time zero, wherever it has come from.
     if (relaxes) monitor%restarts%is_restart = .false.
@@ -428,13 +428,14 @@ contains
     integer, allocatable :: interfaces(:) !! their numbers
 
     call lap(monitor%clock, phase_output)
-    call look_at_clock(monitor%clock)
+    call read_clock(monitor%clock)
     allocate (interfaces(0))
     if (allocated(model%contacts)) interfaces = model%contacts%id
     call write_whole(monitor%restarts%prefix//'.timing.csv', &
       timing_text(monitor%clock, interfaces), problem)
     if (.not. allocated(error) .and. allocated(problem)) call move_alloc(problem, error)
-    if (.not. allocated(error) .and. allocated(monitor%log%trouble)) error = monitor%log%trouble
+    if (.not. allocated(error) .and. allocated(monitor%log%first_error)) error = &
+      monitor%log%first_error
     message = reason
     if (allocated(error)) message = error%message
     call show_end(monitor%progress, monitor%clock, monitor%log, .not. allocated(error), message, &

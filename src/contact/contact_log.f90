@@ -11,7 +11,7 @@ module contact_log_m
   use log_m, only : log_t, write_log, warn, to_text, percent
   use model_m, only : model_t
   use surfaces_m, only : surface_t, has_closed_chain
-  use ties_m, only : tied_nodes, tie_reach
+  use ties_m, only : tied_nodes, tie_distance
   use units_m, only : units_t, in_units, per_depth
   implicit none
   private
@@ -150,7 +150,7 @@ contains
     call write_log(log, '  tied: '//to_text(count(is_held(:memory%n_slave)))//' of ' &
       //to_text(memory%n_slave)//' slave nodes, '//to_text(n) &
       //' springs of area '//to_text(sum(memory%tie_points%area(:memory%tie_points%n))) &
-      //', reach '//to_text(tie_reach(contact, model)) &
+      //', reach '//to_text(tie_distance(contact, model)) &
       //in_units(model%controls%units, 'L'))
     if (breaks(contact)) call write_log(log, '  breaks at a tension of ' &
       //to_text(contact%strength(1))//' or a shear of '//to_text(contact%strength(2)) &

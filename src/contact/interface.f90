@@ -24,7 +24,7 @@ module interface_m
   use model_m, only : model_t
   use positions_m, only : gather_positions, move_segment_points, closed_gap_of, gap_ahead
   use tiebreak_m, only : start_breaking
-  use ties_m, only : tie_reach, freeze_ties, hold_ties, break_ties, tie_energy
+  use ties_m, only : tie_distance, freeze_ties, hold_ties, break_ties, tie_energy
   use contact_status_m, only : update_status, reset_status
   implicit none
   private
@@ -68,7 +68,7 @@ contains
     tie = contact
     tie%tie = tie_always
     call prepare_contact(tie, model, placed)
-    placed%closed_gap = tie_reach(contact, model)
+    placed%closed_gap = tie_distance(contact, model)
     call start_search(tie, model, placed, inside_tests)
     call generate_points(tie, placed)
     call freeze_ties(contact, placed%closed_gap, placed, memory)

@@ -10,7 +10,7 @@ module element_dispatch_m
   use element_chunk_m, only : element_chunk_t, scatter_forces
   use layout_m, only : layout_t, chunk_size, local_kind, tile_t
   use model_m, only : model_t
-  use packed_buffer_m, only : packed_buffer_t, start_loading, start_unloading, choose_slots
+  use packed_buffer_m, only : packed_buffer_t, start_packing, start_unpacking, choose_slots
   use parts_m, only : section_t, form_full, form_axisym_full
   use quad_m, only : advance_chunk
   use quad_points_m, only : n_point
@@ -156,7 +156,7 @@ contains
 
     call choose_slots(buffer, [tile%first_chunk, tile%last_chunk], chunk_size, .false., .true.)
     call elements%visit(buffer)
-    call start_loading(buffer)
+    call start_packing(buffer)
     call elements%visit(buffer)
   end subroutine gather_values
 
@@ -165,7 +165,7 @@ contains
     type(packed_buffer_t), intent(inout) :: buffer !! may be put back again
     type(block_state_t), intent(inout) :: elements
 
-    call start_unloading(buffer)
+    call start_unpacking(buffer)
     call elements%visit(buffer)
   end subroutine restore_values
 

@@ -15,7 +15,7 @@ module history_file_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use model_m, only : model_t
-  use text_files_m, only : line_file_t, open_lines, put_lines, keep_up, flush_lines, close_lines
+  use text_files_m, only : line_file_t, open_lines, put_lines, flush_due, flush_lines, close_lines
   use text_m, only : text_of, real_size, put_real, put_integer
   use visitor_m, only : visited_t, visitor_t, any_length, length
   implicit none
@@ -270,7 +270,7 @@ contains
     table%n_row = table%n_row + 1
     table%values(:, table%n_row) = pack(values, table%is_kept)
     call put_lines(table%file, row_text(table%values(:table%n_csv, table%n_row), table%kinds))
-    call keep_up(table%file)
+    call flush_due(table%file)
     if (.not. table%text%is_open) return
     table%n_waiting = table%n_waiting + 1
     table%waiting(:, table%n_waiting) = values
@@ -278,7 +278,7 @@ contains
     table%n_waiting = 0
     call put_instant(table%i_table, table%control, table%has_mass_scaling, table%waiting, &
       table%text)
-    call keep_up(table%text)
+    call flush_due(table%text)
   end subroutine add_row
 
   !> One row as text, with its line end.
@@ -321,8 +321,8 @@ contains
         if (is_asked) call flush_lines(table%text, ignored)
         if (is_asked) call flush_lines(table%file, ignored)
         if (allocated(error)) cycle
-        if (allocated(table%text%trouble)) error = table%text%trouble
-        if (allocated(table%file%trouble)) error = table%file%trouble
+        if (allocated(table%text%first_error)) error = table%text%first_error
+        if (allocated(table%file%first_error)) error = table%file%first_error
       end associate
     end do
   end subroutine flush_histories
@@ -343,10 +343,10 @@ contains
     !> One file; the first failure stays.
     subroutine finish(file)
       type(line_file_t), intent(inout) :: file
-      type(error_t), allocatable :: trouble
+      type(error_t), allocatable :: first_error
 
-      call close_lines(file, trouble)
-      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+      call close_lines(file, first_error)
+      if (allocated(first_error) .and. .not. allocated(error)) call move_alloc(first_error, error)
     end subroutine finish
 
   end subroutine close_histories
@@ -365,7 +365,7 @@ contains
         if (allocated(rows)) deallocate (rows)
         if (allocated(table%values)) rows = table%values(:, :table%n_row)
         call visitor%visit(to_text(k), rows, any_length)
-        if (.not. visitor%judges .or. .not. allocated(rows)) cycle
+        if (.not. visitor%validates .or. .not. allocated(rows)) cycle
         do i = 1, size(rows, 2)
           if (table%file%is_open) call add_row(table, unpack(rows(:, i), table%is_kept, 0.0_wp))
         end do

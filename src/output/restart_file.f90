@@ -16,7 +16,7 @@ module restart_file_m
   use archive_m, only : archive_t
   use checksum_m, only : add_bytes, checksum_text
   use errors_m, only : error_t, raise, status_files, status_input
-  use files_m, only : what_hinders, rename_file, remove_file, force_to_disk, is_endless, &
+  use files_m, only : write_obstacle, rename_file, remove_file, force_to_disk, is_endless, &
     folder_of, unfinished
   use hdf5_writing_m, only : open_library
   use kinds_m, only : long
@@ -44,9 +44,9 @@ contains
 
     archive%path = path
     archive%folder = ''
-    if (len(what_hinders(path//unfinished)) > 0) then
+    if (len(write_obstacle(path//unfinished)) > 0) then
       call archive%fail('cannot write '//path//unfinished//': ' &
-        //what_hinders(path//unfinished), status_files)
+        //write_obstacle(path//unfinished), status_files)
       return
     end if
     call remove_file(path//unfinished, archive%error)
@@ -186,7 +186,7 @@ contains
     archive%path = path
     archive%folder = ''
     archive%is_read = .true.
-    archive%judges = .true.
+    archive%validates = .true.
     call check_file(path, reason)
     if (.not. allocated(reason)) then
       call open_library(status)

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> A buffer from the first of several processes to all others, or to one of them.
 module buffer_transfer_m
-  use packed_buffer_m, only : packed_buffer_t, start_loading, start_unloading
+  use packed_buffer_m, only : packed_buffer_t, start_packing, start_unpacking
   use kinds_m, only : wp
   use ranks_m, only : ranks_t, broadcast_values, exchange_reals
   use visitor_m, only : visited_t
@@ -25,18 +25,18 @@ contains
     if (receiver /= all_ranks .and. all(ranks%mine /= [0, receiver])) return
     if (ranks%mine == 0) then
       call item%visit(buffer)
-      call start_loading(buffer)
+      call start_packing(buffer)
       call item%visit(buffer)
     end if
     n = real(buffer%n, wp)
     call share(n)
     if (ranks%mine > 0) then
       buffer%n = nint(n(1))
-      call start_loading(buffer)
+      call start_packing(buffer)
     end if
     call share(buffer%values)
     if (ranks%mine == 0) return
-    call start_unloading(buffer)
+    call start_unpacking(buffer)
     call item%visit(buffer)
 
   contains

@@ -140,7 +140,7 @@ contains
       end associate
     end do
     do i = 1, size(state%estimates)
-      if (log%is_mute) exit ! the first process alone knows the parts of all elements
+      if (log%is_silent) exit ! the first process alone knows the parts of all elements
       associate (estimate => state%estimates(i), contact => model%contacts(i))
         if (contact%penalty_unit == penalty_implicit .and. &
           .not. state%contacts(i)%slave_penalty > 0.0_wp) cycle

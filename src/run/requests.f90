@@ -4,8 +4,8 @@
 !> signal. What needs no more than the files (a line of status, histories brought up to date) is
 !> done here; the driver does the rest.
 module requests_m
-  use controls_m, only : end_condition_t, end_node_place, end_node_touch, end_body_place, &
-    end_body_way, end_contact
+  use controls_m, only : end_condition_t, end_node_coordinate, end_node_contact, &
+    end_body_displacement, end_body_distance, end_contact
   use errors_m, only : error_t
   use files_m, only : file_exists, is_endless, remove_file
   use history_file_m, only : flush_histories
@@ -147,17 +147,17 @@ contains
       associate (ending => model%controls%ends(i))
         found = ''
         select case (ending%kind)
-        case (end_node_place)
+        case (end_node_coordinate)
           found = beyond('node '//to_text(ending%id)//' has come to ', '', &
             model%mesh%coordinates(ending%direction, ending%where) &
             + state%motion(ending%direction, ending%where), ending, ' (*TERMINATION_NODE)')
-        case (end_node_touch)
+        case (end_node_contact)
           if (norm2(force_on(state, ending%where)) > 0.0_wp) found = 'node '// &
             to_text(ending%id)//' is in contact (*TERMINATION_NODE)'
-        case (end_body_place)
+        case (end_body_displacement)
           found = beyond('body '//to_text(ending%id)//' has gone to ', 'displacement ', &
             state%rigids(ending%where)%place(ending%direction), ending, ' (*TERMINATION_BODY)')
-        case (end_body_way)
+        case (end_body_distance)
           way = norm2(state%rigids(ending%where)%place(1:2))
           if (way >= ending%most) found = 'body '//to_text(ending%id)//' has gone ' &
             //to_text(way)//' (*TERMINATION_BODY)'

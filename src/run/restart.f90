@@ -112,7 +112,7 @@ contains
     call archive%visit('n_dump', restarts%n_dump, 0, most_dumps - 1, 'a number that no run reaches')
     call archive%visit('is_implicit', restarts%is_implicit)
     ! It begins the names of files in the folder of the results.
-    if (archive%judges) then
+    if (archive%validates) then
       associate (job => restarts%job)
         call archive%expect('job', len(job) > 0 .and. len(job) <= longest_name .and. &
           index(job, '/') == 0 .and. all([(iachar(job(i:i)) >= 32, i=1, len(job))]), &
@@ -155,7 +155,7 @@ contains
 
       kept = schedule
       call archive%part(name, kept)
-      if (archive%judges) call resume_schedule(kept, time, dt, schedule)
+      if (archive%validates) call resume_schedule(kept, time, dt, schedule)
     end subroutine visit_kept_schedule
 
   end subroutine visit_outputs

@@ -4,7 +4,7 @@
 module restart_plan_m
   use archive_m, only : archive_t
   use errors_m, only : error_t, raise, status_files
-  use files_m, only : file_facts_t, facts_of_name, facts_of_target, is_same_file, what_hinders, &
+  use files_m, only : file_facts_t, facts_of_name, facts_of_target, is_same_file, write_obstacle, &
     join_path, unfinished
   use history_tables_m, only : history_tables
   use kinds_m, only : wp, long
@@ -193,7 +193,7 @@ contains
       facts = facts_of_name(path)
       if (.not. facts%is_there) return
       if (.not. (facts%is_regular .or. may_be_any)) then
-        call raise(error, 'cannot write '//path//': '//what_hinders(path), status_files)
+        call raise(error, 'cannot write '//path//': '//write_obstacle(path), status_files)
         return
       end if
       do i = 1, n

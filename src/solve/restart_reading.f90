@@ -76,7 +76,7 @@ contains
     type(inside_tests_t), intent(inout), optional :: inside_tests
     type(log_t) :: silence
 
-    silence%is_mute = .true.
+    silence%is_silent = .true.
     call start_state(model, silence, state, error, remote, inside_tests)
     if (allocated(error)) return
     if (model%controls%implicit%is_on) &
@@ -92,7 +92,7 @@ contains
       call source%leave()
       if (.not. allocated(source%error)) call resume_outlines(model, state)
     end if
-    if (present(remote)) source%forgetters = remote_forgetters(remote)
+    if (present(remote)) source%releases = remote_forgetters(remote)
     if (.not. allocated(source%error)) call source%part('state', state)
     if (.not. allocated(source%error)) call check_state(model, state, source)
     if (.not. allocated(source%error)) call resume_contacts(state)

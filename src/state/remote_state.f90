@@ -5,7 +5,7 @@ module remote_state_m
   use kinds_m, only : wp
   use layout_m, only : chunk_size
   use model_m, only : model_t
-  use packed_buffer_m, only : forgetter_t, choose_slots
+  use packed_buffer_m, only : memory_release_t, choose_slots
   use visitor_m, only : of_nodes
   implicit none
   private
@@ -52,16 +52,16 @@ contains
   end function known_slots
 
   !> Who gives up the memory of others' nodes and slots: before and behind those of this process.
-  pure function remote_forgetters(remote) result(forgetters)
+  pure function remote_forgetters(remote) result(releases)
     type(remote_t), intent(in) :: remote
-    type(forgetter_t) :: forgetters(2)
+    type(memory_release_t) :: releases(2)
     integer :: k
 
     ! Results of functions do not get their default values from gfortran 12.
-    forgetters = forgetter_t()
+    releases = memory_release_t()
     do k = 1, 2
-      forgetters(k)%ranges(:, of_nodes) = remote%nodes(2*k - 1:2*k)
-      call choose_slots(forgetters(k), (remote%slots(2*k - 1:2*k) + [chunk_size - 1, 0]) &
+      releases(k)%ranges(:, of_nodes) = remote%nodes(2*k - 1:2*k)
+      call choose_slots(releases(k), (remote%slots(2*k - 1:2*k) + [chunk_size - 1, 0]) &
         /chunk_size, chunk_size, .true., .false.)
     end do
   end function remote_forgetters

@@ -23,7 +23,7 @@ from keyword_pages import table_lines  # noqa: E402
 KINDS = {
     "Errors in the deck or on the command line": (
         "line_error field_error report_field report_name report_number reject_field refuse refuse_side refuse_static "
-        "refuse_again refuse_rigid complain note find_body"),
+        "refuse_duplicates refuse_rigid set_error note find_body"),
     "Errors that stop a run": "raise archive%fail visitor%fail archive%expect visitor%expect source%expect check_status",
     "Warnings": "warn line_warning warn_of_field warn_of_nodes warn_of_explicit add_warning",
     "Notes in the log": "write_log show_note put_line",

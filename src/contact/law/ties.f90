@@ -17,7 +17,7 @@ module ties_m
   use tiebreak_m, only : mark_breaks, let_go, has_state
   implicit none
   private
-  public :: tie_spring_t, tie_reach, freeze_ties, hold_ties, tie_energy, tie_spring, &
+  public :: tie_spring_t, tie_distance, freeze_ties, hold_ties, tie_energy, tie_spring, &
     tie_stiffness, stiffness_of_nodes, tied_nodes, break_ties
 
   !> A spring as it stands.
@@ -31,15 +31,15 @@ module ties_m
 contains
 
   !> How far apart sites may lie that are tied, m.
-  pure function tie_reach(contact, model) result(reach)
+  pure function tie_distance(contact, model) result(reach)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     real(wp) :: reach
 
-    reach = contact%tie_reach
+    reach = contact%tie_distance
     if (.not. abs(reach) > 0.0_wp) reach = -1.0_wp
     if (reach < 0.0_wp) reach = -0.01_wp*reach*mean_length(contact%master, model)
-  end function tie_reach
+  end function tie_distance
 
   !> Make springs of points that have been placed in the reference geometry. Points farther apart
   !> than `reach` and those without area go.

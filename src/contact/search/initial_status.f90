@@ -104,7 +104,7 @@ contains
     status%reach = max(longest, 2.0_wp*maxval(status%segment_depth))
     if (is_tied(contact) .and. .not. breaks(contact)) then
       ! What is tied its reach says alone, at whatever depth.
-      status%reach = max(status%reach, contact%tie_reach, -0.01_wp*contact%tie_reach*longest)
+      status%reach = max(status%reach, contact%tie_distance, -0.01_wp*contact%tie_distance*longest)
       status%point_depth = status%reach
       status%segment_depth = status%reach
     end if

@@ -17,7 +17,7 @@ module element_losses_m
   use node_motion_m, only : leap_t, find_factors
   use start_m, only : weigh_contacts
   use state_m, only : state_t
-  use surface_building_m, only : surface_left
+  use surface_building_m, only : remaining_surface
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -143,7 +143,7 @@ contains
       if (n > 0) failures%first = 'before the restart'
     else if (failures%n_reported == 0 .and. n > 0) then
       failures%n_reported = n
-      if (log%is_mute) return ! the first process alone knows the elements of all
+      if (log%is_silent) return ! the first process alone knows the elements of all
       slot = first_failed(model, state%elements)
       associate (element => model%layout%slot_element(slot), &
         part => slot_part(model%layout, slot))
@@ -248,8 +248,8 @@ contains
     type(contact_t), intent(inout) :: contact
     type(surface_t) :: slave, master
 
-    call surface_left(model%mesh, is_left, model%contacts(i)%slave, slave)
-    call surface_left(model%mesh, is_left, model%contacts(i)%master, master)
+    call remaining_surface(model%mesh, is_left, model%contacts(i)%slave, slave)
+    call remaining_surface(model%mesh, is_left, model%contacts(i)%master, master)
     if (min(slave%n_segment, master%n_segment) > 0) then
       contact%slave = slave
       contact%master = master

@@ -7,7 +7,7 @@ module explicit_cycle_m
   use load_work_m, only : find_prescribed_velocities, impose_prescribed, count_motions, &
     count_body_motions, count_boundary_loads, count_groups, apply_loads, motion_sums_t, plan_sums, &
     count_sums
-  use clock_m, only : lap, share_contact, phase_nodes
+  use clock_m, only : lap, lap_interface, phase_nodes
   use common_motion_m, only : common_velocity
   use loads_m, only : fix_nodes, update_activity, is_active
   use explicit_contact_m, only : plan_sampling, check_springs
@@ -167,7 +167,7 @@ contains
     do i = 1, size(model%contacts)
       call apply_contact(state%outlines(i), state%motion, state%contact_mass, state%time, &
         state%dt_before, state%cycle, monitor%clock, state%contacts(i), state%force_special)
-      call share_contact(monitor%clock, i)
+      call lap_interface(monitor%clock, i)
       call check_springs(model, i, state, monitor%log)
     end do
     if (state%cycle > 0) call prepare_leap(model, state, cycle)

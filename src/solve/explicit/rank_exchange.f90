@@ -15,7 +15,7 @@ module rank_exchange_m
   use model_m, only : model_t
   use monitor_m, only : monitor_t
   use load_work_m, only : motion_sums_t
-  use packed_buffer_m, only : packed_buffer_t, start_loading, start_unloading, choose_slots
+  use packed_buffer_m, only : packed_buffer_t, start_packing, start_unpacking, choose_slots
   use rank_partition_m, only : partition_t
   use ranks_m, only : ranks_t, gather_reals, exchange_reals, reduce_min
   use requests_m, only : requests_t, read_requests, recent_requests_t, get_signals, drop_repeated
@@ -240,11 +240,11 @@ contains
         starts(:rank) = 1
         starts(rank + 1:) = buffer%n + 1
         if (.not. (takes .or. ranks%mine == rank)) buffer%n = 0
-        call start_loading(buffer)
+        call start_packing(buffer)
         if (ranks%mine == rank) call elements%visit(buffer)
         call gather_reals(ranks, starts, 1, to_all, buffer%values)
         if (.not. takes) cycle
-        call start_unloading(buffer)
+        call start_unpacking(buffer)
         call elements%visit(buffer)
       end do
     end do

@@ -15,7 +15,7 @@ module rank_partition_m
   use load_work_m, only : motion_sums_t
   use model_m, only : model_t
   use remote_state_m, only : remote_t, remote_forgetters, inside_tests_t
-  use packed_buffer_m, only : forgetter_t, packed_buffer_t, part_of
+  use packed_buffer_m, only : memory_release_t, packed_buffer_t, part_of
   use ranks_m, only : ranks_t
   use renumber_m, only : mark_moved_nodes
   use state_m, only : state_t
@@ -120,17 +120,17 @@ contains
     type(model_t), intent(inout) :: model
     type(ranks_t), intent(in) :: ranks
     type(state_t), intent(inout) :: state
-    type(forgetter_t) :: forgetters(2)
+    type(memory_release_t) :: releases(2)
     integer :: k
 
     if (ranks%mine == 0 .or. needs_all(model)) return
     deallocate (model%mesh%element_id)
     if (.not. allocated(state%cut_force)) deallocate (model%layout%element_slot)
-    forgetters = remote_forgetters(remote_of(model, partition_tiles(model%layout, ranks%mine, &
+    releases = remote_forgetters(remote_of(model, partition_tiles(model%layout, ranks%mine, &
       ranks%n), ranks))
     do k = 1, 2
-      call model%visit(forgetters(k))
-      call state%visit(forgetters(k))
+      call model%visit(releases(k))
+      call state%visit(releases(k))
     end do
   end subroutine release_remote
 

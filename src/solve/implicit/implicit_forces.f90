@@ -4,7 +4,7 @@
 !> 1 and 2).
 module implicit_forces_m
   use block_state_m, only : block_state_t
-  use clock_m, only : clock_t, lap, share_contact, phase_elements, phase_contact_force, phase_nodes
+  use clock_m, only : clock_t, lap, lap_interface, phase_elements, phase_contact_force, phase_nodes
   use conditions_m, only : pressure_load_t
   use contact_state_m, only : contact_state_t
   use contact_dispatch_m, only : add_contact_stiffness
@@ -112,7 +112,7 @@ contains
       call evaluate_contact(model%contacts(i), trial%motion, time, time - state%time, is_first, &
         trial%contacts(i), trial%contact)
       call lap(clock, phase_contact_force)
-      call share_contact(clock, i)
+      call lap_interface(clock, i)
     end do
     call form_external_force(model, trial%motion, time, trial%external)
     if (size(model%conditions%body_loads) > 0) then
@@ -238,7 +238,7 @@ contains
       call add_contact_stiffness(model%contacts(i), trial%contacts(i), step%equations%number, &
         matrix)
       call lap(clock, phase_contact_force)
-      call share_contact(clock, i)
+      call lap_interface(clock, i)
     end do
     do i = 1, size(model%conditions%pressures)
       call add_pressure_stiffness(model, model%conditions%pressures(i), trial%motion, step%time, &
