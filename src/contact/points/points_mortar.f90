@@ -92,7 +92,7 @@ contains
     type(contact_points_t), intent(inout) :: points
     type(projection_t) :: projection
     real(wp) :: length, area
-    integer :: ends(2), q, i
+    integer :: ends(2), nodes(2), q, i
 
     ends = contact%slave%segments(:, s)
     length = segment_length(memory%positions(:, ends(1)), memory%positions(:, ends(2)))
@@ -108,8 +108,9 @@ contains
       end if
       if (memory%slave_status%pass%is_closed) &
         area = area*sides_part(contact, memory, s, projection%segment)
-      call add_point(points, ends, memory%segment_xi(q), memory%n_slave &
-        + contact%master%segments(:, projection%segment), projection, area, memory%slave_penalty)
+      nodes = memory%n_slave + contact%master%segments(:, projection%segment)
+      call add_point(points, ends, memory%segment_xi(q), nodes, projection, area, &
+        memory%slave_penalty)
     end do
   end subroutine points_on_whole_segment
 
