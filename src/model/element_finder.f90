@@ -11,7 +11,7 @@ module element_finder_m
   implicit none
   private
   public :: element_finder_t, start_finder, is_inside_body, element_at, cell_of, body_view_t, &
-    most_crossed, view_body, half_thickness, list_crossed, ends_of
+    most_crossed, view_body, half_thickness, list_crossed, ends_of, initial_length, area_behind
 
   !> Part of a cell by which a node must lie within the boundary.
   real(wp), parameter :: margin = 1.0e-6_wp
@@ -217,16 +217,34 @@ contains
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: segment
     real(wp) :: depth
-    real(wp) :: length, area
 
-    associate (x => model%mesh%coordinates, ends => surface%nodes(surface%segments(:, segment)), &
-      nodes => model%mesh%element_nodes(:, surface%segment_element(segment)))
-      length = norm2(x(:, ends(2)) - x(:, ends(1)))
-      area = 0.5_wp*((x(1, nodes(3)) - x(1, nodes(1)))*(x(2, nodes(4)) - x(2, nodes(2))) &
-        - (x(1, nodes(4)) - x(1, nodes(2)))*(x(2, nodes(3)) - x(2, nodes(1))))
-    end associate
-    depth = 0.5_wp*area/length
+    depth = 0.5_wp*area_behind(model, surface, segment)/initial_length(model, surface, segment)
   end function half_thickness
+
+  !> Length of a segment, m.
+  pure function initial_length(model, surface, segment) result(length)
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: segment
+    real(wp) :: length
+    real(wp) :: x(2, 2)
+
+    x = ends_of(model, surface, segment)
+    length = norm2(x(:, 2) - x(:, 1))
+  end function initial_length
+
+  !> Area of the element behind a segment, m^2.
+  pure function area_behind(model, surface, segment) result(area)
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: segment
+    real(wp) :: area
+    real(wp) :: x(2, 4)
+
+    x = model%mesh%coordinates(:, model%mesh%element_nodes(:, surface%segment_element(segment)))
+    area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
+      - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+  end function area_behind
 
   !> Segments that a line a-b and that cross each other, in order along it, and where on it (0 to
   !> 1): each reaches through the other with both ends. All behind which elements lie in its way.

@@ -12,8 +12,8 @@ module restart_m
   use archive_m, only : archive_t
   use checksum_m, only : add_bytes, checksum_text
   use clock_m, only : lap, phase_nodes, phase_output
-  use contact_state_m, only : contact_state_t, contact_points_t, contact_status_t, separated, &
-    active, n_sites
+  use contact_state_m, only : contact_state_t, contact_points_t, n_sites
+  use search_state_m, only : contact_status_t, separated, active
   use contacts_m, only : contact_t
   use errors_m, only : error_t, status_files
   use files_m, only : file_exists, remove_file, unfinished
@@ -225,7 +225,8 @@ contains
     end if
     n_segments = [contact%slave%n_segment, contact%master%n_segment]
     n_contact_point = memory%n_slave
-    if (allocated(memory%segment_xi)) n_contact_point = size(memory%segment_xi)*n_segments(1)
+    if (allocated(memory%segment_points%xi)) &
+      n_contact_point = size(memory%segment_points%xi)*n_segments(1)
     call check_status(memory%slave_status, n_contact_point, n_segments(2), &
     folder//'slave_status/', archive)
     call check_status(memory%master_status, memory%n_master, n_segments(1), &
@@ -271,12 +272,10 @@ contains
 
     associate (ties => memory%ties)
       n = size(ties%side)
-      if (memory%has%breaks) then
-        call archive%expect(folder//'state', all(ties%state == is_open .or. ties%state &
-          >= is_held .and. ties%state <= is_beside), 'numbers that mean nothing')
-        call archive%expect(folder//'site', all(ties%site >= 1 &
-          .and. ties%site <= n_sites(memory)), 'numbers that no place of the interface has')
-      end if
+      call archive%expect(folder//'state', all(ties%state == is_open .or. ties%state &
+        >= is_held .and. ties%state <= is_beside), 'numbers that mean nothing')
+      call archive%expect(folder//'site', all(ties%site >= 1 &
+        .and. ties%site <= n_sites(memory)), 'numbers that no place of the interface has')
       call archive%expect(folder//'first', ties%first(1) == 1 &
         .and. all(ties%first(2:) > ties%first(:n)) .and. (ties%first(n + 1) &
         == memory%tie_points%n + 1 .or. memory%tie_points%n == 0), &

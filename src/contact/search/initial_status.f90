@@ -4,10 +4,12 @@
 !> behind the segments: points beyond the far side of a body are no penetrations
 !> (doc/theory/contact.md, section 3.4).
 module initial_status_m
-  use contact_state_m, only : contact_state_t, contact_status_t, allocate_status, separated, active
+  use contact_state_m, only : contact_state_t
+  use search_state_m, only : contact_status_t, allocate_status, active
   use contact_status_m, only : list_active
   use contacts_m, only : contact_t, is_tied, breaks
-  use element_finder_m, only : element_finder_t, start_finder, is_inside_body
+  use element_finder_m, only : element_finder_t, start_finder, is_inside_body, initial_length, &
+    half_thickness
   use projection_m, only : projection_t, closest_projection, local_coordinates
   use geometry_m, only : local_coordinates_t, closest_distance, local_gap, local_normal
   use entry_m, only : is_opposed, segments_of
@@ -17,8 +19,8 @@ module initial_status_m
   use surfaces_m, only : surface_t, has_closed_chain
   implicit none
   private
-  public :: allocate_slave_status, allocate_master_status, allocate_segments, &
-    activate_deep_points, activate_deep_segments
+  public :: allocate_slave_status, allocate_master_status, activate_deep_points, &
+    activate_deep_segments
 
 contains
 
@@ -31,10 +33,10 @@ contains
 
     associate (status => memory%slave_status)
       n = contact%slave%n_node
-      if (allocated(memory%segment_xi)) then
-        status%pass%xi = memory%segment_xi
+      if (allocated(memory%segment_points%xi)) then
+        status%pass%xi = memory%segment_points%xi
         status%pass%segment_at = contact%slave%outgoing
-        status%pass%n_on_segment = size(memory%segment_xi)
+        status%pass%n_on_segment = size(memory%segment_points%xi)
         n = status%pass%n_on_segment*contact%slave%n_segment
       end if
       status%pass%other_at = memory%n_slave
@@ -58,16 +60,6 @@ contains
       call set_depths(status, contact, model, contact%master, contact%slave)
     end associate
   end subroutine allocate_master_status
-
-  !> Status of slave segments.
-  pure subroutine allocate_segments(contact, memory)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-
-    allocate (memory%segment_state(contact%slave%n_segment), source=separated)
-    allocate (memory%segment_gap(contact%slave%n_segment), source=huge(1.0_wp))
-    allocate (memory%segment_search(contact%slave%n_segment), source=-huge(1.0_wp))
-  end subroutine allocate_segments
 
   !> Deepest first contact: SRCH, or half of the shortest of the point's own segments, the segment
   !> that it meets, and the thickness of the element behind that. All from the initial mesh. The
@@ -95,7 +87,7 @@ contains
     do i = 1, other%n_segment
       length = initial_length(model, other, i)
       longest = max(longest, length)
-      status%segment_depth(i) = 0.5_wp*min(length, area_behind(model, other, i)/length)
+      status%segment_depth(i) = min(0.5_wp*length, half_thickness(model, other, i))
     end do
     if (contact%search_depth > 0.0_wp) then
       status%point_depth = contact%search_depth
@@ -110,31 +102,6 @@ contains
     end if
     status%shallowest = min(minval(status%point_depth), minval(status%segment_depth))
   end subroutine set_depths
-
-  !> Initial length of a segment, m.
-  pure function initial_length(model, surface, segment) result(length)
-    type(model_t), intent(in) :: model
-    type(surface_t), intent(in) :: surface
-    integer, intent(in) :: segment
-    real(wp) :: length
-
-    length = norm2(model%mesh%coordinates(:, surface%nodes(surface%segments(2, segment))) &
-      - model%mesh%coordinates(:, surface%nodes(surface%segments(1, segment))))
-  end function initial_length
-
-  !> Initial area of the element behind a segment, m^2.
-  pure function area_behind(model, surface, segment) result(area)
-    type(model_t), intent(in) :: model
-    type(surface_t), intent(in) :: surface
-    integer, intent(in) :: segment
-    real(wp) :: area
-
-    associate (x => model%mesh%coordinates, &
-      nodes => model%mesh%element_nodes(:, surface%segment_element(segment)))
-      area = 0.5_wp*((x(1, nodes(3)) - x(1, nodes(1)))*(x(2, nodes(4)) - x(2, nodes(2))) &
-        - (x(1, nodes(4)) - x(1, nodes(2)))*(x(2, nodes(3)) - x(2, nodes(1))))
-    end associate
-  end function area_behind
 
   !> Points deeper than a first contact may be that lie inside an element behind the other surface
   !> are active on the closest face that is opposed to them; on a closed boundary no deeper than the
@@ -199,8 +166,7 @@ contains
         square = closest_distance(local)
         if (local%across >= 0.0_wp .or. square >= least) cycle
         if (.not. is_opposed(status%pass, own, positions, i, local_normal(local))) cycle
-        if (is_closed .and. -local_gap(local)*initial_length(model, other, m) &
-          > area_behind(model, other, m)) cycle
+        if (is_closed .and. -local_gap(local) > 2.0_wp*half_thickness(model, other, m)) cycle
         closest = m
         least = square
       end do
@@ -211,10 +177,11 @@ contains
 
   !> Slave segments with a master node deep inside the body behind them are in contact from the
   !> start: of these the closest one of which the node is behind.
-  subroutine activate_deep_segments(contact, model, memory, inside_tests)
+  subroutine activate_deep_segments(contact, model, positions, state, inside_tests)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
-    type(contact_state_t), intent(inout) :: memory
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
+    integer, intent(inout) :: state(:)                  !! (n_segment) of the slave segments
     type(inside_tests_t), intent(inout), optional :: inside_tests
     type(element_finder_t) :: finder
     logical :: inside
@@ -232,14 +199,14 @@ contains
         least = huge(1.0_wp)
         do s = 1, contact%slave%n_segment
           if (any(contact%slave%nodes(contact%slave%segments(:, s)) == node)) cycle
-          square = closest_distance(local_coordinates(contact%slave, &
-            memory%positions(:, :memory%n_slave), memory%positions(:, memory%n_slave + i), s))
+          square = closest_distance(local_coordinates(contact%slave, positions, &
+            positions(:, contact%slave%n_node + i), s))
           if (square >= least) cycle
           least = square
           nearest = s
         end do
       end associate
-      if (nearest > 0) memory%segment_state(nearest) = active
+      if (nearest > 0) state(nearest) = active
     end do
   end subroutine activate_deep_segments
 

@@ -7,7 +7,7 @@ module implicit_m
   use clock_m, only : lap, phase_nodes, phase_output
   use contact_reports_m, only : report_contact_end
   use contact_law_m, only : measure_springs
-  use contact_work_m, only : count_step
+  use nodal_forces_m, only : count_step
   use contacts_m, only : breaks
   use controls_m, only : boundary_motion, group_nodes
   use cut_forces_m, only : store_cut_chunks

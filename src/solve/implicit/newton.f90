@@ -5,7 +5,7 @@
 !> doc/theory/contact.md, section 9.8).
 module newton_m
   use clock_m, only : clock_t, lap, phase_nodes, phase_solver
-  use contact_scatter_m, only : add_gap_round_off
+  use nodal_forces_m, only : add_gap_round_off
   use contact_state_m, only : contact_state_t
   use controls_m, only : implicit_t
   use equations_m, only : free_entries, move_prescribed
@@ -213,7 +213,9 @@ contains
     now%floor = epsilon(1.0_wp)*norm2(total)
     forces = 0.0_wp*trial%contact
     do i = 1, size(trial%contacts)
-      call add_gap_round_off(trial%contacts(i), forces)
+      associate (contact => trial%contacts(i))
+        call add_gap_round_off(contact%points, contact%positions, contact%nodes, forces)
+      end associate
     end do
     now%gap_floor = now%floor + epsilon(1.0_wp)*norm2(free_entries(step%equations, forces))
   end subroutine measure_residual
