@@ -22,8 +22,8 @@ module ties_m
   use tributary_lengths_m, only : nodal_area
   implicit none
   private
-  public :: tie_spring_t, tie_distance, freeze_ties, hold_ties, break_ties, tie_springs, tie_energy, &
-    tie_spring, has_state, is_tied_site, tied_nodes
+  public :: tie_spring_t, tie_distance, freeze_ties, hold_ties, break_ties, tie_springs, &
+    tie_energy, tie_spring, has_state, is_tied_site, tied_nodes
 
   !> A spring as it stands.
   type :: tie_spring_t
