@@ -5,8 +5,8 @@
 !> effect.
 module arguments_m
   use deck_lines_m, only : shown_text
-  use deck_overrides_m, only : is_override, override_mistake, contact_names, run_names
-  use deck_schema_m, only : first_too_far, keep_nearer
+  use deck_overrides_m, only : is_override, override_error, contact_names, run_names
+  use deck_schema_m, only : distance_limit, update_nearest
   use errors_m, only : error_t, raise, status_input
   use files_m, only : folder_of
   use log_m, only : to_text
@@ -98,37 +98,37 @@ contains
     type(arguments_t), intent(out) :: arguments
     type(error_t), allocatable, intent(out) :: error
     character(argument_length) :: word
-    character(:), allocatable :: mistakes
+    character(:), allocatable :: problems
     integer :: i, length
 
     allocate (arguments%overrides(0))
     arguments%line = ''
     arguments%ignored = ''
-    mistakes = ''
+    problems = ''
     do i = 1, command_argument_count()
       call get_command_argument(i, word, length=length)
       if (length > argument_length) then
         call note('"'//shown_text(word(:60))//'..." has '//to_text(length)//' characters: an ' &
-          //'argument may have '//to_text(argument_length), mistakes)
+          //'argument may have '//to_text(argument_length), problems)
         cycle
       end if
       if (i > 1) arguments%line = arguments%line//' '
       arguments%line = arguments%line//trim(word)
       arguments%check = arguments%check .or. (i == 1 .and. word == 'check')
-      if (i > 1 .or. .not. arguments%check) call read_word(trim(word), arguments, mistakes)
+      if (i > 1 .or. .not. arguments%check) call read_word(trim(word), arguments, problems)
     end do
     if (arguments%help .or. arguments%version) return
     if (.not. (allocated(arguments%deck) .or. allocated(arguments%restart))) &
-      call note('no deck given: expected i=DECK (or r=FILE to go on)', mistakes)
+      call note('no deck given: expected i=DECK (or r=FILE to go on)', problems)
     if (arguments%check .and. allocated(arguments%restart)) &
-      call note('check looks at a deck: r= has no meaning', mistakes)
-    if (arguments%json .and. .not. arguments%check) call note('--json goes with check', mistakes)
-    if (len(mistakes) > 0) then
+      call note('check looks at a deck: r= has no meaning', problems)
+    if (arguments%json .and. .not. arguments%check) call note('--json goes with check', problems)
+    if (len(problems) > 0) then
       ! Else the deck tells them with its own.
       do i = 1, size(arguments%overrides)
-        call note(override_mistake(trim(arguments%overrides(i))), mistakes)
+        call note(override_error(trim(arguments%overrides(i))), problems)
       end do
-      call raise(error, mistakes//'try slideline --help', status_input)
+      call raise(error, problems//'try slideline --help', status_input)
       return
     end if
     if (allocated(arguments%restart)) then
@@ -140,10 +140,10 @@ contains
   end subroutine read_arguments
 
   !> Understand one argument.
-  subroutine read_word(word, arguments, mistakes)
+  subroutine read_word(word, arguments, problems)
     character(*), intent(in) :: word
     type(arguments_t), intent(inout) :: arguments
-    character(:), allocatable, intent(inout) :: mistakes
+    character(:), allocatable, intent(inout) :: problems
     character(:), allocatable :: name, value
     integer :: i, equals
 
@@ -151,14 +151,14 @@ contains
       ! They would make lines of their own in logs and status.out, or act on terminals.
       if (iachar(word(i:i)) >= 32 .and. iachar(word(i:i)) /= 127) cycle
       call note('"'//trim(shown_text(word))//'" has a control character (line feed, escape or ' &
-        //'the like) where ? stands: expected none', mistakes)
+        //'the like) where ? stands: expected none', problems)
       return
     end do
     equals = index(word, '=')
     ! No name before a value holds a slash: this is a path.
     if (equals > 0 .and. index(word(:equals), '/') > 0) equals = 0
     if (equals == 0 .and. index(word, '-') /= 1) then
-      call take(arguments%deck, word, 'deck', mistakes)
+      call set_once(arguments%deck, word, 'deck', problems)
       return
     end if
     name = lower_case(word(:equals - 1))
@@ -172,32 +172,32 @@ contains
     case ('--json')
       arguments%json = .true.
     case ('i')
-      call take(arguments%deck, value, 'deck', mistakes)
+      call set_once(arguments%deck, value, 'deck', problems)
     case ('r')
-      call take(arguments%restart, value, 'r=', mistakes)
+      call set_once(arguments%restart, value, 'r=', problems)
     case ('d')
       arguments%no_dump = arguments%no_dump .or. lower_case(value) == 'nodump'
-      if (lower_case(value) /= 'nodump') call take(arguments%directory, value, 'd=', mistakes)
+      if (lower_case(value) /= 'nodump') call set_once(arguments%directory, value, 'd=', problems)
     case ('jobid')
-      call take(arguments%job, value, 'jobid=', mistakes)
+      call set_once(arguments%job, value, 'jobid=', problems)
       if (index(value, '/') > 0) &
-        call note('jobid="'//value//'": expected a name without /', mistakes)
+        call note('jobid="'//value//'": expected a name without /', problems)
     case ('ncpu')
       ! LS-DYNA's may have a minus before it.
       call read_count(name, value(1 + index(value(:min(1, len(value))), '-'):), 1024, &
-        arguments%n_thread, mistakes)
+        arguments%n_thread, problems)
     case ('c')
-      call read_count(name, value, 1000000000, arguments%cpu_seconds, mistakes)
+      call read_count(name, value, 1000000000, arguments%cpu_seconds, problems)
     case ('quiet')
       arguments%quiet = value == '1'
       if (value /= '0' .and. value /= '1') &
-        call note('quiet="'//value//'": expected 0 or 1', mistakes)
+        call note('quiet="'//value//'": expected 0 or 1', problems)
     case ('perthread')
-      call read_count(name, value, 1000000000, arguments%thread_share, mistakes)
+      call read_count(name, value, 1000000000, arguments%thread_share, problems)
     case ('timing')
       i = findloc(timings == lower_case(value), .true., 1)
       if (i > 0) arguments%timing = i - 1
-      if (i == 0) call note('timing="'//value//'": expected phase, interface or off', mistakes)
+      if (i == 0) call note('timing="'//value//'": expected phase, interface or off', problems)
     case ('memory', 'memory2')
       continue ! memory is taken as it is needed
     case ('o', 'g', 's', 'f', 'a', 'x', 'para')
@@ -207,13 +207,13 @@ contains
       if (is_override(name)) then
         arguments%overrides = [character(argument_length) :: arguments%overrides, word]
       else
-        call note('unknown argument "'//word//'"'//meant_word(word), mistakes)
+        call note('unknown argument "'//word//'"'//suggestion(word), problems)
       end if
     end select
   end subroutine read_word
 
   !> `; did you mean NAME=?`, NAME the nearest of all words; nothing where none is near.
-  pure function meant_word(word) result(text)
+  pure function suggestion(word) result(text)
     character(*), intent(in) :: word !! that is not known
     character(:), allocatable :: text
     character(*), parameter :: words(*) = [character(9) :: run_names, contact_names, own_words]
@@ -224,30 +224,30 @@ contains
     given = lower_case(word(:scan(word//'=.', '=.') - 1))
     if (len(given) < len(word)) given = given//'='
     nearest = ''
-    least = first_too_far(given)
+    least = distance_limit(given)
     do i = 1, size(words)
       known = lower_case(trim(words(i)))
       if (index(known, '--') /= 1) known = known//'='
-      call keep_nearer(known, given, least, nearest)
+      call update_nearest(known, given, least, nearest)
     end do
     text = ''
     if (len_trim(nearest) > 0) text = '; did you mean '//trim(nearest)//'?'
-  end function meant_word
+  end function suggestion
 
   !> Keep what is wrong with one word.
-  pure subroutine note(mistake, mistakes)
-    character(*), intent(in) :: mistake !! empty: nothing
-    character(:), allocatable, intent(inout) :: mistakes
+  pure subroutine note(problem, problems)
+    character(*), intent(in) :: problem !! empty: nothing
+    character(:), allocatable, intent(inout) :: problems
 
-    if (len(mistake) > 0) mistakes = mistakes//mistake//new_line('a')
+    if (len(problem) > 0) problems = problems//problem//new_line('a')
   end subroutine note
 
   !> Understand a number from 1 to `most`.
-  pure subroutine read_count(name, value, most, count, mistakes)
+  pure subroutine read_count(name, value, most, count, problems)
     character(*), intent(in) :: name, value
     integer, intent(in) :: most
     integer, intent(inout) :: count !! kept where the value is wrong
-    character(:), allocatable, intent(inout) :: mistakes
+    character(:), allocatable, intent(inout) :: problems
     integer :: number, status
 
     number = 0
@@ -256,26 +256,26 @@ contains
     if (status == 0 .and. number >= 1 .and. number <= most) then
       count = number
     else
-      call note(name//'="'//value//'": expected a number from 1 to '//to_text(most), mistakes)
+      call note(name//'="'//value//'": expected a number from 1 to '//to_text(most), problems)
     end if
   end subroutine read_count
 
   !> Set a text once.
-  subroutine take(target_text, value, name, mistakes)
+  subroutine set_once(target_text, value, name, problems)
     character(:), allocatable, intent(inout) :: target_text
     character(*), intent(in) :: value, name
-    character(:), allocatable, intent(inout) :: mistakes
+    character(:), allocatable, intent(inout) :: problems
 
     if (allocated(target_text)) then
-      call note(name//' is given twice: "'//target_text//'" and "'//value//'"', mistakes)
+      call note(name//' is given twice: "'//target_text//'" and "'//value//'"', problems)
       if (name == 'deck') &
-        call note('(the one command that may come before a deck is check)', mistakes)
+        call note('(the one command that may come before a deck is check)', problems)
     else if (len_trim(value) == 0) then
-      call note(name//' is empty', mistakes)
+      call note(name//' is empty', problems)
     else
       target_text = value
     end if
-  end subroutine take
+  end subroutine set_once
 
   !> The text with letters A to Z made lower case, in which words of the command line are told.
   pure function lower_case(text) result(lower)

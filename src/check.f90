@@ -8,18 +8,18 @@ module check_m
   use contact_dispatch_m, only : contact_kinds
   use controls_m, only : is_asked
   use deck_m, only : deck_request_t, read_deck
-  use deck_report_m, only : spot_t, add_finding, json_text
+  use deck_report_m, only : finding_t, add_finding, json_text
   use errors_m, only : error_t, raise, status_files
   use explicit_m, only : advance_explicit
   use files_m, only : join_path, make_directory
   use implicit_m, only : advance_implicit
-  use log_m, only : log_t, forget_waiting, to_text
+  use log_m, only : log_t, clear_pending, to_text
   use model_m, only : model_t
   use model_tables_m, only : write_model
   use monitor_m, only : monitor_t
   use renumber_m, only : renumber_model
   use results_file_m, only : open_results, append_state, finish_results, publish, run_info_t
-  use text_files_m, only : show
+  use text_files_m, only : print_line
   use snapshot_filling_m, only : start_snapshot
   use start_m, only : start_state
   use state_m, only : state_t
@@ -49,17 +49,18 @@ contains
         call add_message('error', error%message, findings)
     else
       ! The deck's warnings are findings already.
-      call forget_waiting(monitor%log)
+      call clear_pending(monitor%log)
       call start_run(arguments, info, model, monitor, error)
       call add_warnings(monitor%log, findings)
       if (allocated(error)) call add_message('error', error%message, findings)
     end if
     if (arguments%json) then
-      call show(findings_text(arguments%deck, findings, allocated(error)), failure)
+      call print_line(findings_text(arguments%deck, findings, allocated(error)), failure)
       ! Who asked for these lines has not got them: that counts more than what they would have said.
       if (allocated(failure)) call raise(error, failure%message, status_files)
     else if (.not. allocated(error)) then
-      call show(arguments%deck//': accepted, '//counted(model%mesh%n_element, 'element')//', ' &
+      call print_line(arguments%deck//': accepted, '//counted(model%mesh%n_element, &
+        'element')//', ' &
         //to_text(model%mesh%n_node)//' nodes, '//counted(size(model%contacts), 'interface') &
         //', '//counted(monitor%log%n_warning, 'warning'))
     end if
@@ -122,12 +123,12 @@ contains
     character(:), allocatable, intent(inout) :: findings
     integer :: start, last
 
-    if (.not. allocated(log%waiting)) return
+    if (.not. allocated(log%pending)) return
     start = 1
-    do while (start <= log%n_waiting)
-      last = start + index(log%waiting(start:), new_line('a')) - 2
-      if (index(log%waiting(start:last), 'warning: ') == 1) &
-        call add_message('warning', log%waiting(start + 9:last), findings)
+    do while (start <= log%n_pending)
+      last = start + index(log%pending(start:), new_line('a')) - 2
+      if (index(log%pending(start:last), 'warning: ') == 1) &
+        call add_message('warning', log%pending(start + 9:last), findings)
       start = last + 2
     end do
   end subroutine add_warnings
@@ -146,10 +147,10 @@ contains
   subroutine add_message(severity, message, findings)
     character(*), intent(in) :: severity, message
     character(:), allocatable, intent(inout) :: findings
-    type(spot_t) :: spot
+    type(finding_t) :: finding
 
-    spot%message = message
-    call add_finding(severity, spot, findings)
+    finding%message = message
+    call add_finding(severity, finding, findings)
   end subroutine add_message
 
   !> One JSON object with the findings.

@@ -8,9 +8,9 @@ program slideline
   use errors_m, only : error_t, status_run
   use ranks_m, only : ranks_t, join_ranks, leave_ranks
   use run_m, only : run_deck
-  use text_files_m, only : show, complain, error_ending
+  use text_files_m, only : print_line, print_error, error_ending
   use source_version_m, only : source_version
-  use system_m, only : catch_requests, watch_end, announce_end, exit_with, fill_standard_streams
+  use system_m, only : catch_requests, guard_exit, allow_exit, exit_with, fill_standard_streams
   implicit none
 
   type(arguments_t) :: arguments
@@ -22,7 +22,7 @@ program slideline
 
   call join_ranks(ranks)
   call catch_requests()
-  call watch_end(new_line('a')//error_ending//new_line('a')//c_null_char, int(status_run, c_int))
+  call guard_exit(new_line('a')//error_ending//new_line('a')//c_null_char, int(status_run, c_int))
   call fill_standard_streams()
   call read_arguments(arguments, error)
   if (.not. allocated(error)) then
@@ -30,23 +30,23 @@ program slideline
       continue ! the first process answers
     else if (arguments%help) then
       do i = 1, size(help)
-        call show(trim(help(i)))
+        call print_line(trim(help(i)))
       end do
     else if (arguments%version) then
-      call show('slideline '//version//' (source '//source_version//')')
-      call show('build '//build_type//', '//compiler)
-      call show('flags '//flags)
-      call show('linear solvers '//solvers)
+      call print_line('slideline '//version//' (source '//source_version//')')
+      call print_line('build '//build_type//', '//compiler)
+      call print_line('flags '//flags)
+      call print_line('linear solvers '//solvers)
     else if (arguments%check) then
       call check_deck(arguments, error)
     else
       call run_deck(arguments, ranks, has_ended, error)
     end if
   end if
-  call announce_end()
+  call allow_exit()
   if (allocated(error) .and. ranks%mine == 0) then
-    call complain(error%message)
-    if (.not. has_ended) call show(error_ending)
+    call print_error(error%message)
+    if (.not. has_ended) call print_line(error_ending)
   end if
   call leave_ranks()
   if (allocated(error)) then

@@ -6,7 +6,7 @@ module run_m
   use arguments_m, only : arguments_t, file_stem, only_end_time, timing_by_interface, timing_off
   use build_info_m, only : version, build_type, compiler, flags
   use checksum_m, only : add_bytes, checksum_text
-  use clock_m, only : lap, start_clock, look_at_clock, split_contact, elapsed_seconds, &
+  use clock_m, only : lap, start_clock, read_clock, track_interfaces, elapsed_seconds, &
     phase_input, phase_output
   use contact_dispatch_m, only : contact_kinds
   use deck_m, only : deck_request_t, read_deck
@@ -18,24 +18,24 @@ module run_m
   use files_m, only : make_directory, remove_file, join_path, unfinished
   use history_file_m, only : close_histories
   use text_files_m, only : write_whole
-  use others_memory_m, only : answers_t, others_t
+  use remote_state_m, only : inside_tests_t, remote_t
   use kinds_m, only : long
   use log_m, only : log_t, open_log, close_log, write_log, warn, to_text
   use memory_m, only : processor_name
   use model_m, only : model_t
   use monitor_m, only : monitor_t, open_files, start_monitor, finish_monitor
   use progress_m, only : show_end, write_status, timing_text
-  use rank_shares_m, only : hand_model, hand_others, forget_others
+  use rank_partition_m, only : distribute_model, distribute_start, release_remote
   use ranks_m, only : ranks_t, share_error
   use relaxation_m, only : relax, switch_loads
-  use renumber_m, only : renumber_model, forget_start
+  use renumber_m, only : renumber_model, release_start_data
   use restart_file_m, only : open_restart
-  use restart_m, only : forget_files
+  use restart_m, only : remove_old_files
   use restart_plan_m, only : restarts_t, check_names, switch_path
-  use restart_reading_m, only : take_up_file, take_up_state, take_up_results, check_rest, &
-    take_up_outputs
+  use restart_reading_m, only : read_restart_run, read_restart_state, find_restart_states, &
+    check_other_components, restore_outputs
   use results_file_m, only : run_info_t
-  use system_m, only : catch_stops, give_back_memory, limit_processor
+  use system_m, only : catch_stops, release_memory, limit_processor
   use source_version_m, only : source_version
   use start_m, only : start_state
   use state_m, only : state_t
@@ -59,7 +59,7 @@ contains
 
     has_ended = .false.
     monitor%ranks = ranks
-    monitor%log%is_mute = ranks%mine > 0
+    monitor%log%is_silent = ranks%mine > 0
     call start_clock(monitor%clock)
     monitor%clock%is_on = arguments%timing /= timing_off
     monitor%progress%is_quiet = arguments%quiet
@@ -74,20 +74,20 @@ contains
       call read_model(arguments, monitor, model, info%effective_deck, error)
     else if (allocated(arguments%restart)) then
       call open_restart(arguments%restart, monitor%restarts%source, error)
-      monitor%restarts%goes_on = .true.
+      monitor%restarts%is_restart = .true.
     end if
     call share_error(ranks, error)
     if (allocated(error)) return
-    call hand_model(monitor%ranks, model, has_all)
+    call distribute_model(monitor%ranks, model, has_all)
     if (arguments%timing == timing_by_interface) &
-      call split_contact(monitor%clock, size(model%contacts))
+      call track_interfaces(monitor%clock, size(model%contacts))
     monitor%restarts%prefix = ''
     if (ranks%mine == 0) then
       monitor%restarts%directory = arguments%directory
       monitor%restarts%job = arguments%job
       monitor%restarts%prefix = join_path(arguments%directory, arguments%job)
     end if
-    if (monitor%restarts%goes_on) then
+    if (monitor%restarts%is_restart) then
       call make_state(has_all, model, state, monitor, error)
       if (allocated(error)) return
     end if
@@ -97,21 +97,21 @@ contains
       if (.not. allocated(error)) call check_names(monitor%restarts, &
         model%controls%output%dump_cycles >= 0, .false., error)
       if (.not. allocated(error)) call open_log(monitor%log, monitor%restarts%prefix//'.log', &
-        monitor%restarts%goes_on, error)
+        monitor%restarts%is_restart, error)
     end if
     call share_error(ranks, error)
     if (allocated(error)) return
     call begin_run(arguments, has_all, model, info, state, monitor, error)
     call lap(monitor%clock, phase_input)
     if (allocated(error)) then
-      if (ranks%mine == 0) call give_up(model, state, monitor, error)
+      if (ranks%mine == 0) call report_failed_start(model, state, monitor, error)
     else
       call drive(arguments, model, state, monitor, error)
     end if
     has_ended = .true.
     call close_log(monitor%log)
-    if (.not. allocated(error) .and. allocated(monitor%log%trouble)) &
-      call move_alloc(monitor%log%trouble, error)
+    if (.not. allocated(error) .and. allocated(monitor%log%first_error)) &
+      call move_alloc(monitor%log%first_error, error)
     call share_error(ranks, error)
   end subroutine run_deck
 
@@ -126,7 +126,7 @@ contains
 
     request%overrides = arguments%overrides
     if (allocated(arguments%restart)) then
-      call take_up_deck(arguments, monitor, request, error)
+      call get_restart_deck(arguments, monitor, request, error)
       if (allocated(error)) return
     else
       request%path = arguments%deck
@@ -148,14 +148,14 @@ contains
 
   !> The deck of a run that goes on from a restart file: that of the file, with what the command
   !> line and a small deck change.
-  subroutine take_up_deck(arguments, monitor, request, error)
+  subroutine get_restart_deck(arguments, monitor, request, error)
     type(arguments_t), intent(inout) :: arguments  !! gets the job name of the file
     type(monitor_t), intent(inout) :: monitor
     type(deck_request_t), intent(inout) :: request
     type(error_t), allocatable, intent(out) :: error
     character(:), allocatable :: deck, changes, reason
 
-    call take_up_file(arguments%restart, monitor%restarts, deck, error)
+    call read_restart_run(arguments%restart, monitor%restarts, deck, error)
     if (allocated(error)) return
     call write_log(monitor%log, 'goes on from the restart file '//arguments%restart)
     if (monitor%restarts%program /= program_text()) call write_log(monitor%log, 'the restart ' &
@@ -172,7 +172,7 @@ contains
         return
       end if
       if (is_whole_deck(changes)) then
-        call take_whole_deck(arguments, deck, monitor%restarts%is_implicit, request, error)
+        call check_whole_deck(arguments, deck, monitor%restarts%is_implicit, request, error)
         return
       end if
       call merge_decks(deck, changes, arguments%deck, request%text, error)
@@ -184,10 +184,10 @@ contains
     if (.not. only_end_time(arguments)) call raise(error, &
       'when a run goes on the command line may change its end time alone (endtim=)', &
       status_input)
-  end subroutine take_up_deck
+  end subroutine get_restart_deck
 
   !> A whole deck beside the restart file must be that of the file but for what may change.
-  subroutine take_whole_deck(arguments, deck, is_implicit, request, error)
+  subroutine check_whole_deck(arguments, deck, is_implicit, request, error)
     type(arguments_t), intent(in) :: arguments
     character(*), intent(in) :: deck               !! that of the file
     logical, intent(in) :: is_implicit             !! method of the run that wrote it
@@ -214,7 +214,7 @@ contains
         //' is refused: it belongs to another deck (checksum '//deck_identity(deck)//') than ' &
         //arguments%deck//' ('//deck_identity(request%text)//')', status_input)
     end if
-  end subroutine take_whole_deck
+  end subroutine check_whole_deck
 
   !> The state from which the run begins. That of the first process comes first: the others, which
   !> have no elements but their own, need masses from it.
@@ -224,16 +224,16 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
-    type(others_t), allocatable :: others
-    type(answers_t), allocatable :: answers
+    type(remote_t), allocatable :: remote
+    type(inside_tests_t), allocatable :: inside_tests
 
     if (monitor%ranks%mine == 0) then
-      if (.not. has_all) allocate (answers)
+      if (.not. has_all) allocate (inside_tests)
       call make_own_state()
     end if
     call share_error(monitor%ranks, error)
     if (allocated(error)) return
-    if (.not. has_all) call hand_others(model, monitor%ranks, state, others, answers)
+    if (.not. has_all) call distribute_start(model, monitor%ranks, state, remote, inside_tests)
     if (monitor%ranks%mine > 0) call make_own_state()
     call share_error(monitor%ranks, error)
 
@@ -243,13 +243,14 @@ contains
     !> of an earlier run is touched.
     subroutine make_own_state()
       associate (restarts => monitor%restarts)
-        if (restarts%goes_on) then
-          call take_up_state(restarts%source, model, state, error, others, answers)
-          if (.not. allocated(error)) call check_rest(restarts%source, model, state, error)
+        if (restarts%is_restart) then
+          call read_restart_state(restarts%source, model, state, error, remote, inside_tests)
+          if (.not. allocated(error)) call check_other_components(restarts%source, model, state, &
+            error)
           if (.not. allocated(error) .and. monitor%ranks%mine == 0) &
-            call take_up_results(restarts, model, restarts%prefix//'.vtkhdf', error)
+            call find_restart_states(restarts, model, restarts%prefix//'.vtkhdf', error)
         else
-          call start_state(model, monitor%log, state, error, others, answers)
+          call start_state(model, monitor%log, state, error, remote, inside_tests)
         end if
       end associate
     end subroutine make_own_state
@@ -292,22 +293,22 @@ contains
     call share_error(monitor%ranks, error)
     if (allocated(error)) return
     if (allocated(info%effective_deck)) deallocate (info%effective_deck)
-    if (.not. monitor%restarts%goes_on) &
+    if (.not. monitor%restarts%is_restart) &
       call make_state(has_all, model, state, monitor, error)
     if (allocated(error)) return
     call start_monitor(model, size(state%elements%history) > 0, monitor)
     relaxes = model%controls%relaxation%is_on .and. .not. model%controls%check_only .and. &
-      (state%relaxation%n > 0 .or. .not. monitor%restarts%goes_on)
+      (state%relaxation%n > 0 .or. .not. monitor%restarts%is_restart)
     if (relaxes) call relax(model, monitor, state, error)
     if (allocated(error)) return
     ! The loads of relaxation alone (SIDR 1) no longer act.
     if (any(model%curves%phase == 1)) call switch_loads(model, 1)
-    call forget_start(model)
-    call give_back_memory()
-    if (monitor%restarts%goes_on) call take_up_outputs(model, state, monitor, error)
+    call release_start_data(model)
+    call release_memory()
+    if (monitor%restarts%is_restart) call restore_outputs(model, state, monitor, error)
     ! Behind relaxation a run begins at time zero, wherever it has come from.
-    if (relaxes) monitor%restarts%goes_on = .false.
-    call forget_others(model, monitor%ranks, state)
+    if (relaxes) monitor%restarts%is_restart = .false.
+    call release_remote(model, monitor%ranks, state)
     call share_error(monitor%ranks, error)
     if (.not. allocated(error) .and. monitor%ranks%mine == 0) &
       call begin_status(model, state, monitor)
@@ -327,7 +328,7 @@ contains
     call add_bytes(checksum, effective)
     restarts%effective_deck_checksum = checksum_text(checksum)
     call remove_file(switch_path(restarts%directory), ignored)
-    call forget_files(restarts, error)
+    call remove_old_files(restarts, error)
     if (.not. allocated(error)) call write_whole(restarts%prefix//'.effective.k', &
       effective, error)
   end subroutine write_deck
@@ -384,7 +385,7 @@ contains
       call finish_monitor(monitor, closing_error)
       if (.not. allocated(error) .and. allocated(closing_error)) &
         call move_alloc(closing_error, error)
-      call tell_end(model, state, reason, monitor, error)
+      call report_end_of_run(model, state, reason, monitor, error)
     end if
     call share_error(monitor%ranks, error)
     if (stopped .and. .not. allocated(error)) call raise(error, &
@@ -394,7 +395,7 @@ contains
   !> The end of a run that could not begin, or was stopped before its first state. The results file
   !> has no state and does not take its name: that of a run before a restart keeps its states. Nor
   !> does status.out speak of a run before.
-  subroutine give_up(model, state, monitor, error)
+  subroutine report_failed_start(model, state, monitor, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(monitor_t), intent(inout) :: monitor
@@ -411,33 +412,34 @@ contains
       call move_alloc(error, stop)
       reason = stop%message//' (exit status '//to_text(status_stopped)//')'
     end if
-    call tell_end(model, state, reason, monitor, error)
+    call report_end_of_run(model, state, reason, monitor, error)
     if (allocated(stop) .and. .not. allocated(error)) call move_alloc(stop, error)
-  end subroutine give_up
+  end subroutine report_failed_start
 
   !> Write the timing file and say how the run ended: by `error` or else for `reason`.
-  subroutine tell_end(model, state, reason, monitor, error)
+  subroutine report_end_of_run(model, state, reason, monitor, error)
     type(model_t), intent(in) :: model
     character(*), intent(in) :: reason
     type(state_t), intent(in) :: state
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(inout) :: error
     type(error_t), allocatable :: problem
-    character(:), allocatable :: told
+    character(:), allocatable :: message
     integer, allocatable :: interfaces(:) !! their numbers
 
     call lap(monitor%clock, phase_output)
-    call look_at_clock(monitor%clock)
+    call read_clock(monitor%clock)
     allocate (interfaces(0))
     if (allocated(model%contacts)) interfaces = model%contacts%id
     call write_whole(monitor%restarts%prefix//'.timing.csv', &
       timing_text(monitor%clock, interfaces), problem)
     if (.not. allocated(error) .and. allocated(problem)) call move_alloc(problem, error)
-    if (.not. allocated(error) .and. allocated(monitor%log%trouble)) error = monitor%log%trouble
-    told = reason
-    if (allocated(error)) told = error%message
-    call show_end(monitor%progress, monitor%clock, monitor%log, .not. allocated(error), told, &
+    if (.not. allocated(error) .and. allocated(monitor%log%first_error)) error = &
+      monitor%log%first_error
+    message = reason
+    if (allocated(error)) message = error%message
+    call show_end(monitor%progress, monitor%clock, monitor%log, .not. allocated(error), message, &
       state%cycle, state%time, model%mesh%n_element)
-  end subroutine tell_end
+  end subroutine report_end_of_run
 
 end module run_m

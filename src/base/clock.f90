@@ -6,7 +6,7 @@ module clock_m
   use kinds_m, only : wp, long
   implicit none
   private
-  public :: clock_t, start_clock, look_at_clock, lap, split_contact, share_contact, lap_seconds, &
+  public :: clock_t, start_clock, read_clock, lap, track_interfaces, lap_interface, lap_seconds, &
     elapsed_seconds, total_seconds, phase_seconds, phase_names, n_phase, n_contact_phase, &
     phase_elements, phase_contact_search, phase_contact_pairing, phase_contact_force, &
     phase_nodes, phase_output, phase_input, phase_solver
@@ -57,23 +57,23 @@ contains
 
   !> What time it is, where no laps tell: at the end of what is timed, and now and
   !> then for those who watch.
-  subroutine look_at_clock(clock)
+  subroutine read_clock(clock)
     type(clock_t), intent(inout) :: clock
 
     if (.not. clock%is_on) call system_clock(clock%last)
-  end subroutine look_at_clock
+  end subroutine read_clock
 
   !> Keep the contact phases by interface from now on.
-  pure subroutine split_contact(clock, n_interface)
+  pure subroutine track_interfaces(clock, n_interface)
     type(clock_t), intent(inout) :: clock
     integer, intent(in) :: n_interface
 
     allocate (clock%interface_ticks(n_contact_phase, 0:n_interface), source=0_long)
     allocate (clock%interface_calls(n_contact_phase, 0:n_interface), source=0_long)
-  end subroutine split_contact
+  end subroutine track_interfaces
 
   !> Give what the contact phases have gained since the last call to one interface.
-  pure subroutine share_contact(clock, i_interface)
+  pure subroutine lap_interface(clock, i_interface)
     type(clock_t), intent(inout) :: clock
     integer, intent(in) :: i_interface
 
@@ -86,7 +86,7 @@ contains
       by_ticks(:, 0) = ticks
       by_calls(:, 0) = calls
     end associate
-  end subroutine share_contact
+  end subroutine lap_interface
 
   !> Cost of one lap on this machine, the least of several short series, since others disturb.
   function lap_seconds() result(seconds)

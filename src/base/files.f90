@@ -10,7 +10,7 @@ module files_m
   public :: join_path, parent_path, folder_of, file_exists, is_directory, make_directory, &
     remove_file, rename_file, force_to_disk, lengthen_file, is_endless, open_failure, &
     system_reason, unfinished, file_facts_t, facts_of_name, facts_of_target, &
-    facts_of_descriptor, what_hinders, is_same_file
+    facts_of_descriptor, write_obstacle, is_same_file
 
   !> Behind the name of a file that is not complete: it is written aside and renamed when it is.
   character(*), parameter :: unfinished = '.part'
@@ -19,7 +19,7 @@ module files_m
   type, bind(c) :: file_facts_t
     logical(c_bool) :: is_there = .false._c_bool
     logical(c_bool) :: is_regular = .false._c_bool
-    integer(c_int) :: kind = 0         !! what else it is, see `what_hinders`
+    integer(c_int) :: kind = 0         !! what else it is, see `write_obstacle`
     integer(c_int64_t) :: device = 0   !! of the file system
     integer(c_int64_t) :: identity = 0 !! inode, of its own within a device
     integer(c_int64_t) :: n_name = 0   !! hard links; 0: removed while open
@@ -183,7 +183,7 @@ contains
     integer(c_int) :: status
 
     status = -1
-    if (len(what_hinders(new)) == 0) status = c_rename(old//c_null_char, new//c_null_char)
+    if (len(write_obstacle(new)) == 0) status = c_rename(old//c_null_char, new//c_null_char)
     if (status /= 0) call raise(error, 'cannot rename '//old//' to '//new//': ' &
       //open_failure(new), status_files)
   end subroutine rename_file
@@ -228,7 +228,7 @@ contains
     character(:), allocatable :: reason, from_system
 
     from_system = system_reason()
-    reason = what_hinders(path)
+    reason = write_obstacle(path)
     if (len(reason) > 0) return
     if (.not. is_directory(parent_path(path))) then
       reason = 'its directory does not exist'
@@ -272,7 +272,7 @@ contains
 
   !> What under a name is in the way of a file to be written, in words; empty when nothing is: a
   !> name that is free or that of a regular file.
-  function what_hinders(path) result(reason)
+  function write_obstacle(path) result(reason)
     character(*), intent(in) :: path
     character(:), allocatable :: reason
     type(file_facts_t) :: facts
@@ -288,7 +288,7 @@ contains
     case (4); reason = 'it is a socket'
     case default; reason = 'it is a device'
     end select
-  end function what_hinders
+  end function write_obstacle
 
   !> Whether two facts are of one file.
   pure function is_same_file(a, b) result(same)

@@ -6,10 +6,11 @@
 module log_m
   use errors_m, only : error_t
   use kinds_m, only : wp
-  use text_files_m, only : text_file_t, continue_text_file, append_text, close_text_file, complain
+  use text_files_m, only : text_file_t, continue_text_file, append_text, close_text_file, &
+    print_error
   implicit none
   private
-  public :: log_t, open_log, write_log, warn, close_log, forget_waiting, to_text, percent, &
+  public :: log_t, open_log, write_log, warn, close_log, clear_pending, to_text, percent, &
     two_decimals
 
   !> Number as text without surrounding blanks, for messages.
@@ -21,12 +22,12 @@ module log_m
   !> One log.
   type :: log_t
     logical :: is_open = .false.
-    logical :: is_mute = .false.          !! takes no lines: what they say has been said before
+    logical :: is_silent = .false.          !! takes no lines: what they say has been said before
     type(text_file_t) :: file
-    type(error_t), allocatable :: trouble !! first failure to write
+    type(error_t), allocatable :: first_error !! first failure to write
     integer :: n_warning = 0              !! warnings so far
-    character(:), allocatable :: waiting  !! lines from before the file was open, blanks behind
-    integer :: n_waiting = 0              !! characters of these lines
+    character(:), allocatable :: pending  !! lines from before the file was open, blanks behind
+    integer :: n_pending = 0              !! characters of these lines
   end type log_t
 
 contains
@@ -34,18 +35,18 @@ contains
   !> Open the file, behind what it holds where a run goes on, and write what has been waiting. Fails
   !> when the file cannot be made, or is that of a run that is going on: the log stands for all
   !> files of a run, since it is the first to be opened and the last to be closed.
-  subroutine open_log(log, path, goes_on, error)
+  subroutine open_log(log, path, is_restart, error)
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: path
-    logical, intent(in) :: goes_on
+    logical, intent(in) :: is_restart
     type(error_t), allocatable, intent(out) :: error
 
-    call continue_text_file(log%file, path, goes_on, error)
+    call continue_text_file(log%file, path, is_restart, error)
     if (allocated(error)) return
     log%is_open = .true.
-    if (allocated(log%waiting)) then
-      call append_text(log%file, log%waiting(:log%n_waiting), error)
-      call forget_waiting(log)
+    if (allocated(log%pending)) then
+      call append_text(log%file, log%pending(:log%n_pending), error)
+      call clear_pending(log)
     end if
   end subroutine open_log
 
@@ -56,37 +57,37 @@ contains
     type(error_t), allocatable :: error
     integer :: last
 
-    if (log%is_mute) return
+    if (log%is_silent) return
     if (log%is_open) then
-      if (allocated(log%trouble)) return
+      if (allocated(log%first_error)) return
       call append_text(log%file, text//new_line('a'), error)
-      if (allocated(error)) call move_alloc(error, log%trouble)
+      if (allocated(error)) call move_alloc(error, log%first_error)
       return
     end if
-    last = log%n_waiting + len(text) + 1
-    if (.not. allocated(log%waiting)) log%waiting = repeat(' ', last + 4096)
-    if (last > len(log%waiting)) log%waiting = log%waiting//repeat(' ', last)
-    log%waiting(log%n_waiting + 1:last) = text//new_line('a')
-    log%n_waiting = last
+    last = log%n_pending + len(text) + 1
+    if (.not. allocated(log%pending)) log%pending = repeat(' ', last + 4096)
+    if (last > len(log%pending)) log%pending = log%pending//repeat(' ', last)
+    log%pending(log%n_pending + 1:last) = text//new_line('a')
+    log%n_pending = last
   end subroutine write_log
 
   !> Forget the lines that wait for the file.
-  subroutine forget_waiting(log)
+  subroutine clear_pending(log)
     type(log_t), intent(inout) :: log
 
-    if (allocated(log%waiting)) deallocate (log%waiting)
-    log%n_waiting = 0
-  end subroutine forget_waiting
+    if (allocated(log%pending)) deallocate (log%pending)
+    log%n_pending = 0
+  end subroutine clear_pending
 
   !> A warning: counted, logged and shown on standard error.
   subroutine warn(log, text)
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: text
 
-    if (log%is_mute) return
+    if (log%is_silent) return
     log%n_warning = log%n_warning + 1
     call write_log(log, 'warning: '//text)
-    call complain('warning: '//text)
+    call print_error('warning: '//text)
   end subroutine warn
 
   !> Close the file; safe to call when none is open. What went wrong is in `trouble`.
@@ -96,7 +97,8 @@ contains
 
     if (log%is_open) call close_text_file(log%file, error)
     log%is_open = .false.
-    if (allocated(error) .and. .not. allocated(log%trouble)) call move_alloc(error, log%trouble)
+    if (allocated(error) .and. .not. allocated(log%first_error)) call move_alloc(error, &
+      log%first_error)
   end subroutine close_log
 
   !> Integer as text.

@@ -61,7 +61,7 @@ static std::string plain_form(const char *text, const char *end) {
   return plain.append(text, end);
 }
 
-static void leave_blanks(const char *&text, const char *&end) {
+static void trim_blanks(const char *&text, const char *&end) {
   while (end > text && end[-1] == ' ') --end;
   while (text < end && *text == ' ') ++text;
 }
@@ -72,7 +72,7 @@ extern "C" void real_of_text(const char *text, int n, double *value, int *status
   const char *end = text + n;
   *value = 0.0;
   *status = 1;
-  leave_blanks(text, end);
+  trim_blanks(text, end);
   const bool negative = text < end && *text == '-';
   if (text < end && is_sign(*text)) ++text;
   if (text == end || !(is_digit(*text) || *text == '.')) return;
@@ -96,7 +96,7 @@ extern "C" void real_of_text(const char *text, int n, double *value, int *status
 extern "C" void integer_of_text(const char *text, int n, int *value, int *status) {
   const char *first = text, *end = text + n;
   *value = *status = 0;
-  leave_blanks(first, end);
+  trim_blanks(first, end);
   const auto result = std::from_chars(first, end, *value);
   if (result.ptr == end && result.ec == std::errc() && *value > INT_MIN) return;
   double number = 0.0;

@@ -8,34 +8,34 @@
 module packed_buffer_m
   use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc, c_ptr, c_size_t
   use kinds_m, only : wp
-  use system_m, only : give_back_pages
+  use system_m, only : release_pages
   use visitor_m, only : visitor_t, item_t, any_length, of_slots, of_columns, of_streams, &
     of_stresses, of_chunks, new_chunks, fixed_slots, fixed_columns, n_of, as_integer, as_bytes
   implicit none
   private
-  public :: packed_buffer_t, forgetter_t, start_loading, start_unloading, part_of, choose_slots, &
-    stream_starts
+  public :: packed_buffer_t, memory_release_t, start_packing, start_unpacking, part_of, &
+    choose_slots, stream_starts
 
   integer, parameter :: real_bytes = storage_size(1.0_wp)/8, integer_bytes = storage_size(1)/8
 
   type, extends(visitor_t) :: packed_buffer_t
     integer :: n = 0                    !! values passed so far
-    logical :: unloads = .false.
+    logical :: is_unpacking = .false.
     real(wp), allocatable :: values(:)  !! not there while they are only counted
     integer :: ranges(2, n_of) = spread([1, 0], 2, n_of) !! of a partial one: first and last that it
                                         !! takes of what is divided, by the `of_` constants
   contains
     procedure :: find => pass_extents
     procedure :: pass => pass_values
-    procedure :: carry => load_or_unload
+    procedure :: carry => copy_bytes
   end type packed_buffer_t
 
   !> A partial one that gives the memory of its ranges back: nobody asks for them any more. The
   !> arrays stay as long as they are.
-  type, extends(packed_buffer_t) :: forgetter_t
+  type, extends(packed_buffer_t) :: memory_release_t
   contains
-    procedure :: carry => give_back
-  end type forgetter_t
+    procedure :: carry => release
+  end type memory_release_t
 
   interface
     function c_memcpy(to, from, n_byte) bind(c, name='memcpy') result(same)
@@ -49,20 +49,20 @@ module packed_buffer_m
 contains
 
   !> Once the values are counted: room for them.
-  pure subroutine start_loading(buffer)
+  pure subroutine start_packing(buffer)
     type(packed_buffer_t), intent(inout) :: buffer
 
     allocate (buffer%values(buffer%n))
     buffer%n = 0
-  end subroutine start_loading
+  end subroutine start_packing
 
   !> Back to the first value, to put them into arrays.
-  pure subroutine start_unloading(buffer)
+  pure subroutine start_unpacking(buffer)
     type(packed_buffer_t), intent(inout) :: buffer
 
     buffer%n = 0
-    buffer%unloads = .true.
-  end subroutine start_unloading
+    buffer%is_unpacking = .true.
+  end subroutine start_unpacking
 
   !> A buffer of a range of what is divided.
   pure function part_of(of, range) result(buffer)
@@ -104,7 +104,7 @@ contains
     extents = item%extents
     call visitor%carry(c_loc(extents), int(2*integer_bytes, c_size_t))
     item%extents = extents
-    item%is_new = visitor%unloads
+    item%is_new = visitor%is_unpacking
   end subroutine pass_extents
 
   !> All values of an array, or those of a range of it.
@@ -152,7 +152,7 @@ contains
   end function behind
 
   !> Bytes that lie side by side. They take a whole number of reals.
-  subroutine load_or_unload(visitor, place, n_byte)
+  subroutine copy_bytes(visitor, place, n_byte)
     class(packed_buffer_t), intent(inout), target :: visitor
     type(c_ptr), intent(in) :: place
     integer(c_size_t), intent(in) :: n_byte
@@ -161,7 +161,7 @@ contains
 
     last = visitor%n + int((n_byte + real_bytes - 1)/real_bytes)
     if (allocated(visitor%values)) then
-      if (visitor%unloads) then
+      if (visitor%is_unpacking) then
         ignored = c_memcpy(place, c_loc(visitor%values(visitor%n + 1)), n_byte)
       else
         visitor%values(last) = 0.0_wp
@@ -169,17 +169,17 @@ contains
       end if
     end if
     visitor%n = last
-  end subroutine load_or_unload
+  end subroutine copy_bytes
 
   !> Their pages go back to the system.
-  subroutine give_back(visitor, place, n_byte)
-    class(forgetter_t), intent(inout), target :: visitor
+  subroutine release(visitor, place, n_byte)
+    class(memory_release_t), intent(inout), target :: visitor
     type(c_ptr), intent(in) :: place
     integer(c_size_t), intent(in) :: n_byte
 
-    call give_back_pages(place, n_byte)
+    call release_pages(place, n_byte)
     visitor%n = visitor%n + int(n_byte/real_bytes)
-  end subroutine give_back
+  end subroutine release
 
   !> Ranges of a stream that only some chunks of elements have a part of.
   pure function stream_starts(chunks, chunk_start, n_value) result(starts)

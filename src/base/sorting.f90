@@ -40,14 +40,14 @@ contains
     integer, intent(in) :: low, middle, high
     integer, intent(inout) :: order(:)
     integer :: i, left, right
-    logical :: take_left
+    logical :: from_left
 
     left = low
     right = middle
     do i = low, high - 1
-      take_left = right >= high
-      if (.not. take_left .and. left < middle) take_left = keys(from(left)) <= keys(from(right))
-      if (take_left) then
+      from_left = right >= high
+      if (.not. from_left .and. left < middle) from_left = keys(from(left)) <= keys(from(right))
+      if (from_left) then
         order(i) = from(left)
         left = left + 1
       else

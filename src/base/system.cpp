@@ -20,14 +20,14 @@
 // ---- signals -----------------------------------------------------------------------------------
 static volatile std::sig_atomic_t received[3]; // a stop, a restart file, a plot state
 
-static void note_signal(int number) {
+static void record_signal(int number) {
   received[number == SIGUSR1 ? 1 : number == SIGUSR2 ? 2 : 0] = 1;
 }
 
 // A pipe whose reader has gone and a file of the largest size allowed are failed writes.
 extern "C" void catch_requests() {
-  std::signal(SIGUSR1, note_signal);
-  std::signal(SIGUSR2, note_signal);
+  std::signal(SIGUSR1, record_signal);
+  std::signal(SIGUSR2, record_signal);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
 }
@@ -36,9 +36,9 @@ extern "C" void catch_requests() {
 // that a script has put behind itself.
 extern "C" void catch_stops() {
   for (const int number : {SIGHUP, SIGINT})
-    if (std::signal(number, SIG_IGN) != SIG_IGN) std::signal(number, note_signal);
-  std::signal(SIGTERM, note_signal);
-  std::signal(SIGXCPU, note_signal);
+    if (std::signal(number, SIG_IGN) != SIG_IGN) std::signal(number, record_signal);
+  std::signal(SIGTERM, record_signal);
+  std::signal(SIGXCPU, record_signal);
 }
 
 extern "C" void limit_processor(int seconds) {
@@ -59,71 +59,71 @@ extern "C" bool is_requested(int request) {
 extern "C" bool output_is_terminal() { return isatty(1) == 1; }
 
 // ---- ends --------------------------------------------------------------------------------------
-static bool is_announced = false; // the program ends by itself
+static bool is_exit_allowed = false; // the program ends by itself
 static std::string last_line;
 static int last_status;
 
-static void say(int file, const char *text) {
+static void write_text(int file, const char *text) {
   if (write(file, text, std::strlen(text)) < 0) return; // nobody is left to be told
 }
 
 // Fortran's own units may be busy with what has failed.
-static void judge_end() {
-  if (is_announced) return;
-  say(2, "slideline could not go on, for the reason above (error termination)\n");
-  say(1, last_line.c_str());
+static void handle_exit() {
+  if (is_exit_allowed) return;
+  write_text(2, "slideline could not go on, for the reason above (error termination)\n");
+  write_text(1, last_line.c_str());
   _exit(last_status);
 }
 
-extern "C" void watch_end(const char *line, int status) {
+extern "C" void guard_exit(const char *line, int status) {
   last_line = line;
   last_status = status;
-  std::atexit(judge_end);
+  std::atexit(handle_exit);
 }
 
-extern "C" void announce_end() { is_announced = true; }
+extern "C" void allow_exit() { is_exit_allowed = true; }
 
 // ---- memory ------------------------------------------------------------------------------------
 // Fortran looks at the answer of `allocate`, but not at that of assignments which allocate and of
 // copies of derived types: it would write through a null pointer. The linker hands all calls for
-// memory to the procedures below (--wrap); judge_end gives the status.
+// memory to the procedures below (--wrap); handle_exit gives the status.
 extern "C" void *__real_malloc(std::size_t n);
 extern "C" void *__real_calloc(std::size_t n, std::size_t size);
 extern "C" void *__real_realloc(void *old, std::size_t n);
 
-static bool is_refusal_expected = false;
+static bool is_failure_expected = false;
 
 // Nothing here may ask for memory.
-static void *granted(void *place, std::size_t n) {
-  if (place != nullptr || n == 0 || is_refusal_expected) return place;
+static void *checked(void *place, std::size_t n) {
+  if (place != nullptr || n == 0 || is_failure_expected) return place;
   char line[80];
   std::snprintf(line, sizeof line, "the system refuses memory: %zu bytes more\n", n);
-  say(2, line);
+  write_text(2, line);
   std::exit(1);
 }
 
-extern "C" void *__wrap_malloc(std::size_t n) { return granted(__real_malloc(n), n); }
+extern "C" void *__wrap_malloc(std::size_t n) { return checked(__real_malloc(n), n); }
 
 extern "C" void *__wrap_calloc(std::size_t n, std::size_t size) {
   const bool is_too_much = n != 0 && size > SIZE_MAX / n;
-  return granted(__real_calloc(n, size), is_too_much ? SIZE_MAX : n * size);
+  return checked(__real_calloc(n, size), is_too_much ? SIZE_MAX : n * size);
 }
 
 extern "C" void *__wrap_realloc(void *old, std::size_t n) {
-  return granted(__real_realloc(old, n), n);
+  return checked(__real_realloc(old, n), n);
 }
 
-extern "C" void expect_refusal(bool yes) { is_refusal_expected = yes; }
+extern "C" void expect_allocation_failure(bool yes) { is_failure_expected = yes; }
 
-extern "C" void need_memory(std::size_t n) { std::free(granted(__real_malloc(n), n)); }
+extern "C" void require_memory(std::size_t n) { std::free(checked(__real_malloc(n), n)); }
 
 extern "C" int malloc_trim(std::size_t) __attribute__((weak)); // not every C library has it
 
-extern "C" void give_back_memory() {
+extern "C" void release_memory() {
   if (malloc_trim != nullptr) malloc_trim(0);
 }
 
-extern "C" void give_back_pages(char *start, std::size_t n) {
+extern "C" void release_pages(char *start, std::size_t n) {
   const std::uintptr_t page = getpagesize(), place = reinterpret_cast<std::uintptr_t>(start);
   const std::uintptr_t first = (place + page - 1) / page * page, last = (place + n) / page * page;
   if (last > first) madvise(reinterpret_cast<void *>(first), last - first, MADV_DONTNEED);
@@ -170,9 +170,9 @@ extern "C" bool is_locked_by_another(int file) {
 extern "C" std::size_t write_bytes(int file, const char *bytes, std::size_t n) {
   std::size_t n_written = 0;
   while (n_written < n) {
-    const ssize_t n_taken = write(file, bytes + n_written, n - n_written);
-    if (n_taken <= 0) break;
-    n_written += n_taken;
+    const ssize_t n_new = write(file, bytes + n_written, n - n_written);
+    if (n_new <= 0) break;
+    n_written += n_new;
   }
   return n_written;
 }

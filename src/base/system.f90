@@ -6,8 +6,8 @@ module system_m
   implicit none
   private
   public :: catch_requests, catch_stops, limit_processor, stop_requested, is_requested, &
-    request_dump, request_plot, output_is_terminal, watch_end, announce_end, exit_with, &
-    expect_refusal, need_memory, give_back_memory, give_back_pages, fill_standard_streams
+    request_dump, request_plot, output_is_terminal, guard_exit, allow_exit, exit_with, &
+    expect_allocation_failure, require_memory, release_memory, release_pages, fill_standard_streams
 
   !> What may be asked for time and again.
   integer(c_int), parameter :: request_dump = 1, request_plot = 2
@@ -52,15 +52,15 @@ module system_m
     !> From now on an end that is not announced, as by the Fortran library when the system refuses
     !> memory, has this status and this line on standard output: of its own accord the status would
     !> be 1, that of refused input.
-    subroutine watch_end(line, status) bind(c)
+    subroutine guard_exit(line, status) bind(c)
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: line(*) !! ends with a null
       integer(c_int), value :: status
-    end subroutine watch_end
+    end subroutine guard_exit
 
     !> The program ends, by itself.
-    subroutine announce_end() bind(c)
-    end subroutine announce_end
+    subroutine allow_exit() bind(c)
+    end subroutine allow_exit
 
     !> End the process with a status.
     subroutine exit_with(status) bind(c, name='exit')
@@ -70,29 +70,29 @@ module system_m
 
     !> From now on, until told otherwise, an `allocate` with a status gets it; else memory that the
     !> system refuses ends the program, whatever asks for it.
-    subroutine expect_refusal(yes) bind(c)
+    subroutine expect_allocation_failure(yes) bind(c)
       import :: c_bool
       logical(c_bool), value :: yes
-    end subroutine expect_refusal
+    end subroutine expect_allocation_failure
 
     !> End the program here unless so much memory is to be had: before calls of a library that does
     !> not look at the answer.
-    subroutine need_memory(n_byte) bind(c)
+    subroutine require_memory(n_byte) bind(c)
       import :: c_size_t
       integer(c_size_t), value :: n_byte
-    end subroutine need_memory
+    end subroutine require_memory
 
     !> Hand back what has been deallocated: the C library keeps arrays of up to 32 MB for later.
-    subroutine give_back_memory() bind(c)
-    end subroutine give_back_memory
+    subroutine release_memory() bind(c)
+    end subroutine release_memory
 
     !> Hand back the pages that lie within a part of an array whose values nobody asks for any more.
     !> The part stays allocated, without values, and takes memory again where it is written to.
-    subroutine give_back_pages(start, n_byte) bind(c)
+    subroutine release_pages(start, n_byte) bind(c)
       import :: c_ptr, c_size_t
       type(c_ptr), value :: start        !! of the part
       integer(c_size_t), value :: n_byte
-    end subroutine give_back_pages
+    end subroutine release_pages
 
     !> Open the null device in place of standard streams that the caller has closed: a result file
     !> would take their number otherwise, and what is meant for the screen would go into it.

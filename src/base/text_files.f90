@@ -5,14 +5,14 @@
 module text_files_m
   use, intrinsic :: iso_c_binding, only : c_bool, c_char, c_int, c_null_char, c_size_t
   use errors_m, only : error_t, raise, status_files
-  use files_m, only : file_facts_t, facts_of_name, facts_of_descriptor, what_hinders, &
+  use files_m, only : file_facts_t, facts_of_name, facts_of_descriptor, write_obstacle, &
     is_same_file, open_failure, remove_file, rename_file, system_reason, unfinished
   use kinds_m, only : long
   implicit none
   private
   public :: text_file_t, create_text_file, continue_text_file, append_text, close_text_file, &
-    read_whole, write_whole, overwrite_start, line_file_t, open_lines, put_lines, keep_up, &
-    flush_lines, close_lines, show, show_part, complain, normal_ending, error_ending
+    read_whole, write_whole, overwrite_start, line_file_t, open_lines, put_lines, flush_due, &
+    flush_lines, close_lines, print_line, print_text, print_error, normal_ending, error_ending
 
   !> How a run says that it ended.
   character(*), parameter :: normal_ending = ' N o r m a l    t e r m i n a t i o n', &
@@ -34,9 +34,9 @@ module text_files_m
     logical :: is_open = .false.           !! lines are taken only while open
     type(text_file_t) :: file
     character(:), allocatable :: buffer    !! lines that wait
-    integer :: n_waiting = 0               !! bytes of them
+    integer :: n_pending = 0               !! bytes of them
     integer(long) :: flushed = 0           !! clock tick of the last write
-    type(error_t), allocatable :: trouble  !! first failure, which ends the writing
+    type(error_t), allocatable :: first_error  !! first failure, which ends the writing
   end type line_file_t
 
   ! By the C library, and not by a Fortran unit: gfortran's `flush` and `close` report success on a
@@ -58,12 +58,12 @@ module text_files_m
     end function c_is_locked
 
     !> Write; bytes that have been taken (system.cpp).
-    function c_write(descriptor, bytes, n_byte) bind(c, name='write_bytes') result(n_taken)
+    function c_write(descriptor, bytes, n_byte) bind(c, name='write_bytes') result(n_written)
       import :: c_char, c_int, c_size_t
       integer(c_int), value :: descriptor
       character(kind=c_char), intent(in) :: bytes(*)
       integer(c_size_t), value :: n_byte
-      integer(c_size_t) :: n_taken
+      integer(c_size_t) :: n_written
     end function c_write
 
     function c_close(descriptor) bind(c, name='close') result(status)
@@ -83,7 +83,7 @@ contains
     character(*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
 
-    if (len(what_hinders(path)) == 0) call remove_file(path, error)
+    if (len(write_obstacle(path)) == 0) call remove_file(path, error)
     if (.not. allocated(error)) call open_stream(file, path, 'w', error)
     file%n_byte = 0
   end subroutine create_text_file
@@ -96,7 +96,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     file%path = path
-    if (len(what_hinders(path)) == 0) file%descriptor = c_open(path//c_null_char, mode)
+    if (len(write_obstacle(path)) == 0) file%descriptor = c_open(path//c_null_char, mode)
     if (file%descriptor < 0) &
       call raise(error, 'cannot write '//path//': '//open_failure(path), status_files)
   end subroutine open_stream
@@ -104,10 +104,10 @@ contains
   !> Open a text file to write on behind what it holds, or from its start, for this process alone as
   !> long as it is open; it is made when there is none. A file that holds something is not written
   !> to: a copy, or an empty file, takes its place, so that other names of it keep what they have.
-  subroutine continue_text_file(file, path, keeps, error)
+  subroutine continue_text_file(file, path, keeps_content, error)
     type(text_file_t), intent(out) :: file
     character(*), intent(in) :: path
-    logical, intent(in) :: keeps !! what it holds
+    logical, intent(in) :: keeps_content !! what it holds
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: ignored
     type(text_file_t) :: before
@@ -122,7 +122,7 @@ contains
     before = file
     call remove_file(path//unfinished, error)
     if (.not. allocated(error)) call open_alone(file, path//unfinished, error)
-    if (keeps .and. .not. allocated(error)) then
+    if (keeps_content .and. .not. allocated(error)) then
       call read_whole(path, text, is_read)
       if (is_read) call append_text(file, text, error)
       if (.not. is_read) call raise(error, 'cannot read '//path//', behind which the run would ' &
@@ -143,17 +143,17 @@ contains
     character(*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
     type(file_facts_t) :: facts
-    logical :: is_taken
+    logical :: is_locked
 
     call open_stream(file, path, 'a', error)
     if (allocated(error)) return
-    is_taken = c_is_locked(file%descriptor)
+    is_locked = c_is_locked(file%descriptor)
     facts = facts_of_descriptor(file%descriptor)
     if (facts%is_there) then
       file%n_byte = facts%n_byte
-      is_taken = is_taken .or. .not. is_same_file(facts, facts_of_name(path))
+      is_locked = is_locked .or. .not. is_same_file(facts, facts_of_name(path))
     end if
-    if (is_taken) call raise(error, 'cannot write '//path//': another run that is going on has ' &
+    if (is_locked) call raise(error, 'cannot write '//path//': another run that is going on has ' &
       //'it open; give this one another name (jobid=) or folder (d=)', status_files)
   end subroutine open_alone
 
@@ -271,32 +271,32 @@ contains
     type(line_file_t), intent(inout) :: lines
     character(*), intent(in) :: text
 
-    if (lines%n_waiting + len(text) > buffer_size) call write_waiting(lines)
-    lines%buffer(lines%n_waiting + 1:lines%n_waiting + len(text)) = text
-    lines%n_waiting = lines%n_waiting + len(text)
+    if (lines%n_pending + len(text) > buffer_size) call write_pending(lines)
+    lines%buffer(lines%n_pending + 1:lines%n_pending + len(text)) = text
+    lines%n_pending = lines%n_pending + len(text)
   end subroutine put_lines
 
   !> Write what has waited for a second.
-  subroutine keep_up(lines)
+  subroutine flush_due(lines)
     type(line_file_t), intent(inout) :: lines
     integer(long) :: now, rate
 
     call system_clock(now, rate)
-    if (now - lines%flushed > rate) call write_waiting(lines)
-  end subroutine keep_up
+    if (now - lines%flushed > rate) call write_pending(lines)
+  end subroutine flush_due
 
   !> Write what waits. The first failure is remembered and ends the writing.
-  subroutine write_waiting(lines)
+  subroutine write_pending(lines)
     type(line_file_t), intent(inout) :: lines
     type(error_t), allocatable :: error
 
-    if (lines%n_waiting > 0 .and. .not. allocated(lines%trouble)) then
-      call append_text(lines%file, lines%buffer(:lines%n_waiting), error)
-      if (allocated(error)) call move_alloc(error, lines%trouble)
+    if (lines%n_pending > 0 .and. .not. allocated(lines%first_error)) then
+      call append_text(lines%file, lines%buffer(:lines%n_pending), error)
+      if (allocated(error)) call move_alloc(error, lines%first_error)
     end if
-    lines%n_waiting = 0
+    lines%n_pending = 0
     call system_clock(lines%flushed)
-  end subroutine write_waiting
+  end subroutine write_pending
 
   !> Bring all lines into the file; nothing happens to one that is not open.
   subroutine flush_lines(lines, error)
@@ -304,8 +304,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (.not. lines%is_open) return
-    call write_waiting(lines)
-    if (allocated(lines%trouble)) error = lines%trouble
+    call write_pending(lines)
+    if (allocated(lines%first_error)) error = lines%first_error
   end subroutine flush_lines
 
   !> Bring all lines into the file and close it.
@@ -322,15 +322,15 @@ contains
   end subroutine close_lines
 
   !> A line (or several, separated by new_line) on standard output.
-  subroutine show(text, error)
+  subroutine print_line(text, error)
     character(*), intent(in) :: text
     type(error_t), allocatable, intent(out), optional :: error !! absent: a failure is no matter
 
-    call show_part(text//new_line('a'), error)
-  end subroutine show
+    call print_text(text//new_line('a'), error)
+  end subroutine print_line
 
   !> Text on standard output, without a line end.
-  subroutine show_part(text, error)
+  subroutine print_text(text, error)
     character(*), intent(in) :: text
     type(error_t), allocatable, intent(out), optional :: error !! absent: a failure is no matter
     type(error_t), allocatable :: failure
@@ -339,16 +339,16 @@ contains
     screen = text_file_t('standard output', 1)
     call append_text(screen, text, failure)
     if (present(error) .and. allocated(failure)) call move_alloc(failure, error)
-  end subroutine show_part
+  end subroutine print_text
 
   !> A line (or several) on standard error.
-  subroutine complain(text)
+  subroutine print_error(text)
     character(*), intent(in) :: text
     type(error_t), allocatable :: ignored
     type(text_file_t) :: screen
 
     screen = text_file_t('standard error', 2)
     call append_text(screen, text//new_line('a'), ignored)
-  end subroutine complain
+  end subroutine print_error
 
 end module text_files_m

@@ -45,7 +45,7 @@ module visitor_m
 
   !> Who visits.
   type, abstract :: visitor_t
-    logical :: judges = .false.               !! what it brings may be wrong
+    logical :: validates = .false.               !! what it brings may be wrong
     logical :: is_partial = .false.           !! it asks only for arrays that are divided
     integer :: n_item = 0                     !! length that `makes` has found
     integer :: n_node = 0                     !! nodes of the mesh, for bounds
@@ -282,7 +282,7 @@ contains
     place = c_null_ptr
     if (allocated(values)) place = c_loc(values)
     call visitor%pass(item, place)
-    if (.not. visitor%judges .or. .not. (allocated(values) .and. present(what))) return
+    if (.not. visitor%validates .or. .not. (allocated(values) .and. present(what))) return
     if (present(lowest)) call visitor%expect(name, all(values >= lowest), what)
     if (present(highest)) call visitor%expect(name, all(values <= highest), what)
   end subroutine visit_integers
@@ -307,9 +307,10 @@ contains
     place = c_null_ptr
     if (allocated(values)) place = c_loc(values)
     call visitor%pass(item, place)
-    if (.not. visitor%judges .or. .not. allocated(values)) return
+    if (.not. visitor%validates .or. .not. allocated(values)) return
     call visitor%expect(name, all(is_finite(values)), not_finite)
-    if (visitor%judges .and. present(what)) call visitor%expect(name, all(values >= lowest), what)
+    if (visitor%validates .and. present(what)) call visitor%expect(name, all(values >= lowest), &
+      what)
   end subroutine visit_reals
 
   !> An array of truths.
@@ -365,7 +366,7 @@ contains
     place = c_null_ptr
     if (allocated(values)) place = c_loc(values)
     call visitor%pass(item, place)
-    if (.not. visitor%judges .or. .not. allocated(values)) return
+    if (.not. visitor%validates .or. .not. allocated(values)) return
     call visitor%expect(name, all(is_finite(values)), not_finite)
   end subroutine visit_real_table
 
@@ -410,7 +411,7 @@ contains
     call visitor%same(name_of_starts, starts)
     item = item_t(name, as_real, 1, [size(values), 1], of_streams)
     call visitor%pass(item, c_loc(values), starts)
-    if (visitor%judges) call visitor%expect(name, all(is_finite(values)), not_finite)
+    if (visitor%validates) call visitor%expect(name, all(is_finite(values)), not_finite)
   end subroutine stream
 
   !> An integer that follows from the model.
@@ -436,7 +437,7 @@ contains
     if (visitor%is_partial) return
     if (allocated(values)) allocate (found, source=values)
     call visitor%visit(name, found)
-    if (visitor%judges .and. allocated(values)) &
+    if (visitor%validates .and. allocated(values)) &
       call visitor%expect(name, all(found == values), other_numbers)
   end subroutine same_integers
 
@@ -447,7 +448,8 @@ contains
     logical, intent(in) :: is_sound
     character(*), intent(in) :: what !! it has where it is not
 
-    if (visitor%judges .and. .not. is_sound) call visitor%fail('the restart file '//visitor%path &
+    if (visitor%validates .and. .not. is_sound) call &
+      visitor%fail('the restart file '//visitor%path &
       //' is refused: its '//visitor%folder//name//' has '//what, status_input)
   end subroutine expect
 
@@ -457,7 +459,7 @@ contains
     character(*), intent(in) :: message
     integer, intent(in) :: status    !! exit status
 
-    visitor%judges = .false.
+    visitor%validates = .false.
     if (.not. allocated(visitor%error)) call raise(visitor%error, message, status)
   end subroutine fail
 

@@ -11,7 +11,7 @@ module contact_log_m
   use log_m, only : log_t, write_log, warn, to_text, percent
   use model_m, only : model_t
   use surfaces_m, only : surface_t, has_closed_chain
-  use ties_m, only : tied_nodes, tie_reach
+  use ties_m, only : tied_nodes, tie_distance
   use units_m, only : units_t, in_units, per_depth
   implicit none
   private
@@ -137,7 +137,7 @@ contains
     type(contact_state_t), intent(in) :: memory
     type(log_t), intent(inout) :: log
     character(:), allocatable :: names
-    logical :: is_held(memory%n_slave + memory%n_master)
+    logical :: holds(memory%n_slave + memory%n_master)
     integer :: i, n
 
     if (memory%slave_penalty < soft_tie*built_in_penalty(contact, model)) call warn(log, &
@@ -145,23 +145,23 @@ contains
       //to_text(10.0_wp*built_in_penalty(contact, model)/memory%slave_penalty)//' elements of ' &
       //'its surfaces, so what they hold moves apart; PEN 10 with PUNIT 2, the default, is as ' &
       //'stiff as one')
-    is_held = tied_nodes(memory, .true., .false.)
+    holds = tied_nodes(memory, [is_held])
     n = size(memory%ties%side)
-    call write_log(log, '  tied: '//to_text(count(is_held(:memory%n_slave)))//' of ' &
+    call write_log(log, '  tied: '//to_text(count(holds(:memory%n_slave)))//' of ' &
       //to_text(memory%n_slave)//' slave nodes, '//to_text(n) &
       //' springs of area '//to_text(sum(memory%tie_points%area(:memory%tie_points%n))) &
-      //', reach '//to_text(tie_reach(contact, model)) &
+      //', reach '//to_text(tie_distance(contact, model)) &
       //in_units(model%controls%units, 'L'))
     if (breaks(contact)) call write_log(log, '  breaks at a tension of ' &
       //to_text(contact%strength(1))//' or a shear of '//to_text(contact%strength(2)) &
       //in_units(model%controls%units, 'F/L^2')//', together on an ellipse; sites that have ' &
       //'failed are in contact')
-    if (memory%tie_points%n == 0 .or. all(is_held(:memory%n_slave))) return
+    if (memory%tie_points%n == 0 .or. all(holds(:memory%n_slave))) return
     if (has_closed_chain(contact%slave)) return
     n = 0
     names = ''
     do i = 1, memory%n_slave
-      if (is_held(i)) cycle
+      if (holds(i)) cycle
       n = n + 1
       if (n <= most_named) names = names//' '//to_text(model%mesh%node_id(memory%nodes(i)))
     end do

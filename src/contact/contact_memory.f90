@@ -7,19 +7,20 @@ module contact_memory_m
   use contact_dispatch_m, only : formulation_t, formulation_of
   use contact_penalty_m, only : set_penalties
   use contact_law_m, only : measure_springs
-  use contact_state_m, only : contact_state_t, contact_points_t, contact_status_t, features_t, &
-    allocate_points, allocate_damping, allocate_tractions, allocate_scratch, n_sites, &
-    sites_of_segment, n_side, active
+  use contact_state_m, only : contact_state_t, contact_points_t, features_t, allocate_points, &
+    allocate_damping, allocate_tractions, allocate_scratch, n_sites, n_side
+  use search_state_m, only : contact_status_t, allocate_segments, active
   use contact_status_m, only : list_active
   use contacts_m, only : contact_t, has_friction, is_tied, breaks, penalty_implicit
   use energy_limit_m, only : form_springs
-  use contact_work_m, only : power_of
-  use initial_status_m, only : allocate_slave_status, allocate_master_status, allocate_segments
+  use nodal_forces_m, only : power_of
+  use initial_status_m, only : allocate_slave_status, allocate_master_status
   use kinds_m, only : wp
-  use law_state_m, only : allocate_limit, allocate_friction, allocate_interference
+  use law_state_m, only : friction_memory_t, allocate_limit, allocate_friction, &
+    allocate_interference
   use model_m, only : model_t
+  use points_mortar_m, only : has_folds
   use positions_m, only : start_segment_points, points_at_nodes
-  use sharp_vertices_m, only : has_folds
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -29,7 +30,6 @@ module contact_memory_m
   type :: passage_t
     integer, allocatable :: node(:)    !! (n_node)
     integer, allocatable :: segment(:) !! (n_segment)
-    logical, allocatable :: keeps(:)   !! (n_node) the segment that starts there is still there
   end type passage_t
 
 contains
@@ -61,10 +61,11 @@ contains
     call set_penalties(contact, model, formulation%self_share, memory)
     if (memory%has%contact .and. contact%largest_turn > 0.0_wp) call prepare_arcs(contact, memory)
     call start_segment_points(formulation%segment_points, contact%n_gauss, &
-      contact%is_axisymmetric, has_folds(contact), contact%slave, memory)
+      contact%is_axisymmetric, has_folds(contact), contact%slave, memory%positions, &
+      memory%segment_points)
     call allocate_slave_status(contact, model, memory)
     if (formulation%has_two_passes) call allocate_master_status(contact, model, memory)
-    if (memory%has%overlaps) call allocate_segments(contact, memory)
+    if (memory%has%overlaps) call allocate_segments(memory%segments, contact%slave%n_segment)
     allocate (memory%points)
     call allocate_points(memory%points, formulation%points_per_slave*memory%slave_status%n &
       + formulation%points_per_master*n_master)
@@ -78,8 +79,8 @@ contains
       call allocate_tractions(memory%points)
       call allocate_friction(memory%friction, n_sites(memory), n_slave + n_master)
     end if
-    if (memory%has%interference) call allocate_interference(memory%interference, &
-      sites_of_segment(memory)*n_slave, n_master)
+    if (memory%has%interference) call allocate_interference(memory%interference, n_sites(memory), &
+      n_master)
     call allocate_scratch(memory)
   end subroutine prepare_contact
 
@@ -92,6 +93,7 @@ contains
     type(features_t) :: has
 
     has%segment_points = formulation%segment_points /= points_at_nodes
+    has%virtual_nodes = has%segment_points .and. .not. formulation%has_nodal_pressure
     has%overlaps = formulation%covers_segments
     has%nodal_pressure = formulation%has_nodal_pressure
     has%unit_area = formulation%has_unit_area
@@ -116,7 +118,8 @@ contains
     real(wp), intent(out) :: lost                    !! J/m
     type(contact_state_t) :: old
     type(passage_t) :: sides(2)
-    integer, allocatable :: now(:) !! present numbers of the nodes
+    integer, allocatable :: now(:)              !! present numbers of the nodes ...
+    integer, allocatable :: points(:), sites(:) !! ... of the points of the slave, and of sites
 
     old = memory
     call prepare_contact(contact, model, memory)
@@ -126,8 +129,13 @@ contains
     memory%positions(3:4, :) = motion(1:2, memory%nodes)
     call carry_scalars(old, memory)
     call carry_nodes(now, old, memory)
-    if (old%has%friction) call carry_sites(sides, old, memory)
-    call carry_statuses(sides(1)%segment, sides(2)%segment, sides, old, memory)
+    points = sides(1)%node
+    if (old%has%segment_points) points = points_on(sides(1)%segment, size(old%segment_points%xi))
+    sites = sides(1)%node
+    if (old%has%virtual_nodes) sites = points
+    sites = [sites, shifted(sides(2)%node, n_sites(memory) - memory%n_master)]
+    if (old%has%friction) call carry_sites(sites, old%friction, memory%friction)
+    call carry_statuses(points, sides, old, memory)
     call form_springs(memory)
     call measure_springs(old)
     lost = old%monitor%stored
@@ -190,7 +198,6 @@ contains
       end associate
     end do
     allocate (passage%node(previous%n_node), passage%segment(previous%n_segment), source=0)
-    allocate (passage%keeps(previous%n_node), source=.false.)
     do s = 1, previous%n_segment
       k = head(previous%nodes(previous%segments(1, s)))
       do while (k > 0)
@@ -203,7 +210,6 @@ contains
     do k = 1, previous%n_node
       s = previous%outgoing(k)
       if (s > 0) s = passage%segment(s)
-      passage%keeps(k) = s > 0
       if (s > 0) then
         passage%node(k) = surface%segments(1, s)
         cycle
@@ -268,27 +274,29 @@ contains
     memory%node_pressure(now(from)) = old%node_pressure(from)
   end subroutine carry_nodes
 
-  !> What friction remembers: at nodes, or at the virtual nodes of the segment that starts at a
-  !> node.
-  pure subroutine carry_sites(sides, old, memory)
-    type(passage_t), intent(in) :: sides(2)
-    type(contact_state_t), intent(in) :: old
-    type(contact_state_t), intent(inout) :: memory
-    integer :: now(size(old%friction%state)), i, n, q
-    integer, allocatable :: from(:), to(:)
+  !> Present numbers of the points of all slave segments.
+  pure function points_on(segments, n) result(points)
+    integer, intent(in) :: segments(:) !! present numbers
+    integer, intent(in) :: n           !! points of each
+    integer :: points(n*size(segments))
+    integer :: k, q
 
-    n = sites_of_segment(old)
-    now = 0
-    do i = 1, old%n_slave
-      if (sides(1)%node(i) == 0 .or. (n > 1 .and. .not. sides(1)%keeps(i))) cycle
-      now(n*(i - 1) + 1:n*i) = [(n*(sides(1)%node(i) - 1) + q, q=1, n)]
-    end do
-    now(n*old%n_slave + 1:) = shifted(sides(2)%node, n*memory%n_slave)
+    points = [((merge((segments(k) - 1)*n + q, 0, segments(k) > 0), q=1, n), k=1, size(segments))]
+  end function points_on
+
+  !> What friction remembers.
+  pure subroutine carry_sites(now, old, memory)
+    integer, intent(in) :: now(:) !! present numbers of the sites
+    type(friction_memory_t), intent(in) :: old
+    type(friction_memory_t), intent(inout) :: memory
+    integer, allocatable :: from(:), to(:)
+    integer :: i
+
     from = pack([(i, i=1, size(now))], now > 0)
     to = now(from)
-    memory%friction%traction(to) = old%friction%traction(from)
-    memory%friction%state(to) = old%friction%state(from)
-    memory%friction%slip(to) = old%friction%slip(from)
+    memory%traction(to) = old%traction(from)
+    memory%state(to) = old%state(from)
+    memory%slip(to) = old%slip(from)
   end subroutine carry_sites
 
   !> Points of the last call whose nodes or segments have gone stand for no area.
@@ -335,26 +343,23 @@ contains
   end function follows
 
   !> Status of both passes, and the memory of slave segments.
-  pure subroutine carry_statuses(slave, master, sides, old, memory)
-    integer, intent(in) :: slave(:), master(:) !! present numbers of the segments
+  pure subroutine carry_statuses(points, sides, old, memory)
+    integer, intent(in) :: points(:) !! present numbers of the points of the slave
     type(passage_t), intent(in) :: sides(2)
     type(contact_state_t), intent(in) :: old
     type(contact_state_t), intent(inout) :: memory
-    integer, allocatable :: segment_points(:), from(:)
-    integer :: k, q, n
+    integer, allocatable :: from(:)
+    integer :: k
 
-    segment_points = sides(1)%node
-    if (old%has%segment_points) then
-      n = size(old%segment_xi)
-      segment_points = [((merge((slave(k) - 1)*n + q, 0, slave(k) > 0), q=1, n), k=1, size(slave))]
-    end if
-    call carry_status(old%slave_status, segment_points, master, memory%slave_status)
+    call carry_status(old%slave_status, points, sides(2)%segment, memory%slave_status)
     if (memory%master_status%n > 0) call carry_status(old%master_status, sides(2)%node, &
-      slave, memory%master_status)
+      sides(1)%segment, memory%master_status)
     if (.not. old%has%overlaps) return
-    from = pack([(k, k=1, size(slave))], slave > 0)
-    memory%segment_state(slave(from)) = old%segment_state(from)
-    memory%segment_gap(slave(from)) = old%segment_gap(from)
+    associate (slave => sides(1)%segment)
+      from = pack([(k, k=1, size(slave))], slave > 0)
+      memory%segments%state(slave(from)) = old%segments%state(from)
+      memory%segments%gap(slave(from)) = old%segments%gap(from)
+    end associate
   end subroutine carry_statuses
 
   !> Points that remain keep their segments where these remain; all are searched anew.

@@ -2,14 +2,15 @@
 !> Results of an interface for the writers: resultants, and values of its nodes.
 module contact_results_m
   use arcs_m, only : arc_projection_t, project_on_arcs
-  use contact_state_m, only : contact_state_t, contact_points_t, candidates_t, active, n_side
+  use contact_state_m, only : contact_state_t, contact_points_t, n_side
+  use search_state_m, only : candidates_t, active
   use contacts_m, only : contact_t
   use projection_m, only : projection_t, nearest_projection, follow_contact, turns_gently, vector_of
   use geometry_m, only : segment_length, coordinates_on_segment, closest_distance
   use kinds_m, only : wp
   use law_state_m, only : is_open, is_held, is_broken
   use tributary_lengths_m, only : find_half
-  use contact_scatter_m, only : average_values
+  use nodal_forces_m, only : average_values
   use snapshot_m, only : interface_result_t, slave_result_t, friction_result_t
   use surfaces_m, only : surface_t
   use ties_m, only : tie_spring_t, tie_spring, tied_nodes
@@ -61,7 +62,7 @@ contains
     if (memory%has%ties) share = share + nodal_sums(.false., memory, memory%tie_points, &
       memory%tie_points%pressure)
     carries = abs(share) > 0.0_wp
-    if (memory%has%ties) carries = carries .or. tied_nodes(memory, .true., .true.)
+    if (memory%has%ties) carries = carries .or. tied_nodes(memory, [is_held, is_broken])
     rows%length = lengths_in_contact(contact%slave, positions(:, :n), contact%is_axisymmetric, &
       carries(:n))
     lengths = max(tiny(1.0_wp), [rows%length, lengths_in_contact(contact%master, &
@@ -99,8 +100,8 @@ contains
     if (memory%tie_points%n == 0) return
     call average_values(memory%tie_points, memory%tie_points%gap, size(nodal, 2), nodal)
     slip = mean_slips(memory)
-    holds = tied_nodes(memory, .true., .false.)
-    held = tied_nodes(memory, .true., .true.)
+    holds = tied_nodes(memory, [is_held])
+    held = tied_nodes(memory, [is_held, is_broken])
     do i = 1, size(held)
       if (.not. held(i)) cycle
       rows%friction_result(i)%slip = slip(i)
@@ -121,7 +122,7 @@ contains
 
     slip = 0.0_wp
     do s = 1, size(memory%ties%side)
-      spring = tie_spring(memory, s)
+      spring = tie_spring(memory%ties, memory%tie_points, memory%positions, s)
       along(memory%ties%first(s):memory%ties%first(s + 1) - 1) = memory%ties%offset(2, s) &
         - dot_product(spring%d, spring%t)
     end do
@@ -204,18 +205,13 @@ contains
     integer, intent(in) :: i !! number in the interface
     type(contact_state_t), intent(in) :: memory
     type(friction_result_t), intent(inout) :: found
-    integer :: near(2), n
+    integer :: near(2)
 
     near = i
-    if (memory%has%segment_points .and. .not. memory%has%nodal_pressure) then
+    if (memory%has%virtual_nodes) then
       if (i > memory%n_slave) return
-      associate (before => contact%slave%incoming(i), behind => contact%slave%outgoing(i))
-        if (max(before, behind) == 0) return
-        n = size(memory%segment_xi)
-        near = n*(i - 1) + 1
-        if (before > 0) near(2) = n*contact%slave%segments(1, before)
-        if (behind == 0) near(1) = near(2)
-      end associate
+      near = points_beside(contact%slave, size(memory%segment_points%xi), i)
+      if (near(1) == 0) return
     end if
     ! Slips are those of the slave side along the master's surface, which runs the other way.
     ! At a corner the side next to it has no contact.
@@ -338,22 +334,31 @@ contains
     end do
   end function nearest_candidate
 
+  !> Points of the search on the segments before and behind a slave node that are next to it, the
+  !> same twice where there is one segment; 0: none.
+  pure function points_beside(slave, n, i) result(near)
+    type(surface_t), intent(in) :: slave
+    integer, intent(in) :: n !! points of a segment
+    integer, intent(in) :: i
+    integer :: near(2)
+
+    near = [n*slave%incoming(i), n*(slave%outgoing(i) - 1) + 1]
+    if (slave%outgoing(i) == 0) near(2) = near(1)
+    if (slave%incoming(i) == 0) near(1) = near(2)
+  end function points_beside
+
   !> The point at a slave node, or of those on its segments the one next to it that is in contact,
   !> if any.
   pure function point_at_node(slave, memory, i) result(point)
     type(surface_t), intent(in) :: slave
     type(contact_state_t), intent(in) :: memory
     integer, intent(in) :: i
-    integer :: point, n, other
+    integer :: point, near(2)
 
     point = i
     if (.not. memory%has%segment_points) return
-    n = size(memory%segment_xi)
-    other = n*slave%incoming(i)
-    point = n*(slave%outgoing(i) - 1) + 1
-    if (slave%outgoing(i) == 0) point = other
-    if (other == 0) return
-    if (memory%slave_status%state(point) /= active) point = other
+    near = points_beside(slave, size(memory%segment_points%xi), i)
+    point = merge(near(2), near(1), memory%slave_status%state(near(2)) == active)
   end function point_at_node
 
 end module contact_results_m

@@ -15,13 +15,14 @@
 !> (doc/theory/contact.md, section 7). Everything here obeys both bounds.
 module contact_step_limit_m
   use contact_dispatch_m, only : formulation_t, formulation_of, is_strict
-  use contact_state_m, only : contact_state_t
+  use contact_state_m, only : contact_state_t, n_side
   use contacts_m, only : contact_t
   use geometry_m, only : segment_length
   use kinds_m, only : wp
+  use law_state_m, only : is_held, is_broken
   use tributary_lengths_m, only : end_radius, nodal_area
   use surfaces_m, only : surface_t, open_ends
-  use ties_m, only : stiffness_of_nodes, tied_nodes
+  use ties_m, only : tie_spring_t, tie_spring, has_state, tied_nodes
   use visitor_m, only : visited_t, visitor_t
   implicit none
   private
@@ -175,8 +176,48 @@ contains
     real(wp) :: ratio(memory%n_slave + memory%n_master) !! slave nodes, then master nodes
 
     ratio = opening_ratios(contact, mass, memory)
-    if (memory%has%ties) ratio = ratio + stiffness_of_nodes(memory)/mass(memory%nodes)
+    if (memory%has%ties) ratio = ratio + tie_stiffness(memory)/mass(memory%nodes)
   end function spring_ratios
+
+  !> Most that ties hold each node with, so that the sum over nodes of K u^2 bounds twice their
+  !> energy, slave and master side each for itself: (sum of |a| |u|)^2 <= sum of |a| times sum of
+  !> |a| u^2, with a the weights and, on the nodes of the segment, what its turn moves at the
+  !> distance |d|. Averages over slave nodes only lower it.
+  pure function tie_stiffness(memory) result(stiffness)
+    type(contact_state_t), intent(in) :: memory
+    real(wp) :: stiffness(memory%n_slave + memory%n_master) !! N/m
+    type(tie_spring_t) :: spring
+    real(wp) :: turn, sums(n_side), k, turning
+    integer :: s, p, i
+
+    stiffness = 0.0_wp
+    if (memory%tie_points%n == 0) return
+    associate (points => memory%tie_points, ties => memory%ties)
+      do s = 1, size(ties%side)
+        if (.not. has_state(memory, s, [is_held])) cycle
+        spring = tie_spring(ties, points, memory%positions, s)
+        turn = norm2(spring%d)/spring%length
+        do p = ties%first(s), ties%first(s + 1) - 1
+          k = points%stiffness(p)*points%area(p)
+          sums = [sum(abs(points%slave_weights(:, p))), sum(abs(points%master_weights(:, p)))]
+          i = merge(2, 1, ties%side(s) > 0.0_wp)
+          sums(i) = sums(i) + 2.0_wp*turn
+          turning = k*sums(i)*turn
+          do i = 1, n_side
+            associate (a => stiffness(points%slave_nodes(i, p)))
+              a = a + k*sums(1)*abs(points%slave_weights(i, p))
+            end associate
+            associate (b => stiffness(points%master_nodes(i, p)))
+              b = b + k*sums(2)*abs(points%master_weights(i, p))
+            end associate
+            associate (c => stiffness(ties%owner(i, s)))
+              c = c + turning
+            end associate
+          end do
+        end do
+      end do
+    end associate
+  end function tie_stiffness
 
   !> The part of contact. Ties that break leave it the nodes that they do not hold, or not any more
   !> in part, from the start where slave nodes are among them.
@@ -188,8 +229,8 @@ contains
     logical :: counts(size(ratio))
 
     counts = memory%has%contact
-    if (memory%has%breaks) counts = tied_nodes(memory, .false., .true.) &
-      .or. .not. tied_nodes(memory, .true., .false.)
+    if (memory%has%breaks) counts = tied_nodes(memory, [is_broken]) &
+      .or. .not. tied_nodes(memory, [is_held])
     counts = counts .and. any(counts(:memory%n_slave))
     ratio = 0.0_wp
     if (any(counts)) ratio = merge(contact_ratios(contact, mass, memory), 0.0_wp, counts)
@@ -211,8 +252,8 @@ contains
     overhang = beyond_ends
     if (formulation%covers_segments .and. .not. is_strict(contact)) overhang = 0.0_wp
     is_lonely = .false.
-    if (contact%is_axisymmetric .and. allocated(memory%segment_xi)) &
-      is_lonely = size(memory%segment_xi) == 1
+    if (contact%is_axisymmetric .and. allocated(memory%segment_points%xi)) &
+      is_lonely = size(memory%segment_points%xi) == 1
     associate (n => memory%n_slave)
       slave = measure_side(contact%slave, memory%positions(:, :n), contact%is_axisymmetric, &
         is_lonely)

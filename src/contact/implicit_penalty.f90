@@ -7,16 +7,16 @@
 module implicit_penalty_m
   use complementarity_m, only : problem_t, outcome_t, set_size, solve_complementarity, is_low, &
     is_between, is_high
-  use contact_scatter_m, only : scatter_forces, average_values, share_out
   use contact_law_m, only : measure_springs, end_sampling
   use contact_state_m, only : contact_state_t, touching_gap
-  use contact_work_m, only : previous_work_t, store_previous_work, apply_forces
   use contacts_m, only : contact_t, friction_rule_t
   use energy_limit_m, only : energy_factor, scale_forces, count_cycle, returned_t, slack, &
     store_previous_springs, form_springs
   use kinds_m, only : wp
-  use friction_m, only : coefficient_of, has_decay
+  use friction_m, only : store_previous_tractions, coefficient_of, has_decay
   use law_state_m, only : sticks, slips
+  use nodal_forces_m, only : scatter_forces, average_values, share_out, previous_work_t, &
+    store_previous_work, apply_forces
   use weighted_gaps_m, only : rows_t, start_rows, choose_rows, form_shares, find_rates, &
     find_slips, velocities_under, fill_band, along_normal, along_tangent
   implicit none
@@ -95,6 +95,7 @@ contains
     memory%scratch%waits = .false.
     call store_previous_springs(memory)
     call store_previous_work(motion, memory%scratch%had_force, memory, previous_work)
+    if (memory%has%friction) call store_previous_tractions(memory%friction, memory%scratch)
     if (memory%points%n > 0) then
       call solve_pressures(step, memory)
       call admit_energy(step, memory)

@@ -9,22 +9,22 @@ module interface_m
     add_tie_energy
   use contact_log_m, only : log_contact
   use contact_memory_m, only : prepare_contact
-  use contact_scatter_m, only : scatter_forces, join_passes
-  use contact_work_m, only : previous_work_t, store_previous, store_previous_work, apply_forces
-  use contact_state_m, only : contact_state_t, pass_t, separated
+  use contact_state_m, only : contact_state_t, exchange
+  use search_state_m, only : pass_t, separated
   use contacts_m, only : contact_t, breaks, penalty_implicit, tie_always
   use damping_m, only : damp_points, find_lag
   use spring_gaps_m, only : has_offsets, update_offsets, faded_work, begin_ramp
   use energy_limit_m, only : store_previous_springs, form_springs, limit_forces, admit_entry_work
   use friction_m, only : store_previous_tractions, form_tractions, has_decay
   use initial_status_m, only : activate_deep_points, activate_deep_segments
-  use others_memory_m, only : answers_t
+  use remote_state_m, only : inside_tests_t
   use kinds_m, only : wp
   use log_m, only : log_t
   use model_m, only : model_t
   use positions_m, only : gather_positions, move_segment_points, closed_gap_of, gap_ahead
-  use tiebreak_m, only : start_breaking
-  use ties_m, only : tie_reach, freeze_ties, hold_ties, break_ties, tie_energy
+  use nodal_forces_m, only : scatter_forces, join_passes, previous_work_t, store_previous_work, &
+    apply_forces
+  use ties_m, only : tie_distance, freeze_ties, hold_ties, break_ties, tie_energy
   use contact_status_m, only : update_status, reset_status
   implicit none
   private
@@ -42,61 +42,60 @@ module interface_m
 contains
 
   !> Set up the memory of one interface at time zero and tell the log what was understood.
-  subroutine start_contact(contact, model, log, memory, answers)
+  subroutine start_contact(contact, model, log, memory, inside_tests)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
     type(contact_state_t), intent(out) :: memory
-    type(answers_t), intent(inout), optional :: answers
+    type(inside_tests_t), intent(inout), optional :: inside_tests
 
     call prepare_contact(contact, model, memory)
-    if (memory%has%ties) call start_ties(contact, model, memory, answers)
-    if (memory%has%contact) call start_search(contact, model, memory, answers)
+    if (memory%has%ties) call start_ties(contact, model, memory, inside_tests)
+    if (memory%has%contact) call start_search(contact, model, memory, inside_tests)
     call log_contact(contact, model, memory, log)
   end subroutine start_contact
 
   !> Place the points of ties: contact points of the same rule in the reference geometry, where gaps
   !> within reach are closed.
-  subroutine start_ties(contact, model, memory, answers)
+  subroutine start_ties(contact, model, memory, inside_tests)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
-    type(answers_t), intent(inout), optional :: answers
+    type(inside_tests_t), intent(inout), optional :: inside_tests
     type(contact_t) :: tie
     type(contact_state_t) :: placed
 
     tie = contact
     tie%tie = tie_always
     call prepare_contact(tie, model, placed)
-    placed%closed_gap = tie_reach(contact, model)
-    call start_search(tie, model, placed, answers)
+    placed%closed_gap = tie_distance(contact, model)
+    call start_search(tie, model, placed, inside_tests)
     call generate_points(tie, placed)
     call freeze_ties(contact, placed%closed_gap, placed, memory)
-    if (memory%has%breaks) call start_breaking(contact, memory)
   end subroutine start_ties
 
   !> Who touches whom at time zero.
-  subroutine start_search(contact, model, memory, answers)
+  subroutine start_search(contact, model, memory, inside_tests)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
     type(contact_state_t), intent(inout) :: memory
-    type(answers_t), intent(inout), optional :: answers
+    type(inside_tests_t), intent(inout), optional :: inside_tests
 
     if (contact%birth > 0.0_wp) return
     call search_pairs(contact, 0, .false., memory)
     associate (n => memory%n_slave)
       if (memory%has%segment_points) then
         call activate_deep_points(memory%slave_status, model, contact%slave, contact%master, &
-          memory%positions, memory%segment_points, answers)
+          memory%positions, memory%segment_points%positions, inside_tests)
       else
         call activate_deep_points(memory%slave_status, model, contact%slave, contact%master, &
-          memory%positions, memory%positions(:, :n), answers)
+          memory%positions, memory%positions(:, :n), inside_tests)
       end if
       if (memory%master_status%n > 0) call activate_deep_points(memory%master_status, model, &
-        contact%master, contact%slave, memory%positions, memory%positions(:, n + 1:), answers)
+        contact%master, contact%slave, memory%positions, memory%positions(:, n + 1:), inside_tests)
     end associate
-    if (memory%has%overlaps) &
-      call activate_deep_segments(contact, model, memory, answers)
+    if (memory%has%overlaps) call activate_deep_segments(contact, model, memory%positions, &
+      memory%segments%state, inside_tests)
     ! Points that lie deep need pairs as deep.
     memory%listed_until = -huge(1.0_wp)
   end subroutine start_search
@@ -136,7 +135,8 @@ contains
     if (memory%has%friction) then
       memory%scratch%dt = dt
       memory%friction%force = 0.0_wp
-      call store_previous_tractions(memory)
+      memory%friction%stored = 0.0_wp
+      call store_previous_tractions(memory%friction, memory%scratch)
     end if
     call step_contact(contact, instant_t(time, dt, is_trial=.true., closes=is_first), motion, &
       [real(wp) ::], memory, force)
@@ -234,7 +234,7 @@ contains
     call gather_positions(motion, memory)
     if (.not. memory%has%contact) return
     if (memory%has%segment_points) call move_segment_points(contact%slave, memory%positions, &
-      memory%segment_xi, memory%segment_spread, memory%segment_points, memory%travel)
+      memory%segment_points, memory%travel)
     if (now%is_trial) then
       if (memory%has%friction) memory%scratch%increment = motion(3:4, memory%nodes)
       if (now%closes) memory%closed_gap = memory%arcs%allowance + closed_gap_of(contact, memory)
@@ -264,10 +264,12 @@ contains
       scratch%waits = contact%penalty_unit == penalty_implicit .and. .not. memory%is_stale
       memory%n_active = 0
       call begin_sampling(had_force, memory%monitor)
-      if (had_force) call store_previous(memory)
+      ! What was previous before is zero since the forces have been added to the mesh.
+      if (had_force) call exchange(memory%force, scratch%previous_force)
       if (scratch%waits) return
       call store_previous_springs(memory)
       call store_previous_work(motion, had_force, memory, previous)
+      if (memory%has%friction) call store_previous_tractions(memory%friction, scratch)
     end associate
   end subroutine keep_previous
 
@@ -278,14 +280,11 @@ contains
     logical, intent(in) :: begins
     type(contact_state_t), intent(inout) :: memory
 
-    real(wp) :: load
-    integer :: node
-
     if (memory%scratch%n_freed > 0 .and. memory%points%n > 0) call add_tie_energy(memory)
     if (memory%monitor%is_due .or. cycle == 0) call measure_springs(memory)
     if (cycle == 0) then
       memory%energy = memory%monitor%stored
-      if (memory%has%ties) call tie_energy(memory, memory%ties%energy, load, node)
+      if (memory%has%ties) memory%ties%energy = tie_energy(memory)
     end if
     if (begins) memory%limit%admissible = memory%limit%admissible + memory%monitor%stored
     if (has_offsets(memory)) call admit_entry_work(faded_work(memory), memory%limit)
@@ -333,7 +332,7 @@ contains
     memory%listed_until = -huge(1.0_wp)
     call reset_status(memory%slave_status)
     call reset_status(memory%master_status)
-    if (memory%has%overlaps) memory%segment_state = separated
+    if (memory%has%overlaps) memory%segments%state = separated
     memory%is_stale = .false.
   end subroutine refresh_memory
 
@@ -351,7 +350,7 @@ contains
     associate (n => memory%n_slave, increments => memory%scratch%increment)
       if (memory%has%segment_points) then
         call update_status(memory%slave_status, contact%slave, contact%master, &
-          memory%candidates, memory%positions, increments, memory%segment_points)
+          memory%candidates, memory%positions, increments, memory%segment_points%positions)
       else
         call update_status(memory%slave_status, contact%slave, contact%master, &
           memory%candidates, memory%positions, increments, memory%positions(:, :n))

@@ -11,7 +11,7 @@ module deck_m
   use model_m, only : model_t
   use eos_m, only : eos_t
   use parts_m, only : hourglass_t
-  use deck_contact_sides_m, only : outline_t
+  use deck_contact_sides_m, only : mesh_outline_t
   use deck_contacts_m, only : read_contacts
   use deck_control_m, only : read_controls, read_outputs, read_relaxation, read_ends
   use deck_curves_m, only : table_t, read_curves, read_systems
@@ -19,7 +19,7 @@ module deck_m
   use deck_implicit_m, only : read_implicit, check_implicit
   use deck_loads_m, only : read_nodal_loads, read_rigid_loads, read_body_loads, read_pressures, &
     read_masses, read_global_damping, read_mass_damping, read_stiffness_damping, warn_of_bores
-  use deck_material_m, only : read_materials, read_equations, settle_pressures
+  use deck_material_m, only : read_materials, read_equations, set_pressure_moduli
   use deck_mesh_m, only : read_mesh
   use deck_part_m, only : read_parts, read_sections, make_rigids
   use deck_sections_m, only : read_cross_sections
@@ -39,7 +39,7 @@ module deck_m
   use deck_cards_m, only : cursor_t, open_cursor
   use deck_echo_m, only : echo_model, write_effective
   use text_m, only : upper_case
-  use deck_values_m, only : lose
+  use deck_values_m, only : note_refused
   implicit none
   private
   public :: deck_request_t, read_deck, interpret_deck
@@ -104,7 +104,7 @@ contains
 
     allocate (deck%words(0))
     is_ended = .false.
-    call know_blocks(deck, is_ended)
+    call identify_keywords(deck, is_ended)
     if (deck%n_block == 0) then
       call emit_errors(deck%report, request%path, error)
       return
@@ -114,7 +114,7 @@ contains
     call edit_controls(deck)
     do i = 1, deck%n_block
       if (deck%blocks(i)%is_honoured) call check_empty(deck, i)
-      if (deck%blocks(i)%is_empty) call note_lost(deck, i, is_ended)
+      if (deck%blocks(i)%is_empty) call note_refused_keyword(deck, i, is_ended)
     end do
     is_ended = is_ended .or. any(deck%blocks(:deck%n_block)%name == 'CONTROL_TERMINATION')
     if (.not. (is_ended .or. deck%incomplete)) call line_error(deck, 0, &
@@ -143,7 +143,7 @@ contains
     type(hourglass_t) :: hourglass
     logical :: erodes
     type(place_t), allocatable :: places(:)          !! of pressure loads
-    type(outline_t) :: body
+    type(mesh_outline_t) :: body
     integer :: i, step_line
 
     call read_curves(deck, model, tables)
@@ -156,7 +156,7 @@ contains
     call read_sections(deck, model)
     call read_parts(deck, hourglass, equations, model)
     call read_erosions(deck, erodes, step_line, model)
-    call settle_pressures(deck, equations, model)
+    call set_pressure_moduli(deck, equations, model)
     call read_mesh(deck, model, codes, is_sound, body%is_sound)
     call read_sets(deck, model, body%is_whole)
     call read_histories(deck, model)
@@ -186,7 +186,7 @@ contains
 
   !> Look every keyword up: canonical names, options taken off; unknown and refused ones are errors,
   !> those without effect one warning each.
-  subroutine know_blocks(deck, is_ended)
+  subroutine identify_keywords(deck, is_ended)
     type(deck_t), intent(inout) :: deck
     logical, intent(inout) :: is_ended
     character(:), allocatable :: reason
@@ -223,20 +223,20 @@ contains
             call line_error(deck, block%keyword, reason//instead_of_cases)
           else
             call line_error(deck, block%keyword, reason//' not available in slideline' &
-              //meant(block%given))
+              //suggestion(block%given))
           end if
-          call note_lost(deck, i, is_ended)
+          call note_refused_keyword(deck, i, is_ended)
         case default
           call line_error(deck, block%keyword, 'is not a keyword that this version knows' &
-            //meant(block%given))
-          call note_lost(deck, i, is_ended)
+            //suggestion(block%given))
+          call note_refused_keyword(deck, i, is_ended)
         end select
         if (block%name /= 'COMMENT' .and. index(' '//upper_case(block%rest), ' CID=') > 0) &
           call line_error(deck, block%keyword, 'keywords of one of several runs (CID=) are' &
           //instead_of_cases)
       end associate
     end do
-  end subroutine know_blocks
+  end subroutine identify_keywords
 
   !> A block without its first card, which is an error and not read. A blank line is a card where a
   !> keyword has one card, and none where it has rows.
@@ -264,17 +264,17 @@ contains
   end subroutine check_empty
 
   !> What a name that is not known may have been meant for, for a message.
-  function meant(given) result(text)
+  function suggestion(given) result(text)
     character(*), intent(in) :: given
     character(:), allocatable :: text
 
     text = trim(nearest_keyword(trim(given)))
     if (len(text) > 0) text = '; did you mean *'//text//'?'
-  end function meant
+  end function suggestion
 
   !> What a refused keyword would have defined, by its name and by what that may have been meant
   !> for.
-  subroutine note_lost(deck, i_block, is_ended)
+  subroutine note_refused_keyword(deck, i_block, is_ended)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
     logical, intent(inout) :: is_ended
@@ -283,18 +283,19 @@ contains
 
     name = deck%blocks(i_block)%given
     do i = 1, 2
-      if (index(name, 'NODE') == 1 .or. index(name, 'INCLUDE') == 1) call lose(deck, [a_node])
-      if (index(name, 'ELEMENT') == 1) call lose(deck, [an_element])
-      if (index(name, 'PART') == 1) call lose(deck, [a_part])
-      if (index(name, 'SECTION') == 1) call lose(deck, [a_section])
-      if (index(name, 'MAT') == 1) call lose(deck, [a_material])
-      if (index(name, 'EOS') == 1) call lose(deck, [an_eos])
-      if (index(name, 'DEFINE') == 1) call lose(deck, [a_curve, a_system])
-      if (index(name, 'SET') == 1) call lose(deck, [a_node_set, a_part_set, a_segment_set, &
+      if (index(name, 'NODE') == 1 .or. index(name, 'INCLUDE') == 1) call note_refused(deck, &
+        [a_node])
+      if (index(name, 'ELEMENT') == 1) call note_refused(deck, [an_element])
+      if (index(name, 'PART') == 1) call note_refused(deck, [a_part])
+      if (index(name, 'SECTION') == 1) call note_refused(deck, [a_section])
+      if (index(name, 'MAT') == 1) call note_refused(deck, [a_material])
+      if (index(name, 'EOS') == 1) call note_refused(deck, [an_eos])
+      if (index(name, 'DEFINE') == 1) call note_refused(deck, [a_curve, a_system])
+      if (index(name, 'SET') == 1) call note_refused(deck, [a_node_set, a_part_set, a_segment_set, &
         a_shell_set])
       is_ended = is_ended .or. name == 'CONTROL_TERMINATION'
       name = trim(nearest_keyword(deck%blocks(i_block)%given))
     end do
-  end subroutine note_lost
+  end subroutine note_refused_keyword
 
 end module deck_m

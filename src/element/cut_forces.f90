@@ -5,7 +5,7 @@
 module cut_forces_m
   use block_state_m, only : block_state_t
   use element_chunk_m, only : element_chunk_t, scatter_forces
-  use element_dispatch_m, only : take_values, put_values
+  use element_dispatch_m, only : gather_values, restore_values
   use eroding_tiles_m, only : advance_eroding_chunk
   use packed_buffer_m, only : packed_buffer_t
   use kinds_m, only : wp
@@ -14,7 +14,7 @@ module cut_forces_m
   use quad_m, only : advance_chunk
   implicit none
   private
-  public :: find_cut_forces, keep_cut_chunks
+  public :: find_cut_forces, store_cut_chunks
 
 contains
 
@@ -29,7 +29,7 @@ contains
     type(block_state_t), intent(inout) :: elements     !! on return as they were
     real(wp), intent(inout) :: force(:, :)             !! (8, n) x, y of four corners of each; it
                                                        !! stays of elements in other chunks
-    type(packed_buffer_t), intent(inout), optional :: before(:) !! of `keep_cut_chunks`
+    type(packed_buffer_t), intent(inout), optional :: before(:) !! of `store_cut_chunks`
     type(packed_buffer_t) :: present_values
     real(wp), allocatable :: of_slots(:, :, :) !! (8, chunk_size, n_chunk) where elements are cut
     type(element_chunk_t) :: chunk
@@ -41,15 +41,15 @@ contains
     allocate (of_slots(8, chunk_size, model%layout%n_chunk))
     do i = 1, size(list)
       if (list(i) < chunks(1) .or. list(i) > chunks(2)) cycle
-      call take_values(tile_t(list(i), list(i)), elements, present_values)
-      if (present(before)) call put_values(before(i), elements)
+      call gather_values(tile_t(list(i), list(i)), elements, present_values)
+      if (present(before)) call restore_values(before(i), elements)
       if (model%erodes) then
         call advance_eroding_chunk(model, list(i), motion, times, elements, chunk)
       else
         call advance_chunk(model, list(i), model%layout%slot_nodes(1, (list(i) - 1)*chunk_size &
           + 1), motion, times(2), elements, chunk)
       end if
-      call put_values(present_values, elements)
+      call restore_values(present_values, elements)
       ! Minus the internal force; the third corner of a triangle is its fourth as well.
       of_slots(:, :, list(i)) = 0.0_wp
       call scatter_forces(model%layout%chunk_elements(list(i)), own, chunk, &
@@ -68,7 +68,7 @@ contains
   end subroutine find_cut_forces
 
   !> Copy the chunks that have elements of cross sections, before a step.
-  subroutine keep_cut_chunks(model, elements, kept)
+  subroutine store_cut_chunks(model, elements, kept)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(inout) :: elements     !! stay as they are
     type(packed_buffer_t), allocatable, intent(inout) :: kept(:)
@@ -78,9 +78,9 @@ contains
     list = cut_chunks(model)
     if (.not. allocated(kept)) allocate (kept(size(list)))
     do i = 1, size(list)
-      call take_values(tile_t(list(i), list(i)), elements, kept(i))
+      call gather_values(tile_t(list(i), list(i)), elements, kept(i))
     end do
-  end subroutine keep_cut_chunks
+  end subroutine store_cut_chunks
 
   !> Chunks with elements of cross sections, each once, rising.
   pure function cut_chunks(model) result(list)

@@ -10,14 +10,14 @@ module element_dispatch_m
   use element_chunk_m, only : element_chunk_t, scatter_forces
   use layout_m, only : layout_t, chunk_size, local_kind, tile_t
   use model_m, only : model_t
-  use packed_buffer_m, only : packed_buffer_t, start_loading, start_unloading, choose_slots
+  use packed_buffer_m, only : packed_buffer_t, start_packing, start_unpacking, choose_slots
   use parts_m, only : section_t, form_full, form_axisym_full
   use quad_m, only : advance_chunk
   use quad_points_m, only : n_point
   implicit none
   private
-  public :: add_tile_forces, point_count, share_tile_forces, keep_tile_forces, sum_special_forces, &
-    take_values, put_values, same_bits
+  public :: add_tile_forces, point_count, scatter_tile_forces, store_tile_forces, &
+    sum_special_forces, gather_values, restore_values, same_bits
 
 contains
 
@@ -42,7 +42,7 @@ contains
     real(wp) :: near(4, model%layout%n_local)
     integer :: i_chunk, first, numbers(4, chunk_size)
 
-    call take_motion(tile, model%layout%special_node, motion, near)
+    call gather_tile_motion(tile, model%layout%special_node, motion, near)
     force = 0.0_wp
     do i_chunk = tile%first_chunk, tile%last_chunk
       first = (i_chunk - 1)*chunk_size + 1
@@ -55,7 +55,7 @@ contains
 
   !> Motion of a tile's nodes by their local numbers. It is read in order here, and local numbers
   !> take half of the memory of global ones.
-  pure subroutine take_motion(tile, special_node, motion, near)
+  pure subroutine gather_tile_motion(tile, special_node, motion, near)
     type(tile_t), intent(in) :: tile
     integer, intent(in) :: special_node(*)
     real(wp), intent(in) :: motion(4, *)       !! of all nodes
@@ -64,15 +64,15 @@ contains
 
     n_interior = tile%last_node - tile%first_node + 1
     do i = 1, n_interior
-      call take_node(motion(1, tile%first_node + i - 1), near(1, i))
+      call copy_node(motion(1, tile%first_node + i - 1), near(1, i))
     end do
     do i = tile%first_special, tile%last_special
-      call take_node(motion(1, special_node(i)), near(1, n_interior + i - tile%first_special + 1))
+      call copy_node(motion(1, special_node(i)), near(1, n_interior + i - tile%first_special + 1))
     end do
-  end subroutine take_motion
+  end subroutine gather_tile_motion
 
   !> Motion of one node: for a loop over the four the compiler would call a routine.
-  pure subroutine take_node(motion, near)
+  pure subroutine copy_node(motion, near)
     real(wp), intent(in) :: motion(4)
     real(wp), intent(inout) :: near(4)
 
@@ -80,7 +80,7 @@ contains
     near(2) = motion(2)
     near(3) = motion(3)
     near(4) = motion(4)
-  end subroutine take_node
+  end subroutine copy_node
 
   !> Local numbers of a chunk as ordinary integers.
   pure subroutine widen(local, numbers)
@@ -95,7 +95,7 @@ contains
   end subroutine widen
 
   !> A tile's forces on its special nodes into its force slots.
-  subroutine share_tile_forces(tile, force, force_slots)
+  subroutine scatter_tile_forces(tile, force, force_slots)
     type(tile_t), intent(in) :: tile
     real(wp), intent(in) :: force(2, *)          !! of the tile's local nodes
     real(wp), intent(inout) :: force_slots(2, *)
@@ -106,17 +106,17 @@ contains
       force_slots(1, i) = force(1, n_interior + i - tile%first_special + 1)
       force_slots(2, i) = force(2, n_interior + i - tile%first_special + 1)
     end do
-  end subroutine share_tile_forces
+  end subroutine scatter_tile_forces
 
   !> A tile's forces on its interior nodes into the nodal array, for a cycle that writes.
-  subroutine keep_tile_forces(tile, force, internal_force)
+  subroutine store_tile_forces(tile, force, internal_force)
     type(tile_t), intent(in) :: tile
     real(wp), intent(in) :: force(2, *)
     real(wp), intent(inout) :: internal_force(2, *) !! of all nodes
 
     internal_force(:, tile%first_node:tile%last_node) = &
       force(:, 1:tile%last_node - tile%first_node + 1)
-  end subroutine keep_tile_forces
+  end subroutine store_tile_forces
 
   !> Internal forces of the special nodes first .. last: their slots in their fixed order.
   subroutine sum_special_forces(layout, force_slots, first, last, force)
@@ -149,25 +149,25 @@ contains
   end subroutine sum_slots
 
   !> What a step may change of the elements of a tile.
-  subroutine take_values(tile, elements, buffer)
+  subroutine gather_values(tile, elements, buffer)
     type(tile_t), intent(in) :: tile
     type(block_state_t), intent(inout) :: elements !! as before
     type(packed_buffer_t), intent(out) :: buffer
 
     call choose_slots(buffer, [tile%first_chunk, tile%last_chunk], chunk_size, .false., .true.)
     call elements%visit(buffer)
-    call start_loading(buffer)
+    call start_packing(buffer)
     call elements%visit(buffer)
-  end subroutine take_values
+  end subroutine gather_values
 
   !> The elements of a tile as they were when their values were taken.
-  subroutine put_values(buffer, elements)
+  subroutine restore_values(buffer, elements)
     type(packed_buffer_t), intent(inout) :: buffer !! may be put back again
     type(block_state_t), intent(inout) :: elements
 
-    call start_unloading(buffer)
+    call start_unpacking(buffer)
     call elements%visit(buffer)
-  end subroutine put_values
+  end subroutine restore_values
 
   !> Whether two arrays of one length have the same bits: zeros have signs, and what is not a number
   !> equals nothing.

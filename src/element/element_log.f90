@@ -64,12 +64,12 @@ contains
           //'in plastic flow; the viscous form (IHQ 1 to 3) does not')
       end associate
     end do
-    call tell_of_viscosity(model, log)
+    call report_missing_viscosity(model, log)
   end subroutine log_elements
 
   !> One line where shocks are likely and nothing spreads them over elements: an equation of state
   !> without bulk viscosity.
-  subroutine tell_of_viscosity(model, log)
+  subroutine report_missing_viscosity(model, log)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
     integer :: i
@@ -85,6 +85,6 @@ contains
         return
       end associate
     end do
-  end subroutine tell_of_viscosity
+  end subroutine report_missing_viscosity
 
 end module element_log_m

@@ -5,7 +5,7 @@
 module element_stiffness_m
   use block_state_m, only : block_state_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/), sqrt
-  use element_tangent_m, only : element_t, shape_t, n_pattern, new_element, take_values, &
+  use element_tangent_m, only : element_t, shape_t, n_pattern, new_element, set_pattern_values, &
     form_full_force, form_gradient, find_stress, pressure_of, start_volumes, twice_area, products, &
     cross
   use hourglass_m, only : form_moduli
@@ -61,9 +61,9 @@ contains
             element%x = model%mesh%coordinates(:, nodes)
             element%u = motion(1:2, nodes)
             du = dt*motion(3:4, nodes)
-            call take_values(element%x + element%u, element%now)
-            call take_values(element%x + element%u - 0.5_wp*du, element%middle)
-            call take_values(du, element%change)
+            call set_pattern_values(element%x + element%u, element%now)
+            call set_pattern_values(element%x + element%u - 0.5_wp*du, element%middle)
+            call set_pattern_values(du, element%change)
             call load_points(i_chunk, mod(slot - 1, chunk_size), history_size(material), &
               committed, element)
             call form_block(material, part%hourglass, committed%point_start(i_chunk) > 0, element, &

@@ -14,7 +14,7 @@ module element_tangent_m
   use volumetric_m, only : log_ratio
   implicit none
   private
-  public :: element_t, shape_t, n_pattern, new_element, take_values, form_full_force, &
+  public :: element_t, shape_t, n_pattern, new_element, set_pattern_values, form_full_force, &
     form_gradient, find_stress, pressure_of, start_volumes, twice_area, products, cross
 
   !> Patterns: a and b and h in x and y, and s.
@@ -57,7 +57,7 @@ contains
   end function new_element
 
   !> Values of a nodal field in the patterns.
-  pure subroutine take_values(field, shape)
+  pure subroutine set_pattern_values(field, shape)
     real(wp), intent(in) :: field(2, 4)
     type(shape_t), intent(inout) :: shape
 
@@ -65,7 +65,7 @@ contains
     shape%b%value = field(:, 4) - field(:, 2)
     shape%h%value = (field(:, 1) - field(:, 2)) + (field(:, 3) - field(:, 4))
     shape%s%value = sum(field(1, :))
-  end subroutine take_values
+  end subroutine set_pattern_values
 
   !> Diagonals of point `k`, and its radius where one is asked for.
   pure subroutine form_place(k, is_axisymmetric, shape, place)
@@ -319,7 +319,7 @@ contains
     integer :: i, k
 
     moved = element%now
-    call take_values(element%u, moved)
+    call set_pattern_values(element%u, moved)
     theta = (1.0_wp/sum(start))*volume
     ! J U'(J), the same for all of them.
     if (rubber%exponent > 0.0_wp) then

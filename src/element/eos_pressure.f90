@@ -51,7 +51,7 @@ contains
       return
     end if
     first = first + 2*chunk_size
-    stress%former = elements%eos_state(first:first + chunk_size - 1)
+    stress%start_stretch = elements%eos_state(first:first + chunk_size - 1)
     stress%stretch = chunk%stretch
     call form_gradient(point, stress)
   end subroutine load_point_state

@@ -77,8 +77,8 @@ contains
     call advance_chunk(model, i_chunk, nodes, motion, times(2), elements, chunk)
     if (times(2) > 0.0_wp) then
       call find_leaving(model, i_chunk, nodes, motion, times, elements, leaving%flags)
-      if (any(leaving%flags)) call take_out(model, i_chunk, motion, times(2), leaving, elements, &
-        chunk)
+      if (any(leaving%flags)) call erode_elements(model, i_chunk, motion, times(2), leaving, &
+        elements, chunk)
     end if
     if (elements%erosion%n_gone(i_chunk) == 0) return
     do i = 1, chunk_size
@@ -91,7 +91,7 @@ contains
   end subroutine advance_eroding_chunk
 
   !> Elements that leave take their energies along; the limits of the chunk are those of the rest.
-  subroutine take_out(model, i_chunk, motion, dt, leaving, elements, chunk)
+  subroutine erode_elements(model, i_chunk, motion, dt, leaving, elements, chunk)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i_chunk
     real(wp), intent(in), contiguous :: motion(:, :)
@@ -138,7 +138,7 @@ contains
     end do
     elements%time_limit(i_chunk) = limit
     elements%volume_limit(i_chunk) = volume
-  end subroutine take_out
+  end subroutine erode_elements
 
   !> From now on the slot is padding.
   pure subroutine make_padding(model, i_chunk, i, elements)

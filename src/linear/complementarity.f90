@@ -158,7 +158,7 @@ contains
         if (has_bounds) problem%solved(i) = -problem%slack(j)
       end associate
     end do
-    call take_rows(m, problem%width, problem%place, problem%band, problem%factor)
+    call gather_band_rows(m, problem%width, problem%place, problem%band, problem%factor)
     call factorise(m, problem%width, problem%factor, problem%diagonal, problem%drops)
     call substitute(m, problem%width, problem%factor, problem%drops, problem%solved)
     if (problem%n_column > 0) call add_columns(m, problem)
@@ -217,13 +217,13 @@ contains
   pure subroutine mend_guess(problem, is_settled)
     type(problem_t), intent(inout) :: problem
     logical, intent(out) :: is_settled
-    integer :: i, former
+    integer :: i, previous
 
     is_settled = .true.
     do i = 1, problem%n
       associate (at => problem%at(i), x => problem%x(i), slack => problem%slack(i))
         if (.not. problem%high(i) > problem%low(i)) cycle
-        former = at
+        previous = at
         if (problem%drops(i)) then
           if (slack > 0.0_wp .or. .not. (slack < 0.0_wp .or. problem%low(i) < 0.0_wp)) at = is_low
           if (slack < 0.0_wp .and. problem%high(i) < huge(1.0_wp)) at = is_high
@@ -231,7 +231,7 @@ contains
             .and. .not. (at == is_low .and. problem%low(i) < 0.0_wp)
           cycle
         end if
-        select case (former)
+        select case (previous)
         case (is_low)
           if (slack < 0.0_wp) at = is_between
         case (is_high)
@@ -240,7 +240,7 @@ contains
           if (x < problem%low(i)) at = is_low
           if (x > problem%high(i)) at = is_high
         end select
-        is_settled = is_settled .and. at == former
+        is_settled = is_settled .and. at == previous
       end associate
     end do
   end subroutine mend_guess
@@ -330,7 +330,7 @@ contains
   end subroutine sweep
 
   !> The band of some rows.
-  pure subroutine take_rows(m, width, place, band, factor)
+  pure subroutine gather_band_rows(m, width, place, band, factor)
     integer, intent(in) :: m, width, place(m)
     real(wp), intent(in) :: band(0:width, *)
     real(wp), intent(inout) :: factor(0:width, m)
@@ -350,7 +350,7 @@ contains
         end if
       end do
     end do
-  end subroutine take_rows
+  end subroutine gather_band_rows
 
   !> Cholesky factors of a band. A row whose pivot is zero takes no part.
   pure subroutine factorise(n, width, factor, diagonal, is_zero)
@@ -378,13 +378,13 @@ contains
         factor(k, j) = factor(k, j)*inverse
       end do
       do k = 1, last
-        call take_off(last - k + 1, factor(k, j), factor(k, j), factor(0, j + k))
+        call subtract_multiple(last - k + 1, factor(k, j), factor(k, j), factor(0, j + k))
       end do
     end do
   end subroutine factorise
 
   !> Take a multiple of numbers off others. Few are cheaper one by one.
-  pure subroutine take_off(n, multiple, these, others)
+  pure subroutine subtract_multiple(n, multiple, these, others)
     integer, intent(in) :: n
     real(wp), intent(in) :: multiple, these(n)
     real(wp), intent(inout) :: others(n)
@@ -399,7 +399,7 @@ contains
         others(m) = others(m) - multiple*these(m)
       end do
     end if
-  end subroutine take_off
+  end subroutine subtract_multiple
 
   !> Solve with the factors, in place.
   pure subroutine substitute(n, width, factor, is_zero, y)

@@ -7,7 +7,7 @@ module sparse_m
   use, intrinsic :: iso_c_binding, only : c_bool
   use kinds_m, only : wp, long
   use memory_m, only : available_bytes
-  use system_m, only : expect_refusal
+  use system_m, only : expect_allocation_failure
   implicit none
   private
   public :: sparse_t, start_matrix, add_block, compress_matrix, multiply, banded_lu_t, &
@@ -188,9 +188,9 @@ contains
     factored = .false.
     if (factor%bytes > available_bytes()) return
     w = factor%width
-    call expect_refusal(.true._c_bool)
+    call expect_allocation_failure(.true._c_bool)
     allocate (factor%band(3*w + 1, matrix%n), factor%exchange(matrix%n), stat=status)
-    call expect_refusal(.false._c_bool)
+    call expect_allocation_failure(.false._c_bool)
     if (status /= 0) return
     place(factor%order) = [(i, i=1, matrix%n)]
     factor%band = 0.0_wp

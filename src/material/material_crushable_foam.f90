@@ -38,7 +38,7 @@ contains
       end do
     end do
     ! ln(J1/J0) = ln(1 + (J1 - J0)/J0).
-    share = max(least, (chunk%stretch - chunk%former)/(1.0_wp + chunk%former))
+    share = max(least, (chunk%stretch - chunk%start_stretch)/(1.0_wp + chunk%start_stretch))
     call form_log_ratios(chunk_size, share, growth)
     !$omp simd private(third, push, oxx, oyy, oxy, middle, root, half, xy, xx, yy, zz)
     do i = 1, chunk_size

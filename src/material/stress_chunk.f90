@@ -24,7 +24,7 @@ module stress_chunk_m
                                                      !! in its middle; only where there is an EOS
     ! What follows is there only for laws that give the pressure too. They leave the mean stress at
     ! the end of the step in `mean`, energy per initial volume and moduli per present one.
-    real(wp), dimension(chunk_size) :: stretch, former !! V/V0 - 1 at the end and at the start
+    real(wp), dimension(chunk_size) :: stretch, start_stretch !! V/V0 - 1 at the end and start
     real(wp), dimension(chunk_size) :: volume          !! V/V0 of the point itself, at the end
     real(wp), dimension(chunk_size) :: hxx, hxy, hyx, hyy, hzz !! F - 1, det F = 1 + stretch
     real(wp), dimension(chunk_size) :: energy, bulk, shear

@@ -85,8 +85,8 @@ module contacts_m
                                            !! automatic
     type(friction_rule_t) :: friction
     integer :: tie = tie_none              !! TIE, one of the `tie_` constants
-    real(wp) :: tie_reach = 0.0_wp         !! what is farther apart is not tied, m; below 0 per cent
-                                           !! of the mean master segment; 0 = 1 per cent
+    real(wp) :: tie_distance = 0.0_wp         !! what is farther apart is not tied, m; below 0 per
+                                              !! cent of the mean master segment; 0 = 1 per cent
     real(wp) :: strength(2) = 0.0_wp       !! NFLS, SFLS of a tie that breaks, N/m^2
     type(curve_t), allocatable :: interference !! LCINT: the part of an initial overlap that acts,
                                            !! from 0 to 1
@@ -174,7 +174,7 @@ contains
     call visitor%visit('search_depth', self%search_depth)
     call visitor%plain(c_loc(self%friction), storage_size(self%friction), 1)
     call visitor%visit('tie', self%tie)
-    call visitor%visit('tie_reach', self%tie_reach)
+    call visitor%visit('tie_distance', self%tie_distance)
     call visitor%fixed('strength', self%strength)
     if (visitor%makes(merge(1, absent, allocated(self%interference)))) allocate (self%interference)
     if (allocated(self%interference)) call visitor%part('interference', self%interference)

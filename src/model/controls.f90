@@ -13,8 +13,9 @@ module controls_m
   private
   public :: boundary_rows_t, list_boundaries, boundary_load, boundary_body_load, &
     boundary_pressure, boundary_motion, boundary_body_motion, force_group_t, group_nodes, &
-    cross_section_t, find_edges, mark_corners, end_condition_t, end_node_place, &
-    end_node_touch, end_body_place, end_body_way, end_contact, controls_t, relaxation_t, &
+    cross_section_t, find_edges, mark_corners, end_condition_t, end_node_coordinate, &
+    end_node_contact, end_body_displacement, end_body_distance, end_contact, controls_t, &
+    relaxation_t, &
     implicit_t, output_plan_t, interval_t, is_asked, length_by_side, length_by_diagonal, &
     contact_step_warns, contact_step_free, contact_step_rules
 
@@ -56,8 +57,8 @@ module controls_m
 
   !> The kinds: a coordinate of a node, a node in contact, a displacement of a body along an axis,
   !> the length of that displacement, an interface without force.
-  integer, parameter :: end_node_place = 1, end_node_touch = 2, end_body_place = 3, &
-    end_body_way = 4, end_contact = 5
+  integer, parameter :: end_node_coordinate = 1, end_node_contact = 2, end_body_displacement = 3, &
+    end_body_distance = 4, end_contact = 5
 
   !> One of them.
   type :: end_condition_t

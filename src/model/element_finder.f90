@@ -11,7 +11,7 @@ module element_finder_m
   implicit none
   private
   public :: element_finder_t, start_finder, is_inside_body, element_at, cell_of, body_view_t, &
-    most_crossed, view_body, half_row, list_crossed, ends_of
+    most_crossed, view_body, half_thickness, list_crossed, ends_of, initial_length, area_behind
 
   !> Part of a cell by which a node must lie within the boundary.
   real(wp), parameter :: margin = 1.0e-6_wp
@@ -19,7 +19,7 @@ module element_finder_m
   real(wp), parameter :: round_off = 1.0e-9_wp
 
   !> Part of the places' box by which elements outside of it are taken too.
-  real(wp), parameter :: beside = 1.0e-4_wp
+  real(wp), parameter :: box_margin = 1.0e-4_wp
 
   !> The grid; `cells = 0` when there is no element.
   type :: element_finder_t
@@ -33,7 +33,7 @@ module element_finder_m
 
   !> Part of the shorter segment by which two segments have to reach through each other at least:
   !> less may be round-off of the coordinates.
-  real(wp), parameter :: through = 1.0e-4_wp
+  real(wp), parameter :: least_crossing = 1.0e-4_wp
   !> Segments of a surface that one segment is known to cross, at most.
   integer, parameter :: most_crossed = 16
   !> A surface and the bodies behind it.
@@ -66,7 +66,7 @@ contains
     end if
     low = minval(model%mesh%coordinates(:, nodes), 2)
     high = maxval(model%mesh%coordinates(:, nodes), 2)
-    size_of_box = beside*maxval(high - low)
+    size_of_box = box_margin*maxval(high - low)
     low = low - size_of_box
     high = high + size_of_box
     finder%low = huge(1.0_wp)
@@ -141,27 +141,29 @@ contains
 
   !> Whether four places round `x`, a hair away, are all in elements that do not have the nodes
   !> which carry the place. (x alone would not tell an edge between two elements from the boundary.)
-  pure function is_inside_body(finder, model, x, carriers) result(inside)
+  pure function is_inside_body(finder, model, x, owner_nodes) result(inside)
     type(element_finder_t), intent(in) :: finder
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: x(2)        !! m
-    integer, intent(in) :: carriers(:)  !! node indices
+    integer, intent(in) :: owner_nodes(:)  !! node indices
     logical :: inside
-    real(wp) :: hair(2)
+    real(wp) :: tolerance(2)
 
-    hair = margin*finder%cell
-    inside = element_at(finder, model, x + hair, carriers) > 0
-    if (inside) inside = element_at(finder, model, x - hair, carriers) > 0
-    if (inside) inside = element_at(finder, model, x + [hair(1), -hair(2)], carriers) > 0
-    if (inside) inside = element_at(finder, model, x + [-hair(1), hair(2)], carriers) > 0
+    tolerance = margin*finder%cell
+    inside = element_at(finder, model, x + tolerance, owner_nodes) > 0
+    if (inside) inside = element_at(finder, model, x - tolerance, owner_nodes) > 0
+    if (inside) inside = element_at(finder, model, x + [tolerance(1), -tolerance(2)], &
+      owner_nodes) > 0
+    if (inside) inside = element_at(finder, model, x + [-tolerance(1), tolerance(2)], &
+      owner_nodes) > 0
   end function is_inside_body
 
   !> An element that x is in and that does not have all of `carriers`, or 0.
-  pure function element_at(finder, model, x, carriers) result(element)
+  pure function element_at(finder, model, x, owner_nodes) result(element)
     type(element_finder_t), intent(in) :: finder
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: x(2)
-    integer, intent(in) :: carriers(:)
+    integer, intent(in) :: owner_nodes(:)
     integer :: element
     integer :: cell(2), k, i, j
 
@@ -171,7 +173,7 @@ contains
     k = 1 + cell(1) + cell(2)*finder%cells(1)
     do i = finder%first(k) + 1, finder%first(k + 1)
       associate (nodes => model%mesh%element_nodes(:, finder%items(i)))
-        if (all([(any(nodes == carriers(j)), j=1, size(carriers))])) cycle
+        if (all([(any(nodes == owner_nodes(j)), j=1, size(owner_nodes))])) cycle
       end associate
       if (.not. is_in_element(model, finder%items(i), x)) cycle
       element = finder%items(i)
@@ -210,21 +212,39 @@ contains
   end subroutine view_body
 
   !> Half of the thickness of the element behind a segment, m.
-  pure function half_row(model, surface, segment) result(depth)
+  pure function half_thickness(model, surface, segment) result(depth)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: segment
     real(wp) :: depth
-    real(wp) :: length, area
 
-    associate (x => model%mesh%coordinates, ends => surface%nodes(surface%segments(:, segment)), &
-      nodes => model%mesh%element_nodes(:, surface%segment_element(segment)))
-      length = norm2(x(:, ends(2)) - x(:, ends(1)))
-      area = 0.5_wp*((x(1, nodes(3)) - x(1, nodes(1)))*(x(2, nodes(4)) - x(2, nodes(2))) &
-        - (x(1, nodes(4)) - x(1, nodes(2)))*(x(2, nodes(3)) - x(2, nodes(1))))
-    end associate
-    depth = 0.5_wp*area/length
-  end function half_row
+    depth = 0.5_wp*area_behind(model, surface, segment)/initial_length(model, surface, segment)
+  end function half_thickness
+
+  !> Length of a segment, m.
+  pure function initial_length(model, surface, segment) result(length)
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: segment
+    real(wp) :: length
+    real(wp) :: x(2, 2)
+
+    x = ends_of(model, surface, segment)
+    length = norm2(x(:, 2) - x(:, 1))
+  end function initial_length
+
+  !> Area of the element behind a segment, m^2.
+  pure function area_behind(model, surface, segment) result(area)
+    type(model_t), intent(in) :: model
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: segment
+    real(wp) :: area
+    real(wp) :: x(2, 4)
+
+    x = model%mesh%coordinates(:, model%mesh%element_nodes(:, surface%segment_element(segment)))
+    area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
+      - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
+  end function area_behind
 
   !> Segments that a line a-b and that cross each other, in order along it, and where on it (0 to
   !> 1): each reaches through the other with both ends. All behind which elements lie in its way.
@@ -278,7 +298,7 @@ contains
     place = 0.0_wp
     a = [across(two, one(:, 1)), across(two, one(:, 2))]
     b = [across(one, two(:, 1)), across(one, two(:, 2))]
-    least = through*min(norm2(one(:, 2) - one(:, 1)), norm2(two(:, 2) - two(:, 1)))
+    least = least_crossing*min(norm2(one(:, 2) - one(:, 1)), norm2(two(:, 2) - two(:, 1)))
     if (a(1)*a(2) >= 0.0_wp .or. b(1)*b(2) >= 0.0_wp) return
     if (minval(abs([a, b])) > least) place = a(1)/(a(1) - a(2))
   end subroutine cross

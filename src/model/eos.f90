@@ -15,7 +15,7 @@ module eos_m
 
   !> Denominator of Gruneisen's equation at which its pressure, which goes with the inverse square,
   !> counts as without bound.
-  real(wp), parameter :: next_to_none = 0.1_wp
+  real(wp), parameter :: least_denominator = 0.1_wp
 
   !> One *EOS, or what stands for it in a material with failure.
   type :: eos_t
@@ -78,7 +78,7 @@ contains
     ratio = 0.0_wp
     do i = 1, n - 1
       y = real(i, wp)/n
-      if (1.0_wp - y*(s(1) + y*(s(2) + y*s(3))) > next_to_none*(1.0_wp - y)) cycle
+      if (1.0_wp - y*(s(1) + y*(s(2) + y*s(3))) > least_denominator*(1.0_wp - y)) cycle
       ratio = 1.0_wp - y
       return
     end do

@@ -16,7 +16,7 @@ module exposed_quads_m
   real(wp), parameter :: half_share = 0.51_wp
 
   !> An element with less of the mass of a node is no neighbour there.
-  real(wp), parameter :: slight_share = 0.1_wp
+  real(wp), parameter :: small_share = 0.1_wp
 
 contains
 
@@ -50,7 +50,7 @@ contains
       associate (nodes => model%mesh%element_nodes(:, i))
         if (any(shares(:, i) > main_share*mass(nodes))) cycle
         do k = 1, 4
-          if (shares(k, i) > slight_share*mass(nodes(k))) is_surrounded(nodes(k)) = .false.
+          if (shares(k, i) > small_share*mass(nodes(k))) is_surrounded(nodes(k)) = .false.
         end do
       end associate
     end do

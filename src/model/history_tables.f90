@@ -55,7 +55,8 @@ module history_tables_m
     history_table_t('nodout', asked_alone, each_history_node, text_instants, &
       'time,#node,x,y,ux,uy,vx,vy,ax,ay;#cycle'), &
     history_table_t('contact', asked_by_states, each_contact, text_none, &
-      'time,#interface,#node,s,x,y,gap,pressure,fx,fy,length,traction,slip,#state,row_stress,offset'), &
+      'time,#interface,#node,s,x,y,gap,pressure,fx,fy,length,traction,slip,#state,row_stress,'// &
+      'offset'), &
     history_table_t('matsum', asked_alone, each_part, text_instants, &
       'time,#part,kinetic,internal,hourglass,momentum_x,momentum_y,mass,+added_mass'), &
     history_table_t('rwforc', asked_alone, each_wall, text_instants, &

@@ -3,7 +3,7 @@
 !> that lie in each other deeper than whole outlines are caught (doc/theory/contact.md, sections 3.4
 !> and 3.7). Linear in elements and segments. Used once, when the deck is read.
 module initial_overlap_m
-  use element_finder_m, only : body_view_t, most_crossed, half_row, list_crossed, ends_of, &
+  use element_finder_m, only : body_view_t, most_crossed, half_thickness, list_crossed, ends_of, &
     is_inside_body, element_at
   use geometry_m, only : local_coordinates_t, coordinates_on_segment, closest_distance
   use kinds_m, only : wp
@@ -15,9 +15,9 @@ module initial_overlap_m
   public :: overlap_t, find_crossing, find_overlap
 
   !> Part of the allowed depth by which bodies that lie half an element deep may miss it.
-  real(wp), parameter :: hair = 1.0e-9_wp
+  real(wp), parameter :: tolerance = 1.0e-9_wp
   !> Deep places for which all segments are looked at; bodies with more of them overlap anyway.
-  integer, parameter :: most_looks = 1000
+  integer, parameter :: max_checked = 1000
 
   !> Cosine of the angle between two outward normals from which on they look the same way.
   real(wp), parameter :: same_way = 0.5_wp
@@ -72,13 +72,13 @@ contains
     type(body_view_t), intent(in) :: view !! of `other`
     logical, intent(in) :: is_same
     type(overlap_t), intent(out) :: found
-    integer :: s, i, n, n_look, ends(2), crossed(most_crossed)
+    integer :: s, i, n, n_checked, ends(2), crossed(most_crossed)
     real(wp) :: x(2, 2), at(most_crossed)
     type(place_t) :: place
 
-    n_look = 0
+    n_checked = 0
     do s = 1, own%n_segment
-      if (n_look >= most_looks) return
+      if (n_checked >= max_checked) return
       ends = own%nodes(own%segments(:, s))
       x = ends_of(model, own, s)
       place%beside = 0
@@ -91,27 +91,27 @@ contains
       do i = 1, merge(2, 1, own%next(s) == 0)
         place%x = x(:, i)
         place%nodes = ends(i)
-        call look_at_place(model, other, view, place, n_look, found)
+        call check_position(model, other, view, place, n_checked, found)
       end do
       place%normal = normal_of(x)
       place%nodes = ends
       place%x = 0.5_wp*(x(:, 1) + x(:, 2))
-      call look_at_place(model, other, view, place, n_look, found)
+      call check_position(model, other, view, place, n_checked, found)
       call list_crossed(model, other, view, x, n, crossed, at)
       do i = 2, n
         place%x = x(:, 1) + 0.5_wp*(at(i - 1) + at(i))*(x(:, 2) - x(:, 1))
-        call look_at_place(model, other, view, place, n_look, found)
+        call check_position(model, other, view, place, n_checked, found)
       end do
     end do
   end subroutine find_overlap
 
   !> Keep one place if it is too deep and the deepest so far.
-  pure subroutine look_at_place(model, other, view, place, n_look, found)
+  pure subroutine check_position(model, other, view, place, n_checked, found)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: other
     type(body_view_t), intent(in) :: view
     type(place_t), intent(in) :: place
-    integer, intent(inout) :: n_look
+    integer, intent(inout) :: n_checked
     type(overlap_t), intent(inout) :: found
     integer :: k, node, near(8)
     type(overlap_t) :: new
@@ -128,7 +128,7 @@ contains
     end associate
     call measure(model, other, place, near, new)
     if (new%segment > 0 .and. new%depth < new%allowed) return
-    n_look = n_look + 1
+    n_checked = n_checked + 1
     call measure(model, other, place, [(k, k=1, other%n_segment)], new)
     if (new%segment == 0 .or. new%depth < new%allowed) return
     ! Beyond a segment at the end of an open chain.
@@ -139,7 +139,7 @@ contains
       if (new%depth*found%allowed <= found%depth*new%allowed) return
     end if
     found = new
-  end subroutine look_at_place
+  end subroutine check_position
 
   !> How deep a place lies behind that of some segments behind which it is least deep, by what is
   !> allowed there.
@@ -158,12 +158,13 @@ contains
         if (s == 0 .or. any(place%beside == s)) cycle
         if (dot_product(place%normal, normal_of(ends_of(model, other, s))) > same_way) cycle
         depth = sqrt(closest_distance(local_from(model, other, s, place%x)))
-        allowed = half_row(model, other, s)
+        allowed = half_thickness(model, other, s)
         if (least%segment > 0 .and. depth*least%allowed >= least%depth*allowed) cycle
         least = overlap_t(place%nodes, s, depth, allowed)
       end associate
     end do
-    if (least%depth >= (1.0_wp - hair)*least%allowed) least%depth = max(least%depth, least%allowed)
+    if (least%depth >= (1.0_wp - tolerance)*least%allowed) least%depth = max(least%depth, &
+      least%allowed)
   end subroutine measure
 
   !> Outward unit normal of a segment with these ends.

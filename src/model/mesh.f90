@@ -3,7 +3,7 @@
 !> The deck layer fills the mesh in deck order. `renumber_model` then puts nodes into the order the
 !> step is fastest in and keeps the way back in `deck_node`; elements stay in deck order here and
 !> are laid out in chunks by `layout_t`, and an explicit run gives the arrays of their nodes and
-!> parts up before it steps (`forget_start`). User ids never appear in any index array.
+!> parts up before it steps (`release_start_data`). User ids never appear in any index array.
 module mesh_m
   use kinds_m, only : wp
   use visitor_m, only : visited_t, visitor_t, of_elements, of_nodes

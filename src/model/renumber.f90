@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Puts a finished model into the order of the step: nodes renumbered everywhere, layout built.
 module renumber_m
-  use controls_m, only : list_boundaries, is_asked, group_nodes, mark_corners, end_node_place, &
-    end_node_touch
+  use controls_m, only : list_boundaries, is_asked, group_nodes, mark_corners, &
+    end_node_coordinate, end_node_contact
   use exposed_quads_m, only : find_exposed
   use history_tables_m, only : table_bndout
   use kinds_m, only : wp, long
@@ -12,7 +12,7 @@ module renumber_m
   use sorting_m, only : sorted_order
   implicit none
   private
-  public :: renumber_model, mark_moved_nodes, forget_start
+  public :: renumber_model, mark_moved_nodes, release_start_data
 
 contains
 
@@ -64,7 +64,7 @@ contains
 
   !> Give up what only the start of an explicit run reads: elements stand in the layout, initial
   !> velocities and sets in the state and the conditions.
-  subroutine forget_start(model)
+  subroutine release_start_data(model)
     type(model_t), intent(inout) :: model
 
     if (allocated(model%conditions%initial_velocity)) &
@@ -76,7 +76,7 @@ contains
     deallocate (model%mesh%element_nodes, model%mesh%element_part)
     if (.not. is_asked(model%controls%output%plot) .and. allocated(model%mesh%deck_node)) &
       deallocate (model%mesh%deck_node)
-  end subroutine forget_start
+  end subroutine release_start_data
 
   !> Nodes that contact, loads, prescribed motion or walls touch.
   subroutine mark_touched_nodes(model, is_special)
@@ -102,7 +102,7 @@ contains
     if (allocated(model%controls%ends)) then
       do i = 1, size(model%controls%ends)
         associate (ending => model%controls%ends(i))
-          if (ending%kind == end_node_place) is_special(ending%where) = .true.
+          if (ending%kind == end_node_coordinate) is_special(ending%where) = .true.
         end associate
       end do
     end if
@@ -181,7 +181,7 @@ contains
     if (allocated(model%controls%ends)) then
       associate (ends => model%controls%ends)
         do i = 1, size(ends)
-          if (any(ends(i)%kind == [end_node_place, end_node_touch])) &
+          if (any(ends(i)%kind == [end_node_coordinate, end_node_contact])) &
             ends(i)%where = new_index(ends(i)%where)
         end do
       end associate

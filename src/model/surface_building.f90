@@ -8,7 +8,7 @@ module surface_building_m
   use surfaces_m, only : surface_t, link_segments, part_at_axis
   implicit none
   private
-  public :: boundary_surface, chain_surface, surface_left, chain_good, chain_turned, &
+  public :: boundary_surface, chain_surface, remaining_surface, chain_good, chain_turned, &
     chain_ordered, chain_broken, chain_repeated, chain_short
 
   !> How a list of nodes became a chain: as given, walked the other way, put into order; or why not:
@@ -63,12 +63,12 @@ contains
         end do
       end do
     end do
-    call string_edges(boundary, edges(:n), is_first(:n), surface)
+    call chain_edges(boundary, edges(:n), is_first(:n), surface)
   end subroutine boundary_surface
 
   !> The surface of edges in walking order. A chain that comes back to its first node is closed; a
   !> node stands in the surface once for each passage.
-  pure subroutine string_edges(boundary, edges, is_first, surface)
+  pure subroutine chain_edges(boundary, edges, is_first, surface)
     type(boundary_t), intent(in) :: boundary
     integer, intent(in) :: edges(:)
     logical, intent(in) :: is_first(:)     !! (size(edges)) of its chain
@@ -105,24 +105,24 @@ contains
       if (.not. is_last) is_last = is_first(s + 1)
     end function is_last
 
-  end subroutine string_edges
+  end subroutine chain_edges
 
   !> The chain that a list of nodes describes; its first node repeated at the end makes it closed.
   !> The list may be walked backwards, or in no order as long as its exterior edges form one
   !> chain, closed where the list is; `outcome` says which. When it fails `trouble` holds the two
   !> nodes of the first break, or the repeated node.
-  pure subroutine chain_surface(boundary, given, surface, outcome, trouble)
+  pure subroutine chain_surface(boundary, given, surface, outcome, bad_nodes)
     type(boundary_t), intent(in) :: boundary
     integer, intent(in) :: given(:)        !! node indices
     type(surface_t), intent(out) :: surface
     integer, intent(out) :: outcome        !! one of the `chain_` constants
-    integer, intent(out) :: trouble(2)
+    integer, intent(out) :: bad_nodes(2)
     integer, allocatable :: ahead(:), back(:)
     logical, allocatable :: is_listed(:)
     logical :: closed
     integer :: n, i, n_link
 
-    trouble = 0
+    bad_nodes = 0
     outcome = chain_short
     n = size(given)
     closed = .false.
@@ -132,21 +132,21 @@ contains
     allocate (is_listed(size(boundary%start) - 1), source=.false.)
     do i = 1, n
       outcome = chain_repeated
-      trouble = given(i)
+      bad_nodes = given(i)
       if (is_listed(given(i))) return
       is_listed(given(i)) = .true.
     end do
-    trouble = 0
+    bad_nodes = 0
     n_link = merge(n, n - 1, closed)
     ahead = [(find_edge(boundary, given(i), given(mod(i, n) + 1)), i=1, n_link)]
     back = [(find_edge(boundary, given(mod(i, n) + 1), given(i)), i=1, n_link)]
     if (all(ahead > 0)) then
       outcome = chain_good
-      call string_edges(boundary, ahead, [(i == 1, i=1, n_link)], surface)
+      call chain_edges(boundary, ahead, [(i == 1, i=1, n_link)], surface)
     else if (all(back > 0)) then
       outcome = chain_turned
       back = merge(cshift(back(n_link:1:-1), 1), back(n_link:1:-1), closed)
-      call string_edges(boundary, back, [(i == 1, i=1, n_link)], surface)
+      call chain_edges(boundary, back, [(i == 1, i=1, n_link)], surface)
     else
       call order_chain(boundary, is_listed, given(:n), closed, surface, outcome)
     end if
@@ -154,7 +154,7 @@ contains
     ! In the walking direction that most of the edges have.
     if (count(ahead > 0) < count(back > 0)) ahead = back
     i = findloc(ahead > 0, .false., 1)
-    trouble = given([i, mod(i, n) + 1])
+    bad_nodes = given([i, mod(i, n) + 1])
   end subroutine chain_surface
 
   !> The one chain of the exterior edges between nodes of a list; a closed one starts at the first.
@@ -184,64 +184,64 @@ contains
 
   !> The outline of the elements that are left, where the surface is that of parts; else its
   !> segments whose elements are left, in their order.
-  pure subroutine surface_left(mesh, is_left, former, surface)
+  pure subroutine remaining_surface(mesh, is_left, initial, surface)
     type(mesh_t), intent(in) :: mesh
     logical, intent(in) :: is_left(:)     !! (n_element)
-    type(surface_t), intent(in) :: former !! of the deck, before anything left
+    type(surface_t), intent(in) :: initial !! of the deck, before anything left
     type(surface_t), intent(out) :: surface
     type(boundary_t) :: boundary
     logical, allocatable :: chosen_part(:), is_chosen(:), is_near(:)
     integer :: i
 
-    if (allocated(former%parts)) then
+    if (allocated(initial%parts)) then
       allocate (chosen_part(maxval(mesh%element_part)), source=.false.)
-      chosen_part(former%parts) = .true.
+      chosen_part(initial%parts) = .true.
       is_chosen = chosen_part(mesh%element_part)
       if (.not. any(is_chosen .and. .not. is_left)) then
-        surface = former
+        surface = initial
         return
       end if
       is_chosen = is_chosen .and. is_left
       ! Nodes that the outline can have: those of the deck's, and of elements that have gone.
       allocate (is_near(size(mesh%coordinates, 2)), source=.false.)
-      is_near(former%nodes) = .true.
+      is_near(initial%nodes) = .true.
       do i = 1, size(is_left)
         if (.not. is_left(i)) is_near(mesh%element_nodes(:, i)) = .true.
       end do
       call find_boundary(mesh%element_nodes, is_chosen, is_near, boundary)
       call walk_outline(mesh, is_chosen, boundary, surface)
-      surface%parts = former%parts
+      surface%parts = initial%parts
     else
-      call take_left(is_left, former, surface)
+      call copy_remaining(is_left, initial, surface)
     end if
-    if (.not. allocated(former%is_on_axis)) return
+    if (.not. allocated(initial%is_on_axis)) return
     surface%is_on_axis = .not. mesh%coordinates(1, surface%nodes) > 0.0_wp
     call part_at_axis(surface)
-  end subroutine surface_left
+  end subroutine remaining_surface
 
   !> Segments of a surface whose elements are left.
-  pure subroutine take_left(is_left, former, surface)
+  pure subroutine copy_remaining(is_left, initial, surface)
     logical, intent(in) :: is_left(:)
-    type(surface_t), intent(in) :: former
+    type(surface_t), intent(in) :: initial
     type(surface_t), intent(out) :: surface
     integer, allocatable :: segments(:), nodes(:)
-    integer :: place(former%n_node), s
+    integer :: place(initial%n_node), s
 
-    segments = pack([(s, s=1, former%n_segment)], is_left(former%segment_element))
-    surface%segment_element = former%segment_element(segments)
-    surface%segments = former%segments(:, segments)
+    segments = pack([(s, s=1, initial%n_segment)], is_left(initial%segment_element))
+    surface%segment_element = initial%segment_element(segments)
+    surface%segments = initial%segments(:, segments)
     place = 0
     do s = 1, size(segments)
       place(surface%segments(:, s)) = 1
     end do
-    nodes = pack([(s, s=1, former%n_node)], place > 0)
+    nodes = pack([(s, s=1, initial%n_node)], place > 0)
     place(nodes) = [(s, s=1, size(nodes))]
-    surface%nodes = former%nodes(nodes)
+    surface%nodes = initial%nodes(nodes)
     do s = 1, size(segments)
       surface%segments(:, s) = place(surface%segments(:, s))
     end do
     call link_segments(surface)
-  end subroutine take_left
+  end subroutine copy_remaining
 
   !> Closed chains of a boundary. Where it touches itself in a node a chain goes on along the
   !> elements that it came by.
@@ -270,7 +270,7 @@ contains
         edge = edge_behind(mesh, boundary, corners, edge)
       end do
     end do
-    call string_edges(boundary, edges, is_first, surface)
+    call chain_edges(boundary, edges, is_first, surface)
   end subroutine walk_outline
 
   !> Chosen elements at nodes that several edges leave.

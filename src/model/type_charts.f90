@@ -6,12 +6,12 @@ module type_charts_m
   use kinds_m, only : wp
   implicit none
   private
-  public :: scene_bound, scene_matching, scene_general, scene_led, scene_friction, scene_names, &
-    estimates, cheapest_type, better_type, mesh_order
+  public :: scene_bound, scene_matching, scene_general, scene_sliding, scene_friction, &
+    scene_names, estimates, cheapest_type, better_type, mesh_order
 
   !> Kinds of scenes: something else binds the type; flat faces that match and stay so; any; led
   !> along each other; with friction.
-  integer, parameter :: scene_bound = 0, scene_matching = 1, scene_general = 2, scene_led = 3, &
+  integer, parameter :: scene_bound = 0, scene_matching = 1, scene_general = 2, scene_sliding = 3, &
     scene_friction = 4
 
   !> The kinds but the first, for the log.

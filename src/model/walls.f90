@@ -13,7 +13,7 @@ module walls_m
   !> One *RIGIDWALL_PLANAR.
   type, extends(visited_t) :: wall_t
     integer :: id = 0                        !! user id, or one that the deck layer gives
-    real(wp) :: foot(2) = 0.0_wp             !! a point of the wall (tail)
+    real(wp) :: point(2) = 0.0_wp             !! a point of the wall (tail)
     real(wp) :: normal(2) = [0.0_wp, 1.0_wp] !! of length 1, into the free side (tail to head)
     real(wp) :: friction = 0.0_wp            !! 0 none, `friction_sticks`, between: of Coulomb
     real(wp) :: birth = 0.0_wp               !! the wall is there from this time
@@ -34,7 +34,7 @@ contains
     real(wp), intent(in) :: displacement(2)
     real(wp) :: distance
 
-    distance = dot_product(wall%normal, coordinates - wall%foot) &
+    distance = dot_product(wall%normal, coordinates - wall%point) &
       + dot_product(wall%normal, displacement)
   end function wall_distance
 
@@ -52,7 +52,7 @@ contains
     class(visitor_t), intent(inout) :: visitor
 
     call visitor%visit('id', self%id)
-    call visitor%fixed('foot', self%foot)
+    call visitor%fixed('point', self%point)
     call visitor%fixed('normal', self%normal)
     call visitor%visit('friction', self%friction)
     call visitor%visit('birth', self%birth)

@@ -14,7 +14,7 @@ module archive_m
     h5sclose_f, h5screate_f, h5screate_simple_f, h5sget_simple_extent_dims_f, &
     h5sget_simple_extent_ndims_f, h5sget_simple_extent_type_f, h5tclose_f, h5tequal_f
   use errors_m, only : status_input
-  use packed_buffer_m, only : forgetter_t
+  use packed_buffer_m, only : memory_release_t
   use hdf5_writing_m, only : read_text, memory_type, file_type, make_group, &
     write_dataset, write_text
   use kinds_m, only : wp
@@ -36,7 +36,7 @@ module archive_m
   type, extends(visitor_t) :: archive_t
     integer(hid_t) :: id = -1              !! open file
     logical :: is_read = .false.           !! read, else written
-    type(forgetter_t), allocatable :: forgetters(:) !! of what other processes have
+    type(memory_release_t), allocatable :: releases(:) !! of what other processes have
   contains
     procedure :: find => find_extents
     procedure :: pass => exchange
@@ -90,9 +90,9 @@ contains
       return
     end if
     call get_array(visitor, item, place)
-    if (.not. allocated(visitor%forgetters) .or. item%extents(1) == absent) return
-    do k = 1, size(visitor%forgetters)
-      call visitor%forgetters(k)%pass(item, place, starts)
+    if (.not. allocated(visitor%releases) .or. item%extents(1) == absent) return
+    do k = 1, size(visitor%releases)
+      call visitor%releases(k)%pass(item, place, starts)
     end do
   end subroutine exchange
 

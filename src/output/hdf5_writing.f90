@@ -21,7 +21,7 @@ module hdf5_writing_m
     h5tget_strpad_f, h5tis_variable_str_f
   use kinds_m, only : long
   use errors_m, only : error_t, raise, status_files
-  use system_m, only : need_memory
+  use system_m, only : require_memory
   use visitor_m, only : as_real, as_integer, as_index, as_bytes
   implicit none
   private
@@ -72,7 +72,7 @@ contains
     integer :: ignored, second
     integer(c_int) :: lock
 
-    call need_memory(own_memory)
+    call require_memory(own_memory)
     lock = c_setenv('HDF5_USE_FILE_LOCKING'//c_null_char, 'FALSE'//c_null_char, 0_c_int)
     call h5dont_atexit_f(ignored) ! HDF5's own clean-up crashes after a full disk
     call h5open_f(status)

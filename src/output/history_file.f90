@@ -15,7 +15,7 @@ module history_file_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use model_m, only : model_t
-  use text_files_m, only : line_file_t, open_lines, put_lines, keep_up, flush_lines, close_lines
+  use text_files_m, only : line_file_t, open_lines, put_lines, flush_due, flush_lines, close_lines
   use text_m, only : text_of, real_size, put_real, put_integer
   use visitor_m, only : visited_t, visitor_t, any_length, length
   implicit none
@@ -31,7 +31,7 @@ module history_file_m
   !> One table.
   type :: history_t
     integer :: i_table = 0                  !! one of `table_`
-    logical :: tells_mass = .false.         !! masses are scaled
+    logical :: has_mass_scaling = .false.   !! masses are scaled
     logical, allocatable :: is_kept(:)      !! (columns of `history_tables`) those that this run has
     character(20), allocatable :: names(:)  !! (n_column)
     integer, allocatable :: kinds(:)        !! (n_column) `kind_` of each
@@ -60,24 +60,25 @@ contains
     type(histories_t), intent(out) :: histories
     type(model_t), intent(in) :: model
     integer :: k
-    logical :: is_wanted, tells_mass
+    logical :: is_wanted, has_mass_scaling
 
-    tells_mass = abs(model%controls%mass_step) > 0.0_wp .and. .not. model%controls%implicit%is_on
+    has_mass_scaling = abs(model%controls%mass_step) > 0.0_wp .and. &
+      .not. model%controls%implicit%is_on
     do k = 1, n_table
       is_wanted = n_each(model, k) > 0
       if (history_tables(k)%asked == asked_alone) is_wanted = is_wanted .and. &
         is_asked(model%controls%output%histories(k))
       if (history_tables(k)%asked == asked_by_states) is_wanted = is_wanted .and. &
         is_asked(model%controls%output%plot)
-      if (is_wanted) call plan_table(histories%tables(k), k, tells_mass, model%erodes)
+      if (is_wanted) call plan_table(histories%tables(k), k, has_mass_scaling, model%erodes)
     end do
   end subroutine plan_histories
 
   !> The columns of a table, which has no rows and no file yet.
-  subroutine plan_table(table, i_table, tells_mass, erodes)
+  subroutine plan_table(table, i_table, has_mass_scaling, erodes)
     type(history_t), intent(out) :: table
     integer, intent(in) :: i_table    !! one of `table_`
-    logical, intent(in) :: tells_mass !! masses are scaled
+    logical, intent(in) :: has_mass_scaling !! masses are scaled
     logical, intent(in) :: erodes     !! elements may leave the mesh
     character(len(history_tables%columns) + 1) :: left
     integer :: i, n, last
@@ -85,13 +86,14 @@ contains
 
     left = trim(history_tables(i_table)%columns)//','
     table%i_table = i_table
-    table%tells_mass = tells_mass
+    table%has_mass_scaling = has_mass_scaling
     n = count([(scan(left(i:i), ',;') == 1, i=1, len(left))])
     allocate (table%is_kept(n), table%names(n), table%kinds(n))
     is_beside = .false.
     do i = 1, n
       last = scan(left, ',;') - 1
-      table%is_kept(i) = (tells_mass .or. left(1:1) /= '+') .and. (erodes .or. left(1:1) /= '-')
+      table%is_kept(i) = (has_mass_scaling .or. left(1:1) /= '+') .and. (erodes .or. left(1:1) &
+        /= '-')
       if (table%is_kept(i) .and. .not. is_beside) table%n_csv = table%n_csv + 1
       table%kinds(i) = kind_real
       if (index(left(:last), '#') > 0) table%kinds(i) = kind_integer
@@ -268,14 +270,15 @@ contains
     table%n_row = table%n_row + 1
     table%values(:, table%n_row) = pack(values, table%is_kept)
     call put_lines(table%file, row_text(table%values(:table%n_csv, table%n_row), table%kinds))
-    call keep_up(table%file)
+    call flush_due(table%file)
     if (.not. table%text%is_open) return
     table%n_waiting = table%n_waiting + 1
     table%waiting(:, table%n_waiting) = values
     if (table%n_waiting < size(table%waiting, 2)) return
     table%n_waiting = 0
-    call put_instant(table%i_table, table%control, table%tells_mass, table%waiting, table%text)
-    call keep_up(table%text)
+    call put_instant(table%i_table, table%control, table%has_mass_scaling, table%waiting, &
+      table%text)
+    call flush_due(table%text)
   end subroutine add_row
 
   !> One row as text, with its line end.
@@ -318,8 +321,8 @@ contains
         if (is_asked) call flush_lines(table%text, ignored)
         if (is_asked) call flush_lines(table%file, ignored)
         if (allocated(error)) cycle
-        if (allocated(table%text%trouble)) error = table%text%trouble
-        if (allocated(table%file%trouble)) error = table%file%trouble
+        if (allocated(table%text%first_error)) error = table%text%first_error
+        if (allocated(table%file%first_error)) error = table%file%first_error
       end associate
     end do
   end subroutine flush_histories
@@ -340,10 +343,10 @@ contains
     !> One file; the first failure stays.
     subroutine finish(file)
       type(line_file_t), intent(inout) :: file
-      type(error_t), allocatable :: trouble
+      type(error_t), allocatable :: first_error
 
-      call close_lines(file, trouble)
-      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+      call close_lines(file, first_error)
+      if (allocated(first_error) .and. .not. allocated(error)) call move_alloc(first_error, error)
     end subroutine finish
 
   end subroutine close_histories
@@ -362,7 +365,7 @@ contains
         if (allocated(rows)) deallocate (rows)
         if (allocated(table%values)) rows = table%values(:, :table%n_row)
         call visitor%visit(to_text(k), rows, any_length)
-        if (.not. visitor%judges .or. .not. allocated(rows)) cycle
+        if (.not. visitor%validates .or. .not. allocated(rows)) cycle
         do i = 1, size(rows, 2)
           if (table%file%is_open) call add_row(table, unpack(rows(:, i), table%is_kept, 0.0_wp))
         end do

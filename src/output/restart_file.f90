@@ -16,7 +16,7 @@ module restart_file_m
   use archive_m, only : archive_t
   use checksum_m, only : add_bytes, checksum_text
   use errors_m, only : error_t, raise, status_files, status_input
-  use files_m, only : what_hinders, rename_file, remove_file, force_to_disk, is_endless, &
+  use files_m, only : write_obstacle, rename_file, remove_file, force_to_disk, is_endless, &
     folder_of, unfinished
   use hdf5_writing_m, only : open_library
   use kinds_m, only : long
@@ -44,9 +44,9 @@ contains
 
     archive%path = path
     archive%folder = ''
-    if (len(what_hinders(path//unfinished)) > 0) then
+    if (len(write_obstacle(path//unfinished)) > 0) then
       call archive%fail('cannot write '//path//unfinished//': ' &
-        //what_hinders(path//unfinished), status_files)
+        //write_obstacle(path//unfinished), status_files)
       return
     end if
     call remove_file(path//unfinished, archive%error)
@@ -186,8 +186,8 @@ contains
     archive%path = path
     archive%folder = ''
     archive%is_read = .true.
-    archive%judges = .true.
-    call judge_file(path, reason)
+    archive%validates = .true.
+    call check_file(path, reason)
     if (.not. allocated(reason)) then
       call open_library(status)
       if (status >= 0) call h5fopen_f(path, H5F_ACC_RDONLY_F, archive%id, status)
@@ -198,7 +198,7 @@ contains
   end subroutine open_restart
 
   !> Why a file is no restart file to go on from; `reason` stays unset when it is one.
-  subroutine judge_file(path, reason)
+  subroutine check_file(path, reason)
     character(*), intent(in) :: path
     character(:), allocatable, intent(out) :: reason
     character(head_size) :: head
@@ -245,7 +245,7 @@ contains
       reason = 'it is damaged (it has another length than its head says)'
       if (length < expected) reason = 'it is truncated'
     end if
-  end subroutine judge_file
+  end subroutine check_file
 
   !> Close a file that was read.
   subroutine close_restart(archive, error)

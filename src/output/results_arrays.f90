@@ -17,7 +17,7 @@ module results_arrays_m
     h5acreate_by_name_f, h5awrite_f
   use kinds_m, only : wp, long
   use errors_m, only : error_t, raise, status_files
-  use files_m, only : file_facts_t, what_hinders, remove_file, unfinished
+  use files_m, only : file_facts_t, write_obstacle, remove_file, unfinished
   use mesh_m, only : mesh_t
   use controls_m, only : controls_t
   use hdf5_writing_m, only : open_library, growing_t, as_real, as_index, create_growing, &
@@ -157,8 +157,8 @@ contains
 
     do i = 1, 2
       path = file%path//repeat(unfinished, i - 1)
-      if (len(what_hinders(path)) > 0) then
-        call raise(error, 'cannot write '//path//': '//what_hinders(path), status_files)
+      if (len(write_obstacle(path)) > 0) then
+        call raise(error, 'cannot write '//path//': '//write_obstacle(path), status_files)
         return
       end if
     end do

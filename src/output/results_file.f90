@@ -38,12 +38,12 @@ contains
   !> Make the file with the mesh and without a state. It has its own name from the first state on,
   !> and `<path>.part` before, so that what stands under the name always opens. A file of that name
   !> from an earlier run is removed, unless its states are going to be taken over.
-  subroutine open_results(file, path, model, run_info, goes_on, error)
+  subroutine open_results(file, path, model, run_info, is_restart, error)
     type(results_file_t), intent(out) :: file
     character(*), intent(in) :: path
     type(model_t), intent(in) :: model
     type(run_info_t), intent(in) :: run_info
-    logical, intent(in) :: goes_on      !! a restart: what stands under the name stays for now
+    logical, intent(in) :: is_restart   !! a restart: what stands under the name stays for now
     type(error_t), allocatable, intent(out) :: error
     type(archive_t) :: tree
     integer(long), target :: version(2)
@@ -53,7 +53,7 @@ contains
 
     n_planned = planned_states(model%controls)
     file%path = path
-    if (.not. goes_on) call remove_file(path, error)
+    if (.not. is_restart) call remove_file(path, error)
     if (allocated(error)) return
     allocate (file%times(n_planned))
     has = [.true., any(has_shear(model%contacts)), model%is_axisymmetric, &
@@ -92,7 +92,7 @@ contains
     call check_untouched(file, error)
     call append_fields(file, model, snapshot, error)
     call append_instant(file, model, snapshot%time, error)
-    call take_name(file, error)
+    call give_final_name(file, error)
     call note_failure(file, error)
   end subroutine append_state
 
@@ -121,14 +121,14 @@ contains
   end subroutine append_instant
 
   !> Give the file its own name.
-  subroutine take_name(file, error)
+  subroutine give_final_name(file, error)
     type(results_file_t), intent(inout) :: file
     type(error_t), allocatable, intent(inout) :: error
 
     if (allocated(error) .or. file%is_named) return
     call rename_file(file%path//unfinished, file%path, error)
     file%is_named = .not. allocated(error)
-  end subroutine take_name
+  end subroutine give_final_name
 
   !> Append the fields, nodes in deck order; what is missing is zero. Stress is xx yy zz xy yz xz,
   !> of axisymmetric bodies zz is the hoop stress.
@@ -309,7 +309,7 @@ contains
       call check_status(status, 'the end of the file', error)
       call h5close_f(status)
     end if
-    call take_name(file, error)
+    call give_final_name(file, error)
     call note_failure(file, error)
   end subroutine finish_results
 
@@ -422,7 +422,7 @@ contains
       call append_instant(file, model, times(k), error)
     end do
     call h5fclose_f(old, status)
-    call take_name(file, error)
+    call give_final_name(file, error)
     call note_failure(file, error)
   end subroutine copy_states
 

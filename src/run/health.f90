@@ -15,8 +15,8 @@ module health_m
   implicit none
   private
   public :: tile_check_t, check_tile, are_sound, check_elements, check_step, name_collapsed, &
-    check_cycle, check_energy, check_ratio, check_static_step, check_radii, judge_energies, &
-    judge_contact, made_by_springs, made_by_forces, most_work, what_would_do, &
+    check_cycle, check_energy, check_ratio, check_static_step, check_radii, warn_of_energies, &
+    warn_of_contact_energy, made_by_springs, made_by_forces, most_work, what_would_do, &
     unaccounted, dissipated
 
   !> Work beyond this means nothing any more; it is found before numbers overflow, which a
@@ -300,19 +300,19 @@ contains
   !> Warn of the first energies of a run that do not add up, while it goes on: a run that ends by an
   !> error is not judged at its end. What is missing is measured by the energy that came in or is
   !> stored; short waves may take twice the band for a while.
-  subroutine check_ratio(energies, spent, cause, cycle, time, told, log)
+  subroutine check_ratio(energies, spent, cause, cycle, time, warned, log)
     type(energies_t), intent(in) :: energies
     real(wp), intent(in) :: spent    !! energy that may go without an account, J/m
     character(*), intent(in) :: cause !! `unaccounted` or `dissipated`
     integer, intent(in) :: cycle
     real(wp), intent(in) :: time     !! s
-    logical, intent(inout) :: told   !! already
+    logical, intent(inout) :: warned !! already
     type(log_t), intent(inout) :: log
 
-    if (told) return
-    told = abs(energy_ratio(energies) - 1.0_wp) > 2.0_wp*ratio_band .and. &
+    if (warned) return
+    warned = abs(energy_ratio(energies) - 1.0_wp) > 2.0_wp*ratio_band .and. &
       abs(unexplained(energies, spent)) > 2.0_wp*ratio_band*largest_energy(energies)
-    if (told) call warn(log, 'at cycle '//to_text(cycle)//', time '//to_text(time) &
+    if (warned) call warn(log, 'at cycle '//to_text(cycle)//', time '//to_text(time) &
       //', the energy ratio is '//to_text(energy_ratio(energies))//': '//cause)
   end subroutine check_ratio
 
@@ -347,15 +347,15 @@ contains
   end subroutine check_static_step
 
   !> Warn of nodes of an axisymmetric run that have passed the axis, once.
-  subroutine check_radii(model, state, told, log)
+  subroutine check_radii(model, state, warned, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    logical, intent(inout) :: told
+    logical, intent(inout) :: warned
     type(log_t), intent(inout) :: log
     integer :: i, n, last
     real(wp) :: radius, least
 
-    if (told .or. .not. model%is_axisymmetric) return
+    if (warned .or. .not. model%is_axisymmetric) return
     n = 0
     last = 1
     least = 0.0_wp
@@ -366,8 +366,8 @@ contains
       if (radius < least) last = i
       least = min(least, radius)
     end do
-    told = n > 0
-    if (told) call warn(log, to_text(n)//' node(s) have passed through the axis by cycle ' &
+    warned = n > 0
+    if (warned) call warn(log, to_text(n)//' node(s) have passed through the axis by cycle ' &
       //to_text(state%cycle)//', time '//to_text(state%time)//', node ' &
       //to_text(model%mesh%node_id(last))//' to the radius '//to_text(least) &
       //': no body of revolution does that, what follows means nothing')
@@ -384,7 +384,7 @@ contains
   !> A warning at the end of an implicit run whose contact forces have made energy. There the work
   !> of a step is a trapezium between two equilibria, in which a gap may close: no more than 5 % is
   !> worth a word.
-  subroutine judge_contact(energies, log)
+  subroutine warn_of_contact_energy(energies, log)
     type(energies_t), intent(in) :: energies
     type(log_t), intent(inout) :: log
 
@@ -392,10 +392,10 @@ contains
       //to_text(energies%made)//' of '//to_text(largest_energy(energies))//'; the penalty or the ' &
       //'time step is too large, or places of the slave came in deep beside the end of a surface ' &
       //'(SRCH limits that)')
-  end subroutine judge_contact
+  end subroutine warn_of_contact_energy
 
   !> Warnings at the end of a run whose figures deserve a second look, or do not add up.
-  subroutine judge_energies(energies, spent, cause, log)
+  subroutine warn_of_energies(energies, spent, cause, log)
     type(energies_t), intent(in) :: energies
     real(wp), intent(in) :: spent     !! energy that may go without an account, J/m
     character(*), intent(in) :: cause !! `unaccounted` or `dissipated`
@@ -408,6 +408,6 @@ contains
     if (abs(energy_ratio(energies) - 1.0_wp) > ratio_band .and. abs(unexplained(energies, spent)) &
       > ratio_band*abs(energies%initial + energies%external_work)) call warn(log, &
       'the energy ratio ends at '//to_text(energy_ratio(energies))//': '//cause)
-  end subroutine judge_energies
+  end subroutine warn_of_energies
 
 end module health_m

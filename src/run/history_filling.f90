@@ -8,7 +8,7 @@ module history_filling_m
   use loads_m, only : add_nodal_loads, add_pressures
   use kinds_m, only : wp
   use model_m, only : model_t
-  use rows_behind_m, only : place_of
+  use face_stress_m, only : position_of
   use snapshot_m, only : snapshot_t, section_result_t
   use state_m, only : state_t
   implicit none
@@ -155,8 +155,8 @@ contains
     integer :: i
 
     do i = 1, size(section%edges, 2)
-      a = place_of(model, state, section%edges(1, i))
-      b = place_of(model, state, section%edges(2, i))
+      a = position_of(model, state, section%edges(1, i))
+      b = position_of(model, state, section%edges(2, i))
       length = norm2(b - a)
       if (model%is_axisymmetric) then
         result%area = result%area + 0.5_wp*length*(a(1) + b(1))
@@ -172,7 +172,7 @@ contains
       return
     end if
     do i = 1, size(section%nodes)
-      result%centroid = result%centroid + place_of(model, state, section%nodes(i)) &
+      result%centroid = result%centroid + position_of(model, state, section%nodes(i)) &
         /size(section%nodes)
     end do
   end subroutine find_centroid
@@ -193,7 +193,7 @@ contains
         do k = 1, 4
           if (.not. section%is_corner(k, i)) cycle
           f = state%cut_force(2*k - 1:2*k, first + i - 1)
-          arm = place_of(model, state, nodes(k)) - result%centroid
+          arm = position_of(model, state, nodes(k)) - result%centroid
           result%force = result%force + f
           result%moment = result%moment + (arm(1)*f(2) - arm(2)*f(1))
         end do

@@ -2,7 +2,7 @@
 !> Watches a run for the files: what is due, and writing it: the part of that which both drivers do.
 module monitor_m
   use clock_m, only : clock_t
-  use contact_judging_m, only : judge_contacts, follow_softness
+  use error_indicator_m, only : evaluate_indicators, update_energy_peaks
   use controls_m, only : controls_t, interval_t, is_asked
   use curves_m, only : curve_t, curve_value
   use errors_m, only : error_t
@@ -20,7 +20,7 @@ module monitor_m
   use ranks_m, only : ranks_t
   use restart_plan_m, only : restarts_t
   use results_file_m, only : results_file_t, run_info_t, open_results, append_state, finish_results
-  use rows_behind_m, only : face_rows_t
+  use face_stress_m, only : face_rows_t
   use snapshot_m, only : snapshot_t, total_energy
   use snapshot_filling_m, only : start_snapshot, fill_interfaces, fill_plot
   use state_m, only : state_t
@@ -29,7 +29,7 @@ module monitor_m
   private
   public :: monitor_t, open_files, start_monitor, start_schedules, find_due, write_due, &
     note_energies, write_instant, finish_monitor, due_t, schedule_t, start_schedule, is_due, &
-    mark_written, output_reach, go_on_with
+    mark_written, output_reach, resume_schedule
 
   !> A tie of two cycles round an output time goes to the first, although sums of steps carry
   !> rounding: this fraction of a step is forgiven.
@@ -75,8 +75,8 @@ module monitor_m
     type(restarts_t) :: restarts
     type(ranks_t) :: ranks        !! the first process alone has files
     logical :: has_plot = .false. !! the deck asks for plot states
-    logical :: told_radii = .false. !! the log tells of nodes beyond the axis
-    logical :: told_ratio = .false. !! and of energies that do not add up
+    logical :: warned_radii = .false. !! the log tells of nodes beyond the axis
+    logical :: warned_ratio = .false. !! and of energies that do not add up
     logical :: only_checks = .false. !! the state at time zero is made, and at most its file
   end type monitor_t
 
@@ -108,7 +108,7 @@ contains
       //'it: '//names(3:))
     if (monitor%has_plot) &
       call open_results(monitor%results, prefix//'.vtkhdf', model, run_info, &
-        monitor%restarts%goes_on, error)
+        monitor%restarts%is_restart, error)
   end subroutine open_files
 
   !> Schedules, progress lines and the snapshot.
@@ -209,7 +209,7 @@ contains
       state%initial_energy = total_energy(monitor%snapshot%energies)
       monitor%snapshot%energies%initial = state%initial_energy
     end if
-    if (knows_parts) call follow_softness(model, monitor%snapshot%parts, monitor%bodies, state)
+    if (knows_parts) call update_energy_peaks(model, monitor%snapshot%parts, monitor%bodies, state)
   end subroutine note_energies
 
   !> Fill the rest of a snapshot, of which the driver has filled what it has its own way with, and
@@ -231,7 +231,7 @@ contains
       if (due%tables(table_secforc)) call fill_sections(model, state, shot)
       if (due%plot) call fill_plot(model, state, shot)
       if (any(due%tables([table_sleout, table_contact]))) &
-        call judge_contacts(model, state, due%plot, monitor%rows, shot)
+        call evaluate_indicators(model, state, due%plot, monitor%rows, shot)
     end associate
     call write_due(model, due, dt, monitor, error)
     if (due%plot .and. .not. allocated(error)) call show_progress(monitor%progress, monitor%clock, &
@@ -323,7 +323,7 @@ contains
 
   !> Take up how far an output is. Where the run goes on with another interval, the first output
   !> comes at the next multiple of the new one. That of a curve may have come to its end.
-  pure subroutine go_on_with(kept, time, dt, schedule)
+  pure subroutine resume_schedule(kept, time, dt, schedule)
     type(schedule_t), intent(in) :: kept            !! of the run before
     real(wp), intent(in) :: time, dt      !! of the state before, as given to `is_due` then
     type(schedule_t), intent(inout) :: schedule     !! planned from the deck
@@ -346,7 +346,7 @@ contains
     else
       call mark_written(schedule, time, dt)
     end if
-  end subroutine go_on_with
+  end subroutine resume_schedule
 
   !> Its components; the deck, which may change it, has the end.
   subroutine visit_schedule(self, visitor)

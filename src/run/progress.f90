@@ -4,14 +4,14 @@
 !> that takes no more (a closed window, a full disk behind `>`) does not end a run: the log has the
 !> same lines. Nor does a status.out that can not be written; it is replaced as a whole.
 module progress_m
-  use clock_m, only : clock_t, look_at_clock, elapsed_seconds, total_seconds, phase_seconds, &
+  use clock_m, only : clock_t, read_clock, elapsed_seconds, total_seconds, phase_seconds, &
     lap_seconds, phase_names, n_phase, n_contact_phase, phase_contact_search, phase_input, &
     phase_output
   use errors_m, only : error_t
   use files_m, only : rename_file, unfinished
   use kinds_m, only : wp, long
   use log_m, only : log_t, write_log, to_text
-  use text_files_m, only : show, show_part, normal_ending, error_ending
+  use text_files_m, only : print_line, print_text, normal_ending, error_ending
   use system_m, only : output_is_terminal
   use text_files_m, only : write_whole
   implicit none
@@ -20,7 +20,7 @@ module progress_m
     write_status, timing_text
 
   !> Cycles between two looks at a clock that takes no laps.
-  integer, parameter :: look_cycles = 64
+  integer, parameter :: clock_cycles = 64
   !> Seconds between two refreshes on a terminal, and between two lines in a pipe.
   real(wp), parameter :: terminal_interval = 0.25_wp, pipe_interval = 10.0_wp
   !> Lines in a pipe before the end of a run, at most: thousands of runs write into one file.
@@ -81,14 +81,14 @@ contains
     real(wp), intent(in) :: time, dt, ratio
     logical :: is_due
 
-    if (steps_are_long .or. mod(cycle, look_cycles) == 0) call look_at_clock(clock)
+    if (steps_are_long .or. mod(cycle, clock_cycles) == 0) call read_clock(clock)
     is_due = clock%last >= progress%next_tick
     if (progress%status_interval > 0 .and. .not. progress%terminal) &
       is_due = is_due .or. mod(cycle, progress%status_interval) == 0
     if (is_due) then
       call show_progress(progress, clock, cycle, time, dt, ratio, '')
     else if (clock%last >= progress%next_file) then
-      call keep_status(progress, clock, cycle, time, dt, ratio)
+      call store_progress(progress, clock, cycle, time, dt, ratio)
     end if
   end subroutine follow_progress
 
@@ -109,14 +109,14 @@ contains
 
     call system_clock(now)
     progress%next_tick = now + progress%wait
-    call keep_status(progress, clock, cycle, time, dt, ratio)
+    call store_progress(progress, clock, cycle, time, dt, ratio)
     if (progress%is_quiet) return
     if (progress%terminal) then
       share = min(1.0_wp, time/progress%end_time)
       to_go = max(0.0_wp, seconds_to_go(progress, elapsed_seconds(clock)))
       write (line, '(ss,a,es11.4,a,f5.1,a,i0,a,es9.2,a,f8.5,a)') achar(13)//' t', time, '  ', &
         100.0_wp*share, ' %  cycle ', cycle, '  dt', dt, '  energy ratio', ratio, '  to go '
-      call show_part(trim(line)//' '//duration(to_go)//'   ')
+      call print_text(trim(line)//' '//duration(to_go)//'   ')
       progress%line_open = .true.
     else
       if (.not. present(is_asked)) then
@@ -126,7 +126,7 @@ contains
       stamp = time_stamp()
       write (line, '(ss,i10,a,es10.4,a,es8.2,1x,a22,10x,a)') cycle, ' t ', time, ' dt ', dt, &
         event, stamp(6:7)//'/'//stamp(9:10)//'/'//stamp(3:4)//stamp(11:)
-      call show(trim(line))
+      call print_line(trim(line))
     end if
   end subroutine show_progress
 
@@ -136,12 +136,12 @@ contains
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: text
 
-    if (progress%line_open) call show('')
+    if (progress%line_open) call print_line('')
     progress%line_open = .false.
     call write_log(log, text)
     if (progress%is_quiet .or. (.not. progress%terminal .and. progress%n_line >= most_lines)) return
     progress%n_line = progress%n_line + 1
-    call show(text)
+    call print_line(text)
   end subroutine show_note
 
   !> The end of the run: how it ended, problem time, cycles, cost and the timing table.
@@ -158,7 +158,7 @@ contains
     character(:), allocatable :: lines, ending
     character(100) :: line
 
-    if (progress%line_open) call show('')
+    if (progress%line_open) call print_line('')
     progress%line_open = .false.
     progress%cycle = cycle
     progress%time = time
@@ -183,9 +183,9 @@ contains
     ! In one piece: beside a small run each line of its own would be felt.
     lines = lines(:len(lines) - 1)
     if (progress%is_quiet) then
-      call show(ending)
+      call print_line(ending)
     else
-      call show(lines)
+      call print_line(lines)
     end if
     call write_log(log, lines)
   end subroutine show_end
@@ -228,7 +228,7 @@ contains
   end function fixed
 
   !> Take new numbers, and write them when the last file is old enough.
-  subroutine keep_status(progress, clock, cycle, time, dt, ratio)
+  subroutine store_progress(progress, clock, cycle, time, dt, ratio)
     type(progress_t), intent(inout) :: progress
     type(clock_t), intent(in) :: clock
     integer, intent(in) :: cycle
@@ -241,7 +241,7 @@ contains
     progress%ratio = ratio
     call system_clock(now)
     if (now >= progress%next_file) call write_status(progress, clock, 'running')
-  end subroutine keep_status
+  end subroutine store_progress
 
   !> Write the file status.out: how far a run is and how long it may take.
   subroutine write_status(progress, clock, state)

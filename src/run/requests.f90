@@ -4,8 +4,8 @@
 !> signal. What needs no more than the files (a line of status, histories brought up to date) is
 !> done here; the driver does the rest.
 module requests_m
-  use controls_m, only : end_condition_t, end_node_place, end_node_touch, end_body_place, &
-    end_body_way, end_contact
+  use controls_m, only : end_condition_t, end_node_coordinate, end_node_contact, &
+    end_body_displacement, end_body_distance, end_contact
   use errors_m, only : error_t
   use files_m, only : file_exists, is_endless, remove_file
   use history_file_m, only : flush_histories
@@ -14,13 +14,13 @@ module requests_m
   use model_m, only : model_t
   use monitor_m, only : monitor_t
   use progress_m, only : show_progress
-  use restart_plan_m, only : wants_look, switch_path
+  use restart_plan_m, only : is_poll_due, switch_path
   use state_m, only : state_t
   use system_m, only : stop_requested, is_requested, request_dump, request_plot
   use text_m, only : upper_case
   implicit none
   private
-  public :: requests_t, take_requests, echoes_t, hear_signals, drop_echoes, take_switch, &
+  public :: requests_t, read_requests, recent_requests_t, get_signals, drop_repeated, read_switch, &
     find_early_end
 
   !> Longest line that is read, whatever the environment says (GFORTRAN_DEFAULT_RECL).
@@ -36,26 +36,26 @@ module requests_m
 
   !> A launcher hands SIGUSR1 and SIGUSR2 to every process of a run, and these hear them in
   !> different cycles: what comes within a second of what was done is not asked again.
-  type :: echoes_t
+  type :: recent_requests_t
     integer(long) :: done(2) = -huge(1_long) !! tick after the last restart file, plot state
-  end type echoes_t
+  end type recent_requests_t
 
 contains
 
   !> What is asked of a process that has no files: signals alone.
-  subroutine hear_signals(asked)
+  subroutine get_signals(asked)
     type(requests_t), intent(out) :: asked
 
     asked%dump = is_requested(request_dump)
     asked%plot = is_requested(request_plot)
     asked%signalled = stop_requested()
     asked%stop = asked%signalled
-  end subroutine hear_signals
+  end subroutine get_signals
 
   !> Leave out what has just been done.
-  subroutine drop_echoes(before, echoes, asked)
+  subroutine drop_repeated(before, echoes, asked)
     type(requests_t), intent(in) :: before    !! done since the last call
-    type(echoes_t), intent(inout) :: echoes
+    type(recent_requests_t), intent(inout) :: echoes
     type(requests_t), intent(inout) :: asked
     integer(long) :: now, rate
 
@@ -64,11 +64,11 @@ contains
     where ([before%dump, before%plot]) echoes%done = now
     asked%dump = asked%dump .and. now - rate > echoes%done(1)
     asked%plot = asked%plot .and. now - rate > echoes%done(2)
-  end subroutine drop_echoes
+  end subroutine drop_repeated
 
   !> Look whether anything is asked for: for signals always, for d3kil twice a second, or
   !> always where steps are long.
-  subroutine take_requests(state, ratio, steps_are_long, monitor, asked, error)
+  subroutine read_requests(state, ratio, steps_are_long, monitor, asked, error)
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: ratio          !! last energy ratio known
     logical, intent(in) :: steps_are_long
@@ -80,10 +80,10 @@ contains
 
     switch = ''
     looks = steps_are_long
-    if (.not. looks) call wants_look(monitor%restarts, monitor%clock%is_on, monitor%clock%last, &
+    if (.not. looks) call is_poll_due(monitor%restarts, monitor%clock%is_on, monitor%clock%last, &
       state%cycle, looks)
-    if (looks) call take_switch(monitor%restarts%directory, switch)
-    call hear_signals(asked)
+    if (looks) call read_switch(monitor%restarts%directory, switch)
+    call get_signals(asked)
     select case (switch)
     case ('')
       continue
@@ -104,12 +104,12 @@ contains
     case default
       call warn(monitor%log, 'd3kil holds none of sw1, sw2, sw3, sw4, swa, stop')
     end select
-  end subroutine take_requests
+  end subroutine read_requests
 
   !> The word in the file d3kil of this folder, in capital letters and without the point of `SWA.`,
   !> as old manuals write it; the file is removed. One without a word is left: it may be about to be
   !> written.
-  subroutine take_switch(directory, switch)
+  subroutine read_switch(directory, switch)
     character(*), intent(in) :: directory
     character(:), allocatable, intent(out) :: switch  !! empty: none
     type(error_t), allocatable :: ignored
@@ -129,7 +129,7 @@ contains
     if (line(4:) == '.') line(4:) = ''
     switch = trim(line)
     call remove_file(switch_path(directory), ignored)
-  end subroutine take_switch
+  end subroutine read_switch
 
   !> Whether the run ends now, and why. Places are those of the state, contact forces the last ones
   !> known. The first condition of the deck that holds is told.
@@ -147,22 +147,22 @@ contains
       associate (ending => model%controls%ends(i))
         found = ''
         select case (ending%kind)
-        case (end_node_place)
+        case (end_node_coordinate)
           found = beyond('node '//to_text(ending%id)//' has come to ', '', &
             model%mesh%coordinates(ending%direction, ending%where) &
             + state%motion(ending%direction, ending%where), ending, ' (*TERMINATION_NODE)')
-        case (end_node_touch)
+        case (end_node_contact)
           if (norm2(force_on(state, ending%where)) > 0.0_wp) found = 'node '// &
             to_text(ending%id)//' is in contact (*TERMINATION_NODE)'
-        case (end_body_place)
+        case (end_body_displacement)
           found = beyond('body '//to_text(ending%id)//' has gone to ', 'displacement ', &
             state%rigids(ending%where)%place(ending%direction), ending, ' (*TERMINATION_BODY)')
-        case (end_body_way)
+        case (end_body_distance)
           way = norm2(state%rigids(ending%where)%place(1:2))
           if (way >= ending%most) found = 'body '//to_text(ending%id)//' has gone ' &
             //to_text(way)//' (*TERMINATION_BODY)'
         case (end_contact)
-          call judge_contact(ending, state, state%quiet_since(i), found)
+          call check_contact_end(ending, state, state%quiet_since(i), found)
         end select
       end associate
       if (len(found) == 0 .or. last) cycle
@@ -184,7 +184,7 @@ contains
   end function beyond
 
   !> An interface that has borne no force for long enough.
-  subroutine judge_contact(ending, state, since, found)
+  subroutine check_contact_end(ending, state, since, found)
     type(end_condition_t), intent(in) :: ending
     type(state_t), intent(in) :: state
     real(wp), intent(inout) :: since
@@ -203,7 +203,7 @@ contains
     if (since < 0.0_wp) since = state%time
     if (state%time - since >= ending%duration) found = 'interface '//to_text(ending%id) &
       //' bears no force (*TERMINATION_CONTACT)'
-  end subroutine judge_contact
+  end subroutine check_contact_end
 
   !> Contact force on a node.
   pure function force_on(state, node) result(force)

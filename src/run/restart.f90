@@ -12,8 +12,8 @@ module restart_m
   use archive_m, only : archive_t
   use checksum_m, only : add_bytes, checksum_text
   use clock_m, only : lap, phase_nodes, phase_output
-  use contact_state_m, only : contact_state_t, contact_points_t, contact_status_t, separated, &
-    active, n_sites
+  use contact_state_m, only : contact_state_t, contact_points_t, n_sites
+  use search_state_m, only : contact_status_t, separated, active
   use contacts_m, only : contact_t
   use errors_m, only : error_t, status_files
   use files_m, only : file_exists, remove_file, unfinished
@@ -22,7 +22,7 @@ module restart_m
   use law_state_m, only : is_open, is_held, is_beside
   use log_m, only : write_log, to_text
   use model_m, only : model_t
-  use monitor_m, only : monitor_t, schedule_t, go_on_with
+  use monitor_m, only : monitor_t, schedule_t, resume_schedule
   use progress_m, only : show_note
   use restart_file_m, only : create_restart, finish_restart
   use restart_plan_m, only : restarts_t, dump_path, running_path, place_text, numbered_file
@@ -31,7 +31,7 @@ module restart_m
   use visitor_m, only : visited_t, any_length
   implicit none
   private
-  public :: write_restarts, forget_files, keep_run, keep_outputs, check_state
+  public :: write_restarts, remove_old_files, visit_run, visit_outputs, check_state
 
   !> Bounds on numbered files and on the length of a job's name.
   integer, parameter :: most_dumps = 1000000000, longest_name = 4096
@@ -58,9 +58,9 @@ contains
       if (kind == numbered_file) path = dump_path(monitor%restarts, monitor%restarts%n_dump)
       call create_restart(path, archive)
       call read_effective_deck(monitor%restarts, archive, effective_deck)
-      call keep_run(archive, monitor%restarts, effective_deck)
+      call visit_run(archive, monitor%restarts, effective_deck)
       if (allocated(effective_deck)) deallocate (effective_deck)
-      call keep_outputs(archive, state%time, state%dt_before, monitor)
+      call visit_outputs(archive, state%time, state%dt_before, monitor)
       call archive%part('state', state)
       if (present(driver)) call archive%part('driver', driver)
       call finish_restart(archive, error)
@@ -98,7 +98,7 @@ contains
   end subroutine read_effective_deck
 
   !> Write or read what is known of the run.
-  subroutine keep_run(archive, restarts, effective_deck)
+  subroutine visit_run(archive, restarts, effective_deck)
     type(archive_t), intent(inout) :: archive
     type(restarts_t), intent(inout) :: restarts
     character(:), allocatable, intent(inout) :: effective_deck
@@ -112,7 +112,7 @@ contains
     call archive%visit('n_dump', restarts%n_dump, 0, most_dumps - 1, 'a number that no run reaches')
     call archive%visit('is_implicit', restarts%is_implicit)
     ! It begins the names of files in the folder of the results.
-    if (archive%judges) then
+    if (archive%validates) then
       associate (job => restarts%job)
         call archive%expect('job', len(job) > 0 .and. len(job) <= longest_name .and. &
           index(job, '/') == 0 .and. all([(iachar(job(i:i)) >= 32, i=1, len(job))]), &
@@ -120,10 +120,10 @@ contains
       end associate
     end if
     call archive%leave()
-  end subroutine keep_run
+  end subroutine visit_run
 
   !> Write or read how far the outputs are.
-  subroutine keep_outputs(archive, time, dt, monitor)
+  subroutine visit_outputs(archive, time, dt, monitor)
     type(archive_t), intent(inout) :: archive
     real(wp), intent(in) :: time, dt    !! of the state before, and the step within which it was
                                         !! early for an output
@@ -132,10 +132,10 @@ contains
     integer :: k
 
     call archive%enter('outputs')
-    call keep_schedule('plot', monitor%plot)
+    call visit_kept_schedule('plot', monitor%plot)
     do k = 1, n_table
       if (history_tables(k)%asked /= asked_by_states) &
-        call keep_schedule(trim(history_tables(k)%name), monitor%tables(k))
+        call visit_kept_schedule(trim(history_tables(k)%name), monitor%tables(k))
     end do
     call archive%part('histories', monitor%histories)
     if (.not. archive%is_read) then
@@ -148,22 +148,22 @@ contains
   contains
 
     !> One of them.
-    subroutine keep_schedule(name, schedule)
+    subroutine visit_kept_schedule(name, schedule)
       character(*), intent(in) :: name
       type(schedule_t), intent(inout) :: schedule !! planned from the deck
       type(schedule_t) :: kept
 
       kept = schedule
       call archive%part(name, kept)
-      if (archive%judges) call go_on_with(kept, time, dt, schedule)
-    end subroutine keep_schedule
+      if (archive%validates) call resume_schedule(kept, time, dt, schedule)
+    end subroutine visit_kept_schedule
 
-  end subroutine keep_outputs
+  end subroutine visit_outputs
 
   !> Remove what an earlier run of this name has left, the running file and the numbered ones that
   !> follow without a gap: files that it has not finished, and whole ones too unless the run goes
   !> on.
-  subroutine forget_files(restarts, error)
+  subroutine remove_old_files(restarts, error)
     type(restarts_t), intent(in) :: restarts
     type(error_t), allocatable, intent(out) :: error
     character(:), allocatable :: path
@@ -176,12 +176,13 @@ contains
       found = file_exists(path)
       if (.not. found) found = file_exists(path//unfinished)
       if (found) call remove_file(path//unfinished, error)
-      if (found .and. .not. (restarts%goes_on .or. allocated(error))) call remove_file(path, error)
+      if (found .and. .not. (restarts%is_restart .or. allocated(error))) call remove_file(path, &
+        error)
       if (allocated(error) .or. .not. (found .or. i == 0)) exit
       i = i + 1
       path = dump_path(restarts, i)
     end do
-  end subroutine forget_files
+  end subroutine remove_old_files
 
   !> Look at a whole state; the first thing that is wrong is told as an error of the archive. A
   !> phase before time zero is one that the deck has, with a velocity of each node.
@@ -224,7 +225,8 @@ contains
     end if
     n_segments = [contact%slave%n_segment, contact%master%n_segment]
     n_contact_point = memory%n_slave
-    if (allocated(memory%segment_xi)) n_contact_point = size(memory%segment_xi)*n_segments(1)
+    if (allocated(memory%segment_points%xi)) &
+      n_contact_point = size(memory%segment_points%xi)*n_segments(1)
     call check_status(memory%slave_status, n_contact_point, n_segments(2), &
     folder//'slave_status/', archive)
     call check_status(memory%master_status, memory%n_master, n_segments(1), &
@@ -270,12 +272,10 @@ contains
 
     associate (ties => memory%ties)
       n = size(ties%side)
-      if (memory%has%breaks) then
-        call archive%expect(folder//'state', all(ties%state == is_open .or. ties%state &
-          >= is_held .and. ties%state <= is_beside), 'numbers that mean nothing')
-        call archive%expect(folder//'site', all(ties%site >= 1 &
-          .and. ties%site <= n_sites(memory)), 'numbers that no place of the interface has')
-      end if
+      call archive%expect(folder//'state', all(ties%state == is_open .or. ties%state &
+        >= is_held .and. ties%state <= is_beside), 'numbers that mean nothing')
+      call archive%expect(folder//'site', all(ties%site >= 1 &
+        .and. ties%site <= n_sites(memory)), 'numbers that no place of the interface has')
       call archive%expect(folder//'first', ties%first(1) == 1 &
         .and. all(ties%first(2:) > ties%first(:n)) .and. (ties%first(n + 1) &
         == memory%tie_points%n + 1 .or. memory%tie_points%n == 0), &

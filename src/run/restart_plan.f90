@@ -4,7 +4,7 @@
 module restart_plan_m
   use archive_m, only : archive_t
   use errors_m, only : error_t, raise, status_files
-  use files_m, only : file_facts_t, facts_of_name, facts_of_target, is_same_file, what_hinders, &
+  use files_m, only : file_facts_t, facts_of_name, facts_of_target, is_same_file, write_obstacle, &
     join_path, unfinished
   use history_tables_m, only : history_tables
   use kinds_m, only : wp, long
@@ -13,7 +13,7 @@ module restart_plan_m
   implicit none
   private
   public :: restarts_t, dump_path, running_path, place_text, wanted_files, &
-    numbered_file, running_file, wants_look, switch_path, check_names
+    numbered_file, running_file, is_poll_due, switch_path, check_names
 
   !> Kinds of restart files: those that stay, and the one that is replaced again and again.
   integer, parameter :: numbered_file = 1, running_file = 2
@@ -23,8 +23,8 @@ module restart_plan_m
   integer, parameter :: least_numbers = 99
 
   !> Seconds between two looks for a sense switch, and cycles where no clock is read anyhow.
-  real(wp), parameter :: look_interval = 0.5_wp
-  integer, parameter :: look_cycles = 64
+  real(wp), parameter :: poll_interval = 0.5_wp
+  integer, parameter :: poll_cycles = 64
 
   !> Restart files of a run.
   type :: restarts_t
@@ -39,8 +39,8 @@ module restart_plan_m
     integer :: dump_cycles = -1            !! as in output_plan_t
     integer :: running_cycles = 0
     integer :: n_dump = 0                  !! numbered files so far
-    integer(long) :: next_look = 0         !! tick of the next look for a sense switch
-    logical :: goes_on = .false.           !! the run goes on from `source`
+    integer(long) :: next_poll = 0         !! tick of the next look for a sense switch
+    logical :: is_restart = .false.        !! the run goes on from `source`
     type(archive_t) :: source
     real(wp), allocatable :: state_times(:) !! of states that the results file had at the restart
     logical :: finds_states = .false.      !! and has still
@@ -104,7 +104,7 @@ contains
 
   !> Whether it is time to look for a sense switch. `tick` is the last clock tick known; where none
   !> is read in a cycle, one is read now and then.
-  subroutine wants_look(restarts, ticks_run, tick, cycle, wanted)
+  subroutine is_poll_due(restarts, ticks_run, tick, cycle, wanted)
     type(restarts_t), intent(inout) :: restarts
     logical, intent(in) :: ticks_run
     integer(long), intent(in) :: tick
@@ -113,12 +113,12 @@ contains
     integer(long) :: now, rate
 
     now = tick
-    if (.not. ticks_run .and. mod(cycle, look_cycles) == 0) call system_clock(now)
-    wanted = now >= restarts%next_look
+    if (.not. ticks_run .and. mod(cycle, poll_cycles) == 0) call system_clock(now)
+    wanted = now >= restarts%next_poll
     if (.not. wanted) return
     call system_clock(now, rate)
-    restarts%next_look = now + int(look_interval*real(rate, wp), long)
-  end subroutine wants_look
+    restarts%next_poll = now + int(poll_interval*real(rate, wp), long)
+  end subroutine is_poll_due
 
   !> Where a request is looked for.
   pure function switch_path(directory) result(path)
@@ -148,7 +148,7 @@ contains
     do i = 1, n_deck
       inputs(i) = facts_of_target(trim(restarts%inputs(i)))
     end do
-    if (restarts%goes_on) inputs(n_deck + 1) = facts_of_target(restarts%source%path)
+    if (restarts%is_restart) inputs(n_deck + 1) = facts_of_target(restarts%source%path)
     call check_name(switch_path(restarts%directory), size(inputs), .true.)
     do i = 1, size(kinds)
       call look(restarts%prefix//trim(kinds(i)), size(inputs))
@@ -193,7 +193,7 @@ contains
       facts = facts_of_name(path)
       if (.not. facts%is_there) return
       if (.not. (facts%is_regular .or. may_be_any)) then
-        call raise(error, 'cannot write '//path//': '//what_hinders(path), status_files)
+        call raise(error, 'cannot write '//path//': '//write_obstacle(path), status_files)
         return
       end if
       do i = 1, n

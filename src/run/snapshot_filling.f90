@@ -40,12 +40,12 @@ contains
 
     n_node = model%mesh%n_node
     n_element = model%mesh%n_element
-    if (keeps_motion(model)) allocate (snapshot%displacement(2, n_node), &
+    if (stores_motion(model)) allocate (snapshot%displacement(2, n_node), &
       snapshot%acceleration(2, n_node), source=0.0_wp)
-    if (keeps_motion(model) .or. is_asked(model%controls%output%histories(table_matsum))) &
+    if (stores_motion(model) .or. is_asked(model%controls%output%histories(table_matsum))) &
       allocate (snapshot%velocity(2, n_node), source=0.0_wp)
     allocate (snapshot%parts(size(model%parts)))
-    snapshot%energies%tells_mass = scales_masses(model)
+    snapshot%energies%has_mass_scaling = scales_masses(model)
     if (allocated(model%walls)) allocate (snapshot%walls(size(model%walls)))
     if (allocated(model%transducers)) allocate (snapshot%transducers(size(model%transducers)))
     allocate (snapshot%interfaces(size(model%contacts)), snapshot%slaves(size(model%contacts)))
@@ -79,14 +79,14 @@ contains
   end subroutine start_snapshot
 
   !> Whether the motion of all nodes is kept: for files, or since that of some comes from elsewhere.
-  pure function keeps_motion(model) result(keeps)
+  pure function stores_motion(model) result(keeps)
     type(model_t), intent(in) :: model
     logical :: keeps
 
     keeps = is_asked(model%controls%output%plot) .or. size(model%controls%output%history_nodes) &
       > 0 .or. size(model%conditions%motions) > 0 .or. size(model%rigids) > 0 &
       .or. model%controls%implicit%is_on .or. allocated(model%conditions%common_motions)
-  end function keeps_motion
+  end function stores_motion
 
   !> Displacement, velocity and acceleration of the present instant, where they are kept.
   !> `velocity_next` is v(n+1/2) of the prescribed degrees of freedom.
@@ -208,7 +208,7 @@ contains
       energies%external_work = state%external_work + sum(state%contacts%interference%work)
       energies%initial = state%initial_energy
       if (model%erodes) energies%eroded = state%elements%erosion%took
-      if (.not. energies%tells_mass) return
+      if (.not. energies%has_mass_scaling) return
       call added_masses(model, state%elements, added, own)
       snapshot%parts%added_mass = added
       energies%added_mass = sum(added)

@@ -7,7 +7,7 @@ module restart_reading_m
   use explicit_cycle_m, only : explicit_cycle_t, read_cycle
   use implicit_forces_m, only : start_trial
   use implicit_start_m, only : implicit_memory_t
-  use others_memory_m, only : answers_t, others_t, forgetters_of
+  use remote_state_m, only : inside_tests_t, remote_t, remote_forgetters
   use kinds_m, only : wp
   use log_m, only : log_t, warn, to_text
   use model_m, only : model_t
@@ -16,7 +16,7 @@ module restart_reading_m
   use monitor_m, only : monitor_t, start_schedules, output_reach
   use progress_m, only : show_note
   use restart_file_m, only : open_restart
-  use restart_m, only : keep_run, keep_outputs, check_state
+  use restart_m, only : visit_run, visit_outputs, check_state
   use restart_plan_m, only : restarts_t, place_text
   use results_file_m, only : check_old_results, copy_states
   use start_m, only : start_state, resume_contacts
@@ -24,7 +24,8 @@ module restart_reading_m
   use visitor_m, only : any_length
   implicit none
   private
-  public :: take_up_file, take_up_results, take_up_state, check_rest, take_up_outputs
+  public :: read_restart_run, find_restart_states, read_restart_state, check_other_components, &
+    restore_outputs
 
   !> Part of the last step by which an implicit run may pass its end; an
   !> explicit one may by all of it.
@@ -33,7 +34,7 @@ module restart_reading_m
 contains
 
   !> Open the file to go on from; what it says of the run, and the deck as run.
-  subroutine take_up_file(path, restarts, effective_deck, error)
+  subroutine read_restart_run(path, restarts, effective_deck, error)
     character(*), intent(in) :: path
     type(restarts_t), intent(inout) :: restarts
     character(:), allocatable, intent(out) :: effective_deck
@@ -41,13 +42,13 @@ contains
 
     call open_restart(path, restarts%source, error)
     if (allocated(error)) return
-    restarts%goes_on = .true.
-    call keep_run(restarts%source, restarts, effective_deck)
+    restarts%is_restart = .true.
+    call visit_run(restarts%source, restarts, effective_deck)
     if (allocated(restarts%source%error)) error = restarts%source%error
-  end subroutine take_up_file
+  end subroutine read_restart_run
 
   !> Look for the results file whose states the run takes over; before anything is written.
-  subroutine take_up_results(restarts, model, path, error)
+  subroutine find_restart_states(restarts, model, path, error)
     type(restarts_t), intent(inout) :: restarts
     type(model_t), intent(in) :: model
     character(*), intent(in) :: path
@@ -63,20 +64,20 @@ contains
       call check_old_results(path, model%mesh%n_node, restarts%state_times, &
         restarts%finds_states, error)
     end if
-  end subroutine take_up_results
+  end subroutine find_restart_states
 
   !> Read the state into one that is started from the model: that tells what the file must hold.
-  subroutine take_up_state(source, model, state, error, others, answers)
+  subroutine read_restart_state(source, model, state, error, remote, inside_tests)
     type(archive_t), intent(inout) :: source
     type(model_t), intent(in) :: model
     type(state_t), intent(out) :: state
     type(error_t), allocatable, intent(out) :: error
-    type(others_t), intent(inout), optional :: others !! what other processes have
-    type(answers_t), intent(inout), optional :: answers
+    type(remote_t), intent(inout), optional :: remote !! what other processes have
+    type(inside_tests_t), intent(inout), optional :: inside_tests
     type(log_t) :: silence
 
-    silence%is_mute = .true.
-    call start_state(model, silence, state, error, others, answers)
+    silence%is_silent = .true.
+    call start_state(model, silence, state, error, remote, inside_tests)
     if (allocated(error)) return
     if (model%controls%implicit%is_on) &
       allocate (state%acceleration(2, model%mesh%n_node), source=0.0_wp)
@@ -91,7 +92,7 @@ contains
       call source%leave()
       if (.not. allocated(source%error)) call resume_outlines(model, state)
     end if
-    if (present(others)) source%forgetters = forgetters_of(others)
+    if (present(remote)) source%releases = remote_forgetters(remote)
     if (.not. allocated(source%error)) call source%part('state', state)
     if (.not. allocated(source%error)) call check_state(model, state, source)
     if (.not. allocated(source%error)) call resume_contacts(state)
@@ -102,11 +103,11 @@ contains
       call raise(error, 'the restart file '//source%path//' is of time '//to_text(state%time) &
         //', after the end time '//to_text(model%controls%end_time), status_input)
     end if
-  end subroutine take_up_state
+  end subroutine read_restart_state
 
   !> Look at what is read once the files are open, so that a file that is refused has emptied none:
   !> how far the outputs are, and what the driver keeps.
-  subroutine check_rest(source, model, state, error)
+  subroutine check_other_components(source, model, state, error)
     type(archive_t), intent(inout) :: source
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state     !! that of the file
@@ -117,7 +118,7 @@ contains
 
     call plan_histories(planned%histories, model)
     call start_schedules(model, planned)
-    call keep_outputs(source, state%time - state%dt_before, &
+    call visit_outputs(source, state%time - state%dt_before, &
       output_reach(model%controls, state%dt_before), planned)
     if (model%controls%implicit%is_on) then
       call start_trial(model, state, memory%trial)
@@ -126,16 +127,16 @@ contains
       call read_cycle(model, state, source, cycle)
     end if
     if (allocated(source%error)) error = source%error
-  end subroutine check_rest
+  end subroutine check_other_components
 
   !> Read how far the outputs are; the rows and states before the restart go into the new files.
-  subroutine take_up_outputs(model, state, monitor, error)
+  subroutine restore_outputs(model, state, monitor, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
 
-    call keep_outputs(monitor%restarts%source, state%time - state%dt_before, &
+    call visit_outputs(monitor%restarts%source, state%time - state%dt_before, &
       output_reach(model%controls, state%dt_before), monitor)
     if (allocated(monitor%restarts%source%error)) then
       error = monitor%restarts%source%error
@@ -153,6 +154,6 @@ contains
           //'one has the states from time '//to_text(state%time)//' on')
       end if
     end associate
-  end subroutine take_up_outputs
+  end subroutine restore_outputs
 
 end module restart_reading_m

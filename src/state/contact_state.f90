@@ -11,28 +11,21 @@
 !> n_slave + 1 .. n_slave + n_master for master nodes. A position is (X, Y, u_x, u_y), X and Y
 !> relative to the first slave node, so that positions between nodes lose no digit far from the
 !> origin; in axisymmetry X is the radius itself.
-!>
-!> Contact is looked for among candidate pairs alone: master segments near each slave segment. A
-!> separated point at distance d from all of its candidates is skipped until `travel` has grown by
-!> d: the sum over all steps of a bound on how far any two nodes of the interface have moved
-!> relative to each other.
 module contact_state_m
   use law_state_m, only : contact_monitor_t, energy_limit_t, friction_memory_t, &
     interference_memory_t, tie_memory_t
   use kinds_m, only : wp
-  use visitor_m, only : visited_t, visitor_t, any_length, length, whole
+  use search_state_m, only : candidates_t, contact_status_t, segment_points_t, segment_status_t, &
+    segment_point_at
+  use visitor_m, only : visited_t, visitor_t, any_length
   implicit none
   private
-  public :: contact_state_t, contact_points_t, contact_status_t, candidates_t, pass_t, &
-    contact_scratch_t, arcs_t, allocate_points, allocate_damping, allocate_tractions, make_room, &
-    allocate_status, allocate_scratch, n_side, n_sites, sites_of_segment, &
-    site_at, segment_point_at, touching_gap, features_t, separated, active
+  public :: contact_state_t, contact_points_t, contact_scratch_t, arcs_t, features_t, &
+    allocate_points, allocate_damping, allocate_tractions, make_room, move_point, &
+    allocate_scratch, exchange, n_side, n_sites, n_springs, site_at, touching_gap
 
   !> Nodes of a side of a contact point (2-node segments).
   integer, parameter :: n_side = 2
-  !> Status of a contact point: separated or active.
-  integer, parameter :: separated = 0, active = 1
-
   !> The list, one column per point.
   type, extends(visited_t) :: contact_points_t
     integer :: n = 0                           !! points in use
@@ -52,56 +45,6 @@ module contact_state_m
   contains
     procedure :: visit => visit_points
   end type contact_points_t
-
-  !> Candidate pairs: for each segment of one surface the segments of the other that it may touch
-  !> before the lists are made anew. No result depends on them; a restart makes them again.
-  type :: candidates_t
-    integer, allocatable :: first(:) !! (n_segment + 1) where each row starts ...
-    integer, allocatable :: items(:) !! ... on this list of segments of the other surface
-  end type candidates_t
-
-  !> What one call asks of the points of one surface over the segments of the other.
-  type :: pass_t
-    integer :: own_at = 0              !! local number before the first node of the points' surface
-    integer :: other_at = 0            !! and before the first node of the other surface
-    integer :: n_on_segment = 0        !! points of a segment; 0: points at nodes
-    real(wp), allocatable :: xi(:)     !! (n_on_segment) where they are on it
-    integer, allocatable :: segment_at(:) !! (n_node) segment that starts at a node of their surface
-    logical :: is_self = .false.       !! both surfaces are one
-    logical :: is_closed = .false.     !! the points' surface has a closed boundary
-    logical :: has_history = .false.   !! increments are those of a step
-    logical :: is_trial = .false.      !! of an implicit step, which may lead to any depth
-    real(wp) :: travel = 0.0_wp        !! accumulated relative displacement, m
-    real(wp) :: closed_gap = 0.0_wp    !! gaps below it are contact, m
-  end type pass_t
-
-  !> Status of the points of one surface over the segments of the other.
-  type, extends(visited_t) :: contact_status_t
-    integer :: n = 0                         !! points
-    integer :: n_active = 0
-    real(wp) :: earliest_search = -huge(1.0_wp) !! travel before which no separated point can touch
-    real(wp) :: reach = 0.0_wp               !! search radius: points farther away are unpaired, m
-    integer, allocatable :: active_points(:) !! (n) the first n_active: active points, in order
-    integer, allocatable :: due(:)           !! (n) scratch: points to be looked at one by one
-    integer, allocatable :: segment(:)       !! (n) active: its segment; else the closest, 0 = none
-    integer, allocatable :: state(:)         !! (n) separated or active
-    real(wp), allocatable :: xi(:)           !! (n) 0 to 1 along the segment (a little more at ends)
-    real(wp), allocatable :: gap(:)          !! (n) m; up to date while active
-    real(wp), allocatable :: normal(:, :)    !! (2, n) from the segment to the point's side
-    real(wp), allocatable :: offset(:)       !! (n) entry offset, m: pressure acts from gap + offset
-    real(wp), allocatable :: next_search(:)  !! (n) next search time: travel before which the point
-                                             !! can not touch; huge while active
-    real(wp), allocatable :: faded(:)        !! (n) scratch: by which offsets have faded in this
-                                             !! call, m
-    logical :: has_offset = .false.          !! some offset is above 0
-    integer :: n_released = 0                !! first contacts deeper than the limit so far
-    real(wp), allocatable :: point_depth(:)  !! (n) deepest first contact of a point, m
-    real(wp), allocatable :: segment_depth(:) !! (n_segment) deepest first contact of a segment, m
-    real(wp) :: shallowest = huge(1.0_wp)    !! smallest of both, m
-    type(pass_t) :: pass                     !! of the present call
-  contains
-    procedure :: visit => visit_status
-  end type contact_status_t
 
   !> Room that procedures use within a step; nothing in it lasts to the next one.
   type :: contact_scratch_t
@@ -127,7 +70,6 @@ module contact_state_m
     real(wp) :: ramp_step = 0.0_wp          !! of an initial overlap in this step, as a part of it
     logical :: is_start = .false.           !! this call is that of time zero; both only where such
                                             !! overlaps grow
-    logical, allocatable :: has_points(:)   !! (slave segments) have their points
     type(contact_points_t), allocatable :: parts(:) !! points of ranges of slave segments, which
                                             !! threads share
     logical :: waits = .false.              !! points are generated, forces follow once all others
@@ -154,6 +96,7 @@ module contact_state_m
   !> the deck.
   type :: features_t
     logical :: segment_points = .false. !! points between nodes are followed
+    logical :: virtual_nodes = .false.  !! these carry springs, with several points on the list
     logical :: overlaps = .false.       !! points are made of overlaps of segments
     logical :: nodal_pressure = .false. !! pressure is formed at slave nodes
     logical :: unit_area = .false.      !! the penalty is N/m per node, pressures are forces
@@ -180,13 +123,7 @@ module contact_state_m
     logical :: is_stale = .false.           !! contact status has been left alone outside birth ..
                                             !! death
     integer :: next_listing = 0             !! cycle at which FREQ asks for a global search
-    real(wp), allocatable :: segment_points(:, :) !! (4, n_contact_point) positions of points that
-                                                  !! are not nodes
-    real(wp), allocatable :: segment_xi(:)  !! (points of a segment) where on the segment they are
-    real(wp), allocatable :: segment_share(:) !! (points of a segment) part of its length they stand
-                                            !! for
-    real(wp) :: segment_spread = 0.0_wp     !! above 0: a point stands at the centre, by radius, of
-                                            !! this part of its segment about its segment_xi
+    type(segment_points_t) :: segment_points !! of the slave
     type(contact_status_t) :: slave_status  !! slave nodes, or `segment_points`, over the master
                                             !! surface
     type(contact_status_t) :: master_status !! master nodes over the slave surface; empty for one
@@ -194,13 +131,7 @@ module contact_state_m
     type(candidates_t) :: candidates        !! of slave segments
     real(wp) :: listed_until = -huge(1.0_wp) !! travel for which these hold, m
     type(candidates_t) :: reversed          !! of master segments: the same pairs; for two passes
-    integer, allocatable :: segment_state(:)  !! (slave segments) active: overlaps of it are in
-                                            !! contact; only where these make points
-    real(wp), allocatable :: segment_gap(:) !! (slave segments) smallest gap of its points at the
-                                            !! last look, m
-    real(wp), allocatable :: segment_search(:) !! (slave segments) travel before which its overlaps
-                                            !! can not touch, m
-    real(wp) :: earliest_segment_search = -huge(1.0_wp) !! smallest of these, m
+    type(segment_status_t) :: segments      !! of the slave
     type(arcs_t) :: arcs                    !! of curved segments; only where these are smoothed
     type(contact_points_t), allocatable :: points !! of contact
     type(contact_points_t) :: tie_points    !! of ties: placed in the reference geometry, and frozen
@@ -292,19 +223,20 @@ contains
     points = larger
   end subroutine make_room
 
-  !> Allocate for `n` points over `n_segment` segments.
-  pure subroutine allocate_status(status, n, n_segment)
-    type(contact_status_t), intent(inout) :: status
-    integer, intent(in) :: n, n_segment
+  !> Move a point on the list.
+  pure subroutine move_point(from, to, points)
+    integer, intent(in) :: from, to
+    type(contact_points_t), intent(inout) :: points
 
-    status%n = n
-    allocate (status%active_points(n), status%due(n), status%segment(n), status%state(n), &
-      source=0)
-    allocate (status%xi(n), status%gap(n), status%normal(2, n), status%point_depth(n), &
-      status%segment_depth(n_segment), source=0.0_wp)
-    allocate (status%offset(n), status%faded(n), source=0.0_wp)
-    allocate (status%next_search(n), source=-huge(1.0_wp))
-  end subroutine allocate_status
+    points%slave_nodes(:, to) = points%slave_nodes(:, from)
+    points%slave_weights(:, to) = points%slave_weights(:, from)
+    points%master_nodes(:, to) = points%master_nodes(:, from)
+    points%master_weights(:, to) = points%master_weights(:, from)
+    points%gap(to) = points%gap(from)
+    points%normal(:, to) = points%normal(:, from)
+    points%area(to) = points%area(from)
+    points%stiffness(to) = points%stiffness(from)
+  end subroutine move_point
 
   !> Allocate the room of an interface; after a restart too.
   pure subroutine allocate_scratch(memory)
@@ -323,29 +255,37 @@ contains
           scratch%at_sites(size(memory%friction%state)), source=0.0_wp)
         allocate (scratch%previous_state(size(memory%friction%state)), source=0)
       end if
-      if (.not. memory%has%overlaps) return
-      allocate (scratch%has_points(size(memory%segment_state)), source=.false.)
     end associate
   end subroutine allocate_scratch
 
-  !> Sites that laws remember: slave nodes, or points of slave segments, and master nodes.
+  !> Exchange two lists of nodal values without a copy.
+  pure subroutine exchange(one, other)
+    real(wp), allocatable, intent(inout) :: one(:, :), other(:, :)
+    real(wp), allocatable :: spare(:, :)
+
+    call move_alloc(one, spare)
+    call move_alloc(other, one)
+    call move_alloc(spare, other)
+  end subroutine exchange
+
+  !> Springs of contact: slave nodes where pressure is formed there, else points.
+  pure function n_springs(memory) result(n)
+    type(contact_state_t), intent(in) :: memory
+    integer :: n
+
+    n = merge(memory%n_slave, memory%points%n, memory%has%nodal_pressure)
+  end function n_springs
+
+  !> Sites that laws remember: slave nodes, or virtual nodes, and master nodes.
   pure function n_sites(memory) result(n)
     type(contact_state_t), intent(in) :: memory
     integer :: n
 
-    n = sites_of_segment(memory)*memory%n_slave + memory%n_master
+    n = memory%n_master + merge(memory%slave_status%n, memory%n_slave, memory%has%virtual_nodes)
   end function n_sites
 
-  !> Sites of a slave segment that have a memory of their own.
-  pure function sites_of_segment(memory) result(n)
-    type(contact_state_t), intent(in) :: memory
-    integer :: n
-
-    n = 1
-    if (memory%has%segment_points) n = size(memory%segment_xi)
-  end function sites_of_segment
-
-  !> The site of a point of one of the lists: a node, slave or master, or between nodes.
+  !> The site of a point of one of the lists: the virtual node or Gauss point that the search
+  !> follows, or a node, slave or master.
   pure function site_at(memory, points, p) result(site)
     type(contact_state_t), intent(in) :: memory
     type(contact_points_t), intent(in) :: points
@@ -354,8 +294,8 @@ contains
 
     site = points%slave_nodes(1, p)
     if (memory%has%segment_points) then
-      site = size(memory%segment_xi)*(site - 1) &
-        + segment_point_at(points%slave_weights(2, p), memory%segment_xi)
+      site = size(memory%segment_points%xi)*(memory%slave_status%pass%segment_at(site) - 1) &
+        + segment_point_at(points%slave_weights(2, p), memory%segment_points%xi)
     else if (site /= points%slave_nodes(2, p)) then
       site = points%master_nodes(1, p)
     end if
@@ -369,17 +309,6 @@ contains
 
     gap = memory%closed_gap - memory%arcs%allowance
   end function touching_gap
-
-  !> Which of the points of a segment stands at xi.
-  pure function segment_point_at(xi, segment_xi) result(q)
-    real(wp), intent(in) :: xi, segment_xi(:)
-    integer :: q, i
-
-    q = 1
-    do i = 2, size(segment_xi)
-      if (abs(segment_xi(i) - xi) < abs(segment_xi(q) - xi)) q = i
-    end do
-  end function segment_point_at
 
   !> Its components.
   subroutine visit_points(self, visitor)
@@ -404,31 +333,6 @@ contains
       'values where the deck has no friction and no tie, or none where it has')
   end subroutine visit_points
 
-  !> Its components; extremes are found again.
-  subroutine visit_status(self, visitor)
-    class(contact_status_t), intent(inout), target :: self
-    class(visitor_t), intent(inout) :: visitor
-
-    call visitor%visit('n', self%n)
-    call visitor%visit('n_active', self%n_active)
-    call visitor%visit('earliest_search', self%earliest_search)
-    call visitor%visit('active_points', self%active_points, whole, 0, length(self%active_points), &
-      'numbers that no contact point has')
-    call visitor%visit('segment', self%segment)
-    call visitor%visit('state', self%state, whole, separated, active, &
-      'numbers that mean nothing')
-    call visitor%visit('xi', self%xi)
-    call visitor%visit('gap', self%gap)
-    call visitor%visit('normal', self%normal)
-    call visitor%visit('offset', self%offset)
-    call visitor%visit('has_offset', self%has_offset)
-    call visitor%visit('n_released', self%n_released, 0, 10**9, 'a number that no run reaches')
-    call visitor%visit('next_search', self%next_search)
-    call visitor%visit('point_depth', self%point_depth)
-    call visitor%visit('segment_depth', self%segment_depth)
-    call visitor%visit('shallowest', self%shallowest)
-  end subroutine visit_status
-
   !> Its components.
   subroutine visit_contact(self, visitor)
     class(contact_state_t), intent(inout), target :: self
@@ -442,18 +346,11 @@ contains
     call visitor%visit('advance', self%advance, 0.0_wp, 'a way below zero')
     call visitor%visit('is_stale', self%is_stale)
     call visitor%visit('next_listing', self%next_listing)
-    call visitor%visit('segment_points', self%segment_points)
-    call visitor%visit('segment_xi', self%segment_xi)
-    call visitor%visit('segment_share', self%segment_share)
-    call visitor%visit('segment_spread', self%segment_spread)
+    call visitor%part('segment_points', self%segment_points)
     call visitor%part('slave_status', self%slave_status)
     call visitor%part('master_status', self%master_status)
-    call visitor%visit('segment_state', self%segment_state, whole, separated, active, &
-      'numbers that mean nothing')
-    call visitor%visit('segment_gap', self%segment_gap)
-    call visitor%visit('segment_search', self%segment_search)
+    call visitor%part('segments', self%segments)
     call visitor%visit('listed_until', self%listed_until)
-    call visitor%visit('earliest_segment_search', self%earliest_segment_search)
     call visitor%part('points', self%points)
     call visitor%part('tie_points', self%tie_points)
     call visitor%visit('closed_gap', self%closed_gap)

@@ -1,9 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> What the laws of an interface remember: friction, overlaps that a curve lets grow, ties, the
 !> energy that springs may return, whether they return it, and how good the contact is. Tractions
-!> stand at the sites where pressure is formed. A site is a local node; with n virtual nodes to a
-!> segment n (k - 1) + q is the q-th of the slave segment that starts at node k. Nodes keep their
-!> numbers when runs of segments change; they are local to the interface.
+!> stand at the sites where pressure is formed: local nodes, slave and master, or virtual nodes, by
+!> their number in the search, and master nodes behind them.
 module law_state_m
   use kinds_m, only : wp
   use visitor_m, only : visited_t, visitor_t, whole
@@ -11,8 +10,8 @@ module law_state_m
   private
   public :: friction_memory_t, allocate_friction, is_open, sticks, slips, is_held, is_broken, &
     is_beside, interference_memory_t, allocate_interference, tie_memory_t, allocate_ties, &
-    energy_limit_t, allocate_limit, contact_monitor_t, contact_change_t, has_made, has_lost, &
-    contact_estimate_t
+    energy_limit_t, allocate_limit, spring_t, contact_monitor_t, contact_change_t, has_made, &
+    has_lost, contact_estimate_t
 
   !> What a site is doing.
   integer, parameter :: is_open = 0, sticks = 1, slips = 2
@@ -64,8 +63,7 @@ module law_state_m
                                          !! they have, N/m
     integer :: n_held = 0                !! points that they hold
     real(wp) :: energy = 0.0_wp          !! minus the accumulated work of their forces, J/m
-    integer, allocatable :: state(:)     !! (n_site) of each site: open, held, broken or beside;
-                                         !! this and the next two only where ties break
+    integer, allocatable :: state(:)     !! (n_site) of each site: open, held, broken or beside
     integer, allocatable :: site(:)      !! (n_bond) of each bond
     real(wp), allocatable :: to_stress(:) !! (n_bond) stress of the bond over pressure: 1 but for
                                          !! types 1 and 3
@@ -113,6 +111,14 @@ module law_state_m
   contains
     procedure :: visit => visit_change
   end type contact_change_t
+
+  !> A spring of contact or of a tie, as the monitor sees it.
+  type :: spring_t
+    integer :: site     !! on the lists of what laws remember
+    integer :: node     !! slave node next to it
+    real(wp) :: energy  !! J/m
+    real(wp) :: load    !! N/m
+  end type spring_t
 
   !> Filled when the springs are looked at, now and then.
   type, extends(visited_t) :: contact_monitor_t
@@ -184,13 +190,13 @@ contains
     call visitor%visit('stored', self%stored)
   end subroutine visit_friction
 
-  !> Allocate for so many sites of slave nodes or points, and of master nodes behind them.
-  pure subroutine allocate_interference(interference, n_slave, n_master)
+  !> Allocate for so many sites, the last of which are master nodes.
+  pure subroutine allocate_interference(interference, n_site, n_master)
     type(interference_memory_t), intent(inout) :: interference
-    integer, intent(in) :: n_slave, n_master
+    integer, intent(in) :: n_site, n_master
 
-    allocate (interference%depth(n_slave + n_master), source=0.0_wp)
-    interference%depth(n_slave + 1:) = -1.0_wp
+    allocate (interference%depth(n_site), source=0.0_wp)
+    interference%depth(n_site - n_master + 1:) = -1.0_wp
   end subroutine allocate_interference
 
   !> Its components.

@@ -30,7 +30,7 @@ module snapshot_m
     real(wp) :: leapfrog = 0.0_wp      !! v(n-1/2).M v(n+1/2)/2 minus the kinetic energy, in
                                        !! explicit runs
     real(wp) :: initial = 0.0_wp       !! total at time zero
-    logical :: tells_mass = .false.    !! masses are scaled
+    logical :: has_mass_scaling = .false. !! masses are scaled
     real(wp) :: added_mass = 0.0_wp    !! by mass scaling, kg per metre of depth or per radian
     real(wp) :: mass_increase = 0.0_wp !! added mass over that of the densities, %
   end type energies_t

@@ -65,12 +65,12 @@ module state_m
                                                   !! nodes only in cycles that write
     real(wp), allocatable :: prescribed_velocity(:) !! (n_motion) v(n-1/2), v(n+1/2) once the cycle
                                                     !! knows it
-    real(wp), allocatable :: former_velocity(:, :) !! (2, n_node) v(n-3/2), v(n-1/2) once the work
+    real(wp), allocatable :: previous_velocity(:, :) !! (2, n_node) v(n-3/2), v(n-1/2) once the work
                                                    !! of damping is summed; only in damped runs
     real(wp), allocatable :: node_damping(:, :) !! (2, n_node) D of each node; only where the deck
                                                 !! damps parts
-    real(wp), allocatable :: former_damping(:, :) !! (2, n_node) that of the step before
-    real(wp) :: former_dt = 0.0_wp             !! step of v(n-3/2), s
+    real(wp), allocatable :: previous_damping(:, :) !! (2, n_node) that of the step before
+    real(wp) :: previous_dt = 0.0_wp           !! step of v(n-3/2), s
     real(wp), allocatable :: acceleration(:, :) !! (2, n_node) of the implicit driver, whose v and a
                                                 !! belong to the instant of u
     real(wp) :: body_acceleration(2) = 0.0_wp  !! of *LOAD_BODY at `time`
@@ -128,10 +128,10 @@ contains
     call visitor%visit('force_slots', self%force_slots, of_forces)
     call visitor%visit('internal_force', self%internal_force, of_nodes)
     call visitor%visit('prescribed_velocity', self%prescribed_velocity)
-    call visitor%visit('former_velocity', self%former_velocity, of_nodes)
+    call visitor%visit('former_velocity', self%previous_velocity, of_nodes)
     call visitor%visit('node_damping', self%node_damping, of_nodes)
-    call visitor%visit('former_damping', self%former_damping, of_nodes)
-    call visitor%visit('former_dt', self%former_dt)
+    call visitor%visit('former_damping', self%previous_damping, of_nodes)
+    call visitor%visit('former_dt', self%previous_dt)
     call visitor%visit('acceleration', self%acceleration, of_nodes)
     call visitor%fixed('body_acceleration', self%body_acceleration)
     call visitor%part('relaxation', self%relaxation)

@@ -33,6 +33,7 @@ SHORTER = {
     "tools/run.sh input/taylor/": "{command} endtim=2e-5",
     "tools/test.sh": "test -x tools/test.sh",  # this test is part of it
     "tools/study.sh": "{command} --list",      # tests/tools runs studies
+    "python3 tools/docs/messages.py": "test -f tools/docs/messages.py",  # reads src, which the copy is without
     "tools/docs.sh": "bash -n tools/docs.sh",  # installs from the network
     "tools/batch/run_folder.sh": "{command} endtim=1e-5",
     "cmake -S . -B build/mine": "grep -q SLIDELINE_TESTS CMakeLists.txt",  # compiles

@@ -16,13 +16,14 @@ EXEMPT = {
     "contact_state_t": {"has": OF_THE_DECK, "scratch": "nothing in it lasts to the next step",
                         "candidates": "no result depends on them", "reversed": "no result depends on them"},
     "contact_status_t": {"due": EACH_CYCLE, "faded": EACH_CYCLE, "pass": OF_THE_DECK, "reach": OF_THE_DECK},
+    "segment_status_t": {"has_points": EACH_CYCLE},
     "schedule_t": {"end_time": "from the deck, which may change it", "curve": "kept as two arrays"},
     "histories_t": {"tables": "rows one table after another"},
     "explicit_cycle_t": dict.fromkeys((
-        "writes", "finished", "last", "due", "leap", "sums", "rest", "pressing", "common", "rates", "checks", "parcel",
+        "writes", "finished", "last", "due", "leap", "sums", "tile_states", "pressing", "common", "rates", "checks", "halo",
         "asked", "active", "velocity", "displacement", "freed"), EACH_CYCLE) | dict.fromkeys((
-            "plots", "shares", "first_check", "echoes", "failures", "reason", "error"), "of each run") | dict.fromkeys((
-                "refines", "presses", "timed_motions"), OF_THE_DECK) | {"told": "of the state"},
+            "plots", "partition", "first_check", "recent", "failures", "reason", "error"), "of each run") | dict.fromkeys((
+                "refines", "presses", "timed_motions"), OF_THE_DECK) | {"n_eroded_seen": "of the state"},
     "implicit_memory_t": {"written": "of another state"},
     "step_control_t": {"next": "planned anew", "is_last": "planned anew", "end_time": "from the deck, which may change it"}
     | dict.fromkeys(("is_automatic", "least", "most", "few", "many", "changes"), OF_THE_DECK),
@@ -35,10 +36,10 @@ EXEMPT = {
     "controls_t": {"implicit": "runs of several processes are explicit, its default"},
 }
 #: types of src/state that hold no memory
-WITHOUT_MEMORY = {"contact_scratch_t", "features_t", "candidates_t", "pass_t", "snapshot_t",
+WITHOUT_MEMORY = {"contact_scratch_t", "features_t", "candidates_t", "pass_t", "spring_t", "snapshot_t",
                   "interface_result_t", "part_result_t", "slave_result_t",
                   "wall_result_t", "friction_result_t", "element_result_t", "body_result_t", "section_result_t",
-                  "energies_t", "others_t", "answers_t"}
+                  "energies_t", "remote_t", "inside_tests_t"}
 
 
 def types_of(path):
@@ -159,11 +160,11 @@ def test_a_driver_remembers_nothing_else(path):
 MONITOR = {"results": "times of its states are kept", "snapshot": "filled anew before it is written", "rows": "of the mesh",
            "bodies": "of the mesh", "restarts": "n_dump is kept", "has_plot": OF_THE_DECK, "scheduled": OF_THE_DECK,
            "only_checks": "of a check"} | dict.fromkeys(
-               ("log", "told_radii", "told_ratio", "clock", "progress", "ranks"), "of each run")
+               ("log", "warned_radii", "warned_ratio", "clock", "progress", "ranks"), "of each run")
 
 
 def test_outputs_of_a_run_are_kept():
     text = (ROOT / "src/run/restart.f90").read_text(encoding="utf-8")
     kept = {name for name in TYPES["monitor_t"]
-            if re.search(rf"call (?:keep_schedule|archive%part)\([^\n]*monitor%{name}\b", text)}
+            if re.search(rf"call (?:visit_kept_schedule|archive%part)\([^\n]*monitor%{name}\b", text)}
     assert kept == set(TYPES["monitor_t"]) - set(MONITOR)

@@ -14,7 +14,7 @@ HEADERS = {
               "total,energy_ratio,leapfrog,friction",
     "rcforc": "time,interface,side,fx,fy,n_active",
     "nodout": "time,node,x,y,ux,uy,vx,vy,ax,ay",
-    "contact": "time,interface,node,s,x,y,gap,pressure,fx,fy,length,traction,slip,state,row_stress",
+    "contact": "time,interface,node,s,x,y,gap,pressure,fx,fy,length,traction,slip,state,row_stress,offset",
     "matsum": "time,part,kinetic,internal,hourglass,momentum_x,momentum_y,mass",
     "timing": "phase,seconds,calls,share",
 }

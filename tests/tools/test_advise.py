@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import os
+import pathlib
 import subprocess
 
 import numpy as np
@@ -61,7 +62,7 @@ def test_threads(runs):
 
 def test_plate_that_yields_and_bodies_that_touch(slideline, tmp_path):
     """The collision of the paper: neither law nor contact is needless, and it is a half model."""
-    deck = finished.pathlib.Path(__file__).parents[2] / "input/collision/collision.k"
+    deck = pathlib.Path(__file__).parents[2] / "input/collision/collision.k"
     done = subprocess.run([slideline, f"i={deck}", f"d={tmp_path}", "p:endtim=3e-4"],
                           capture_output=True, text=True, check=False)
     assert done.returncode == 0
@@ -72,7 +73,7 @@ def test_plate_that_yields_and_bodies_that_touch(slideline, tmp_path):
 def test_short_touch_between_rows_is_not_overlooked(tmp_path):
     """No row of rcforc sees a contact, but the contact energy does: no advice."""
     folder = run_variant(tmp_path, ())
-    run = finished.read_run(folder)
+    run = finished.Finished(folder)
     for name in ("n_active", "fx", "fy"):
         run.tables["rcforc"].columns[name][:] = 0
     assert np.any(run.tables["glstat"]["contact"])
@@ -207,17 +208,17 @@ def run_scene(folder, text, *arguments):
 
 def test_corner_first(oblique):
     found = topics(oblique)
-    rows = finished.read_run(oblique).tables["contact"]
+    rows = finished.Finished(oblique).tables["contact"]
     pressed = np.unique(rows["node"][rows["pressure"] > 0.0])
     assert f"{len(pressed)} of 18 slave nodes" in found["long surface"].evidence
-    force = finished.read_run(oblique).tables["rcforc"].where(side="slave")
+    force = finished.Finished(oblique).tables["rcforc"].where(side="slave")
     first, last = force["time"][force["n_active"] > 0][[0, -1]]
     assert f"from {first:.4g} to {last:.4g}" in found["touched for a while"].what
     assert "symmetry" not in found and "never touched" not in found
 
 
 def test_symmetric_mesh_that_moves_otherwise(runs):
-    run = finished.read_run(runs["all"])
+    run = finished.Finished(runs["all"])
     assert [item.topic for item in bodies.symmetric(run)] == ["symmetry"]
     moved = run.results.point_field("displacement")
     moved[-1, 0, 0] += 2.0 * bodies.SYMMETRIC * np.abs(moved).max()
@@ -225,7 +226,7 @@ def test_symmetric_mesh_that_moves_otherwise(runs):
 
 
 def test_rigid_part_strains_little_and_keeps_little_energy(runs):
-    run = finished.read_run(runs["none"])
+    run = finished.Finished(runs["none"])
     assert bodies.nearly_rigid(run) == []
     energy = run.tables["matsum"]["internal"]
     energy[run.tables["matsum"]["part"] == 2] *= 1.0e-4
@@ -238,7 +239,7 @@ def test_rigid_part_strains_little_and_keeps_little_energy(runs):
 
 
 def test_dear_type(runs):
-    run = finished.read_run(runs["none"])
+    run = finished.Finished(runs["none"])
     run.seconds["contact_force"] = 0.3 * run.total
     assert touching.dear_type(run) == []
     run.interfaces[0].ctype = 6
@@ -249,7 +250,7 @@ def test_dear_type(runs):
 
 
 def test_output_written_too_often(runs):
-    run = finished.read_run(runs["all"])
+    run = finished.Finished(runs["all"])
     run.seconds["output"] = 0.05 * run.total
     assert outputs.too_often(run) == []
     run.seconds["output"] = 0.5 * run.total

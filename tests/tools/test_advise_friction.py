@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from conftest import ROOT
-from slideline_tools.advise import advise, finished, rubbing, touching
+from slideline_tools.advise import advise, rubbing, touching
 from slideline_tools.histories import History
 
 EXAMPLES = ROOT / "doc/examples"
@@ -52,14 +52,12 @@ def test_flutter_is_told_and_damping_silences_it(slideline, tmp_path, fluttering
     assert "undamped sliding" not in run(slideline, tmp_path / "damped", fluttering)
 
 
-def test_damping_of_contact_is_known_from_sleout_else_from_the_deck(tmp_path):
+def test_damping_of_contact_is_known_from_sleout_else_from_the_deck():
     """A number above 0 in column 41 of the second card, behind a title card where there is one."""
     card = "*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE{}\n         1         2\n{}\n"
 
     def is_damped(text, **tables):
-        (tmp_path / "run.effective.k").write_text(text)
-        bare = finished.Finished(tmp_path, "run", True, {}, tables, None)
-        return rubbing.is_damped(bare, SimpleNamespace(id=1))
+        return rubbing.is_damped(SimpleNamespace(deck=text, tables=tables, options=""), SimpleNamespace(id=1))
 
     damped = " " * 40 + "      20.0"
     assert is_damped(card.format("", damped)) and is_damped(card.format("_TITLE\n         1 pair", damped))

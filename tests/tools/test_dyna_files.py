@@ -110,7 +110,7 @@ def test_lasso_reads_sums_and_titles(run, plot_path):
     arrays, results = D3plot(str(plot_path)).arrays, run.results
     titles = dict(zip(arrays["part_titles_ids"].tolist(), (t.decode().strip() for t in arrays["part_titles"])))
     assert titles == {7: "projectile", 30: "plate"}
-    whole = run.tables()["glstat"]
+    whole = run.tables_for_dyna()["glstat"]
     rows = [int(np.argmin(np.abs(whole["time"] - time))) for time in results.times]
     assert np.allclose(whole["time"][rows], results.times, rtol=1e-12, atol=0.0)
     near(arrays["global_kinetic_energy"], whole["kinetic"][rows])
@@ -235,7 +235,7 @@ def test_files_of_the_user_stay(run, tmp_path):
 
 
 def test_binout_glstat(run, binout):
-    table = run.tables()["glstat"]
+    table = run.tables_for_dyna()["glstat"]
     for name, column in {"time": "time", "time_step": "dt", "cycle": "cycle", "kinetic_energy": "kinetic",
                          "sliding_interface_energy": "contact", "total_energy": "total",
                          "energy_ratio": "energy_ratio", "global_y_velocity": "velocity_y"}.items():

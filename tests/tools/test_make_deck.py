@@ -50,8 +50,6 @@ def test_make_deck_of_the_other_scenes(tmp_path, tool, scene):
     ("symmetric_plate --nx 16 --ny 8 --elastoplastic",
      "symmetric_plate/plate_16x8_elastoplastic.k"),
     ("taylor", "taylor/taylor.k"),
-    ("taylor_johnson_cook", "taylor/taylor_johnson_cook.k"),
-    *((name, f"{name}/{name}.k") for name in ("hopkinson", "penetration", "seal", "tube", "v_bend")),
 ])
 def test_make_deck_writes_the_committed_deck(tmp_path, tool, words, deck):
     path = tmp_path / "new" / "x.k"

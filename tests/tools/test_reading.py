@@ -60,7 +60,7 @@ def test_binout_of_a_killed_run(tmp_path):
         "time,node,fx,fy\n0.0,4,1.0,2.0\n0.0,9,1.0,2.0\n0.1,4,3.0,2.0\n0.1,9,1.0,2.0\n0.2,4,5.0,2.0\n")
     (tmp_path / "k.nodout.csv").write_text("time,node,x,y,ux,uy,vx,vy,ax,ay\n")
     run = Run(tmp_path)
-    assert run.tables()["spcforc"]["time"].tolist() == [0.0, 0.0, 0.1, 0.1]
+    assert run.tables_for_dyna()["spcforc"]["time"].tolist() == [0.0, 0.0, 0.1, 0.1]
     assert write_binout(run, tmp_path / "binout0000") == ["glstat", "spcforc"]
 
 

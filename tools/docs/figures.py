@@ -4,7 +4,7 @@
     build/venv/bin/python tools/docs/figures.py [--program build/release/slideline]
 
 writes doc/pictures/draw.png, first_deck.svg, first_model.png,
-first_stress.png, first_history.png, contact_points.svg, taylor.png,
+first_stress.png, first_history.png, contact_points.svg,
 speed_accuracy.svg and the drawings of doc/theory/contact.md.
 """
 import argparse
@@ -23,7 +23,6 @@ import numpy as np  # noqa: E402
 from slideline_tools import cli  # noqa: E402
 from slideline_tools.contact_types import TYPES  # noqa: E402
 from slideline_tools.results import read  # noqa: E402
-from taylor import taylor  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PICTURES = ROOT / "doc/pictures"
@@ -253,15 +252,15 @@ def projection_figure():
     surface(axes, [b, a], MASTER)
     t = (b - a) / np.hypot(*(b - a))
     n = np.array([t[1], -t[0]])
-    foot = a + 0.45 * (b - a)
-    x = foot - 0.22 * n
+    projected = a + 0.45 * (b - a)
+    x = projected - 0.22 * n
     axes.plot(*x, "o", color=SLAVE, markersize=6)
-    axes.plot(*np.array([x, foot]).T, ":", color=INK, linewidth=1.2)
+    axes.plot(*np.array([x, projected]).T, ":", color=INK, linewidth=1.2)
     axes.text(*(x + [0.03, -0.07]), "x", fontsize=11, color=SLAVE)
-    axes.text(*(0.5 * (x + foot) + [-0.24, -0.03]), r"$g < 0$", fontsize=10, color=INK)
-    arrow(axes, foot, foot + 0.3 * n, text=r"$n$")
+    axes.text(*(0.5 * (x + projected) + [-0.24, -0.03]), r"$g < 0$", fontsize=10, color=INK)
+    arrow(axes, projected, projected + 0.3 * n, text=r"$n$")
     arrow(axes, a, a + 0.3 * t, text=r"$t$", shift=(-0.02, 0.05))
-    axes.text(*(foot + [0.03, 0.04]), r"$\xi$", fontsize=11, color=INK)
+    axes.text(*(projected + [0.03, 0.04]), r"$\xi$", fontsize=11, color=INK)
     bare(axes, "projection", (-0.1, -0.4), (1.15, 0.65))
     for axes, apex, title, text, where in (
             (panels[1], 0.3, "convex vertex", "closest: the vertex, g > 0", (0.5, 0.3)),
@@ -432,7 +431,6 @@ def main():
         contact_points(program, pathlib.Path(folder))
         for draw in (projection_figure, candidates_figure, entry_figure, overlaps_figure, energy_limit_figure, speed_accuracy_figure):
             draw()
-        taylor(run(program, ROOT / "input/taylor/taylor.k", pathlib.Path(folder)), PICTURES / "taylor.png")
 
 
 if __name__ == "__main__":

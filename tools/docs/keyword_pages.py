@@ -5,6 +5,7 @@
 """
 import dataclasses
 import re
+import textwrap
 
 import examples
 
@@ -37,6 +38,10 @@ TREATMENTS = {"": "honoured", "s": "no effect", "w": "warning", "r": "refused"}
 WORD = re.compile(r"([^:]+):([ifax])([swr]?)(\d*)(?:[=~]([^<>|]+))?([<>|]\S+)?")
 #: a row of fields: card and field; columns, kind, default and range; treatment and meaning
 ROW = re.compile(r"\| (\d+) (\S+) \| ([^|]*) \| (?:\*(no effect|warning|refused)\*(?:; )?)?(.*?) ?\|$")
+HEAD = "| card, field | columns, kind = default, range | meaning |\n|---|---|---|\n"
+#: the table of fields of a section, and the paragraph of those that need no meaning
+FIELDS = re.compile(re.escape(HEAD) + r"(?:\|.*\n)*\n?")
+OTHERS = re.compile(r"^Other fields: (?:\S.*\n)*\n?", re.M)
 SAME = re.compile(r"^Cards and fields as those of \[`\*(\S+)`\]\(\S+\)(?:\.|, but for:)\n?", re.M)
 
 
@@ -84,21 +89,45 @@ def row_line(row, meaning):
     return f"| {card} {name} | {columns} {kind} | {meaning} |"
 
 
+def others_text(rows):
+    """The fields without a meaning of their own, by treatment and card."""
+    words = []
+    for treatment in TREATMENTS.values():
+        cards = {}
+        for row in rows:
+            if row[6] == treatment:
+                cards.setdefault(row[0], []).append(row[1])
+        if cards:
+            words.append(f"*{treatment}* " + ", ".join(f"{card} {' '.join(names)}" for card, names in cards.items()))
+    return textwrap.fill(f"Other fields: {'; '.join(words)}.", 120, break_on_hyphens=False) + "\n\n" if rows else ""
+
+
+def named_fields(text):
+    """(card, field) of all that `others_text` names."""
+    found, card = set(), ""
+    for word in re.findall(r"\b\d\b|\b[A-Z]\w*", text.partition(":")[2]):
+        card = word if word.isdigit() else card
+        found.add((card, word))
+    return found
+
+
 def made_page(text):
     """doc/keywords.md with the fields of the reader: columns, kind, default, range and treatment; meanings stay."""
     schema, parts = read_schema(), re.split(r"^(?=##)", text, flags=re.M)
     for k, part in enumerate(parts):
-        if not part.startswith("### *"):
+        found = [match for pattern in (FIELDS, OTHERS) if (match := pattern.search(part))]
+        if not part.startswith("### *") or not found:
             continue
-        lines = part.splitlines(keepends=True)
-        at = [i for i, line in enumerate(lines) if ROW.match(line.strip())]
-        if not at:
-            continue
-        meanings = {tuple(ROW.match(lines[i].strip()).group(1, 2)): ROW.match(lines[i].strip())[5] for i in at}
-        rows = [row for row in schema[part[5:].split()[0]] if not SAME.search(part) or tuple(row[:2]) in meanings]
-        made = [row_line(row, meanings.get(tuple(row[:2]), "")) + "\n" for row in rows]
-        parts[k] = "".join(lines[:at[0]] + made + lines[at[-1] + 1:])
-    return "".join(parts)
+        others = OTHERS.search(part)
+        meanings = {(row[1], row[2]): row[5] for line in part.splitlines() if (row := ROW.match(line))}
+        there = meanings.keys() | (named_fields(others[0]) if others else set())
+        rows = [row for row in schema[part[5:].split()[0]] if not SAME.search(part) or tuple(row[:2]) in there]
+        bare = [row for row in rows if row[6] != "honoured" and not meanings.get(tuple(row[:2]))]
+        shown = [row_line(row, meanings.get(tuple(row[:2]), "")) + "\n" for row in rows if row not in bare]
+        made = (HEAD + "".join(shown) + "\n" if shown else "") + others_text(bare)
+        head, tail = part[:found[0].start()], OTHERS.sub("", FIELDS.sub("", part[found[0].start():]))
+        parts[k] = head + made + tail
+    return "".join(parts).rstrip("\n") + "\n"
 
 
 def read_fields(name, body, schema, others=()):
@@ -121,7 +150,7 @@ def read_keywords(text):
             group = head[3:].strip()
         if not head.startswith("### *"):
             continue
-        remarks = "\n".join(line for line in SAME.sub("", body).splitlines() if not line.startswith("|")).strip()
+        remarks = "\n".join(line for line in OTHERS.sub("", SAME.sub("", body)).splitlines() if not line.startswith("|")).strip()
         name, _, mark = head[5:].partition(" ")
         found.append(Keyword(name, group, mark.strip() == "(title)", remarks, read_fields(name, body, schema, found)))
     return found

@@ -23,7 +23,7 @@ from keyword_pages import table_lines  # noqa: E402
 KINDS = {
     "Errors in the deck or on the command line": (
         "line_error field_error report_field report_name report_number reject_field refuse refuse_side refuse_static "
-        "refuse_again refuse_rigid complain note find_body"),
+        "refuse_duplicates refuse_rigid set_error note find_body"),
     "Errors that stop a run": "raise archive%fail visitor%fail archive%expect visitor%expect source%expect check_status",
     "Warnings": "warn line_warning warn_of_field warn_of_nodes warn_of_explicit add_warning",
     "Notes in the log": "write_log show_note put_line",
@@ -33,8 +33,8 @@ PARTS = "Parts of longer messages"
 KIND_OF = {name: kind for kind, names in KINDS.items() for name in names.split()}
 #: files whose texts are tables or names of columns
 OTHERS = {"deck_schema_tables.f90", "deck_schema_others.f90", "dyna_layouts.f90", "history_tables.f90"}
-#: arguments that are not the message: the key of a warning, ids, names of fields
-KEYED = {"line_warning": 1, "warn_of_nodes": 1}
+#: arguments ahead of the message: deck, line and the key of a warning
+KEYED = {"line_warning": 3, "warn_of_nodes": 3}
 CALL = re.compile(r"(?:if \(.*?\) |else )?call (\w+(?:%\w+)*)\((.*)\)$")
 ASSIGNED = re.compile(r"(?:if \(.*\) )?(?:\w+(?:%\w+)*(?:\([^()]*\))?|character\(.*?\), parameter.*? :: \w+(?:\(.*?\))?) = (.*)$")
 LITERAL = re.compile(r"'((?:[^']|'')*)'")
@@ -106,7 +106,7 @@ def read_fields():
     for row in table_lines("table_others"):
         keywords, _, text = row.partition(" ")
         if text.strip() != "ignored":
-            yield Message(f"*{keywords}: {text} …", DECK, "deck/schema/deck_schema_others.f90", 0)
+            yield Message(f"*{keywords}: {text} not available in slideline", DECK, "deck/schema/deck_schema_others.f90", 0)
 
 
 def read_messages():

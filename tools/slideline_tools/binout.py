@@ -228,7 +228,7 @@ FORMS = {
 def write_binout(run, path):
     """Write all tables of a run (folder, results file, or `Run`) to one binout; their names."""
     run = run if isinstance(run, Run) else Run(run)
-    tables = {name: table for name, table in run.tables().items() if name in FORMS and len(table)}
+    tables = {name: table for name, table in run.tables_for_dyna().items() if name in FORMS and len(table)}
     if not tables:
         raise BinoutError(f"{run.prefix} has no history tables")
     with Writer(output(path, run.files())) as file:

@@ -116,7 +116,7 @@ def titles(run, parts):
 def global_values(run, parts):
     """For each state kinetic, internal and total energy, mean velocity, and the sums of parts, from
     the rows of the history tables at the time of the state; 0 where there is none."""
-    tables, n = run.tables(), len(parts)
+    tables, n = run.tables_for_dyna(), len(parts)
     for time in run.results.times:
         values = np.zeros(6 + 7 * n)
         whole = row_at(tables.get("glstat"), time)

@@ -1,67 +1,95 @@
 # SPDX-License-Identifier: MIT
-"""Find the files of a run from what a user names: its folder, its results file or one of its tables."""
+"""The files of a run, found from what a user names: its folder, its results file or one of its tables."""
+from __future__ import annotations
+
+import functools
+import os
 import pathlib
 
 import numpy as np
 
 from slideline_tools.effective_deck import interface_titles, part_titles
-from slideline_tools.files import TABLES, find_run, source
+from slideline_tools.files import ENDINGS, TABLES, find_run, source
 from slideline_tools.histories import History, read_csv
-from slideline_tools.results import read
+from slideline_tools.results import Results, read
 
 NOT_WRITTEN = ("contact",)  # tables without a branch in the binout
 
 
 class Run:
-    """Files of one run.
+    """Files of one run, each read when it is asked for; '' or None stand for what is not there.
 
     `prefix`    folder and job name: `prefix`.vtkhdf and so on
-    `results`   the results file, open (results.Results), or None where the run wrote no states
     """
 
-    def __init__(self, named):
-        """`named`: the folder of a run, its results file, or the path up to the job name."""
-        self.prefix = find_run(named, ".glstat.csv")
-        states = pathlib.Path(f"{self.prefix}.vtkhdf")
-        self.results = read(states) if states.exists() else None
+    def __init__(self, named, *marks) -> None:
+        """`named`: the folder of a run, a file of it, or the path up to the job name; `marks`: endings that tell the job in a folder."""
+        self.prefix = find_run(named, *(marks or (".glstat.csv",)))
+        self.folder, self.job = self.prefix.parent, self.prefix.name
 
-    def tables(self):
-        """name -> History of all tables that go into a binout, from the results file or the CSV files."""
-        found = {}
-        for name in TABLES:
-            if name in NOT_WRITTEN:
-                continue
-            path = pathlib.Path(f"{self.prefix}.{name}.csv")
-            if self.results and name in self.results.histories:
-                found[name] = with_further(self.results, self.results.history(name))
-            elif path.exists():
-                found[name] = read_csv(path)
-        return {name: whole_instants(table) for name, table in found.items() if len(table)}
+    def path(self, ending: str) -> pathlib.Path:
+        """The file with that ending."""
+        return pathlib.Path(f"{self.prefix}{ending}")
 
-    def files(self):
-        """Paths of all that may be read of the run."""
-        return [f"{self.prefix}{ending}" for ending in (".vtkhdf", ".effective.k", *(f".{name}.csv" for name in TABLES))]
+    def text(self, ending: str) -> str:
+        """A text file."""
+        try:
+            return source(self.path(ending)).read_text(encoding="utf-8", errors="replace")
+        except FileNotFoundError:
+            return ""
+
+    @functools.cached_property
+    def results(self) -> Results | None:
+        """The results file, open."""
+        return self.open_results()
+
+    def open_results(self) -> Results | None:
+        """The results file; ResultsError where it is damaged."""
+        return read(self.path(".vtkhdf")) if self.path(".vtkhdf").exists() else None
+
+    @functools.cached_property
+    def log(self) -> str:
+        """The log."""
+        return self.text(".log")
+
+    @functools.cached_property
+    def deck(self) -> str:
+        """The deck as run."""
+        return self.text(".effective.k") or (self.results.run.get("effective_deck", "") if self.results else "")
+
+    def table(self, name: str) -> History | None:
+        """A table from its CSV file, else from the results file."""
+        if self.path(f".{name}.csv").exists():
+            return read_csv(self.path(f".{name}.csv"))
+        return self.results.history(name) if self.results and name in self.results.histories else None
+
+    def tables_for_dyna(self):
+        """name -> History of all tables that go into a binout."""
+        found = {name: with_further(self.results, self.results.history(name)) if self.results and name in self.results.histories
+                 else self.table(name) for name in TABLES if name not in NOT_WRITTEN}
+        return {name: whole_instants(table) for name, table in found.items() if table}
 
     @property
-    def title(self):
+    def sizes(self) -> dict[str, int]:
+        """ending -> bytes of the files that are there, also that of states which are being written."""
+        return {ending: os.path.getsize(self.path(ending)) for ending in [*ENDINGS, ".vtkhdf.part"] if self.path(ending).exists()}
+
+    def files(self) -> list[pathlib.Path]:
+        """Paths of all files of the run."""
+        return [self.path(ending) for ending in ENDINGS]
+
+    @property
+    def title(self) -> str:
         """Title of the deck, '' where it is not known."""
         return self.results.run.get("title", "") if self.results else ""
 
-    def part_titles(self):
+    def part_titles(self) -> dict[int, str]:
         """part id -> heading of *PART, from the deck as run."""
-        return part_titles(self.deck_as_run())
+        return part_titles(self.deck)
 
-    def interface_titles(self):
+    def interface_titles(self) -> dict[int, str]:
         """interface id -> title of *CONTACT_..._TITLE, from the deck as run."""
-        return interface_titles(self.deck_as_run())
-
-    def deck_as_run(self):
-        """Text of the deck as run, as far as the run has left it."""
-        text = self.results.run.get("effective_deck", "") if self.results else ""
-        path = pathlib.Path(f"{self.prefix}.effective.k")
-        if not text and path.exists():
-            text = source(path).read_text(encoding="latin-1")
-        return text
+        return interface_titles(self.deck)
 
 
 def whole_instants(table):

@@ -36,11 +36,11 @@ def draw_walls(axes, walls: list[Wall], zoom) -> None:
     for wall in walls:
         along = (wall.normal[1], -wall.normal[0])
         offset = sum((m - p) * a for m, p, a in zip(middle, wall.point, along))
-        foot = [p + offset * a for p, a in zip(wall.point, along)]
-        if math.dist(foot, middle) > size:
+        near = [p + offset * a for p, a in zip(wall.point, along)]
+        if math.dist(near, middle) > size:
             continue
-        axes.plot(*zip(*[[f + side * size * a for f, a in zip(foot, along)] for side in (-1.0, 1.0)]), color=COLOUR,
+        axes.plot(*zip(*[[f + side * size * a for f, a in zip(near, along)] for side in (-1.0, 1.0)]), color=COLOUR,
                   linewidth=2.0, zorder=4, scalex=False, scaley=False)
-        axes.annotate(f"wall {wall.id}", foot, xytext=[-9.0 * part for part in wall.normal], textcoords="offset points",
+        axes.annotate(f"wall {wall.id}", near, xytext=[-9.0 * part for part in wall.normal], textcoords="offset points",
                       fontsize=6, color=COLOUR, ha="center", va="center", annotation_clip=True,
                       rotation=math.degrees(math.atan2(along[1], along[0])) % 180.0)

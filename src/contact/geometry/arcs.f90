@@ -3,7 +3,7 @@
 !> contact points between arcs in place of between their secants (doc/theory/contact.md, section
 !> 5.9). Forces still go to the two nodes of a segment by linear functions.
 module arcs_m
-  use contact_state_m, only : arcs_t, contact_state_t, contact_points_t, n_side, segment_point_at
+  use contact_state_m, only : arcs_t, contact_state_t, contact_points_t, n_side, site_at
   use contacts_m, only : contact_t
   use geometry_m, only : separation
   use kinds_m, only : wp
@@ -293,7 +293,7 @@ contains
     p = 1
     do while (p <= points%n)
       last = p
-      if (memory%has%segment_points .and. .not. memory%has%nodal_pressure) then
+      if (memory%has%virtual_nodes) then
         call curve_virtual_node(contact, memory, points, p, last)
       else if (points%master_nodes(1, p) /= points%master_nodes(2, p)) then
         call project_on_arcs(memory, points%slave_nodes(:, p), points%slave_weights(2, p), &
@@ -418,10 +418,8 @@ contains
     logical, intent(out) :: is_curved
     integer :: point
 
-    associate (node => points%slave_nodes(1, p), status => memory%slave_status, &
-      n => size(memory%segment_xi))
-      point = n*(status%pass%segment_at(node) - 1) &
-        + segment_point_at(points%slave_weights(2, p), memory%segment_xi)
+    associate (status => memory%slave_status)
+      point = site_at(memory, points, p)
       nodes = memory%n_slave + contact%master%segments(:, status%segment(point))
       call project_on_arcs(memory, points%slave_nodes(:, p), &
         points%slave_weights(2, p), nodes, projection, is_curved)

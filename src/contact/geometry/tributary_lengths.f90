@@ -3,7 +3,7 @@
 !> axisymmetry, where the x of a position is its radius, lengths weigh with it while projections
 !> stay plane (section 5.8).
 module tributary_lengths_m
-  use contact_state_m, only : contact_status_t
+  use search_state_m, only : contact_status_t
   use projection_m, only : opposed_share, side_share, slave_side
   use geometry_m, only : separation
   use kinds_m, only : wp

@@ -4,32 +4,23 @@
 !> formulation says; the pressure of every point is kept on the list. Adding a law is a procedure
 !> like apply_penalty, a row of `laws` and a `case` (doc/add_a_law.md).
 module contact_law_m
-  use contact_state_m, only : contact_state_t, site_at
+  use contact_state_m, only : contact_state_t, n_springs, site_at
   use dual_m, only : dual_t
   use spring_gaps_m, only : has_offsets, add_offsets, store_overlaps, ramp_gaps, gather_moment
   use kinds_m, only : wp
-  use law_state_m, only : contact_monitor_t
-  use contact_scatter_m, only : average_values, share_out
-  use tiebreak_m, only : exclude_tied_sites, is_tied_site
-  use ties_m, only : tie_energy
+  use law_state_m, only : contact_monitor_t, spring_t
+  use nodal_forces_m, only : average_values, share_out
+  use ties_m, only : tie_springs, is_tied_site
   implicit none
   private
-  public :: law_t, laws, law_penalty, form_pressures, find_gaps, spring_t, n_springs, spring_at, &
-    linearise_pressure, density_of, begin_sampling, measure_springs, end_sampling, add_tie_energy
+  public :: law_t, laws, law_penalty, form_pressures, linearise_pressure, density_of, &
+    begin_sampling, measure_springs, end_sampling, add_tie_energy
 
   !> A law.
   type :: law_t
     integer :: number
     character(20) :: name
   end type law_t
-
-  !> A spring, where pressure is formed.
-  type :: spring_t
-    integer :: site     !! on the lists of what laws remember
-    integer :: node     !! slave node next to it
-    real(wp) :: energy  !! J/m
-    real(wp) :: load    !! N/m
-  end type spring_t
 
   integer, parameter :: law_penalty = 1
   !> All laws.
@@ -88,6 +79,22 @@ contains
     if (memory%has%interference) call gather_moment(memory)
   end subroutine form_pressures
 
+  !> Sites that ties hold have no pressure of contact.
+  pure subroutine exclude_tied_sites(memory)
+    type(contact_state_t), intent(inout) :: memory
+    integer :: p
+
+    associate (states => memory%ties%state, points => memory%points)
+      if (memory%has%nodal_pressure) then
+        where (is_tied_site(states(:memory%n_slave))) memory%node_pressure = 0.0_wp
+      else
+        do p = 1, points%n
+          if (is_tied_site(states(site_at(memory, points, p)))) points%pressure(p) = 0.0_wp
+        end do
+      end if
+    end associate
+  end subroutine exclude_tied_sites
+
   !> Gaps that springs feel, of points or averaged at slave nodes: with entry offsets, and with the
   !> part of initial overlaps that does not act yet.
   pure subroutine find_gaps(memory, gaps)
@@ -105,33 +112,33 @@ contains
     end associate
   end subroutine find_gaps
 
-  !> Springs: points or slave nodes.
-  pure function n_springs(memory) result(n)
-    type(contact_state_t), intent(in) :: memory
-    integer :: n
+  !> Springs of contact, without what damping adds to their pressures; those that ties hold are
+  !> not loaded.
+  pure subroutine list_springs(memory, springs)
+    type(contact_state_t), intent(inout) :: memory
+    type(spring_t), allocatable, intent(out) :: springs(:)
+    real(wp) :: gaps(max(memory%points%n, memory%n_slave))
+    integer :: i
 
-    n = merge(memory%n_slave, memory%points%n, memory%has%nodal_pressure)
-  end function n_springs
-
-  !> A spring with the gap that find_gaps has found, without what damping adds to its pressure.
-  pure function spring_at(memory, gap, i) result(spring)
-    type(contact_state_t), intent(in) :: memory
-    real(wp), intent(in) :: gap !! m
-    integer, intent(in) :: i    !! point or slave node
-    type(spring_t) :: spring
-
+    call find_gaps(memory, gaps)
+    allocate (springs(n_springs(memory)))
     associate (points => memory%points, law => memory%contact_law, nodal => memory%scratch%nodal)
-      if (memory%has%nodal_pressure) then
-        spring = spring_t(i, i, nodal(2, i)*density_of(law, memory%slave_penalty, gap), &
-          nodal(2, i)*memory%node_pressure(i))
-      else
-        spring = spring_t(site_at(memory, memory%points, i), points%slave_nodes( &
-          maxloc(points%slave_weights(:, i), 1), i), &
-          points%area(i)*density_of(law, points%stiffness(i), gap), &
-          points%area(i)*points%pressure(i))
-      end if
+      do i = 1, size(springs)
+        if (memory%has%nodal_pressure) then
+          springs(i) = spring_t(i, i, nodal(2, i)*density_of(law, memory%slave_penalty, gaps(i)), &
+            nodal(2, i)*memory%node_pressure(i))
+        else
+          springs(i) = spring_t(site_at(memory, points, i), points%slave_nodes( &
+            maxloc(points%slave_weights(:, i), 1), i), &
+            points%area(i)*density_of(law, points%stiffness(i), gaps(i)), &
+            points%area(i)*points%pressure(i))
+        end if
+        if (.not. memory%has%breaks) cycle
+        if (is_tied_site(memory%ties%state(springs(i)%site))) &
+          springs(i) = spring_t(springs(i)%site, springs(i)%node, 0.0_wp, 0.0_wp)
+      end do
     end associate
-  end function spring_at
+  end subroutine list_springs
 
   !> Pressure of a site in contact with its derivatives.
   pure function linearise_pressure(contact_law, stiffness, gap) result(pressure)
@@ -166,50 +173,46 @@ contains
     monitor%is_due = monitor%is_due .or. .not. had_force
   end subroutine begin_sampling
 
-  !> What all springs store, those of contact without what damping adds to their pressure, and where
-  !> the largest force is. What broken ties held counts as theirs.
+  !> What all springs store, and where the largest force is. What broken ties held counts as theirs.
   pure subroutine measure_springs(memory)
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: gaps(max(memory%points%n, memory%n_slave))
-    type(spring_t) :: spring
-    integer :: i
+    type(spring_t), allocatable :: springs(:)
 
     memory%monitor%stored = 0.0_wp
     memory%monitor%load = 0.0_wp
     if (memory%has%ties) then
-      call tie_energy(memory, memory%monitor%stored, memory%monitor%load, memory%monitor%node)
+      call measure(tie_springs(memory), memory%nodes, memory%monitor)
       memory%monitor%stored = memory%monitor%stored + memory%ties%spent
     end if
     if (memory%points%n == 0) return
-    call find_gaps(memory, gaps)
-    associate (monitor => memory%monitor)
-      do i = 1, n_springs(memory)
-        spring = spring_at(memory, gaps(i), i)
-        if (memory%has%breaks) then
-          if (is_tied_site(memory%ties%state(spring%site))) cycle
-        end if
-        monitor%stored = monitor%stored + spring%energy
-        if (.not. spring%load > monitor%load) cycle
-        monitor%load = spring%load
-        monitor%node = memory%nodes(spring%node)
-      end do
-    end associate
+    call list_springs(memory, springs)
+    call measure(springs, memory%nodes, memory%monitor)
   end subroutine measure_springs
+
+  !> Add what some springs store, and note the one with the largest force.
+  pure subroutine measure(springs, nodes, monitor)
+    type(spring_t), intent(in) :: springs(:)
+    integer, intent(in) :: nodes(:) !! mesh index of each local node
+    type(contact_monitor_t), intent(inout) :: monitor
+    integer :: i
+
+    do i = 1, size(springs)
+      monitor%stored = monitor%stored + springs(i)%energy
+      if (.not. springs(i)%load > monitor%load) cycle
+      monitor%load = springs(i)%load
+      monitor%node = nodes(springs(i)%node)
+    end do
+  end subroutine measure
 
   !> Energy of contact springs at sites whose ties have just failed under pressure: it comes from
   !> the energy of the ties. Energy beyond that, of initial penetrations, is admissible.
   pure subroutine add_tie_energy(memory)
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: gaps(max(memory%points%n, memory%n_slave)), held, given
-    type(spring_t) :: spring
-    integer :: i
+    type(spring_t), allocatable :: springs(:)
+    real(wp) :: held, given
 
-    held = 0.0_wp
-    call find_gaps(memory, gaps)
-    do i = 1, n_springs(memory)
-      spring = spring_at(memory, gaps(i), i)
-      if (memory%scratch%is_freed(spring%site)) held = held + spring%energy
-    end do
+    call list_springs(memory, springs)
+    held = sum(springs%energy, mask=memory%scratch%is_freed(springs%site))
     associate (ties => memory%ties, limit => memory%limit)
       given = min(held, max(0.0_wp, ties%spent))
       ties%spent = ties%spent - given

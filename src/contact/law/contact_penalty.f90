@@ -5,6 +5,7 @@ module contact_penalty_m
   use contacts_m, only : contact_t, penalty_per_node, penalty_distributed, penalty_factor, &
     penalty_share, penalty_implicit, is_tied
   use controls_m, only : controls_t
+  use element_finder_m, only : initial_length, area_behind
   use kinds_m, only : wp
   use model_m, only : model_t
   use rigids_m, only : mark_rigid_nodes
@@ -120,22 +121,10 @@ contains
 
     length = 0.0_wp
     do i = 1, surface%n_segment
-      length = length + initial_length(surface, model, i)
+      length = length + initial_length(model, surface, i)
     end do
     length = length/surface%n_segment
   end function mean_length
-
-  !> Length of one segment at time zero, m.
-  pure function initial_length(surface, model, segment) result(length)
-    type(surface_t), intent(in) :: surface
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: segment
-    real(wp) :: length
-
-    associate (ends => surface%nodes(surface%segments(:, segment)))
-      length = norm2(model%mesh%coordinates(:, ends(2)) - model%mesh%coordinates(:, ends(1)))
-    end associate
-  end function initial_length
 
   !> K L/A of one side, N/m^2: bulk modulus and area of the element behind each segment, mean over
   !> the length of the surface.
@@ -144,16 +133,15 @@ contains
     type(model_t), intent(in) :: model
     real(wp) :: stiffness
     real(wp) :: total, length
-    integer :: i, element
+    integer :: i
 
     stiffness = 0.0_wp
     total = 0.0_wp
     do i = 1, surface%n_segment
-      element = surface%segment_element(i)
-      length = initial_length(surface, model, i)
-      associate (part => model%parts(model%mesh%element_part(element)))
+      length = initial_length(model, surface, i)
+      associate (part => model%parts(model%mesh%element_part(surface%segment_element(i))))
         stiffness = stiffness + length*model%materials(part%material)%bulk*length &
-          /element_area(model, element)
+          /area_behind(model, surface, i)
       end associate
       total = total + length
     end do
@@ -179,17 +167,5 @@ contains
     ratio = huge(1.0_wp)
     if (low > 0.0_wp) ratio = high/low
   end function spread_of_stiffness
-
-  !> Area of an element at time zero, m^2.
-  pure function element_area(model, element) result(area)
-    type(model_t), intent(in) :: model
-    integer, intent(in) :: element
-    real(wp) :: area
-    real(wp) :: x(2, 4)
-
-    x = model%mesh%coordinates(:, model%mesh%element_nodes(:, element))
-    area = 0.5_wp*((x(1, 3) - x(1, 1))*(x(2, 4) - x(2, 2)) &
-      - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
-  end function element_area
 
 end module contact_penalty_m

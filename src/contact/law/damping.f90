@@ -25,28 +25,64 @@ contains
     real(wp), intent(in), contiguous :: mass(:)      !! (n_node) kg/m
     logical, intent(in) :: is_self !! each node is slave and master
     real(wp), intent(inout), contiguous :: nodal(:, :) !! (2, local nodes) scratch
-    real(wp) :: rate, weight, damped
-    integer :: p, k, local
+    real(wp) :: rate, damped
+    integer :: p, last
 
     call sum_springs(points, is_self, nodal)
     points%damping(:points%n) = 0.0_wp
-    do p = 1, points%n
-      if (.not. points%pressure(p)*points%area(p) > 0.0_wp) cycle
-      rate = 0.0_wp
-      do k = 1, n_side
-        local = points%slave_nodes(k, p)
-        weight = points%slave_weights(k, p)
-        rate = rate + weight*dot_product(points%normal(:, p), motion(3:4, nodes(local)))
-        local = points%master_nodes(k, p)
-        weight = points%master_weights(k, p)
-        rate = rate - weight*dot_product(points%normal(:, p), motion(3:4, nodes(local)))
-      end do
-      damped = max(0.0_wp, points%pressure(p) &
-        - 2.0_wp*fraction*rate*points%stiffness(p)/frequency(points, p, nodes, mass, nodal))
-      points%damping(p) = damped - points%pressure(p)
-      points%pressure(p) = damped
+    p = 1
+    do while (p <= points%n)
+      last = last_of_spring(points, p)
+      if (points%pressure(p)*sum(points%area(p:last)) > 0.0_wp) then
+        rate = opening_rate(points, p, last, nodes, motion)
+        damped = max(0.0_wp, points%pressure(p) &
+          - 2.0_wp*fraction*rate*points%stiffness(p)/frequency(points, p, last, nodes, mass, nodal))
+        points%damping(p:last) = damped - points%pressure(p)
+        points%pressure(p:last) = damped
+      end if
+      p = last + 1
     end do
   end subroutine damp_points
+
+  !> The last point that the spring of a point has: the sub-segments of a virtual node follow each
+  !> other. Damped one by one they would brake a rotation of all.
+  pure function last_of_spring(points, first) result(last)
+    type(contact_points_t), intent(in) :: points
+    integer, intent(in) :: first
+    integer :: last
+
+    last = first
+    do while (last < points%n)
+      if (points%slave_nodes(1, last + 1) /= points%slave_nodes(1, first) &
+        .or. points%slave_nodes(2, last + 1) /= points%slave_nodes(2, first) &
+        .or. abs(points%slave_weights(2, last + 1) - points%slave_weights(2, first)) > 0.0_wp) exit
+      last = last + 1
+    end do
+  end function last_of_spring
+
+  !> Opening velocity of a spring, the mean of its points by area, m/s.
+  pure function opening_rate(points, first, last, nodes, motion) result(rate)
+    type(contact_points_t), intent(in) :: points
+    integer, intent(in) :: first, last
+    integer, intent(in), contiguous :: nodes(:)
+    real(wp), intent(in), contiguous :: motion(:, :)
+    real(wp) :: rate
+    real(wp) :: velocity(2)
+    integer :: p, k
+
+    rate = 0.0_wp
+    do p = first, last
+      velocity = 0.0_wp
+      do k = 1, n_side
+        associate (a => nodes(points%slave_nodes(k, p)), b => nodes(points%master_nodes(k, p)))
+          velocity = velocity + points%slave_weights(k, p)*motion(3:4, a)
+          velocity = velocity - points%master_weights(k, p)*motion(3:4, b)
+        end associate
+      end do
+      rate = rate + points%area(p)/sum(points%area(first:last)) &
+        *dot_product(points%normal(:, p), velocity)
+    end do
+  end function opening_rate
 
   !> Damping over stiffness of tangential springs that stick, s: 2 fraction/omega with the largest
   !> omega of the points in contact, and no more than the step bears. Undamped they ring in what
@@ -66,28 +102,33 @@ contains
     omega = 0.0_wp
     do p = 1, points%n
       if (points%pressure(p)*points%area(p) > 0.0_wp) &
-        omega = max(omega, frequency(points, p, nodes, mass, nodal))
+        omega = max(omega, frequency(points, p, p, nodes, mass, nodal))
     end do
     lag = 0.0_wp
     if (omega > 0.0_wp) lag = 2.0_wp*min(of_stuck, of_step/(omega*dt))/omega
   end subroutine find_lag
 
-  !> The frequency of a point: omega^2 = sum of w K/m, 1/s.
-  pure function frequency(points, p, nodes, mass, nodal) result(omega)
+  !> The frequency of a spring: omega^2 = sum of w K/m, the mean of its points by area, 1/s.
+  pure function frequency(points, first, last, nodes, mass, nodal) result(omega)
     type(contact_points_t), intent(in) :: points
-    integer, intent(in) :: p
+    integer, intent(in) :: first, last
     integer, intent(in), contiguous :: nodes(:)    !! mesh index of each local node
     real(wp), intent(in), contiguous :: mass(:)    !! (n_node) kg/m
     real(wp), intent(in), contiguous :: nodal(:, :) !! (1, :) K of the nodes, N/m
     real(wp) :: omega
-    integer :: k
+    real(wp) :: square
+    integer :: p, k
 
     omega = 0.0_wp
-    do k = 1, n_side
-      associate (a => points%slave_nodes(k, p), b => points%master_nodes(k, p))
-        omega = omega + points%slave_weights(k, p)*nodal(1, a)/mass(nodes(a))
-        omega = omega + points%master_weights(k, p)*nodal(1, b)/mass(nodes(b))
-      end associate
+    do p = first, last
+      square = 0.0_wp
+      do k = 1, n_side
+        associate (a => points%slave_nodes(k, p), b => points%master_nodes(k, p))
+          square = square + points%slave_weights(k, p)*nodal(1, a)/mass(nodes(a))
+          square = square + points%master_weights(k, p)*nodal(1, b)/mass(nodes(b))
+        end associate
+      end do
+      omega = omega + points%area(p)/sum(points%area(first:last))*square
     end do
     omega = sqrt(omega)
   end function frequency

@@ -4,14 +4,14 @@
 !> have no potential; where they would hand out more than they were given, all forces of the
 !> interface are scaled down by one factor, so that momentum and moments stay in balance.
 module energy_limit_m
-  use contact_state_m, only : contact_state_t
+  use contact_state_m, only : contact_state_t, features_t, exchange
   use law_state_m, only : energy_limit_t
   use spring_gaps_m, only : limit_moment
   use kinds_m, only : wp
   use ranges_m, only : n_ranges, first_of, last_of, most_ranges
   implicit none
   private
-  public :: store_previous_springs, form_springs, limit_forces, follow_largest, admit_entry_work, &
+  public :: store_previous_springs, form_springs, limit_forces, admit_entry_work, &
     energy_factor, scale_forces, count_cycle, returned_t, slack
 
   !> Work of forces with the factor one, J/m.
@@ -45,12 +45,9 @@ contains
   !> before, where there are others; both lists are exchanged.
   pure subroutine store_previous_springs(memory)
     type(contact_state_t), intent(inout) :: memory
-    real(wp), allocatable :: spare(:, :)
 
-    if (.not. has_other_forces(memory)) return
-    call move_alloc(memory%scratch%previous_spring, spare)
-    call move_alloc(memory%scratch%spring, memory%scratch%previous_spring)
-    call move_alloc(spare, memory%scratch%spring)
+    if (.not. has_other_forces(memory%has)) return
+    call exchange(memory%scratch%spring, memory%scratch%previous_spring)
     if (.not. memory%scratch%had_force) memory%scratch%previous_spring = 0.0_wp
   end subroutine store_previous_springs
 
@@ -58,7 +55,7 @@ contains
   pure subroutine form_springs(memory)
     type(contact_state_t), intent(inout) :: memory
 
-    if (.not. has_other_forces(memory)) return
+    if (.not. has_other_forces(memory%has)) return
     associate (spring => memory%scratch%spring, n => size(memory%force))
       if (memory%has%friction) then
         call difference(n, memory%force, memory%friction%force, spring)
@@ -71,11 +68,11 @@ contains
   end subroutine form_springs
 
   !> Whether springs along the normal are limited among other forces.
-  pure function has_other_forces(memory) result(has)
-    type(contact_state_t), intent(in) :: memory
-    logical :: has
+  pure function has_other_forces(has) result(others)
+    type(features_t), intent(in) :: has
+    logical :: others
 
-    has = memory%has%limit .and. (memory%has%damping .or. memory%has%friction .or. memory%has%ties)
+    others = has%limit .and. (has%damping .or. has%friction .or. has%ties)
   end function has_other_forces
 
   !> Both components of all nodes in one loop: column by column it takes twenty times as long.
@@ -103,22 +100,19 @@ contains
     real(wp), intent(in) :: time                     !! of u, s
     real(wp), intent(in) :: dt                       !! step that led to u, s
     type(contact_state_t), intent(inout) :: memory
-    real(wp), allocatable :: spare(:, :)
     real(wp) :: factor
 
     call form_springs(memory)
     associate (limit => memory%limit, scratch => memory%scratch)
       if (.not. memory%has%limit) return
-      if (has_other_forces(memory)) then
+      if (has_other_forces(memory%has)) then
         call find_factor(memory%energy - memory%ties%energy, memory%nodes, motion, dt, &
           scratch%previous_spring, scratch%spring, scratch%velocity, limit, factor)
       else
         call find_factor(memory%energy, memory%nodes, motion, dt, scratch%previous_force, &
           memory%force, scratch%velocity, limit, factor)
       end if
-      call move_alloc(limit%velocity, spare)
-      call move_alloc(scratch%velocity, limit%velocity)
-      call move_alloc(spare, scratch%velocity)
+      call exchange(scratch%velocity, limit%velocity)
       call count_cycle(factor, time, limit)
     end associate
     if (.not. factor < 1.0_wp) return
@@ -313,13 +307,5 @@ contains
     limit%admitted = limit%admitted + granted
     limit%admissible = limit%admissible + granted
   end subroutine admit_entry_work
-
-  !> After the work of a cycle has been counted: the largest energy so far.
-  pure subroutine follow_largest(energy, limit)
-    real(wp), intent(in) :: energy !! of the springs, J/m
-    type(energy_limit_t), intent(inout) :: limit
-
-    limit%largest = max(limit%largest, energy + limit%admissible)
-  end subroutine follow_largest
 
 end module energy_limit_m

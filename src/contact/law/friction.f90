@@ -4,13 +4,13 @@
 !> Coulomb). Only where the deck asks for friction.
 module friction_m
   use arcs_m, only : arc_projection_t, project_virtual_node
-  use contact_scatter_m, only : average_values, share_out
-  use contact_state_m, only : contact_state_t, n_side, site_at
+  use nodal_forces_m, only : average_values, share_out
+  use contact_state_m, only : contact_state_t, contact_scratch_t, n_side, site_at
   use contacts_m, only : contact_t, friction_rule_t
   use dual_m, only : dual_t, operator(+), operator(-), operator(*)
   use geometry_m, only : separation
   use kinds_m, only : wp
-  use law_state_m, only : is_open, sticks, slips
+  use law_state_m, only : friction_memory_t, is_open, sticks, slips
   use tributary_lengths_m, only : nodal_area
   implicit none
   private
@@ -72,20 +72,20 @@ contains
 
   !> Before the points are generated: all sites are open until they are found to be loaded.
   !> Tractions and states are exchanged with those of the call before.
-  pure subroutine store_previous_tractions(memory)
-    type(contact_state_t), intent(inout) :: memory
+  pure subroutine store_previous_tractions(friction, scratch)
+    type(friction_memory_t), intent(inout) :: friction
+    type(contact_scratch_t), intent(inout) :: scratch
     real(wp), allocatable :: traction(:)
     integer, allocatable :: state(:)
 
-    call move_alloc(memory%scratch%previous_traction, traction)
-    call move_alloc(memory%friction%traction, memory%scratch%previous_traction)
-    call move_alloc(traction, memory%friction%traction)
-    call move_alloc(memory%scratch%previous_state, state)
-    call move_alloc(memory%friction%state, memory%scratch%previous_state)
-    call move_alloc(state, memory%friction%state)
-    memory%friction%traction = 0.0_wp
-    memory%friction%state = is_open
-    memory%friction%stored = 0.0_wp
+    call move_alloc(scratch%previous_traction, traction)
+    call move_alloc(friction%traction, scratch%previous_traction)
+    call move_alloc(traction, friction%traction)
+    call move_alloc(scratch%previous_state, state)
+    call move_alloc(friction%state, scratch%previous_state)
+    call move_alloc(state, friction%state)
+    friction%traction = 0.0_wp
+    friction%state = is_open
   end subroutine store_previous_tractions
 
   !> Tractions of all points, whose pressures are those of the springs alone. Each point is a site;
@@ -135,11 +135,8 @@ contains
       do p = 1, points%n
         nodes = points%master_nodes(:, p)
         weights = points%master_weights(:, p)
-        if (memory%has%segment_points .and. .not. memory%has%nodal_pressure) then
-          associate (node => points%slave_nodes(1, p))
-            point = site_at(memory, points, p) &
-              + size(memory%segment_xi)*(status%pass%segment_at(node) - node)
-          end associate
+        if (memory%has%virtual_nodes) then
+          point = site_at(memory, points, p)
           nodes = memory%n_slave + contact%master%segments(:, status%segment(point))
           weights = [1.0_wp - status%xi(point), status%xi(point)]
           if (memory%has%arcs) call follow_virtual_node(contact, memory, p, weights)

@@ -8,13 +8,13 @@
 !> g + (1 - s) d, where the curve s leads from 0 to 1. So a press fit starts without force, and at
 !> the end the overlap acts as it is. What the curve does is external work.
 module spring_gaps_m
-  use contact_state_m, only : contact_state_t, contact_status_t, separated, segment_point_at, &
-    site_at
+  use contact_state_m, only : contact_state_t, n_springs, site_at
+  use search_state_m, only : contact_status_t, separated
   use contacts_m, only : contact_t
   use curves_m, only : curve_value
   use geometry_m, only : separation
   use kinds_m, only : wp
-  use contact_scatter_m, only : average_values
+  use nodal_forces_m, only : average_values
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -104,15 +104,12 @@ contains
     real(wp), intent(in), allocatable :: of_slave(:), of_master(:)
     integer, intent(in) :: p
     real(wp) :: value
-    integer :: n
 
     associate (points => memory%points, nodes => memory%points%slave_nodes(:, p))
       if (nodes(1) > memory%n_slave) then
         value = of_master(nodes(1) - memory%n_slave)
       else if (memory%has%segment_points) then
-        n = size(memory%segment_xi)
-        value = of_slave(n*(memory%slave_status%pass%segment_at(nodes(1)) - 1) &
-          + segment_point_at(points%slave_weights(2, p), memory%segment_xi))
+        value = of_slave(site_at(memory, points, p))
       else
         value = dot_product(points%slave_weights(:, p), of_slave(nodes))
       end if
@@ -185,30 +182,29 @@ contains
   !> Add what does not act yet to the gaps of points or slave nodes.
   pure subroutine ramp_gaps(memory, gaps)
     type(contact_state_t), intent(in) :: memory
-    real(wp), intent(inout) :: gaps(:) !! (points or slave nodes, or more) m
-    integer :: p
+    real(wp), intent(inout) :: gaps(:) !! (springs or more) m
+    integer :: i
 
-    associate (n => memory%n_slave, remaining => memory%interference%remaining)
-      if (memory%has%nodal_pressure) then
-        gaps(:n) = gaps(:n) + remaining*memory%interference%depth(:n)
-      else
-        do p = 1, memory%points%n
-          gaps(p) = gaps(p) + remaining*depth_at(memory, p)
-        end do
-      end if
-    end associate
+    do i = 1, n_springs(memory)
+      gaps(i) = gaps(i) + memory%interference%remaining*depth_at(memory, i)
+    end do
   end subroutine ramp_gaps
 
-  !> The overlap of a point at time zero. A master node that was no site then has what the ends of
-  !> its slave segment had.
-  pure function depth_at(memory, p) result(depth)
+  !> The overlap of a point or slave node at time zero. A master node that was no site then has what
+  !> the ends of its slave segment had.
+  pure function depth_at(memory, i) result(depth)
     type(contact_state_t), intent(in) :: memory
-    integer, intent(in) :: p
+    integer, intent(in) :: i
     real(wp) :: depth
 
-    associate (depths => memory%interference%depth, nodes => memory%points%slave_nodes(:, p))
-      depth = depths(site_at(memory, memory%points, p))
-      if (depth < 0.0_wp) depth = sum(memory%points%slave_weights(:, p)*max(0.0_wp, depths(nodes)))
+    associate (depths => memory%interference%depth, points => memory%points)
+      if (memory%has%nodal_pressure) then
+        depth = depths(i)
+      else
+        depth = depths(site_at(memory, points, i))
+        if (depth < 0.0_wp) depth = sum(points%slave_weights(:, i) &
+          *max(0.0_wp, depths(points%slave_nodes(:, i))))
+      end if
     end associate
   end function depth_at
 
@@ -216,22 +212,18 @@ contains
   !> law, which may count on it.
   pure subroutine gather_moment(memory)
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: moment
+    real(wp) :: moment, load
     integer :: i
 
     moment = 0.0_wp
-    associate (points => memory%points)
+    do i = 1, n_springs(memory)
       if (memory%has%nodal_pressure) then
-        do i = 1, memory%n_slave
-          moment = moment + memory%node_pressure(i)*memory%scratch%nodal(2, i) &
-            *memory%interference%depth(i)
-        end do
+        load = memory%node_pressure(i)*memory%scratch%nodal(2, i)
       else
-        do i = 1, points%n
-          moment = moment + points%pressure(i)*points%area(i)*depth_at(memory, i)
-        end do
+        load = memory%points%pressure(i)*memory%points%area(i)
       end if
-    end associate
+      moment = moment + load*depth_at(memory, i)
+    end do
     call add_work(0.5_wp*(moment - memory%interference%moment)*memory%scratch%ramp_step, memory)
     memory%interference%moment = moment
   end subroutine gather_moment

@@ -5,7 +5,8 @@
 !> overlaps of different bodies lie over each other the nearest penetrated one wins
 !> (doc/theory/contact.md, section 3.5).
 module overlaps_m
-  use contact_state_m, only : contact_state_t, active
+  use contact_state_m, only : contact_state_t
+  use search_state_m, only : contact_status_t, candidates_t, active
   use contacts_m, only : contact_t
   use kinds_m, only : wp
   use projection_m, only : face_on, opposed_share, vector_of, turns_gently, round_off
@@ -44,24 +45,24 @@ module overlaps_m
 contains
 
   !> Room for the overlaps of a slave segment.
-  pure function n_most_overlaps(memory, s) result(n)
-    type(contact_state_t), intent(in) :: memory
+  pure function n_most_overlaps(candidates, s) result(n)
+    type(candidates_t), intent(in) :: candidates
     integer, intent(in) :: s !! slave segment
     integer :: n
 
-    n = max(n_between, 2*(memory%candidates%first(s + 1) - memory%candidates%first(s)) + 1)
+    n = max(n_between, 2*(candidates%first(s + 1) - candidates%first(s)) + 1)
   end function n_most_overlaps
 
   !> The same for any of a range of them.
-  pure function room_for_overlaps(memory, first, last) result(n)
-    type(contact_state_t), intent(in) :: memory
+  pure function room_for_overlaps(candidates, first, last) result(n)
+    type(candidates_t), intent(in) :: candidates
     integer, intent(in) :: first, last
     integer :: n
     integer :: s
 
     n = 0
     do s = first, last
-      n = max(n, n_most_overlaps(memory, s))
+      n = max(n, n_most_overlaps(candidates, s))
     end do
   end function room_for_overlaps
 
@@ -82,7 +83,7 @@ contains
     call start_segment(contact, memory, s, least_part, own)
     n = 0
     if (is_strict .and. any(own%below == 0)) then
-      if (.not. is_opposed_to_contact(memory, own)) return
+      if (.not. is_opposed_to_contact(memory%slave_status, own)) return
       n = 1
       overlaps(1) = overlap_t(0, 0.0_wp, 1.0_wp, 0, 0, [0.0_wp, 0.0_wp], 1.0_wp, 1.0_wp)
       return
@@ -100,7 +101,7 @@ contains
     end if
     if (.not. memory%slave_status%pass%is_closed) return
     do k = 1, n
-      overlaps(k)%part = sides_part(contact, memory, s, overlaps(k)%master)
+      overlaps(k)%part = sides_part(contact, memory%positions, s, overlaps(k)%master)
       overlaps(k)%share = overlaps(k)%share*overlaps(k)%part
     end do
   end subroutine find_overlaps
@@ -145,15 +146,16 @@ contains
     do k = 1, size(masters)
       associate (nodes => contact%master%segments(:, masters(k)), overlap => overlaps(n + 1))
         from = to
-        if (from%number /= nodes(2)) from = projected_node(nodes(2), memory%n_slave, own, &
-          memory%positions)
-        to = projected_node(nodes(1), memory%n_slave, own, memory%positions)
+        if (from%number /= nodes(2)) from = projected_node(nodes(2), own, &
+          memory%positions(:, memory%n_slave + 1:))
+        to = projected_node(nodes(1), own, memory%positions(:, memory%n_slave + 1:))
         overlap%master = masters(k)
         call clip(contact%master, own, from, to, overlap)
         if (.not. overlap%high > overlap%low) cycle
         if (.not. is_between) then
           overlap%gap = gaps_at_ends(own, from, to)
-          if (is_beyond(contact%master, memory, own, from, to, overlap%master)) cycle
+          if (is_beyond(contact%master, memory%positions(:, memory%n_slave + 1:), own, from, to, &
+            overlap%master)) cycle
           if (is_far_side(contact, memory, own, overlap)) cycle
         end if
       end associate
@@ -172,28 +174,17 @@ contains
   end subroutine clip_masters
 
   !> A master node on a slave segment.
-  pure function projected_node(node, n_slave, own, positions) result(projected)
-    integer, intent(in) :: node          !! of the master
-    integer, intent(in) :: n_slave       !! local number before the first of these
+  pure function projected_node(node, own, polyline) result(projected)
+    integer, intent(in) :: node            !! of the master
     type(slave_segment_t), intent(in) :: own
-    real(wp), intent(in) :: positions(4, *) !! of the interface
+    real(wp), intent(in) :: polyline(4, *) !! positions of the master nodes
     type(projected_node_t) :: projected
 
     projected%number = node
-    projected%d = way_to(n_slave + node, own, positions)
+    projected%d(1) = (polyline(1, node) - own%start(1)) + (polyline(3, node) - own%start(3))
+    projected%d(2) = (polyline(2, node) - own%start(2)) + (polyline(4, node) - own%start(4))
     projected%xi = (projected%d(1)*own%t(1) + projected%d(2)*own%t(2))/own%square
   end function projected_node
-
-  !> Vector from the first end of a slave segment to a node, m.
-  pure function way_to(node, own, positions) result(d)
-    integer, intent(in) :: node          !! local number
-    type(slave_segment_t), intent(in) :: own
-    real(wp), intent(in) :: positions(4, *) !! of the interface
-    real(wp) :: d(2)
-
-    d(1) = (positions(1, node) - own%start(1)) + (positions(3, node) - own%start(3))
-    d(2) = (positions(2, node) - own%start(2)) + (positions(4, node) - own%start(4))
-  end function way_to
 
   !> The overlap with one master segment; empty where they are not opposed.
   pure subroutine clip(master, own, from, to, overlap)
@@ -265,9 +256,9 @@ contains
 
   !> Whether a master segment lies beyond that on which an end of the slave segment has its
   !> projection, on the same surface: the overlap with the latter reaches to the end.
-  pure function is_beyond(master, memory, own, from, to, m) result(beyond)
+  pure function is_beyond(master, polyline, own, from, to, m) result(beyond)
     type(surface_t), intent(in) :: master
-    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in) :: polyline(4, *) !! positions of its nodes
     type(slave_segment_t), intent(in) :: own
     type(projected_node_t), intent(in) :: from, to !! second and first node of the master segment
     integer, intent(in) :: m
@@ -280,7 +271,7 @@ contains
       associate (below => own%below(k))
         if (below == 0 .or. below == m) cycle
         if (master%chain(below) /= master%chain(m)) cycle
-        outer = projected_node(master%segments(3 - k, below), memory%n_slave, own, memory%positions)
+        outer = projected_node(master%segments(3 - k, below), own, polyline)
         beyond = beyond .or. merge(to%xi <= outer%xi, from%xi >= outer%xi, k == 1)
       end associate
     end do
@@ -300,29 +291,31 @@ contains
     if (.not. is_far_side) return
     if (any(own%is_active)) then
       is_far_side = .not. (any(own%is_active .and. own%below == overlap%master) &
-        .or. is_reached(contact, memory, own, overlap%master))
+        .or. is_reached(contact, memory%slave_status, memory%positions(:, memory%n_slave + 1:), &
+        own, overlap%master))
     else
-      is_far_side = contact%is_self .or. memory%segment_state(own%number) /= active
+      is_far_side = contact%is_self .or. memory%segments%state(own%number) /= active
     end if
   end function is_far_side
 
   !> Whether a master segment is the one that an end of a slave segment is active on, or follows it
   !> towards the other end without a sharp turn (a surface in contact with itself: the back of the
   !> own wall may follow).
-  pure function is_reached(contact, memory, own, m) result(reached)
+  pure function is_reached(contact, status, polyline, own, m) result(reached)
     type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
+    type(contact_status_t), intent(in) :: status       !! of the slave nodes
+    real(wp), intent(in), contiguous :: polyline(:, :) !! (4, n_master) positions
     type(slave_segment_t), intent(in) :: own
     integer, intent(in) :: m
     logical :: reached
     integer :: k, i, segment, next
 
     reached = .false.
-    associate (master => contact%master, polyline => memory%positions(:, memory%n_slave + 1:))
+    associate (master => contact%master)
       do k = 1, 2
         if (.not. own%is_active(k)) cycle
-        segment = memory%slave_status%segment(own%ends(k))
-        do i = 1, contact%master%n_segment
+        segment = status%segment(own%ends(k))
+        do i = 1, master%n_segment
           reached = reached .or. segment == m
           next = merge(master%previous(segment), master%next(segment), k == 1)
           if (reached .or. next == 0 .or. contact%is_self) exit

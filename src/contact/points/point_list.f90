@@ -2,7 +2,8 @@
 !> The list of contact points and its only writer: points on slave segments one by one or in blocks,
 !> points at the active nodes of a surface all together.
 module point_list_m
-  use contact_state_m, only : contact_points_t, contact_status_t, make_room, n_side
+  use contact_state_m, only : contact_points_t, make_room, move_point, n_side
+  use search_state_m, only : contact_status_t
   use projection_block_m, only : projection_block_t, n_block
   use projection_m, only : projection_t, opposed_share, face_on
   use kinds_m, only : wp
@@ -178,20 +179,5 @@ contains
     end do
     points%n = n
   end subroutine finish_segment_points
-
-  !> Move a point on the list.
-  pure subroutine move_point(from, to, points)
-    integer, intent(in) :: from, to
-    type(contact_points_t), intent(inout) :: points
-
-    points%slave_nodes(:, to) = points%slave_nodes(:, from)
-    points%slave_weights(:, to) = points%slave_weights(:, from)
-    points%master_nodes(:, to) = points%master_nodes(:, from)
-    points%master_weights(:, to) = points%master_weights(:, from)
-    points%gap(to) = points%gap(from)
-    points%normal(:, to) = points%normal(:, from)
-    points%area(to) = points%area(from)
-    points%stiffness(to) = points%stiffness(from)
-  end subroutine move_point
 
 end module point_list_m

@@ -9,10 +9,10 @@ module points_nts_m
   use projection_m, only : projection_t, vector_of, opposed_share, round_off
   use geometry_m, only : separation
   use kinds_m, only : wp
-  use overlap_status_m, only : none_due, search_segments, update_segment_states, &
-    note_earliest_search
   use overlaps_m, only : overlap_t, find_overlaps, room_for_overlaps
   use point_list_m, only : add_point, append_active, finish_segment_points
+  use slave_segments_m, only : none_due, search_segments, update_segment_states, &
+    note_earliest_search
   use surfaces_m, only : surface_t
   use tributary_lengths_m, only : nodal_area, find_nodal_areas, end_radius, radius_between
   implicit none
@@ -84,12 +84,12 @@ contains
     integer :: s, n
 
     if (none_due(memory)) return
-    allocate (overlaps(room_for_overlaps(memory, first, last)))
+    allocate (overlaps(room_for_overlaps(memory%candidates, first, last)))
     n = points%n
     call search_segments(contact, first, last, memory)
     do s = first, last
       of_ends = 0.0_wp
-      if (memory%scratch%has_points(s)) &
+      if (memory%segments%has_points(s)) &
         call points_on_segment(contact, memory, s, overlaps, of_ends, points)
       memory%scratch%nodal(:, s) = of_ends
     end do
@@ -114,7 +114,8 @@ contains
         if (slave%outgoing(node) > 0) points%area(p) = points%area(p) &
           + of_ends(1, slave%outgoing(node))
         if (points%area(p) > 0.0_wp) cycle
-        if (is_sharp_vertex(slave, memory, node)) points%area(p) = nodal_area(slave, &
+        if (is_sharp_vertex(slave, memory%positions, memory%slave_status%normal(:, node), node)) &
+          points%area(p) = nodal_area(slave, &
           memory%positions(:, :memory%n_slave), contact%is_axisymmetric, node)
       end associate
     end do
@@ -201,9 +202,10 @@ contains
   end subroutine add_breakpoint
 
   !> Whether none of the segments at an active slave node faces the master at its projection.
-  pure function is_sharp_vertex(slave, memory, node)
+  pure function is_sharp_vertex(slave, positions, normal, node)
     type(surface_t), intent(in) :: slave
-    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, at least n_slave)
+    real(wp), intent(in) :: normal(2) !! at its projection
     integer, intent(in) :: node
     logical :: is_sharp_vertex
     real(wp) :: t(2)
@@ -213,11 +215,9 @@ contains
     segments = [slave%incoming(node), slave%outgoing(node)]
     do k = 1, 2
       if (segments(k) == 0) cycle
-      t = vector_of(slave, memory%positions, segments(k))
-      associate (normal => memory%slave_status%normal(:, node))
-        is_sharp_vertex = is_sharp_vertex .and. .not. opposed_share((t(2)*normal(1) &
-          - t(1)*normal(2))/sqrt(t(1)**2 + t(2)**2)) > 0.0_wp
-      end associate
+      t = vector_of(slave, positions, segments(k))
+      is_sharp_vertex = is_sharp_vertex .and. .not. opposed_share((t(2)*normal(1) &
+        - t(1)*normal(2))/sqrt(t(1)**2 + t(2)**2)) > 0.0_wp
     end do
   end function is_sharp_vertex
 

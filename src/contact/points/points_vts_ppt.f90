@@ -55,7 +55,7 @@ contains
     ends = contact%slave%segments(:, (virtual_node + 1)/2)
     a = memory%positions(:, ends(1))
     b = memory%positions(:, ends(2))
-    at = memory%segment_xi(2 - mod(virtual_node, 2))
+    at = memory%segment_points%xi(2 - mod(virtual_node, 2))
     limits = ends_of_half(contact, memory, virtual_node, at)
     xi = at
     half = 0.5_wp*segment_length(a, b)

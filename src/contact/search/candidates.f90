@@ -3,7 +3,8 @@
 !> the skin (doc/theory/contact.md, section 4). The lists are wide enough that no result depends on
 !> when they were made.
 module candidates_m
-  use contact_state_m, only : contact_state_t, candidates_t, contact_status_t
+  use contact_state_m, only : contact_state_t
+  use search_state_m, only : candidates_t, contact_status_t
   use contacts_m, only : contact_t
   use projection_m, only : face_on
   use geometry_m, only : separation
@@ -53,8 +54,8 @@ contains
     call list_candidates(contact, memory, .false.)
     call search_all(memory%slave_status)
     call search_all(memory%master_status)
-    if (allocated(memory%segment_search)) memory%segment_search = -huge(1.0_wp)
-    memory%earliest_segment_search = -huge(1.0_wp)
+    if (allocated(memory%segments%next_search)) memory%segments%next_search = -huge(1.0_wp)
+    memory%segments%earliest_search = -huge(1.0_wp)
   end subroutine update_candidates
 
   !> Make every separated point due in this call.

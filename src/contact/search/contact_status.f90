@@ -3,7 +3,7 @@
 !> its segment; a separated one is looked for among its candidate pairs once it can have come near
 !> (doc/theory/contact.md, sections 3 and 4).
 module contact_status_m
-  use contact_state_m, only : contact_status_t, candidates_t, separated, active
+  use search_state_m, only : contact_status_t, candidates_t, separated, active
   use entry_m, only : found_contact_t, find_contact, is_pair, is_opposed
   use projection_m, only : projection_t, follow_contact, gentle_turn
   use projection_block_m, only : projection_block_t, n_block, project_block, resolve_ambiguous

@@ -4,7 +4,7 @@
 !> it is active up to the depth of a first contact, with an entry offset that takes off the depth
 !> that it had before (doc/theory/contact.md, section 3.3).
 module entry_m
-  use contact_state_m, only : contact_status_t, candidates_t, pass_t
+  use search_state_m, only : contact_status_t, candidates_t, pass_t
   use projection_m, only : projection_t, nearest_projection, face_projection, vector_of, &
     turns_gently, side_on, face_on, end_tolerance, round_off
   use geometry_m, only : local_coordinates_t, coordinates_on_segment, local_gap, local_normal, &

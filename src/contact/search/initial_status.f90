@@ -4,21 +4,23 @@
 !> behind the segments: points beyond the far side of a body are no penetrations
 !> (doc/theory/contact.md, section 3.4).
 module initial_status_m
-  use contact_state_m, only : contact_state_t, contact_status_t, allocate_status, separated, active
+  use contact_state_m, only : contact_state_t
+  use search_state_m, only : contact_status_t, allocate_status, active
   use contact_status_m, only : list_active
   use contacts_m, only : contact_t, is_tied, breaks
-  use element_finder_m, only : element_finder_t, start_finder, is_inside_body
+  use element_finder_m, only : element_finder_t, start_finder, is_inside_body, initial_length, &
+    half_thickness
   use projection_m, only : projection_t, closest_projection, local_coordinates
   use geometry_m, only : local_coordinates_t, closest_distance, local_gap, local_normal
   use entry_m, only : is_opposed, segments_of
   use kinds_m, only : wp
   use model_m, only : model_t
-  use others_memory_m, only : answers_t
+  use remote_state_m, only : inside_tests_t
   use surfaces_m, only : surface_t, has_closed_chain
   implicit none
   private
-  public :: allocate_slave_status, allocate_master_status, allocate_segments, &
-    activate_deep_points, activate_deep_segments
+  public :: allocate_slave_status, allocate_master_status, activate_deep_points, &
+    activate_deep_segments
 
 contains
 
@@ -31,10 +33,10 @@ contains
 
     associate (status => memory%slave_status)
       n = contact%slave%n_node
-      if (allocated(memory%segment_xi)) then
-        status%pass%xi = memory%segment_xi
+      if (allocated(memory%segment_points%xi)) then
+        status%pass%xi = memory%segment_points%xi
         status%pass%segment_at = contact%slave%outgoing
-        status%pass%n_on_segment = size(memory%segment_xi)
+        status%pass%n_on_segment = size(memory%segment_points%xi)
         n = status%pass%n_on_segment*contact%slave%n_segment
       end if
       status%pass%other_at = memory%n_slave
@@ -58,16 +60,6 @@ contains
       call set_depths(status, contact, model, contact%master, contact%slave)
     end associate
   end subroutine allocate_master_status
-
-  !> Status of slave segments.
-  pure subroutine allocate_segments(contact, memory)
-    type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(inout) :: memory
-
-    allocate (memory%segment_state(contact%slave%n_segment), source=separated)
-    allocate (memory%segment_gap(contact%slave%n_segment), source=huge(1.0_wp))
-    allocate (memory%segment_search(contact%slave%n_segment), source=-huge(1.0_wp))
-  end subroutine allocate_segments
 
   !> Deepest first contact: SRCH, or half of the shortest of the point's own segments, the segment
   !> that it meets, and the thickness of the element behind that. All from the initial mesh. The
@@ -95,7 +87,7 @@ contains
     do i = 1, other%n_segment
       length = initial_length(model, other, i)
       longest = max(longest, length)
-      status%segment_depth(i) = 0.5_wp*min(length, area_behind(model, other, i)/length)
+      status%segment_depth(i) = min(0.5_wp*length, half_thickness(model, other, i))
     end do
     if (contact%search_depth > 0.0_wp) then
       status%point_depth = contact%search_depth
@@ -104,61 +96,36 @@ contains
     status%reach = max(longest, 2.0_wp*maxval(status%segment_depth))
     if (is_tied(contact) .and. .not. breaks(contact)) then
       ! What is tied its reach says alone, at whatever depth.
-      status%reach = max(status%reach, contact%tie_reach, -0.01_wp*contact%tie_reach*longest)
+      status%reach = max(status%reach, contact%tie_distance, -0.01_wp*contact%tie_distance*longest)
       status%point_depth = status%reach
       status%segment_depth = status%reach
     end if
     status%shallowest = min(minval(status%point_depth), minval(status%segment_depth))
   end subroutine set_depths
 
-  !> Initial length of a segment, m.
-  pure function initial_length(model, surface, segment) result(length)
-    type(model_t), intent(in) :: model
-    type(surface_t), intent(in) :: surface
-    integer, intent(in) :: segment
-    real(wp) :: length
-
-    length = norm2(model%mesh%coordinates(:, surface%nodes(surface%segments(2, segment))) &
-      - model%mesh%coordinates(:, surface%nodes(surface%segments(1, segment))))
-  end function initial_length
-
-  !> Initial area of the element behind a segment, m^2.
-  pure function area_behind(model, surface, segment) result(area)
-    type(model_t), intent(in) :: model
-    type(surface_t), intent(in) :: surface
-    integer, intent(in) :: segment
-    real(wp) :: area
-
-    associate (x => model%mesh%coordinates, &
-      nodes => model%mesh%element_nodes(:, surface%segment_element(segment)))
-      area = 0.5_wp*((x(1, nodes(3)) - x(1, nodes(1)))*(x(2, nodes(4)) - x(2, nodes(2))) &
-        - (x(1, nodes(4)) - x(1, nodes(2)))*(x(2, nodes(3)) - x(2, nodes(1))))
-    end associate
-  end function area_behind
-
   !> Points deeper than a first contact may be that lie inside an element behind the other surface
   !> are active on the closest face that is opposed to them; on a closed boundary no deeper than the
   !> element behind that face is thick, else it is the far side of the body.
-  subroutine activate_deep_points(status, model, own, other, positions, points, answers)
+  subroutine activate_deep_points(status, model, own, other, positions, points, inside_tests)
     type(contact_status_t), intent(inout) :: status
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: own, other
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     real(wp), intent(in), contiguous :: points(:, :) !! (4, n) positions of the points
-    type(answers_t), intent(inout), optional :: answers
+    type(inside_tests_t), intent(inout), optional :: inside_tests
     type(element_finder_t) :: finder
     type(projection_t) :: projection
     logical :: inside
     integer :: i, segments(2), at
 
     at = status%pass%other_at
-    call begin_asking(model, other%segment_element, own%nodes, finder, answers)
+    call begin_asking(model, other%segment_element, own%nodes, finder, inside_tests)
     do i = 1, status%n
       segments = segments_of(own, status%pass%n_on_segment, i)
       if (status%state(i) == active .or. maxval(segments) == 0) cycle
       call ask_inside(finder, model, model%mesh%coordinates(:, other%nodes(1)) &
         + (points(1:2, i) - positions(1:2, at + 1)), own%nodes(carriers(own, segments)), inside, &
-        answers)
+        inside_tests)
       if (.not. inside) cycle
       projection = closest_opposed(status, model, own, other, positions, points(:, i), i)
       if (projection%segment == 0) cycle
@@ -199,8 +166,7 @@ contains
         square = closest_distance(local)
         if (local%across >= 0.0_wp .or. square >= least) cycle
         if (.not. is_opposed(status%pass, own, positions, i, local_normal(local))) cycle
-        if (is_closed .and. -local_gap(local)*initial_length(model, other, m) &
-          > area_behind(model, other, m)) cycle
+        if (is_closed .and. -local_gap(local) > 2.0_wp*half_thickness(model, other, m)) cycle
         closest = m
         least = square
       end do
@@ -211,33 +177,36 @@ contains
 
   !> Slave segments with a master node deep inside the body behind them are in contact from the
   !> start: of these the closest one of which the node is behind.
-  subroutine activate_deep_segments(contact, model, memory, answers)
+  subroutine activate_deep_segments(contact, model, positions, state, inside_tests)
     type(contact_t), intent(in) :: contact
     type(model_t), intent(in) :: model
-    type(contact_state_t), intent(inout) :: memory
-    type(answers_t), intent(inout), optional :: answers
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
+    integer, intent(inout) :: state(:)                  !! (n_segment) of the slave segments
+    type(inside_tests_t), intent(inout), optional :: inside_tests
     type(element_finder_t) :: finder
     logical :: inside
     integer :: i, s, nearest
     real(wp) :: square, least
 
-    call begin_asking(model, contact%slave%segment_element, contact%master%nodes, finder, answers)
+    call begin_asking(model, contact%slave%segment_element, contact%master%nodes, finder, &
+      inside_tests)
     do i = 1, contact%master%n_node
       associate (node => contact%master%nodes(i))
-        call ask_inside(finder, model, model%mesh%coordinates(:, node), [node], inside, answers)
+        call ask_inside(finder, model, model%mesh%coordinates(:, node), [node], inside, &
+          inside_tests)
         if (.not. inside) cycle
         nearest = 0
         least = huge(1.0_wp)
         do s = 1, contact%slave%n_segment
           if (any(contact%slave%nodes(contact%slave%segments(:, s)) == node)) cycle
-          square = closest_distance(local_coordinates(contact%slave, &
-            memory%positions(:, :memory%n_slave), memory%positions(:, memory%n_slave + i), s))
+          square = closest_distance(local_coordinates(contact%slave, positions, &
+            positions(:, contact%slave%n_node + i), s))
           if (square >= least) cycle
           least = square
           nearest = s
         end do
       end associate
-      if (nearest > 0) memory%segment_state(nearest) = active
+      if (nearest > 0) state(nearest) = active
     end do
   end subroutine activate_deep_segments
 
@@ -256,47 +225,48 @@ contains
     end if
   end function carriers
 
-  !> Know the bodies behind a surface, unless the answers are.
-  pure subroutine begin_asking(model, members, nodes, finder, answers)
+  !> Know the bodies behind a surface, unless the inside_tests are.
+  pure subroutine begin_asking(model, members, nodes, finder, inside_tests)
     type(model_t), intent(in) :: model
     integer, intent(in) :: members(:) !! elements behind the surface
     integer, intent(in) :: nodes(:)   !! of the surface whose positions are asked about
     type(element_finder_t), intent(out) :: finder
-    type(answers_t), intent(in), optional :: answers
+    type(inside_tests_t), intent(in), optional :: inside_tests
 
-    if (present(answers)) then
-      if (answers%are_given) return
+    if (present(inside_tests)) then
+      if (inside_tests%are_given) return
     end if
     call start_finder(model, members, nodes, finder)
   end subroutine begin_asking
 
   !> The next answer (`is_inside_body`).
-  pure subroutine ask_inside(finder, model, x, carriers, inside, answers)
+  pure subroutine ask_inside(finder, model, x, carriers, inside, inside_tests)
     type(element_finder_t), intent(in) :: finder
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: x(2)
     integer, intent(in) :: carriers(:)
     logical, intent(out) :: inside
-    type(answers_t), intent(inout), optional :: answers
+    type(inside_tests_t), intent(inout), optional :: inside_tests
     logical, allocatable :: more(:)
 
-    if (.not. present(answers)) then
+    if (.not. present(inside_tests)) then
       inside = is_inside_body(finder, model, x, carriers)
       return
     end if
-    answers%n = answers%n + 1
-    if (answers%are_given) then
-      inside = answers%is_inside(answers%n)
+    inside_tests%n = inside_tests%n + 1
+    if (inside_tests%are_given) then
+      inside = inside_tests%is_inside(inside_tests%n)
       return
     end if
     inside = is_inside_body(finder, model, x, carriers)
-    if (.not. allocated(answers%is_inside)) allocate (answers%is_inside(64), source=.false.)
-    if (answers%n > size(answers%is_inside)) then
-      allocate (more(2*answers%n), source=.false.)
-      more(:answers%n - 1) = answers%is_inside
-      call move_alloc(more, answers%is_inside)
+    if (.not. allocated(inside_tests%is_inside)) allocate (inside_tests%is_inside(64), &
+      source=.false.)
+    if (inside_tests%n > size(inside_tests%is_inside)) then
+      allocate (more(2*inside_tests%n), source=.false.)
+      more(:inside_tests%n - 1) = inside_tests%is_inside
+      call move_alloc(more, inside_tests%is_inside)
     end if
-    answers%is_inside(answers%n) = inside
+    inside_tests%is_inside(inside_tests%n) = inside
   end subroutine ask_inside
 
 end module initial_status_m

@@ -7,6 +7,7 @@
 module positions_m
   use candidates_m, only : mean_length
   use contact_state_m, only : contact_state_t
+  use search_state_m, only : segment_points_t
   use contacts_m, only : contact_t
   use geometry_m, only : segment_length
   use kinds_m, only : wp
@@ -86,14 +87,16 @@ contains
   end subroutine gather_range
 
   !> Positions on each segment and the part of its length that each stands for; nothing is allocated
-  !> for points at nodes, which are in `memory%positions` already.
-  pure subroutine start_segment_points(rule, n_gauss, is_axisymmetric, has_ends, slave, memory)
+  !> for points at nodes.
+  pure subroutine start_segment_points(rule, n_gauss, is_axisymmetric, has_ends, slave, positions, &
+      points)
     integer, intent(in) :: rule    !! one of the constants above
     integer, intent(in) :: n_gauss !! Gauss points of a segment
     logical, intent(in) :: is_axisymmetric
     logical, intent(in) :: has_ends !! beside Gauss points both nodes of each segment
     type(surface_t), intent(in) :: slave
-    type(contact_state_t), intent(inout) :: memory
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
+    type(segment_points_t), intent(inout) :: points
     integer :: s, q, n
 
     select case (rule)
@@ -101,76 +104,68 @@ contains
     case (points_at_gauss_points); n = n_gauss + merge(2, 0, has_ends)
     case default; return
     end select
-    allocate (memory%segment_xi(n), memory%segment_share(n), memory%segment_points(4, &
-      n*slave%n_segment))
+    allocate (points%xi(n), points%share(n), points%positions(4, n*slave%n_segment))
     select case (rule)
     case (points_at_quarters)
-      memory%segment_xi(:) = [0.25_wp, 0.75_wp]
-      memory%segment_share = 0.5_wp
-      if (is_axisymmetric) memory%segment_spread = 0.5_wp
+      points%xi(:) = [0.25_wp, 0.75_wp]
+      points%share = 0.5_wp
+      if (is_axisymmetric) points%spread = 0.5_wp
     case (points_at_gauss_points)
-      memory%segment_xi([1, n]) = [0.0_wp, 1.0_wp]
-      memory%segment_share([1, n]) = 0.0_wp
+      points%xi([1, n]) = [0.0_wp, 1.0_wp]
+      points%share([1, n]) = 0.0_wp
       q = merge(1, 0, has_ends)
-      call gauss_rule(memory%segment_xi(1 + q:n - q), memory%segment_share(1 + q:n - q))
+      call gauss_rule(points%xi(1 + q:n - q), points%share(1 + q:n - q))
     end select
     do s = 1, slave%n_segment
-      associate (a => memory%positions(:, slave%segments(1, s)), &
-        b => memory%positions(:, slave%segments(2, s)))
+      associate (a => positions(:, slave%segments(1, s)), b => positions(:, slave%segments(2, s)))
         do q = 1, n
-          memory%segment_points(:, (s - 1)*n + q) = (1.0_wp - memory%segment_xi(q))*a &
-            + memory%segment_xi(q)*b
+          points%positions(:, (s - 1)*n + q) = (1.0_wp - points%xi(q))*a + points%xi(q)*b
         end do
       end associate
     end do
-    call move_segment_points(slave, memory%positions, memory%segment_xi, memory%segment_spread, &
-      memory%segment_points)
+    call move_segment_points(slave, positions, points)
   end subroutine start_segment_points
 
   !> Displacements of the points from those of the nodes. Where they stand at centres by radius,
   !> these move on their segments: how far at most is added to `travel`.
-  pure subroutine move_segment_points(slave, positions, segment_xi, segment_spread, &
-    segment_points, travel)
+  pure subroutine move_segment_points(slave, positions, points, travel)
     type(surface_t), intent(in) :: slave
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
-    real(wp), intent(in), contiguous :: segment_xi(:)
-    real(wp), intent(in) :: segment_spread
-    real(wp), intent(inout), contiguous :: segment_points(:, :) !! (4, n_contact_point)
-    real(wp), intent(inout), optional :: travel        !! m
+    type(segment_points_t), intent(inout) :: points
+    real(wp), intent(inout), optional :: travel         !! m
     real(wp) :: slid
 
-    if (segment_spread > 0.0_wp) then
-      call move_by_radius(slave, positions, segment_xi, segment_spread, segment_points, slid)
+    if (points%spread > 0.0_wp) then
+      call move_by_radius(slave, positions, points, slid)
       if (present(travel)) travel = travel + slid
     else
-      call move_on_segments(slave%n_segment, slave%segments, size(segment_xi), segment_xi, &
-        positions, segment_points)
+      call move_on_segments(slave%n_segment, slave%segments, size(points%xi), points%xi, &
+        positions, points%positions)
     end if
   end subroutine move_segment_points
 
   !> Put the points at the centres by radius of their parts of the segments.
-  pure subroutine move_by_radius(slave, positions, segment_xi, segment_spread, segment_points, &
-    slid)
+  pure subroutine move_by_radius(slave, positions, points, slid)
     type(surface_t), intent(in) :: slave
-    real(wp), intent(in), contiguous :: positions(:, :), segment_xi(:)
-    real(wp), intent(in) :: segment_spread
-    real(wp), intent(inout), contiguous :: segment_points(:, :)
+    real(wp), intent(in), contiguous :: positions(:, :)
+    type(segment_points_t), intent(inout) :: points
     real(wp), intent(out) :: slid !! the longest way of one on its segment, m
     real(wp) :: before(2), xi
-    integer :: s, q, i
+    integer :: s, q
 
     slid = 0.0_wp
     do s = 1, slave%n_segment
       associate (a => positions(:, slave%segments(1, s)), b => positions(:, slave%segments(2, s)))
-        do q = 1, size(segment_xi)
-          i = (s - 1)*size(segment_xi) + q
-          xi = centroid(a, b, segment_xi(q) - 0.5_wp*segment_spread, segment_xi(q) &
-            + 0.5_wp*segment_spread)
-          before = segment_points(1:2, i)
-          segment_points(:, i) = (1.0_wp - xi)*a + xi*b
-          ! Of the reference, in which nodes rest; stretched as the segment is.
-          slid = max(slid, norm2(segment_points(1:2, i) - before)*segment_length(a, b) &
-            /max(norm2(b(1:2) - a(1:2)), tiny(1.0_wp)))
+        do q = 1, size(points%xi)
+          xi = centroid(a, b, points%xi(q) - 0.5_wp*points%spread, points%xi(q) &
+            + 0.5_wp*points%spread)
+          associate (position => points%positions(:, (s - 1)*size(points%xi) + q))
+            before = position(1:2)
+            position = (1.0_wp - xi)*a + xi*b
+            ! Of the reference, in which nodes rest; stretched as the segment is.
+            slid = max(slid, norm2(position(1:2) - before)*segment_length(a, b) &
+              /max(norm2(b(1:2) - a(1:2)), tiny(1.0_wp)))
+          end associate
         end do
       end associate
     end do

@@ -13,7 +13,7 @@ module assembly_m
   use law_state_m, only : is_open, slips
   use linearisation_m, only : linearised_list_t, linearised_point_t, n_slot, slip_of, between
   use sparse_m, only : sparse_t, add_block
-  use tiebreak_m, only : is_tied_site
+  use ties_m, only : is_tied_site
   implicit none
   private
   public :: add_point_tangents, add_nodal_tangents, load_point, nodal_share, add_linearised_point, &
@@ -60,7 +60,7 @@ contains
     type(linearised_point_t), intent(in) :: point
     logical, intent(out) :: acts !! in contact, and not left to a tie
     type(dual_t), intent(out) :: pressure, traction
-    type(dual_t) :: gap, previous
+    type(dual_t) :: gap, previous, slip
     integer :: before
 
     gap = loaded_gap(memory, point)
@@ -80,8 +80,9 @@ contains
         if (any(states(nodes(:2)) == slips)) before = slips
       end if
     end associate
-    traction = linearise_friction(contact, memory, previous, slip_of(memory, point), pressure, &
-      point%stiffness, before, point%length)
+    slip = slip_of(memory%positions, memory%scratch%increment, point)
+    traction = linearise_friction(contact, memory, previous, slip, pressure, point%stiffness, &
+      before, point%length)
   end subroutine load_point
 
   !> Gap of a point that its pressure comes from: with what of its depth does not act, its entry
@@ -98,8 +99,7 @@ contains
       remaining => memory%interference%remaining, depth => memory%interference%depth)
       if (has_offsets(memory)) then
         if (memory%has%segment_points) then
-          gap = gap + offset(site + size(memory%segment_xi) &
-            *(memory%slave_status%pass%segment_at(nodes(1)) - nodes(1)))
+          gap = gap + offset(site)
         else if (nodes(2) > 0) then
           gap = gap + between(offset(nodes), point%slave_xi)
         else if (nodes(1) > memory%n_slave) then
@@ -156,7 +156,8 @@ contains
     do p = 1, list%n
       values(p, of_gap) = loaded_gap(memory, list%points(p))
       values(p, of_slip) = constant(0.0_wp)
-      if (memory%has%friction) values(p, of_slip) = slip_of(memory, list%points(p))
+      if (memory%has%friction) values(p, of_slip) = slip_of(memory%positions, &
+        memory%scratch%increment, list%points(p))
     end do
     call average(list, values, means, areas)
     call form_nodal_pressures(contact, memory, means, areas, pressures, tractions)

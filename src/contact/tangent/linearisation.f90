@@ -16,8 +16,7 @@ module linearisation_m
   private
   public :: linearised_point_t, linearised_list_t, linearised_projection_t, n_slot, append_point, &
     difference, length_between, project, way_from, project_point, project_on_arcs, slip_of, &
-    between, &
-    cosine_between, share_of, side_share_of, radius_at, centroid_of
+    between, cosine_between, share_of, side_share_of, radius_at, centroid_of
 
   !> Nodes that a point depends on, at most.
   integer, parameter :: n_slot = n_partial/2
@@ -72,14 +71,14 @@ contains
   end subroutine append_point
 
   !> Vector from the node in slot j of a point to that in slot i, m.
-  pure function difference(memory, point, i, j) result(d)
-    type(contact_state_t), intent(in) :: memory
+  pure function difference(positions, point, i, j) result(d)
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     type(linearised_point_t), intent(in) :: point
     integer, intent(in) :: i, j
     type(dual_t) :: d(2)
 
-    d = constant(separation(memory%positions(:, point%nodes(i)), &
-      memory%positions(:, point%nodes(j))))
+    d = constant(separation(positions(:, point%nodes(i)), &
+      positions(:, point%nodes(j))))
     d(1)%slope(2*i - 1) = 1.0_wp
     d(2)%slope(2*i) = 1.0_wp
     d(1)%slope(2*j - 1) = d(1)%slope(2*j - 1) - 1.0_wp
@@ -87,13 +86,13 @@ contains
   end function difference
 
   !> Distance between the nodes in slots i and j, m.
-  pure function length_between(memory, point, i, j) result(length)
-    type(contact_state_t), intent(in) :: memory
+  pure function length_between(positions, point, i, j) result(length)
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     type(linearised_point_t), intent(in) :: point
     integer, intent(in) :: i, j
     type(dual_t) :: length, d(2)
 
-    d = difference(memory, point, i, j)
+    d = difference(positions, point, i, j)
     length = sqrt(d(1)*d(1) + d(2)*d(2))
   end function length_between
 
@@ -122,14 +121,14 @@ contains
 
   !> Vector from the node in slot i to the slave side of a point, which is slot 1 where slot 2 is
   !> not used.
-  pure function way_from(memory, point, i) result(d)
-    type(contact_state_t), intent(in) :: memory
+  pure function way_from(positions, point, i) result(d)
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     type(linearised_point_t), intent(in) :: point
     integer, intent(in) :: i
     type(dual_t) :: d(2)
 
-    d = difference(memory, point, 1, i)
-    if (point%nodes(2) > 0) d = d + point%slave_xi*difference(memory, point, 2, 1)
+    d = difference(positions, point, 1, i)
+    if (point%nodes(2) > 0) d = d + point%slave_xi*difference(positions, point, 2, 1)
   end function way_from
 
   !> Gap, site and normal of a point over the segment in slots 3, 4, like those known: on the line
@@ -143,8 +142,8 @@ contains
     type(dual_t) :: d(2), t(2)
     logical :: is_corner
 
-    d = way_from(memory, point, 3)
-    t = difference(memory, point, 4, 3)
+    d = way_from(memory%positions, point, 3)
+    t = difference(memory%positions, point, 4, 3)
     projection = project(d, t)
     is_corner = .not. (abs(xi) > 0.0_wp .and. abs(xi - 1.0_wp) > 0.0_wp)
     if (memory%has%arcs) is_corner = is_corner &
@@ -187,7 +186,7 @@ contains
     if (is_flat(shape) .and. is_flat(own_shape)) return
     off = constant([0.0_wp, 0.0_wp])
     if (.not. is_flat(own_shape)) then
-      own = difference(memory, point, 2, 1)
+      own = difference(memory%positions, point, 2, 1)
       call find_height(own_shape, point%slave_xi, height, sine)
       off = [height*own(2), -(height*own(1))]
     end if
@@ -227,35 +226,37 @@ contains
 
   !> Slip of a point in the step over the segment in slots 3, 4, m: L d(xi). Where slot 4 is not
   !> used the segment that has the normal is the slave's.
-  pure function slip_of(memory, point) result(slip)
-    type(contact_state_t), intent(in) :: memory
+  pure function slip_of(positions, increments, point) result(slip)
+    real(wp), intent(in), contiguous :: positions(:, :)  !! (4, n_node) of the interface
+    real(wp), intent(in), contiguous :: increments(:, :) !! (2, n_node) displacements of the step, m
     type(linearised_point_t), intent(in) :: point
     type(dual_t) :: slip
     type(dual_t) :: relative(2), t(2), turn(2)
     integer :: owner
 
-    relative = moved(memory, point, 1) - moved(memory, point, 3)
+    relative = moved(increments, point, 1) - moved(increments, point, 3)
     if (point%nodes(2) > 0) relative = relative + point%slave_xi &
-      *(moved(memory, point, 2) - moved(memory, point, 1))
+      *(moved(increments, point, 2) - moved(increments, point, 1))
     owner = 1
     if (point%nodes(4) > 0) then
       owner = 3
-      relative = relative - point%master_xi*(moved(memory, point, 4) - moved(memory, point, 3))
+      relative = relative &
+        - point%master_xi*(moved(increments, point, 4) - moved(increments, point, 3))
     end if
-    t = difference(memory, point, owner + 1, owner)
-    turn = moved(memory, point, owner + 1) - moved(memory, point, owner)
+    t = difference(positions, point, owner + 1, owner)
+    turn = moved(increments, point, owner + 1) - moved(increments, point, owner)
     slip = point%normal(1)*relative(2) - point%normal(2)*relative(1) &
       + point%distance*(t(2)*turn(1) - t(1)*turn(2))/(t(1)*t(1) + t(2)*t(2))
   end function slip_of
 
   !> Displacement of the node in slot i in the step, m.
-  pure function moved(memory, point, i) result(du)
-    type(contact_state_t), intent(in) :: memory
+  pure function moved(increments, point, i) result(du)
+    real(wp), intent(in), contiguous :: increments(:, :) !! (2, n_node) displacements of the step, m
     type(linearised_point_t), intent(in) :: point
     integer, intent(in) :: i
     type(dual_t) :: du(2)
 
-    du = constant(memory%scratch%increment(:, point%nodes(i)))
+    du = constant(increments(:, point%nodes(i)))
     du(1)%slope(2*i - 1) = 1.0_wp
     du(2)%slope(2*i) = 1.0_wp
   end function moved
@@ -296,30 +297,30 @@ contains
   end function smooth_step
 
   !> In axisymmetry: radius at xi of the segment in slots i, j, m.
-  pure function radius_at(memory, point, i, j, xi) result(radius)
-    type(contact_state_t), intent(in) :: memory
+  pure function radius_at(positions, point, i, j, xi) result(radius)
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     type(linearised_point_t), intent(in) :: point
     integer, intent(in) :: i, j
     type(dual_t), intent(in) :: xi
     type(dual_t) :: radius, t(2)
 
-    radius = variable(radius_of(memory%positions(:, point%nodes(i))), 2*i - 1)
-    t = difference(memory, point, j, i)
+    radius = variable(radius_of(positions(:, point%nodes(i))), 2*i - 1)
+    t = difference(positions, point, j, i)
     radius = radius + xi*t(1)
   end function radius_at
 
   !> Centre by radius of a stretch of the segment in slots i, j; the middle where nothing has
   !> weight.
-  pure function centroid_of(memory, point, i, j, range) result(xi)
-    type(contact_state_t), intent(in) :: memory
+  pure function centroid_of(positions, point, i, j, range) result(xi)
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     type(linearised_point_t), intent(in) :: point
     integer, intent(in) :: i, j
     type(dual_t), intent(in) :: range(2) !! its ends, 0 to 1
     type(dual_t) :: xi, first, last
 
     xi = 0.5_wp*(range(1) + range(2))
-    first = radius_at(memory, point, i, j, range(1))
-    last = radius_at(memory, point, i, j, range(2))
+    first = radius_at(positions, point, i, j, range(1))
+    last = radius_at(positions, point, i, j, range(2))
     if (first%value + last%value > tiny(1.0_wp)) &
       xi = xi + (1.0_wp/6.0_wp)*((range(2) - range(1))*(last - first)/(first + last))
   end function centroid_of

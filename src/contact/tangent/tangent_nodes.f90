@@ -5,7 +5,7 @@
 module tangent_nodes_m
   use assembly_m, only : load_point, add_linearised_point, product_t, start_product, add_change, &
     finish_product
-  use contact_state_m, only : contact_state_t, site_at
+  use contact_state_m, only : contact_state_t
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*), operator(/)
   use kinds_m, only : wp
@@ -39,17 +39,18 @@ contains
         is_axisymmetric => contact%is_axisymmetric)
         if (point%site > memory%n_slave) then
           call linearise_length(contact%master, memory%n_slave, is_axisymmetric, &
-            memory%master_status%pass%is_closed, memory, point)
+            memory%master_status%pass%is_closed, memory%positions, point)
         else if (is_axisymmetric .or. .not. has_unit_area) then
-          call linearise_length(contact%slave, 0, is_axisymmetric, is_closed, memory, point)
+          call linearise_length(contact%slave, 0, is_axisymmetric, is_closed, memory%positions, &
+            point)
         end if
         plane = point
         if (has_unit_area .and. is_axisymmetric) then
-          call linearise_length(contact%slave, 0, .false., is_closed, memory, plane)
+          call linearise_length(contact%slave, 0, .false., is_closed, memory%positions, plane)
           point%area = point%area/plane%area
         end if
         if (has_unit_area .and. contact%friction%most > 0.0_wp) then
-          call linearise_length(contact%slave, 0, .false., .false., memory, plane)
+          call linearise_length(contact%slave, 0, .false., .false., memory%positions, plane)
           point%nodes = plane%nodes
           point%length = plane%area
         end if
@@ -78,11 +79,11 @@ contains
   !> Let the area of a point at a node be the node's tributary length, the neighbours of which go
   !> into slots 5 and 6; on a closed boundary its segments count as far as they are opposed to the
   !> face.
-  pure subroutine linearise_length(surface, offset, by_radius, is_closed, memory, point)
+  pure subroutine linearise_length(surface, offset, by_radius, is_closed, positions, point)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: offset !! local number before the first node of the surface
     logical, intent(in) :: by_radius, is_closed
-    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     type(linearised_point_t), intent(inout) :: point
     type(dual_t) :: half_lengths(2), shares(2), parts(2), cosines(2), t(2, 2), turn
     integer :: segments(2), k
@@ -93,14 +94,14 @@ contains
     do k = 1, 2
       if (segments(k) == 0) cycle
       point%nodes(4 + k) = offset + surface%segments(k, segments(k))
-      half_lengths(k) = 0.5_wp*length_between(memory, point, 1, 4 + k)
-      if (by_radius) half_lengths(k) = half_lengths(k)*radius_at(memory, point, 1, 4 + k, &
+      half_lengths(k) = 0.5_wp*length_between(positions, point, 1, 4 + k)
+      if (by_radius) half_lengths(k) = half_lengths(k)*radius_at(positions, point, 1, 4 + k, &
         constant(1.0_wp/3.0_wp))
     end do
     point%area = half_lengths(1) + half_lengths(2)
     if (.not. is_closed .or. any(segments == 0)) return
     do k = 1, 2
-      t(:, k) = difference(memory, point, merge(1, 6, k == 1), merge(5, 1, k == 1))
+      t(:, k) = difference(positions, point, merge(1, 6, k == 1), merge(5, 1, k == 1))
       cosines(k) = cosine_between(t(:, k), [-point%normal(2), point%normal(1)])
       shares(k) = share_of(cosines(k))
     end do
@@ -136,7 +137,6 @@ contains
     do k = 1, memory%slave_status%n_active
       associate (virtual_node => memory%slave_status%active_points(k))
         point = linearise_virtual_node(contact, memory, virtual_node)
-        point%site = site_at(memory, memory%points, p)
         call linearise_sub_segments(contact, memory, virtual_node, p, point, sub_segments)
       end associate
       p = p + sub_segments%n
@@ -153,15 +153,17 @@ contains
     integer, intent(in) :: virtual_node
     type(linearised_point_t) :: point
 
-    associate (status => memory%slave_status, at => memory%segment_xi(2 - mod(virtual_node, 2)))
+    associate (status => memory%slave_status, &
+      at => memory%segment_points%xi(2 - mod(virtual_node, 2)))
+      point%site = virtual_node
       point%nodes(1:2) = contact%slave%segments(:, (virtual_node + 1)/2)
       point%nodes(3:4) = memory%n_slave + contact%master%segments(:, status%segment(virtual_node))
       point%stiffness = memory%slave_penalty
       point%slave_xi = constant(at)
-      point%area = 0.5_wp*length_between(memory, point, 1, 2)
+      point%area = 0.5_wp*length_between(memory%positions, point, 1, 2)
       if (contact%is_axisymmetric) then
-        point%area = point%area*radius_at(memory, point, 1, 2, point%slave_xi)
-        point%slave_xi = centroid_of(memory, point, 1, 2, &
+        point%area = point%area*radius_at(memory%positions, point, 1, 2, point%slave_xi)
+        point%slave_xi = centroid_of(memory%positions, point, 1, 2, &
           constant([end_of_half(at, 2), end_of_half(at, 1)]))
       end if
       call project_point(memory, status%xi(virtual_node), status%gap(virtual_node), point)
@@ -183,7 +185,7 @@ contains
     integer :: segment, k, i
 
     sub_segments%n = 0
-    associate (at => memory%segment_xi(2 - mod(virtual_node, 2)))
+    associate (at => memory%segment_points%xi(2 - mod(virtual_node, 2)))
       limits = ends_of_half(contact, memory, virtual_node, at)
       sub_segment = point
       sub_segment%master_slot = 5
@@ -192,7 +194,7 @@ contains
         sub_segment%nodes(5:6) = memory%n_slave + contact%master%segments(:, segment)
         range = constant([0.0_wp, 1.0_wp])
         do i = 1, 2
-          if (k == limits(i)%n_step) range(i) = linearise_parameter(memory, sub_segment, &
+          if (k == limits(i)%n_step) range(i) = linearise_parameter(memory%positions, sub_segment, &
             end_of_half(at, i), limits(i))
         end do
         if (range(2)%value - range(1)%value > round_off) then
@@ -205,13 +207,13 @@ contains
     end associate
     if (sub_segments%n > 0) return
     sub_segment = point
-    sub_segment%area = length_between(memory, point, 3, 4)
+    sub_segment%area = length_between(memory%positions, point, 3, 4)
     call append_point(sub_segments, sub_segment)
   end subroutine linearise_sub_segments
 
   !> The end of a half on the segment in slots 5, 6; constant where it has been stopped at a node.
-  pure function linearise_parameter(memory, sub_segment, slave_xi, eta) result(xi)
-    type(contact_state_t), intent(in) :: memory
+  pure function linearise_parameter(positions, sub_segment, slave_xi, eta) result(xi)
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     type(linearised_point_t), intent(in) :: sub_segment
     real(wp), intent(in) :: slave_xi !! where the half ends on its segment
     type(polyline_parameter_t), intent(in) :: eta
@@ -221,7 +223,7 @@ contains
 
     site = sub_segment
     site%slave_xi = constant(slave_xi)
-    projection = project(way_from(memory, site, 5), difference(memory, site, 6, 5))
+    projection = project(way_from(positions, site, 5), difference(positions, site, 6, 5))
     xi = projection%xi
     if (.not. eta%xi < 0.0_wp .and. xi%value < -round_off) xi = constant(0.0_wp)
     if (.not. eta%xi > 1.0_wp .and. xi%value > 1.0_wp + round_off) xi = constant(1.0_wp)
@@ -236,18 +238,20 @@ contains
     type(linearised_point_t), intent(inout) :: sub_segment
 
     sub_segment%master_xi = 0.5_wp*(range(1) + range(2))
-    sub_segment%area = (range(2) - range(1))*length_between(memory, sub_segment, 5, 6)
-    if (contact%is_axisymmetric) then
-      sub_segment%area = sub_segment%area*radius_at(memory, sub_segment, 5, 6, &
-        sub_segment%master_xi)
-      sub_segment%master_xi = centroid_of(memory, sub_segment, 5, 6, range)
-    end if
-    if (memory%has%arcs) then
-      sub_segment%master_xi = sub_segment%master_xi &
-        + sub_segment%shift/length_between(memory, sub_segment, 5, 6)
-      ! Where it is on the list, which the resultant of all of them decides.
-      sub_segment%master_xi%value = memory%points%master_weights(2, p)
-    end if
+    associate (positions => memory%positions)
+      sub_segment%area = (range(2) - range(1))*length_between(positions, sub_segment, 5, 6)
+      if (contact%is_axisymmetric) then
+        sub_segment%area = sub_segment%area &
+          *radius_at(positions, sub_segment, 5, 6, sub_segment%master_xi)
+        sub_segment%master_xi = centroid_of(positions, sub_segment, 5, 6, range)
+      end if
+      if (memory%has%arcs) then
+        sub_segment%master_xi = sub_segment%master_xi &
+          + sub_segment%shift/length_between(positions, sub_segment, 5, 6)
+        ! Where it is on the list, which the resultant of all of them decides.
+        sub_segment%master_xi%value = memory%points%master_weights(2, p)
+      end if
+    end associate
   end subroutine set_range
 
   !> Share out the force of a virtual node by the sub-segments' lengths: each share at a constant

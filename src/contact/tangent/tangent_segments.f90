@@ -5,7 +5,8 @@
 !> type 5, so that each depends on few nodes.
 module tangent_segments_m
   use assembly_m, only : nodal_share
-  use contact_state_m, only : contact_state_t, active, site_at, segment_point_at
+  use contact_state_m, only : contact_state_t, contact_points_t, site_at
+  use search_state_m, only : active, segment_point_at
   use contacts_m, only : contact_t
   use dual_m, only : dual_t, constant, operator(+), operator(-), operator(*)
   use projection_m, only : slave_side, master_side, round_off
@@ -15,10 +16,9 @@ module tangent_segments_m
     cosine_between, share_of, side_share_of, radius_at
   use overlaps_m, only : overlap_t, find_overlaps, n_most_overlaps
   use points_nts_m, only : is_sharp_vertex
-  use points_mortar_m, only : gauss_xi, least_part
+  use points_mortar_m, only : gauss_xi, least_part, has_folds
   use surfaces_m, only : surface_t
   use tangent_nodes_m, only : linearise_node, linearise_length
-  use sharp_vertices_m, only : has_folds
   use slave_segments_m, only : sides_part
   implicit none
   private
@@ -37,16 +37,18 @@ contains
 
     has_area = .false.
     do s = 1, contact%slave%n_segment
-      if (memory%segment_state(s) == active .or. any(memory%slave_status%state( &
+      if (memory%segments%state(s) == active .or. any(memory%slave_status%state( &
         contact%slave%segments(:, s)) == active)) &
         call linearise_ends_on(contact, memory, s, has_area, list)
     end do
     do p = 1, memory%slave_status%n_active
       associate (node => memory%slave_status%active_points(p))
         if (has_area(node)) cycle
-        if (.not. is_sharp_vertex(contact%slave, memory, node)) cycle
+        if (.not. is_sharp_vertex(contact%slave, memory%positions, &
+          memory%slave_status%normal(:, node), node)) cycle
         point = linearise_node(memory, p)
-        call linearise_length(contact%slave, 0, contact%is_axisymmetric, .false., memory, point)
+        call linearise_length(contact%slave, 0, contact%is_axisymmetric, .false., &
+          memory%positions, point)
         call append_point(list, point)
       end associate
     end do
@@ -59,7 +61,7 @@ contains
     integer, intent(in) :: s
     logical, intent(inout) :: has_area(:) !! (n_slave) slave nodes with points
     type(linearised_list_t), intent(inout) :: list
-    type(overlap_t) :: overlaps(n_most_overlaps(memory, s))
+    type(overlap_t) :: overlaps(n_most_overlaps(memory%candidates, s))
     type(linearised_point_t) :: point
     type(dual_t) :: xi(2), half
     integer :: breakpoints(2), n, k, i
@@ -69,15 +71,15 @@ contains
       if (.not. overlaps(k)%high > overlaps(k)%low) cycle
       if (.not. contact%strict .and. .not. overlaps(k)%share > 0.0_wp) cycle
       call start_on_overlap(contact, memory, s, overlaps(k), point, xi)
-      half = 0.5_wp*(xi(2) - xi(1))*length_between(memory, point, 1, 2)
+      half = 0.5_wp*(xi(2) - xi(1))*length_between(memory%positions, point, 1, 2)
       breakpoints = [overlaps(k)%first, overlaps(k)%last]
       do i = 1, 2
         point%area = half
-        if (contact%is_axisymmetric) point%area = half*radius_at(memory, point, 1, 2, &
+        if (contact%is_axisymmetric) point%area = half*radius_at(memory%positions, point, 1, 2, &
           (1.0_wp/3.0_wp)*(2.0_wp*xi(i) + xi(3 - i)))
         associate (node => contact%slave%segments(i, s))
           if (breakpoints(i) > 0) then
-            if (memory%segment_state(s) /= active) cycle
+            if (memory%segments%state(s) /= active) cycle
             call move_to_breakpoint(memory, memory%n_slave + breakpoints(i), point)
           else
             if (memory%slave_status%state(node) /= active) cycle
@@ -85,7 +87,8 @@ contains
             has_area(node) = .true.
           end if
         end associate
-        call append_share(contact, memory, s, overlaps(k), .not. contact%strict, point, list)
+        call append_share(contact, memory%positions, s, overlaps(k), .not. contact%strict, point, &
+          list)
       end do
     end do
   end subroutine linearise_ends_on
@@ -100,8 +103,8 @@ contains
 
     point%nodes(3:4) = [node, 0]
     point%site = node
-    d = difference(memory, point, 3, 1)
-    t = difference(memory, point, 2, 1)
+    d = difference(memory%positions, point, 3, 1)
+    t = difference(memory%positions, point, 2, 1)
     projection = project(d, t)
     point%distance = projection%gap
     if (memory%has%arcs) call project_on_arcs(memory, point, 1, d, t, projection)
@@ -167,15 +170,15 @@ contains
         if (maxval(points%slave_weights(:, p)) >= 1.0_wp) exit
         point%slave_xi = constant(points%slave_weights(2, p))
         point%site = site_at(memory, memory%points, p)
-        q = segment_point_at(points%slave_weights(2, p), memory%segment_xi)
+        q = segment_point_at(points%slave_weights(2, p), memory%segment_points%xi)
         call move_over_segment(contact, memory, p, &
-          memory%segment_share(q)*length_between(memory, point, 1, 2), point)
+          memory%segment_points%share(q)*length_between(memory%positions, point, 1, 2), point)
         sides%master = contact%master%outgoing(points%master_nodes(1, p) - memory%n_slave)
         sides%part = 1.0_wp
         if (memory%slave_status%pass%is_closed) &
-          sides%part = sides_part(contact, memory, s, sides%master)
+          sides%part = sides_part(contact, memory%positions, s, sides%master)
         sides%share = sides%part
-        call append_share(contact, memory, s, sides, .false., point, list)
+        call append_share(contact, memory%positions, s, sides, .false., point, list)
         p = p + 1
       end do
     end associate
@@ -188,7 +191,7 @@ contains
     integer, intent(in) :: s
     integer, intent(inout) :: p !! first point of the segment on the list; then of the next one
     type(linearised_list_t), intent(inout) :: list
-    type(overlap_t) :: overlaps(n_most_overlaps(memory, s))
+    type(overlap_t) :: overlaps(n_most_overlaps(memory%candidates, s))
     type(linearised_point_t) :: point
     type(dual_t) :: xi(2), length
     integer :: n, k, q
@@ -197,14 +200,14 @@ contains
     do k = 1, n
       if (.not. overlaps(k)%share > 0.0_wp) cycle
       call start_on_overlap(contact, memory, s, overlaps(k), point, xi)
-      length = 0.5_wp*(xi(2) - xi(1))*length_between(memory, point, 1, 2)
+      length = 0.5_wp*(xi(2) - xi(1))*length_between(memory%positions, point, 1, 2)
       do q = 1, size(gauss_xi)
         if (p > memory%points%n) return
         point%slave_xi = xi(1) + gauss_xi(q)*(xi(2) - xi(1))
         if (memory%points%slave_nodes(1, p) /= point%nodes(1)) return
         if (abs(memory%points%slave_weights(2, p) - point%slave_xi%value) > round_off) cycle
         call move_over_segment(contact, memory, p, length, point)
-        call append_share(contact, memory, s, overlaps(k), .false., point, list)
+        call append_share(contact, memory%positions, s, overlaps(k), .false., point, list)
         p = p + 1
       end do
     end do
@@ -223,10 +226,10 @@ contains
       point%nodes(3:4) = points%master_nodes(:, p)
       call project_point(memory, points%master_weights(2, p), points%gap(p), point)
     end associate
-    point%area = length*share_of(cosine_between(difference(memory, point, 2, 1), &
+    point%area = length*share_of(cosine_between(difference(memory%positions, point, 2, 1), &
       [-point%normal(2), point%normal(1)]))
     if (contact%is_axisymmetric) &
-      point%area = point%area*radius_at(memory, point, 1, 2, point%slave_xi)
+      point%area = point%area*radius_at(memory%positions, point, 1, 2, point%slave_xi)
   end subroutine move_over_segment
 
   !> Types 6 and 7: the points at the nodes of a segment at the tip of a fold, one for each point
@@ -242,7 +245,7 @@ contains
     real(wp) :: part(2)
     integer :: at_end(2), last, p, k
 
-    at_end = points_at_ends(memory, ends)
+    at_end = points_at_ends(memory%points, ends)
     last = list%n
     part = 0.0_wp
     do k = 1, 2
@@ -272,17 +275,17 @@ contains
   end subroutine linearise_tips
 
   !> Points of the list at the nodes of a segment, 0: none.
-  pure function points_at_ends(memory, ends) result(at_end)
-    type(contact_state_t), intent(in) :: memory
+  pure function points_at_ends(points, ends) result(at_end)
+    type(contact_points_t), intent(in) :: points
     integer, intent(in) :: ends(2)
     integer :: at_end(2)
     integer :: p, k
 
     at_end = 0
-    do p = 1, memory%points%n
-      if (any(memory%points%slave_nodes(:, p) /= ends)) cycle
+    do p = 1, points%n
+      if (any(points%slave_nodes(:, p) /= ends)) cycle
       do k = 1, 2
-        if (memory%points%slave_weights(k, p) >= 1.0_wp) at_end(k) = p
+        if (points%slave_weights(k, p) >= 1.0_wp) at_end(k) = p
       end do
     end do
   end function points_at_ends
@@ -291,9 +294,9 @@ contains
   !> the change of the share at a constant area as a point without area, for it depends on further
   !> nodes. The master segment goes into slots 5, 6, the segments next to both at convex vertices
   !> into 7 and 8.
-  pure subroutine append_share(contact, memory, s, overlap, is_by_master, point, list)
+  pure subroutine append_share(contact, positions, s, overlap, is_by_master, point, list)
     type(contact_t), intent(in) :: contact
-    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     integer, intent(in) :: s              !! slave segment
     type(overlap_t), intent(in) :: overlap
     logical, intent(in) :: is_by_master   !! opposed to the master segment, not at the point itself
@@ -304,16 +307,16 @@ contains
 
     change = point
     if (merge(overlap%share, overlap%part, is_by_master) < 1.0_wp) then
-      change%nodes(5:8) = [memory%n_slave + contact%master%segments(:, overlap%master), 0, 0]
-      own = difference(memory, change, 2, 1)
-      other = difference(memory, change, 6, 5)
+      change%nodes(5:8) = [contact%slave%n_node + contact%master%segments(:, overlap%master), 0, 0]
+      own = difference(positions, change, 2, 1)
+      other = difference(positions, change, 6, 5)
       share = constant(1.0_wp)
       if (is_by_master) share = share_of(cosine_between(own, other))
       if (overlap%part < 1.0_wp) then
-        call linearise_side(contact%slave, s, [0, 1, 7], slave_side, memory, other, change, &
+        call linearise_side(contact%slave, s, [0, 1, 7], slave_side, positions, other, change, &
           share)
-        call linearise_side(contact%master, overlap%master, [memory%n_slave, 5, 8], master_side, &
-          memory, own, change, share)
+        call linearise_side(contact%master, overlap%master, [contact%slave%n_node, 5, 8], &
+          master_side, positions, own, change, share)
       end if
       change%area%value = 0.0_wp
       change%area%slope = point%area%value*share%slope
@@ -325,26 +328,26 @@ contains
   end subroutine append_share
 
   !> Reduce a share by what segments next to a segment take at convex vertices.
-  pure subroutine linearise_side(surface, segment, at, range, memory, other, point, share)
+  pure subroutine linearise_side(surface, segment, at, range, positions, other, point, share)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: segment
     integer, intent(in) :: at(3)         !! local number before the surface's first node; slots: of
                                          !! the segment's first node, of a node next to it
     real(wp), intent(in) :: range(2)     !! see `side_share`
-    type(contact_state_t), intent(in) :: memory
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     type(dual_t), intent(in) :: other(2) !! segment of the other surface
     type(linearised_point_t), intent(inout) :: point
     type(dual_t), intent(inout) :: share
     type(dual_t) :: own(2), beside(2), part
     integer :: next, held, k
 
-    own = difference(memory, point, at(2) + 1, at(2))
+    own = difference(positions, point, at(2) + 1, at(2))
     do k = 1, 2
       next = merge(surface%previous(segment), surface%next(segment), k == 1)
       if (next == 0) cycle
       held = point%nodes(at(3))
       point%nodes(at(3)) = at(1) + surface%segments(k, next)
-      beside = difference(memory, point, merge(at(2), at(3), k == 1), &
+      beside = difference(positions, point, merge(at(2), at(3), k == 1), &
         merge(at(3), at(2) + 1, k == 1))
       part = constant(1.0_wp)
       if (merge(-1.0_wp, 1.0_wp, k == 1)*(own(1)%value*beside(2)%value &
@@ -377,7 +380,8 @@ contains
     do i = 1, 2
       if (breakpoints(i) == 0) cycle
       point%nodes(4 + i) = memory%n_slave + breakpoints(i)
-      own = project(difference(memory, point, 4 + i, 1), difference(memory, point, 2, 1))
+      own = project(difference(memory%positions, point, 4 + i, 1), &
+        difference(memory%positions, point, 2, 1))
       if (abs(own%xi%value - xi(i)%value) <= round_off) xi(i) = own%xi
     end do
   end subroutine start_on_overlap

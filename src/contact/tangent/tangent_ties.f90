@@ -6,13 +6,12 @@
 !> grad d - d.n grad theta.
 module tangent_ties_m
   use assembly_m, only : product_t, start_product, add_at_node, finish_product
-  use contact_state_m, only : contact_state_t, n_side
+  use contact_state_m, only : contact_state_t, contact_points_t, n_side
   use dual_m, only : dual_t, variable, operator(+), operator(-), operator(*), operator(/), sqrt
   use kinds_m, only : wp
-  use law_state_m, only : is_held
+  use law_state_m, only : tie_memory_t, is_held
   use sparse_m, only : sparse_t, add_block
-  use tiebreak_m, only : has_state
-  use ties_m, only : tie_spring_t, tie_spring, tie_stiffness
+  use ties_m, only : tie_spring_t, tie_spring, has_state
   implicit none
   private
   public :: add_tie_tangent
@@ -39,21 +38,27 @@ contains
     integer, intent(in) :: s
     integer, intent(in), contiguous :: equations(:, :)
     type(sparse_t), intent(inout) :: matrix
-    real(wp) :: stretches(4, 2), block(4, 4), levers(2*size_of(memory, s), 4)
-    integer :: nodes(size_of(memory, s)), rows(2*size_of(memory, s))
+    real(wp) :: stretches(4, 2), block(4, 4), levers(2*size_of(memory%ties, s), 4)
+    integer :: nodes(size_of(memory%ties, s)), rows(2*size_of(memory%ties, s))
 
-    call linearise_spring(memory, s, stretches, block)
-    if (.not. memory%has%nodal_pressure .and. has_state(memory, s, is_held)) &
-      block = block + tie_stiffness(memory, s)*matmul(stretches, transpose(stretches))
-    call find_levers(memory, s, nodes, levers)
+    call linearise_spring(memory%ties, memory%tie_points, memory%positions, s, stretches, block)
+    associate (points => memory%tie_points, first => memory%ties%first(s), &
+      last => memory%ties%first(s + 1) - 1)
+      if (.not. memory%has%nodal_pressure .and. has_state(memory, s, [is_held])) block = block &
+        + sum(points%stiffness(first:last)*points%area(first:last)) &
+        *matmul(stretches, transpose(stretches))
+    end associate
+    call find_levers(memory%ties, memory%tie_points, s, nodes, levers)
     rows = reshape(equations(:, nodes), [size(rows)])
     call add_block(matrix, rows, rows, matmul(matmul(levers, block), transpose(levers)))
   end subroutine add_spring
 
   !> Gradients of both stretches of a spring by d and the vector of its segment (x and y of either),
   !> and derivatives of its forces on these with the loads held: of fn grad a + fs grad b.
-  pure subroutine linearise_spring(memory, s, stretches, block)
-    type(contact_state_t), intent(in) :: memory
+  pure subroutine linearise_spring(ties, points, positions, s, stretches, block)
+    type(tie_memory_t), intent(in) :: ties
+    type(contact_points_t), intent(in) :: points        !! of ties
+    real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     integer, intent(in) :: s
     real(wp), intent(out) :: stretches(4, 2) !! along n and t
     real(wp), intent(out) :: block(4, 4)
@@ -62,9 +67,8 @@ contains
     real(wp) :: fn, fs
     integer :: i
 
-    spring = tie_spring(memory, s)
-    associate (points => memory%tie_points, first => memory%ties%first(s), &
-      last => memory%ties%first(s + 1) - 1, side => memory%ties%side(s))
+    spring = tie_spring(ties, points, positions, s)
+    associate (first => ties%first(s), last => ties%first(s + 1) - 1, side => ties%side(s))
       fn = -sum(points%pressure(first:last)*points%area(first:last))
       fs = sum(points%traction(first:last)*points%area(first:last))
       d = variable(spring%d, [1, 2])
@@ -91,28 +95,22 @@ contains
     integer, intent(in), contiguous :: equations(:, :)
     type(sparse_t), intent(inout) :: matrix
     type(product_t) :: product
-    real(wp) :: areas(memory%n_slave)
     ! n_side p - 2 + k, 0 at the end:
     integer :: head(memory%n_slave), next(n_side, memory%tie_points%n)
     integer :: i, j, k, p, at
 
-    areas = 0.0_wp
     head = 0
-    associate (points => memory%tie_points)
+    associate (points => memory%tie_points, areas => memory%ties%area)
       do p = points%n, 1, -1
         do k = n_side, 1, -1
           i = points%slave_nodes(k, p)
-          areas(i) = areas(i) + points%slave_weights(k, p)*points%area(p)
           next(k, p) = head(i)
           head(i) = n_side*(p - 1) + k
         end do
       end do
       call start_product(product, size(equations, 2))
       do i = 1, memory%n_slave
-        if (.not. areas(i) > 0.0_wp) cycle
-        if (memory%has%breaks) then
-          if (memory%ties%state(i) /= is_held) cycle
-        end if
+        if (memory%ties%state(i) /= is_held) cycle
         do j = 1, 2
           at = head(i)
           do while (at > 0)
@@ -134,13 +132,13 @@ contains
     integer, intent(in) :: s, i
     real(wp), intent(in) :: part
     type(product_t), intent(inout) :: product
-    real(wp) :: stretches(4, 2), block(4, 4), levers(2*size_of(memory, s), 4)
-    real(wp) :: gradient(2*size_of(memory, s))
-    integer :: nodes(size_of(memory, s)), k
+    real(wp) :: stretches(4, 2), block(4, 4), levers(2*size_of(memory%ties, s), 4)
+    real(wp) :: gradient(2*size_of(memory%ties, s))
+    integer :: nodes(size_of(memory%ties, s)), k
 
     if (.not. abs(part) > 0.0_wp) return
-    call linearise_spring(memory, s, stretches, block)
-    call find_levers(memory, s, nodes, levers)
+    call linearise_spring(memory%ties, memory%tie_points, memory%positions, s, stretches, block)
+    call find_levers(memory%ties, memory%tie_points, s, nodes, levers)
     gradient = part*matmul(levers, stretches(:, i))
     do k = 1, size(nodes)
       associate (of_node => gradient(2*k - 1:2*k))
@@ -150,17 +148,18 @@ contains
   end subroutine add_stretch
 
   !> Nodes of a spring, some of them more than once: of its points, and of its segment.
-  pure function size_of(memory, s) result(n)
-    type(contact_state_t), intent(in) :: memory
+  pure function size_of(ties, s) result(n)
+    type(tie_memory_t), intent(in) :: ties
     integer, intent(in) :: s
     integer :: n
 
-    n = 2*n_side*(memory%ties%first(s + 1) - memory%ties%first(s)) + 2
+    n = 2*n_side*(ties%first(s + 1) - ties%first(s)) + 2
   end function size_of
 
   !> These, local numbers, and by how much d and the vector of the segment move with them.
-  pure subroutine find_levers(memory, s, nodes, levers)
-    type(contact_state_t), intent(in) :: memory
+  pure subroutine find_levers(ties, points, s, nodes, levers)
+    type(tie_memory_t), intent(in) :: ties
+    type(contact_points_t), intent(in) :: points !! of ties
     integer, intent(in) :: s
     integer, intent(out) :: nodes(:)
     real(wp), intent(out) :: levers(:, :) !! (x and y of each node, x and y of either)
@@ -169,8 +168,7 @@ contains
 
     weights = 0.0_wp
     n = 0
-    associate (points => memory%tie_points, first => memory%ties%first(s), &
-      last => memory%ties%first(s + 1) - 1)
+    associate (first => ties%first(s), last => ties%first(s + 1) - 1)
       do p = first, last
         nodes(n + 1:n + 2*n_side) = [points%slave_nodes(:, p), points%master_nodes(:, p)]
         weights(n + 1:n + 2*n_side, 1) = points%area(p)/sum(points%area(first:last)) &
@@ -178,7 +176,7 @@ contains
         n = n + 2*n_side
       end do
     end associate
-    nodes(n + 1:) = memory%ties%owner(:, s)
+    nodes(n + 1:) = ties%owner(:, s)
     weights(n + 1:, 2) = [-1.0_wp, 1.0_wp]
     levers = 0.0_wp
     do k = 1, 2

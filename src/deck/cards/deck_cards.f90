@@ -285,7 +285,7 @@ contains
     type(card_t) :: card
     integer :: k
 
-    call cut_again(deck, place, card, k)
+    call reread_card(deck, place, card, k)
     call field_error(deck, card, k, message)
   end subroutine reject_field
 
@@ -299,7 +299,7 @@ contains
     type(card_t) :: card
     integer :: k
 
-    call cut_again(deck, place, card, k)
+    call reread_card(deck, place, card, k)
     text = given_by(deck, place%line, k)//' '
     if (len(text) == 1) text = 'card '//to_text(card%number)//' field '//to_text(k)//' (' &
       //trim(card%names(k))//'): "'//field_text(deck, card, k)//'" '
@@ -308,7 +308,7 @@ contains
   end subroutine warn_of_field
 
   !> The card of a place, and the position of its field.
-  subroutine cut_again(deck, place, card, k)
+  subroutine reread_card(deck, place, card, k)
     type(deck_t), intent(inout) :: deck
     type(place_t), intent(in) :: place
     type(card_t), intent(out) :: card
@@ -319,6 +319,6 @@ contains
     call cut_card(deck, cursor%specs(place%card), cursor%source, place%line, card)
     k = place%field
     if (len_trim(place%name) > 0) k = field_number(card%names, place%name)
-  end subroutine cut_again
+  end subroutine reread_card
 
 end module deck_cards_m

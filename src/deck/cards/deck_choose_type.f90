@@ -12,7 +12,7 @@ module deck_choose_type_m
   use log_m, only : to_text
   use model_m, only : model_t
   use text_m, only : shortest
-  use type_charts_m, only : scene_bound, scene_matching, scene_general, scene_led, &
+  use type_charts_m, only : scene_bound, scene_matching, scene_general, scene_sliding, &
     scene_friction, scene_names, estimates, cheapest_type
   implicit none
   private
@@ -21,7 +21,7 @@ module deck_choose_type_m
   !> By how much faces that are flat may be uneven, and nodes that match be apart, over a segment.
   real(wp), parameter :: exactly = 1.0e-6_wp
   !> Part of a motion along faces from which on they are led along each other.
-  real(wp), parameter :: aside = 0.1_wp
+  real(wp), parameter :: sliding_share = 0.1_wp
   !> The target where none is given: types above it have lost the surface.
   real(wp), parameter :: default_target = 0.1_wp
 
@@ -82,11 +82,11 @@ contains
         scene = scene_bound
       else if (has_friction(contact)) then
         scene = scene_friction
-      else if (any(abs(along(given%motions%direction)) > aside) &
+      else if (any(abs(along(given%motions%direction)) > sliding_share) &
         .or. any(abs(along(pack([given%rigid_motions%direction], &
-        given%rigid_motions%direction <= 2))) > aside)) then
+        given%rigid_motions%direction <= 2))) > sliding_share)) then
         ! A prescribed motion, of nodes or rigid bodies, leads along the faces.
-        scene = scene_led
+        scene = scene_sliding
       else if (is_at_rest(model, contact, along) .and. match(model, contact, along)) then
         scene = scene_matching
       else
@@ -104,7 +104,7 @@ contains
     case (scene_friction)
       contact%contact_type = type_segmented_mortar
       contact%reason = 'with friction its force is the smoothest'
-    case (scene_led)
+    case (scene_sliding)
       contact%contact_type = type_segmented_mortar
       contact%reason = 'a motion leads along the faces, and its force is the smoothest'
     case (scene_matching)
@@ -154,19 +154,19 @@ contains
     integer :: i
 
     associate (given => model%conditions)
-      at_rest = .not. (any(abs(along(given%nodal_loads%direction)) > aside) &
-        .or. any(abs(along(given%body_loads%direction)) > aside))
+      at_rest = .not. (any(abs(along(given%nodal_loads%direction)) > sliding_share) &
+        .or. any(abs(along(given%body_loads%direction)) > sliding_share))
       if (allocated(given%rigid_loads)) at_rest = at_rest .and. size(given%rigid_loads) == 0
       do i = 1, size(given%pressures)
         associate (ends => model%mesh%coordinates(:, given%pressures(i)%nodes))
           ! A pressure acts across its edge.
           at_rest = at_rest .and. abs(along(2)*(ends(1, 2) - ends(1, 1)) &
-            - along(1)*(ends(2, 2) - ends(2, 1))) <= aside*norm2(ends(:, 2) - ends(:, 1))
+            - along(1)*(ends(2, 2) - ends(2, 1))) <= sliding_share*norm2(ends(:, 2) - ends(:, 1))
         end associate
       end do
       do i = 1, size(model%rigids)
         if (model%rigids(i)%has_velocity) at_rest = at_rest .and. abs(dot_product( &
-          model%rigids(i)%velocity(1:2), along)) <= aside*norm2(model%rigids(i)%velocity)
+          model%rigids(i)%velocity(1:2), along)) <= sliding_share*norm2(model%rigids(i)%velocity)
       end do
       if (.not. allocated(given%initial_velocity)) return
       v = sum(given%initial_velocity(:, contact%slave%nodes), 2)/size(contact%slave%nodes) &
@@ -183,8 +183,8 @@ contains
     type(contact_t), intent(in) :: contact
     real(wp), intent(in) :: along(2)
     logical :: match
-    real(wp) :: across(2), apart(2), tolerance, gap
-    integer :: i, k, former
+    real(wp) :: across(2), separation(2), tolerance, gap
+    integer :: i, k, previous
 
     match = .false.
     if (.not. norm2(along) > 0.0_wp) return
@@ -194,17 +194,17 @@ contains
       tolerance = exactly*norm2(x(:, slave(size(slave))) - x(:, slave(1)))/size(slave)
       k = size(master)
       do i = 1, size(slave)
-        former = k
+        previous = k
         do while (k > 1)
           if (.not. dot_product(x(:, master(k)) - x(:, slave(i)), along) < -tolerance) exit
           k = k - 1
         end do
-        apart = x(:, master(k)) - x(:, slave(i))
-        if (i == 1) gap = dot_product(apart, across)
+        separation = x(:, master(k)) - x(:, slave(i))
+        if (i == 1) gap = dot_product(separation, across)
         ! Nodes of a finer master between would get no force.
-        if (i > 1 .and. k /= former - 1) return
-        if (abs(dot_product(apart, along)) > tolerance) return
-        if (abs(dot_product(apart, across) - gap) > tolerance) return
+        if (i > 1 .and. k /= previous - 1) return
+        if (abs(dot_product(separation, along)) > tolerance) return
+        if (abs(dot_product(separation, across) - gap) > tolerance) return
         if (abs(dot_product(x(:, slave(i)) - x(:, slave(1)), across)) > tolerance) return
       end do
     end associate

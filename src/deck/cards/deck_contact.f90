@@ -18,9 +18,10 @@ module deck_contact_m
     report_field, reject_field, warn_of_field
   use deck_edits_m, only : given_number, set_field, rewrite_block
   use deck_ids_m, only : a_curve
-  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, place_of, take_life, find_id
-  use deck_friction_m, only : default_friction_t, take_friction, take_stock_friction, &
-    take_penalty_friction, warn_of_rule
+  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, place_of, read_active_time, &
+    find_id
+  use deck_friction_m, only : default_friction_t, read_friction, read_stock_friction, &
+    read_penalty_friction, warn_of_rule
   use deck_overrides_m, only : contact_names, find_word, edit_contact
   implicit none
   private
@@ -38,8 +39,8 @@ module deck_contact_m
 
   !> Fields of the two sides, of the times between which an interface acts.
   character(5), parameter :: side_fields(2) = ['SURFA', 'SURFB']
-  character(6), parameter :: life(2) = ['TBIRTH', 'TDEATH']
-  character(*), parameter :: our_own = 'CONTACT_2D_SLIDELINE', &
+  character(6), parameter :: active_time(2) = ['TBIRTH', 'TDEATH']
+  character(*), parameter :: slideline_keyword = 'CONTACT_2D_SLIDELINE', &
     transducer = 'CONTACT_2D_FORCE_TRANSDUCER'
   !> How near to 0 and 1 the ends of a curve of interference must be: that is round-off of factors.
   real(wp), parameter :: round_off = 1.0e-12_wp
@@ -64,7 +65,7 @@ contains
 
     n_error = deck%report%n_error
     call read_number(deck, entry, cursor)
-    is_stock = deck%blocks(entry%block)%name /= our_own
+    is_stock = deck%blocks(entry%block)%name /= slideline_keyword
     if (deck%blocks(entry%block)%name == transducer) then
       call read_cards(deck, kinds, model, default, entry)
       return
@@ -72,9 +73,9 @@ contains
     if (any([(find_word(deck, trim(contact_names(k)), entry%contact%id) > 0, k=1, &
       size(contact_names))])) then
       if (is_stock) then
-        call leave_negatives(deck, entry%block, entry%contact%id)
+        call blank_negatives(deck, entry%block, entry%contact%id)
         call read_cards(deck, kinds, model, default, entry)
-        if (deck%report%n_error == n_error) call write_as_ours(deck, entry)
+        if (deck%report%n_error == n_error) call write_as_slideline(deck, entry)
       end if
       if (deck%report%n_error == n_error) call edit_contact(deck, entry%block, entry%contact%id)
     end if
@@ -123,26 +124,26 @@ contains
     call check_rest(deck, cursor)
     name = trim(deck%blocks(entry%block)%name)
     associate (contact => entry%contact, cards => entry%cards)
-      call take_sides(deck, name, entry)
+      call read_sides(deck, name, entry)
       if (name == transducer) return
       contact%contact_type = stock_type(name)
       contact%largest_turn = usual_turn
       select case (name)
-      case (our_own)
-        call take_slideline(deck, cards, contact)
-        call take_interference(deck, cards(3), model, contact)
-        call take_tie(deck, cards, contact)
-        call take_friction(cards, contact%friction, place)
+      case (slideline_keyword)
+        call read_slideline(deck, cards, contact)
+        call read_interference(deck, cards(3), model, contact)
+        call read_tie(deck, cards, contact)
+        call read_friction(cards, contact%friction, place)
       case ('CONTACT_2D_PENALTY', 'CONTACT_2D_PENALTY_FRICTION', 'CONTACT_2D_SLIDING_VOIDS', &
           'CONTACT_2D_TIED_SLIDING')
-        call take_penalty(deck, entry)
-        if (cursor%n_card > 2) call take_penalty_friction(deck, cards(3), contact%friction, place)
+        call read_penalty(deck, entry)
+        if (cursor%n_card > 2) call read_penalty_friction(deck, cards(3), contact%friction, place)
       case default
-        call take_automatic(deck, cards, contact)
+        call read_automatic(deck, cards, contact)
         if (index(name, '_TIED') > 0) then
-          contact%tie_reach = real_of(cards(3), 'TIEDGAP')
+          contact%tie_distance = real_of(cards(3), 'TIEDGAP')
         else
-          call take_stock_friction(cards, default, contact%friction, place)
+          call read_stock_friction(cards, default, contact%friction, place)
         end if
       end select
       if (index(name, '_TIED') > 0) then
@@ -156,7 +157,7 @@ contains
       end if
       entry%friction_line = place%line
       call check_tie(deck, deck%blocks(entry%block)%keyword, contact)
-      if (name == our_own) call check_slideline(deck, cards, kinds, contact)
+      if (name == slideline_keyword) call check_slideline(deck, cards, kinds, contact)
     end associate
   end subroutine read_cards
 
@@ -186,7 +187,7 @@ contains
 
   !> SURFA and SURFB. A surface with itself is a part set: our keyword says so by SURFB 0, those of
   !> a single surface by their name.
-  subroutine take_sides(deck, name, entry)
+  subroutine read_sides(deck, name, entry)
     type(deck_t), intent(inout) :: deck
     character(*), intent(in) :: name !! of the keyword
     type(contact_cards_t), intent(inout) :: entry
@@ -198,23 +199,23 @@ contains
     of_itself = ''
     associate (card => entry%cards(1), is_self => entry%contact%is_self)
       is_self = is_single
-      if (name == our_own) is_self = integer_of(card, 'SURFA') > 0 &
+      if (name == slideline_keyword) is_self = integer_of(card, 'SURFA') > 0 &
         .and. integer_of(card, 'SURFB') == 0 .and. .not. is_bad(card, 'SURFB')
       if (is_single .and. integer_of(card, 'SURFA') < 0) call report_field(deck, card, 'SURFA', &
         'is not a part set (more than 0): contact of a surface with itself is that of whole ' &
         //'outlines')
       do k = 1, merge(1, 2, name == transducer .or. is_self)
-        if (k == 2 .and. name == our_own) of_itself = '; SURFA with itself (0) only where that ' &
-          //'is a part set'
+        if (k == 2 .and. name == slideline_keyword) of_itself = &
+          '; SURFA with itself (0) only where that '//'is a part set'
         if (integer_of(card, side_fields(k)) == 0) call report_field(deck, card, side_fields(k), &
           'is not a surface (more than 0: part set, less than 0: node set)'//of_itself)
         if (.not. is_bad(card, side_fields(k))) entry%sides(k) = integer_of(card, side_fields(k))
       end do
     end associate
-  end subroutine take_sides
+  end subroutine read_sides
 
   !> *CONTACT_2D_SLIDELINE. VDC is per cent until all is read.
-  subroutine take_slideline(deck, cards, contact)
+  subroutine read_slideline(deck, cards, contact)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: cards(:)
     type(contact_t), intent(inout) :: contact
@@ -226,7 +227,7 @@ contains
     contact%penalty_unit = integer_of(cards(2), 'PUNIT')
     contact%master_penalty = contact%penalty
     if (real_of(cards(2), 'PENT') > 0.0_wp) contact%master_penalty = real_of(cards(2), 'PENT')
-    call take_life(deck, cards(2), life, contact%birth, contact%death)
+    call read_active_time(deck, cards(2), active_time, contact%birth, contact%death)
     contact%damping = real_of(cards(2), 'VDC')
     contact%strict = integer_of(cards(2), 'IPF') == 1
     if (.not. is_bad(cards(2), 'FREQ')) contact%search_interval = integer_of(cards(2), 'FREQ')
@@ -238,10 +239,10 @@ contains
     case (-1); contact%largest_turn = 0.0_wp
     case (1:89); contact%largest_turn = integer_of(cards(3), 'SMOOTH')*degree
     end select
-  end subroutine take_slideline
+  end subroutine read_slideline
 
   !> LCINT: the curve by which an initial overlap grows, which must lead from 0 to 1.
-  subroutine take_interference(deck, card, model, contact)
+  subroutine read_interference(deck, card, model, contact)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     type(model_t), intent(in) :: model
@@ -286,10 +287,10 @@ contains
       call reject_field(deck, place_of(card, 'LCINT'), 'is a curve of interference that '//what)
     end subroutine refuse
 
-  end subroutine take_interference
+  end subroutine read_interference
 
   !> *CONTACT_2D_AUTOMATIC_: penalty as a factor on the built-in estimate.
-  subroutine take_automatic(deck, cards, contact)
+  subroutine read_automatic(deck, cards, contact)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: cards(:)
     type(contact_t), intent(inout) :: contact
@@ -298,13 +299,13 @@ contains
     contact%penalty = real_of(cards(1), 'SFACT')
     contact%master_penalty = contact%penalty
     if (.not. is_bad(cards(1), 'FREQ')) contact%search_interval = integer_of(cards(1), 'FREQ')
-    call take_life(deck, cards(2), life, contact%birth, contact%death)
+    call read_active_time(deck, cards(2), active_time, contact%birth, contact%death)
     contact%damping = real_of(cards(3), 'VDC')
-  end subroutine take_automatic
+  end subroutine read_automatic
 
   !> *CONTACT_2D_PENALTY and its kin with friction: node sets, written with a positive number there;
   !> PEN is the factor on the built-in estimate that the others multiply from SFACT and SLSFAC.
-  subroutine take_penalty(deck, entry)
+  subroutine read_penalty(deck, entry)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(inout) :: entry
     integer :: k
@@ -318,9 +319,9 @@ contains
       end do
       contact%penalty = real_of(cards(2), 'PEN')/0.1_wp
       contact%master_penalty = contact%penalty
-      call take_life(deck, cards(1), life, contact%birth, contact%death)
+      call read_active_time(deck, cards(1), active_time, contact%birth, contact%death)
     end associate
-  end subroutine take_penalty
+  end subroutine read_penalty
 
   !> Rules of the type and the penalty of *CONTACT_2D_SLIDELINE; PUNIT 4 has a PEN where that is
   !> blank.
@@ -330,19 +331,19 @@ contains
     type(contact_kind_t), intent(in) :: kinds(:)
     type(contact_t), intent(inout) :: contact
     character(:), allocatable :: name
-    logical :: leaves_penalty
+    logical :: lacks_penalty
 
     name = 'type '//to_text(contact%contact_type)
     if (any(kinds%number == contact%contact_type)) &
       name = kind_text(kinds(findloc(kinds%number, contact%contact_type, 1)))
     if (contact%penalty_unit == penalty_implicit .and. .not. abs(contact%penalty) > 0.0_wp) &
       contact%penalty = implicit_factor
-    leaves_penalty = type_chosen == contact%contact_type .and. .not. abs(contact%penalty) > 0.0_wp &
+    lacks_penalty = type_chosen == contact%contact_type .and. .not. abs(contact%penalty) > 0.0_wp &
       .and. contact%penalty_unit /= penalty_distributed
     if (.not. any([type_chosen, kinds%number] == contact%contact_type)) call report_field(deck, &
       cards(1), 'CTYPE', 'is not a contact type'//kind_names(kinds))
     if (contact%penalty <= 0.0_wp .and. contact%penalty_unit /= penalty_implicit &
-      .and. .not. leaves_penalty) call report_field(deck, cards(1), 'PEN', &
+      .and. .not. lacks_penalty) call report_field(deck, cards(1), 'PEN', &
       'is not a penalty (more than 0)')
     if (contact%penalty_unit == penalty_implicit .and. any(kinds%number == contact%contact_type &
       .and. .not. kinds%has_implicit_springs)) call report_field(deck, cards(2), 'PUNIT', &
@@ -360,15 +361,15 @@ contains
   !> *CONTACT_2D_SLIDELINE: with TIE 1 or 2 SRCH is the reach of the tie. Without PEN its penalty is
   !> the factor of the program where the unit is a factor, or not given (blank and 0 are the same);
   !> PENT stays where it is given.
-  subroutine take_tie(deck, cards, contact)
+  subroutine read_tie(deck, cards, contact)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: cards(:)
     type(contact_t), intent(inout) :: contact
 
-    call take_strength(deck, cards(3), contact)
+    call read_strength(deck, cards(3), contact)
     if (.not. any(integer_of(cards(3), 'TIE') == [tie_always, tie_breaks])) return
     contact%tie = integer_of(cards(3), 'TIE')
-    contact%tie_reach = contact%search_depth
+    contact%tie_distance = contact%search_depth
     contact%search_depth = 0.0_wp
     if (abs(contact%penalty) > 0.0_wp) return
     if (all(contact%penalty_unit /= [penalty_factor, penalty_per_node])) return
@@ -381,10 +382,10 @@ contains
     end if
     contact%penalty_unit = penalty_factor
     contact%penalty = tie_factor
-  end subroutine take_tie
+  end subroutine read_tie
 
   !> NFLS and SFLS: both, where ties break.
-  subroutine take_strength(deck, card, contact)
+  subroutine read_strength(deck, card, contact)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     type(contact_t), intent(inout) :: contact
@@ -403,7 +404,7 @@ contains
         contact%strength(k) = 0.0_wp
       end if
     end do
-  end subroutine take_strength
+  end subroutine read_strength
 
   !> What ties do not have: an error, or without effect. Ties that break have damping, friction and
   !> FREQ of contact where they have failed.
@@ -412,7 +413,7 @@ contains
     integer, intent(in) :: line !! of the keyword
     type(contact_t), intent(inout) :: contact
     character(4), parameter :: fields(6) = [character(4) :: 'FS', 'FD', 'DC', 'VC', 'TFAC', 'FREQ']
-    character(:), allocatable :: what, useless
+    character(:), allocatable :: what, ignored
     type(friction_rule_t) :: none
     logical :: is_given(size(fields))
     integer :: k
@@ -432,18 +433,18 @@ contains
       is_given = abs([rule%at_rest, rule%sliding - rule%at_rest, rule%decay, rule%most, &
         rule%stiffness - none%stiffness, real(contact%search_interval, wp)]) > 0.0_wp
     end associate
-    useless = ''
+    ignored = ''
     do k = 1, size(fields)
-      if (is_given(k)) useless = useless//', '//trim(fields(k))
+      if (is_given(k)) ignored = ignored//', '//trim(fields(k))
     end do
     if (any(is_given)) call line_warning(deck, line, 'friction of a tie'//to_text(contact%id), &
-      what//': '//useless(3:)//' of contact that opens has no effect')
+      what//': '//ignored(3:)//' of contact that opens has no effect')
     contact%friction = friction_rule_t()
     contact%search_interval = 0
   end subroutine check_tie
 
   !> Fields of a stock card that are below 0 and that the command line replaces are left blank.
-  subroutine leave_negatives(deck, i_block, id)
+  subroutine blank_negatives(deck, i_block, id)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
     integer, intent(in) :: id
@@ -458,10 +459,10 @@ contains
       call given_number(deck, i_block, trim(fields(k)), value)
       if (value < 0.0_wp) call set_field(deck, i_block, trim(fields(k)), '')
     end do
-  end subroutine leave_negatives
+  end subroutine blank_negatives
 
   !> Write a stock card as *CONTACT_2D_SLIDELINE. What is as without a field is left blank.
-  subroutine write_as_ours(deck, entry)
+  subroutine write_as_slideline(deck, entry)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
     character(*), parameter :: end_of_line = new_line('a')
@@ -479,7 +480,7 @@ contains
       text = text//end_of_line//shortest(c%birth)//','//shortest(c%death)//',' &
         //to_text(c%penalty_unit)//','//shortest(c%master_penalty)//','//shortest(c%damping) &
         //','//to_text(merge(1, 0, c%strict))//','//to_text(c%search_interval)//',' &
-        //shortest(merge(c%tie_reach, c%search_depth, is_tied(c)))//end_of_line
+        //shortest(merge(c%tie_distance, c%search_depth, is_tied(c)))//end_of_line
       third = ''
       if (is_tied(c)) then
         third = '0,1,'//to_text(c%tie)//end_of_line
@@ -487,8 +488,8 @@ contains
         third = shortest(rule%most)//','//shortest(rule%stiffness)//end_of_line
       end if
     end associate
-    call rewrite_block(deck, entry%block, our_own, text//third)
-  end subroutine write_as_ours
+    call rewrite_block(deck, entry%block, slideline_keyword, text//third)
+  end subroutine write_as_slideline
 
   !> ` (1 name, 2 name, ...)`.
   pure function kind_names(kinds) result(text)

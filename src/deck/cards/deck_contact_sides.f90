@@ -22,18 +22,19 @@ module deck_contact_sides_m
   use sorting_m, only : distinct, place_among
   implicit none
   private
-  public :: outline_t, elements_of, find_side, set_nodes, mark_surface, find_surface, check_overlap
+  public :: mesh_outline_t, elements_of, find_side, set_nodes, mark_surface, find_surface, &
+    check_overlap
 
   !> Where surfaces are looked for. Of a mesh some elements of which are refused those are made that
   !> have no nodes of them: mistakes that do not follow from theirs are told in the same pass.
-  type :: outline_t
+  type :: mesh_outline_t
     type(boundary_t) :: outside
     logical :: is_sound = .true.        !! no element is refused
-    logical, allocatable :: in_doubt(:) !! (n_node) refused elements have them
+    logical, allocatable :: is_uncertain(:) !! (n_node) refused elements have them
     logical, allocatable :: is_whole(:) !! of each node set: all its nodes exist
     integer, allocatable :: elements(:) !! (n_element) by their parts, and in rising order
     integer, allocatable :: ends(:)     !! (0:parts) where those of each part end
-  end type outline_t
+  end type mesh_outline_t
 
   !> What a side is given by.
   integer, parameter :: side_none = 0, side_parts = 1, side_nodes = 2, side_segments = 3
@@ -44,7 +45,7 @@ contains
 
   !> The elements of some parts, in rising order.
   pure function elements_of(body, parts) result(elements)
-    type(outline_t), intent(in) :: body
+    type(mesh_outline_t), intent(in) :: body
     integer, intent(in) :: parts(:)
     integer, allocatable :: elements(:)
     integer :: i, n
@@ -86,7 +87,7 @@ contains
   subroutine mark_surface(deck, entry, body, model, is_on)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
-    type(outline_t), intent(in) :: body
+    type(mesh_outline_t), intent(in) :: body
     type(model_t), intent(in) :: model
     logical, intent(out) :: is_on(:)  !! (n_node)
     logical :: is_of_part(size(model%parts))
@@ -96,7 +97,7 @@ contains
     call find_side(deck, entry, 1, kind, found)
     if (kind == side_none) then
       call refuse_side(deck, entry, 1)
-    else if (.not. is_certain(body, model, kind, found)) then
+    else if (.not. is_known_surface(body, model, kind, found)) then
       return
     else if (kind == side_parts) then
       is_of_part = .false.
@@ -125,18 +126,18 @@ contains
     type(contact_cards_t), intent(in) :: entry
     integer, intent(in) :: side
     integer, parameter :: kinds(4) = [a_node_set, a_part_set, a_shell_set, a_part]
-    character(:), allocatable :: namesakes
+    character(:), allocatable :: same_ids
     integer :: found, k
 
-    namesakes = ''
+    same_ids = ''
     associate (id => entry%sides(side))
       do k = 1, size(kinds)
-        if (index_of(deck%maps(kinds(k)), abs(id)) > 0) namesakes = namesakes//', ' &
+        if (index_of(deck%maps(kinds(k)), abs(id)) > 0) same_ids = same_ids//', ' &
           //trim(kind_names(kinds(k)))//' '//to_text(abs(id))//' exists'
       end do
-      if (len(namesakes) > 0) namesakes(1:1) = ';'
+      if (len(same_ids) > 0) same_ids(1:1) = ';'
       if (id /= 0) call resolve_id(deck, merge(a_part_set, a_node_set, id > 0), abs(id), &
-        place_of(entry%cards(1), side_fields(side)), found, namesakes)
+        place_of(entry%cards(1), side_fields(side)), found, same_ids)
     end associate
   end subroutine refuse_side
 
@@ -146,7 +147,7 @@ contains
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
     integer, intent(in) :: side
-    type(outline_t), intent(in) :: body
+    type(mesh_outline_t), intent(in) :: body
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
     type(place_t) :: place
@@ -156,7 +157,7 @@ contains
     call find_side(deck, entry, side, kind, found)
     if (kind == side_none) then
       call refuse_side(deck, entry, side)
-    else if (is_certain(body, model, kind, found)) then
+    else if (is_known_surface(body, model, kind, found)) then
       select case (kind)
       case (side_parts)
         call surface_of_parts(deck, model%part_sets(found)%parts, place, body, model, surface)
@@ -182,19 +183,19 @@ contains
   end subroutine find_surface
 
   !> Whether no refused element has nodes of the surface.
-  pure function is_certain(body, model, kind, found)
-    type(outline_t), intent(in) :: body
+  pure function is_known_surface(body, model, kind, found)
+    type(mesh_outline_t), intent(in) :: body
     type(model_t), intent(in) :: model
     integer, intent(in) :: kind, found
-    logical :: is_certain
+    logical :: is_known_surface
 
-    is_certain = body%is_sound
-    if (is_certain .or. kind == side_parts) return
+    is_known_surface = body%is_sound
+    if (is_known_surface .or. kind == side_parts) return
     if (kind == side_segments) then
       if (allocated(model%segment_sets(found)%parts)) return
     end if
-    is_certain = .not. any(body%in_doubt(set_nodes(model, kind, found)))
-  end function is_certain
+    is_known_surface = .not. any(body%is_uncertain(set_nodes(model, kind, found)))
+  end function is_known_surface
 
   !> Chains of the edges of a segment set, in any order and walked either way.
   subroutine surface_of_segments(deck, set, place, outside, model, surface)
@@ -229,7 +230,7 @@ contains
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: parts(:)
     type(place_t), intent(in) :: place
-    type(outline_t), intent(in) :: body
+    type(mesh_outline_t), intent(in) :: body
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
     type(boundary_t) :: boundary
@@ -271,9 +272,9 @@ contains
     type(boundary_t), intent(in) :: outside
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
-    integer :: outcome, trouble(2)
+    integer :: outcome, bad_nodes(2)
 
-    call chain_surface(outside, nodes, surface, outcome, trouble)
+    call chain_surface(outside, nodes, surface, outcome, bad_nodes)
     select case (outcome)
     case (chain_turned)
       call line_warning(deck, place%line, 'turned'//to_text(place%line)//side_names(side), &
@@ -287,12 +288,12 @@ contains
       call reject_field(deck, place, 'is a set with fewer than two nodes, which is no surface')
     case (chain_repeated)
       call reject_field(deck, place, 'is a set with node ' &
-        //to_text(model%mesh%node_id(trouble(1)))//' in it twice')
+        //to_text(model%mesh%node_id(bad_nodes(1)))//' in it twice')
     case (chain_broken)
       call reject_field(deck, place, 'is a set whose nodes do not follow an outer edge of the ' &
         //'mesh: the first break is between nodes ' &
-        //to_text(model%mesh%node_id(trouble(1)))//' and ' &
-        //to_text(model%mesh%node_id(trouble(2))))
+        //to_text(model%mesh%node_id(bad_nodes(1)))//' and ' &
+        //to_text(model%mesh%node_id(bad_nodes(2))))
     end select
   end subroutine surface_of_nodes
 
@@ -302,7 +303,7 @@ contains
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
     type(surface_t), intent(in) :: sides(2)
-    type(outline_t), intent(in) :: body
+    type(mesh_outline_t), intent(in) :: body
     type(model_t), intent(in) :: model
     type(body_view_t) :: views(2)
     type(overlap_t) :: found(2)

@@ -15,13 +15,13 @@ module deck_contacts_m
   use deck_cards_m, only : reject_field, warn_of_field
   use deck_choose_type_m, only : choose_type
   use deck_contact_m, only : contact_cards_t, transducer, read_contact
-  use deck_contact_sides_m, only : outline_t, find_side, set_nodes, mark_surface, find_surface, &
-    check_overlap
+  use deck_contact_sides_m, only : mesh_outline_t, find_side, set_nodes, mark_surface, &
+    find_surface, check_overlap
   use deck_control_m, only : control_cards, warn_of_explicit
-  use deck_friction_m, only : default_friction_t, take_rule, warn_of_unused
-  use deck_loads_m, only : settle_pressures
+  use deck_friction_m, only : default_friction_t, read_friction_rule, warn_of_unused
+  use deck_loads_m, only : orient_pressures
   use deck_overrides_m, only : check_words
-  use deck_values_m, only : integer_of, real_of, has_field, place_of, refuse_again
+  use deck_values_m, only : integer_of, real_of, has_field, place_of, refuse_duplicates
   use sorting_m, only : place_among, sorted_order
   implicit none
   private
@@ -35,7 +35,7 @@ contains
     type(contact_kind_t), intent(in) :: kinds(:)          !! contact types that exist
     type(place_t), intent(in) :: places(:)                !! where each pressure load stands
     logical, intent(in) :: is_sound(:)                    !! (n_element) elements not refused
-    type(outline_t), intent(inout) :: body                !! gets the outer edges
+    type(mesh_outline_t), intent(inout) :: body                !! gets the outer edges
     type(model_t), intent(inout) :: model
     type(contact_cards_t), allocatable :: contacts(:), transducers(:)
     integer :: i
@@ -46,17 +46,17 @@ contains
         call check_implicit_method(deck, contacts(i))
       end do
     end if
-    call look_outside(deck, contacts, is_sound, model, body)
-    call settle_pressures(deck, places, body%outside, body%in_doubt, model)
+    call find_outer_edges(deck, contacts, is_sound, model, body)
+    call orient_pressures(deck, places, body%outside, body%is_uncertain, model)
     allocate (model%contacts(size(contacts)))
     do i = 1, size(contacts)
-      call take_surfaces(deck, body, model, contacts(i))
+      call build_surfaces(deck, body, model, contacts(i))
       model%contacts(i) = contacts(i)%contact
     end do
     if (body%is_sound) then
       if (model%erodes) call check_eroding_contacts(deck, contacts, model)
     end if
-    call take_transducers(deck, transducers, body, model)
+    call build_transducers(deck, transducers, body, model)
     if (body%is_sound .and. model%is_axisymmetric) then
       model%contacts%is_axisymmetric = .true.
       do i = 1, size(model%contacts)
@@ -91,8 +91,8 @@ contains
       model%controls%penalty_scale = real_of(cards(1), 'SLSFAC')
       model%controls%contact_step = integer_of(cards(2), 'ECDT')
       if (model%controls%implicit%is_on) call warn_of_explicit(deck, cards(2), 'ECDT')
-      call take_rule(cards(3), cards(3), ['SFRIC', 'DFRIC', 'EDC  ', 'VFC  '], default%rule, &
-        default%place)
+      call read_friction_rule(cards(3), cards(3), ['SFRIC', 'DFRIC', 'EDC  ', 'VFC  '], &
+        default%rule, default%place)
     end do
     blocks = blocks_of(deck, 'CONTACT_')
     measures = deck%blocks(blocks)%name == transducer
@@ -110,7 +110,7 @@ contains
       end if
       ids(i) = entry%contact%id
     end do
-    call refuse_again(deck, ids, [deck%blocks(blocks)%keyword], 'interface number ', &
+    call refuse_duplicates(deck, ids, [deck%blocks(blocks)%keyword], 'interface number ', &
       'interface (without a number it is the position in the deck)')
     call warn_of_unused(deck, default)
     call check_words(deck, pack(ids, .not. measures))
@@ -118,12 +118,12 @@ contains
 
   !> The outer edges between nodes of contact node and segment sets and of pressure loads, and the
   !> nodes of refused elements.
-  subroutine look_outside(deck, contacts, is_sound, model, body)
+  subroutine find_outer_edges(deck, contacts, is_sound, model, body)
     type(deck_t), intent(in) :: deck
     type(contact_cards_t), intent(in) :: contacts(:)
     logical, intent(in) :: is_sound(:)
     type(model_t), intent(in) :: model
-    type(outline_t), intent(inout) :: body
+    type(mesh_outline_t), intent(inout) :: body
     logical, allocatable :: among(:)
     integer :: i, k, n, kind, found
 
@@ -137,22 +137,22 @@ contains
     do i = 1, size(model%conditions%pressures)
       among(model%conditions%pressures(i)%nodes) = .true.
     end do
-    allocate (body%in_doubt(model%mesh%n_node), source=.not. (body%is_sound .or. any(is_sound)))
+    allocate (body%is_uncertain(model%mesh%n_node), source=.not. (body%is_sound .or. any(is_sound)))
     do i = 1, size(is_sound)
       if (body%is_sound .or. is_sound(i)) cycle
       do k = 1, 4
         n = model%mesh%element_nodes(k, i)
-        if (n > 0) body%in_doubt(n) = .true.
+        if (n > 0) body%is_uncertain(n) = .true.
       end do
     end do
     call find_boundary(model%mesh%element_nodes, is_sound, among, body%outside)
     call sort_by_part(model, body)
-  end subroutine look_outside
+  end subroutine find_outer_edges
 
   !> The elements of each part, so that an interface looks at its own alone. Part 0: not there.
   subroutine sort_by_part(model, body)
     type(model_t), intent(in) :: model
-    type(outline_t), intent(inout) :: body
+    type(mesh_outline_t), intent(inout) :: body
     integer :: i
 
     allocate (body%ends(0:size(model%parts)), source=0)
@@ -173,9 +173,9 @@ contains
 
   !> Give an interface its surfaces, with what is wrong with them and the type that the program
   !> chooses.
-  subroutine take_surfaces(deck, body, model, entry)
+  subroutine build_surfaces(deck, body, model, entry)
     type(deck_t), intent(inout) :: deck
-    type(outline_t), intent(in) :: body
+    type(mesh_outline_t), intent(in) :: body
     type(model_t), intent(in) :: model
     type(contact_cards_t), intent(inout) :: entry
     type(surface_t) :: sides(2)
@@ -197,7 +197,7 @@ contains
     call check_overlap(deck, entry, sides, body, model)
     ! The choice looks at conditions and materials: they have to be sound as well.
     if (deck%report%n_error == 0) call choose_type(deck, entry%block, model, entry%contact)
-  end subroutine take_surfaces
+  end subroutine build_surfaces
 
   !> A node may stand on one side of an interface only.
   subroutine check_common_nodes(deck, entry, sides, model)
@@ -224,10 +224,10 @@ contains
   end subroutine check_common_nodes
 
   !> Of each transducer the nodes that interfaces have: no others carry contact forces.
-  subroutine take_transducers(deck, entries, body, model)
+  subroutine build_transducers(deck, entries, body, model)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entries(:)
-    type(outline_t), intent(in) :: body
+    type(mesh_outline_t), intent(in) :: body
     type(model_t), intent(inout) :: model
     logical, allocatable :: touches(:), is_on(:) !! (n_node)
     integer :: i, k
@@ -253,7 +253,7 @@ contains
           //': it measures nothing')
       end associate
     end do
-  end subroutine take_transducers
+  end subroutine build_transducers
 
   !> What the implicit method asks of an interface: automatic and implicit penalties are made for
   !> explicit steps.
@@ -285,11 +285,11 @@ contains
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: contacts(:)
     type(model_t), intent(in) :: model
-    logical :: may_go(size(model%materials))
+    logical :: may_erode(size(model%materials))
     integer :: i, m
 
     do m = 1, size(model%materials)
-      may_go(m) = allocated(model%materials(m)%erosion)
+      may_erode(m) = allocated(model%materials(m)%erosion)
     end do
     do i = 1, size(contacts)
       associate (contact => contacts(i)%contact)
@@ -309,7 +309,7 @@ contains
       integer, intent(in) :: elements(:)
       logical :: touches
 
-      touches = any(may_go(model%parts(model%mesh%element_part(elements))%material))
+      touches = any(may_erode(model%parts(model%mesh%element_part(elements))%material))
     end function touches
 
   end subroutine check_eroding_contacts
@@ -345,7 +345,7 @@ contains
     type(contact_cards_t), intent(in) :: contacts(:)
     type(model_t), intent(in) :: model
     integer, parameter :: most = 4 !! owners of a node that are known
-    integer, allocatable :: owners(:, :), told(:), nodes(:), others(:)
+    integer, allocatable :: owners(:, :), reported(:), nodes(:), others(:)
     character(:), allocatable :: name
     integer :: i, k, n, free, n_contact, n_wall
 
@@ -356,7 +356,7 @@ contains
     if (allocated(model%conditions%common_motions)) n = n + size(model%conditions%common_motions)
     allocate (owners(most, model%mesh%n_node), source=0)
     do i = 1, n
-      call know_owner(i, nodes, name)
+      call get_owner(i, nodes, name)
       do k = 1, size(nodes)
         free = findloc(owners(:, nodes(k)), 0, 1)
         if (free > 0) owners(free, nodes(k)) = i
@@ -364,14 +364,14 @@ contains
     end do
     do i = 1, size(contacts)
       if (contacts(i)%contact%penalty_unit /= penalty_implicit) cycle
-      told = [0, i]
-      call know_owner(i, nodes, name)
+      reported = [0, i]
+      call get_owner(i, nodes, name)
       do k = 0, most*size(nodes) - 1
         associate (node => nodes(1 + k/most), owner => owners(1 + modulo(k, most), &
           nodes(1 + k/most)))
-          if (any(told == owner)) cycle
-          told = [told, owner]
-          call know_owner(owner, others, name)
+          if (any(reported == owner)) cycle
+          reported = [reported, owner]
+          call get_owner(owner, others, name)
           call refuse(deck, contacts(i), 'share no nodes with others: node ' &
             //to_text(model%mesh%node_id(node))//' belongs to '//name//' too')
         end associate
@@ -382,7 +382,7 @@ contains
 
     !> Nodes and name of an owner: interfaces come first, then walls, sets of nodes that move alike,
     !> supports.
-    subroutine know_owner(owner, nodes, name)
+    subroutine get_owner(owner, nodes, name)
       integer, intent(in) :: owner
       integer, allocatable, intent(out) :: nodes(:)
       character(:), allocatable, intent(out) :: name
@@ -401,7 +401,7 @@ contains
         if (allocated(model%conditions%skew_supports)) nodes = model%conditions%skew_supports%node
         name = 'a support along neither x nor y'
       end if
-    end subroutine know_owner
+    end subroutine get_owner
 
   end subroutine check_shared_nodes
 
@@ -411,12 +411,13 @@ contains
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: contacts(:)
     type(model_t), intent(in) :: model
-    integer, allocatable :: body_of(:), n_press(:), last(:)
+    integer, allocatable :: body_of(:), n_interface(:), last(:)
     integer :: i, k, pass
 
-    allocate (body_of(model%mesh%n_node), n_press(0:size(model%rigids)), last(0:size(model%rigids)))
+    allocate (body_of(model%mesh%n_node), n_interface(0:size(model%rigids)), &
+      last(0:size(model%rigids)))
     body_of = 0
-    n_press = 0
+    n_interface = 0
     do k = 1, size(model%rigids)
       if (.not. all(model%rigids(k)%is_fixed)) body_of(model%rigids(k)%nodes) = k
     end do
@@ -430,8 +431,8 @@ contains
             associate (body => body_of(nodes(k)))
               if (last(body) == i) cycle
               last(body) = i
-              if (pass == 1) n_press(body) = n_press(body) + 1
-              if (pass == 2 .and. n_press(body) > 1) call refuse(deck, contacts(i), &
+              if (pass == 1) n_interface(body) = n_interface(body) + 1
+              if (pass == 2 .and. n_interface(body) > 1) call refuse(deck, contacts(i), &
                 'share no rigid body that may move: part ' &
                 //to_text(model%parts(model%rigids(body)%part)%id) &
                 //' is pressed by another interface of PUNIT 4 too')

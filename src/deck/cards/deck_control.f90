@@ -7,7 +7,8 @@ module deck_control_m
   use text_m, only : upper_case
   use units_m, only : units_t, find_unit, set_force
   use controls_m, only : controls_t, interval_t, is_asked, length_by_side, length_by_diagonal, &
-    end_condition_t, end_node_place, end_node_touch, end_body_place, end_body_way, end_contact
+    end_condition_t, end_node_coordinate, end_node_contact, end_body_displacement, &
+    end_body_distance, end_contact
   use curves_m, only : curve_t
   use parts_m, only : hourglass_t
   use model_m, only : model_t
@@ -94,10 +95,10 @@ contains
         call control_cards(deck, blocks(i), cards)
         select case (name)
         case ('CONTROL_TERMINATION')
-          call take_termination(deck, cards(1), model%controls)
+          call read_termination(deck, cards(1), model%controls)
         case ('CONTROL_TIMESTEP')
           step = cards(1)
-          call take_timestep(deck, step, model%controls)
+          call read_timestep(deck, step, model%controls)
         case ('CONTROL_HOURGLASS')
           call hourglass_form(deck, cards(1), 'IHQ', hourglass%form)
           call hourglass_coefficient(deck, cards(1), 'QH', hourglass%coefficient)
@@ -106,7 +107,7 @@ contains
           hourglass%quadratic = real_of(cards(1), 'Q1')
           hourglass%linear = real_of(cards(1), 'Q2')
         case ('CONTROL_UNITS')
-          call take_units(deck, cards(1), model%controls%units)
+          call read_units(deck, cards(1), model%controls%units)
         case ('CONTROL_OUTPUT')
           model%controls%output%status_interval = integer_of(cards(1), 'IKEDIT')
         end select
@@ -120,7 +121,7 @@ contains
   end subroutine read_controls
 
   !> *CONTROL_TERMINATION.
-  subroutine take_termination(deck, card, controls)
+  subroutine read_termination(deck, card, controls)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
     type(controls_t), intent(inout) :: controls
@@ -135,10 +136,10 @@ contains
       deck%blocks(block_of_line(deck, card%line))%keyword, 'implicit step floor', &
       'DTMIN has no effect with the implicit method; DTMIN of *CONTROL_IMPLICIT_AUTO is its ' &
       //'shortest step')
-  end subroutine take_termination
+  end subroutine read_termination
 
   !> *CONTROL_TIMESTEP.
-  subroutine take_timestep(deck, card, controls)
+  subroutine read_timestep(deck, card, controls)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
     type(controls_t), intent(inout) :: controls
@@ -154,7 +155,7 @@ contains
     controls%length_rule = merge(length_by_diagonal, length_by_side, integer_of(card, 'ISDO') == 1)
     controls%mass_step = real_of(card, 'DT2MS')
     controls%masses_stay = integer_of(card, 'MS1ST') == 1
-  end subroutine take_timestep
+  end subroutine read_timestep
 
   !> The curve that caps the step, and rules of the step, from the card or from a word.
   subroutine check_step(deck, card, model)
@@ -185,7 +186,7 @@ contains
   end subroutine check_step
 
   !> *CONTROL_UNITS: names for messages alone. A word that is not known leaves them without.
-  subroutine take_units(deck, card, units)
+  subroutine read_units(deck, card, units)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
     type(units_t), intent(out) :: units
@@ -207,7 +208,7 @@ contains
       values(k) = 0.0_wp
     end do
     if (all(values > 0.0_wp)) call set_force(values, units)
-  end subroutine take_units
+  end subroutine read_units
 
   !> *CONTROL_DYNAMIC_RELAXATION: whether the run begins with it, which curves may ask for too, and
   !> what may not be in it. All else of the model is known.
@@ -293,13 +294,13 @@ contains
     end do
     associate (output => model%controls%output)
       if (plans(output_plot)%line > 0) then
-        call take_interval(deck, 'LCDT', model%curves, plans(output_plot), output%plot)
+        call read_interval(deck, 'LCDT', model%curves, plans(output_plot), output%plot)
         k = integer_of(plans(output_plot), 'NPLTC')
         if (k > 0) output%plot%dt = model%controls%end_time/real(k, wp)
       end if
       do i = 1, n_table
         if (plans(i)%line == 0) cycle
-        call take_interval(deck, 'LCUR', model%curves, plans(i), output%histories(i))
+        call read_interval(deck, 'LCUR', model%curves, plans(i), output%histories(i))
         k = integer_of(plans(i), 'BINARY')
         output%histories(i)%is_text = k /= 2
         output%histories(i)%is_binout = k >= 2
@@ -309,7 +310,7 @@ contains
   end subroutine read_outputs
 
   !> Interval of one output file.
-  subroutine take_interval(deck, name, curves, card, interval)
+  subroutine read_interval(deck, name, curves, card, interval)
     type(deck_t), intent(inout) :: deck
     character(*), intent(in) :: name            !! of the field of its curve
     type(curve_t), intent(in) :: curves(:)
@@ -323,7 +324,7 @@ contains
     if (.not. minval(curves(interval%curve)%ordinate) > 0.0_wp) call line_error(deck, &
       card%line, 'curve '//to_text(integer_of(card, name)) &
       //' is an output interval and must be above 0 everywhere')
-  end subroutine take_interval
+  end subroutine read_interval
 
   !> A history that is asked for and has no file, for want of a keyword that says of what.
   subroutine warn_of_empty(deck, line, table, interval)
@@ -360,17 +361,17 @@ contains
     do while (next_of(deck, 'TERMINATION_', cursor, card))
       ending = end_condition_t()
       if (has_field(card, 'CID')) then
-        call take_contact(deck, card, model, ending)
+        call read_contact_end(deck, card, model, ending)
       else if (has_field(card, 'NID')) then
-        call take_bounds(deck, card, end_node_place, end_node_touch, ending)
+        call read_end_bounds(deck, card, end_node_coordinate, end_node_contact, ending)
         ending%id = integer_of(card, 'NID')
         call find_id(deck, a_node, card, 'NID', ending%where)
-        if (ending%kind == end_node_touch .and. ending%where > 0 .and. sound) then
+        if (ending%kind == end_node_contact .and. ending%where > 0 .and. sound) then
           if (.not. is_in_contact(model, ending%where)) call report_field(deck, card, 'NID', &
             'is no node of an interface')
         end if
       else
-        call take_bounds(deck, card, end_body_place, end_body_way, ending)
+        call read_end_bounds(deck, card, end_body_displacement, end_body_distance, ending)
         ending%id = integer_of(card, 'PID')
         call find_body(deck, card, model, '', ending%where)
       end if
@@ -381,7 +382,7 @@ contains
   end subroutine read_ends
 
   !> *TERMINATION_CONTACT.
-  subroutine take_contact(deck, card, model, ending)
+  subroutine read_contact_end(deck, card, model, ending)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     type(model_t), intent(in) :: model
@@ -399,10 +400,10 @@ contains
       call report_field(deck, card, 'CID', 'is an interface of a surface with itself, whose ' &
         //'forces cancel')
     end if
-  end subroutine take_contact
+  end subroutine read_contact_end
 
   !> Bounds of a node or a rigid body. A bound that is blank, of bodies also 0, does not count.
-  subroutine take_bounds(deck, card, along, other, ending)
+  subroutine read_end_bounds(deck, card, along, other, ending)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     integer, intent(in) :: along, other      !! kind of STOP 1 and 2, of STOP 4
@@ -411,17 +412,17 @@ contains
 
     ending%kind = merge(other, along, integer_of(card, 'STOP') == 4)
     if (ending%kind == along) ending%direction = integer_of(card, 'STOP')
-    if (ending%kind == end_node_touch .or. any(card%bad)) return
+    if (ending%kind == end_node_contact .or. any(card%bad)) return
     is_open = [is_blank(card, 'MAXC'), is_blank(card, 'MINC')]
-    if (along == end_body_place) is_open = is_open .or. [abs(real_of(card, 'MAXC')), &
+    if (along == end_body_displacement) is_open = is_open .or. [abs(real_of(card, 'MAXC')), &
       abs(real_of(card, 'MINC'))] <= 0.0_wp
-    if (ending%kind == end_body_way) is_open(2) = .true.
+    if (ending%kind == end_body_distance) is_open(2) = .true.
     if (all(is_open)) call report_field(deck, card, 'MAXC', 'is no bound, nor is MINC: ' &
       //'nothing would end the run')
     if (.not. is_open(1)) ending%most = real_of(card, 'MAXC')
     if (.not. is_open(2)) ending%least = real_of(card, 'MINC')
     if (ending%least >= ending%most) call report_field(deck, card, 'MINC', 'is not below MAXC')
-  end subroutine take_bounds
+  end subroutine read_end_bounds
 
   !> Whether some interface has the node.
   pure function is_in_contact(model, node) result(yes)

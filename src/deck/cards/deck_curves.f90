@@ -96,7 +96,8 @@ contains
           if (m == 1) table%curves(1) = of_block(k)
           if (m == n_value) table%curves(2) = of_block(k)
         end do
-        if (m < n_value .and. .not. deck%maps(a_curve)%lost) call line_error(deck, head%line, &
+        if (m < n_value .and. .not. deck%maps(a_curve)%has_refused) call line_error(deck, &
+          head%line, &
           'table '//to_text(integer_of(head, 'TBID'))//' has '//to_text(n_value)//' values but ' &
           //to_text(m)//' *DEFINE_CURVE right behind it: it takes one for each value, in that ' &
           //'order')
@@ -141,7 +142,7 @@ contains
   !> the side of the y axis.
   subroutine read_systems(deck)
     type(deck_t), intent(inout) :: deck
-    character(*), parameter :: leaves = 'takes the axes out of the plane of the model'
+    character(*), parameter :: out_of_plane = 'takes the axes out of the plane of the model'
     type(cursor_t) :: cursor
     type(card_t) :: card, more
     integer, allocatable :: blocks(:)
@@ -157,13 +158,13 @@ contains
       call define(deck, a_system, card, n)
       if (n == 0) cycle
       if (abs(real_of(more, 'ZP') - real_of(card, 'ZO')) > 0.0_wp) &
-        call report_field(deck, more, 'ZP', leaves)
+        call report_field(deck, more, 'ZP', out_of_plane)
       origin = reals_of(card, 'XO', 'YO')
       to_l = reals_of(card, 'XL', 'YL') - origin
       to_p = reals_of(more, 'XP', 'YP') - origin
       across = to_l(1)*to_p(2) - to_l(2)*to_p(1)
       if (abs(real_of(card, 'ZL') - real_of(card, 'ZO')) > 0.0_wp) then
-        call report_field(deck, card, 'ZL', leaves)
+        call report_field(deck, card, 'ZL', out_of_plane)
       else if (.not. norm2(to_l) > 0.0_wp) then
         call report_field(deck, card, 'XL', ': the point on the x axis is the origin')
       else if (.not. abs(across) > 0.0_wp) then

@@ -16,7 +16,7 @@ module deck_erosion_m
   public :: read_erosions
 
   !> Laws whose pressure can be lost.
-  integer, parameter :: can_go(6) = [law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
+  integer, parameter :: can_erode(6) = [law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
     law_hot_johnson_cook, law_null]
 
 contains
@@ -41,7 +41,7 @@ contains
         by_law = material%failure_strain < huge(1.0_wp)
         if (allocated(material%flow)) by_law = by_law .or. (material%flow%has_damage &
           .and. .not. material%flow%keeps_broken)
-        if ((by_law .or. by_step) .and. any(can_go == material%law) &
+        if ((by_law .or. by_step) .and. any(can_erode == material%law) &
           .and. .not. material%is_rigid) then
           if (.not. allocated(material%erosion)) allocate (material%erosion)
           material%erosion%by_law = by_law
@@ -77,7 +77,7 @@ contains
       call next_card(deck, cursor, i, cards(i))
     end do
     call check_rest(deck, cursor)
-    call take_criteria(deck, cards(1), cards(2), erosion)
+    call read_criteria(deck, cards(1), cards(2), erosion)
     erosion%least_step = max(0.0_wp, real_of(cards(5), 'DTMIN'))
     associate (card => cards(1), n_most => max(1, erosion%n_given))
       if (.not. is_bad(card, 'NUMFIP')) erosion%n_point = max(1, nint(real_of(card, 'NUMFIP')))
@@ -94,7 +94,7 @@ contains
     associate (material => model%materials(m))
       if (allocated(material%erosion)) then
         call report_field(deck, cards(1), 'MID', 'has criteria of erosion already')
-      else if (.not. any(can_go == material%law) .or. material%is_rigid) then
+      else if (.not. any(can_erode == material%law) .or. material%is_rigid) then
         call report_field(deck, cards(1), 'MID', &
           'is a material whose elements can not leave the mesh')
       else
@@ -115,30 +115,30 @@ contains
   end subroutine read_erosion
 
   !> Cards 1 and 2.
-  subroutine take_criteria(deck, card, more, erosion)
+  subroutine read_criteria(deck, card, more, erosion)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card, more
     type(erosion_t), intent(inout) :: erosion
 
-    call take(card, 'MXPRES', erosion%most_pressure)
-    call take(card, 'MNEPS', erosion%least_strain)
-    call take(card, 'EFFEPS', erosion%effective_strain)
+    call read_limit(card, 'MXPRES', erosion%most_pressure)
+    call read_limit(card, 'MNEPS', erosion%least_strain)
+    call read_limit(card, 'EFFEPS', erosion%effective_strain)
     if (is_given(card, 'VOLEPS')) then
-      if (real_of(card, 'VOLEPS') > 0.0_wp) call take(card, 'VOLEPS', erosion%most_volume)
-      if (real_of(card, 'VOLEPS') < 0.0_wp) call take(card, 'VOLEPS', erosion%least_volume)
+      if (real_of(card, 'VOLEPS') > 0.0_wp) call read_limit(card, 'VOLEPS', erosion%most_volume)
+      if (real_of(card, 'VOLEPS') < 0.0_wp) call read_limit(card, 'VOLEPS', erosion%least_volume)
       if (.not. abs(real_of(card, 'VOLEPS')) > 0.0_wp) then
         erosion%n_given = erosion%n_given + 1
         call report_field(deck, card, 'VOLEPS', 'is no volumetric strain at failure (more than 0 ' &
           //'in tension, less than 0 in compression)')
       end if
     end if
-    call take(more, 'MNPRES', erosion%least_pressure)
-    call take(more, 'SIGP1', erosion%principal_stress)
-    call take(more, 'SIGVM', erosion%mises)
-    call take(more, 'MXEPS', erosion%most_strain)
-    call take(more, 'EPSSH', erosion%shear_strain)
-    call take(more, 'IMPULSE', erosion%impulse)
-    call take(more, 'FAILTM', erosion%time)
+    call read_limit(more, 'MNPRES', erosion%least_pressure)
+    call read_limit(more, 'SIGP1', erosion%principal_stress)
+    call read_limit(more, 'SIGVM', erosion%mises)
+    call read_limit(more, 'MXEPS', erosion%most_strain)
+    call read_limit(more, 'EPSSH', erosion%shear_strain)
+    call read_limit(more, 'IMPULSE', erosion%impulse)
+    call read_limit(more, 'FAILTM', erosion%time)
     if (.not. is_given(more, 'SIGTH')) return
     if (real_of(more, 'SIGTH') < 0.0_wp) call report_field(deck, more, 'SIGTH', 'is negative')
     erosion%threshold = max(0.0_wp, real_of(more, 'SIGTH'))
@@ -158,7 +158,7 @@ contains
     end function is_given
 
     !> A criterion: of either sign where it may be, else above 0.
-    subroutine take(card_of, name, value)
+    subroutine read_limit(card_of, name, value)
       type(card_t), intent(inout) :: card_of
       character(*), intent(in) :: name
       real(wp), intent(inout) :: value
@@ -172,9 +172,9 @@ contains
         call report_field(deck, card_of, name, 'is not a limit of this version (more than 0; ' &
           //'below 0 it would be a curve)')
       end if
-    end subroutine take
+    end subroutine read_limit
 
-  end subroutine take_criteria
+  end subroutine read_criteria
 
   !> Hourglass works of each element are those of the viscous and the stiffness form; ERODE passes
   !> over rubber and foam, which can not lose their pressure.
@@ -189,7 +189,7 @@ contains
       associate (part => model%parts(k))
         if (part%material == 0 .or. part%section == 0) cycle
         associate (material => model%materials(part%material))
-          if (by_step .and. .not. (material%is_rigid .or. any(can_go == material%law))) call &
+          if (by_step .and. .not. (material%is_rigid .or. any(can_erode == material%law))) call &
             line_warning(deck, step_line, 'ERODE and part '//to_text(part%id), &
             'ERODE takes no elements of part '//to_text(part%id)//', which is rubber or foam: a ' &
             //'step of theirs below DTMIN ends the run')

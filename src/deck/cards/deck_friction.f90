@@ -10,7 +10,7 @@ module deck_friction_m
   use deck_values_m, only : real_of, is_bad, place_of
   implicit none
   private
-  public :: take_friction, take_stock_friction, take_penalty_friction, take_rule, &
+  public :: read_friction, read_stock_friction, read_penalty_friction, read_friction_rule, &
     warn_of_unused, warn_of_rule, default_friction_t
 
   !> Friction of *CONTROL_CONTACT.
@@ -23,36 +23,36 @@ module deck_friction_m
 contains
 
   !> *CONTACT_2D_SLIDELINE: FD follows FS where it is blank or 0.
-  subroutine take_friction(cards, rule, place)
+  subroutine read_friction(cards, rule, place)
     type(card_t), intent(in) :: cards(:)
     type(friction_rule_t), intent(inout) :: rule
     type(place_t), intent(out) :: place       !! of the coefficient
 
-    call take_rule(cards(1), cards(3), ['FS', 'FD', 'DC', 'VC'], rule, place)
+    call read_friction_rule(cards(1), cards(3), ['FS', 'FD', 'DC', 'VC'], rule, place)
     if (.not. abs(real_of(cards(1), 'FD')) > 0.0_wp) rule%sliding = rule%at_rest
     rule%stiffness = real_of(cards(3), 'TFAC')
-  end subroutine take_friction
+  end subroutine read_friction
 
   !> *CONTACT_2D_AUTOMATIC_: without friction of its own that of *CONTROL_CONTACT.
-  subroutine take_stock_friction(cards, default, rule, place)
+  subroutine read_stock_friction(cards, default, rule, place)
     type(card_t), intent(in) :: cards(:)
     type(default_friction_t), intent(inout) :: default
     type(friction_rule_t), intent(inout) :: rule
     type(place_t), intent(out) :: place       !! of the coefficient
 
-    call take_rule(cards(1), cards(3), ['FS', 'FD', 'DC', 'VC'], rule, place)
+    call read_friction_rule(cards(1), cards(3), ['FS', 'FD', 'DC', 'VC'], rule, place)
     if (max(abs(rule%at_rest), abs(rule%sliding), abs(rule%decay), abs(rule%most)) > 0.0_wp) return
     default%acts = .true.
     if (.not. max(default%rule%at_rest, default%rule%sliding) > 0.0_wp) return
     rule = default%rule
     place = default%place
-  end subroutine take_stock_friction
+  end subroutine read_stock_friction
 
   !> Coefficients at rest and sliding, decay, largest stress; and where the coefficient stands. A
   !> coefficient in fast sliding of 0 where there is one at rest: stock cards mean it. As our own
   !> card means FS by it, the smallest number stands for it: a deck that is written with our card
   !> then gives the same bits.
-  subroutine take_rule(card, last, names, rule, place)
+  subroutine read_friction_rule(card, last, names, rule, place)
     type(card_t), intent(in) :: card, last     !! of the first three, of the stress
     character(*), intent(in) :: names(4)
     type(friction_rule_t), intent(inout) :: rule
@@ -66,11 +66,11 @@ contains
     place = place_of(card, trim(names(1)))
     if (rule%sliding > 0.0_wp .and. .not. rule%at_rest > 0.0_wp) &
       place = place_of(card, trim(names(2)))
-  end subroutine take_rule
+  end subroutine read_friction_rule
 
   !> *CONTACT_2D_PENALTY_FRICTION: FRIC alone, or FRIC_L and FRIC_H as FS and FD. The card has no
   !> decay between two that differ.
-  subroutine take_penalty_friction(deck, card, rule, place)
+  subroutine read_penalty_friction(deck, card, rule, place)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     type(friction_rule_t), intent(inout) :: rule
@@ -91,7 +91,7 @@ contains
       end if
     end do
     rule%sliding = rule%at_rest
-  end subroutine take_penalty_friction
+  end subroutine read_penalty_friction
 
   !> Friction of *CONTROL_CONTACT that no interface takes.
   subroutine warn_of_unused(deck, default)

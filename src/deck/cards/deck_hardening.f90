@@ -17,8 +17,8 @@ module deck_hardening_m
   use deck_values_m, only : integer_of, real_of, is_bad, find_id, reals_of, place_of
   implicit none
   private
-  public :: take_piecewise, take_hydro, take_tangent_modulus, take_johnson_cook, &
-    take_simplified_johnson_cook, take_failure, take_cutoff
+  public :: read_piecewise, read_hydro, read_tangent_modulus, read_johnson_cook, &
+    read_simplified_johnson_cook, read_failure, read_cutoff
 
   !> A strain at failure from here on means never.
   real(wp), parameter :: never = 1.0e16_wp
@@ -28,7 +28,7 @@ module deck_hardening_m
 contains
 
   !> *MAT_PIECEWISE_LINEAR_PLASTICITY.
-  subroutine take_piecewise(deck, cursor, card, tables, model, material)
+  subroutine read_piecewise(deck, cursor, card, tables, model, material)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
     type(card_t), intent(inout) :: card
@@ -38,7 +38,7 @@ contains
     type(card_t) :: rate, points(2)
 
     material%law = law_piecewise
-    call take_failure(card, 'FAIL', material)
+    call read_failure(card, 'FAIL', material)
     call next_card(deck, cursor, 2, rate)
     if (real_of(rate, 'C') > 0.0_wp .and. .not. real_of(rate, 'P') > 0.0_wp) call &
       report_field(deck, rate, 'P', 'is not an exponent (more than 0) for the C beside it')
@@ -47,20 +47,20 @@ contains
     if (integer_of(rate, 'LCSS') > 0) then
       if (has_points(points)) call line_warning(deck, points(1)%line, 'points', &
         'EPS and ES have no effect where LCSS gives the yield stress')
-      call take_curves(deck, card, rate, tables, model, material)
+      call read_hardening_curves(deck, card, rate, tables, model, material)
     else if (has_points(points)) then
-      call take_points(deck, card, points, material)
+      call read_hardening_points(deck, card, points, material)
     else if (.not. is_bad(rate, 'LCSS')) then
       if (.not. real_of(card, 'SIGY') > 0.0_wp) call report_field(deck, card, 'SIGY', &
         'is not a yield stress (more than 0), and there is neither LCSS nor EPS and ES')
-      call take_tangent_modulus(deck, card, material%hardening)
-      if (.not. any(card%bad)) call take_line(deck, card, material%hardening, material)
+      call read_tangent_modulus(deck, card, material%hardening)
+      if (.not. any(card%bad)) call read_linear_hardening(deck, card, material%hardening, material)
     end if
-    call take_rates(deck, rate, model, material)
-  end subroutine take_piecewise
+    call read_rate_effect(deck, rate, model, material)
+  end subroutine read_piecewise
 
   !> *MAT_ELASTIC_PLASTIC_HYDRO: its pressure comes from an equation of state.
-  subroutine take_hydro(deck, cursor, card, material)
+  subroutine read_hydro(deck, cursor, card, material)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
     type(card_t), intent(inout) :: card
@@ -71,23 +71,23 @@ contains
     material%law = law_piecewise
     material%takes_eos = .true.
     material%needs_eos = .true.
-    call take_failure(card, 'FS', material)
-    call take_cutoff(card, material)
+    call read_failure(card, 'FS', material)
+    call read_cutoff(card, material)
     do k = 1, 4
       call next_card(deck, cursor, 1 + k, points(k))
     end do
     if (has_points(points)) then
-      call take_points(deck, card, points, material)
+      call read_hardening_points(deck, card, points, material)
     else if (.not. real_of(card, 'SIGY') > 0.0_wp) then
       call report_field(deck, card, 'SIGY', &
         'is not a yield stress (more than 0), and there are no EPS and ES')
     else
-      call take_line(deck, card, real_of(card, 'EH'), material)
+      call read_linear_hardening(deck, card, real_of(card, 'EH'), material)
     end if
-  end subroutine take_hydro
+  end subroutine read_hydro
 
   !> Slope of the yield stress over plastic strain from that of the uniaxial curve, ETAN beside E.
-  subroutine take_tangent_modulus(deck, card, modulus)
+  subroutine read_tangent_modulus(deck, card, modulus)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     real(wp), intent(inout) :: modulus   !! as it was where the card has mistakes
@@ -97,10 +97,10 @@ contains
         'is not below E: the tangent modulus of the uniaxial stress-strain curve must be')
       if (.not. any(card%bad)) modulus = young*tangent/(young - tangent)
     end associate
-  end subroutine take_tangent_modulus
+  end subroutine read_tangent_modulus
 
   !> SIGY, and a slope behind it.
-  subroutine take_line(deck, card, modulus, material)
+  subroutine read_linear_hardening(deck, card, modulus, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
     real(wp), value :: modulus
@@ -111,8 +111,8 @@ contains
     points(1)%ordinate = [real_of(card, 'SIGY')]
     material%curve = make_hardening(points, [0.0_wp])
     material%curve%slope = modulus
-    call settle_hardening(deck, card, material)
-  end subroutine take_line
+    call set_initial_yield(deck, card, material)
+  end subroutine read_linear_hardening
 
   !> Whether cards of EPS and ES have any.
   pure function has_points(cards) result(yes)
@@ -124,7 +124,7 @@ contains
   end function has_points
 
   !> EPS and ES, eight on a card: as many points as there are up to the last that is not zero.
-  subroutine take_points(deck, card, cards, material)
+  subroutine read_hardening_points(deck, card, cards, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
     type(card_t), intent(inout) :: cards(:)   !! of EPS, then as many of ES
@@ -153,11 +153,11 @@ contains
     points(1)%abscissa = strain(:n)
     points(1)%ordinate = stress(:n)
     material%curve = make_hardening(points, [0.0_wp])
-    call settle_hardening(deck, card, material)
-  end subroutine take_points
+    call set_initial_yield(deck, card, material)
+  end subroutine read_hardening_points
 
   !> LCSS: a curve, or a table of them.
-  subroutine take_curves(deck, card, rate, tables, model, material)
+  subroutine read_hardening_curves(deck, card, rate, tables, model, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
     type(card_t), intent(inout) :: rate
@@ -177,15 +177,15 @@ contains
       k = index_of(deck%maps(a_curve), integer_of(rate, 'LCSS'))
       ends = k
       rates = [0.0_wp]
-      if (k == 0 .and. .not. (deck%maps(a_curve)%lost .or. deck%maps(a_table)%lost)) call &
-        report_field(deck, rate, 'LCSS', 'is no curve or table of this deck')
+      if (k == 0 .and. .not. (deck%maps(a_curve)%has_refused .or. deck%maps(a_table)%has_refused)) &
+        call report_field(deck, rate, 'LCSS', 'is no curve or table of this deck')
     end if
     if (ends(1) == 0 .or. ends(2) < ends(1)) return
     if (rates(1) < 0.0_wp) call report_field(deck, rate, 'LCSS', 'is a table with negative ' &
       //'values, logarithms of strain rates, which this version does not have')
     do i = ends(1), ends(2)
       model%curves(i)%is_of_time = .false.
-      if (deck%maps(a_curve)%lost) cycle
+      if (deck%maps(a_curve)%has_refused) cycle
       associate (curve => model%curves(i), line => deck%maps(a_curve)%lines(i))
         name = 'curve '//to_text(curve%id) &
           //' is a yield stress against plastic strain (LCSS) and must '
@@ -197,11 +197,11 @@ contains
     end do
     if (deck%report%n_error > n_before) return
     material%curve = make_hardening(model%curves(ends(1):ends(2)), rates)
-    call settle_hardening(deck, card, material)
-  end subroutine take_curves
+    call set_initial_yield(deck, card, material)
+  end subroutine read_hardening_curves
 
   !> What the law starts with, and a fall that it cannot follow.
-  subroutine settle_hardening(deck, card, material)
+  subroutine set_initial_yield(deck, card, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
     type(material_t), intent(inout) :: material
@@ -211,10 +211,10 @@ contains
     if (minval(material%curve%slope) <= -3.0_wp*material%shear .and. material%shear > 0.0_wp) call &
       line_error(deck, card%line, 'the yield stress of material '//to_text(material%id) &
       //' falls faster than 3G: no stress would be in balance')
-  end subroutine settle_hardening
+  end subroutine set_initial_yield
 
   !> Rate effect: a table comes before LCSR, LCSR before C and P.
-  subroutine take_rates(deck, card, model, material)
+  subroutine read_rate_effect(deck, card, model, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     type(model_t), intent(inout) :: model
@@ -252,28 +252,28 @@ contains
     if (minval(material%curve%slope) < 0.0_wp) call report_field(deck, card, 'C', &
       'begins a card with a rate effect, but the yield stress falls somewhere: both together ' &
       //'are not part of this law')
-  end subroutine take_rates
+  end subroutine read_rate_effect
 
   !> A plastic strain at failure; 0 means never.
-  subroutine take_failure(card, name, material)
+  subroutine read_failure(card, name, material)
     type(card_t), intent(in) :: card
     character(*), intent(in) :: name
     type(material_t), intent(inout) :: material
 
     if (real_of(card, name) > 0.0_wp .and. real_of(card, name) < never) &
       material%failure_strain = real_of(card, name)
-  end subroutine take_failure
+  end subroutine read_failure
 
   !> The cut-off PC of the pressure; 0 means none.
-  subroutine take_cutoff(card, material)
+  subroutine read_cutoff(card, material)
     type(card_t), intent(in) :: card
     type(material_t), intent(inout) :: material
 
     if (real_of(card, 'PC') < 0.0_wp) material%cutoff = real_of(card, 'PC')
-  end subroutine take_cutoff
+  end subroutine read_cutoff
 
   !> *MAT_SIMPLIFIED_JOHNSON_COOK: neither heat nor damage.
-  subroutine take_simplified_johnson_cook(deck, cursor, card, material)
+  subroutine read_simplified_johnson_cook(deck, cursor, card, material)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
     type(card_t), intent(in) :: card
@@ -283,21 +283,21 @@ contains
     material%law = law_johnson_cook
     allocate (material%flow)
     call next_card(deck, cursor, 2, stress)
-    call take_stress(card, stress, material%flow)
-    call take_bound(deck, stress, 'SIGMAX', material%flow%most_static)
-    call take_bound(deck, stress, 'SIGSAT', material%flow%most)
-    call take_failure(stress, 'PSFAIL', material)
-  end subroutine take_simplified_johnson_cook
+    call read_flow_stress(card, stress, material%flow)
+    call read_stress_bound(deck, stress, 'SIGMAX', material%flow%most_static)
+    call read_stress_bound(deck, stress, 'SIGSAT', material%flow%most)
+    call read_failure(stress, 'PSFAIL', material)
+  end subroutine read_simplified_johnson_cook
 
   !> *MAT_JOHNSON_COOK.
-  subroutine take_johnson_cook(deck, cursor, card, material)
+  subroutine read_johnson_cook(deck, cursor, card, material)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
     type(card_t), intent(inout) :: card
     type(material_t), intent(inout) :: material
     type(card_t) :: stress, heat, damage
 
-    call take_bulk(deck, card, material)
+    call read_bulk_modulus(deck, card, material)
     material%law = law_hot_johnson_cook
     material%takes_eos = .true.
     allocate (material%flow)
@@ -306,10 +306,10 @@ contains
       call next_card(deck, cursor, 2, stress)
       call next_card(deck, cursor, 3, heat)
       call next_card(deck, cursor, 4, damage)
-      call take_stress(card, stress, flow)
-      call take_heat(deck, stress, heat, material)
+      call read_flow_stress(card, stress, flow)
+      call read_heat(deck, stress, heat, material)
       ! PC and what it means, SPALL 1, 2 or 3, which count from 1 as the constants do.
-      call take_cutoff(heat, material)
+      call read_cutoff(heat, material)
       material%spall = spall_pressure
       if (real_of(heat, 'PC') < 0.0_wp) then
         material%spall = nint(real_of(heat, 'SPALL'))
@@ -326,10 +326,10 @@ contains
         'D1', 'is 0 as D2 is: the strain at fracture would be 0')
       flow%least = max(real_of(damage, 'EFMIN'), tiny(1.0_wp))
     end associate
-  end subroutine take_johnson_cook
+  end subroutine read_johnson_cook
 
   !> E and PR, where no equation of state gives the pressure: K of K ln(J).
-  subroutine take_bulk(deck, card, material)
+  subroutine read_bulk_modulus(deck, card, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     type(material_t), intent(inout) :: material
@@ -344,10 +344,10 @@ contains
       end associate
       material%bulk = young/(3.0_wp*(1.0_wp - 2.0_wp*poisson))
     end associate
-  end subroutine take_bulk
+  end subroutine read_bulk_modulus
 
   !> A, B, N, C and EPSO, and whose rate counts (VP): 0 the total one, 1 that of the plastic strain.
-  subroutine take_stress(card, stress, flow)
+  subroutine read_flow_stress(card, stress, flow)
     type(card_t), intent(in) :: card, stress
     type(johnson_cook_t), intent(inout) :: flow
 
@@ -357,10 +357,10 @@ contains
     flow%n = real_of(stress, 'N')
     flow%c = real_of(stress, 'C')
     flow%rate = real_of(stress, 'EPSO')
-  end subroutine take_stress
+  end subroutine read_flow_stress
 
   !> A bound on the flow stress; its default is none.
-  subroutine take_bound(deck, card, name, bound)
+  subroutine read_stress_bound(deck, card, name, bound)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     character(*), intent(in) :: name
@@ -371,10 +371,10 @@ contains
     else
       bound = real_of(card, name)
     end if
-  end subroutine take_bound
+  end subroutine read_stress_bound
 
   !> CP with M, TM and TR: without a specific heat nothing warms.
-  subroutine take_heat(deck, stress, card, material)
+  subroutine read_heat(deck, stress, card, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: stress, card
     type(material_t), intent(inout) :: material
@@ -389,6 +389,6 @@ contains
     material%flow%m = real_of(stress, 'M')
     material%flow%span = real_of(stress, 'TM') - real_of(stress, 'TR')
     material%flow%heat = 1.0_wp/(material%density*real_of(card, 'CP'))
-  end subroutine take_heat
+  end subroutine read_heat
 
 end module deck_hardening_m

@@ -48,7 +48,7 @@ contains
       case ('CONTROL_IMPLICIT_DYNAMICS')
         line = cards(1)%line
         implicit%is_dynamic = integer_of(cards(1), 'IMASS') == 1
-        call take_newmark(deck, cards(1), newmark)
+        call read_newmark(deck, cards(1), newmark)
         alpha = real_of(cards(1), 'ALPHA')
       case ('CONTROL_IMPLICIT_SPECTRAL_RADIUS')
         radius = real_of(cards(1), 'RHO')
@@ -64,11 +64,11 @@ contains
         if (implicit%residual_tolerance >= 1.0e10_wp) implicit%residual_tolerance = 0.0_wp
         implicit%search_tolerance = real_of(cards(1), 'LSTOL')
       case ('CONTROL_IMPLICIT_AUTO')
-        call take_automatic(deck, cards(1), implicit)
+        call read_automatic(deck, cards(1), implicit)
       end select
     end do
     if (.not. implicit%is_on) return
-    call settle_scheme(newmark, -alpha, radius, implicit)
+    call set_scheme(newmark, -alpha, radius, implicit)
     ! Only Newmark's method with parameters of the deck can be one that is not stable at every step.
     least = 0.25_wp*(implicit%gamma + 0.5_wp)**2
     if (implicit%is_dynamic .and. implicit%beta < least*(1.0_wp - round_off)) call line_warning( &
@@ -79,7 +79,7 @@ contains
 
   !> GAMMA and BETA of *CONTROL_IMPLICIT_DYNAMICS ask for Newmark's method (ALPHA below 0 for HHT);
   !> blank fields leave the generalised-alpha method with its spectral radius.
-  subroutine take_newmark(deck, card, newmark)
+  subroutine read_newmark(deck, card, newmark)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     real(wp), intent(out) :: newmark(2)
@@ -95,10 +95,10 @@ contains
       if (newmark(k) > most) call report_field(deck, card, names(k), &
         'is not a parameter of Newmark''s method (at most 10)')
     end do
-  end subroutine take_newmark
+  end subroutine read_newmark
 
   !> *CONTROL_IMPLICIT_AUTO.
-  subroutine take_automatic(deck, card, implicit)
+  subroutine read_automatic(deck, card, implicit)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     type(implicit_t), intent(inout) :: implicit
@@ -112,11 +112,11 @@ contains
     implicit%dt_most = real_of(card, 'DTMAX')
     if (implicit%dt_most > 0.0_wp .and. implicit%dt_least > implicit%dt_most) call report_field( &
       deck, card, 'DTMAX', 'is below the smallest step DTMIN = '//to_text(implicit%dt_least))
-  end subroutine take_automatic
+  end subroutine read_automatic
 
   !> Parameters of the time integration from what the cards gave (Chung & Hulbert 1993, eqs. 17, 20,
   !> 25; HHT with alpha_f = -ALPHA; Newmark). A spectral radius of our own keyword comes first.
-  subroutine settle_scheme(newmark, hht, radius, implicit)
+  subroutine set_scheme(newmark, hht, radius, implicit)
     real(wp), intent(in) :: newmark(2) !! GAMMA, BETA, 0 where blank
     real(wp), intent(in) :: hht        !! -ALPHA
     real(wp), intent(in) :: radius     !! below 0 where not given
@@ -142,7 +142,7 @@ contains
     end if
     implicit%gamma = 0.5_wp - implicit%alpha_m + implicit%alpha_f
     implicit%beta = 0.25_wp*(1.0_wp - implicit%alpha_m + implicit%alpha_f)**2
-  end subroutine settle_scheme
+  end subroutine set_scheme
 
   !> What the implicit method asks of the rest of the deck: no bulk viscosity, and no laws with
   !> rates, heat, energy or failure, which have no tangent.

@@ -17,12 +17,12 @@ module deck_loads_m
   use deck_ids_m, only : a_node, a_part, a_part_set, a_curve, a_segment_set, a_system
   use deck_lines_m, only : deck_t, place_t, blocks_of, line_text, line_error
   use deck_sets_m, only : check_edge
-  use deck_supports_m, only : card_nodes, find_body, mark_axis, mark_massive, warn_of_nodes, &
-    across_axis
+  use deck_supports_m, only : card_nodes, find_body, mark_axis, mark_nodes_with_mass, &
+    warn_of_nodes, across_axis
   use deck_values_m, only : integer_of, real_of, reals_of, has_field, find_id
   implicit none
   private
-  public :: read_nodal_loads, read_pressures, settle_pressures, read_body_loads, read_masses, &
+  public :: read_nodal_loads, read_pressures, orient_pressures, read_body_loads, read_masses, &
     read_rigid_loads, read_global_damping, read_mass_damping, read_stiffness_damping, warn_of_bores
 
   !> No bore is narrower than this share of the largest radius: its nodes were meant to be on the
@@ -38,13 +38,13 @@ contains
     type(nodal_load_t), allocatable :: loads(:)
     type(cursor_t) :: cursor
     type(card_t) :: card
-    logical :: is_massive(model%mesh%n_node), is_axis(model%mesh%n_node)
+    logical :: has_mass(model%mesh%n_node), is_axis(model%mesh%n_node)
     integer, allocatable :: nodes(:)
     integer :: curve, j, k, n, first_radial
     real(wp) :: axis(2)
 
     allocate (loads(64))
-    is_massive = mark_massive(deck, model)
+    has_mass = mark_nodes_with_mass(deck, model)
     n = 0
     first_radial = 0
     do while (next_of(deck, 'LOAD_NODE_', cursor, card))
@@ -52,7 +52,7 @@ contains
       if (integer_of(card, 'DOF') == 1 .and. first_radial == 0) first_radial = card%line
       call card_nodes(deck, card, model, nodes)
       call find_id(deck, a_curve, card, 'LCID', curve)
-      k = findloc(is_massive(nodes), .false., dim=1)
+      k = findloc(has_mass(nodes), .false., dim=1)
       if (k > 0) call report_field(deck, card, 1, ': node '//to_text(model%mesh%node_id(nodes(k))) &
         //' belongs to no element and cannot be loaded')
       if (curve == 0) cycle
@@ -94,16 +94,16 @@ contains
   subroutine warn_of_bores(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(in) :: model
-    logical :: is_rim(model%mesh%n_node)
+    logical :: is_bore(model%mesh%n_node)
     integer, allocatable :: nodes(:)
     integer :: i
 
     if (.not. model%is_axisymmetric .or. model%mesh%n_node == 0) return
     associate (radius => model%mesh%coordinates(1, :), conditions => model%conditions)
-      is_rim = radius > 0.0_wp .and. radius < bore_share*maxval(radius) &
+      is_bore = radius > 0.0_wp .and. radius < bore_share*maxval(radius) &
         .and. .not. mark_rigid_nodes(model%rigids, model%mesh%n_node)
-      is_rim(pack(conditions%fixed_nodes, conditions%fixed_directions == 1)) = .false.
-      nodes = pack([(i, i=1, size(is_rim))], is_rim)
+      is_bore(pack(conditions%fixed_nodes, conditions%fixed_directions == 1)) = .false.
+      nodes = pack([(i, i=1, size(is_bore))], is_bore)
       if (size(nodes) > 0) call warn_of_nodes(deck, deck%maps(a_node)%lines(nodes(1)), 'bore', &
         model, nodes, ' node(s) lie next to the axis but not on it, and move in r as the rim of ' &
         //'a bore; the first is ', ' at the radius '//to_text(radius(nodes(1))) &
@@ -181,30 +181,30 @@ contains
 
   !> Edges that carry pressure walked counter-clockwise round the body; others are errors, one for
   !> each card.
-  subroutine settle_pressures(deck, places, outside, in_doubt, model)
+  subroutine orient_pressures(deck, places, outside, is_uncertain, model)
     type(deck_t), intent(inout) :: deck
     type(place_t), intent(in) :: places(:)       !! where each load stands
     type(boundary_t), intent(in) :: outside
-    logical, intent(in) :: in_doubt(:)           !! (n_node) edges of these are not judged
+    logical, intent(in) :: is_uncertain(:)           !! (n_node) edges of these are not judged
     type(model_t), intent(inout) :: model
-    integer :: i, told
+    integer :: i, reported_line
 
-    told = 0
+    reported_line = 0
     do i = 1, size(places)
       associate (nodes => model%conditions%pressures(i)%nodes)
-        if (any(in_doubt(nodes))) cycle
+        if (any(is_uncertain(nodes))) cycle
         if (find_edge(outside, nodes(1), nodes(2)) > 0) cycle
         if (find_edge(outside, nodes(2), nodes(1)) > 0) then
           nodes = nodes([2, 1])
-        else if (places(i)%line /= told) then
-          told = places(i)%line
+        else if (places(i)%line /= reported_line) then
+          reported_line = places(i)%line
           call reject_field(deck, places(i), ': nodes '//to_text(model%mesh%node_id(nodes(1))) &
             //' and '//to_text(model%mesh%node_id(nodes(2)))//' are not the ends of an outer ' &
             //'edge of the mesh')
         end if
       end associate
     end do
-  end subroutine settle_pressures
+  end subroutine orient_pressures
 
   !> *LOAD_BODY_X and _Y: base accelerations. Across the axis of revolution they have no meaning.
   subroutine read_body_loads(deck, model)
@@ -240,18 +240,18 @@ contains
     type(lumped_mass_t), allocatable :: masses(:)
     type(cursor_t) :: cursor
     type(card_t) :: card
-    logical :: is_massive(model%mesh%n_node)
+    logical :: has_mass(model%mesh%n_node)
     integer, allocatable :: nodes(:)
     integer :: k, n
 
     if (size(blocks_of(deck, 'ELEMENT_MASS')) == 0) return
-    is_massive = mark_massive(deck, model)
+    has_mass = mark_nodes_with_mass(deck, model)
     allocate (masses(64))
     n = 0
     do while (next_of(deck, 'ELEMENT_MASS', cursor, card))
       if (any(card%bad)) cycle
       call card_nodes(deck, card, model, nodes)
-      k = findloc(is_massive(nodes), .false., dim=1)
+      k = findloc(has_mass(nodes), .false., dim=1)
       if (k > 0) call report_field(deck, card, 2, ': node '//to_text(model%mesh%node_id(nodes(k))) &
         //' belongs to no element and can not carry a mass')
       if (.not. real_of(card, 'MASS') > 0.0_wp) cycle

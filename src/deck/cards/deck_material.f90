@@ -11,8 +11,8 @@ module deck_material_m
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, first_card, next_card, check_rest, report_field
   use deck_curves_m, only : table_t
-  use deck_hardening_m, only : take_piecewise, take_hydro, take_tangent_modulus, &
-    take_johnson_cook, take_simplified_johnson_cook, take_failure, take_cutoff
+  use deck_hardening_m, only : read_piecewise, read_hydro, read_tangent_modulus, &
+    read_johnson_cook, read_simplified_johnson_cook, read_failure, read_cutoff
   use deck_ids_m, only : a_material, a_curve, an_eos
   use deck_values_m, only : integer_of, real_of, is_bad, has_field, define, map_defined, find_id, &
     reals_of, along_axes
@@ -20,7 +20,7 @@ module deck_material_m
     eos_gruneisen, eos_linear_polynomial, eos_logarithmic
   implicit none
   private
-  public :: read_materials, read_equations, take_equation, settle_pressures
+  public :: read_materials, read_equations, assign_equation, set_pressure_moduli
 
 contains
 
@@ -42,44 +42,44 @@ contains
       if (deck%blocks(blocks(i))%name == 'MAT_ADD_EROSION') cycle
       call first_card(deck, blocks(i), cursor, card)
       material = unset
-      call take_moduli(card, material)
+      call read_moduli(card, material)
       select case (deck%blocks(blocks(i))%name)
       case ('MAT_ELASTIC')
         material%law = law_elastic
       case ('MAT_PLASTIC_KINEMATIC')
         material%law = law_plastic
-        call take_tangent_modulus(deck, card, material%hardening)
+        call read_tangent_modulus(deck, card, material%hardening)
         material%yield = real_of(card, 'SIGY')
         material%beta = real_of(card, 'BETA')
         call next_card(deck, cursor, 2, more)
-        call take_failure(more, 'FS', material)
+        call read_failure(more, 'FS', material)
       case ('MAT_PIECEWISE_LINEAR_PLASTICITY')
-        call take_piecewise(deck, cursor, card, tables, model, material)
+        call read_piecewise(deck, cursor, card, tables, model, material)
       case ('MAT_NULL')
         ! A fluid: its pressure comes from an equation of state.
         material%law = law_null
         material%takes_eos = .true.
         material%needs_eos = .true.
         material%viscosity = real_of(card, 'MU')
-        call take_cutoff(card, material)
+        call read_cutoff(card, material)
       case ('MAT_ELASTIC_PLASTIC_HYDRO')
-        call take_hydro(deck, cursor, card, material)
+        call read_hydro(deck, cursor, card, material)
       case ('MAT_JOHNSON_COOK')
-        call take_johnson_cook(deck, cursor, card, material)
+        call read_johnson_cook(deck, cursor, card, material)
       case ('MAT_SIMPLIFIED_JOHNSON_COOK')
-        call take_simplified_johnson_cook(deck, cursor, card, material)
+        call read_simplified_johnson_cook(deck, cursor, card, material)
       case ('MAT_MOONEY-RIVLIN_RUBBER')
-        call take_mooney_rivlin(deck, cursor, card, material)
+        call read_mooney_rivlin(deck, cursor, card, material)
       case ('MAT_BLATZ-KO_RUBBER')
         material%law = law_blatz_ko
         if (.not. any(card%bad)) then
           material%rubber = blatz_ko(material%shear)
-          call settle_moduli(blatz_ko_poisson, material)
+          call set_moduli(blatz_ko_poisson, material)
         end if
       case ('MAT_CRUSHABLE_FOAM')
-        call take_crushable_foam(deck, card, model, material)
+        call read_crushable_foam(deck, card, model, material)
       case ('MAT_RIGID')
-        call take_rigid(deck, cursor, material)
+        call read_rigid(deck, cursor, material)
       end select
       call check_rest(deck, cursor)
       call define(deck, a_material, card, n)
@@ -90,7 +90,7 @@ contains
   end subroutine read_materials
 
   !> Number, density, and moduli from G or from E and PR, where the card has them.
-  subroutine take_moduli(card, material)
+  subroutine read_moduli(card, material)
     type(card_t), intent(in) :: card
     type(material_t), intent(inout) :: material
 
@@ -106,10 +106,10 @@ contains
       material%shear = young/(2.0_wp*(1.0_wp + poisson))
     end associate
     material%sound_speed = sqrt((material%bulk + 4.0_wp*material%shear/3.0_wp)/material%density)
-  end subroutine take_moduli
+  end subroutine read_moduli
 
   !> *MAT_CRUSHABLE_FOAM: elastic up to a curve, which must not fall, and to TSC in tension.
-  subroutine take_crushable_foam(deck, card, model, material)
+  subroutine read_crushable_foam(deck, card, model, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     type(model_t), intent(inout) :: model
@@ -125,7 +125,7 @@ contains
     model%curves(k)%is_of_time = .false.
     associate (curve => model%curves(k), line => deck%maps(a_curve)%lines(k))
       material%crush = curve
-      if (deck%maps(a_curve)%lost) return
+      if (deck%maps(a_curve)%has_refused) return
       name = 'curve '//to_text(curve%id)//' is a yield stress against volumetric strain (LCID)'
       if (.not. minval(curve%ordinate) >= 0.0_wp .or. .not. maxval(curve%ordinate) > 0.0_wp) then
         call line_error(deck, line, name//' and must not be negative, nor 0 everywhere')
@@ -137,10 +137,10 @@ contains
         'is a curve that starts at the volumetric strain '//to_text(curve%abscissa(1)) &
         //', which is below 0: 1 - V/V0 counts compression')
     end associate
-  end subroutine take_crushable_foam
+  end subroutine read_crushable_foam
 
   !> *MAT_MOONEY-RIVLIN_RUBBER.
-  subroutine take_mooney_rivlin(deck, cursor, card, material)
+  subroutine read_mooney_rivlin(deck, cursor, card, material)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
     type(card_t), intent(inout) :: card
@@ -155,12 +155,12 @@ contains
       if (any(card%bad)) return
       material%rubber = mooney_rivlin(a, b, poisson)
       material%shear = 2.0_wp*(a + b)
-      call settle_moduli(poisson, material)
+      call set_moduli(poisson, material)
     end associate
-  end subroutine take_mooney_rivlin
+  end subroutine read_mooney_rivlin
 
   !> Moduli of small strain.
-  pure subroutine settle_moduli(poisson, material)
+  pure subroutine set_moduli(poisson, material)
     real(wp), intent(in) :: poisson
     type(material_t), intent(inout) :: material
 
@@ -169,10 +169,10 @@ contains
     material%bulk = material%young/(3.0_wp*(1.0_wp - 2.0_wp*poisson))
     material%eos = eos_t(kind=eos_by_law, stiffness=material%bulk)
     material%sound_speed = sqrt((material%bulk + 4.0_wp*material%shear/3.0_wp)/material%density)
-  end subroutine settle_moduli
+  end subroutine set_moduli
 
   !> *MAT_RIGID: CMO, CON1 and CON2.
-  subroutine take_rigid(deck, cursor, material)
+  subroutine read_rigid(deck, cursor, material)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
     type(material_t), intent(inout) :: material
@@ -197,7 +197,7 @@ contains
       call line_warning(deck, card%line, 'CMO 0', &
         'CON1 and CON2 have no effect while CMO is 0; 1 makes them constraints')
     end if
-  end subroutine take_rigid
+  end subroutine read_rigid
 
   !> All equations of state. Bodies start with the density of their material.
   subroutine read_equations(deck, equations)
@@ -238,13 +238,13 @@ contains
 
   !> EOSID of a part: its material gets the equation of state. A material whose parts name different
   !> ones becomes as many materials.
-  subroutine take_equation(deck, card, equations, model, taken, material)
+  subroutine assign_equation(deck, card, equations, model, equation_of, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card      !! of the part
     type(eos_t), intent(in) :: equations(:)
     type(model_t), intent(inout) :: model
-    integer, allocatable, intent(inout) :: taken(:) !! equation of state of each material, 0 none,
-                                             !! -1 not known yet
+    integer, allocatable, intent(inout) :: equation_of(:) !! equation of state of each material, 0
+                                                          !! none, -1 not known yet
     integer, intent(inout) :: material       !! index, of a copy in the end
     integer :: k, m
 
@@ -264,25 +264,25 @@ contains
         return
       end if
     end associate
-    if (taken(material) < 0) taken(material) = k
-    do m = size(taken), 1, -1
-      if (model%materials(m)%id == model%materials(material)%id .and. taken(m) == k) exit
+    if (equation_of(material) < 0) equation_of(material) = k
+    do m = size(equation_of), 1, -1
+      if (model%materials(m)%id == model%materials(material)%id .and. equation_of(m) == k) exit
     end do
     if (m == 0) then
       model%materials = [model%materials, model%materials(material)]
       associate (map => deck%maps(a_material))
         map%lines = [map%lines, map%lines(material)]
       end associate
-      taken = [taken, k]
-      m = size(taken)
+      equation_of = [equation_of, k]
+      m = size(equation_of)
       if (allocated(model%materials(m)%eos)) deallocate (model%materials(m)%eos)
     end if
     material = m
     if (k > 0) model%materials(m)%eos = equations(k)
-  end subroutine take_equation
+  end subroutine assign_equation
 
   !> Moduli that follow from the pressure; where points may fail, one that can be lost.
-  subroutine settle_pressures(deck, equations, model)
+  subroutine set_pressure_moduli(deck, equations, model)
     type(deck_t), intent(inout) :: deck
     type(eos_t), intent(in) :: equations(:)
     type(model_t), intent(inout) :: model
@@ -290,7 +290,7 @@ contains
     logical :: is_named
 
     do m = 1, size(model%materials)
-      call settle_pressure(deck, deck%maps(a_material)%lines(m), model%materials(m))
+      call set_pressure_modulus(deck, deck%maps(a_material)%lines(m), model%materials(m))
     end do
     do k = 1, size(equations)
       is_named = .false.
@@ -301,10 +301,10 @@ contains
       if (.not. is_named) call line_warning(deck, deck%maps(an_eos)%lines(k), 'unused', &
         'no part names equation of state '//to_text(equations(k)%id)//' (EOSID of *PART)')
     end do
-  end subroutine settle_pressures
+  end subroutine set_pressure_moduli
 
   !> One material.
-  subroutine settle_pressure(deck, line, material)
+  subroutine set_pressure_modulus(deck, line, material)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line
     type(material_t), intent(inout) :: material
@@ -333,6 +333,6 @@ contains
       material%poisson = (3.0_wp*k - 2.0_wp*g)/(2.0_wp*(3.0_wp*k + g))
       material%sound_speed = sqrt((k + 4.0_wp*g/3.0_wp)/material%density)
     end associate
-  end subroutine settle_pressure
+  end subroutine set_pressure_modulus
 
 end module deck_material_m

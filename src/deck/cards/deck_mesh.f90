@@ -10,7 +10,7 @@ module deck_mesh_m
   use deck_fields_m, only : field_number, card_t
   use deck_cards_m, only : cursor_t, next_of, report_field, reject_field
   use deck_ids_m, only : a_node, an_element, a_part
-  use deck_values_m, only : define, map_defined, lose, find_id
+  use deck_values_m, only : define, map_defined, note_refused, find_id
   implicit none
   private
   public :: read_mesh
@@ -30,21 +30,21 @@ contains
                                                      !! those that were meant
     logical, intent(out) :: sound
     integer :: n_before
-    logical :: has_place
+    logical :: has_coordinates
 
     n_before = deck%report%n_error
     call read_nodes(deck, model%mesh, codes)
-    has_place = deck%report%n_error == n_before
+    has_coordinates = deck%report%n_error == n_before
     call read_elements(deck, model%mesh)
     allocate (is_sound(model%mesh%n_element))
     if (size(is_sound) > 0) is_sound = all(model%mesh%element_nodes > 0, dim=1)
-    if (has_place) call check_shapes(deck, model%mesh, is_sound)
+    if (has_coordinates) call check_shapes(deck, model%mesh, is_sound)
     ! A part or node that was lost with its own mistake is not told again where it is named.
-    if (.not. has_place .or. deck%maps(a_node)%lost .or. deck%maps(an_element)%lost) &
-      is_sound = .false.
+    if (.not. has_coordinates .or. deck%maps(a_node)%has_refused &
+      .or. deck%maps(an_element)%has_refused) is_sound = .false.
     sound = deck%report%n_error == n_before .and. model%mesh%n_node > 0 &
       .and. model%mesh%n_element > 0 .and. all(is_sound) .and. all(model%mesh%element_part > 0)
-    if (model%is_axisymmetric .and. model%mesh%n_node > 0) call settle_axis(deck, model%mesh)
+    if (model%is_axisymmetric .and. model%mesh%n_node > 0) call snap_to_axis(deck, model%mesh)
   end subroutine read_mesh
 
   !> *NODE: id, coordinates in one plane, and boundary code.
@@ -88,7 +88,8 @@ contains
     codes = codes(:n)
     mesh%coordinates = coordinates(:, :n)
     if (n == 0) then
-      if (.not. deck%maps(a_node)%lost) call line_error(deck, 0, 'the deck has no nodes (*NODE)')
+      if (.not. deck%maps(a_node)%has_refused) call line_error(deck, 0, &
+        'the deck has no nodes (*NODE)')
     else if (is_flat .and. abs(plane) > 0.0_wp) then
       call line_warning(deck, deck%maps(a_node)%lines(1), 'z', &
         'z is the same for all nodes and is ignored')
@@ -111,7 +112,7 @@ contains
         part = field_number(card%names, 'PID')
         first = field_number(card%names, 'N1')
       end if
-      if (any(card%bad)) call lose(deck, [an_element])
+      if (any(card%bad)) call note_refused(deck, [an_element])
       if (any(card%bad)) cycle
       call define(deck, an_element, card, n)
       call find_id(deck, a_part, card, part, parts(n))
@@ -129,30 +130,30 @@ contains
     mesh%element_part = parts(:n)
     if (n == size(parts)) call move_alloc(nodes, mesh%element_nodes)
     if (n < size(parts)) mesh%element_nodes = nodes(:, :n)
-    if (n == 0 .and. .not. deck%maps(an_element)%lost) call line_error(deck, 0, &
+    if (n == 0 .and. .not. deck%maps(an_element)%has_refused) call line_error(deck, 0, &
       'the deck has no elements (*ELEMENT_SHELL)')
   end subroutine read_elements
 
   !> Radii must not be below zero; those that are none are made exactly zero.
-  subroutine settle_axis(deck, mesh)
+  subroutine snap_to_axis(deck, mesh)
     type(deck_t), intent(inout) :: deck
     type(mesh_t), intent(inout) :: mesh
-    real(wp) :: reach
+    real(wp) :: tolerance
     integer :: i
 
-    reach = axis_share*maxval(mesh%coordinates(1, :))
+    tolerance = axis_share*maxval(mesh%coordinates(1, :))
     associate (x => mesh%coordinates)
       do i = 1, mesh%n_node
-        if (x(1, i) < -reach) then
+        if (x(1, i) < -tolerance) then
           call reject_field(deck, place_t(deck%maps(a_node)%lines(i), 1, 'X'), ': node ' &
             //to_text(mesh%node_id(i))//' lies at a radius below 0 (an axisymmetric deck ' &
             //'turns about x = 0, and x is the radius)')
-        else if (x(1, i) <= reach) then
+        else if (x(1, i) <= tolerance) then
           x(1, i) = 0.0_wp
         end if
       end do
     end associate
-  end subroutine settle_axis
+  end subroutine snap_to_axis
 
   !> Elements must have area, be convex and run counter-clockwise; clockwise ones are turned. Those
   !> with a node that does not exist have been refused.
@@ -160,7 +161,7 @@ contains
     type(deck_t), intent(inout) :: deck
     type(mesh_t), intent(inout) :: mesh
     logical, intent(inout) :: is_sound(:) !! (n_element) what is refused here is not
-    character(:), allocatable :: mistake
+    character(:), allocatable :: problem
     integer :: i, n_turned, first_turned
     real(wp) :: corners(4), area, tolerance
 
@@ -175,20 +176,20 @@ contains
         area = corners(1) + corners(3)
       end if
       tolerance = 1.0e-10_wp*maxval(abs(corners))
-      mistake = ''
+      problem = ''
       associate (nodes => mesh%element_nodes(:, i))
         if (any(nodes(1:2) == nodes([2, 3])) .or. nodes(1) == nodes(3) &
           .or. any(nodes(1:2) == nodes(4))) then
-          mistake = 'uses a node twice (a triangle repeats its third node, and no other)'
+          problem = 'uses a node twice (a triangle repeats its third node, and no other)'
         else if (minval(corners) < -tolerance .and. maxval(corners) > tolerance) then
-          mistake = 'is not convex: its edges cross or a corner points inwards'
+          problem = 'is not convex: its edges cross or a corner points inwards'
         else if (.not. abs(area) > 2.0_wp*tolerance) then
-          mistake = 'has no area'
+          problem = 'has no area'
         end if
       end associate
-      is_sound(i) = len(mistake) == 0
+      is_sound(i) = len(problem) == 0
       if (.not. is_sound(i)) then
-        call reject_field(deck, place_t(deck%maps(an_element)%lines(i), 1, 'EID'), mistake)
+        call reject_field(deck, place_t(deck%maps(an_element)%lines(i), 1, 'EID'), problem)
       else if (area <= 0.0_wp) then
         mesh%element_nodes(:, i) = mesh%element_nodes([1, 4, 3, 2], i)
         if (mesh%element_nodes(2, i) == mesh%element_nodes(3, i)) &

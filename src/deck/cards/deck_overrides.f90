@@ -11,7 +11,7 @@ module deck_overrides_m
   use deck_parameter_table_m, only : parameter_t, add_parameter
   implicit none
   private
-  public :: is_override, override_mistake, read_words, edit_controls, edit_contact, find_word, &
+  public :: is_override, override_error, read_words, edit_controls, edit_contact, find_word, &
     check_words, contact_names, run_names
 
   !> Values of interfaces, fields of *CONTACT_2D_SLIDELINE; the others are those of the run.
@@ -40,14 +40,14 @@ contains
   end function is_override
 
   !> What is wrong with an override by itself, whatever the deck has; empty where nothing is.
-  pure function override_mistake(text) result(mistake)
+  pure function override_error(text) result(problem)
     character(*), intent(in) :: text
-    character(:), allocatable :: mistake
+    character(:), allocatable :: problem
     type(word_t) :: word
 
-    call take_apart(text, word, mistake)
-    if (len(mistake) > 0) mistake = '"'//text//'"'//mistake
-  end function override_mistake
+    call parse_override(text, word, problem)
+    if (len(problem) > 0) problem = '"'//text//'"'//problem
+  end function override_error
 
   !> Take the words of the command line apart; those of parameters go to the parameters.
   subroutine read_words(texts, deck)
@@ -55,13 +55,13 @@ contains
     type(deck_t), intent(inout) :: deck
     type(word_t) :: word
     type(parameter_t) :: item
-    character(:), allocatable :: mistake
+    character(:), allocatable :: problem
     integer :: i
 
     do i = 1, size(texts)
-      call take_apart(texts(i), word, mistake)
-      if (len(mistake) > 0) then
-        call line_error(deck, 0, word%phrase//mistake)
+      call parse_override(texts(i), word, problem)
+      if (len(problem) > 0) then
+        call line_error(deck, 0, word%phrase//problem)
       else if (index(word%name, 'P:') == 1) then
         ! A value from the command line wins over the deck.
         item = parameter_t(name=word%name(3:), kind='?', fixed=.true.)
@@ -74,17 +74,17 @@ contains
   end subroutine read_words
 
   !> Name, interface and value of a word; what is wrong with it goes on from `"WORD"`.
-  pure subroutine take_apart(text, word, mistake)
+  pure subroutine parse_override(text, word, problem)
     character(*), intent(in) :: text
     type(word_t), intent(out) :: word
-    character(:), allocatable, intent(out) :: mistake  !! empty: none
+    character(:), allocatable, intent(out) :: problem  !! empty: none
     integer :: equals, dot, status
 
-    mistake = ''
+    problem = ''
     word%phrase = '"'//trim(adjustl(text))//'" on the command line'
     equals = index(text, '=')
     if (equals < 2 .or. len_trim(text(equals + 1:)) == 0) then
-      mistake = ' is not NAME=VALUE'
+      problem = ' is not NAME=VALUE'
       return
     end if
     word%name = upper_case(trim(adjustl(text(:equals - 1))))
@@ -97,25 +97,25 @@ contains
       word%name = word%name(:dot - 1)
     end if
     if (status == number_good) then
-      mistake = value_mistake(word)
+      problem = value_error(word)
     else
-      mistake = ' is not known: endtim=, dt=, tssfac=; ctype=, ngauss=, pen=, punit=, pent=, ' &
+      problem = ' is not known: endtim=, dt=, tssfac=; ctype=, ngauss=, pen=, punit=, pent=, ' &
         //'vdc=, fs=, fd=, dc=, vc=, tfac=, target=, smooth= for all interfaces or, as in ' &
         //'ctype.2=, for one; p:NAME= for a parameter'
     end if
-  end subroutine take_apart
+  end subroutine parse_override
 
   !> What is wrong with the number of a word: PEN may be below 0, with a meaning of its own.
-  pure function value_mistake(word) result(mistake)
+  pure function value_error(word) result(problem)
     type(word_t), intent(in) :: word
-    character(:), allocatable :: mistake
+    character(:), allocatable :: problem
     integer :: whole, status
     real(wp) :: value
 
-    mistake = ''
+    problem = ''
     if (any(whole_names == word%name)) then
       call read_integer(word%text, whole, status)
-      if (status /= number_good) mistake = ': the value is not a whole number'
+      if (status /= number_good) problem = ': the value is not a whole number'
       return
     end if
     call read_real(word%text, value, status)
@@ -123,11 +123,11 @@ contains
     if (status == number_good .and. value >= smallest_value .and. value <= largest_value) return
     if (status == number_good .and. any(zero_names == word%name) .and. .not. abs(value) > 0.0_wp) &
       return
-    mistake = 'above 0'
-    if (any(zero_names == word%name)) mistake = 'of 0 or more'
-    if (word%name == 'PEN') mistake = 'other than 0'
-    mistake = ': the value is not a number '//mistake//' (numbers reach 1e40)'
-  end function value_mistake
+    problem = 'above 0'
+    if (any(zero_names == word%name)) problem = 'of 0 or more'
+    if (word%name == 'PEN') problem = 'other than 0'
+    problem = ': the value is not a number '//problem//' (numbers reach 1e40)'
+  end function value_error
 
   !> The word of a name that counts for an interface (0: the run), the last one given, one that
   !> names the interface before one for all; 0: none.

@@ -7,7 +7,7 @@ module deck_parameters_m
   use text_m, only : upper_case, read_real, shortest, number_good
   use log_m, only : to_text
   use deck_lines_m, only : deck_t, line_text, line_error, line_warning, block_of_line
-  use deck_schema_m, only : first_too_far, keep_nearer
+  use deck_schema_m, only : distance_limit, update_nearest
   use deck_expression_m, only : evaluate
   use deck_parameter_table_m, only : parameter_t, parameters_t, add_parameter, find_given, look_up
   use deck_cards_m, only : cursor_t, open_cursor, next_card
@@ -18,8 +18,8 @@ module deck_parameters_m
 
   !> What happens when a name is defined again (*PARAMETER_DUPLICATION DFLAG); by default a second
   !> definition with another value is an error.
-  integer, parameter :: again_error = 0, again_warn_keep = 1, again_warn_replace = 2, &
-    again_error_keep = 3, again_replace = 4
+  integer, parameter :: duplicate_error = 0, duplicate_warn_keep = 1, duplicate_warn_replace = 2, &
+    duplicate_error_keep = 3, duplicate_replace = 4
 
 contains
 
@@ -41,7 +41,7 @@ contains
         call read_expressions(deck, cursor)
       case ('PARAMETER_DUPLICATION')
         call next_card(deck, cursor, 1, card)
-        if (card%present .and. .not. card%bad(1)) deck%parameters%again = card%i(1)
+        if (card%present .and. .not. card%bad(1)) deck%parameters%duplicates = card%i(1)
       end select
     end do
     do i = 1, deck%parameters%n
@@ -63,10 +63,10 @@ contains
 
     text = ''
     nearest = ''
-    least = first_too_far(given)
+    least = distance_limit(given)
     do i = 1, parameters%n
       if (parameters%items(i)%found) &
-        call keep_nearer(trim(parameters%items(i)%name), given, least, nearest)
+        call update_nearest(trim(parameters%items(i)%name), given, least, nearest)
     end do
     if (len_trim(nearest) > 0) text = '; the nearest is '//trim(nearest)
   end function nearest_name
@@ -104,7 +104,7 @@ contains
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
     type(card_t) :: card
-    character(:), allocatable :: text, formula, trouble
+    character(:), allocatable :: text, formula, message
     integer :: line, width
     real(wp) :: value
 
@@ -131,9 +131,9 @@ contains
         if (len_trim(text) > 0 .and. len_trim(text(:min(cursor%specs(1)%widths(1), len(text)))) &
           == 0) cycle
       end if
-      call evaluate(formula, deck%parameters, cursor%source, value, trouble)
-      if (allocated(trouble)) then
-        call field_error(deck, card, 1, 'cannot be computed: '//trouble)
+      call evaluate(formula, deck%parameters, cursor%source, value, message)
+      if (allocated(message)) then
+        call field_error(deck, card, 1, 'cannot be computed: '//message)
       else
         call define(deck, card, 1, 2, shortest(value))
       end if
@@ -182,11 +182,11 @@ contains
         '_LOCAL') > 0), found=.true.)
     end associate
     item%text = text
-    call settle_parameter(deck, card%line, item)
+    call store_parameter(deck, card%line, item)
   end subroutine define
 
   !> Put a definition into the table, minding one of the same name that is there.
-  subroutine settle_parameter(deck, line, item)
+  subroutine store_parameter(deck, line, item)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line
     type(parameter_t), intent(in) :: item
@@ -200,7 +200,7 @@ contains
       call add_parameter(deck%parameters, item)
       return
     end if
-    associate (given => deck%parameters%items(i), again => deck%parameters%again)
+    associate (given => deck%parameters%items(i), duplicates => deck%parameters%duplicates)
       if (.not. given%found .and. item%kind /= 'C') then
         ! A value from the command line must be a number where the parameter is one.
         call read_real(given%text, value, status)
@@ -209,17 +209,18 @@ contains
       end if
       given%found = .true.
       if (given%fixed .or. given%text == item%text) return
-      select case (again)
-      case (again_error, again_error_keep)
+      select case (duplicates)
+      case (duplicate_error, duplicate_error_keep)
         call line_error(deck, line, 'parameter '//name//' is defined again with another value ("' &
           //item%text//'", before "'//given%text//'")')
-      case (again_warn_keep, again_warn_replace)
+      case (duplicate_warn_keep, duplicate_warn_replace)
         call line_warning(deck, line, 'parameter '//name//to_text(line), 'parameter '//name &
-          //' is defined again; the '//merge('first ', 'second', again == again_warn_keep) &
-          //' value counts')
+          //' is defined again; the '//merge('first ', 'second', &
+          duplicates == duplicate_warn_keep)//' value counts')
       end select
-      if (again == again_warn_replace .or. again == again_replace) given%text = item%text
+      if (duplicates == duplicate_warn_replace .or. duplicates == duplicate_replace) given%text = &
+        item%text
     end associate
-  end subroutine settle_parameter
+  end subroutine store_parameter
 
 end module deck_parameters_m

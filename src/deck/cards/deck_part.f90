@@ -16,7 +16,7 @@ module deck_part_m
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
     next_of, row_comes, report_field, reject_field
   use deck_values_m, only : integer_of, real_of, is_blank, is_bad, define, map_defined, find_id
-  use deck_material_m, only : take_equation
+  use deck_material_m, only : assign_equation
   implicit none
   private
   public :: read_parts, read_sections, hourglass_form, hourglass_coefficient, make_rigids
@@ -34,11 +34,11 @@ contains
     type(part_t) :: part
     type(cursor_t) :: cursor
     type(card_t) :: card
-    integer, allocatable :: blocks(:), taken(:)
+    integer, allocatable :: blocks(:), equation_of(:)
     integer :: i, k, n
 
     call read_hourglasses(deck, default, hourglasses)
-    taken = spread(-1, 1, size(model%materials))
+    equation_of = spread(-1, 1, size(model%materials))
     blocks = blocks_of(deck, 'PART')
     allocate (parts(count_rows(deck, 'PART')))
     do i = 1, size(blocks)
@@ -57,7 +57,7 @@ contains
         part%id = integer_of(card, 'PID')
         call find_id(deck, a_section, card, 'SECID', part%section)
         call find_id(deck, a_material, card, 'MID', part%material)
-        if (part%material > 0) call take_equation(deck, card, equations, model, taken, &
+        if (part%material > 0) call assign_equation(deck, card, equations, model, equation_of, &
           part%material)
         part%hourglass = default
         if (integer_of(card, 'HGID') > 0) then
@@ -69,8 +69,8 @@ contains
     end do
     model%parts = parts(:deck%maps(a_part)%n)
     call map_defined(deck, a_part, 'PID')
-    call settle_form(deck, model)
-    call settle_points(deck, model)
+    call set_formulation(deck, model)
+    call set_integration(deck, model)
   end subroutine read_parts
 
   !> Move past blank lines between parts; a blank line right before a card of numbers is a heading.
@@ -223,7 +223,7 @@ contains
   end subroutine hourglass_coefficient
 
   !> Whether the deck is axisymmetric: all of its parts, or none.
-  subroutine settle_form(deck, model)
+  subroutine set_formulation(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
     character(*), parameter :: forms(2) = ['plane strain (ELFORM 13)', 'axisymmetry (ELFORM 15) ']
@@ -245,22 +245,23 @@ contains
         is_axisymmetric(i))))//', but part '//to_text(model%parts(first)%id) &
         //' is of '//trim(forms(merge(2, 1, is_axisymmetric(first))))//': a deck is of one kind')
     end do
-  end subroutine settle_form
+  end subroutine set_formulation
 
   !> Parts of one-point quads: those with assumed strain must resist shear; in implicit runs those
   !> without it, or of rubber, whose tangent is that of full integration, are fully integrated,
   !> whatever the deck says.
-  subroutine settle_points(deck, model)
+  subroutine set_integration(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
     character(:), allocatable :: changed
-    type(section_t) :: twin
-    integer :: twins(size(model%sections)) !! fully integrated ones, which other parts may go on
-                                           !! sharing as they are; 0 where there is none
+    type(section_t) :: full_section
+    integer :: full_sections(size(model%sections)) !! fully integrated ones, which other parts may
+                                                   !! go on sharing as they are; 0 where there is
+                                                   !! none
     integer :: i, line
 
     changed = ''
-    twins = 0
+    full_sections = 0
     do i = 1, size(model%parts)
       associate (part => model%parts(i))
         if (part%section == 0 .or. part%material == 0) cycle
@@ -277,21 +278,22 @@ contains
         else if (model%controls%implicit%is_on) then
           if (len(changed) == 0) line = deck%maps(a_section)%lines(part%section)
           changed = changed//', '//to_text(part%id)
-          if (twins(part%section) == 0) then
-            twin = model%sections(part%section)
-            twin%is_full = .true.
-            twin%element_form = merge(form_axisym_full, form_full, twin%is_axisymmetric)
-            model%sections = [model%sections, twin]
-            twins(part%section) = size(model%sections)
+          if (full_sections(part%section) == 0) then
+            full_section = model%sections(part%section)
+            full_section%is_full = .true.
+            full_section%element_form = merge(form_axisym_full, form_full, &
+              full_section%is_axisymmetric)
+            model%sections = [model%sections, full_section]
+            full_sections(part%section) = size(model%sections)
           end if
-          part%section = twins(part%section)
+          part%section = full_sections(part%section)
         end if
       end associate
     end do
     if (len(changed) > 0) call line_warning(deck, line, 'implicit points', 'the implicit method ' &
       //'takes parts whose NIP is not 4 as NIP 4 where hourglass control is not by ' &
       //'assumed strain (IHQ 6), which would keep them as they are (but for rubber): '//changed(3:))
-  end subroutine settle_points
+  end subroutine set_integration
 
   !> One body for each part of *MAT_RIGID.
   subroutine make_rigids(deck, model, owner)
@@ -342,8 +344,8 @@ contains
 
     associate (body => model%rigids(i))
       place = place_t(deck%maps(a_part)%lines(body%part), 2, 'PID')
-      if (size(body%nodes) == 0 .and. .not. deck%maps(an_element)%lost) call reject_field(deck, &
-        place, ': this rigid part has no elements, so no mass')
+      if (size(body%nodes) == 0 .and. .not. deck%maps(an_element)%has_refused) &
+        call reject_field(deck, place, ': this rigid part has no elements, so no mass')
       k = findloc(owner(body%nodes) > 0, .true., dim=1)
       if (k > 0) call reject_field(deck, place, ': node ' &
         //to_text(model%mesh%node_id(body%nodes(k)))//' belongs to this rigid part and to rigid ' &

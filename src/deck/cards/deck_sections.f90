@@ -9,8 +9,8 @@ module deck_sections_m
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node_set, a_shell_set
   use deck_lines_m, only : deck_t, blocks_of, count_rows
-  use deck_sets_m, only : keep_first
-  use deck_values_m, only : integer_of, find_id, refuse_again
+  use deck_sets_m, only : remove_duplicates
+  use deck_values_m, only : integer_of, find_id, refuse_duplicates
   implicit none
   private
   public :: read_cross_sections
@@ -45,18 +45,18 @@ contains
         if (section%id == 0) section%id = n_row
         ids(n_row) = section%id
         lines(n_row) = cursor%line
-        call take_section(deck, cursor, model, section, is_sound)
+        call read_section(deck, cursor, model, section, is_sound)
         if (is_sound) n = n + 1
         if (is_sound) sections(n) = section
       end do
     end do
-    call refuse_again(deck, ids(:n_row), lines(:n_row), 'number ', 'cross section ' &
+    call refuse_duplicates(deck, ids(:n_row), lines(:n_row), 'number ', 'cross section ' &
       //'(without a number it is the position in the deck)')
     model%controls%output%cross_sections = sections(:n)
   end subroutine read_cross_sections
 
   !> One row.
-  subroutine take_section(deck, cursor, model, section, is_sound)
+  subroutine read_section(deck, cursor, model, section, is_sound)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
     type(model_t), intent(in) :: model
@@ -70,15 +70,16 @@ contains
     call find_id(deck, a_node_set, card, 'NSID', nodes)
     call find_id(deck, a_shell_set, card, 'SSID', shells)
     if (nodes == 0 .or. shells == 0) return
-    call keep_first(model%node_sets(nodes)%nodes, model%mesh%n_node, section%nodes)
-    call keep_first(model%shell_sets(shells)%elements, model%mesh%n_element, section%elements)
+    call remove_duplicates(model%node_sets(nodes)%nodes, model%mesh%n_node, section%nodes)
+    call remove_duplicates(model%shell_sets(shells)%elements, model%mesh%n_element, &
+      section%elements)
     ! Of a mesh with mistakes only these are told; a set of none is told where it stands.
     if (any(model%mesh%element_nodes < 1)) return
     if (size(section%nodes) == 0 .or. size(section%elements) == 0) return
     call check_section(deck, card, model, section)
     call find_edges(model%mesh%element_nodes, section)
     is_sound = .true.
-  end subroutine take_section
+  end subroutine read_section
 
   !> Each node has an element of the section, and no element is rigid.
   subroutine check_section(deck, card, model, section)

@@ -16,10 +16,10 @@ module deck_sets_m
     report_field
   use deck_ids_m, only : ids_between, kind_names, a_node, an_element, a_part, a_node_set, &
     a_part_set, a_segment_set, a_shell_set
-  use deck_values_m, only : integer_of, is_bad, map_defined, lose, find_id
+  use deck_values_m, only : integer_of, is_bad, map_defined, note_refused, find_id
   implicit none
   private
-  public :: read_sets, read_histories, keep_first, check_edge
+  public :: read_sets, read_histories, remove_duplicates, check_edge
 
   !> One set: indices of its members, in a segment set pairs of nodes.
   type :: set_t
@@ -149,18 +149,18 @@ contains
     do while (next_row(deck, cursor, 2, card))
       select case (deck%blocks(i_block)%name)
       case ('SET_NODE_LIST', 'SET_PART_LIST', 'SET_SHELL_LIST', 'SET_2D_SEGMENT')
-        call take_members(deck, card, kind, set)
+        call read_members(deck, card, kind, set)
       case ('SET_NODE_LIST_GENERATE', 'SET_PART_LIST_GENERATE', 'SET_SHELL_LIST_GENERATE')
-        call take_blocks(deck, card, kind, set)
+        call read_id_ranges(deck, card, kind, set)
       case ('SET_2D_SEGMENT_SET')
         call find_id(deck, a_part_set, card, 'PSID', k)
         set%n_named = set%n_named + 1
         if (k > 0) call append(set, model%part_sets(k)%parts)
       case ('SET_SEGMENT')
         call check_edge(deck, card)
-        if (.not. any(card%bad)) call take_edge(deck, card, set)
+        if (.not. any(card%bad)) call read_edge(deck, card, set)
       case ('SET_NODE_GENERAL')
-        call take_action(deck, card, model, set)
+        call read_option(deck, card, model, set)
       end select
       is_sound = is_sound .and. .not. any(card%bad)
     end do
@@ -172,7 +172,8 @@ contains
       set%n_named = size(set%members)
     end if
     if (is_sound .and. set%n_named == 0) call line_error(deck, set%line, 'the set is empty')
-    if (is_bad(head, 'SID')) call lose(deck, [a_node_set, a_part_set, a_segment_set, a_shell_set])
+    if (is_bad(head, 'SID')) call note_refused(deck, [a_node_set, a_part_set, a_segment_set, &
+      a_shell_set])
     if (.not. is_bad(head, 'SID')) set%id = integer_of(head, 'SID')
   end subroutine read_set
 
@@ -192,7 +193,7 @@ contains
   end subroutine append
 
   !> The ids of a row, one in each of its fields; zeros are padding.
-  subroutine take_members(deck, card, kind, set)
+  subroutine read_members(deck, card, kind, set)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     integer, intent(in) :: kind               !! of the members
@@ -205,10 +206,10 @@ contains
       call find_id(deck, kind, card, k, found)
       call append(set, [found])
     end do
-  end subroutine take_members
+  end subroutine read_members
 
   !> Pairs of first and last id.
-  subroutine take_blocks(deck, card, kind, set)
+  subroutine read_id_ranges(deck, card, kind, set)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     integer, intent(in) :: kind
@@ -229,10 +230,10 @@ contains
       set%n_named = set%n_named + 1
       call append(set, block)
     end do
-  end subroutine take_blocks
+  end subroutine read_id_ranges
 
   !> Two nodes from N1 on.
-  subroutine take_edge(deck, card, set)
+  subroutine read_edge(deck, card, set)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     type(set_t), intent(inout) :: set
@@ -241,11 +242,11 @@ contains
     call find_id(deck, a_node, card, 'N1', ends(1))
     call find_id(deck, a_node, card, 'N2', ends(2))
     call append(set, ends)
-  end subroutine take_edge
+  end subroutine read_edge
 
   !> A row of a general set: what it adds or takes out. Each node stands in the set once, where it
   !> was added.
-  subroutine take_action(deck, card, model, set)
+  subroutine read_option(deck, card, model, set)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     type(model_t), intent(in) :: model
@@ -260,7 +261,7 @@ contains
         //'not available in slideline)')
       return
     else if (action == 'ALL') then
-      call take([(i, i=1, model%mesh%n_node)])
+      call change_members([(i, i=1, model%mesh%n_node)])
       return
     end if
     if (all(card%i(2:) == 0)) call report_field(deck, card, 'E1', 'is not a number of 1 or more')
@@ -268,17 +269,17 @@ contains
       if (card%i(k) < 0) call report_field(deck, card, k, 'is not a number of 1 or more')
       if (card%i(k) < 1) cycle
       call find_id(deck, merge(a_part, a_node, index(action, 'PART') > 0), card, k, found)
-      if (found > 0 .and. index(action, 'PART') == 0) call take([found])
+      if (found > 0 .and. index(action, 'PART') == 0) call change_members([found])
       if (found == 0 .or. index(action, 'PART') == 0) cycle
       do i = 1, model%mesh%n_element
-        if (model%mesh%element_part(i) == found) call take(model%mesh%element_nodes(:, i))
+        if (model%mesh%element_part(i) == found) call change_members(model%mesh%element_nodes(:, i))
       end do
     end do
 
   contains
 
     !> Add nodes that are not there, or take them out; 0 is none.
-    subroutine take(nodes)
+    subroutine change_members(nodes)
       integer, intent(in) :: nodes(:)
       integer :: j
 
@@ -291,9 +292,9 @@ contains
           set%place(nodes(j)) = set%n
         end if
       end do
-    end subroutine take
+    end subroutine change_members
 
-  end subroutine take_action
+  end subroutine read_option
 
   !> N1 to N4 of an edge: two nodes, and what may stand behind them.
   subroutine check_edge(deck, card)
@@ -325,7 +326,7 @@ contains
 
     allocate (edges(0), unset%members(64))
     do while (next_of(deck, 'ELEMENT_BEAM', cursor, card))
-      if (any(card%bad)) call lose(deck, [a_node_set, a_segment_set])
+      if (any(card%bad)) call note_refused(deck, [a_node_set, a_segment_set])
       if (any(card%bad)) cycle
       call line_warning(deck, card%line, 'beams', 'beams are no elements of a plane mesh: the ' &
         //'edges of each of their parts are the segment set, and the node set, of its number')
@@ -340,14 +341,14 @@ contains
         edges(i)%line = card%line
         edges(i)%of_beams = .true.
       end if
-      call take_edge(deck, card, edges(i))
+      call read_edge(deck, card, edges(i))
       edges(i)%is_whole = edges(i)%is_whole .and. .not. any(card%bad)
     end do
     allocate (sets(size(edges), 2))
     do i = 1, size(edges)
       edges(i)%members = edges(i)%members(:edges(i)%n)
       sets(i, :) = edges(i)
-      call keep_first(edges(i)%members, model%mesh%n_node, kept)
+      call remove_duplicates(edges(i)%members, model%mesh%n_node, kept)
       sets(i, 1)%members = kept
     end do
   end subroutine read_beams
@@ -361,29 +362,29 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card
     integer, allocatable :: members(:), sets(:)
-    logical :: is_taken(size(model%node_sets))
+    logical :: is_used(size(model%node_sets))
     integer :: i, n, set
 
     call read_chosen(deck, 'DATABASE_HISTORY_NODE', [a_node, a_node_set], members, sets)
     members = [members, (model%node_sets(sets(i))%nodes, i=1, size(sets))]
-    call keep_first(members, model%mesh%n_node, model%controls%output%history_nodes)
+    call remove_duplicates(members, model%mesh%n_node, model%controls%output%history_nodes)
     call read_chosen(deck, 'DATABASE_HISTORY_SHELL', [an_element, a_shell_set], members, sets)
     members = [members, (model%shell_sets(sets(i))%elements, i=1, size(sets))]
-    call keep_first(members, model%mesh%n_element, model%controls%output%history_elements)
+    call remove_duplicates(members, model%mesh%n_element, model%controls%output%history_elements)
     n = count_rows(deck, 'DATABASE_NODAL_FORCE_GROUP')
     if (n == 0) return
     allocate (groups(n))
-    is_taken = .false.
+    is_used = .false.
     n = 0
     do while (next_of(deck, 'DATABASE_NODAL_FORCE_GROUP', cursor, card))
       call find_id(deck, a_node_set, card, 'NSID', set)
       if (set == 0) cycle
-      if (is_taken(set)) call report_field(deck, card, 'NSID', &
+      if (is_used(set)) call report_field(deck, card, 'NSID', &
         'is the node set of another force group')
-      is_taken(set) = .true.
+      is_used(set) = .true.
       n = n + 1
       groups(n)%id = integer_of(card, 'NSID')
-      call keep_first(model%node_sets(set)%nodes, model%mesh%n_node, groups(n)%nodes)
+      call remove_duplicates(model%node_sets(set)%nodes, model%mesh%n_node, groups(n)%nodes)
     end do
     model%controls%output%force_groups = groups(:n)
   end subroutine read_histories
@@ -402,14 +403,14 @@ contains
     allocate (chosen(1)%members(64), chosen(2)%members(64))
     do while (next_of(deck, head, cursor, card))
       k = merge(2, 1, deck%blocks(cursor%block)%name == head//'_SET')
-      call take_members(deck, card, kinds(k), chosen(k))
+      call read_members(deck, card, kinds(k), chosen(k))
     end do
     members = chosen(1)%members(:chosen(1)%n)
     sets = chosen(2)%members(:chosen(2)%n)
   end subroutine read_chosen
 
   !> Members of a list, each where it comes first.
-  pure subroutine keep_first(members, n_all, kept)
+  pure subroutine remove_duplicates(members, n_all, kept)
     integer, intent(in) :: members(:)
     integer, intent(in) :: n_all           !! members are 1 to this
     integer, allocatable, intent(out) :: kept(:)
@@ -422,6 +423,6 @@ contains
       listed(members(i)) = .true.
     end do
     kept = pack(members, is_first)
-  end subroutine keep_first
+  end subroutine remove_duplicates
 
 end module deck_sets_m

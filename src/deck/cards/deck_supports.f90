@@ -12,12 +12,12 @@ module deck_supports_m
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, an_element, a_part, a_curve, a_node_set, a_system
   use deck_lines_m, only : deck_t, place_t, blocks_of, line_warning, line_error
-  use deck_sets_m, only : keep_first
-  use deck_values_m, only : integer_of, real_of, has_field, take_life, find_id, along_axes
+  use deck_sets_m, only : remove_duplicates
+  use deck_values_m, only : integer_of, real_of, has_field, read_active_time, find_id, along_axes
   implicit none
   private
   public :: read_supports, read_motions, read_common_motions, card_nodes, find_body, mark_axis, &
-    mark_massive, mark_taken, warn_of_nodes
+    mark_nodes_with_mass, mark_constrained, warn_of_nodes
 
   !> Why a rigid body of an axisymmetric deck does not go where it is told to.
   character(*), parameter, public :: across_axis = 'asks a rigid body of an axisymmetric deck ' &
@@ -36,7 +36,7 @@ contains
     if (has_field(card, 'NSID')) then
       call find_id(deck, a_node_set, card, 'NSID', found)
       allocate (nodes(0))
-      if (found > 0) call keep_first(model%node_sets(found)%nodes, model%mesh%n_node, nodes)
+      if (found > 0) call remove_duplicates(model%node_sets(found)%nodes, model%mesh%n_node, nodes)
     else
       call find_id(deck, a_node, card, 'NID', found)
       nodes = pack([found], [found > 0])
@@ -83,14 +83,14 @@ contains
   end function mark_axis
 
   !> (n_node) nodes that some element has, all where elements have been refused.
-  pure function mark_massive(deck, model) result(is_massive)
+  pure function mark_nodes_with_mass(deck, model) result(has_mass)
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
-    logical :: is_massive(model%mesh%n_node)
+    logical :: has_mass(model%mesh%n_node)
 
-    is_massive = deck%maps(an_element)%lost
-    if (.not. deck%maps(an_element)%lost) is_massive = mark_meshed_nodes(model)
-  end function mark_massive
+    has_mass = deck%maps(an_element)%has_refused
+    if (.not. deck%maps(an_element)%has_refused) has_mass = mark_meshed_nodes(model)
+  end function mark_nodes_with_mass
 
   !> Fixed degrees of freedom: codes of *NODE, *BOUNDARY_SPC_, nodes without an element.
   subroutine read_supports(deck, codes, owner, model, fixed)
@@ -104,7 +104,7 @@ contains
     integer, allocatable :: nodes(:)
     integer :: i
 
-    is_free = .not. mark_massive(deck, model)
+    is_free = .not. mark_nodes_with_mass(deck, model)
     allocate (fixed(2, model%mesh%n_node), source=.false.)
     do i = 1, model%mesh%n_node
       if (codes(i) >= 0 .and. codes(i) <= 7) fixed(:, i) = along_axes(:2, codes(i))
@@ -217,14 +217,14 @@ contains
     is_static = model%controls%implicit%is_on .and. .not. model%controls%implicit%is_dynamic
     n = 0
     do while (next_of(deck, 'BOUNDARY_PRESCRIBED_MOTION_', cursor, card))
-      call take_life(deck, card, ['BIRTH', 'DEATH'], motion%birth, motion%death)
+      call read_active_time(deck, card, ['BIRTH', 'DEATH'], motion%birth, motion%death)
       if (any(card%bad)) cycle
       motion%direction = integer_of(card, 'DOF')
       motion%kind = integer_of(card, 'VAD')
       motion%scale = real_of(card, 'SF')
       call find_id(deck, a_curve, card, 'LCID', motion%curve)
       if (has_field(card, 'PID')) then
-        call take_rigid_motion(deck, card, motion, rigid_lines, model)
+        call read_rigid_motion(deck, card, motion, rigid_lines, model)
         cycle
       end if
       call card_nodes(deck, card, model, nodes)
@@ -256,23 +256,23 @@ contains
     type(model_t), intent(in) :: model
     integer, intent(in) :: lines(:)      !! of the card of each motion
     logical, intent(in) :: fixed(:, :)   !! (2, n_node)
-    integer :: last(2, model%mesh%n_node), before(size(lines)), i, j, told
-    logical :: is_massive(model%mesh%n_node), is_skew(model%mesh%n_node)
+    integer :: last(2, model%mesh%n_node), before(size(lines)), i, j, reported_line
+    logical :: has_mass(model%mesh%n_node), is_skew(model%mesh%n_node)
     character(:), allocatable :: message
 
-    is_massive = mark_massive(deck, model)
+    has_mass = mark_nodes_with_mass(deck, model)
     is_skew = .false.
     if (allocated(model%conditions%skew_supports)) &
       is_skew(model%conditions%skew_supports%node) = .true.
     last = 0
-    told = 0
+    reported_line = 0
     message = ''
     do i = 1, size(lines)
       associate (motion => model%conditions%motions(i))
         ! Motions of one degree of freedom are chained backwards.
         before(i) = last(motion%direction, motion%node)
         last(motion%direction, motion%node) = i
-        if (len(message) > 0 .and. lines(i) == told) cycle
+        if (len(message) > 0 .and. lines(i) == reported_line) cycle
         message = ''
         j = before(i)
         do while (j > 0 .and. len(message) == 0)
@@ -289,18 +289,18 @@ contains
         if (model%is_axisymmetric .and. motion%direction == 1 .and. .not. &
           model%mesh%coordinates(1, motion%node) > 0.0_wp) message = &
           'lies on the axis (x = 0) of an axisymmetric deck and can not move in r'
-        if (.not. is_massive(motion%node)) message = &
+        if (.not. has_mass(motion%node)) message = &
           'belongs to no element, so it has no mass to be moved'
-        told = lines(i)
-        if (len(message) > 0) call reject_field(deck, place_t(told, 1, field=1), ': node ' &
-          //to_text(model%mesh%node_id(motion%node))//' '//message)
+        reported_line = lines(i)
+        if (len(message) > 0) call reject_field(deck, place_t(reported_line, 1, field=1), &
+          ': node '//to_text(model%mesh%node_id(motion%node))//' '//message)
       end associate
     end do
   end subroutine check_motions
 
   !> *BOUNDARY_PRESCRIBED_MOTION_RIGID. A moved degree of freedom may not be fixed, nor moved twice
   !> at one time.
-  subroutine take_rigid_motion(deck, card, motion, lines, model)
+  subroutine read_rigid_motion(deck, card, motion, lines, model)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     type(prescribed_motion_t), intent(inout) :: motion
@@ -327,7 +327,7 @@ contains
     end do
     model%conditions%rigid_motions = [model%conditions%rigid_motions, motion]
     lines = [lines, card%line]
-  end subroutine take_rigid_motion
+  end subroutine read_rigid_motion
 
   !> *CONSTRAINED_NODE_SET: the sets whose nodes nothing else holds or moves along the same
   !> direction.
@@ -337,12 +337,13 @@ contains
     type(common_motion_t) :: common
     type(cursor_t) :: cursor
     type(card_t) :: card
-    logical :: taken(2, model%mesh%n_node), is_rigid(model%mesh%n_node), meshed(model%mesh%n_node)
+    logical :: constrained(2, model%mesh%n_node), is_rigid(model%mesh%n_node), &
+      meshed(model%mesh%n_node)
     character(:), allocatable :: message
     integer :: i, k
 
     if (size(blocks_of(deck, 'CONSTRAINED_NODE_SET')) == 0) return
-    taken = mark_taken(model)
+    constrained = mark_constrained(model)
     meshed = mark_meshed_nodes(model)
     is_rigid = mark_rigid_nodes(model%rigids, model%mesh%n_node)
     do while (next_of(deck, 'CONSTRAINED_NODE_SET', cursor, card))
@@ -355,7 +356,7 @@ contains
       do i = 1, size(common%nodes)
         associate (node => common%nodes(i))
           message = ''
-          if (any(taken(:, node) .and. common%along)) message = &
+          if (any(constrained(:, node) .and. common%along)) message = &
             'is held, moved or in another such set along the same direction'
           if (is_rigid(node)) message = 'belongs to a rigid part and follows it'
           if (.not. meshed(node)) message = 'belongs to no element'
@@ -365,7 +366,7 @@ contains
       end do
       if (any(card%bad)) cycle
       do k = 1, 2
-        if (common%along(k)) taken(k, common%nodes) = .true.
+        if (common%along(k)) constrained(k, common%nodes) = .true.
       end do
       if (.not. allocated(model%conditions%common_motions)) &
         allocate (model%conditions%common_motions(0))
@@ -374,21 +375,22 @@ contains
   end subroutine read_common_motions
 
   !> Degrees of freedom that something holds or moves.
-  pure function mark_taken(model) result(taken)
+  pure function mark_constrained(model) result(constrained)
     type(model_t), intent(in) :: model
-    logical :: taken(2, model%mesh%n_node)
+    logical :: constrained(2, model%mesh%n_node)
     integer :: i
 
-    taken = .false.
+    constrained = .false.
     associate (conditions => model%conditions)
       do i = 1, size(conditions%fixed_nodes)
-        taken(conditions%fixed_directions(i), conditions%fixed_nodes(i)) = .true.
+        constrained(conditions%fixed_directions(i), conditions%fixed_nodes(i)) = .true.
       end do
       do i = 1, size(conditions%motions)
-        taken(conditions%motions(i)%direction, conditions%motions(i)%node) = .true.
+        constrained(conditions%motions(i)%direction, conditions%motions(i)%node) = .true.
       end do
-      if (allocated(conditions%skew_supports)) taken(:, conditions%skew_supports%node) = .true.
+      if (allocated(conditions%skew_supports)) constrained(:, &
+        conditions%skew_supports%node) = .true.
     end associate
-  end function mark_taken
+  end function mark_constrained
 
 end module deck_supports_m

@@ -10,8 +10,8 @@ module deck_values_m
   use deck_cards_m, only : reject_field, report_field
   implicit none
   private
-  public :: integer_of, real_of, reals_of, has_field, is_blank, is_bad, place_of, take_life, &
-    define, map_defined, find_id, resolve_id, refuse_again, lose
+  public :: integer_of, real_of, reals_of, has_field, is_blank, is_bad, place_of, &
+    read_active_time, define, map_defined, find_id, resolve_id, refuse_duplicates, note_refused
 
   !> Directions x, y and z of the codes TC, DOF and CON: 0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7
   !> xyz.
@@ -97,7 +97,7 @@ contains
 
   !> Times from which and until when something acts; the default of the end, also that of 0, is
   !> never.
-  subroutine take_life(deck, card, names, birth, death)
+  subroutine read_active_time(deck, card, names, birth, death)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     character(*), intent(in) :: names(2)     !! of the two fields
@@ -111,7 +111,7 @@ contains
     else if (death <= 0.0_wp) then
       call report_field(deck, card, names(2), 'is before the run begins (0 means never)')
     end if
-  end subroutine take_life
+  end subroutine read_active_time
 
   !> One more thing of a kind, which has its number in the first field of a card: its index, 0 where
   !> the number was refused.
@@ -123,7 +123,7 @@ contains
 
     n = 0
     if (card%bad(1)) then
-      call lose(deck, [kind])
+      call note_refused(deck, [kind])
       return
     end if
     associate (map => deck%maps(kind))
@@ -145,7 +145,7 @@ contains
     integer, intent(in) :: kind
     character(*), intent(in) :: field            !! of the ids
     logical, intent(in), optional :: of_beams(:) !! the number of a set is that of a part
-    integer, allocatable :: ids(:), lines(:), twice(:)
+    integer, allocatable :: ids(:), lines(:), duplicates(:)
     type(id_map_t) :: map
     character(5) :: name
     integer :: i, n
@@ -154,30 +154,30 @@ contains
     allocate (ids(n), lines(n))
     if (n > 0) ids = deck%maps(kind)%ids(:n)
     if (n > 0) lines = deck%maps(kind)%lines(:n)
-    call map_ids(ids, map, twice)
+    call map_ids(ids, map, duplicates)
     map%n = n
-    map%lost = deck%maps(kind)%lost .or. deck%incomplete
-    map%incomplete = map%lost .or. (any(kind == [a_node, an_element]) .and. n == 0)
+    map%has_refused = deck%maps(kind)%has_refused .or. deck%incomplete
+    map%incomplete = map%has_refused .or. (any(kind == [a_node, an_element]) .and. n == 0)
     call move_alloc(ids, map%ids)
     call move_alloc(lines, map%lines)
     deck%maps(kind) = map
-    do i = 1, size(twice)
+    do i = 1, size(duplicates)
       name = field
-      if (present(of_beams)) name = merge('PID  ', name, of_beams(twice(i)))
-      call reject_field(deck, place_t(map%lines(twice(i)), merge(2, 1, kind == a_part), &
+      if (present(of_beams)) name = merge('PID  ', name, of_beams(duplicates(i)))
+      call reject_field(deck, place_t(map%lines(duplicates(i)), merge(2, 1, kind == a_part), &
         trim(name)), 'is the number of another '//trim(kind_names(kind))//' (' &
-        //where_text(deck, map%lines(index_of(map, map%ids(twice(i)))))//')')
+        //where_text(deck, map%lines(index_of(map, map%ids(duplicates(i)))))//')')
     end do
   end subroutine map_defined
 
   !> Definitions of a kind that were refused: a reference to them is no further mistake.
-  pure subroutine lose(deck, kinds)
+  pure subroutine note_refused(deck, kinds)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: kinds(:)
 
-    deck%maps(kinds)%lost = .true.
+    deck%maps(kinds)%has_refused = .true.
     deck%maps(kinds)%incomplete = .true.
-  end subroutine lose
+  end subroutine note_refused
 
   !> Index of what a field of a card just read refers to, by the field's name; 0 with an error of
   !> the field where there is none.
@@ -205,35 +205,35 @@ contains
   end subroutine find_by_position
 
   !> As `find_id`, of a card that was read some time ago.
-  subroutine resolve_id(deck, kind, id, place, found, hint)
+  subroutine resolve_id(deck, kind, id, place, found, suffix)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: kind, id
     type(place_t), intent(in) :: place
     integer, intent(out) :: found
-    character(*), intent(in), optional :: hint !! how the message goes on
+    character(*), intent(in), optional :: suffix !! how the message goes on
     character(:), allocatable :: message
 
     found = index_of(deck%maps(kind), id)
     if (found > 0 .or. deck%maps(kind)%incomplete) return
     message = 'is no '//trim(kind_names(kind))//' of this deck'
-    if (present(hint)) message = message//hint
+    if (present(suffix)) message = message//suffix
     call reject_field(deck, place, message)
   end subroutine resolve_id
 
   !> An error of the line of each number that has come before.
-  subroutine refuse_again(deck, ids, lines, what, owner)
+  subroutine refuse_duplicates(deck, ids, lines, what, owner)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: ids(:), lines(:)   !! in the order of the deck
     character(*), intent(in) :: what, owner   !! kind of number, what it is the number of
     type(id_map_t) :: map
-    integer, allocatable :: twice(:)
+    integer, allocatable :: duplicates(:)
     integer :: i
 
-    call map_ids(ids, map, twice)
-    do i = 1, size(twice)
-      call line_error(deck, lines(twice(i)), 'the '//what//to_text(ids(twice(i))) &
+    call map_ids(ids, map, duplicates)
+    do i = 1, size(duplicates)
+      call line_error(deck, lines(duplicates(i)), 'the '//what//to_text(ids(duplicates(i))) &
         //' belongs to an earlier '//owner)
     end do
-  end subroutine refuse_again
+  end subroutine refuse_duplicates
 
 end module deck_values_m

@@ -10,8 +10,9 @@ module deck_wall_m
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node_set
   use deck_lines_m, only : deck_t, blocks_of, line_error, line_warning
-  use deck_supports_m, only : mark_massive, mark_taken, warn_of_nodes
-  use deck_values_m, only : integer_of, real_of, reals_of, take_life, find_id, refuse_again
+  use deck_supports_m, only : mark_nodes_with_mass, mark_constrained, warn_of_nodes
+  use deck_values_m, only : integer_of, real_of, reals_of, read_active_time, find_id, &
+    refuse_duplicates
   implicit none
   private
   public :: read_walls
@@ -34,10 +35,10 @@ contains
     allocate (model%walls(size(blocks)))
     do i = 1, size(blocks)
       call read_wall(deck, blocks(i), model, model%walls(i))
-      call look_at_nodes(deck, lines(i), model, model%walls(i))
+      call check_wall_nodes(deck, lines(i), model, model%walls(i))
     end do
     has_number = model%walls%id > 0
-    call refuse_again(deck, pack([model%walls%id], has_number), pack(lines, has_number), &
+    call refuse_duplicates(deck, pack([model%walls%id], has_number), pack(lines, has_number), &
       'wall number ', 'wall')
     call number_walls(model%walls)
   end subroutine read_walls
@@ -51,7 +52,7 @@ contains
     type(cursor_t) :: cursor
     type(card_t) :: card, place
     character(:), allocatable :: title
-    logical :: sees(model%mesh%n_node)
+    logical :: is_tracked(model%mesh%n_node)
     integer :: k
 
     call open_cursor(deck, i_block, cursor)
@@ -59,8 +60,8 @@ contains
     call next_card(deck, cursor, 1, card)
     call next_card(deck, cursor, 2, place)
     call check_rest(deck, cursor)
-    call take_life(deck, card, ['BIRTH', 'DEATH'], wall%birth, wall%death)
-    call take_plane(deck, place, wall)
+    call read_active_time(deck, card, ['BIRTH', 'DEATH'], wall%birth, wall%death)
+    call read_plane(deck, place, wall)
     wall%friction = real_of(place, 'FRIC')
     if (any(.not. abs(wall%friction - [2.0_wp, 3.0_wp]) > 0.0_wp)) then
       call report_field(deck, place, 'FRIC', 'asks for welding of nodes to the wall, which this ' &
@@ -69,26 +70,26 @@ contains
       call report_field(deck, place, 'FRIC', 'is not the friction of a wall (0 none, 1 sticks, ' &
         //'between: coefficient of friction)')
     end if
-    call find_nodes(deck, card, deck%blocks(i_block)%keyword, model, sees)
-    sees = sees .and. mark_massive(deck, model)
+    call find_nodes(deck, card, deck%blocks(i_block)%keyword, model, is_tracked)
+    is_tracked = is_tracked .and. mark_nodes_with_mass(deck, model)
     if (real_of(card, 'OFFSET') > 0.0_wp) then
-      do k = 1, size(sees)
-        sees(k) = sees(k) .and. wall_distance(wall, model%mesh%coordinates(:, k), &
+      do k = 1, size(is_tracked)
+        is_tracked(k) = is_tracked(k) .and. wall_distance(wall, model%mesh%coordinates(:, k), &
           [0.0_wp, 0.0_wp]) <= real_of(card, 'OFFSET')
       end do
     end if
-    wall%nodes = pack([(k, k=1, model%mesh%n_node)], sees)
+    wall%nodes = pack([(k, k=1, model%mesh%n_node)], is_tracked)
   end subroutine read_wall
 
   !> Tail and head: a point of the wall, and its normal.
-  subroutine take_plane(deck, card, wall)
+  subroutine read_plane(deck, card, wall)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     type(wall_t), intent(inout) :: wall
     real(wp) :: arrow(2)
 
-    wall%foot = reals_of(card, 'XT', 'YT')
-    arrow = reals_of(card, 'XH', 'YH') - wall%foot
+    wall%point = reals_of(card, 'XT', 'YT')
+    arrow = reals_of(card, 'XH', 'YH') - wall%point
     if (abs(real_of(card, 'ZH') - real_of(card, 'ZT')) > 0.0_wp) then
       call report_field(deck, card, 'ZH', &
         'is not ZT: the normal of the wall must lie in the plane of the mesh')
@@ -99,55 +100,56 @@ contains
       arrow = arrow/maxval(abs(arrow))
       wall%normal = arrow/norm2(arrow)
     end if
-  end subroutine take_plane
+  end subroutine read_plane
 
   !> NSID without NSIDEX and nodes of rigid bodies.
-  subroutine find_nodes(deck, card, line, model, sees)
+  subroutine find_nodes(deck, card, line, model, is_tracked)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     integer, intent(in) :: line        !! of the keyword
     type(model_t), intent(in) :: model
-    logical, intent(out) :: sees(:)
-    logical :: is_rigid(size(sees))
+    logical, intent(out) :: is_tracked(:)
+    logical :: is_rigid(size(is_tracked))
     integer :: k
 
-    sees = integer_of(card, 'NSID') == 0
+    is_tracked = integer_of(card, 'NSID') == 0
     if (integer_of(card, 'NSID') > 0) then
       call find_id(deck, a_node_set, card, 'NSID', k)
-      if (k > 0) sees(model%node_sets(k)%nodes) = .true.
+      if (k > 0) is_tracked(model%node_sets(k)%nodes) = .true.
     end if
     if (integer_of(card, 'NSIDEX') > 0) then
       call find_id(deck, a_node_set, card, 'NSIDEX', k)
-      if (k > 0) sees(model%node_sets(k)%nodes) = .false.
+      if (k > 0) is_tracked(model%node_sets(k)%nodes) = .false.
     end if
-    is_rigid = sees .and. mark_rigid_nodes(model%rigids, size(sees))
+    is_rigid = is_tracked .and. mark_rigid_nodes(model%rigids, size(is_tracked))
     call warn_of_nodes(deck, line, 'wall and rigid body'//to_text(line), model, pack([(k, k=1, &
-      size(sees))], is_rigid), ' node(s) of rigid bodies do not see the wall, the first is ', '')
-    sees = sees .and. .not. is_rigid
+      size(is_tracked))], is_rigid), &
+      ' node(s) of rigid bodies do not see the wall, the first is ', '')
+    is_tracked = is_tracked .and. .not. is_rigid
   end subroutine find_nodes
 
   !> Numbers of walls that have none (0): the position in the deck, or the next number that is free.
   pure subroutine number_walls(walls)
     type(wall_t), intent(inout) :: walls(:)
-    logical :: is_taken(2*size(walls))
+    logical :: is_used(2*size(walls))
     integer :: i, k
 
-    is_taken = .false.
+    is_used = .false.
     do i = 1, size(walls)
-      if (walls(i)%id > 0 .and. walls(i)%id <= size(is_taken)) is_taken(walls(i)%id) = .true.
+      if (walls(i)%id > 0 .and. walls(i)%id <= size(is_used)) is_used(walls(i)%id) = .true.
     end do
     do i = 1, size(walls)
       if (walls(i)%id > 0) cycle
-      k = findloc(is_taken(i:), .false., 1) + i - 1
+      k = findloc(is_used(i:), .false., 1) + i - 1
       walls(i)%id = k
-      is_taken(k) = .true.
+      is_used(k) = .true.
     end do
   end subroutine number_walls
 
   !> A wall without nodes, nodes that start behind it, and nodes that can not give way: wherever the
   !> wall pushes, a motion is prescribed or the node is fixed. Nodes that are fixed in all such
   !> directions never come nearer, so they are no reason for a warning.
-  subroutine look_at_nodes(deck, line, model, wall)
+  subroutine check_wall_nodes(deck, line, model, wall)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line
     type(model_t), intent(in) :: model
@@ -174,11 +176,11 @@ contains
         is_moved(motion%direction, motion%node) = .true.
       end associate
     end do
-    is_moved(1, :) = any(is_moved .and. is_pushed, 1) .and. all(mark_taken(model) &
+    is_moved(1, :) = any(is_moved .and. is_pushed, 1) .and. all(mark_constrained(model) &
       .or. .not. is_pushed, 1)
     call warn_of_nodes(deck, line, 'wall and motion'//to_text(line), model, pack(wall%nodes, &
       is_moved(1, wall%nodes)), ' node(s) do not see the wall while their motion is prescribed ' &
       //'(*BOUNDARY_PRESCRIBED_MOTION), the first is ', ': they pass through it')
-  end subroutine look_at_nodes
+  end subroutine check_wall_nodes
 
 end module deck_wall_m

@@ -12,7 +12,7 @@ module deck_echo_m
   use history_tables_m, only : history_tables, n_table
   use model_m, only : model_t
   use parts_m, only : material_t
-  use system_m, only : give_back_memory
+  use system_m, only : release_memory
   use walls_m, only : friction_sticks
   implicit none
   private
@@ -224,8 +224,8 @@ contains
         sliding = 'without sliding'
         if (wall%friction < friction_sticks) sliding = 'with friction '//to_text(wall%friction)
         if (.not. wall%friction > 0.0_wp) sliding = 'without friction'
-        call write_log(log, 'wall '//to_text(wall%id)//': through ('//to_text(wall%foot(1))//', ' &
-          //to_text(wall%foot(2))//'), normal ('//to_text(wall%normal(1))//', ' &
+        call write_log(log, 'wall '//to_text(wall%id)//': through ('//to_text(wall%point(1))//', ' &
+          //to_text(wall%point(2))//'), normal ('//to_text(wall%normal(1))//', ' &
           //to_text(wall%normal(2))//'), seen by '//to_text(size(wall%nodes))//' nodes, plastic ' &
           //'impact '//sliding)
       end associate
@@ -240,7 +240,7 @@ contains
     integer :: i, k, line, source, n, last_block(deck%n_source)
 
     if (allocated(deck%number)) deallocate (deck%number, deck%flags)
-    call give_back_memory()
+    call release_memory()
     do i = 1, deck%n_block
       last_block(deck%blocks(i)%source) = i
     end do

@@ -21,22 +21,22 @@ contains
     character(*), intent(in) :: path         !! of the small deck, for messages
     character(:), allocatable, intent(out) :: merged
     type(error_t), allocatable, intent(out) :: error
-    character(:), allocatable :: mistakes, kept, taken, names, name
+    character(:), allocatable :: problems, kept, changed, names, name
     integer :: start, next, line, i, n
 
-    mistakes = ''
-    taken = ''
+    problems = ''
+    changed = ''
     names = ' '
     start = 1
     line = 1
     do while (start <= len(changes))
       call next_block(changes, start, name, next)
       if (.not. may_change(name)) then
-        mistakes = mistakes//path//':'//to_text(line)//': *'//name//' can not change when a run ' &
+        problems = problems//path//':'//to_text(line)//': *'//name//' can not change when a run ' &
           //'goes on; *CONTROL_TERMINATION and intervals of *DATABASE_ can'//new_line('a')
       else if (name /= 'END' .and. len(name) > 0) then
-        taken = taken//changes(start:next - 1)
-        if (changes(next - 1:next - 1) /= new_line('a')) taken = taken//new_line('a')
+        changed = changed//changes(start:next - 1)
+        if (changes(next - 1:next - 1) /= new_line('a')) changed = changed//new_line('a')
         if (name /= 'KEYWORD') names = names//name//' '
       end if
       do i = start, next - 1
@@ -45,8 +45,8 @@ contains
       start = next
       if (name == 'END') exit
     end do
-    if (len(mistakes) > 0) then
-      call raise(error, mistakes(:len(mistakes) - 1), status_input)
+    if (len(problems) > 0) then
+      call raise(error, problems(:len(problems) - 1), status_input)
       return
     end if
     allocate (character(len(deck)) :: kept)
@@ -60,7 +60,7 @@ contains
       end if
       start = next
     end do
-    merged = kept(:n)//taken//'*END'//new_line('a')
+    merged = kept(:n)//changed//'*END'//new_line('a')
   end subroutine merge_decks
 
   !> The block that starts at `start`: its keyword, empty for what comes before the first one,

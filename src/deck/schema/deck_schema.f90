@@ -17,7 +17,7 @@ module deck_schema_m
   implicit none
   private
   public :: table, keyword_cards, find_keyword, nearest_keyword, expectations, &
-    refusal_reason, text_of_field, first_too_far, keep_nearer, max_card, known_honoured, &
+    refusal_reason, text_of_field, distance_limit, update_nearest, max_card, known_honoured, &
     known_ignored, known_refused, known_not
 
   !> All keywords that are honoured, and their cards.
@@ -235,7 +235,7 @@ contains
     name = canonical(given)
     titled = .false.
     if (row_of(name) > 0) return
-    call take_option(given, base)
+    call strip_option(given, base)
     name = canonical(base)
     i = row_of(name)
     if (i > 0) titled = index(table(i)(len_trim(name) + 1:), 't') > 0
@@ -249,7 +249,7 @@ contains
   end subroutine find_keyword
 
   !> The name without its _TITLE or _ID; blank when it has none.
-  pure subroutine take_option(given, base)
+  pure subroutine strip_option(given, base)
     character(*), intent(in) :: given
     character(*), intent(out) :: base
     integer :: at, i
@@ -262,7 +262,7 @@ contains
       base = given(:at - 1)//given(at + len_trim(options(i)):)
       return
     end do
-  end subroutine take_option
+  end subroutine strip_option
 
   !> The one spelling of a keyword that the tables hold.
   pure function canonical(given) result(name)
@@ -297,14 +297,14 @@ contains
         /= index(pattern, '_* ')) return
     end if
     least = near + 1
-    call take_option(given, base)
+    call strip_option(given, base)
     if (len_trim(base) == 0) base = given
     do i = 1, size(table)
       if (table(i)(1:1) == ' ') cycle
       n = index(table(i), ' ') - 1
       if (index(base, '_') > 0 .and. index(table(i)(:n), trim(base)) == 1 &
         .and. (len_trim(longer) == 0 .or. n < len_trim(longer))) longer = table(i)(:n)
-      call keep_nearer(table(i)(:n), trim(base), least, nearest)
+      call update_nearest(table(i)(:n), trim(base), least, nearest)
     end do
     ! A name that stops early: the shortest that goes on.
     if (len_trim(nearest) == 0) nearest = longer
@@ -368,15 +368,15 @@ contains
   end function text_of_field
 
   !> Letters by which no name differs from one that it is meant for: three, fewer of a short one.
-  pure function first_too_far(name) result(letters)
+  pure function distance_limit(name) result(letters)
     character(*), intent(in) :: name
     integer :: letters
 
     letters = min(3, (len(name) + 2)/2)
-  end function first_too_far
+  end function distance_limit
 
   !> Take a name in place of the nearest so far where it is nearer to the one given.
-  pure subroutine keep_nearer(name, given, least, nearest)
+  pure subroutine update_nearest(name, given, least, nearest)
     character(*), intent(in) :: name, given      !! without blanks behind
     integer, intent(inout) :: least              !! distance of the nearest so far
     character(*), intent(inout) :: nearest
@@ -384,10 +384,10 @@ contains
 
     if (abs(len(name) - len(given)) >= least) return
     distance = edit_distance(name, given)
-    if (distance >= min(least, first_too_far(name))) return
+    if (distance >= min(least, distance_limit(name))) return
     least = distance
     nearest = name
-  end subroutine keep_nearer
+  end subroutine update_nearest
 
   !> Letters to insert, to leave out or to change, or neighbours to swap, that make one name of
   !> another (optimal string alignment).

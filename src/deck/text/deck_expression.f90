@@ -25,57 +25,57 @@ module deck_expression_m
     integer :: at = 1
     integer :: depth = 0
     integer :: source = 0                !! file that the expression stands in
-    character(:), allocatable :: trouble !! first mistake
+    character(:), allocatable :: message !! first mistake
   end type scanner_t
 
 contains
 
   !> Value of `text`; `trouble` is allocated when there is none.
-  subroutine evaluate(text, parameters, source, value, trouble)
+  subroutine evaluate(text, parameters, source, value, message)
     character(*), intent(in) :: text
     type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: source !! file that the text stands in
     real(wp), intent(out) :: value
-    character(:), allocatable, intent(out) :: trouble
+    character(:), allocatable, intent(out) :: message
     type(scanner_t) :: scanner
 
     scanner%text = trim(upper_case(text))//' '
     scanner%source = source
-    call take_terms(scanner, parameters, 1, value)
-    if (take(scanner, '')) continue
+    call parse_terms(scanner, parameters, 1, value)
+    if (accept(scanner, '')) continue
     if (scanner%at < len(scanner%text)) &
-      call complain(scanner, 'cannot read "'//trim(scanner%text(scanner%at:))//'"')
-    if (allocated(scanner%trouble)) then
-      call move_alloc(scanner%trouble, trouble)
+      call set_error(scanner, 'cannot read "'//trim(scanner%text(scanner%at:))//'"')
+    if (allocated(scanner%message)) then
+      call move_alloc(scanner%message, message)
       value = 0.0_wp
     end if
   end subroutine evaluate
 
   !> Keep the first mistake.
-  subroutine complain(scanner, message)
+  subroutine set_error(scanner, message)
     type(scanner_t), intent(inout) :: scanner
     character(*), intent(in) :: message
 
-    if (.not. allocated(scanner%trouble)) scanner%trouble = message
+    if (.not. allocated(scanner%message)) scanner%message = message
     scanner%at = len(scanner%text)
-  end subroutine complain
+  end subroutine set_error
 
   !> Whether `word` comes next behind blanks; it is taken if so. The text ends with a blank.
-  function take(scanner, word) result(taken)
+  function accept(scanner, word) result(accepted)
     type(scanner_t), intent(inout) :: scanner
     character(*), intent(in) :: word
-    logical :: taken
+    logical :: accepted
     integer :: n
 
     n = verify(scanner%text(scanner%at:), ' ') - 1
     if (n < 0) n = len(scanner%text) - scanner%at
     scanner%at = scanner%at + n
-    taken = index(scanner%text(scanner%at:), word) == 1
-    if (taken) scanner%at = scanner%at + len(word)
-  end function take
+    accepted = index(scanner%text(scanner%at:), word) == 1
+    if (accepted) scanner%at = scanner%at + len(word)
+  end function accept
 
   !> A sum (level 1) of products (level 2) of factors: operand {operator operand}.
-  recursive subroutine take_terms(scanner, parameters, level, value)
+  recursive subroutine parse_terms(scanner, parameters, level, value)
     type(scanner_t), intent(inout) :: scanner
     type(parameters_t), intent(in) :: parameters
     integer, intent(in) :: level
@@ -83,32 +83,32 @@ contains
     real(wp) :: operand
     character :: operator
 
-    call take_operand(value)
-    do while (.not. allocated(scanner%trouble))
-      if (take(scanner, operators(level)(1:1))) then
+    call parse_operand(value)
+    do while (.not. allocated(scanner%message))
+      if (accept(scanner, operators(level)(1:1))) then
         operator = operators(level)(1:1)
-      else if (take(scanner, operators(level)(2:2))) then
+      else if (accept(scanner, operators(level)(2:2))) then
         operator = operators(level)(2:2)
       else
         return
       end if
-      call take_operand(operand)
+      call parse_operand(operand)
       if (operator == '/' .and. .not. abs(operand) > 0.0_wp) &
-        call complain(scanner, 'division by zero')
-      if (.not. allocated(scanner%trouble)) call operate(scanner, operator, operand, value)
+        call set_error(scanner, 'division by zero')
+      if (.not. allocated(scanner%message)) call operate(scanner, operator, operand, value)
     end do
 
   contains
 
     !> The next operand.
-    recursive subroutine take_operand(next)
+    recursive subroutine parse_operand(next)
       real(wp), intent(out) :: next
 
-      if (level == 1) call take_terms(scanner, parameters, 2, next)
-      if (level == 2) call take_factor(scanner, parameters, next)
-    end subroutine take_operand
+      if (level == 1) call parse_terms(scanner, parameters, 2, next)
+      if (level == 2) call parse_factor(scanner, parameters, next)
+    end subroutine parse_operand
 
-  end subroutine take_terms
+  end subroutine parse_terms
 
   !> value = value operator operand; ^ stands for a power.
   subroutine operate(scanner, operator, operand, value)
@@ -127,21 +127,21 @@ contains
     case ('^')
       is_whole = abs(operand) < 1.0e6_wp .and. .not. abs(operand - anint(operand)) > 0.0_wp
       if (.not. abs(value) > 0.0_wp .and. operand < 0.0_wp) &
-        call complain(scanner, 'division by zero')
+        call set_error(scanner, 'division by zero')
       if (value < 0.0_wp .and. .not. is_whole) &
-        call complain(scanner, 'a negative number to a power that is not whole')
+        call set_error(scanner, 'a negative number to a power that is not whole')
       if (is_whole) then
         value = value**nint(operand)
       else
         value = value**operand
       end if
     end select
-    if (.not. abs(value) <= largest) call complain(scanner, 'the value is too large')
+    if (.not. abs(value) <= largest) call set_error(scanner, 'the value is too large')
   end subroutine operate
 
   !> Signs, a number, and powers of it taken from the right: they bind stronger than a sign, as in
   !> Fortran.
-  recursive subroutine take_factor(scanner, parameters, value)
+  recursive subroutine parse_factor(scanner, parameters, value)
     type(scanner_t), intent(inout) :: scanner
     type(parameters_t), intent(in) :: parameters
     real(wp), intent(out) :: value
@@ -150,25 +150,25 @@ contains
 
     is_negative = .false.
     do
-      if (take(scanner, '-')) then
+      if (accept(scanner, '-')) then
         is_negative = .not. is_negative
-      else if (.not. take(scanner, '+')) then
+      else if (.not. accept(scanner, '+')) then
         exit
       end if
     end do
     scanner%depth = scanner%depth + 1
-    if (scanner%depth > max_depth) call complain(scanner, 'too many parentheses or powers')
-    call take_primary(scanner, parameters, value)
-    if (take(scanner, '**')) then
-      call take_factor(scanner, parameters, power)
-      if (.not. allocated(scanner%trouble)) call operate(scanner, '^', power, value)
+    if (scanner%depth > max_depth) call set_error(scanner, 'too many parentheses or powers')
+    call parse_primary(scanner, parameters, value)
+    if (accept(scanner, '**')) then
+      call parse_factor(scanner, parameters, power)
+      if (.not. allocated(scanner%message)) call operate(scanner, '^', power, value)
     end if
     scanner%depth = scanner%depth - 1
     if (is_negative) value = -value
-  end subroutine take_factor
+  end subroutine parse_factor
 
   !> A number, a name, a function or an expression in parentheses.
-  recursive subroutine take_primary(scanner, parameters, value)
+  recursive subroutine parse_primary(scanner, parameters, value)
     type(scanner_t), intent(inout) :: scanner
     type(parameters_t), intent(in) :: parameters
     real(wp), intent(out) :: value
@@ -176,18 +176,18 @@ contains
     integer :: n, i, status
 
     value = 0.0_wp
-    if (take(scanner, '(')) then
-      call take_terms(scanner, parameters, 1, value)
-      if (.not. take(scanner, ')')) call complain(scanner, 'a ")" is missing')
+    if (accept(scanner, '(')) then
+      call parse_terms(scanner, parameters, 1, value)
+      if (.not. accept(scanner, ')')) call set_error(scanner, 'a ")" is missing')
       return
     end if
-    if (take(scanner, '&')) continue
+    if (accept(scanner, '&')) continue
     n = verify(scanner%text(scanner%at:), 'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_') - 1
     if (scan(scanner%text(scanner%at:scanner%at), '0123456789.') == 1) then
-      call take_number(scanner, value)
+      call parse_number(scanner, value)
       return
     else if (n == 0) then
-      call complain(scanner, 'a number or a name is missing')
+      call set_error(scanner, 'a number or a name is missing')
       return
     end if
     word = scanner%text(scanner%at:scanner%at + n - 1)
@@ -197,15 +197,15 @@ contains
       call read_real(parameters%items(i)%text, value, status)
     else if (word == 'PI') then
       value = pi
-    else if (take(scanner, '(')) then
-      call take_function(scanner, parameters, word, value)
+    else if (accept(scanner, '(')) then
+      call parse_function(scanner, parameters, word, value)
     else
-      call complain(scanner, 'there is no parameter '//word//' up to here')
+      call set_error(scanner, 'there is no parameter '//word//' up to here')
     end if
-  end subroutine take_primary
+  end subroutine parse_primary
 
   !> A number: digits, point, exponent with its letter and sign.
-  subroutine take_number(scanner, value)
+  subroutine parse_number(scanner, value)
     type(scanner_t), intent(inout) :: scanner
     real(wp), intent(out) :: value
     character(*), parameter :: digits = '0123456789'
@@ -222,12 +222,12 @@ contains
     if (status == number_good) then
       scanner%at = scanner%at + n
     else
-      call complain(scanner, 'cannot read "'//trim(scanner%text(scanner%at:))//'"')
+      call set_error(scanner, 'cannot read "'//trim(scanner%text(scanner%at:))//'"')
     end if
-  end subroutine take_number
+  end subroutine parse_number
 
   !> The arguments of a function (its opening parenthesis has been taken) and its value.
-  recursive subroutine take_function(scanner, parameters, word, value)
+  recursive subroutine parse_function(scanner, parameters, word, value)
     type(scanner_t), intent(inout) :: scanner
     type(parameters_t), intent(in) :: parameters
     character(*), intent(in) :: word
@@ -239,20 +239,20 @@ contains
     n = 0
     do
       n = n + 1
-      if (n > size(arguments)) call complain(scanner, word//' has more than 10 arguments')
-      if (allocated(scanner%trouble)) return
-      call take_terms(scanner, parameters, 1, arguments(n))
-      if (.not. take(scanner, ',')) exit
+      if (n > size(arguments)) call set_error(scanner, word//' has more than 10 arguments')
+      if (allocated(scanner%message)) return
+      call parse_terms(scanner, parameters, 1, arguments(n))
+      if (.not. accept(scanner, ',')) exit
     end do
-    if (.not. take(scanner, ')')) call complain(scanner, 'a ")" is missing after '//word)
+    if (.not. accept(scanner, ')')) call set_error(scanner, 'a ")" is missing after '//word)
     select case (word)
     case ('MIN', 'MAX', 'MOD', 'SIGN', 'ATAN2')
-      if (n < 2) call complain(scanner, word//' needs two arguments')
+      if (n < 2) call set_error(scanner, word//' needs two arguments')
     case default
-      if (n /= 1) call complain(scanner, word//' takes one argument')
+      if (n /= 1) call set_error(scanner, word//' takes one argument')
     end select
-    if (.not. allocated(scanner%trouble)) call apply_function(scanner, word, arguments(:n), value)
-  end subroutine take_function
+    if (.not. allocated(scanner%message)) call apply_function(scanner, word, arguments(:n), value)
+  end subroutine parse_function
 
   !> Value of a function.
   subroutine apply_function(scanner, word, a, value)
@@ -272,7 +272,7 @@ contains
     case ('ATAN'); value = atan(a(1))
     case ('ATAN2')
       value = atan2(a(1), a(2))
-      if (.not. maxval(abs(a(:2))) > 0.0_wp) call complain(scanner, 'ATAN2 is not defined there')
+      if (.not. maxval(abs(a(:2))) > 0.0_wp) call set_error(scanner, 'ATAN2 is not defined there')
     case ('SQRT'); value = sqrt(a(1))
     case ('EXP'); value = exp(a(1))
     case ('LOG'); value = log(a(1))
@@ -285,9 +285,9 @@ contains
     case ('MIN'); value = minval(a)
     case ('MAX'); value = maxval(a)
     case default
-      call complain(scanner, 'there is no function '//word)
+      call set_error(scanner, 'there is no function '//word)
     end select
-    if (.not. ieee_is_finite(value)) call complain(scanner, word//' is not defined there')
+    if (.not. ieee_is_finite(value)) call set_error(scanner, word//' is not defined there')
   end subroutine apply_function
 
 end module deck_expression_m

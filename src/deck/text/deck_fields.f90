@@ -7,8 +7,8 @@ module deck_fields_m
   use text_m, only : read_real, read_integer, number_good, number_range, number_fraction
   use log_m, only : to_text
   use deck_schema_m, only : expectations, text_of_field
-  use deck_report_m, only : spot_t, add_error, count_only
-  use deck_lines_m, only : deck_t, line_text, where_text, line_warning, line_spot, line_error, &
+  use deck_report_m, only : finding_t, add_error, count_only
+  use deck_lines_m, only : deck_t, line_text, where_text, line_warning, line_finding, line_error, &
     given_by, words_of, order_line, block_of_line, written_text, shown_text, marked_line, &
     flag_comma, format_long, format_i10, max_field
   implicit none
@@ -299,7 +299,7 @@ contains
           call number_error(deck, spec, card, k, status)
           cycle
         end if
-        if (.not. abs(card%r(k)) > 0.0_wp) call take_zero(deck, spec, card, k)
+        if (.not. abs(card%r(k)) > 0.0_wp) call interpret_zero(deck, spec, card, k)
       end if
       if (card%r(k) < spec%least(k) .or. card%r(k) > spec%most(k)) &
         call check_range(deck, spec, card, k)
@@ -333,7 +333,7 @@ contains
 
   !> A 0 in a field whose default is another value: LS-DYNA takes the default. The log names the
   !> first field of each name and keyword.
-  subroutine take_zero(deck, spec, card, k)
+  subroutine interpret_zero(deck, spec, card, k)
     type(deck_t), intent(inout) :: deck
     type(card_spec_t), intent(in) :: spec
     type(card_t), intent(inout) :: card
@@ -367,7 +367,7 @@ contains
       list = list//name//place
     end subroutine append_zero
 
-  end subroutine take_zero
+  end subroutine interpret_zero
 
   !> A field that does not hold the number it should.
   subroutine number_error(deck, spec, card, k, status)
@@ -421,7 +421,7 @@ contains
     integer, intent(in) :: k
     character(*), intent(in) :: message
     character(:), allocatable :: text, written
-    type(spot_t) :: spot
+    type(finding_t) :: finding
     logical :: is_done
 
     card%bad(k) = .true.
@@ -445,16 +445,17 @@ contains
       card%first(k), max(card%last(k), card%first(k)))
     written = written_text(deck, card%line)
     if (len(written) > 0) text = text//new_line('a')//'  | written: '//trim(shown_text(written))
-    spot = line_spot(deck, card%line, message)
-    spot%card = card%number
-    spot%field = k
-    spot%name = card%names(k)
-    spot%found = shown_text(field_text(deck, card, k))
+    finding = line_finding(deck, card%line, message)
+    finding%card = card%number
+    finding%field = k
+    finding%name = card%names(k)
+    finding%found = shown_text(field_text(deck, card, k))
     if (card%present .and. len(written) == 0) then
-      spot%first = card%first(k)
-      spot%last = max(card%last(k), card%first(k))
+      finding%first = card%first(k)
+      finding%last = max(card%last(k), card%first(k))
     end if
-    call add_error(deck%report, order_line(deck, card%line), text//words_of(deck, card%line), spot)
+    call add_error(deck%report, order_line(deck, card%line), text//words_of(deck, card%line), &
+      finding)
   end subroutine field_error
 
 end module deck_fields_m

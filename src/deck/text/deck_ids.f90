@@ -19,7 +19,8 @@ module deck_ids_m
 
   !> Index of every id of one kind.
   type :: id_map_t
-    logical :: lost = .false.                !! some definitions were refused: others may be meant
+    logical :: has_refused = .false.                !! some definitions were refused: others may be
+                                                    !! meant
     logical :: incomplete = .false.          !! lost, or there is none where a deck has some
     integer :: n = 0                         !! things defined so far
     integer, allocatable :: ids(:), lines(:) !! of each, and where it is defined
@@ -32,35 +33,35 @@ module deck_ids_m
 contains
 
   !> Make the map; `twice` lists the positions of ids that have come before.
-  subroutine map_ids(ids, map, twice)
+  subroutine map_ids(ids, map, duplicates)
     integer, intent(in) :: ids(:)
     type(id_map_t), intent(out) :: map
-    integer, allocatable, intent(out) :: twice(:)
-    logical, allocatable :: again(:)
+    integer, allocatable, intent(out) :: duplicates(:)
+    logical, allocatable :: is_duplicate(:)
     integer :: i, n
 
     n = size(ids)
-    allocate (twice(0))
+    allocate (duplicates(0))
     if (n == 0) then
       allocate (map%table(0))
       return
     end if
-    allocate (again(n), source=.false.)
+    allocate (is_duplicate(n), source=.false.)
     map%low = minval(ids)
     if (int(maxval(ids), long) - map%low < 4_long*n + 1024) then
       allocate (map%table(maxval(ids) - map%low + 1), source=0)
       do i = 1, n
-        again(i) = map%table(ids(i) - map%low + 1) > 0
-        if (.not. again(i)) map%table(ids(i) - map%low + 1) = i
+        is_duplicate(i) = map%table(ids(i) - map%low + 1) > 0
+        if (.not. is_duplicate(i)) map%table(ids(i) - map%low + 1) = i
       end do
     else
       map%order = sorted_order(int(ids, long))
       map%sorted = ids(map%order)
       do i = 2, n
-        again(map%order(i)) = map%sorted(i) == map%sorted(i - 1)
+        is_duplicate(map%order(i)) = map%sorted(i) == map%sorted(i - 1)
       end do
     end if
-    if (any(again)) twice = pack([(i, i=1, n)], again)
+    if (any(is_duplicate)) duplicates = pack([(i, i=1, n)], is_duplicate)
   end subroutine map_ids
 
   !> Index of an id, or 0.
@@ -75,7 +76,7 @@ contains
       if (id < map%low .or. id - map%low >= size(map%table)) return
       found = map%table(id - map%low + 1)
     else if (allocated(map%sorted)) then
-      place = first_place(map%sorted, id)
+      place = first_position(map%sorted, id)
       if (place > size(map%sorted)) return
       if (map%sorted(place) == id) found = map%order(place)
     end if
@@ -96,7 +97,7 @@ contains
       if (from > to) return
       found = pack(map%table(from:to), map%table(from:to) > 0)
     else if (allocated(map%sorted)) then
-      from = first_place(map%sorted, first)
+      from = first_position(map%sorted, first)
       to = from
       do while (to <= size(map%sorted))
         if (map%sorted(to) > last) exit
@@ -107,7 +108,7 @@ contains
   end subroutine ids_between
 
   !> First place in an increasing list that holds `id` or more.
-  pure function first_place(sorted, id) result(place)
+  pure function first_position(sorted, id) result(place)
     integer, intent(in) :: sorted(:)
     integer, intent(in) :: id
     integer :: place
@@ -124,6 +125,6 @@ contains
       end if
     end do
     place = high
-  end function first_place
+  end function first_position
 
 end module deck_ids_m

@@ -6,7 +6,7 @@
 !> points there (its `first` is negative), so that what is parsed is what the effective deck shows.
 module deck_lines_m
   use, intrinsic :: iso_fortran_env, only : int8
-  use deck_report_m, only : report_t, spot_t, add_error, add_warning
+  use deck_report_m, only : report_t, finding_t, add_error, add_warning
   use deck_ids_m, only : id_map_t, n_kind
   use deck_parameter_table_m, only : parameters_t
   use kinds_m, only : wp
@@ -15,7 +15,7 @@ module deck_lines_m
   private
   public :: deck_t, blocks_of, count_rows, source_t, block_t, place_t, file_paths, &
     line_text, order_line, block_of_line, where_text, line_error, &
-    line_warning, replace_line, written_text, line_spot, shown_text, marked_line, &
+    line_warning, replace_line, written_text, line_finding, shown_text, marked_line, &
     layout_marks, word_t, made_line_t, given_by, words_of, format_standard, format_long, &
     format_i10, flag_comma, flag_parameter, flag_blank, max_source, max_field
 
@@ -244,7 +244,7 @@ contains
 
     text = where_text(deck, line)//': '//message
     if (line > 0) text = text//new_line('a')//'  | '//trim(shown_text(line_text(deck, line)))
-    call add_error(deck%report, order_line(deck, line), text, line_spot(deck, line, message))
+    call add_error(deck%report, order_line(deck, line), text, line_finding(deck, line, message))
   end subroutine line_error
 
   !> A warning of a line; the same `key` is told once.
@@ -255,24 +255,24 @@ contains
     character(*), intent(in) :: message
 
     call add_warning(deck%report, order_line(deck, line), key, &
-      where_text(deck, line)//': '//message, line_spot(deck, line, message))
+      where_text(deck, line)//': '//message, line_finding(deck, line, message))
   end subroutine line_warning
 
   !> A message that belongs to a line as a whole.
-  pure function line_spot(deck, line, message) result(spot)
+  pure function line_finding(deck, line, message) result(finding)
     type(deck_t), intent(in) :: deck
     integer, intent(in) :: line
     character(*), intent(in) :: message
-    type(spot_t) :: spot
+    type(finding_t) :: finding
     integer :: i_block
 
-    spot%message = message
+    finding%message = message
     i_block = block_of_line(deck, line)
     if (line < 1 .or. i_block < 1) return
-    spot%file = deck%sources(deck%blocks(i_block)%source)%path
-    spot%line = deck%number(line)
-    spot%keyword = deck%blocks(i_block)%given
-  end function line_spot
+    finding%file = deck%sources(deck%blocks(i_block)%source)%path
+    finding%line = deck%number(line)
+    finding%keyword = deck%blocks(i_block)%given
+  end function line_finding
 
   !> Give a line a new text (free format).
   subroutine replace_line(deck, line, text)

@@ -26,7 +26,7 @@ module deck_parameter_table_m
     type(parameter_t), allocatable :: items(:)
     integer :: n = 0
     integer :: last(0:n_hash - 1) = 0     !! of each hash of a name
-    integer :: again = 0                  !! what a second definition does (DFLAG)
+    integer :: duplicates = 0                  !! what a second definition does (DFLAG)
   end type parameters_t
 
 contains

@@ -8,7 +8,7 @@ module deck_report_m
   use text_m, only : text_of, utf8_length
   implicit none
   private
-  public :: report_t, spot_t, add_error, count_only, add_warning, &
+  public :: report_t, finding_t, add_error, count_only, add_warning, &
     emit_warnings, emit_errors, list_findings, add_finding, json_text
 
   !> Errors kept, and warnings; what comes later is counted. Of a kind of errors that comes later
@@ -17,10 +17,10 @@ module deck_report_m
   !> Kinds of errors that are told apart.
   integer, parameter :: max_kinds = 200
   !> Errors of a kind that are shown one by one; more are one message with their count.
-  integer, parameter :: most_told = 10
+  integer, parameter :: max_listed = 10
 
   !> Where a message points to, for programs that read it. Unset: the deck as a whole.
-  type :: spot_t
+  type :: finding_t
     character(:), allocatable :: message !! without place and card
     character(:), allocatable :: file
     integer :: line = 0                  !! in the file, 0: none
@@ -30,16 +30,16 @@ module deck_report_m
     integer :: first = 0, last = 0       !! columns of the field; 0 where the line as read is not
                                          !! that of the file
     character(:), allocatable :: found   !! text of the field
-  end type spot_t
+  end type finding_t
 
   !> One message and the deck line that it belongs to.
-  type :: note_t
+  type :: message_t
     integer :: line = 0                !! index of the line in the deck, for the order
     character(:), allocatable :: text
     character(:), allocatable :: key   !! what makes a warning the same as another
     integer :: kind = 0                !! of an error, 0: of none that is told apart
-    type(spot_t) :: spot
-  end type note_t
+    type(finding_t) :: finding
+  end type message_t
 
   !> One kind of errors.
   type :: kind_t
@@ -56,19 +56,19 @@ module deck_report_m
     type(kind_t), allocatable :: kinds(:)
     integer :: n_warning = 0           !! kept
     integer :: n_dropped = 0           !! warnings beyond these, the same ones more than once
-    type(note_t), allocatable :: errors(:)
-    type(note_t), allocatable :: warnings(:)
+    type(message_t), allocatable :: errors(:)
+    type(message_t), allocatable :: warnings(:)
   end type report_t
 
 contains
 
   !> One more error, `line` giving its place in the order; the same one of the deck as a whole (line
   !> 0) is told once.
-  subroutine add_error(report, line, text, spot)
+  subroutine add_error(report, line, text, finding)
     type(report_t), intent(inout) :: report
     integer, intent(in) :: line
     character(*), intent(in) :: text
-    type(spot_t), intent(in) :: spot
+    type(finding_t), intent(in) :: finding
     integer :: k
     logical :: is_kept
 
@@ -78,8 +78,8 @@ contains
       if (report%errors(k)%line < 1 .and. report%errors(k)%text == text) return
     end do
     report%n_error = report%n_error + 1
-    if (allocated(spot%keyword)) then
-      call find_kind(report, key_of(spot%keyword, spot%name, spot%message), k)
+    if (allocated(finding%keyword)) then
+      call find_kind(report, key_of(finding%keyword, finding%name, finding%message), k)
     else
       call find_kind(report, key_of('', '', text), k)
     end if
@@ -94,7 +94,7 @@ contains
     associate (note => report%errors(report%n_kept))
       note%line = line
       note%text = text
-      note%spot = spot
+      note%finding = finding
       note%kind = k
     end associate
   end subroutine add_error
@@ -156,12 +156,12 @@ contains
   end function key_of
 
   !> One more warning; warnings of the same key are given once.
-  subroutine add_warning(report, line, key, text, spot)
+  subroutine add_warning(report, line, key, text, finding)
     type(report_t), intent(inout) :: report
     integer, intent(in) :: line
     character(*), intent(in) :: key
     character(*), intent(in) :: text
-    type(spot_t), intent(in) :: spot
+    type(finding_t), intent(in) :: finding
     integer :: i
 
     if (.not. allocated(report%warnings)) allocate (report%warnings(max_kept))
@@ -177,7 +177,7 @@ contains
       note%line = line
       note%key = key
       note%text = text
-      note%spot = spot
+      note%finding = finding
     end associate
   end subroutine add_warning
 
@@ -204,26 +204,26 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer, allocatable :: order(:)
     character(:), allocatable :: text
-    logical :: is_told(report%n_kind), many
+    logical :: is_listed(report%n_kind), many
     integer :: i, k, n_rest
 
     if (report%n_error == 0) return
     order = deck_order(report%errors(:report%n_kept))
-    is_told = .false.
+    is_listed = .false.
     n_rest = report%n_error
     text = ''
     do i = 1, size(order)
       k = report%errors(order(i))%kind
       ! So many, or some of them without their text: one message.
       many = .false.
-      if (k > 0) many = report%kinds(k)%n > most_told &
+      if (k > 0) many = report%kinds(k)%n > max_listed &
         .or. report%kinds(k)%n > report%kinds(k)%n_kept
       if (.not. many) then
         text = text//report%errors(order(i))%text//new_line('a')
         n_rest = n_rest - 1
-      else if (.not. is_told(k)) then
+      else if (.not. is_listed(k)) then
         text = text//report%errors(order(i))%text//new_line('a')//count_text(report, order(i:), k)
-        is_told(k) = .true.
+        is_listed(k) = .true.
         n_rest = n_rest - report%kinds(k)%n
       end if
     end do
@@ -247,8 +247,8 @@ contains
     n = 0
     do i = 1, size(order)
       associate (note => report%errors(order(i)))
-        if (note%kind /= k .or. .not. allocated(note%spot%file)) cycle
-        place = note%spot%file//':'//to_text(note%spot%line)
+        if (note%kind /= k .or. .not. allocated(note%finding%file)) cycle
+        place = note%finding%file//':'//to_text(note%finding%line)
       end associate
       if (place == before) cycle
       if (n == 3) then
@@ -264,7 +264,7 @@ contains
 
   !> Order of the notes by line, equal lines as they came, those of no line (0) last.
   pure function deck_order(notes) result(order)
-    type(note_t), intent(in) :: notes(:)
+    type(message_t), intent(in) :: notes(:)
     integer :: order(size(notes))
     integer :: i, j, moved
 
@@ -293,40 +293,40 @@ contains
 
   !> Messages of one kind, and how many there are beyond those that are kept.
   pure subroutine list_notes(notes, n, n_more, severity, findings)
-    type(note_t), intent(in), optional :: notes(:) !! absent: there are none
+    type(message_t), intent(in), optional :: notes(:) !! absent: there are none
     integer, intent(in) :: n, n_more
     character(*), intent(in) :: severity
     character(:), allocatable, intent(inout) :: findings
     integer :: order(n), i
-    type(spot_t) :: spot
+    type(finding_t) :: finding
 
     if (.not. present(notes)) return
     order = deck_order(notes(:n))
     do i = 1, n
-      call add_finding(severity, notes(order(i))%spot, findings)
+      call add_finding(severity, notes(order(i))%finding, findings)
     end do
     if (n_more < 1) return
-    spot%message = 'and '//to_text(n_more)//' more '//severity//'s'
-    call add_finding(severity, spot, findings)
+    finding%message = 'and '//to_text(n_more)//' more '//severity//'s'
+    call add_finding(severity, finding, findings)
   end subroutine list_notes
 
   !> One more object; what is not known of its place is left out.
-  pure subroutine add_finding(severity, spot, findings)
+  pure subroutine add_finding(severity, finding, findings)
     character(*), intent(in) :: severity !! error or warning
-    type(spot_t), intent(in) :: spot
+    type(finding_t), intent(in) :: finding
     character(:), allocatable, intent(inout) :: findings
     character(:), allocatable :: text
 
     text = '{"severity": "'//severity//'"'
-    if (allocated(spot%file)) text = text//', "file": '//json_text(spot%file)
-    if (spot%line > 0) text = text//', "line": '//to_text(spot%line) &
-      //', "keyword": '//json_text('*'//text_of(spot%keyword))
-    if (spot%card > 0) text = text//', "card": '//to_text(spot%card)//', "field": ' &
-      //to_text(spot%field)//', "name": '//json_text(trim(spot%name))
-    if (spot%first > 0) text = text//', "first_column": '//to_text(spot%first) &
-      //', "last_column": '//to_text(spot%last)
-    if (allocated(spot%found)) text = text//', "found": '//json_text(spot%found)
-    text = text//', "message": '//json_text(spot%message)//'}'
+    if (allocated(finding%file)) text = text//', "file": '//json_text(finding%file)
+    if (finding%line > 0) text = text//', "line": '//to_text(finding%line) &
+      //', "keyword": '//json_text('*'//text_of(finding%keyword))
+    if (finding%card > 0) text = text//', "card": '//to_text(finding%card)//', "field": ' &
+      //to_text(finding%field)//', "name": '//json_text(trim(finding%name))
+    if (finding%first > 0) text = text//', "first_column": '//to_text(finding%first) &
+      //', "last_column": '//to_text(finding%last)
+    if (allocated(finding%found)) text = text//', "found": '//json_text(finding%found)
+    text = text//', "message": '//json_text(finding%message)//'}'
     if (len(findings) > 0) findings = findings//','//new_line('a')
     findings = findings//'    '//text
   end subroutine add_finding

@@ -12,8 +12,8 @@ module ranks_m
     mpi_min, mpi_statuses_ignore, mpi_thread_funneled, mpi_waitall
   implicit none
   private
-  public :: ranks_t, join_ranks, leave_ranks, bring_reals, swap_reals, find_least, &
-    spread_values, share_error
+  public :: ranks_t, join_ranks, leave_ranks, gather_reals, exchange_reals, reduce_min, &
+    broadcast_values, share_error
 
   integer, parameter :: real_bytes = storage_size(1.0_wp)/8
 
@@ -45,7 +45,7 @@ contains
   end subroutine leave_ranks
 
   !> Pieces of an array, one a process, to all of them or to the first.
-  subroutine bring_reals(ranks, starts, width, to_all, values)
+  subroutine gather_reals(ranks, starts, width, to_all, values)
     type(ranks_t), intent(inout) :: ranks
     integer, intent(in) :: starts(0:)     !! (0:n) item at which each piece starts, then one beyond
     integer, intent(in) :: width          !! values of an item
@@ -68,10 +68,10 @@ contains
     ranks%joined(1) = ranks%joined(1) + 1
     if (to_all .or. ranks%mine == 0) ranks%joined(2) = ranks%joined(2) &
       + int(real_bytes, long)*(sum(int(counts, long)) - counts(ranks%mine))
-  end subroutine bring_reals
+  end subroutine gather_reals
 
   !> Values for some other processes, a message each, against what these have for this one.
-  subroutine swap_reals(ranks, peers, out_starts, outgoing, in_starts, incoming)
+  subroutine exchange_reals(ranks, peers, out_starts, outgoing, in_starts, incoming)
     type(ranks_t), intent(inout) :: ranks
     integer, intent(in) :: peers(:)       !! their numbers
     integer, intent(in) :: out_starts(:), in_starts(:) !! (peers + 1) where the values of each start
@@ -97,10 +97,10 @@ contains
       ranks%sent = ranks%sent + [1_long, int(real_bytes, long)*n]
     end do
     call mpi_waitall(n_request, requests, mpi_statuses_ignore, status)
-  end subroutine swap_reals
+  end subroutine exchange_reals
 
   !> The least of what the processes have, value by value, to all of them.
-  subroutine find_least(ranks, values)
+  subroutine reduce_min(ranks, values)
     type(ranks_t), intent(inout) :: ranks
     real(wp), intent(inout), contiguous :: values(:)
     integer :: status
@@ -108,17 +108,17 @@ contains
     call mpi_allreduce(mpi_in_place, values, size(values), mpi_double_precision, mpi_min, &
       mpi_comm_world, status)
     ranks%joined = ranks%joined + [1_long, int(real_bytes, long)*size(values)]
-  end subroutine find_least
+  end subroutine reduce_min
 
   !> Values of the first process to all.
-  subroutine spread_values(ranks, values)
+  subroutine broadcast_values(ranks, values)
     type(ranks_t), intent(in) :: ranks
     real(wp), intent(inout), contiguous :: values(:)
     integer :: status
 
     if (ranks%n > 1) call mpi_bcast(values, size(values), mpi_double_precision, 0, &
       mpi_comm_world, status)
-  end subroutine spread_values
+  end subroutine broadcast_values
 
   !> An error of any process becomes that of all: where several have one that of the first of them,
   !> but each keeps its own.

@@ -7,8 +7,8 @@ module ranks_m
   use kinds_m, only : wp, long
   implicit none
   private
-  public :: ranks_t, join_ranks, leave_ranks, bring_reals, swap_reals, find_least, &
-    spread_values, share_error
+  public :: ranks_t, join_ranks, leave_ranks, gather_reals, exchange_reals, reduce_min, &
+    broadcast_values, share_error
 
   !> This process among those of the run.
   type :: ranks_t
@@ -32,34 +32,34 @@ contains
   end subroutine leave_ranks
 
   !> Pieces of an array, one a process, to all of them or to the first.
-  subroutine bring_reals(ranks, starts, width, to_all, values)
+  subroutine gather_reals(ranks, starts, width, to_all, values)
     type(ranks_t), intent(inout) :: ranks
     integer, intent(in) :: starts(0:)     !! (0:n) item at which each piece starts, then one beyond
     integer, intent(in) :: width          !! values of an item
     logical, intent(in) :: to_all
     real(wp), intent(inout) :: values(*)
-  end subroutine bring_reals
+  end subroutine gather_reals
 
   !> Values for some other processes, a message each, against what these have for this one.
-  subroutine swap_reals(ranks, peers, out_starts, outgoing, in_starts, incoming)
+  subroutine exchange_reals(ranks, peers, out_starts, outgoing, in_starts, incoming)
     type(ranks_t), intent(inout) :: ranks
     integer, intent(in) :: peers(:)       !! their numbers
     integer, intent(in) :: out_starts(:), in_starts(:) !! (peers + 1) where the values of each start
     real(wp), intent(in) :: outgoing(*)
     real(wp), intent(inout) :: incoming(*)
-  end subroutine swap_reals
+  end subroutine exchange_reals
 
   !> The least of what the processes have, value by value, to all of them.
-  subroutine find_least(ranks, values)
+  subroutine reduce_min(ranks, values)
     type(ranks_t), intent(inout) :: ranks
     real(wp), intent(inout), contiguous :: values(:)
-  end subroutine find_least
+  end subroutine reduce_min
 
   !> Values of the first process to all.
-  subroutine spread_values(ranks, values)
+  subroutine broadcast_values(ranks, values)
     type(ranks_t), intent(in) :: ranks
     real(wp), intent(inout), contiguous :: values(:)
-  end subroutine spread_values
+  end subroutine broadcast_values
 
   !> An error of any process becomes that of all: where several have one that of the first of them,
   !> but each keeps its own.

@@ -17,19 +17,19 @@ module element_losses_m
   use node_motion_m, only : leap_t, find_factors
   use start_m, only : weigh_contacts
   use state_m, only : state_t
-  use surface_building_m, only : surface_left
+  use surface_building_m, only : remaining_surface
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: settle_elements, release_nodes, report_erosion, failure_watch_t, follow_failures, &
+  public :: settle_elements, release_nodes, report_erosion, failure_log_t, follow_failures, &
     report_failures, follow_outlines, resume_outlines
 
   !> What has been told.
-  type :: failure_watch_t
-    logical :: takes_up = .false.       !! the run goes on: what had failed before was told then
-    integer :: told = 0                 !! points
+  type :: failure_log_t
+    logical :: is_restart = .false.     !! the run goes on: what had failed before was told then
+    integer :: n_reported = 0           !! points
     character(:), allocatable :: first  !! where and when the first one failed
-  end type failure_watch_t
+  end type failure_log_t
 
 contains
 
@@ -71,8 +71,8 @@ contains
           if (node <= model%layout%n_special) push = push + state%inverse_mass(:, node) &
             *state%force_special(:, node)
           before = after - half*push
-          if (allocated(state%former_velocity)) then
-            before = state%former_velocity(:, node)
+          if (allocated(state%previous_velocity)) then
+            before = state%previous_velocity(:, node)
             state%damping_work = state%damping_work + 0.5_wp*mass*sum((1.0_wp/half - 1.0_wp &
               /leap%mean)*(before + after)*(state%dt_before*before + merge(state%dt*after, &
               0.0_wp, is_led)))
@@ -129,45 +129,48 @@ contains
   end subroutine report_erosion
 
   !> Look at the cycle just done.
-  subroutine follow_failures(model, state, watch, log)
+  subroutine follow_failures(model, state, failures, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    type(failure_watch_t), intent(inout) :: watch
+    type(failure_log_t), intent(inout) :: failures
     type(log_t), intent(inout) :: log
     integer :: n, slot
 
     n = sum(state%elements%n_failed)
-    if (watch%takes_up) then
-      watch%takes_up = .false.
-      watch%told = n
-      if (n > 0) watch%first = 'before the restart'
-    else if (watch%told == 0 .and. n > 0) then
-      watch%told = n
-      if (log%is_mute) return ! the first process alone knows the elements of all
+    if (failures%is_restart) then
+      failures%is_restart = .false.
+      failures%n_reported = n
+      if (n > 0) failures%first = 'before the restart'
+    else if (failures%n_reported == 0 .and. n > 0) then
+      failures%n_reported = n
+      if (log%is_silent) return ! the first process alone knows the elements of all
       slot = first_failed(model, state%elements)
-      watch%first = 'in element '//to_text(model%mesh%element_id(model%layout%slot_element(slot))) &
-        //' of part '//to_text(model%parts(slot_part(model%layout, slot))%id)//' at ' &
-        //'cycle '//to_text(state%cycle)//', time '//to_text(state%time)
-      call write_log(log, 'points fail: the first '//watch%first)
-    else if (watch%told > 0 .and. n/10 >= watch%told) then
+      associate (element => model%layout%slot_element(slot), &
+        part => slot_part(model%layout, slot))
+        failures%first = 'in element '//to_text(model%mesh%element_id(element))//' of part ' &
+          //to_text(model%parts(part)%id)//' at cycle '//to_text(state%cycle)//', time ' &
+          //to_text(state%time)
+      end associate
+      call write_log(log, 'points fail: the first '//failures%first)
+    else if (failures%n_reported > 0 .and. n/10 >= failures%n_reported) then
       call write_log(log, 'points fail: '//to_text(n)//' of ' &
         //to_text(count_points(model, state%elements))//' by cycle '//to_text(state%cycle) &
         //', time '//to_text(state%time))
-      watch%told = n
+      failures%n_reported = n
     end if
   end subroutine follow_failures
 
   !> The summary.
-  subroutine report_failures(model, state, watch, log)
+  subroutine report_failures(model, state, failures, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    type(failure_watch_t), intent(in) :: watch
+    type(failure_log_t), intent(in) :: failures
     type(log_t), intent(inout) :: log
 
     if (.not. allocated(state%elements%n_failed)) return
-    if (allocated(watch%first)) then
+    if (allocated(failures%first)) then
       call write_log(log, 'failed points: '//to_text(sum(state%elements%n_failed))//' of ' &
-        //to_text(count_points(model, state%elements))//', the first '//watch%first)
+        //to_text(count_points(model, state%elements))//', the first '//failures%first)
     else
       call write_log(log, 'failed points: none')
     end if
@@ -180,7 +183,7 @@ contains
     type(model_t), intent(in) :: model
     logical, intent(in) :: has_lost(:) !! (n_part) elements in this cycle
     type(state_t), intent(inout) :: state
-    type(contact_t), allocatable :: former
+    type(contact_t), allocatable :: previous
     logical, allocatable :: is_left(:)
     real(wp) :: lost
     integer :: i
@@ -189,15 +192,16 @@ contains
     call expose_elements(model, is_left, state)
     do i = 1, size(state%outlines)
       if (.not. (loses(state%outlines(i)%slave) .or. loses(state%outlines(i)%master))) cycle
-      former = state%outlines(i)
+      previous = state%outlines(i)
       ! What is no node of the interface any more feels no force of it.
       state%force_special(:, state%contacts(i)%nodes) = 0.0_wp
-      call take_left(model, i, is_left, state%outlines(i))
+      call set_remaining_surfaces(model, i, is_left, state%outlines(i))
       if (state%outlines(i)%birth >= huge(1.0_wp)) then
         call close_contact(state%outlines(i), model, state%motion, state%dt, state%contacts(i), &
           lost)
       else
-        call renew_contact(former, state%outlines(i), model, state%motion, state%contacts(i), lost)
+        call renew_contact(previous, state%outlines(i), model, state%motion, state%contacts(i), &
+          lost)
       end if
       state%elements%erosion%took(4) = state%elements%erosion%took(4) + lost
     end do
@@ -237,15 +241,15 @@ contains
 
   !> The interface that is left of one of the deck; that of the deck, never born, where a side has
   !> nothing left.
-  subroutine take_left(model, i, is_left, contact)
+  subroutine set_remaining_surfaces(model, i, is_left, contact)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
     logical, intent(in) :: is_left(:)
     type(contact_t), intent(inout) :: contact
     type(surface_t) :: slave, master
 
-    call surface_left(model%mesh, is_left, model%contacts(i)%slave, slave)
-    call surface_left(model%mesh, is_left, model%contacts(i)%master, master)
+    call remaining_surface(model%mesh, is_left, model%contacts(i)%slave, slave)
+    call remaining_surface(model%mesh, is_left, model%contacts(i)%master, master)
     if (min(slave%n_segment, master%n_segment) > 0) then
       contact%slave = slave
       contact%master = master
@@ -254,7 +258,7 @@ contains
       contact%master = model%contacts(i)%master
       contact%birth = huge(1.0_wp)
     end if
-  end subroutine take_left
+  end subroutine set_remaining_surfaces
 
   !> Before a state is read in which elements have left: interfaces get the shapes that they had.
   subroutine resume_outlines(model, state)
@@ -267,7 +271,7 @@ contains
     if (all(is_left)) return
     call expose_elements(model, is_left, state)
     do i = 1, size(state%outlines)
-      call take_left(model, i, is_left, state%outlines(i))
+      call set_remaining_surfaces(model, i, is_left, state%outlines(i))
       call prepare_contact(state%outlines(i), model, state%contacts(i))
     end do
   end subroutine resume_outlines

@@ -8,8 +8,8 @@
 module explicit_m
   use clock_m, only : lap, phase_elements, phase_nodes, phase_output
   use explicit_contact_m, only : report_contact_energies, add_implicit_penalties
-  use contact_check_m, only : report_contact_end
-  use element_dispatch_m, only : add_tile_forces, share_tile_forces, keep_tile_forces, &
+  use contact_reports_m, only : report_contact_end
+  use element_dispatch_m, only : add_tile_forces, scatter_tile_forces, store_tile_forces, &
     sum_special_forces
   use eroding_tiles_m, only : add_eroding_tile_forces
   use element_losses_m, only : report_erosion, report_failures
@@ -17,7 +17,7 @@ module explicit_m
   use explicit_cycle_m, only : explicit_cycle_t, start_cycles, begin_cycle, exchange_tiles, &
     end_cycle
   use explicit_report_m, only : report_cycle
-  use health_m, only : check_tile, judge_energies, unaccounted
+  use health_m, only : check_tile, warn_of_energies, unaccounted
   use kinds_m, only : wp
   use mass_scaling_m, only : refine_limits
   use model_m, only : model_t
@@ -26,7 +26,8 @@ module explicit_m
   use node_motion_m, only : leap_t, move_tile_nodes, move_special_nodes, move_damped_nodes
   use rank_exchange_m, only : report_exchange
   use ranks_m, only : share_error
-  use resting_tiles_m, only : awake, flying, remember_tile, judge_tile, look_at_tile, report_rest
+  use quiescent_tiles_m, only : tile_active, tile_translating, save_tile, test_tile, &
+    check_translation, report_tile_states
   use held_nodes_m, only : hold_skew_nodes, hold_nodes
   use state_m, only : state_t
   implicit none
@@ -66,10 +67,10 @@ contains
     call report_contact_energies(model, state, monitor%log)
     call report_failures(model, state, cycle%failures, monitor%log)
     if (model%erodes) call report_erosion(model, state, monitor%log)
-    if (monitor%ranks%n > 1) call report_exchange(cycle%parcel, monitor%ranks, monitor%log)
-    call report_rest(monitor%ranks, cycle%rest, monitor%log)
+    if (monitor%ranks%n > 1) call report_exchange(cycle%halo, monitor%ranks, monitor%log)
+    call report_tile_states(monitor%ranks, cycle%tile_states, monitor%log)
     if (allocated(error)) return
-    call judge_energies(monitor%snapshot%energies, 0.0_wp, unaccounted, monitor%log)
+    call warn_of_energies(monitor%snapshot%energies, 0.0_wp, unaccounted, monitor%log)
   end subroutine advance_explicit
 
   !> The cycles, run by every thread of the team. The end of a cycle and the beginning of the next
@@ -137,18 +138,18 @@ contains
       end do
       !$omp end do nowait
     end if
-    if (size(cycle%rest%watched) > 0) then
+    if (size(cycle%tile_states%monitored) > 0) then
       !$omp do schedule(static)
-      do i = 1, size(cycle%rest%watched)
-        i_tile = cycle%rest%watched(i)
-        call look_at_tile(model%layout, i_tile, state%motion, cycle%rest)
-        if (cycle%rest%status(i_tile) < awake) then
+      do i = 1, size(cycle%tile_states%monitored)
+        i_tile = cycle%tile_states%monitored(i)
+        call check_translation(model%layout, i_tile, state%motion, cycle%tile_states)
+        if (cycle%tile_states%status(i_tile) < tile_active) then
           associate (tile => model%layout%tiles(i_tile))
             if (allocated(cycle%sums%parts)) call sum_motion(tile%first_node, tile%last_node, &
               state, cycle%sums%parts(:, i_tile))
-            if (cycle%rest%status(i_tile) == flying .and. .not. cycle%writes) &
+            if (cycle%tile_states%status(i_tile) == tile_translating .and. .not. cycle%writes) &
               call move_tile_nodes(cycle%leap, tile%first_node, tile%last_node, &
-              cycle%rest%no_force, state%inverse_mass, state%motion)
+              cycle%tile_states%zero_force, state%inverse_mass, state%motion)
           end associate
         else
           call step_tile(model, i_tile, state, cycle, force)
@@ -157,8 +158,8 @@ contains
       !$omp end do nowait
     end if
     !$omp do schedule(static)
-    do i = 1, size(cycle%rest%stepped)
-      call step_tile(model, cycle%rest%stepped(i), state, cycle, force)
+    do i = 1, size(cycle%tile_states%stepped)
+      call step_tile(model, cycle%tile_states%stepped(i), state, cycle, force)
     end do
     !$omp end do
   end subroutine advance_tiles
@@ -173,8 +174,8 @@ contains
     real(wp), allocatable :: before(:) !! values of its elements, where the tile may come to rest
 
     associate (tile => model%layout%tiles(i_tile))
-      if (cycle%rest%status(i_tile) > awake) &
-        call remember_tile(model, i_tile, state, cycle%rest, before)
+      if (cycle%tile_states%status(i_tile) > tile_active) &
+        call save_tile(model, i_tile, state, cycle%tile_states, before)
       if (model%erodes) then
         call add_eroding_tile_forces(model, tile, state%motion, [state%time, state%dt_before], &
           state%elements, force)
@@ -184,12 +185,12 @@ contains
       if (cycle%refines) call refine_limits(model, tile, state%motion, state%dt_before, &
         state%elements)
       cycle%checks(i_tile) = check_tile(tile, state%elements)
-      call share_tile_forces(tile, force, state%force_slots)
-      if (allocated(before)) call judge_tile(model, i_tile, before, force, state, cycle%rest)
+      call scatter_tile_forces(tile, force, state%force_slots)
+      if (allocated(before)) call test_tile(model, i_tile, before, force, state, cycle%tile_states)
       if (allocated(cycle%sums%parts)) call sum_motion(tile%first_node, tile%last_node, state, &
         cycle%sums%parts(:, i_tile))
       if (cycle%writes) then
-        call keep_tile_forces(tile, force, state%internal_force)
+        call store_tile_forces(tile, force, state%internal_force)
       else if (allocated(state%node_damping)) then
         call move_damped_nodes(cycle%leap, 0, tile%first_node, tile%last_node, force, state)
       else
@@ -208,8 +209,8 @@ contains
     integer :: i
 
     !$omp do schedule(static)
-    do i = 1, size(cycle%rest%summed)
-      associate (run => cycle%shares%runs(:, cycle%rest%summed(i)))
+    do i = 1, size(cycle%tile_states%summed)
+      associate (run => cycle%partition%runs(:, cycle%tile_states%summed(i)))
         call sum_special_forces(model%layout, state%force_slots, run(1), run(2), &
           state%internal_force)
       end associate
@@ -233,9 +234,9 @@ contains
     integer :: i
 
     !$omp do schedule(static)
-    do i = 1, size(cycle%rest%summed)
-      associate (first => cycle%shares%runs(1, cycle%rest%summed(i)), &
-        last => cycle%shares%runs(2, cycle%rest%summed(i)))
+    do i = 1, size(cycle%tile_states%summed)
+      associate (first => cycle%partition%runs(1, cycle%tile_states%summed(i)), &
+        last => cycle%partition%runs(2, cycle%tile_states%summed(i)))
         if (.not. cycle%presses) call sum_special_forces(model%layout, state%force_slots, first, &
           last, state%internal_force)
         if (.not. cycle%writes) then
@@ -272,7 +273,7 @@ contains
     integer :: i
 
     !$omp do schedule(static)
-    do i = cycle%shares%first_tile, cycle%shares%last_tile
+    do i = cycle%partition%first_tile, cycle%partition%last_tile
       associate (tile => model%layout%tiles(i))
         if (allocated(state%node_damping)) then
           call move_run(model, cycle%leap, tile%first_node, tile%last_node, state)
@@ -284,8 +285,8 @@ contains
     end do
     !$omp end do
     !$omp do schedule(static)
-    do i = 1, size(cycle%rest%summed)
-      associate (run => cycle%shares%runs(:, cycle%rest%summed(i)))
+    do i = 1, size(cycle%tile_states%summed)
+      associate (run => cycle%partition%runs(:, cycle%tile_states%summed(i)))
         call move_run(model, cycle%leap, run(1), run(2), state)
       end associate
     end do

@@ -5,7 +5,7 @@
 !> and implicit penalties (PUNIT 4, section 6.6), which follow all other forces: from the velocities
 !> that these give to the nodes of the interface, rigid bodies among them.
 module explicit_contact_m
-  use clock_m, only : clock_t, lap, share_contact, phase_contact_force, phase_nodes
+  use clock_m, only : clock_t, lap, lap_interface, phase_contact_force, phase_nodes
   use loads_m, only : is_active, part_damping_rate
   use contacts_m, only : penalty_implicit
   use implicit_penalty_m, only : pressure_step_t, start_pressure_step, find_rows, pressures_ahead
@@ -159,7 +159,7 @@ contains
           ! Impact is plastic within the first row of elements.
           if (monitor%balance > 0.0_wp) call write_log(log, name//': impacts have taken ' &
             //to_text(monitor%balance)//per_depth(model%controls%units, 'F L', &
-            model%is_axisymmetric) //', '//percent(monitor%balance, state%largest_energy) &
+            model%is_axisymmetric)//', '//percent(monitor%balance, state%largest_energy) &
             //' of the largest energy so far; finer meshes lose less')
         else if (abs(monitor%balance) > noticed_share*state%largest_energy .and. state%cycle &
           > 0) then
@@ -234,7 +234,7 @@ contains
           state%force_special)
       end associate
       call lap(clock, phase_contact_force)
-      call share_contact(clock, i)
+      call lap_interface(clock, i)
       call check_springs(model, i, state, log)
     end do
   end subroutine add_implicit_penalties

@@ -7,13 +7,13 @@ module explicit_cycle_m
   use load_work_m, only : find_prescribed_velocities, impose_prescribed, count_motions, &
     count_body_motions, count_boundary_loads, count_groups, apply_loads, motion_sums_t, plan_sums, &
     count_sums
-  use clock_m, only : lap, share_contact, phase_nodes
+  use clock_m, only : lap, lap_interface, phase_nodes
   use common_motion_m, only : common_velocity
   use loads_m, only : fix_nodes, update_activity, is_active
   use explicit_contact_m, only : plan_sampling, check_springs
   use start_m, only : check_added_mass, weigh_contacts
   use contacts_m, only : penalty_implicit
-  use element_losses_m, only : settle_elements, release_nodes, failure_watch_t, follow_failures, &
+  use element_losses_m, only : settle_elements, release_nodes, failure_log_t, follow_failures, &
     follow_outlines
   use errors_m, only : error_t
   use health_m, only : tile_check_t, check_elements, are_sound, check_step, name_collapsed, &
@@ -29,15 +29,16 @@ module explicit_cycle_m
   use node_motion_m, only : follow_damping, leap_t, make_leap, solve_rigids, move_rigids
   use packed_buffer_m, only : stream_starts
   use progress_m, only : follow_progress
-  use rank_exchange_m, only : parcel_t, plan_parcel, exchange_parcel, exchange_checks, loses, &
-    fails, errs, bring_integers, gather_motion, gather_state, hear_requests, cut_sections
-  use rank_shares_m, only : shares_t, share_out, plan_borders
-  use ranks_m, only : ranks_t, bring_reals, share_error
-  use requests_m, only : find_early_end, requests_t, take_requests, echoes_t
+  use rank_exchange_m, only : halo_t, plan_halo, exchange_halo, exchange_checks, &
+    n_notice, notice_eroded, notice_failed, notice_error, notice_dump, notice_plot, notice_stop, &
+    notice_signal, gather_integers, gather_motion, gather_state, collect_requests, cut_sections
+  use rank_partition_m, only : partition_t, partition_tiles, plan_borders
+  use ranks_m, only : ranks_t, gather_reals, share_error
+  use requests_m, only : find_early_end, requests_t, read_requests, recent_requests_t
   use restart_file_m, only : close_restart
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
-  use resting_tiles_m, only : rest_t, plan_rest, follow_rest
+  use quiescent_tiles_m, only : tile_states_t, plan_tile_states, update_tile_states
   use held_nodes_m, only : move_common, count_walls
   use state_m, only : state_t
   use time_step_m, only : step_plan_t, volume_step, next_step, obey_approach, &
@@ -55,10 +56,10 @@ module explicit_cycle_m
     logical :: last = .false.        !! this cycle is the last one
     logical :: plots = .false.       !! this cycle writes a plot state because someone asked for it
     type(due_t) :: due
-    type(shares_t) :: shares         !! tiles of each process, and nodes between them
-    type(parcel_t) :: parcel         !! what they exchange in each cycle
+    type(partition_t) :: partition   !! tiles of each process, and nodes between them
+    type(halo_t) :: halo             !! what they exchange in each cycle
     type(requests_t) :: asked        !! what someone asks for, heard in this cycle
-    type(echoes_t) :: echoes         !! what was asked for before, of several processes
+    type(recent_requests_t) :: recent !! what was asked for before, of several processes
     type(leap_t) :: leap             !! motion factors of this cycle
     type(step_plan_t) :: steps
     logical :: timed_motions = .false. !! some prescribed motion starts or ends during the run
@@ -67,16 +68,16 @@ module explicit_cycle_m
     type(pressure_step_t), allocatable :: pressing(:) !! (interfaces) where these are found
     logical :: refines = .false.     !! steps of elements are not those of their density alone
     type(motion_sums_t) :: sums      !! for the work of body loads and damping
-    type(rest_t) :: rest             !! tiles that need no step
+    type(tile_states_t) :: tile_states      !! tiles that need no step
     type(tile_check_t), allocatable :: checks(:) !! (tiles) what their elements have come to
     integer :: first_check = 1       !! from there on they speak for all: of several processes one
                                      !! more, behind those of the tiles, that they have exchanged
-    type(failure_watch_t) :: failures !! points that have failed, as far as the log tells of them
+    type(failure_log_t) :: failures   !! points that have failed, as far as the log tells of them
     real(wp) :: damping(2) = 0.0_wp  !! D per direction
     real(wp), allocatable :: rates(:, :) !! (2, n_part + 1) D of parts, where the deck damps some
     real(wp) :: ratio = 1.0_wp       !! last energy ratio known
-    integer, allocatable :: told(:)  !! (n_part) eroded elements that interfaces have heard of; only
-                                     !! where elements may leave the mesh
+    integer, allocatable :: n_eroded_seen(:) !! (n_part) eroded elements that interfaces have heard
+                                     !! of; only where elements may leave the mesh
     integer, allocatable :: freed(:) !! nodes whose last element has left the mesh in this cycle;
                                      !! there where any element has
     real(wp), allocatable :: velocity(:)     !! (n_motion) v(n+1/2) of prescribed motions
@@ -107,23 +108,23 @@ contains
     if (cycle%presses) allocate (cycle%pressing(size(model%contacts)))
     cycle%refines = needs_refinement(state%elements)
     associate (ranks => monitor%ranks)
-      cycle%shares = share_out(model%layout, ranks%mine, ranks%n)
+      cycle%partition = partition_tiles(model%layout, ranks%mine, ranks%n)
       if (ranks%n > 1) cycle%first_check = size(model%layout%tiles) + 1
       allocate (cycle%checks(max(size(model%layout%tiles), cycle%first_check)))
-      call plan_borders(model, ranks%mine, cycle%sums, cycle%shares)
-      if (ranks%n > 1) call plan_parcel(cycle%shares, ranks%mine, state%elements, cycle%sums, &
-        cycle%parcel)
-      call plan_rest(model, cycle%shares, allocated(cycle%sums%parts), cycle%rest)
+      call plan_borders(model, ranks%mine, cycle%sums, cycle%partition)
+      if (ranks%n > 1) call plan_halo(cycle%partition, ranks%mine, state%elements, cycle%sums, &
+        cycle%halo)
+      call plan_tile_states(model, cycle%partition, allocated(cycle%sums%parts), cycle%tile_states)
     end associate
     cycle%reason = 'termination time reached'
-    if (model%erodes) allocate (cycle%told, source=state%elements%erosion%n_eroded)
+    if (model%erodes) allocate (cycle%n_eroded_seen, source=state%elements%erosion%n_eroded)
     cycle%steps%start_time = state%time
-    cycle%failures%takes_up = monitor%restarts%goes_on
-    if (monitor%restarts%goes_on) call read_cycle(model, state, monitor%restarts%source, cycle)
+    cycle%failures%is_restart = monitor%restarts%is_restart
+    if (monitor%restarts%is_restart) call read_cycle(model, state, monitor%restarts%source, cycle)
     ! The deck of this run says when it ends.
     cycle%steps%end_time = model%controls%end_time
     cycle%steps%end_cycle = model%controls%end_cycle
-    if (.not. monitor%restarts%goes_on) return
+    if (.not. monitor%restarts%is_restart) return
     if (cycle%steps%constant > 0.0_wp) cycle%steps%n_cycle = &
       cycles_in(cycle%steps%end_time - cycle%steps%start_time, cycle%steps%constant)
     call close_restart(monitor%restarts%source, cycle%error)
@@ -166,12 +167,12 @@ contains
     do i = 1, size(model%contacts)
       call apply_contact(state%outlines(i), state%motion, state%contact_mass, state%time, &
         state%dt_before, state%cycle, monitor%clock, state%contacts(i), state%force_special)
-      call share_contact(monitor%clock, i)
+      call lap_interface(monitor%clock, i)
       call check_springs(model, i, state, monitor%log)
     end do
     if (state%cycle > 0) call prepare_leap(model, state, cycle)
     if (allocated(state%cut_force) .and. cycle%due%tables(table_secforc)) &
-      call cut_sections(model, cycle%shares, monitor%ranks, state)
+      call cut_sections(model, cycle%partition, monitor%ranks, state)
     call lap(monitor%clock, phase_nodes)
   end subroutine begin_cycle
 
@@ -214,36 +215,37 @@ contains
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
-    logical :: tells(7)
+    logical :: notices(n_notice)
 
-    associate (ranks => monitor%ranks, shares => cycle%shares, elements => state%elements)
-      call hear_requests(state, cycle%ratio, monitor, cycle%echoes, cycle%asked, cycle%error)
-      associate (asked => cycle%asked)
-        tells = [.false., .false., allocated(cycle%error), asked%dump, asked%plot, asked%stop, &
-          asked%signalled]
-      end associate
-      call exchange_parcel(shares, ranks, cycle%parcel, state, cycle%sums)
-      call exchange_checks(shares, elements, ranks, cycle%parcel, cycle%checks, tells)
-      cycle%asked = requests_t(tells(4), tells(5), tells(6), tells(7))
-      if (tells(errs)) call share_error(ranks, cycle%error)
-      if (tells(loses)) then
-        associate (erosion => elements%erosion, slots => (shares%chunks - 1)*chunk_size + 1)
-          call bring_integers(ranks, shares%chunks, erosion%n_gone)
-          call bring_integers(ranks, slots, erosion%status)
-          call bring_reals(ranks, slots, 1, .true., erosion%hourglass)
-          call bring_reals(ranks, slots, 1, .true., erosion%internal)
+    associate (ranks => monitor%ranks, partition => cycle%partition, elements => state%elements)
+      call collect_requests(state, cycle%ratio, monitor, cycle%recent, cycle%asked, cycle%error)
+      notices = .false.
+      notices(notice_error) = allocated(cycle%error)
+      notices([notice_dump, notice_plot, notice_stop, notice_signal]) = [cycle%asked%dump, &
+        cycle%asked%plot, cycle%asked%stop, cycle%asked%signalled]
+      call exchange_halo(partition, ranks, cycle%halo, state, cycle%sums)
+      call exchange_checks(partition, elements, ranks, cycle%halo, cycle%checks, notices)
+      cycle%asked = requests_t(notices(notice_dump), notices(notice_plot), notices(notice_stop), &
+        notices(notice_signal))
+      if (notices(notice_error)) call share_error(ranks, cycle%error)
+      if (notices(notice_eroded)) then
+        associate (erosion => elements%erosion, slots => (partition%chunks - 1)*chunk_size + 1)
+          call gather_integers(ranks, partition%chunks, erosion%n_gone)
+          call gather_integers(ranks, slots, erosion%status)
+          call gather_reals(ranks, slots, 1, .true., erosion%hourglass)
+          call gather_reals(ranks, slots, 1, .true., erosion%internal)
         end associate
       end if
-      if (state%cycle == 0) call bring_reals(ranks, shares%chunks, 1, .true., &
+      if (state%cycle == 0) call gather_reals(ranks, partition%chunks, 1, .true., &
         elements%time_limit)
-      if (tells(fails)) then
-        call bring_integers(ranks, shares%chunks, elements%n_failed)
+      if (notices(notice_failed)) then
+        call gather_integers(ranks, partition%chunks, elements%n_failed)
         ! The log names the first one.
-        if (cycle%failures%told == 0 .and. any(elements%n_failed > 0)) &
-          call bring_reals(ranks, stream_starts(shares%chunks, elements%history_start, &
+        if (cycle%failures%n_reported == 0 .and. any(elements%n_failed > 0)) &
+          call gather_reals(ranks, stream_starts(partition%chunks, elements%history_start, &
           size(elements%history)), 1, .false., elements%history)
       end if
-      if (cycle%writes) call gather_state(shares, .false., ranks, state)
+      if (cycle%writes) call gather_state(partition, .false., ranks, state)
       if (cycle%writes .and. ranks%mine == 0) call sum_special_forces(model%layout, &
         state%force_slots, 1, model%layout%n_special, state%internal_force)
     end associate
@@ -260,13 +262,13 @@ contains
 
     if (allocated(state%elements%n_failed)) call follow_failures(model, state, cycle%failures, &
       monitor%log)
-    call follow_rest(model, cycle%shares, cycle%rest)
+    call update_tile_states(model, cycle%partition, cycle%tile_states)
     if (cycle%finished) return
     if (.not. cycle%writes) then
       call count_sums(cycle%sums, state%external_work, state%damping_work)
       if (model%erodes) call settle_elements(model, state, monitor%log, cycle%freed)
       if (.not. are_sound(cycle%checks(cycle%first_check:), state%contacts)) then
-        if (monitor%ranks%n > 1) call gather_state(cycle%shares, .false., monitor%ranks, state)
+        if (monitor%ranks%n > 1) call gather_state(cycle%partition, .false., monitor%ranks, state)
         if (monitor%ranks%mine == 0) call check_elements(model, state, cycle%error)
         call share_error(monitor%ranks, cycle%error)
       end if
@@ -285,36 +287,36 @@ contains
     end if
     if (allocated(state%group_work)) call count_groups(model, [.not. cycle%writes, .true.], state)
     if (allocated(cycle%freed)) then
-      if (monitor%ranks%n > 1) call gather_motion(cycle%shares, .true., monitor%ranks, state)
+      if (monitor%ranks%n > 1) call gather_motion(cycle%partition, .true., monitor%ranks, state)
       ! Nodes that no element holds any more, and surfaces of interfaces.
       call release_nodes(model, cycle%leap, cycle%freed, state)
       associate (n_eroded => state%elements%erosion%n_eroded)
-        call follow_outlines(model, n_eroded > cycle%told, state)
-        cycle%told = n_eroded
+        call follow_outlines(model, n_eroded > cycle%n_eroded_seen, state)
+        cycle%n_eroded_seen = n_eroded
       end associate
       cycle%refines = needs_refinement(state%elements)
       deallocate (cycle%freed)
     end if
     state%cycle = state%cycle + 1
-    state%former_dt = state%dt_before
+    state%previous_dt = state%dt_before
     state%dt_before = state%dt
     if (allocated(state%elements%mass_ratio)) call follow_masses(model, monitor%ranks, state, cycle)
     call follow_springs(model, state, cycle%steps%springs)
     limit = element_limit(model, state, cycle)
-    if (size(state%contacts) > 0) call obey_approach(model, merge(state%former_dt, &
+    if (size(state%contacts) > 0) call obey_approach(model, merge(state%previous_dt, &
       state%dt_before, state%cycle > 1), state, monitor%log, cycle%steps, limit)
     call next_step(model, limit, monitor%log, state%cycle, cycle%steps, state%time, state%dt)
     if (.not. allocated(cycle%error)) then
       call check_step(model%controls, cycle%steps%first_dt, state%time, state%dt, cycle%error)
       if (allocated(cycle%error) .and. monitor%ranks%n > 1) &
-        call gather_state(cycle%shares, .false., monitor%ranks, state)
+        call gather_state(cycle%partition, .false., monitor%ranks, state)
       if (allocated(cycle%error) .and. monitor%ranks%mine == 0) call name_collapsed(model, state, &
         cycle%error)
     end if
     if (.not. allocated(cycle%error)) call check_cycle(state%cycle, state%time, cycle%error)
     cycle%finished = allocated(cycle%error)
     call find_early_end(model, state, cycle%last, cycle%reason)
-    if (.not. cycle%finished) call heed_requests(state, monitor, cycle)
+    if (.not. cycle%finished) call apply_requests(state, monitor, cycle)
     if (monitor%ranks%mine == 0) call follow_progress(monitor%progress, monitor%clock, &
       state%cycle, .false., state%time, state%dt, cycle%ratio)
   end subroutine end_cycle
@@ -327,7 +329,7 @@ contains
     real(wp) :: limit, dt
 
     ! Changes are those of the step before the last, in the first cycle those of the first step.
-    dt = merge(state%former_dt, state%dt_before, state%cycle > 1)
+    dt = merge(state%previous_dt, state%dt_before, state%cycle > 1)
     associate (checks => cycle%checks(cycle%first_check:))
       limit = min(minval(checks%time_limit), volume_step(dt, merge(state%dt_before, 0.0_wp, &
         state%cycle > 1), maxval(checks%volume_change)))
@@ -352,7 +354,7 @@ contains
 
     if (model%controls%masses_stay) return
     if (minval(cycle%checks(cycle%first_check:)%time_limit) >= abs(model%controls%mass_step)) return
-    if (ranks%n > 1) call gather_state(cycle%shares, .true., ranks, state)
+    if (ranks%n > 1) call gather_state(cycle%partition, .true., ranks, state)
     before = state%mass
     call grow_masses(model, state%motion, state%dt, state%elements, state%mass, work)
     ! The places of the next cycle have been looked at.
@@ -374,20 +376,20 @@ contains
   !> Stop, restart files, states and lines that are due or that someone asks for; for restart files
   !> a stop by a signal counts as an end. The state is that before the next cycle; a run that goes
   !> on from it repeats that cycle.
-  subroutine heed_requests(state, monitor, cycle)
+  subroutine apply_requests(state, monitor, cycle)
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(explicit_cycle_t), intent(inout) :: cycle
     logical :: ends, wanted(2) !! numbered_file, running_file
 
     if (monitor%ranks%n == 1) &
-      call take_requests(state, cycle%ratio, .false., monitor, cycle%asked, cycle%error)
+      call read_requests(state, cycle%ratio, .false., monitor, cycle%asked, cycle%error)
     cycle%plots = cycle%asked%plot
     ends = is_last(cycle%steps, state%cycle, state%time) .or. cycle%last
     wanted = wanted_files(monitor%restarts, state%cycle, cycle%asked%dump, ends, &
       cycle%asked%signalled .and. .not. ends)
     if (any(wanted) .and. .not. allocated(cycle%error)) then
-      if (monitor%ranks%n > 1) call gather_state(cycle%shares, .false., monitor%ranks, state)
+      if (monitor%ranks%n > 1) call gather_state(cycle%partition, .false., monitor%ranks, state)
       if (monitor%ranks%mine == 0) call write_restarts(wanted, state, monitor, cycle%error, cycle)
       call share_error(monitor%ranks, cycle%error)
     end if
@@ -395,7 +397,7 @@ contains
     if (ends .or. .not. cycle%asked%stop) return
     cycle%last = .true.
     cycle%reason = 'stopped on request'
-  end subroutine heed_requests
+  end subroutine apply_requests
 
   !> What a cycle hands to the next besides the state.
   subroutine visit_cycle(self, visitor)

@@ -5,7 +5,7 @@
 module explicit_report_m
   use common_motion_m, only : common_drive, common_velocity
   use loads_m, only : is_active
-  use contact_check_m, only : report_contact_start
+  use contact_reports_m, only : report_contact_start
   use explicit_contact_m, only : add_implicit_penalties
   use curves_m, only : curve_value
   use element_losses_m, only : settle_elements
@@ -22,7 +22,7 @@ module explicit_report_m
   use log_m, only : log_t, write_log, warn, to_text
   use model_m, only : model_t
   use monitor_m, only : monitor_t, write_due, note_energies, write_instant
-  use ranks_m, only : share_error, spread_values
+  use ranks_m, only : share_error, broadcast_values
   use node_motion_m, only : solve_rigids, fill_rigids
   use snapshot_filling_m, only : fill_motion, fill_energies, fill_parts, find_motion, damping_at
   use snapshot_m, only : energy_ratio, snapshot_t
@@ -78,7 +78,7 @@ contains
         cycle%pressing)
       call report_contact_start(model, state, monitor%log)
       if (monitor%ranks%mine == 0) call log_smallest_steps(model, state, monitor%log)
-      call judge_damping(model, state%dt, monitor%log)
+      call warn_of_damping(model, state%dt, monitor%log)
     end if
     if (size(state%rigids) > 0) then
       call solve_rigids(model, cycle%damping, state)
@@ -103,7 +103,7 @@ contains
       call write_due(model, cycle%due, state%dt, monitor, cycle%error)
     end if
     energy = state%initial_energy
-    if (state%cycle == 0) call spread_values(monitor%ranks, energy)
+    if (state%cycle == 0) call broadcast_values(monitor%ranks, energy)
     state%initial_energy = energy(1)
     call share_error(monitor%ranks, cycle%error)
     cycle%finished = cycle%last .or. allocated(cycle%error)
@@ -136,7 +136,8 @@ contains
         //': bodies would come deeper into each other in it than a first contact may be')
     end if
     call prepare_leap(model, state, cycle)
-    call first_change(model, cycle%shares, cycle%leap, cycle%velocity, state, monitor%ranks, change)
+    call first_change(model, cycle%partition, cycle%leap, cycle%velocity, state, monitor%ranks, &
+      change)
     if (change > largest_change) then
       state%dt = state%dt*(largest_change/change)
       cycle%steps%constant = 0.0_wp
@@ -204,9 +205,9 @@ contains
     if (.not. allocated(cycle%error) .and. cycle%due%tables(table_glstat)) then
       call check_energy(model%controls, monitor%snapshot%energies, made_by_springs, cycle%error)
       if (.not. allocated(cycle%error)) call check_ratio(monitor%snapshot%energies, 0.0_wp, &
-        unaccounted, state%cycle, state%time, monitor%told_ratio, monitor%log)
+        unaccounted, state%cycle, state%time, monitor%warned_ratio, monitor%log)
     end if
-    call check_radii(model, state, monitor%told_radii, monitor%log)
+    call check_radii(model, state, monitor%warned_radii, monitor%log)
   end subroutine write_report
 
   !> Ids of the element with the smallest stable step, and of its part; 0 where the curve rules. And
@@ -227,7 +228,7 @@ contains
     call find_smallest_steps(model, state%elements, state%motion, 1, found, steps)
     if (size(found) == 0) return
     ! An element that is as large without added mass rules by itself.
-    if (snapshot%energies%tells_mass) snapshot%by_dt2ms = merge(1, 0, &
+    if (snapshot%energies%has_mass_scaling) snapshot%by_dt2ms = merge(1, 0, &
       abs(steps(1)/abs(model%controls%mass_step) - 1.0_wp) <= round_off .or. &
       (model%controls%mass_step > 0.0_wp .and. steps(1) > model%controls%mass_step))
     snapshot%slowest = [model%mesh%element_id(found(1)), &
@@ -265,7 +266,7 @@ contains
     if (allocated(state%walls) .and. .not. state%dt_before > 0.0_wp) &
       inertia = inertia - wall_power(model, state, damping)
     snapshot%energies%leapfrog = -0.125_wp*dt**2*inertia
-    if (.not. allocated(state%former_velocity)) return
+    if (.not. allocated(state%previous_velocity)) return
     ! Work that the damping forces D m v(n) take over the half step behind.
     work = 0.0_wp
     do i = 1, model%mesh%n_node
@@ -375,7 +376,7 @@ contains
   !> A warning where a step is too long for the global damping. A free node keeps
   !> (2 - D dt)/(2 + D dt) of its velocity in a step (node_motion): that never grows, but is no
   !> longer exp(-D dt) where D dt passes 1, and is below 0 where it passes 2.
-  subroutine judge_damping(model, dt, log)
+  subroutine warn_of_damping(model, dt, log)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: dt          !! first step, s
     type(log_t), intent(inout) :: log
@@ -404,6 +405,6 @@ contains
     if (share > 2.0_wp) text = text//', and above 2 velocities change sign in every step'
     call warn(log, text//'; nothing grows, but a smaller D or a smaller step is needed ' &
       //'to follow it')
-  end subroutine judge_damping
+  end subroutine warn_of_damping
 
 end module explicit_report_m

@@ -170,19 +170,19 @@ contains
 
     sums(1:2) = sum_momentum(first, last, state%mass, state%motion)
     sums(3:4) = 0.0_wp
-    if (allocated(state%former_damping)) then
+    if (allocated(state%previous_damping)) then
       do i = first, last
         v = state%motion(3:4, i)
-        associate (former => state%former_velocity(:, i))
-          sums(3:4) = sums(3:4) + 0.25_wp*state%mass(i)*state%former_damping(:, i)*((former + v) &
-            *(state%former_dt*former + state%dt_before*v))
+        associate (previous => state%previous_velocity(:, i))
+          sums(3:4) = sums(3:4) + 0.25_wp*state%mass(i)*state%previous_damping(:, i)*((previous + &
+            v) *(state%previous_dt*previous + state%dt_before*v))
         end associate
-        state%former_velocity(:, i) = v
-        state%former_damping(:, i) = state%node_damping(:, i)
+        state%previous_velocity(:, i) = v
+        state%previous_damping(:, i) = state%node_damping(:, i)
       end do
-    else if (allocated(state%former_velocity)) then
-      call sum_drag(first, last, state%mass, state%motion, [state%former_dt, state%dt_before], &
-        state%former_velocity, sums(3:4))
+    else if (allocated(state%previous_velocity)) then
+      call sum_drag(first, last, state%mass, state%motion, [state%previous_dt, state%dt_before], &
+        state%previous_velocity, sums(3:4))
     end if
   end subroutine sum_motion
 
@@ -209,12 +209,13 @@ contains
   !> What damping with D = 1 took in the cycle before from the nodes first .. last: forces m w with
   !> the mean w of former and present velocity act over half of the step before and half of the step
   !> behind.
-  pure subroutine sum_drag(first, last, mass, motion, steps, former, sums)
+  pure subroutine sum_drag(first, last, mass, motion, steps, previous, sums)
     integer, intent(in) :: first, last
     real(wp), intent(in) :: mass(*)         !! of all nodes
     real(wp), intent(in) :: motion(4, *)    !! of all nodes
     real(wp), intent(in) :: steps(2)        !! that before, that behind
-    real(wp), intent(inout) :: former(2, *) !! velocities of the step before; then the present ones
+    real(wp), intent(inout) :: previous(2, *) !! velocities of the step before; then the present
+                                              !! ones
     real(wp), intent(out) :: sums(2)        !! J/m over D, along x and y
     real(wp) :: v(2)
     integer :: i
@@ -222,8 +223,8 @@ contains
     sums = 0.0_wp
     do i = first, last
       v = motion(3:4, i)
-      sums = sums + 0.25_wp*mass(i)*((former(:, i) + v)*(steps(1)*former(:, i) + steps(2)*v))
-      former(:, i) = v
+      sums = sums + 0.25_wp*mass(i)*((previous(:, i) + v)*(steps(1)*previous(:, i) + steps(2)*v))
+      previous(:, i) = v
     end do
   end subroutine sum_drag
 
@@ -270,8 +271,8 @@ contains
           cycle
         state%motion(2 + prescribed%direction, prescribed%node) = velocity(i)
         state%prescribed_velocity(i) = velocity(i)
-        if (allocated(state%former_velocity)) &
-          state%former_velocity(prescribed%direction, prescribed%node) = velocity(i)
+        if (allocated(state%previous_velocity)) &
+          state%previous_velocity(prescribed%direction, prescribed%node) = velocity(i)
       end associate
     end do
   end subroutine find_prescribed_velocities
@@ -383,11 +384,11 @@ contains
   subroutine count_boundary_loads(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
-    real(wp) :: former(3, size(state%boundary_work)), velocity(3), half
+    real(wp) :: previous(3, size(state%boundary_work)), velocity(3), half
     integer :: i
 
     half = merge(0.0_wp, 0.5_wp*state%dt_before, state%cycle == state%boundary_since)
-    former = state%boundary_force
+    previous = state%boundary_force
     call form_loads(model, state%motion, state%time, state%boundary_force)
     associate (rows => model%controls%output%boundaries)
       do i = 1, size(rows%where)
@@ -401,7 +402,7 @@ contains
           cycle
         end select
         state%boundary_work(i) = state%boundary_work(i) &
-          + half*sum((former(:, i) + state%boundary_force(:, i))*velocity)
+          + half*sum((previous(:, i) + state%boundary_force(:, i))*velocity)
       end do
     end associate
   end subroutine count_boundary_loads

@@ -5,7 +5,7 @@
 module relaxation_m
   use clock_m, only : lap, phase_input
   use load_work_m, only : apply_loads, motion_sums_t
-  use element_dispatch_m, only : add_tile_forces, share_tile_forces, sum_special_forces
+  use element_dispatch_m, only : add_tile_forces, scatter_tile_forces, sum_special_forces
   use errors_m, only : error_t, raise, status_run, status_stopped
   use health_m, only : check_elements
   use kinds_m, only : wp
@@ -16,10 +16,10 @@ module relaxation_m
   use monitor_m, only : monitor_t
   use node_motion_m, only : leap_t, make_leap, move_tile_nodes, move_special_nodes
   use parts_m, only : hourglass_viscous
-  use rank_exchange_m, only : hear_requests
-  use ranks_m, only : find_least, share_error
+  use rank_exchange_m, only : collect_requests
+  use ranks_m, only : reduce_min, share_error
   use state_m, only : relaxation_state_t, state_t
-  use requests_m, only : requests_t, echoes_t
+  use requests_m, only : requests_t, recent_requests_t
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use loads_m, only : scaled_step
@@ -34,7 +34,7 @@ module relaxation_m
   !> By how much the limit of the step must rise before the step does.
   real(wp), parameter :: least_rise = 0.05_wp
   !> Cycles between two looks for what someone asks for.
-  integer, parameter :: look_cycles = 8
+  integer, parameter :: poll_cycles = 8
 
 contains
 
@@ -47,7 +47,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(model_t), allocatable :: relaxing
     type(requests_t) :: asked
-    type(echoes_t) :: echoes
+    type(recent_requests_t) :: recent
     real(wp), allocatable :: force(:, :)
     real(wp) :: share !! of the largest kinetic energy
     real(wp) :: momentum(2), mass
@@ -86,7 +86,7 @@ contains
         if (mod(n, rules%check_cycles) == 0 .and. share < rules%tolerance) exit
         if (state%time >= rules%most_time) exit
         state%relaxation%n = n
-        if (mod(n, look_cycles) == 0) call heed_requests(asked, echoes, state, monitor, error)
+        if (mod(n, poll_cycles) == 0) call apply_requests(asked, recent, state, monitor, error)
         if (allocated(error)) return
       end do
       if (n > most_cycles) then
@@ -105,9 +105,9 @@ contains
 
   !> Do what someone asks for: a restart file, from which the phase goes on, and an end, which is
   !> told as an error. The plot state that may be asked for is that of time zero.
-  subroutine heed_requests(asked, echoes, state, monitor, error)
+  subroutine apply_requests(asked, recent, state, monitor, error)
     type(requests_t), intent(inout) :: asked !! last time, and now
-    type(echoes_t), intent(inout) :: echoes
+    type(recent_requests_t), intent(inout) :: recent
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
     type(error_t), allocatable, intent(out) :: error
@@ -115,10 +115,10 @@ contains
     real(wp) :: none(3)
 
     call lap(monitor%clock, phase_input)
-    call hear_requests(state, 1.0_wp, monitor, echoes, asked, error)
+    call collect_requests(state, 1.0_wp, monitor, recent, asked, error)
     ! What one process is asked for is done by all.
     none = merge(0.0_wp, 1.0_wp, [asked%dump, asked%stop, asked%signalled])
-    call find_least(monitor%ranks, none)
+    call reduce_min(monitor%ranks, none)
     asked%dump = none(1) < 1.0_wp
     asked%stop = none(2) < 1.0_wp
     asked%signalled = none(3) < 1.0_wp
@@ -136,7 +136,7 @@ contains
     call raise(error, 'stopped on request in dynamic relaxation after ' &
       //to_text(state%relaxation%n)//' cycles', status_stopped)
     state%time = 0.0_wp
-  end subroutine heed_requests
+  end subroutine apply_requests
 
   !> One cycle of relaxation, v(n+1/2) = DRFCTR v(n-1/2) + h a, and the step of the next one.
   subroutine relax_once(model, force, state)
@@ -158,7 +158,7 @@ contains
         call add_tile_forces(model, tile, state%motion, state%dt_before, state%elements, force)
         if (needs_refinement(state%elements)) &
           call refine_limits(model, tile, state%motion, state%dt_before, state%elements)
-        call share_tile_forces(tile, force, state%force_slots)
+        call scatter_tile_forces(tile, force, state%force_slots)
         call move_tile_nodes(leap, tile%first_node, tile%last_node, force, state%inverse_mass, &
           state%motion)
       end associate

@@ -19,8 +19,8 @@ module time_step_m
   use log_m, only : log_t, warn, write_log, to_text
   use model_m, only : model_t
   use node_motion_m, only : leap_t
-  use rank_shares_m, only : shares_t
-  use ranks_m, only : ranks_t, find_least
+  use rank_partition_m, only : partition_t
+  use ranks_m, only : ranks_t, reduce_min
   use state_m, only : state_t
   use visitor_m, only : visited_t, visitor_t
   implicit none
@@ -313,9 +313,9 @@ contains
 
   !> Largest change of ln V of an element, without its sign, in a step from time zero, with the
   !> forces that stand in the state. Rigid walls and forces of implicit penalties do not count.
-  subroutine first_change(model, shares, leap, velocity, state, ranks, change)
+  subroutine first_change(model, partition, leap, velocity, state, ranks, change)
     type(model_t), intent(in) :: model
-    type(shares_t), intent(in) :: shares
+    type(partition_t), intent(in) :: partition
     type(leap_t), intent(in) :: leap
     real(wp), intent(in) :: velocity(:) !! (n_motion) v(1/2) of prescribed motions, m/s
     type(state_t), intent(in) :: state
@@ -339,7 +339,7 @@ contains
       end associate
     end do
     change = 0.0_wp
-    do i_tile = shares%first_tile, shares%last_tile
+    do i_tile = partition%first_tile, partition%last_tile
       do i_chunk = model%layout%tiles(i_tile)%first_chunk, model%layout%tiles(i_tile)%last_chunk
         do slot = (i_chunk - 1)*chunk_size + 1, (i_chunk - 1)*chunk_size &
           + model%layout%chunk_elements(i_chunk)
@@ -360,7 +360,7 @@ contains
       end do
     end do
     least = -change
-    if (ranks%n > 1) call find_least(ranks, least)
+    if (ranks%n > 1) call reduce_min(ranks, least)
     change = -least(1)
   end subroutine first_change
 

@@ -14,7 +14,7 @@ module equations_m
   use state_m, only : state_t
   implicit none
   private
-  public :: equations_t, number_equations, move_prescribed, take_free, prescribed_step_t, &
+  public :: equations_t, number_equations, move_prescribed, free_entries, prescribed_step_t, &
     prescribe_step, prescribe_start, list_changes, mean_slope, curve_moment
 
   !> Numbering for one step.
@@ -103,13 +103,13 @@ contains
   end subroutine move_prescribed
 
   !> The free entries of a nodal field.
-  pure function take_free(equations, field) result(vector)
+  pure function free_entries(equations, field) result(vector)
     type(equations_t), intent(in) :: equations
     real(wp), intent(in) :: field(:, :) !! (2, n_node)
     real(wp) :: vector(equations%n_free)
 
     vector = pack(field, equations%number > 0 .and. equations%number <= equations%n_free)
-  end function take_free
+  end function free_entries
 
   !> What the curves ask for from `state` to `time`. No motion is born or dies inside the step.
   pure subroutine prescribe_step(model, state, time, equations, prescribed)

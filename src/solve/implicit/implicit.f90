@@ -5,12 +5,12 @@
 !> their work, where histories ask for them (bndout, nodfor).
 module implicit_m
   use clock_m, only : lap, phase_nodes, phase_output
-  use contact_check_m, only : report_contact_end
+  use contact_reports_m, only : report_contact_end
   use contact_law_m, only : measure_springs
-  use contact_work_m, only : count_step
+  use nodal_forces_m, only : count_step
   use contacts_m, only : breaks
   use controls_m, only : boundary_motion, group_nodes
-  use cut_forces_m, only : keep_cut_chunks
+  use cut_forces_m, only : store_cut_chunks
   use spring_gaps_m, only : has_offsets, update_offsets
   use element_mass_m, only : mass_times, sum_part_motion
   use element_state_m, only : add_part_energies
@@ -18,7 +18,7 @@ module implicit_m
   use errors_m, only : error_t, raise, status_run
   use friction_m, only : has_slipped
   use health_m, only : check_static_step, what_would_do, check_energy, check_ratio, check_radii, &
-    judge_energies, judge_contact, made_by_forces, unaccounted, dissipated
+    warn_of_energies, warn_of_contact_energy, made_by_forces, unaccounted, dissipated
   use history_filling_m, only : fill_reactions, form_loads
   use history_tables_m, only : table_matsum, table_spcforc, table_bndout, table_nodfor, &
     table_secforc
@@ -35,7 +35,7 @@ module implicit_m
   use monitor_m, only : monitor_t, due_t, find_due, note_energies, write_instant, output_reach
   use newton_m, only : outcome_t, find_equilibrium
   use progress_m, only : follow_progress
-  use requests_m, only : find_early_end, requests_t, take_requests
+  use requests_m, only : find_early_end, requests_t, read_requests
   use restart_m, only : write_restarts
   use restart_plan_m, only : wanted_files
   use snapshot_filling_m, only : fill_energies, fill_parts
@@ -67,12 +67,12 @@ contains
     reason = 'termination time reached'
     call begin_steps(model, state, monitor, memory, last, error)
     if (allocated(error) .or. monitor%only_checks) return
-    if (monitor%restarts%goes_on) call find_early_end(model, state, last, reason)
+    if (monitor%restarts%is_restart) call find_early_end(model, state, last, reason)
     call report_step(model, state, last, .false., monitor, memory, error)
     do while (.not. last .and. .not. allocated(error))
-      call take_step(model, state, monitor, memory%control, memory%step, memory%trial, error)
+      call advance_step(model, state, monitor, memory%control, memory%step, memory%trial, error)
       if (allocated(error)) exit
-      call heed_requests(model, state, monitor, memory, asked, last, reason, error)
+      call apply_requests(model, state, monitor, memory, asked, last, reason, error)
       if (allocated(error)) exit
       if (asked%stop) reason = 'stopped on request'
       call report_step(model, state, last, asked%plot, monitor, memory, error)
@@ -90,7 +90,7 @@ contains
 
   !> After a step: what someone asks for, the plan of the next step, and the restart files that are
   !> due. A run that goes on from one reports the state as this one is about to.
-  subroutine heed_requests(model, state, monitor, memory, asked, last, reason, error)
+  subroutine apply_requests(model, state, monitor, memory, asked, last, reason, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
@@ -103,7 +103,7 @@ contains
     logical :: ends, wanted(2) !! numbered_file, running_file
 
     last = .false.
-    call take_requests(state, memory%ratio, .true., monitor, asked, error)
+    call read_requests(state, memory%ratio, .true., monitor, asked, error)
     if (allocated(error)) return
     last = has_ended(model, state, memory%control)
     call find_early_end(model, state, last, reason)
@@ -117,10 +117,10 @@ contains
     call write_restarts(wanted, state, monitor, error, memory)
     last = last .and. .not. allocated(error)
     memory%control = planned
-  end subroutine heed_requests
+  end subroutine apply_requests
 
   !> One step, tried again with a shorter one while that is allowed.
-  subroutine take_step(model, state, monitor, control, step, trial, error)
+  subroutine advance_step(model, state, monitor, control, step, trial, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     type(monitor_t), intent(inout) :: monitor
@@ -166,7 +166,7 @@ contains
     step%began_negative = outcome%began_negative
     call grow_step(control, step%dt, outcome%iterations)
     call lap(monitor%clock, phase_nodes)
-  end subroutine take_step
+  end subroutine advance_step
 
   !> A step to `time`. What slipped in the step before slips on in its first iteration; if that
   !> finds no equilibrium, or leaves a body free, all sticks first: full iterations or searched
@@ -256,7 +256,7 @@ contains
     end if
     trial = attempt
     ! What the forces of cross sections are formed of if anyone asks for them.
-    if (allocated(state%cut_force)) call keep_cut_chunks(model, state%elements, trial%before)
+    if (allocated(state%cut_force)) call store_cut_chunks(model, state%elements, trial%before)
     state%motion(1:2, :) = attempt%motion(1:2, :)
     state%elements = attempt%elements
     state%contacts = attempt%contacts
@@ -342,12 +342,12 @@ contains
       if (memory%step%is_dynamic .and. memory%step%gamma > 0.5_wp*(1.0_wp + epsilon(1.0_wp))) &
         cause = dissipated
       if (.not. allocated(error)) call check_ratio(shot%energies, &
-        spent_energy(state, memory%step), cause, state%cycle, state%time, monitor%told_ratio, &
+        spent_energy(state, memory%step), cause, state%cycle, state%time, monitor%warned_ratio, &
         monitor%log)
-      call check_radii(model, state, monitor%told_radii, monitor%log)
+      call check_radii(model, state, monitor%warned_radii, monitor%log)
       if (last .and. .not. allocated(error)) then
-        call judge_contact(shot%energies, monitor%log)
-        call judge_energies(shot%energies, spent_energy(state, memory%step), cause, monitor%log)
+        call warn_of_contact_energy(shot%energies, monitor%log)
+        call warn_of_energies(shot%energies, spent_energy(state, memory%step), cause, monitor%log)
       end if
     end associate
     call lap(monitor%clock, phase_output)
@@ -407,12 +407,12 @@ contains
     real(wp), intent(in) :: time                        !! at the end of the step
     real(wp), allocatable, intent(in) :: velocity(:, :) !! (2, n_node) there; not there in statics
     type(state_t), intent(inout) :: state               !! as the step has found it
-    real(wp), allocatable :: power(:, :), former(:, :)
+    real(wp), allocatable :: power(:, :), previous(:, :)
     integer :: i
 
     if (allocated(state%boundary_work)) then
-      former = state%boundary_force
-      call form_loads(model, state%motion, state%time, former)
+      previous = state%boundary_force
+      call form_loads(model, state%motion, state%time, previous)
       call form_loads(model, after%motion, time, state%boundary_force)
       power = 0.5_wp*(net_force(before) + net_force(after))*after%motion(3:4, :)
       if (allocated(velocity)) power = power + 0.5_wp*mass_times(model, velocity &
@@ -421,7 +421,7 @@ contains
         work => state%boundary_work)
         do i = 1, size(rows%where)
           if (rows%condition(i) == boundary_motion) cycle
-          work(i) = work(i) + 0.5_wp*sum((former(1:2, i) + state%boundary_force(1:2, i)) &
+          work(i) = work(i) + 0.5_wp*sum((previous(1:2, i) + state%boundary_force(1:2, i)) &
             *after%motion(3:4, rows%where(i)))
         end do
         do i = 1, size(motions)

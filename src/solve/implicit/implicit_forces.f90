@@ -4,13 +4,13 @@
 !> 1 and 2).
 module implicit_forces_m
   use block_state_m, only : block_state_t
-  use clock_m, only : clock_t, lap, share_contact, phase_elements, phase_contact_force, phase_nodes
+  use clock_m, only : clock_t, lap, lap_interface, phase_elements, phase_contact_force, phase_nodes
   use conditions_m, only : pressure_load_t
   use contact_state_m, only : contact_state_t
   use contact_dispatch_m, only : add_contact_stiffness
   use curves_m, only : curve_value
   use cut_forces_m, only : find_cut_forces
-  use element_dispatch_m, only : add_tile_forces, share_tile_forces, keep_tile_forces, &
+  use element_dispatch_m, only : add_tile_forces, scatter_tile_forces, store_tile_forces, &
     sum_special_forces
   use element_mass_m, only : mass_times, add_mass
   use element_stiffness_m, only : add_stiffness
@@ -100,8 +100,8 @@ contains
     do i = 1, size(model%layout%tiles)
       associate (tile => model%layout%tiles(i))
         call add_tile_forces(model, tile, trial%motion, unit_step, trial%elements, force)
-        call share_tile_forces(tile, force, trial%slots)
-        call keep_tile_forces(tile, force, trial%internal)
+        call scatter_tile_forces(tile, force, trial%slots)
+        call store_tile_forces(tile, force, trial%internal)
       end associate
     end do
     call sum_special_forces(model%layout, trial%slots, 1, model%layout%n_special, trial%internal)
@@ -112,7 +112,7 @@ contains
       call evaluate_contact(model%contacts(i), trial%motion, time, time - state%time, is_first, &
         trial%contacts(i), trial%contact)
       call lap(clock, phase_contact_force)
-      call share_contact(clock, i)
+      call lap_interface(clock, i)
     end do
     call form_external_force(model, trial%motion, time, trial%external)
     if (size(model%conditions%body_loads) > 0) then
@@ -238,7 +238,7 @@ contains
       call add_contact_stiffness(model%contacts(i), trial%contacts(i), step%equations%number, &
         matrix)
       call lap(clock, phase_contact_force)
-      call share_contact(clock, i)
+      call lap_interface(clock, i)
     end do
     do i = 1, size(model%conditions%pressures)
       call add_pressure_stiffness(model, model%conditions%pressures(i), trial%motion, step%time, &

@@ -5,15 +5,15 @@
 !> motion) a step is divided.
 module implicit_start_m
   use clock_m, only : lap, phase_solver
-  use contact_check_m, only : report_contact_start
+  use contact_reports_m, only : report_contact_start
   use contact_step_limit_m, only : contact_ratios
   use contact_law_m, only : measure_springs
   use contact_state_m, only : contact_state_t
   use controls_m, only : controls_t
-  use cut_forces_m, only : keep_cut_chunks
+  use cut_forces_m, only : store_cut_chunks
   use damping_m, only : of_stuck
   use element_mass_m, only : add_mass, mass_times
-  use equations_m, only : equations_t, number_equations, take_free, prescribe_start, list_changes
+  use equations_m, only : equations_t, number_equations, free_entries, prescribe_start, list_changes
   use errors_m, only : error_t, raise, status_run
   use implicit_forces_m, only : trial_t, start_trial, net_force, cut_sections, assemble_forces, &
     step_t
@@ -194,7 +194,7 @@ contains
     end associate
     if (memory%step%is_dynamic) call set_lags(model, state)
     last = .false.
-    if (monitor%restarts%goes_on) then
+    if (monitor%restarts%is_restart) then
       call start_trial(model, state, memory%trial)
       call monitor%restarts%source%part('driver', memory)
       call close_restart(monitor%restarts%source, error)
@@ -217,7 +217,7 @@ contains
     end if
     planned = memory%control
     call plan_next(model, last, state, planned, ends)
-    if (.not. monitor%restarts%goes_on) then
+    if (.not. monitor%restarts%is_restart) then
       call start_implicit(model, planned%next, state, monitor, memory, error)
       if (.not. allocated(error)) call report_contact_start(model, state, monitor%log)
       if (allocated(error)) return
@@ -294,7 +294,7 @@ contains
     end if
     call start_trial(model, state, memory%trial)
     call assemble_forces(model, state, 0.0_wp, .false., monitor%clock, memory%trial)
-    if (allocated(state%cut_force)) call keep_cut_chunks(model, state%elements, &
+    if (allocated(state%cut_force)) call store_cut_chunks(model, state%elements, &
       memory%trial%before)
     state%contacts = memory%trial%contacts
     ! Springs loaded at time zero hold energy that no force has put in.
@@ -330,7 +330,7 @@ contains
     matrix%n = equations%n_free
     call compress_matrix(matrix)
     allocate (x(equations%n_free))
-    call solve_linear(matrix, -take_free(equations, step%old_force &
+    call solve_linear(matrix, -free_entries(equations, step%old_force &
       + mass_times(model, state%acceleration)), x, report)
     if (.not. report%is_solved) then
       call raise(error, 'no acceleration at time zero: '//report%message, status_run)

@@ -5,10 +5,10 @@
 !> doc/theory/contact.md, section 9.8).
 module newton_m
   use clock_m, only : clock_t, lap, phase_nodes, phase_solver
-  use contact_scatter_m, only : add_gap_round_off
+  use nodal_forces_m, only : add_gap_round_off
   use contact_state_m, only : contact_state_t
   use controls_m, only : implicit_t
-  use equations_m, only : take_free, move_prescribed
+  use equations_m, only : free_entries, move_prescribed
   use friction_m, only : let_hold, has_slipped
   use implicit_forces_m, only : trial_t, assemble_forces, trouble_of, step_t, assemble_tangent, &
     assemble_residual
@@ -175,7 +175,7 @@ contains
     type(way_t), intent(inout) :: way
     type(report_t), intent(out) :: report
 
-    way%b = -take_free(step%equations, assemble_residual(model, state, step, trial))
+    way%b = -free_entries(step%equations, assemble_residual(model, state, step, trial))
     call lap(clock, phase_nodes)
     call assemble_tangent(model, state, step, trial, clock, matrix)
     call move_prescribed(step%equations%n_free, way%moved, matrix, way%b)
@@ -199,11 +199,11 @@ contains
     integer :: i, k
 
     now%before = now%residual
-    u = take_free(step%equations, assemble_residual(model, state, step, trial))
+    u = free_entries(step%equations, assemble_residual(model, state, step, trial))
     now%residual = norm2(u)
     now%worst = maxloc(abs(u), 1)
-    u = abs(take_free(step%equations, trial%motion(1:2, :)))
-    total = take_free(step%equations, abs(trial%internal) + abs(trial%contact) &
+    u = abs(free_entries(step%equations, trial%motion(1:2, :)))
+    total = free_entries(step%equations, abs(trial%internal) + abs(trial%contact) &
       + abs(trial%external))
     do i = 1, matrix%n
       do k = matrix%first(i), matrix%first(i + 1) - 1
@@ -213,9 +213,11 @@ contains
     now%floor = epsilon(1.0_wp)*norm2(total)
     forces = 0.0_wp*trial%contact
     do i = 1, size(trial%contacts)
-      call add_gap_round_off(trial%contacts(i), forces)
+      associate (contact => trial%contacts(i))
+        call add_gap_round_off(contact%points, contact%positions, contact%nodes, forces)
+      end associate
     end do
-    now%gap_floor = now%floor + epsilon(1.0_wp)*norm2(take_free(step%equations, forces))
+    now%gap_floor = now%floor + epsilon(1.0_wp)*norm2(free_entries(step%equations, forces))
   end subroutine measure_residual
 
   !> The energy criterion of Kang, Lee & Shin (2023) or the round-off floor of the residual; the
@@ -284,7 +286,7 @@ contains
       slope_start = -dot_product(way%x, way%b)
       if (.not. slope_start < 0.0_wp) return
       do k = 1, most_searches
-        slope = dot_product(way%x, take_free(step%equations, &
+        slope = dot_product(way%x, free_entries(step%equations, &
           assemble_residual(model, state, step, trial)))
         if (slope <= model%controls%implicit%search_tolerance*abs(slope_start)) return
         sound_factor = way%factor

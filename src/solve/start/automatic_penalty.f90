@@ -99,14 +99,14 @@ contains
           //to_text(model%contacts(i)%penalty)//' of the largest for a time step of ' &
           //to_text(dt)//' by the bound of '//binding_bound(limit, bounds(i)))
       else
-        call tell_of_mean(model, i, dt, state%contacts(i), log)
+        call report_lowered_penalty(model, i, dt, state%contacts(i), log)
       end if
     end do
   end subroutine set_automatic_penalties
 
   !> Interface `i` has less than the built-in penalty, and what does without: a warning where
   !> somebody has chosen the penalty.
-  subroutine tell_of_mean(model, i, dt, memory, log)
+  subroutine report_lowered_penalty(model, i, dt, memory, log)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
     real(wp), intent(in) :: dt !! s
@@ -124,7 +124,7 @@ contains
     else
       call warn(log, text)
     end if
-  end subroutine tell_of_mean
+  end subroutine report_lowered_penalty
 
   !> By interface the share of the largest stable penalty that the memory holds a penalty of: PEN
   !> with PUNIT 3; 1 for the mean of soft and stiff materials, which may have no more than that, in

@@ -23,7 +23,7 @@ module start_m
   use log_m, only : log_t, to_text, write_log
   use mass_scaling_m, only : added_masses, scales_masses, start_mass_scaling
   use model_m, only : model_t
-  use others_memory_m, only : answers_t, others_t, known_nodes, known_slots
+  use remote_state_m, only : inside_tests_t, remote_t, known_nodes, known_slots
   use rigid_state_m, only : rigid_state_t, velocity_of
   use state_m, only : state_t
   implicit none
@@ -33,21 +33,21 @@ module start_m
 contains
 
   !> Allocate and fill everything that the run changes.
-  subroutine start_state(model, log, state, error, others, answers)
+  subroutine start_state(model, log, state, error, remote, inside_tests)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
     type(state_t), intent(out) :: state
     type(error_t), allocatable, intent(out) :: error
-    type(others_t), intent(inout), optional :: others !! what other processes have; it is left alone
-    type(answers_t), intent(inout), optional :: answers !! of the first search
+    type(remote_t), intent(inout), optional :: remote !! what other processes have; it is left alone
+    type(inside_tests_t), intent(inout), optional :: inside_tests !! of the first search
     integer :: known(2, 3), i, k
 
-    known = known_nodes(model, others)
-    call start_elements(model, known_slots(model, others), state%elements)
+    known = known_nodes(model, remote)
+    call start_elements(model, known_slots(model, remote), state%elements)
     call start_motion(model, known, state%motion)
     call log_elements(model, log)
-    if (present(others)) then
-      call move_alloc(others%mass, state%mass)
+    if (present(remote)) then
+      call move_alloc(remote%mass, state%mass)
     else
       call lump_mass(model, state%mass)
       call log_masses(model, log)
@@ -72,12 +72,12 @@ contains
     if (size(model%conditions%nodal_loads) + size(model%conditions%pressures) > 0) &
       allocate (state%external(2, model%layout%n_special), source=0.0_wp)
     if (allocated(model%conditions%damping) .and. .not. model%controls%implicit%is_on) &
-      call start_vectors(known, model%mesh%n_node, state%former_velocity)
+      call start_vectors(known, model%mesh%n_node, state%previous_velocity)
     if (allocated(model%conditions%part_damping) .and. .not. model%controls%implicit%is_on) then
       allocate (state%node_damping(2, model%mesh%n_node), &
-        state%former_damping(2, model%mesh%n_node), source=0.0_wp)
-      if (.not. allocated(state%former_velocity)) &
-        allocate (state%former_velocity(2, model%mesh%n_node), source=0.0_wp)
+        state%previous_damping(2, model%mesh%n_node), source=0.0_wp)
+      if (.not. allocated(state%previous_velocity)) &
+        allocate (state%previous_velocity(2, model%mesh%n_node), source=0.0_wp)
     end if
     allocate (state%force_slots(2, size(model%layout%special_node)), source=0.0_wp)
     call start_vectors(known, model%mesh%n_node, state%internal_force)
@@ -91,15 +91,15 @@ contains
     call start_works(model, state)
     if (allocated(model%controls%ends)) &
       allocate (state%quiet_since(size(model%controls%ends)), source=-1.0_wp)
-    call start_contacts(model, log, state, error, answers)
+    call start_contacts(model, log, state, error, inside_tests)
     if (allocated(error)) return
     state%outlines = model%contacts
     call weigh_contacts(model, state)
-    if (present(others)) then
+    if (present(remote)) then
       do i = 1, size(state%contacts)
-        state%contacts(i)%slave_penalty = others%penalties(1, i)
-        state%contacts(i)%master_penalty = others%penalties(2, i)
-        state%contacts(i)%node_penalty = others%penalties(3, i)
+        state%contacts(i)%slave_penalty = remote%penalties(1, i)
+        state%contacts(i)%master_penalty = remote%penalties(2, i)
+        state%contacts(i)%node_penalty = remote%penalties(3, i)
       end do
     else
       call set_automatic_penalties(model, state, log, error)
@@ -112,17 +112,17 @@ contains
   end subroutine start_state
 
   !> Memories of the interfaces.
-  subroutine start_contacts(model, log, state, error, answers)
+  subroutine start_contacts(model, log, state, error, inside_tests)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
     type(state_t), intent(inout) :: state
     type(error_t), allocatable, intent(out) :: error
-    type(answers_t), intent(inout), optional :: answers !! of the first search
+    type(inside_tests_t), intent(inout), optional :: inside_tests !! of the first search
     integer :: i
 
     allocate (state%contacts(size(model%contacts)), state%estimates(size(model%contacts)))
     do i = 1, size(model%contacts)
-      call start_contact(model%contacts(i), model, log, state%contacts(i), answers)
+      call start_contact(model%contacts(i), model, log, state%contacts(i), inside_tests)
       if (.not. is_tied(model%contacts(i)) .or. state%contacts(i)%tie_points%n > 0) cycle
       call raise(error, 'interface '//to_text(model%contacts(i)%id)//' ties nothing: none of its ' &
         //to_text(state%contacts(i)%n_slave)//' slave nodes has the master within reach', &

@@ -42,7 +42,7 @@ PLANTS = (
     Plant("interfaces side by side add to the same nodes", "solve/explicit/explicit_cycle.f90",
           "    do i = 1, size(model%contacts)\n      call apply_contact",
           "    !$omp parallel do num_threads(2)\n    do i = 1, size(model%contacts)\n      call apply_contact",
-          "contact/contact_work.f90"),
+          "contact/law/nodal_forces.f90"),
 )
 
 

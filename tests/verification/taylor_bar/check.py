@@ -12,7 +12,7 @@ DENSITY, YOUNG, POISSON, YIELD, HARDENING = 8930.0, 117.0e9, 0.35, 400.0e6, 100.
 FRICTION, PENALTY = 0.25, 4.0e14   # N/m^3 with PUNIT 1
 #: Radius and length in mm, plastic strain: `independent.py 5 50 MU free`.
 INDEPENDENT = {0.0: (7.2182, 21.5266, 3.2531), FRICTION: (6.0999, 21.8424, 1.9350)}
-#: Radius of the foot and length over time by tetrahedra of another program (README.md).
+#: Radius of the impact end and length over time by tetrahedra of another program (README.md).
 PUBLISHED = np.genfromtxt(pathlib.Path(__file__).with_name("published.csv"), delimiter=",", names=True)
 
 
@@ -30,7 +30,7 @@ def bar(columns, rows):
 
 
 def held(columns, rows):
-    """The foot keeps to the wall, without friction."""
+    """The impact end stays on the wall, without friction."""
     deck, ids, *rest = bar(columns, rows)
     return deck.fix(ids[:columns + 1], y=1), ids, *rest
 
@@ -63,7 +63,7 @@ def volumes(places, quads):
 
 
 class Outcome:
-    """Radius of the foot, length, plastic strain, histories and energies of one run; mm."""
+    """Radius of the impact end, length, plastic strain, histories and energies of one run; mm."""
 
     def __init__(self, run, name, made):
         deck, ids, coordinates, quads = made

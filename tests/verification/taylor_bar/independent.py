@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A small program of its own for the Taylor bar: the axisymmetric quad with gradients averaged over the volume, written
-from its equations with numpy and nothing of the solver, with Coulomb friction under a foot that keeps to the wall.
+from its equations with numpy and nothing of the solver, with Coulomb friction under an impact end that stays on the wall.
 
-`python independent.py COLUMNS ROWS MU [free]` prints radius, length and largest plastic strain; with `free` nodes of the foot leave the wall
+`python independent.py COLUMNS ROWS MU [free]` prints radius, length and largest plastic strain; with `free` nodes of the impact end leave the wall
 where they are pulled.
 """
 import sys

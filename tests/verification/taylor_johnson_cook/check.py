@@ -7,12 +7,12 @@ from meshes import Deck, grid
 LENGTH, RADIUS, SPEED, END = 32.4e-3, 3.2e-3, 287.0, 80.0e-6
 YOUNG, POISSON, DENSITY, HEAT, SHARE = 206.0e9, 0.3, 7830.0, 460.0, 0.9
 ROOM, MELT = 20.0, 1540.0
-#: Final length and diameter in mm, temperature in deg C and plastic strain of the element in the middle of the foot.
+#: Final length and diameter in mm, temperature in deg C and plastic strain of the element in the middle of the impact end.
 PUBLISHED = {"DynELA": (26.52, 11.15, 582.34, 1.78), "Abaqus": (26.56, 11.16, 590.96, 1.81)}
 
 
 def bar(columns, rows, points=None, kind=1):
-    """Its foot keeps to the wall and slides on it. CP over the share of the work that heats: the law heats by all of it."""
+    """Its impact end stays on the wall and slides on it. CP over the share of the work that heats: the law heats by all of it."""
     deck = Deck("Taylor bar of 42CrMo4").control(END).hourglass(kind, 0.1)
     deck.add("*PART", "rod", (1, 1, 1)).add("*SECTION_SHELL", (1, 15, None, points), (1.0,))
     deck.add("*MAT_JOHNSON_COOK", (1, DENSITY, YOUNG / (2.0 * (1.0 + POISSON)), YOUNG, POISSON, 0.0, 1.0),
@@ -34,12 +34,12 @@ def measure(run, name, deck, columns, rows):
     heat = np.sum(mass * HEAT / SHARE * (temperature - ROOM))
     # What is left of the blow without heat is elastic: 2 GPa^2/(2E) of a part of the bar.
     run.check(f"{name}: heat beside the internal energy", heat, table["internal"][-1])
-    foot = 2e3 * places[:columns + 1, 0].max()
-    return 1e3 * (places[-1, 1] - places[:, 1].min()), foot, temperature[0], strain[0]
+    diameter = 2e3 * places[:columns + 1, 0].max()
+    return 1e3 * (places[-1, 1] - places[:, 1].min()), diameter, temperature[0], strain[0]
 
 
 def check(run):
-    what = ("length, mm", "diameter of the foot, mm", "temperature of the middle of the foot", "plastic strain there")
+    what = ("length, mm", "diameter of the impact end, mm", "temperature of the middle of the impact end", "plastic strain there")
     for name, points in (("one point", None), ("2x2 points", 4)):
         found = measure(run, name, bar(5, 50, points), 5, 50)
         for quantity, value, *published in zip(what, found, *PUBLISHED.values()):

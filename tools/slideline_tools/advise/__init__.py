@@ -10,7 +10,7 @@ top of its module (bodies, touching, rubbing, stepping, outputs; doc/studies/sim
 from __future__ import annotations
 
 from slideline_tools.advise import bodies, outputs, rubbing, stepping, touching
-from slideline_tools.advise.finished import Finished, read_run
+from slideline_tools.advise.finished import Finished
 from slideline_tools.advise.report import Advice
 
 CHECKS = bodies.CHECKS + touching.CHECKS + rubbing.CHECKS + stepping.CHECKS + outputs.CHECKS
@@ -18,7 +18,7 @@ CHECKS = bodies.CHECKS + touching.CHECKS + rubbing.CHECKS + stepping.CHECKS + ou
 
 def advise(path) -> tuple[Finished, list[Advice], list[str]]:
     """The run at `path` (its folder or a file of it), all advice, and what was not judged."""
-    run = read_run(path)
+    run = Finished(path)
     if not run.ended:
         return run, [], ["anything: the run did not end normally"]
     if run.seconds_of("loop") == 0.0:

@@ -18,12 +18,6 @@ SCENES = {  # name -> what it is, refinement levels, Gauss points of type 6 (no 
     "hertz": ("elastic cylinder on an elastic block", "1 to 8", 4),
     "symmetric_plate": ("plate on two pins under a step load", "", 0),
     "taylor": ("copper rod on a rigid wall, axisymmetric, without contact", "", 0),
-    "taylor_johnson_cook": ("steel rod that warms on a rigid wall, axisymmetric", "", 0),
-    "hopkinson": ("split Hopkinson pressure bar, axisymmetric", "", 0),
-    "penetration": ("blunt rod through a steel plate, axisymmetric, erosion", "", 0),
-    "seal": ("hollow rubber seal that closes on itself", "", 0),
-    "tube": ("folding tube, axisymmetric", "", 0),
-    "v_bend": ("sheet bent by a rigid punch, springback", "", 0),
 }
 STATIC = ("--static", {"action": "store_true",
                        "help": "static steps of the implicit method, not damping to rest"})
@@ -53,10 +47,6 @@ OWN_OPTIONS = {
                            "help": "hourglass coefficient (0.1 viscous, 0.05 stiffness)"})),
     "taylor": (("--columns", {"type": int, "help": "elements along the radius of 3.2 mm (10)"}),
                ("--rows", {"type": int, "help": "elements along 32.4 mm (100)"})),
-    "taylor_johnson_cook": (("--columns", {"type": int, "help": "elements along the radius of 3.2 mm (5)"}),
-                            ("--rows", {"type": int, "help": "elements along 32.4 mm (50)"})),
-    **{name: (("--ctype", {"type": int, "help": "contact type in the deck (5)"}),)
-       for name in ("hopkinson", "penetration", "seal", "tube", "v_bend")},
 }
 #: what the parser sets beside the options of a scene
 OTHERS = ("command", "scene", "output", "run")
@@ -65,7 +55,7 @@ OTHERS = ("command", "scene", "output", "run")
 def add_all(commands) -> None:
     """Add these commands."""
     scenes = add(commands, make_deck, "make-deck", "write the deck of a scene",
-                 "Write the keyword deck of a scene. The decks of the folder input are made so; "
+                 "Write the keyword deck of a scene, as those of its folder in input; "
                  "numbers such as the penalty are parameters of the deck, p:NAME=VALUE. The paper "
                  "is that of Kang, Lee & Shin (2023).", """\
 make-deck collision --level 2 -o collision_2.k

@@ -173,9 +173,9 @@ def draw_surface(canvas: Canvas, model: Model, surface: Surface, colour: str) ->
     middles, outward = ends.mean(axis=1), surface.normals(model.points)
     seen = np.flatnonzero(canvas.visible(middles))
     picked = seen[thinned(len(seen), MOST_NORMALS)]
-    tips = middles[picked] + NORMAL_LENGTH * canvas.inch * outward[picked]
+    heads = middles[picked] + NORMAL_LENGTH * canvas.inch * outward[picked]
     canvas.axes.add_collection(LineCollection(
-        np.stack([middles[picked], tips], axis=1), colors=colour, linewidths=0.8, zorder=4))
+        np.stack([middles[picked], heads], axis=1), colors=colour, linewidths=0.8, zorder=4))
     for k in seen[thinned(len(seen), MOST_TIPS)]:
         along = ends[k, 1] - ends[k, 0]
         along = along / max(np.linalg.norm(along), 1.0e-300) * 0.02 * canvas.inch

@@ -10,7 +10,7 @@ import pathlib
 
 from slideline_tools import __version__, files
 from slideline_tools.report import sections
-from slideline_tools.report.gather import gather
+from slideline_tools.report.gather import Gathered
 from slideline_tools.report.page import page
 
 
@@ -23,11 +23,11 @@ def write_report(path, output=None, fields=(), states=(), scale: float = 1.0,
     the results as `<job>.report.html`. `program` reads the deck as run; the page notes where it
     can not.
     """
-    run = gather(path, program)
+    run = Gathered(path, program)
     words = page(title=run.title, ending=run.ending, kind=sections.KINDS[run.ending.kind],
                  tiles=sections.tiles_of(run), version=__version__,
                  sections=sections.all_sections(run, list(fields), list(states), scale))
     path = files.output(output or run.folder / f"{run.job}.report.html",
-                        [run.folder / name for name, _ in run.files])
+                        run.files())
     path.write_text(words, encoding="utf-8")
     return path

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import os
 import pathlib
 import re
@@ -11,12 +12,12 @@ import tempfile
 import numpy as np
 
 from slideline_tools import UserError
-from slideline_tools.advise.finished import read_text
 from slideline_tools.draw.model import Model, check_deck
-from slideline_tools.files import ENDINGS, TABLES, find_run
-from slideline_tools.histories import History, read_csv
+from slideline_tools.files import TABLES
+from slideline_tools.finished_run import Run
+from slideline_tools.histories import History
 from slideline_tools.program import find_program
-from slideline_tools.results import Results, read
+from slideline_tools.results import Results
 
 GOES_ON = "goes on from the restart file"
 #: what the log tells where there are no results
@@ -39,21 +40,60 @@ class Ending:
     seconds: float | None = None
 
 
-@dataclasses.dataclass
-class Gathered:
-    """A run; `results`, `model` and `timing` are None where their files are missing."""
+class Gathered(Run):
+    """A run; `results`, `model` and `timing` are None where their files are missing, and `notes` say why."""
 
-    folder: pathlib.Path
-    job: str
-    log_text: str
-    deck_text: str
-    ending: Ending
-    tables: dict[str, History]
-    results: Results | None
-    timing: History | None
-    model: Model | None
-    files: list[tuple[str, int]]
-    notes: list[str]
+    def __init__(self, path, program=None) -> None:
+        """The run whose folder, or any file, is `path`; `program` reads the deck as run."""
+        if not os.path.exists(path):
+            raise UserError(f"{path}: no such folder or file")
+        super().__init__(path, ".log", ".vtkhdf")
+        if not self.sizes:
+            raise UserError(f"{self.prefix}: no file of a run")
+        self.notes: list[str] = []
+        _ = self.results  # its notes come first
+        self.tables: dict[str, History] = {}
+        for name in (*TABLES, "timing"):
+            if (table := self.attempt("{}.", lambda name=name: self.table(name))) is not None:
+                self.tables[name] = table
+        self.timing = self.tables.pop("timing", None)
+        if not self.log:
+            self.notes.append("The log is empty or missing: parts, interfaces and warnings are known as far "
+                              "as the deck and the tables tell.")
+        self.model = self.read_model(program)
+        self.ending = read_ending(self.log, self.tables, self.results, self.timing)
+
+    def attempt(self, words: str, make):
+        """What `make` gives; None, and a note with the reason in `words`, where it can not."""
+        try:
+            return make()
+        except UserError as problem:
+            self.notes.append(words.format(problem))
+            return None
+
+    @functools.cached_property
+    def results(self) -> Results | None:
+        """The states; a note where they cannot be read or are none."""
+        if ".vtkhdf" not in self.sizes:
+            self.notes.append("No states: the run ended before it had written the first one."
+                              if ".vtkhdf.part" in self.sizes else "No results file (.vtkhdf).")
+            return None
+        results = self.attempt("No states: {}.", self.open_results)
+        if results is not None and not results.n_state:
+            self.notes.append("The results file holds no state.")
+        return results
+
+    def read_model(self, program) -> Model | None:
+        """The model of the deck as run, as the program understands it."""
+        if not self.deck:
+            return None
+        with tempfile.TemporaryDirectory() as folder:
+            deck = pathlib.Path(folder) / "model.k"
+            deck.write_text(self.deck, encoding="utf-8")
+            model = self.attempt("The deck as run could not be read: {}.", lambda: check_deck(deck, find_program(program)))
+            if model is None:
+                self.notes[-1] = self.notes[-1].replace(str(deck), str(self.path(".effective.k")))
+            return model
 
     @property
     def title(self) -> str:
@@ -65,13 +105,13 @@ class Gathered:
         `source` and (the results file alone) `machine`; '' where nothing does."""
         if self.results is not None and self.results.run.get(name):
             return self.results.run[name]
-        found = re.search(IN_LOG[name], self.log_text, re.M) if name in IN_LOG else None
+        found = re.search(IN_LOG[name], self.log, re.M) if name in IN_LOG else None
         return found[1].strip() if found else ""
 
     @property
     def warnings(self) -> list[str]:
         """The warnings of the log in their order."""
-        return re.findall(r"^warning: (.*)", self.log_text, re.M)
+        return re.findall(r"^warning: (.*)", self.log, re.M)
 
     def rows(self, table: str) -> History | None:
         """A table that is there and has rows."""
@@ -85,82 +125,6 @@ class Gathered:
             if rows := self.rows(name):
                 numbers |= set(rows["interface"].tolist())
         return sorted(numbers)
-
-
-def gather(path, program=None) -> Gathered:
-    """The run whose folder, or any file, is `path`."""
-    if not os.path.exists(path):
-        raise UserError(f"{path}: no such folder or file")
-    prefix = find_run(path, ".log", ".vtkhdf")
-    sizes = {ending: os.path.getsize(f"{prefix}{ending}") for ending in [*ENDINGS, ".vtkhdf.part"]
-             if os.path.exists(f"{prefix}{ending}")}
-    if not sizes:
-        raise UserError(f"{prefix}: no file of a run")
-    return read_all(prefix, sizes, program)
-
-
-def read_all(prefix: pathlib.Path, sizes: dict, program) -> Gathered:
-    """Read what there is, and note what there is not."""
-    notes: list[str] = []
-    log_text = read_text(f"{prefix}.log")
-    results = read_results(prefix, sizes, notes)
-    tables = {name: table for name in (*TABLES, "timing")
-              if (table := read_table(prefix, name, results, notes)) is not None}
-    timing = tables.pop("timing", None)
-    if not log_text:
-        notes.append("The log is empty or missing: parts, interfaces and warnings are known as far "
-                     "as the deck and the tables tell.")
-    deck_text = read_text(f"{prefix}.effective.k") or (
-        results.run.get("effective_deck", "") if results else "")
-    return Gathered(prefix.parent, prefix.name, log_text, deck_text,
-                    read_ending(log_text, tables, results, timing), tables, results, timing,
-                    read_model(deck_text, f"{prefix}.effective.k", program, notes),
-                    [(f"{prefix.name}{ending}", size) for ending, size in sizes.items()], notes)
-
-
-def attempt(notes: list[str], words: str, make):
-    """What `make` gives; None, and a note with the reason in `words`, where it can not."""
-    try:
-        return make()
-    except UserError as problem:
-        notes.append(words.format(problem))
-        return None
-
-
-def read_results(prefix, sizes: dict, notes: list[str]) -> Results | None:
-    """The states; a note where they cannot be read or are none."""
-    if ".vtkhdf" not in sizes:
-        notes.append("No states: the run ended before it had written the first one."
-                     if ".vtkhdf.part" in sizes else "No results file (.vtkhdf).")
-        return None
-    results = attempt(notes, "No states: {}.", lambda: read(f"{prefix}.vtkhdf"))
-    if results is not None and not results.n_state:
-        notes.append("The results file holds no state.")
-    return results
-
-
-def read_table(prefix, name: str, results: Results | None, notes: list[str]) -> History | None:
-    """A table from its CSV file, else from the results file."""
-    path = f"{prefix}.{name}.csv"
-    if os.path.exists(path):
-        return attempt(notes, "{}.", lambda: read_csv(path))
-    if results is not None and name in results.histories:
-        return attempt(notes, "{}.", lambda: results.history(name))
-    return None
-
-
-def read_model(text: str, name: str, program, notes: list[str]) -> Model | None:
-    """The model of the deck as run, as the program understands it."""
-    if not text:
-        return None
-    with tempfile.TemporaryDirectory() as folder:
-        deck = pathlib.Path(folder) / "model.k"
-        deck.write_text(text, encoding="utf-8")
-        model = attempt(notes, "The deck as run could not be read: {}.",
-                        lambda: check_deck(deck, find_program(program)))
-        if model is None:
-            notes[-1] = notes[-1].replace(str(deck), name)
-        return model
 
 
 def read_ending(log_text: str, tables: dict[str, History], results: Results | None,

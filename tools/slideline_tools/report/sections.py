@@ -60,7 +60,7 @@ def summary(run: Gathered) -> list[Block]:
     end, results, options, build = run.ending, run.results, run.told("options"), run.told("build")
     threads = re.findall(r"ncpu=(\d+)", options)
     stamps = [time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(stamp)) for stamp in
-              sorted(os.stat(run.folder / name).st_mtime for name, _ in run.files)]
+              sorted(os.stat(run.path(ending)).st_mtime for ending in run.sizes)]
     mesh = (f"{figures(len(run.model.points))} nodes, {figures(len(run.model.cells))} elements, "
             f"{len(run.model.parts)} parts" if run.model
             else f"{figures(results.n_node)} nodes, {figures(results.n_cell)} elements" if results
@@ -102,7 +102,7 @@ def warnings(run: Gathered) -> list[Block]:
         blocks.insert(0, ("warning", f"Error termination: {run.ending.reason}"))
     if len(found) > MOST_WARNINGS:
         blocks.append(("text", f"{len(found) - MOST_WARNINGS} more stand in the log."))
-    none = "None." if run.log_text else "Unknown: the log is empty or missing."
+    none = "None." if run.log else "Unknown: the log is empty or missing."
     return blocks or [("text", none)]
 
 
@@ -245,7 +245,7 @@ def chosen_times(run: Gathered, chain: History, states: list[int]) -> list[float
 
 def walls(run: Gathered) -> list[Block]:
     """Every rigid wall that the deck or rwforc tells of, and its force."""
-    known = {wall.id: wall for wall in walls_of(run.deck_text)}
+    known = {wall.id: wall for wall in walls_of(run.deck)}
     rwforc = run.rows("rwforc")
     series = {} if rwforc is None else {entity[0]: rows for entity, rows in rwforc.series()}
     rows, pictures = [], []
@@ -417,15 +417,15 @@ def advice(run: Gathered) -> list[Block]:
 def files(run: Gathered) -> list[Block]:
     """The files, the deck without its mesh, and the log."""
     blocks: list[Block] = [
-        ("table", Table(["file", "bytes"], [[name, figures(size)] for name, size in run.files],
+        ("table", Table(["file", "bytes"], [[run.path(ending).name, figures(size)] for ending, size in run.sizes.items()],
                         (1,))), ("note", f"Folder: {run.folder.resolve()}")]
-    if run.deck_text:
+    if run.deck:
         blocks.append(("folded", ("The deck as run, without its mesh", shortened(re.sub(
             r"^(\*(?:NODE|ELEMENT).*\n)((?:[^*\n].*\n|\n)+)",
-            lambda found: f"{found[1]}$ ({found[2].count(chr(10))} lines)\n", run.deck_text,
+            lambda found: f"{found[1]}$ ({found[2].count(chr(10))} lines)\n", run.deck,
             flags=re.M | re.I)))))
-    if run.log_text:
-        blocks.append(("folded", ("The log", shortened(run.log_text))))
+    if run.log:
+        blocks.append(("folded", ("The log", shortened(run.log))))
     return blocks
 
 

@@ -59,25 +59,6 @@ def slideline(deck, slave, master):
                      -slave, -master, "&ctype", "&ngauss", "&pen", 0.0, 0.0, 0.0)
 
 
-def part_set(deck, number, heading, parts):
-    """*SET_PART_LIST_TITLE: its outer edges are a contact surface."""
-    deck.keyword("SET_PART_LIST_TITLE", heading).card("sid", number)
-    return deck.card(" ".join(f"pid{k}" for k in range(1, len(parts) + 1)), *parts)
-
-
-def part_contact(deck, slave, master, friction=0.0, penalty=1.0):
-    """*CONTACT_2D_SLIDELINE of part sets (master 0: the slave set with itself); the type is a parameter, the penalty a
-    factor on the stiffness of the elements (PUNIT 2)."""
-    deck.keyword("CONTACT_2D_SLIDELINE")
-    deck.card("surfa surfb ctype ngauss pen fs fd dc", slave, master, "&ctype", 2, penalty, friction, 0.0, 0.0)
-    return deck.card("tbirth tdeath punit", 0.0, 1.0e20, 2)
-
-
-def move_rigid(deck, number, direction, curve, factor):
-    """*BOUNDARY_PRESCRIBED_MOTION_RIGID: velocity of a rigid part along x (1) or y (2), a curve times a factor."""
-    return deck.keyword("BOUNDARY_PRESCRIBED_MOTION_RIGID").card("pid dof vad lcid sf", number, direction, 0, curve, factor)
-
-
 def contact_surfaces(deck, slave, master, exchanged=False, note=False):
     """Both surfaces, (words, nodes), as node sets 3 and 4, and the contact between them;
     `exchanged`: the roles change, not the sets."""

@@ -86,11 +86,7 @@ def hertz(level=1, ctype=2, ngauss=4, exchanged=False, static=False):
         "Hertz (1881) for the contact force F, with 1/E* = sum (1 - nu^2)/E: half width "
         "a = sqrt(4 F R/(pi E*)), largest pressure p0 = 2 F/(pi a).",
     ])
-    if static:
-        write_static(deck, ctype, ngauss)
-    else:
-        write_parameters(deck, level, ctype, ngauss)
-        write_control(deck)
+    write_run(deck, level, ctype, ngauss, static)
     deck.block(f"Two elastic bodies of {'fully integrated' if static else 'one-point'} plane-strain "
                "quads (ELFORM 13).")
     part(deck, 1, "block", 1, 1)
@@ -111,51 +107,38 @@ def hertz(level=1, ctype=2, ngauss=4, exchanged=False, static=False):
     return deck.text()
 
 
-def write_parameters(deck, level, ctype, ngauss):
-    """The numbers that can be set from the command line."""
+def write_run(deck, level, ctype, ngauss, static):
+    """The numbers that can be set from the command line; end, steps and output. In static runs the time counts the way."""
+    numbers = [("ctype", ctype, "contact type: " + CONTACT_TYPES),
+               ("ngauss", ngauss, "Gauss points of a slave segment, for type 6 alone"),
+               ("pen", PENALTY, "penalty of a contact node in N/m"),
+               ("down", APPROACH, "way of the cylinder's cut in m")]
     deck.block("The numbers to play with.")
-    deck.parameters(
-        ("ctype", ctype, "contact type: " + CONTACT_TYPES),
-        ("ngauss", ngauss, "Gauss points of a slave segment, for type 6 alone"),
-        ("pen", PENALTY, "penalty of a contact node in N/m"),
-        ("down", APPROACH, "way of the cylinder's cut in m"),
-        ("damp", 7.0e5, "mass damping in 1/s"),
-        ("dt", 6.25e-9 / level, "time step in s"),
-        ("endtim", END, "end time in s"),
-        ("ihq", 4, "hourglass control: 1 viscous form, 4 stiffness form"),
-        ("qh", 0.05, "hourglass coefficient"),
-        ("dtplot", 10.0e-6, "time between the states for pictures in s"),
-        ("dthist", 1.0e-6, "time between the rows of the histories in s"))
-
-
-def write_control(deck):
-    """End, step, damping, hourglass control and output."""
-    deck.block("When to stop, and a constant time step (the curve LCTM caps the step).")
-    deck.keyword("CONTROL_TERMINATION").card("endtim", "&endtim")
-    deck.constant_step(1, "&dt", 1.0)
-    deck.keyword("CONTROL_HOURGLASS").card("ihq qh", "&ihq", "&qh")
-    deck.comment("about critical for the lowest mode: the cylinder on the contact")
-    deck.keyword("DAMPING_GLOBAL").card("lcid valdmp", 0, "&damp")
+    if static:
+        deck.parameters(*numbers, ("step", 1.0 / STATIC_STEPS, "part of the way in a step"))
+        deck.block("Static steps; at time 1 the cut has gone all the way.")
+        deck.keyword("CONTROL_TERMINATION").card("endtim", 1.0)
+        implicit_static(deck, "&step")
+    else:
+        deck.parameters(
+            *numbers,
+            ("damp", 7.0e5, "mass damping in 1/s"),
+            ("dt", 6.25e-9 / level, "time step in s"),
+            ("endtim", END, "end time in s"),
+            ("ihq", 4, "hourglass control: 1 viscous form, 4 stiffness form"),
+            ("qh", 0.05, "hourglass coefficient"),
+            ("dtplot", 10.0e-6, "time between the states for pictures in s"),
+            ("dthist", 1.0e-6, "time between the rows of the histories in s"))
+        deck.block("When to stop, and a constant time step (the curve LCTM caps the step).")
+        deck.keyword("CONTROL_TERMINATION").card("endtim", "&endtim")
+        deck.constant_step(1, "&dt", 1.0)
+        deck.keyword("CONTROL_HOURGLASS").card("ihq qh", "&ihq", "&qh")
+        deck.comment("about critical for the lowest mode: the cylinder on the contact")
+        deck.keyword("DAMPING_GLOBAL").card("lcid valdmp", 0, "&damp")
     energies_on(deck)
     deck.block("Output: energies, contact force, states.")
-    deck.database(glstat="&dthist", rcforc="&dthist", binary_d3plot="&dtplot")
-
-
-def write_static(deck, ctype, ngauss):
-    """Parameters, steps and output of the implicit method; the time counts the way."""
-    deck.block("The numbers to play with.")
-    deck.parameters(
-        ("ctype", ctype, "contact type: " + CONTACT_TYPES),
-        ("ngauss", ngauss, "Gauss points of a slave segment, for type 6 alone"),
-        ("pen", PENALTY, "penalty of a contact node in N/m"),
-        ("down", APPROACH, "way of the cylinder's cut in m"),
-        ("step", 1.0 / STATIC_STEPS, "part of the way in a step"))
-    deck.block("Static steps; at time 1 the cut has gone all the way.")
-    deck.keyword("CONTROL_TERMINATION").card("endtim", 1.0)
-    implicit_static(deck, "&step")
-    energies_on(deck)
-    deck.block("Output: energies, contact force, states.")
-    deck.database(glstat="&step", rcforc="&step", binary_d3plot=1.0)
+    often, states = ("&step", 1.0) if static else ("&dthist", "&dtplot")
+    deck.database(glstat=often, rcforc=often, binary_d3plot=states)
 
 
 def write_support_and_motion(deck, block, cylinder, static):

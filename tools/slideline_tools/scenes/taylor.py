@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Taylor bars: a rod as a body of revolution hits a rigid wall, of copper, or of steel that warms."""
+"""Taylor bar: a copper rod as a body of revolution hits a rigid wall."""
 import numpy as np
 
 from slideline_tools.decks import Deck, Grid, spaced
@@ -10,7 +10,7 @@ YOUNG, PLASTIC_MODULUS = 117.0e9, 100.0e6
 
 
 def taylor_grid(columns=10, rows=100):
-    """Right half of the rod, numbered row by row from the foot upward."""
+    """Right half of the rod, numbered row by row from the impact end upward."""
     grid = Grid(spaced((0.0, RADIUS, columns)), spaced((0.0, LENGTH, rows)))
     grid.node = 1 + np.arange(grid.node.size).reshape(grid.node.shape[::-1]).T
     grid.element = 1 + np.arange(grid.element.size).reshape(grid.element.shape[::-1]).T
@@ -23,12 +23,11 @@ def taylor(columns=10, rows=100):
         raise ValueError("taylor: columns and rows must be at least 1")
     grid = taylor_grid(columns, rows)
     deck = Deck("Taylor bar", [
-        "Taylor bar: a copper rod 6.4 mm thick and 32.4 mm long hits a rigid wall at 227 m/s. Its "
-        "foot keeps to the wall and slides on it without friction. Axisymmetric (ELFORM 15): x is "
-        "the radius, y the axis; forces, masses and energies are per radian. SI units (m, kg, s, "
-        "N, Pa).",
+        "Taylor bar: a copper rod 6.4 mm thick and 32.4 mm long hits a rigid wall at 227 m/s. Its impact end stays on the wall "
+        "and slides on it without friction. Axisymmetric (ELFORM 15): x is the radius, y the axis; forces, masses and energies "
+        "are per radian. SI units (m, kg, s, N, Pa).",
         "",
-        "What comes out at 80 microseconds: radius of the foot 7.16 mm, length 21.42 mm.",
+        "Result at 80 microseconds: radius of the impact end 7.16 mm, length 21.42 mm.",
         "",
         "Parameters can be set from the command line, for example",
         "  slideline i=taylor.k p:v0=-150"])
@@ -42,10 +41,10 @@ def taylor(columns=10, rows=100):
     deck.block()
     deck.keyword("CONTROL_TERMINATION").card("endtim", "&endtim")
     deck.keyword("CONTROL_TIMESTEP").card("dtinit tssfac", 0.0, 0.9)
-    deck.comment("the viscous form: the stiffness form would keep the foot from spreading")
+    deck.comment("the viscous form: the stiffness form would keep the impact end from spreading")
     deck.keyword("CONTROL_HOURGLASS").card("ihq qh", 1, "&qh")
     energies_on(deck)
-    deck.block("Output: energies, force of the wall, states, the foot's edge and the free end.")
+    deck.block("Output: energies, force of the wall, states, the edge of the impact end and the free end.")
     deck.database(glstat="&dthist", spcforc="&dthist", nodout="&dthist")
     deck.history_nodes([grid.node[-1, 0], grid.node[0, -1]])
     deck.database(binary_d3plot="&dtplot")
@@ -58,13 +57,8 @@ def taylor(columns=10, rows=100):
     deck.card("mid ro e pr sigy etan beta", 1, 8930.0, YOUNG, 0.35, 400.0e6,
               YOUNG * PLASTIC_MODULUS / (YOUNG + PLASTIC_MODULUS), 1.0)
     deck.card("src srp fs vp", 0.0, 0.0, 0.0, 0.0)
-    return flying_rod(deck, grid)
-
-
-def flying_rod(deck, grid):
-    """Support, velocity and mesh of a rod; the text of the deck."""
-    deck.block("The foot keeps to the wall and slides on it without friction.")
-    deck.node_set(1, "foot", grid.lower)
+    deck.block("The impact end stays on the wall and slides on it without friction.")
+    deck.node_set(1, "impact end", grid.lower)
     deck.spc_set(1, False, True)
     deck.keyword("INITIAL_VELOCITY").card("nsid nsidex", 0, 0)
     deck.card("vx vy", 0.0, "&v0")
@@ -72,50 +66,3 @@ def flying_rod(deck, grid):
     deck.nodes(grid.node.T.ravel(), grid.points.transpose(1, 0, 2).reshape(-1, 2))
     deck.quads(grid.element.T.ravel(), 1, grid.quads.transpose(1, 0, 2).reshape(-1, 4))
     return deck.text()
-
-
-def taylor_johnson_cook(columns=5, rows=50):
-    """A rod of 42CrMo4 at 287 m/s whose law has strain rate and heat, `columns` x `rows` quads of ELFORM 15."""
-    if columns < 1 or rows < 1:
-        raise ValueError("taylor_johnson_cook: columns and rows must be at least 1")
-    grid = taylor_grid(columns, rows)
-    deck = Deck("Taylor bar with Johnson-Cook", [
-        "Taylor bar with Johnson-Cook: a rod of steel 42CrMo4, 6.4 mm thick and 32.4 mm long, hits a rigid wall at 287 m/s. Its "
-        "foot slides on the wall without friction. The law has strain rate and heat. Axisymmetric (ELFORM 15): x is the radius, "
-        "y the axis; forces, masses and energies are per radian. SI units (m, kg, s, N, Pa), temperatures in degrees Celsius.",
-        "",
-        "Published for this mesh (documentation of DynELA, Pantale, with Abaqus beside it), at 80 microseconds: length 26.52 and 26.56 mm, "
-        "diameter of the foot 11.15 and 11.16 mm, in the middle of the foot 582 and 591 degrees and a plastic strain of 1.78 and "
-        "1.81. Here 26.54 mm, 11.12 mm, 588 degrees, 1.81.",
-        "",
-        "Parameters can be set from the command line, for example",
-        "  slideline i=taylor_johnson_cook.k p:v0=-200"])
-    deck.block("The numbers to play with.")
-    deck.parameters(
-        ("v0", -287.0, "speed along the axis in m/s"),
-        ("endtim", 80.0e-6, "end time in s"),
-        ("dtplot", 4.0e-6, "time between the states for pictures in s"),
-        ("dthist", 0.4e-6, "time between the rows of the histories in s"))
-    deck.block()
-    deck.keyword("CONTROL_TERMINATION").card("endtim", "&endtim")
-    deck.keyword("CONTROL_TIMESTEP").card("dtinit tssfac", 0.0, 0.9)
-    deck.comment("the viscous form: the stiffness form would keep the foot from spreading")
-    deck.keyword("CONTROL_HOURGLASS").card("ihq qh", 1, 0.1)
-    energies_on(deck)
-    deck.block("Output: energies, force of the wall, states, the foot's edge and the free end.")
-    deck.database(glstat="&dthist", spcforc="&dthist", nodout="&dthist")
-    deck.history_nodes([grid.node[-1, 0], grid.node[0, -1]])
-    deck.database(binary_d3plot="&dtplot")
-    deck.block()
-    part(deck, 1, "rod of 42CrMo4", 1, 1)
-    deck.keyword("SECTION_SHELL").card("secid elform shrf nip", 1, 15, 1.0, 1)
-    deck.card("t1 t2 t3 t4", 0.0, 0.0, 0.0, 0.0)
-    deck.comment("E 206 GPa, nu 0.3. Flow stress (806 + 614 p^0.168) MPa times 1 + 0.0089 ln r, r the plastic strain rate in 1/s "
-                 "(VP 1), times 1 - T*^1.1 between 20 and 1540 degrees. Nine tenths of the plastic work heat the steel: the law "
-                 "heats by all of it, so that cp is 460/0.9 J/(kg K). D1 to D5 are 0: no damage.")
-    deck.keyword("MAT_JOHNSON_COOK")
-    deck.card("mid ro g e pr dtf vp rateop", 1, 7830.0, 206.0e9 / 2.6, 206.0e9, 0.3, 0.0, 1.0, 0.0)
-    deck.card("a b n c m tm tr epso", 806.0e6, 614.0e6, 0.168, 0.0089, 1.1, 1540.0, 20.0, 1.0)
-    deck.card("cp pc spall it d1 d2 d3 d4", 460.0 / 0.9, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    deck.card("d5", 0.0)
-    return flying_rod(deck, grid)

@@ -28,15 +28,6 @@ SAME_ERROR = 1.05  # errors that differ by less count as equal
 FILES = ("rcforc", "matsum", "contact")
 CHOICE = re.compile(r"\(type (\d)\), chosen by the program")
 
-PAGE = """# What leaving the type to the program costs
-
-Scenes of speed-accuracy on their coarsest meshes. Over the front: instructions over those of the
-cheapest type by name that has none of the errors larger, then the same for each error alone; over
-its type: more than the type by name takes. {counted}
-
-{choices}
-"""
-
 
 def jobs(options):
     """Each scene with each type and with CTYPE 0, whole, and cut short and counted."""
@@ -125,8 +116,10 @@ def page(table, doc):
         shown["over the front"] = runs["over_front"].map("{:.3f}".format)
         shown["for each error alone"] = runs["alone"]
         shown["over its type"] = runs["over_type"].map("{:+.2%}".format)
-    write_page(doc, "chooses", PAGE.format(counted=who_counted(table),
-                                           choices=markdown_table(shown)))
+    write_page(doc, "chooses", "# What leaving the type to the program costs",
+               "Scenes of speed-accuracy on their coarsest meshes. Over the front: instructions over those of the cheapest type by name "
+               "that has none of the errors larger, then the same for each error alone; over its type: more than the type by name "
+               f"takes. {who_counted(table)}", markdown_table(shown))
 
 
 STUDY = Study("chooses", jobs, measure, lambda table, folder: None, derive, page)

@@ -143,7 +143,7 @@ def chart(table, folder):
 
 PAGE = """# How good the estimate of contact is
 
-Tables of `tools/study.sh estimates`: the [estimate](../theory/contact.md#81-how-good-the-answer-is-runcontact_judging-runrows_behind),
+Tables of `tools/study.sh estimates`: the [estimate](../theory/contact.md#81-how-good-the-answer-is-runerror_indicator-runface_stress),
 of sliding and ironing that of all instants written. N_r divides the cells of the coarsest mesh. All types have the same PEN.
 
 ![estimate over error](../pictures/estimates.png)

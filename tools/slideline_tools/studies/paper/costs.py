@@ -113,10 +113,10 @@ def draw_bars(axes, times, scene, level):
     """Steps A, M, B of each type over the contact time of type 1; above them the sum and the share; the paper's ratios."""
     found = times.loc[scene, level]
     names = [str(ctype) for ctype in found.index]
-    foot = 0.0 * found["ratio"]
+    start = 0.0 * found["ratio"]
     for (step, title), colour in zip(LETTERS.items(), COLOURS):
-        axes.bar(names, found[f"{step}_ratio"], bottom=foot, color=colour, label=title, width=0.65)
-        foot = foot + found[f"{step}_ratio"]
+        axes.bar(names, found[f"{step}_ratio"], bottom=start, color=colour, label=title, width=0.65)
+        start = start + found[f"{step}_ratio"]
     theirs = {ctype: ratios[level] for ctype, ratios in SCENES[scene].paper.items() if ctype in found.index}
     for place, (ctype, ratio) in enumerate(found["ratio"].items()):
         # Above the bar, and above a diamond that would hide it.

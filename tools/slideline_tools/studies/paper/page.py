@@ -18,14 +18,6 @@ ENLARGED = (3.55e-3, 4.45e-3)  # s, of the sliding force
 SHIFT = 1.5  # per cent of the mean force between the types
 PLATE = (-0.001, 0.066, -0.022, 0.007)  # m, of the collision
 
-PAGE = """# The paper: what the runs gave
-
-Tables of `tools/study.sh paper`: the scenes of Kang, Lee & Shin (2023) with all contact types. N_r divides the cells. The paper
-covers types 1, 3, 4, 5 and 6; its program and machine are others, and dimensions and motions that it does not give are ours.
-
-{sections}
-"""
-
 
 def results_of(table, scene):
     """The finished runs of a scene whose results are read."""
@@ -223,7 +215,10 @@ def page(table, doc):
         runs = results_of(table, scene)
         if not runs.empty:
             parts += [f"## {title}", words, f"![{title}](../pictures/{picture}.png)" if picture else "", tables(runs)]
-    write_page(doc, "paper", PAGE.format(sections="\n\n".join(part for part in parts if part)))
+    write_page(doc, "paper", "# The paper: what the runs gave",
+               "Tables of `tools/study.sh paper`: the scenes of Kang, Lee & Shin (2023) with all contact types. N_r divides the cells. "
+               "The paper covers types 1, 3, 4, 5 and 6; its program and machine are others, and dimensions and motions that it does "
+               "not give are ours.", *parts)
 
 
 def cost_section(table, times):

@@ -21,32 +21,6 @@ POWERS = [2 ** k for k in range(1, 11)]
 RECORD_BYTES = 80  # of the reduction that all take part in
 SENT = ["messages", "most_messages", "bytes", "most_bytes"]
 
-PAGE = """# Many processes
-
-![Counted bytes and predicted efficiency](../pictures/scale.png)
-
-## Counted in a cycle, mean and largest of the processes
-
-{counted}
-
-## Cut
-
-{cuts}
-
-## Predicted efficiency
-
-By the model of doc/studies/scale.md with m = {messages:.0f} messages and b = 16 bytes times
-{factor:.1f} sqrt(N/p).
-
-{predicted}
-
-Largest number of processes, of powers of two, that keeps 80 % on the fast network:
-
-{limits}
-
-Contact over elements on 1,024 processes: {shares}.
-"""
-
 
 # ---- tiles -------------------------------------------------------------------------------------
 
@@ -178,7 +152,10 @@ def page(table, doc):
     runs, cuts = finished(table), all_cuts()
     constants = constants_of(seen_sends(runs, cuts))
     shares = ", ".join(f"{contact_share(one):.2f} at {power(one)} elements" for one in SIZES)
-    write_page(doc, "scale", PAGE.format(
-        counted=counted_table(runs, cuts), cuts=markdown_table(cuts),
-        messages=constants[0], factor=constants[1], predicted=predicted_table(constants),
-        limits=limit_table(constants), shares=shares))
+    write_page(
+        doc, "scale", "# Many processes", "![Counted bytes and predicted efficiency](../pictures/scale.png)",
+        "## Counted in a cycle, mean and largest of the processes", counted_table(runs, cuts), "## Cut", markdown_table(cuts),
+        "## Predicted efficiency", f"By the model of doc/studies/scale.md with m = {constants[0]:.0f} messages and b = 16 bytes times "
+        f"{constants[1]:.1f} sqrt(N/p).", predicted_table(constants),
+        "Largest number of processes, of powers of two, that keeps 80 % on the fast network:", limit_table(constants),
+        f"Contact over elements on 1,024 processes: {shares}.")

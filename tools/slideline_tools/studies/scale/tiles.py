@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Tiles of a mesh as the program cuts them, and what processes that share them send in a step.
 
-The same as src/model/layout_building.f90 and src/solve/explicit/rank_shares.f90 for one part and no
+The same as src/model/layout_building.f90 and src/solve/explicit/rank_partition.f90 for one part and no
 contact; the bytes that this gives are held against those that the program counts.
 """
 import numpy as np

@@ -32,32 +32,6 @@ OUTPUTS = {"collision": "as the deck asks",
 DISTANCES = {"force_error": "force", "displacement_error": "displacement",
              "strain_shift": "plastic strain"}
 
-PAGE = """# No more than a scene needs
-
-Processor time of the whole run, one thread, medians; quartiles {spread} of it apart (median of the
-variants). {counted}
-
-![Processor time with and without](../pictures/simplify.png)
-
-{steps}
-
-## Half model and search asleep, by type
-
-The half model from the full one; contact searched in each cycle and asleep. N_r = {level}:
-
-{types}
-
-## Output
-
-Collision, N_r = {level}:
-
-{outputs}
-
-## Refinement of the sliding, and the limit of the elements with a rigid die
-
-{sliding}
-"""
-
 
 # ---- medians -----------------------------------------------------------------------------------
 
@@ -99,12 +73,12 @@ def draw(runs, level):
     for row, (_, more, less, _) in enumerate(found):
         whole = runs.loc[(more, level), "seconds"]
         for name, shift in ((more, -0.2), (less, 0.2)):
-            foot = 0.0
+            start = 0.0
             for phase, colour in zip(PHASES, COLOURS):
                 width = runs.loc[(name, level), phase] / whole
-                axes.barh(row + shift, width, 0.36, foot, color=colour,
+                axes.barh(row + shift, width, 0.36, start, color=colour,
                           label=phase if row == 0 and name == more else None)
-                foot += width
+                start += width
         saved = percent(1.0 - runs.loc[(less, level), "seconds"] / whole)
         axes.annotate(f"saves {saved}", (1.01, row), va="center", fontsize=7)
     axes.set_yticks(range(len(found)), [step[0] for step in found])
@@ -202,8 +176,12 @@ def page(table, doc):
     if "collision" not in runs.index:
         raise UserError("no finished runs of the collision")
     levels = sorted(runs.loc["collision"].index)
-    write_page(doc, "simplify", PAGE.format(
-        spread=percent(runs["spread"].median()), counted=who_counted(table), level=levels[-1],
-        steps="\n\n".join(step_table(runs, level) for level in levels),
-        types=type_table(runs, levels[-1]), outputs=output_table(runs, levels[-1]),
-        sliding=sliding_table(runs)))
+    write_page(
+        doc, "simplify", "# No more than a scene needs",
+        "Processor time of the whole run, one thread, medians; quartiles "
+        f"{percent(runs['spread'].median())} of it apart (median of the variants). {who_counted(table)}",
+        "![Processor time with and without](../pictures/simplify.png)", *(step_table(runs, level) for level in levels),
+        "## Half model and search asleep, by type",
+        f"The half model from the full one; contact searched in each cycle and asleep. N_r = {levels[-1]}:", type_table(runs, levels[-1]),
+        "## Output", f"Collision, N_r = {levels[-1]}:", output_table(runs, levels[-1]),
+        "## Refinement of the sliding, and the limit of the elements with a rigid die", sliding_table(runs))

@@ -18,40 +18,6 @@ COMPARED = {"profile_error": "Hertz profile", "force_error": "sliding force",
 TARGETS = (0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 0.0003)
 BALANCED = 1.0e-9  # a net moment that is round-off
 
-PAGE = """# Speed against accuracy
-
-{build}. Medians of {rounds} or more rounds; quartiles of contact times at most {spread:.0%} apart.
-
-## Over type 1
-
-Geometric means over meshes, then over scenes (from scene to scene); errors as far as they are
-known; net moment over contact force times a slave segment.
-
-{overall}
-
-## Over type 7
-
-{implicit}
-
-## Share of contact
-
-{shares}
-
-## Cheapest types and mesh for an error, by computing time
-
-{targets}
-
-## What the mesh changes
-
-{meshes}
-
-## References
-
-{references}
-
-{scenes}
-"""
-
 
 def title_of(scene, key):
     """Scene and words of a measure."""
@@ -176,12 +142,14 @@ def page(table, doc):
     if points.empty:
         raise UserError("no finished runs")
     errors = errors_of(points)
-    by_scene = dict(list(errors.groupby("scene", sort=False)))
-    write_page(doc, "speed_accuracy", PAGE.format(
-        build="; ".join(sorted(set(points["build"]))), rounds=points["rounds"].min(),
-        spread=points["spread"].max(), overall=overall_table(points, errors),
-        implicit=overall_table(points, errors, REFERENCE_TYPE, [IMPLICIT, HARD]),
-        shares=share_table(points), targets=target_table(errors), meshes=mesh_table(errors),
-        references=reference_table(table),
-        scenes="\n\n".join(scene_section(name, points[points["scene"] == name], rows)
-                           for name, rows in by_scene.items())))
+    write_page(
+        doc, "speed_accuracy", "# Speed against accuracy",
+        f"{'; '.join(sorted(set(points['build'])))}. Medians of {points['rounds'].min()} or more rounds; quartiles of contact times "
+        f"at most {points['spread'].max():.0%} apart.",
+        "## Over type 1", "Geometric means over meshes, then over scenes (from scene to scene); errors as far as they are known; net "
+        "moment over contact force times a slave segment.", overall_table(points, errors),
+        "## Over type 7", overall_table(points, errors, REFERENCE_TYPE, [IMPLICIT, HARD]),
+        "## Share of contact", share_table(points),
+        "## Cheapest types and mesh for an error, by computing time", target_table(errors),
+        "## What the mesh changes", mesh_table(errors), "## References", reference_table(table),
+        *(scene_section(name, points[points["scene"] == name], rows) for name, rows in errors.groupby("scene", sort=False)))

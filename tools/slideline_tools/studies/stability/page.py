@@ -20,29 +20,6 @@ LIMITS = {  # name of the column: text and line
     "opening_limit": ("contact springs: omega dt = 1", "-.")}
 FILLS = ("#d9ead3", "#f6b26b", "#9fc5e8", "#ffe599", "#b4a7d6", "#cc4125")
 
-PAGE = """# Where each type is stable
-
-![Stability maps](../pictures/stability.png)
-
-## Limit of the program over the smaller of those by eigenvalues
-
-{limits}
-
-## Verdicts below the program's limit
-
-Of {below} cells of the types by number {bad} blew up or chattered.
-
-{verdicts}
-
-## Penalties over K L/A, as powers of ten, at which all steps below the limit are stable
-
-{ranges}
-
-## Deepest slave node over the way that the bodies are driven, below the limit, by penalty
-
-{depths}
-"""
-
 
 def cells_of(table):
     """The cells of the maps that have a verdict."""
@@ -181,6 +158,10 @@ def page(table, doc):
     """DOC/studies/stability.md."""
     cells = below(table[table["type"] != IMPLICIT])
     bad = cells["verdict"].isin([VERDICTS[BLOWN_UP], VERDICTS[CHATTERING]])
-    write_page(doc, "stability", PAGE.format(
-        limits=limit_table(table), below=len(cells), bad=bad.sum(), verdicts=verdict_table(table),
-        ranges=by_type(good_penalties(table)), depths=depth_table(table)))
+    write_page(
+        doc, "stability", "# Where each type is stable", "![Stability maps](../pictures/stability.png)",
+        "## Limit of the program over the smaller of those by eigenvalues", limit_table(table),
+        "## Verdicts below the program's limit", f"Of {len(cells)} cells of the types by number {bad.sum()} blew up or chattered.",
+        verdict_table(table),
+        "## Penalties over K L/A, as powers of ten, at which all steps below the limit are stable", by_type(good_penalties(table)),
+        "## Deepest slave node over the way that the bodies are driven, below the limit, by penalty", depth_table(table))

@@ -3,7 +3,7 @@
 !> know, the pressure that contact puts on a face and the stress of the elements behind it
 !> (doc/theory/contact.md, section 8.1), and from what springs store beside the bodies that they
 !> hold apart (section 8.2).
-module contact_judging_m
+module error_indicator_m
   use contact_facets_m, only : follow_arcs
   use law_state_m, only : contact_estimate_t
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step
@@ -14,15 +14,15 @@ module contact_judging_m
   use kinds_m, only : wp
   use layout_m, only : slot_part
   use model_m, only : model_t
-  use rows_behind_m, only : face_rows_t, find_rows, face_pressure, face_inertia, &
-    elastic_energy, has_stress, others_t, find_others, face_share
+  use face_stress_m, only : face_rows_t, find_face_rows, face_pressure, face_inertia, &
+    elastic_energy, has_stress, other_pressure_t, find_other_pressures, face_share
   use snapshot_filling_m, only : fill_slaves
   use snapshot_m, only : snapshot_t, interface_result_t, part_result_t
   use state_m, only : state_t
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: judge_contacts, follow_softness, parts_behind, of_noise
+  public :: evaluate_indicators, update_energy_peaks, parts_at_surfaces, of_noise
 
   !> The second difference of noise that is not correlated has so many times its square.
   real(wp), parameter :: of_noise = 6.0_wp
@@ -30,13 +30,13 @@ module contact_judging_m
 contains
 
   !> Judge all interfaces of the deck, whose results are in the snapshot.
-  subroutine judge_contacts(model, state, plots, rows, snapshot)
+  subroutine evaluate_indicators(model, state, plots, rows, snapshot)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     logical, intent(in) :: plots !! rows of slave nodes are in the snapshot already
     type(face_rows_t), intent(inout) :: rows
     type(snapshot_t), intent(inout) :: snapshot
-    type(others_t), allocatable :: others(:)
+    type(other_pressure_t), allocatable :: others(:)
     type(contact_t) :: contact
     type(contact_estimate_t) :: side
     type(spring_bound_t) :: bound(1)
@@ -48,11 +48,11 @@ contains
     ! The first and the last state have everything, whether a file receives it or not.
     if (state%cycle == 0 .and. .not. (plots &
       .or. is_asked(model%controls%output%histories(table_sleout)))) return
-    call find_rows(model, rows)
+    call find_face_rows(model, rows)
     if (.not. plots) call fill_slaves(model, state, snapshot)
     element_limit = minval(state%elements%time_limit)
     allocate (others(2*size(model%contacts)))
-    if (rows%are_shared) call find_others(model, state, snapshot%slaves, others)
+    if (rows%are_shared) call find_other_pressures(model, state, snapshot%slaves, others)
     do i = 1, size(model%contacts)
       contact = state%outlines(i)
       ! What interfaces that share nodes allow together takes too long to find for every row.
@@ -74,11 +74,11 @@ contains
         result%row_energy = side%rows
         result%estimate = 0.0_wp
         if (side%load > 0.0_wp) result%estimate = sqrt(side%misfit/side%load)
-        if (state%cycle > state%estimates(i)%cycle) call sum_up(state%cycle, state%dt, side, &
+        if (state%cycle > state%estimates(i)%cycle) call add_instant(state%cycle, state%dt, side, &
           result, state%estimates(i))
       end associate
     end do
-  end subroutine judge_contacts
+  end subroutine evaluate_indicators
 
   !> One side: the pressure of each loaded node against that of the elements behind, the mean over
   !> the faces next to it, each by what the node has of it. Rigid bodies have none.
@@ -130,7 +130,7 @@ contains
   end subroutine add_side
 
   !> Add an instant to what is known of the run.
-  pure subroutine sum_up(cycle, dt, side, result, estimate)
+  pure subroutine add_instant(cycle, dt, side, result, estimate)
     integer, intent(in) :: cycle
     real(wp), intent(in) :: dt
     type(contact_estimate_t), intent(in) :: side
@@ -163,11 +163,11 @@ contains
     estimate%force = result%slave_force
     if (result%step_limit > 0.0_wp .and. dt > 0.0_wp) &
       estimate%least_margin = min(estimate%least_margin, result%step_limit/dt)
-  end subroutine sum_up
+  end subroutine add_instant
 
   !> Follow all interfaces: the largest energies of their springs and of the bodies on both sides,
   !> which have none yet at time zero, and the facets of curved surfaces.
-  subroutine follow_softness(model, parts, bodies, state)
+  subroutine update_energy_peaks(model, parts, bodies, state)
     type(model_t), intent(in) :: model
     type(part_result_t), intent(in) :: parts(:)      !! their internal energies are known
     integer, allocatable, intent(inout) :: bodies(:) !! (n_part) found in the first call
@@ -182,11 +182,11 @@ contains
         call follow_arcs(state%outlines(i), memory, estimate)
         if (state%cycle == 0) cycle
         estimate%bodies = max(estimate%bodies, sum(parts%internal, &
-          of_bodies(bodies, parts_behind(model, contact))))
+          of_bodies(bodies, parts_at_surfaces(model, contact))))
         estimate%stored = max(estimate%stored, memory%monitor%stored)
       end associate
     end do
-  end subroutine follow_softness
+  end subroutine update_energy_peaks
 
   !> Bodies: parts that share nodes, or are tied to each other, have one number.
   pure subroutine find_bodies(model, bodies)
@@ -211,13 +211,13 @@ contains
     end do
     do i = 1, size(model%contacts)
       if (.not. is_tied(model%contacts(i))) cycle
-      is_joined = of_bodies(bodies, parts_behind(model, model%contacts(i)))
+      is_joined = of_bodies(bodies, parts_at_surfaces(model, model%contacts(i)))
       where (is_joined) bodies = minval(bodies, mask=is_joined)
     end do
   end subroutine find_bodies
 
   !> Which parts are behind the surfaces of an interface.
-  pure function parts_behind(model, contact) result(is_behind)
+  pure function parts_at_surfaces(model, contact) result(is_behind)
     type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact
     logical :: is_behind(size(model%parts))
@@ -229,7 +229,7 @@ contains
         is_behind(slot_part(model%layout, model%layout%element_slot(elements(s)))) = .true.
       end do
     end associate
-  end function parts_behind
+  end function parts_at_surfaces
 
   !> Which parts are of the bodies that some of them belong to.
   pure function of_bodies(bodies, is_some) result(is_of)
@@ -243,4 +243,4 @@ contains
     is_of = is_body(bodies)
   end function of_bodies
 
-end module contact_judging_m
+end module error_indicator_m

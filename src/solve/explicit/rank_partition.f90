@@ -8,24 +8,25 @@
 !> sum and move them, and these hear each other's forces on them. To the others such a node is what
 !> an interior node of another process is. The first process has read the deck, resolved and
 !> renumbered; the others get the model from it.
-module rank_shares_m
-  use buffer_sharing_m, only : hand, everyone
+module rank_partition_m
+  use buffer_transfer_m, only : send_item, all_ranks
   use kinds_m, only : wp
   use layout_m, only : layout_t, chunk_size
   use load_work_m, only : motion_sums_t
   use model_m, only : model_t
-  use others_memory_m, only : others_t, forgetters_of, answers_t
-  use packed_buffer_m, only : forgetter_t, packed_buffer_t, part_of
+  use remote_state_m, only : remote_t, remote_forgetters, inside_tests_t
+  use packed_buffer_m, only : memory_release_t, packed_buffer_t, part_of
   use ranks_m, only : ranks_t
   use renumber_m, only : mark_moved_nodes
   use state_m, only : state_t
   use visitor_m, only : visited_t, visitor_t, of_elements, of_nodes, of_slots
   implicit none
   private
-  public :: shares_t, share_out, forget_others, plan_borders, hand_model, hand_others
+  public :: partition_t, partition_tiles, release_remote, plan_borders, distribute_model, &
+    distribute_start
 
   !> The first arrays (0:n): where the range of each process starts, then one beyond the last.
-  type :: shares_t
+  type :: partition_t
     integer, allocatable :: tiles(:), chunks(:)
     integer, allocatable :: nodes(:)       !! interior
     integer, allocatable :: special(:)     !! special nodes that its tiles own
@@ -43,31 +44,31 @@ module rank_shares_m
     integer, allocatable :: in_slots(:)      !! those of each peer that it needs
     integer, allocatable :: block_nodes(:)   !! (n + 1) special nodes whose sums each forms: where
                                              !! they start
-  end type shares_t
+  end type partition_t
 
   !> Items of a piece at most.
   integer, parameter :: most_items = 65536
 
   !> What is handed besides the model.
-  type, extends(visited_t) :: handed_t
+  type, extends(visited_t) :: start_data_t
     integer, allocatable :: parts(:)                !! of elements behind surfaces
     integer, allocatable :: corners(:, :)           !! (4, elements) their nodes
     real(wp), allocatable :: places(:, :)           !! (2, 4 elements) where these are
     integer, allocatable :: slots(:)                !! of elements of cross sections
     real(wp), allocatable :: mass(:)                !! (n_node) lumped masses
     real(wp), allocatable :: penalties(:, :)        !! (3, interfaces) as in others_t
-    logical, allocatable :: is_inside(:)            !! as in answers_t
+    logical, allocatable :: is_inside(:)            !! as in inside_tests_t
   contains
-    procedure :: visit => visit_handed
-  end type handed_t
+    procedure :: visit => visit_start_data
+  end type start_data_t
 
 contains
 
   !> Ranges of tiles with about as many elements each; a process may have none.
-  pure function share_out(layout, mine, n) result(shares)
+  pure function partition_tiles(layout, mine, n) result(partition)
     type(layout_t), intent(in) :: layout
     integer, intent(in) :: mine, n !! number of this process, and how many there are
-    type(shares_t) :: shares
+    type(partition_t) :: partition
     real(wp) :: elements(size(layout%tiles)), before, total
     integer :: firsts(size(layout%tiles) + 1), i, owner, last
 
@@ -75,62 +76,63 @@ contains
       elements = [(real(sum(layout%chunk_elements(tiles(i)%first_chunk:tiles(i)%last_chunk)), wp), &
         i=1, n_tile)]
       total = max(tiny(1.0_wp), sum(elements))
-      allocate (shares%tiles(0:n), source=n_tile + 1)
+      allocate (partition%tiles(0:n), source=n_tile + 1)
       before = 0.0_wp
       last = -1
       do i = 1, n_tile
         owner = min(n - 1, int(n*((before + 0.5_wp*elements(i))/total)))
         before = before + elements(i)
-        shares%tiles(last + 1:owner) = i
+        partition%tiles(last + 1:owner) = i
         last = max(last, owner)
       end do
-      shares%first_tile = shares%tiles(mine)
-      shares%last_tile = shares%tiles(mine + 1) - 1
-      allocate (shares%chunks(0:n), shares%nodes(0:n), shares%special(0:n), shares%force_slots(0:n))
+      partition%first_tile = partition%tiles(mine)
+      partition%last_tile = partition%tiles(mine + 1) - 1
+      allocate (partition%chunks(0:n), partition%nodes(0:n), partition%special(0:n), &
+        partition%force_slots(0:n))
       firsts = [tiles%first_chunk, tiles(n_tile)%last_chunk + 1]
-      shares%chunks(:) = firsts(shares%tiles)
+      partition%chunks(:) = firsts(partition%tiles)
       firsts = [tiles%first_node, tiles(n_tile)%last_node + 1]
-      shares%nodes(:) = firsts(shares%tiles)
+      partition%nodes(:) = firsts(partition%tiles)
       firsts = [tiles%first_owned, layout%n_special + 1]
-      shares%special(:) = firsts(shares%tiles)
+      partition%special(:) = firsts(partition%tiles)
       firsts = [tiles%first_special, tiles(n_tile)%last_special + 1]
-      shares%force_slots(:) = firsts(shares%tiles)
+      partition%force_slots(:) = firsts(partition%tiles)
     end associate
-  end function share_out
+  end function partition_tiles
 
   !> Ranges of nodes and slots that other processes have. Nodes inside of rigid bodies stand behind
   !> those of tiles: all move them.
-  pure function others_of(model, shares, ranks) result(others)
+  pure function remote_of(model, partition, ranks) result(remote)
     type(model_t), intent(in) :: model
-    type(shares_t), intent(in) :: shares
+    type(partition_t), intent(in) :: partition
     type(ranks_t), intent(in) :: ranks
-    type(others_t) :: others
+    type(remote_t) :: remote
 
-    others%nodes = [model%layout%n_special + 1, shares%nodes(ranks%mine) - 1, &
-      shares%nodes(ranks%mine + 1), shares%nodes(ranks%n) - 1]
-    others%slots = [1, (shares%chunks(ranks%mine) - 1)*chunk_size, &
-      (shares%chunks(ranks%mine + 1) - 1)*chunk_size + 1, model%layout%n_slot]
-  end function others_of
+    remote%nodes = [model%layout%n_special + 1, partition%nodes(ranks%mine) - 1, &
+      partition%nodes(ranks%mine + 1), partition%nodes(ranks%n) - 1]
+    remote%slots = [1, (partition%chunks(ranks%mine) - 1)*chunk_size, &
+      (partition%chunks(ranks%mine + 1) - 1)*chunk_size + 1, model%layout%n_slot]
+  end function remote_of
 
   !> Behind the start of a process that is not the first: give up what only others need, tiles of
   !> others and their interior nodes.
-  subroutine forget_others(model, ranks, state)
+  subroutine release_remote(model, ranks, state)
     type(model_t), intent(inout) :: model
     type(ranks_t), intent(in) :: ranks
     type(state_t), intent(inout) :: state
-    type(forgetter_t) :: forgetters(2)
+    type(memory_release_t) :: releases(2)
     integer :: k
 
     if (ranks%mine == 0 .or. needs_all(model)) return
     deallocate (model%mesh%element_id)
     if (.not. allocated(state%cut_force)) deallocate (model%layout%element_slot)
-    forgetters = forgetters_of(others_of(model, share_out(model%layout, ranks%mine, ranks%n), &
-      ranks))
+    releases = remote_forgetters(remote_of(model, partition_tiles(model%layout, ranks%mine, &
+      ranks%n), ranks))
     do k = 1, 2
-      call model%visit(forgetters(k))
-      call state%visit(forgetters(k))
+      call model%visit(releases(k))
+      call state%visit(releases(k))
     end do
-  end subroutine forget_others
+  end subroutine release_remote
 
   !> Whether each process looks at all elements during the run.
   pure function needs_all(model) result(needs)
@@ -143,97 +145,98 @@ contains
 
   !> The borders of process `mine`; the sums learn which blocks are its own. One process alone has
   !> none, and moves all special nodes.
-  subroutine plan_borders(model, mine, sums, shares)
+  subroutine plan_borders(model, mine, sums, partition)
     type(model_t), intent(in) :: model
     integer, intent(in) :: mine
     type(motion_sums_t), intent(inout) :: sums
-    type(shares_t), intent(inout) :: shares
+    type(partition_t), intent(inout) :: partition
     logical, dimension(model%layout%n_special) :: is_common, is_known, knows
     logical, allocatable :: is_moved(:)
     integer, allocatable :: slots(:)
     integer :: rank, i
 
     is_known = .true.
-    if (size(shares%tiles) > 2) then
+    if (size(partition%tiles) > 2) then
       ! All processes know those that anything but elements touches, and nodes without elements.
       call mark_moved_nodes(model, is_moved)
       associate (n => model%layout%n_special, starts => model%layout%node_slots)
         is_common = is_moved .or. starts(2:n + 1) == starts(:n)
       end associate
-      call share_blocks(mine, sums, shares)
-      is_known = known_nodes(model, shares, sums, mine)
-      allocate (shares%common(0), shares%peers(0), shares%out_slots(0), shares%in_slots(0))
-      shares%common_starts = [1]
-      shares%out_starts = [1]
-      shares%in_starts = [1]
-      do rank = 0, size(shares%tiles) - 2
-        slots = [(i, i=shares%force_slots(rank), shares%force_slots(rank + 1) - 1)]
+      call assign_blocks(mine, sums, partition)
+      is_known = known_nodes(model, partition, sums, mine)
+      allocate (partition%common(0), partition%peers(0), partition%out_slots(0), &
+        partition%in_slots(0))
+      partition%common_starts = [1]
+      partition%out_starts = [1]
+      partition%in_starts = [1]
+      do rank = 0, size(partition%tiles) - 2
+        slots = [(i, i=partition%force_slots(rank), partition%force_slots(rank + 1) - 1)]
         associate (nodes => model%layout%special_node(slots))
-          shares%common = [shares%common, pack(slots, is_common(nodes))]
-          shares%common_starts = [shares%common_starts, size(shares%common) + 1]
+          partition%common = [partition%common, pack(slots, is_common(nodes))]
+          partition%common_starts = [partition%common_starts, size(partition%common) + 1]
           if (rank == mine) cycle
-          shares%in_slots = [shares%in_slots, pack(slots, is_known(nodes) &
+          partition%in_slots = [partition%in_slots, pack(slots, is_known(nodes) &
             .and. .not. is_common(nodes))]
         end associate
-        knows = known_nodes(model, shares, sums, rank) .and. .not. is_common
-        slots = [(i, i=shares%force_slots(mine), shares%force_slots(mine + 1) - 1)]
-        shares%out_slots = [shares%out_slots, pack(slots, &
+        knows = known_nodes(model, partition, sums, rank) .and. .not. is_common
+        slots = [(i, i=partition%force_slots(mine), partition%force_slots(mine + 1) - 1)]
+        partition%out_slots = [partition%out_slots, pack(slots, &
           knows(model%layout%special_node(slots)))]
-        associate (n_out => size(shares%out_slots) + 1, n_in => size(shares%in_slots) + 1, &
-          n => size(shares%peers) + 1)
-          if (n_out == shares%out_starts(n) .and. n_in == shares%in_starts(n)) cycle
-          shares%peers = [shares%peers, rank]
-          shares%out_starts = [shares%out_starts, n_out]
-          shares%in_starts = [shares%in_starts, n_in]
+        associate (n_out => size(partition%out_slots) + 1, n_in => size(partition%in_slots) + 1, &
+          n => size(partition%peers) + 1)
+          if (n_out == partition%out_starts(n) .and. n_in == partition%in_starts(n)) cycle
+          partition%peers = [partition%peers, rank]
+          partition%out_starts = [partition%out_starts, n_out]
+          partition%in_starts = [partition%in_starts, n_in]
         end associate
       end do
       is_known = is_known .or. is_common
     end if
-    call list_runs(model, is_known, shares)
+    call list_runs(model, is_known, partition)
   end subroutine plan_borders
 
   !> Special nodes that the tiles of a process touch or that are in blocks that it sums.
-  pure function known_nodes(model, shares, sums, rank) result(is_known)
+  pure function known_nodes(model, partition, sums, rank) result(is_known)
     type(model_t), intent(in) :: model
-    type(shares_t), intent(in) :: shares
+    type(partition_t), intent(in) :: partition
     type(motion_sums_t), intent(in) :: sums
     integer, intent(in) :: rank
     logical :: is_known(model%layout%n_special)
 
     is_known = .false.
-    is_known(model%layout%special_node(shares%force_slots(rank):shares%force_slots(rank + 1) - 1)) &
-      = .true.
-    if (allocated(sums%blocks)) is_known(shares%block_nodes(rank + 1): &
-      shares%block_nodes(rank + 2) - 1) = .true.
+    is_known(model%layout%special_node(partition%force_slots(rank):partition%force_slots(rank + 1) &
+      - 1)) = .true.
+    if (allocated(sums%blocks)) is_known(partition%block_nodes(rank + 1): &
+      partition%block_nodes(rank + 2) - 1) = .true.
   end function known_nodes
 
   !> A block of special nodes is summed by the process that owns its first node, which has to know
   !> all of it: the sums are those of one process.
-  pure subroutine share_blocks(mine, sums, shares)
+  pure subroutine assign_blocks(mine, sums, partition)
     integer, intent(in) :: mine
     type(motion_sums_t), intent(inout) :: sums
-    type(shares_t), intent(inout) :: shares
-    integer :: starts(size(shares%special)), i
+    type(partition_t), intent(inout) :: partition
+    integer :: starts(size(partition%special)), i
 
-    allocate (shares%block_nodes(size(starts)), source=1)
+    allocate (partition%block_nodes(size(starts)), source=1)
     if (.not. allocated(sums%blocks)) return
     associate (first => sums%blocks(1, :sums%n_special))
       do i = 1, size(starts)
-        starts(i) = 1 + count(first < shares%special(i - 1))
-        shares%block_nodes(i) = shares%special(size(starts) - 1)
-        if (starts(i) <= size(first)) shares%block_nodes(i) = first(starts(i))
+        starts(i) = 1 + count(first < partition%special(i - 1))
+        partition%block_nodes(i) = partition%special(size(starts) - 1)
+        if (starts(i) <= size(first)) partition%block_nodes(i) = first(starts(i))
       end do
     end associate
     sums%starts = starts
     sums%first = starts(mine + 1)
     sums%last = starts(mine + 2) - 1
-  end subroutine share_blocks
+  end subroutine assign_blocks
 
   !> Runs of known nodes, none beyond those of one tile.
-  pure subroutine list_runs(model, is_known, shares)
+  pure subroutine list_runs(model, is_known, partition)
     type(model_t), intent(in) :: model
     logical, intent(in) :: is_known(:)
-    type(shares_t), intent(inout) :: shares
+    type(partition_t), intent(inout) :: partition
     integer :: owner(0:size(is_known) + 1) !! tile of each known node, else 0
     integer :: i, n
 
@@ -245,15 +248,15 @@ contains
         owner(first:last) = merge(i, 0, is_known(first:last))
       end associate
     end do
-    shares%run_tiles = pack(owner(1:n), owner(1:n) > 0 .and. owner(1:n) /= owner(:n - 1))
-    allocate (shares%runs(2, size(shares%run_tiles)))
-    shares%runs(1, :) = pack([(i, i=1, n)], owner(1:n) > 0 .and. owner(1:n) /= owner(:n - 1))
-    shares%runs(2, :) = pack([(i, i=1, n)], owner(1:n) > 0 .and. owner(1:n) /= owner(2:))
+    partition%run_tiles = pack(owner(1:n), owner(1:n) > 0 .and. owner(1:n) /= owner(:n - 1))
+    allocate (partition%runs(2, size(partition%run_tiles)))
+    partition%runs(1, :) = pack([(i, i=1, n)], owner(1:n) > 0 .and. owner(1:n) /= owner(:n - 1))
+    partition%runs(2, :) = pack([(i, i=1, n)], owner(1:n) > 0 .and. owner(1:n) /= owner(2:))
   end subroutine list_runs
 
   !> Its components.
-  subroutine visit_handed(self, visitor)
-    class(handed_t), intent(inout), target :: self
+  subroutine visit_start_data(self, visitor)
+    class(start_data_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
 
     call visitor%visit('parts', self%parts)
@@ -263,21 +266,21 @@ contains
     call visitor%visit('mass', self%mass, of_nodes)
     call visitor%visit('penalties', self%penalties)
     call visitor%visit('is_inside', self%is_inside)
-  end subroutine visit_handed
+  end subroutine visit_start_data
 
   !> The model of the first process for all.
-  subroutine hand_model(ranks, model, has_all)
+  subroutine distribute_model(ranks, model, has_all)
     type(ranks_t), intent(inout) :: ranks
     type(model_t), intent(inout) :: model
     logical, intent(out) :: has_all !! each process gets all of it
     type(packed_buffer_t) :: buffer
-    type(shares_t) :: shares
+    type(partition_t) :: partition
     logical, allocatable :: is_known(:)
     integer :: n_node
 
     has_all = .true.
     if (ranks%n == 1) return
-    call hand(ranks, everyone, buffer, model)
+    call send_item(ranks, all_ranks, buffer, model)
     deallocate (buffer%values)
     ! Where each process looks at the state of all elements at the start, or steps them in dynamic
     ! relaxation.
@@ -286,31 +289,31 @@ contains
       .or. any(abs(model%parts%stiffness_damping) > 0.0_wp)
     n_node = model%mesh%n_node
     if (has_all) then
-      call hand_range(ranks, everyone, of_nodes, [1, n_node], model)
-      call hand_range(ranks, everyone, of_slots, [1, model%layout%n_slot], model)
-      call hand_range(ranks, everyone, of_elements, [1, model%mesh%n_element], model)
+      call send_range(ranks, all_ranks, of_nodes, [1, n_node], model)
+      call send_range(ranks, all_ranks, of_slots, [1, model%layout%n_slot], model)
+      call send_range(ranks, all_ranks, of_elements, [1, model%mesh%n_element], model)
     else
-      shares = share_out(model%layout, ranks%mine, ranks%n)
-      call hand_shares(ranks, of_nodes, shares, n_node, model)
-      call hand_shares(ranks, of_slots, shares, n_node, model)
-      call hand_faces(ranks, model)
+      partition = partition_tiles(model%layout, ranks%mine, ranks%n)
+      call distribute_partition(ranks, of_nodes, partition, n_node, model)
+      call distribute_partition(ranks, of_slots, partition, n_node, model)
+      call broadcast_faces(ranks, model)
     end if
     if (has_all .or. ranks%mine == 0) return
     ! Of fixed degrees of freedom each process keeps those of the nodes that it has.
-    associate (nodes => model%conditions%fixed_nodes, starts => shares%nodes)
+    associate (nodes => model%conditions%fixed_nodes, starts => partition%nodes)
       is_known = nodes <= model%layout%n_special .or. nodes >= starts(ranks%n) &
         .or. (nodes >= starts(ranks%mine) .and. nodes < starts(ranks%mine + 1))
     end associate
     model%conditions%fixed_directions = pack(model%conditions%fixed_directions, is_known)
     model%conditions%fixed_nodes = pack(model%conditions%fixed_nodes, is_known)
-  end subroutine hand_model
+  end subroutine distribute_model
 
   !> Single elements that all have to know: those behind contact surfaces with their nodes, and
   !> where those of cross sections stand.
-  subroutine hand_faces(ranks, model)
+  subroutine broadcast_faces(ranks, model)
     type(ranks_t), intent(inout) :: ranks
     type(model_t), intent(inout) :: model
-    type(handed_t) :: handed
+    type(start_data_t) :: handed
     type(packed_buffer_t) :: buffer
     integer, allocatable :: elements(:), cut(:)
     integer :: i, k
@@ -332,7 +335,7 @@ contains
         handed%places = mesh%coordinates(:, [handed%corners])
         handed%slots = layout%element_slot(cut)
       end if
-      call hand(ranks, everyone, buffer, handed)
+      call send_item(ranks, all_ranks, buffer, handed)
       if (ranks%mine == 0) return
       do i = 1, size(elements)
         mesh%element_part(elements(i)) = handed%parts(i)
@@ -345,18 +348,19 @@ contains
         layout%element_slot(cut(i)) = handed%slots(i)
       end do
     end associate
-  end subroutine hand_faces
+  end subroutine broadcast_faces
 
   !> What a process that starts its own share alone has to know of the state of the first one.
-  subroutine hand_others(model, ranks, state, others, answers)
+  subroutine distribute_start(model, ranks, state, remote, inside_tests)
     type(model_t), intent(in) :: model
     type(ranks_t), intent(inout) :: ranks
     type(state_t), intent(inout) :: state              !! of the first process
-    type(others_t), allocatable, intent(out) :: others !! left alone
-    type(answers_t), allocatable, intent(inout) :: answers !! to the first process; then from it
+    type(remote_t), allocatable, intent(out) :: remote !! left alone
+    type(inside_tests_t), allocatable, intent(inout) :: inside_tests !! to the first process; then
+                                                                !! from it
     type(packed_buffer_t) :: buffer
-    type(handed_t) :: handed
-    type(shares_t) :: shares
+    type(start_data_t) :: handed
+    type(partition_t) :: partition
     integer :: i
 
     if (ranks%mine == 0) then
@@ -364,49 +368,49 @@ contains
       handed%penalties = reshape([(state%contacts(i)%slave_penalty, &
         state%contacts(i)%master_penalty, state%contacts(i)%node_penalty, &
         i=1, size(state%contacts))], [3, size(state%contacts)])
-      if (allocated(answers%is_inside)) handed%is_inside = answers%is_inside
+      if (allocated(inside_tests%is_inside)) handed%is_inside = inside_tests%is_inside
     end if
-    call hand(ranks, everyone, buffer, handed)
-    shares = share_out(model%layout, ranks%mine, ranks%n)
-    call hand_shares(ranks, of_nodes, shares, model%mesh%n_node, handed)
+    call send_item(ranks, all_ranks, buffer, handed)
+    partition = partition_tiles(model%layout, ranks%mine, ranks%n)
+    call distribute_partition(ranks, of_nodes, partition, model%mesh%n_node, handed)
     if (ranks%mine == 0) then
       call move_alloc(handed%mass, state%mass)
       return
     end if
-    allocate (others, source=others_of(model, shares, ranks))
-    call move_alloc(handed%mass, others%mass)
-    call move_alloc(handed%penalties, others%penalties)
-    allocate (answers)
-    answers%are_given = .true.
-    if (allocated(handed%is_inside)) call move_alloc(handed%is_inside, answers%is_inside)
-  end subroutine hand_others
+    allocate (remote, source=remote_of(model, partition, ranks))
+    call move_alloc(handed%mass, remote%mass)
+    call move_alloc(handed%penalties, remote%penalties)
+    allocate (inside_tests)
+    inside_tests%are_given = .true.
+    if (allocated(handed%is_inside)) call move_alloc(handed%is_inside, inside_tests%is_inside)
+  end subroutine distribute_start
 
   !> What all have to know, and then to each process what is of its tiles. Nodes inside of rigid
   !> bodies stand behind those of tiles: all move them.
-  subroutine hand_shares(ranks, of, shares, n_node, item)
+  subroutine distribute_partition(ranks, of, partition, n_node, item)
     type(ranks_t), intent(inout) :: ranks
     integer, intent(in) :: of         !! of_nodes or of_slots
-    type(shares_t), intent(in) :: shares
+    type(partition_t), intent(in) :: partition
     integer, intent(in) :: n_node     !! of the mesh
     class(visited_t), intent(inout) :: item
     integer :: starts(0:ranks%n), rank
 
-    starts = shares%nodes
+    starts = partition%nodes
     if (of == of_slots) then
-      starts = (shares%chunks - 1)*chunk_size + 1
+      starts = (partition%chunks - 1)*chunk_size + 1
     else
-      call hand_range(ranks, everyone, of, [1, starts(0) - 1], item)
-      call hand_range(ranks, everyone, of, [starts(ranks%n), n_node], item)
+      call send_range(ranks, all_ranks, of, [1, starts(0) - 1], item)
+      call send_range(ranks, all_ranks, of, [starts(ranks%n), n_node], item)
     end if
     do rank = 1, ranks%n - 1
-      call hand_range(ranks, rank, of, [starts(rank), starts(rank + 1) - 1], item)
+      call send_range(ranks, rank, of, [starts(rank), starts(rank + 1) - 1], item)
     end do
-  end subroutine hand_shares
+  end subroutine distribute_partition
 
   !> A range of what an item has, piece by piece.
-  subroutine hand_range(ranks, receiver, of, range, item)
+  subroutine send_range(ranks, receiver, of, range, item)
     type(ranks_t), intent(inout) :: ranks
-    integer, intent(in) :: receiver   !! `everyone` or one of the others
+    integer, intent(in) :: receiver   !! `all_ranks` or one of the others
     integer, intent(in) :: of         !! one of the `of_` constants
     integer, intent(in) :: range(2)
     class(visited_t), intent(inout) :: item
@@ -415,8 +419,8 @@ contains
 
     do first = range(1), range(2), most_items
       buffer = part_of(of, [first, min(range(2), first + most_items - 1)])
-      call hand(ranks, receiver, buffer, item)
+      call send_item(ranks, receiver, buffer, item)
     end do
-  end subroutine hand_range
+  end subroutine send_range
 
-end module rank_shares_m
+end module rank_partition_m

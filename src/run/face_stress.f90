@@ -2,7 +2,7 @@
 !> The elements behind contact surfaces and those behind them: the stress that a body has at its
 !> face; and faces that several interfaces press on: what the others put there, for the pressure
 !> that stands against that stress is that of all (doc/theory/contact.md, section 8.1).
-module rows_behind_m
+module face_stress_m
   use element_mass_m, only : element_shares
   use element_state_m, only : is_gone, stress_of_slot
   use kinds_m, only : wp
@@ -13,8 +13,8 @@ module rows_behind_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: face_rows_t, find_rows, face_pressure, face_inertia, elastic_energy, has_stress, &
-    place_of, others_t, find_others, face_share
+  public :: face_rows_t, find_face_rows, face_pressure, face_inertia, elastic_energy, has_stress, &
+    position_of, other_pressure_t, find_other_pressures, face_share
 
   !> Corners, and edges, of an element; a triangle repeats its third node.
   integer, parameter :: n_corner = 4
@@ -29,10 +29,10 @@ module rows_behind_m
   end type face_rows_t
 
   !> Pressure of other interfaces on the faces at the nodes of one side of an interface, Pa.
-  type :: others_t
+  type :: other_pressure_t
     real(wp), allocatable :: pressure(:)
     real(wp), allocatable :: area(:) !! of them, half of each face, m or m^2 per radian
-  end type others_t
+  end type other_pressure_t
 
   !> A face of a side; sides are the slave and the master of each interface.
   type :: face_t
@@ -46,7 +46,7 @@ contains
 
   !> Find them, once: of all elements where some may leave the mesh, since others come to its face
   !> then.
-  subroutine find_rows(model, rows)
+  subroutine find_face_rows(model, rows)
     type(model_t), intent(in) :: model
     type(face_rows_t), intent(inout) :: rows
     logical, allocatable :: is_behind(:)
@@ -63,7 +63,7 @@ contains
     rows%elements = pack([(i, i=1, size(is_behind))], is_behind)
     allocate (rows%row_of(size(is_behind)), source=0)
     rows%row_of(rows%elements) = [(i, i=1, size(rows%elements))]
-    call find_across(model, rows)
+    call list_opposite_elements(model, rows)
     ! Where elements may leave the mesh a node may come to be in more than one interface.
     if (size(model%contacts) < 2) return
     rows%are_shared = model%erodes
@@ -75,10 +75,10 @@ contains
         user(master) = i
       end associate
     end do
-  end subroutine find_rows
+  end subroutine find_face_rows
 
   !> Neighbours: an edge that one element walks from a to b, the other walks from b to a.
-  subroutine find_across(model, rows)
+  subroutine list_opposite_elements(model, rows)
     type(model_t), intent(in) :: model
     type(face_rows_t), intent(inout) :: rows
     integer, allocatable :: first(:), next(:) !! edges of the rows by the node that they start at
@@ -111,7 +111,7 @@ contains
         end associate
       end do
     end do
-  end subroutine find_across
+  end subroutine list_opposite_elements
 
   !> Whether the stress of an element bears what presses on it: not in rigid bodies, where elements
   !> have left the mesh, nor where all nodes are held or led.
@@ -139,12 +139,12 @@ contains
     real(wp) :: ends_at(2, 2), normal(2), depth, beyond_depth
     integer :: beyond
 
-    ends_at(:, 1) = place_of(model, state, ends(1))
-    ends_at(:, 2) = place_of(model, state, ends(2))
+    ends_at(:, 1) = position_of(model, state, ends(1))
+    ends_at(:, 2) = position_of(model, state, ends(2))
     normal = [ends_at(2, 2) - ends_at(2, 1), ends_at(1, 1) - ends_at(1, 2)]
     normal = normal/max(norm2(normal), tiny(1.0_wp))
-    pressure = along(model, state, element, normal)
-    beyond = element_beyond(model, rows, element, ends)
+    pressure = normal_pressure(model, state, element, normal)
+    beyond = opposite_element(model, rows, element, ends)
     if (beyond == 0) return
     if (.not. has_stress(model, state, beyond)) return
     associate (middle => 0.5_wp*(ends_at(:, 1) + ends_at(:, 2)))
@@ -152,7 +152,7 @@ contains
       beyond_depth = dot_product(middle - centre_of(model, state, beyond), normal)
     end associate
     if (.not. beyond_depth > (1.0_wp + epsilon(1.0_wp))*depth) return
-    pressure = pressure + (pressure - along(model, state, beyond, normal)) &
+    pressure = pressure + (pressure - normal_pressure(model, state, beyond, normal)) &
       *(depth/(beyond_depth - depth))
   end function face_pressure
 
@@ -170,9 +170,9 @@ contains
     integer :: k, j, beyond
 
     force = 0.0_wp
-    normal = place_of(model, state, ends(2)) - place_of(model, state, ends(1))
+    normal = position_of(model, state, ends(2)) - position_of(model, state, ends(1))
     normal = [normal(2), -normal(1)]/max(norm2(normal), tiny(1.0_wp))
-    beyond = element_beyond(model, rows, element, ends)
+    beyond = opposite_element(model, rows, element, ends)
     is_carried = .false.
     if (beyond > 0) is_carried = has_stress(model, state, beyond)
     associate (slot => model%layout%element_slot(element))
@@ -212,7 +212,7 @@ contains
   end function acceleration_of
 
   !> -n.s.n of an element.
-  pure function along(model, state, element, n) result(pressure)
+  pure function normal_pressure(model, state, element, n) result(pressure)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: element
@@ -222,10 +222,10 @@ contains
 
     s = stress_of_slot(model, state%motion, state%elements, model%layout%element_slot(element))
     pressure = -(s(1)*n(1)**2 + s(2)*n(2)**2 + 2.0_wp*s(4)*n(1)*n(2))
-  end function along
+  end function normal_pressure
 
   !> The element across the edge opposite of a face, 0: none, or a triangle.
-  pure function element_beyond(model, rows, element, ends) result(beyond)
+  pure function opposite_element(model, rows, element, ends) result(beyond)
     type(model_t), intent(in) :: model
     type(face_rows_t), intent(in) :: rows
     integer, intent(in) :: element, ends(2)
@@ -242,7 +242,7 @@ contains
           beyond = rows%across(mod(k + 1, n_corner) + 1, i)
       end do
     end associate
-  end function element_beyond
+  end function opposite_element
 
   !> Elastic energy of an element by its stress and the moduli of its material, J per metre or per
   !> radian: of laws with others it is a measure.
@@ -257,8 +257,8 @@ contains
       associate (nodes => model%layout%slot_nodes(:, slot), &
         material => model%materials(model%parts(slot_part(model%layout, slot))%material))
         s = stress_of_slot(model, state%motion, state%elements, slot)
-        d31 = place_of(model, state, nodes(3)) - place_of(model, state, nodes(1))
-        d42 = place_of(model, state, nodes(4)) - place_of(model, state, nodes(2))
+        d31 = position_of(model, state, nodes(3)) - position_of(model, state, nodes(1))
+        d42 = position_of(model, state, nodes(4)) - position_of(model, state, nodes(2))
         volume = 0.5_wp*(d31(1)*d42(2) - d42(1)*d31(2))
         centre = centre_of(model, state, element)
         if (model%is_axisymmetric) volume = volume*centre(1)
@@ -284,28 +284,29 @@ contains
     associate (nodes => model%layout%slot_nodes(:, model%layout%element_slot(element)))
       n = merge(3, n_corner, nodes(4) == nodes(3))
       do k = 1, n
-        centre = centre + place_of(model, state, nodes(k))/n
+        centre = centre + position_of(model, state, nodes(k))/n
       end do
     end associate
   end function centre_of
 
   !> Where a node is, m.
-  pure function place_of(model, state, node) result(place)
+  pure function position_of(model, state, node) result(place)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: node
     real(wp) :: place(2)
 
     place = model%mesh%coordinates(:, node) + state%motion(1:2, node)
-  end function place_of
+  end function position_of
 
   !> What other interfaces put on the faces of each side. The pressure of a node acts on all of its
   !> faces in an interface alike.
-  subroutine find_others(model, state, slaves, others)
+  subroutine find_other_pressures(model, state, slaves, others)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     type(slave_result_t), intent(in) :: slaves(:) !! (n_interface)
-    type(others_t), intent(inout) :: others(:) !! (2, interfaces that are told), empty before
+    type(other_pressure_t), intent(inout) :: others(:) !! (2, interfaces that are told), empty
+                                                       !! before
     type(surface_t) :: surfaces(size(others))
     type(face_t), allocatable :: faces(:)
     integer, allocatable :: first(:), next(:) !! faces by the node that they start at
@@ -353,7 +354,7 @@ contains
     do i = 1, size(others)
       where (others(i)%area > 0.0_wp) others(i)%pressure = others(i)%pressure/others(i)%area
     end do
-  end subroutine find_others
+  end subroutine find_other_pressures
 
   !> The area of a face that each of its ends has, m or m^2 per radian.
   pure function face_share(model, state, nodes) result(share)
@@ -368,4 +369,4 @@ contains
     if (model%is_axisymmetric) share = share*(at(1, :) + sum(at(1, :)))/3.0_wp
   end function face_share
 
-end module rows_behind_m
+end module face_stress_m

@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> What the run says about its interfaces at its start and at its end.
-module contact_check_m
+module contact_reports_m
   use contact_facets_m, only : report_facets
-  use contact_judging_m, only : parts_behind, of_noise
+  use error_indicator_m, only : parts_at_surfaces, of_noise
   use contact_log_m, only : report_end, report_initial_contact, report_tie_step
   use contacts_m, only : contact_t, is_tied, penalty_factor, penalty_share, penalty_implicit
   use contact_step_limit_m, only : spring_bound_t, bound_springs, stable_step, closed_step, &
@@ -24,7 +24,7 @@ module contact_check_m
   !> Springs that store more than this many times what the elements beside them do are soft.
   real(wp), parameter :: soft = 2.0_wp
   !> Waves are told where they are more than a tenth of the square of the estimate.
-  real(wp), parameter :: told_below = 0.9_wp
+  real(wp), parameter :: wave_share = 0.9_wp
   !> Part of the internal energy of the bodies from which on what springs stored is told.
   real(wp), parameter :: noticed_part = 0.1_wp
   !> Compliance of springs, over that of a row of elements on either side, below which stiffer ones
@@ -58,7 +58,7 @@ contains
           call report_initial_contact(contact, model, state%contacts(i), log)
         if (.not. is_tied(contact)) then
           if (limits_step .and. contact%penalty_unit /= penalty_implicit) &
-            call tell_step(model, state, i, element_limit, bounds(i), log)
+            call report_step_limit(model, state, i, element_limit, bounds(i), log)
         else if (limits_step) then
           call report_tie_step(contact%id, element_limit, stable_step(element_limit, bounds(i)), &
             log)
@@ -76,7 +76,7 @@ contains
   !> A step that obeys the springs of an interface; or one that is too large for them: which bound
   !> asks for what, the node and the penalty that would fit. No warning of the built-in penalty,
   !> which nobody has made larger, where the step need not be too large.
-  subroutine tell_step(model, state, i, element_limit, bound, log)
+  subroutine report_step_limit(model, state, i, element_limit, bound, log)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: i              !! the interface
@@ -119,7 +119,7 @@ contains
           //' times the present one would fit')
       end if
     end associate
-  end subroutine tell_step
+  end subroutine report_step_limit
 
   !> How good the answer is, of each interface that was loaded at an instant that was judged;
   !> springs that stored much beside the bodies, and pressure that is made by facets; first contacts
@@ -140,12 +140,12 @@ contains
       end associate
     end do
     do i = 1, size(state%estimates)
-      if (log%is_mute) exit ! the first process alone knows the parts of all elements
+      if (log%is_silent) exit ! the first process alone knows the parts of all elements
       associate (estimate => state%estimates(i), contact => model%contacts(i))
         if (contact%penalty_unit == penalty_implicit .and. &
           .not. state%contacts(i)%slave_penalty > 0.0_wp) cycle
         if (estimate%bodies > 0.0_wp .and. estimate%stored > noticed_part*estimate%bodies) &
-          call tell_softness(model, contact, estimate, log)
+          call report_soft_springs(model, contact, estimate, log)
         call report_facets(contact, estimate, log)
       end associate
     end do
@@ -171,7 +171,7 @@ contains
       //percent(sqrt(estimate%misfit), sqrt(estimate%load))//' (r.m.s. of ' &
       //to_text(estimate%n)//' instant(s)), by '//percent(estimate%at_heaviest, 1.0_wp) &
       //' at the largest load'
-    if (tells_waves(estimate)) text = text//', without waves by ' &
+    if (has_waves(estimate)) text = text//', without waves by ' &
       //percent(sqrt(estimate%still), sqrt(estimate%load))
     if (estimate%rows > 0.0_wp) then
       text = text//'; springs store '//two_decimals(estimate%springs/estimate%rows) &
@@ -210,7 +210,7 @@ contains
     end if
     call better_type(contact%scene, contact%contact_type, at_rest, contact%target, better, &
       expected)
-    if (tells_waves(estimate)) text = text//'without waves it is '//percent(at_rest, 1.0_wp) &
+    if (has_waves(estimate)) text = text//'without waves it is '//percent(at_rest, 1.0_wp) &
       //', and then '
     if (expected <= contact%target) then
       text = text//'by the published studies type '//to_text(better)//' would keep it'
@@ -222,12 +222,12 @@ contains
   end function target_words
 
   !> Whether waves, the inertia of the rows, make a part of the estimate that is worth telling.
-  elemental function tells_waves(estimate) result(tells)
+  elemental function has_waves(estimate) result(has)
     type(contact_estimate_t), intent(in) :: estimate
-    logical :: tells
+    logical :: has
 
-    tells = estimate%still < told_below*estimate%misfit
-  end function tells_waves
+    has = estimate%still < wave_share*estimate%misfit
+  end function has_waves
 
   !> One interface whose springs stored much. Like bodies part as if both were softer; of a hard one
   !> on a soft one the springs give back what the soft one would in part have kept, and the rebound
@@ -236,7 +236,7 @@ contains
   !> named: by a given force their energy goes with the power -1 of their stiffness, by blows of a
   !> hard block on a soft one -0.64, and less where rows are coarse: no penalty makes less what the
   !> first row of nodes takes.
-  subroutine tell_softness(model, contact, estimate, log)
+  subroutine report_soft_springs(model, contact, estimate, log)
     type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact
     type(contact_estimate_t), intent(in) :: estimate
@@ -247,7 +247,7 @@ contains
     logical :: is_wrong
     integer :: i
 
-    behind = pack([model%parts%material], parts_behind(model, contact))
+    behind = pack([model%parts%material], parts_at_surfaces(model, contact))
     softest = huge(1.0_wp)
     hardest = 0.0_wp
     do i = 1, size(behind)
@@ -281,6 +281,6 @@ contains
     else
       call write_log(log, text)
     end if
-  end subroutine tell_softness
+  end subroutine report_soft_springs
 
-end module contact_check_m
+end module contact_reports_m
