@@ -27,14 +27,14 @@ module packed_buffer_m
   contains
     procedure :: find => pass_extents
     procedure :: pass => pass_values
-    procedure :: carry => copy_bytes
+    procedure :: transfer_bytes => copy_bytes
   end type packed_buffer_t
 
   !> A partial one that gives the memory of its ranges back: nobody asks for them any more. The
   !> arrays stay as long as they are.
   type, extends(packed_buffer_t) :: memory_release_t
   contains
-    procedure :: carry => release
+    procedure :: transfer_bytes => release
   end type memory_release_t
 
   interface
@@ -102,16 +102,16 @@ contains
     integer, target :: extents(2)
 
     extents = item%extents
-    call visitor%carry(c_loc(extents), int(2*integer_bytes, c_size_t))
+    call visitor%transfer_bytes(c_loc(extents), int(2*integer_bytes, c_size_t))
     item%extents = extents
     item%is_new = visitor%is_unpacking
   end subroutine pass_extents
 
   !> All values of an array, or those of a range of it.
-  subroutine pass_values(visitor, item, place, starts)
+  subroutine pass_values(visitor, item, address, starts)
     class(packed_buffer_t), intent(inout) :: visitor
     type(item_t), intent(in) :: item
-    type(c_ptr), intent(in) :: place
+    type(c_ptr), intent(in) :: address
     integer, intent(in), optional :: starts(:)
     integer(c_size_t) :: n_byte
     integer :: range(2), k
@@ -122,7 +122,7 @@ contains
     if (item%content == as_bytes) n_byte = 1
     if (.not. visitor%is_partial) then
       n_byte = n_byte*product(int(item%extents(:item%rank), c_size_t))
-      if (n_byte > 0) call visitor%carry(place, n_byte)
+      if (n_byte > 0) call visitor%transfer_bytes(address, n_byte)
       return
     end if
     range = visitor%ranges(:, item%of)
@@ -131,30 +131,31 @@ contains
     if (range(2) < range(1)) return
     if (any(item%of == [of_columns, fixed_columns])) then
       do k = 1, item%extents(2)
-        call visitor%carry(behind(place, n_byte*(int(k - 1, c_size_t)*item%extents(1) &
-          + range(1) - 1)), n_byte*(range(2) - range(1) + 1))
+        call visitor%transfer_bytes(offset_address(address, n_byte*(int(k - 1, &
+          c_size_t)*item%extents(1) + range(1) - 1)), n_byte*(range(2) - range(1) + 1))
       end do
     else
       if (item%rank == 2) n_byte = n_byte*item%extents(1)
-      call visitor%carry(behind(place, n_byte*(range(1) - 1)), n_byte*(range(2) - range(1) + 1))
+      call visitor%transfer_bytes(offset_address(address, n_byte*(range(1) - 1)), n_byte*(range(2) &
+        - range(1) + 1))
     end if
   end subroutine pass_values
 
   !> The place so many bytes behind another.
-  pure function behind(place, n_byte) result(there)
-    type(c_ptr), intent(in) :: place
+  pure function offset_address(address, n_byte) result(shifted)
+    type(c_ptr), intent(in) :: address
     integer(c_size_t), intent(in) :: n_byte
-    type(c_ptr) :: there
-    integer(c_intptr_t) :: address
+    type(c_ptr) :: shifted
+    integer(c_intptr_t) :: bits
 
-    address = transfer(place, address) + n_byte
-    there = transfer(address, there)
-  end function behind
+    bits = transfer(address, bits) + n_byte
+    shifted = transfer(bits, shifted)
+  end function offset_address
 
   !> Bytes that lie side by side. They take a whole number of reals.
-  subroutine copy_bytes(visitor, place, n_byte)
+  subroutine copy_bytes(visitor, address, n_byte)
     class(packed_buffer_t), intent(inout), target :: visitor
-    type(c_ptr), intent(in) :: place
+    type(c_ptr), intent(in) :: address
     integer(c_size_t), intent(in) :: n_byte
     type(c_ptr) :: ignored
     integer :: last
@@ -162,22 +163,22 @@ contains
     last = visitor%n + int((n_byte + real_bytes - 1)/real_bytes)
     if (allocated(visitor%values)) then
       if (visitor%is_unpacking) then
-        ignored = c_memcpy(place, c_loc(visitor%values(visitor%n + 1)), n_byte)
+        ignored = c_memcpy(address, c_loc(visitor%values(visitor%n + 1)), n_byte)
       else
         visitor%values(last) = 0.0_wp
-        ignored = c_memcpy(c_loc(visitor%values(visitor%n + 1)), place, n_byte)
+        ignored = c_memcpy(c_loc(visitor%values(visitor%n + 1)), address, n_byte)
       end if
     end if
     visitor%n = last
   end subroutine copy_bytes
 
   !> Their pages go back to the system.
-  subroutine release(visitor, place, n_byte)
+  subroutine release(visitor, address, n_byte)
     class(memory_release_t), intent(inout), target :: visitor
-    type(c_ptr), intent(in) :: place
+    type(c_ptr), intent(in) :: address
     integer(c_size_t), intent(in) :: n_byte
 
-    call release_pages(place, n_byte)
+    call release_pages(address, n_byte)
     visitor%n = visitor%n + int(n_byte/real_bytes)
   end subroutine release
 

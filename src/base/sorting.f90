@@ -4,7 +4,7 @@ module sorting_m
   use kinds_m, only : long
   implicit none
   private
-  public :: sorted_order, distinct, place_among
+  public :: sorted_order, distinct, index_among
 
 contains
 
@@ -78,10 +78,10 @@ contains
   end function distinct
 
   !> Where a value stands on a list, 0: nowhere. `order` sorts the list.
-  pure function place_among(values, order, value) result(place)
+  pure function index_among(values, order, value) result(found)
     integer, intent(in) :: values(:), order(:)
     integer, intent(in) :: value
-    integer :: place
+    integer :: found
     integer :: low, high, middle
 
     low = 1
@@ -94,9 +94,9 @@ contains
         high = middle
       end if
     end do
-    place = 0
+    found = 0
     if (high < 1) return
-    if (values(order(low)) == value) place = order(low)
-  end function place_among
+    if (values(order(low)) == value) found = order(low)
+  end function index_among
 
 end module sorting_m

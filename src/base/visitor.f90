@@ -89,11 +89,11 @@ module visitor_m
       type(item_t), intent(inout) :: item    !! with the extents that it has; then those that come
     end subroutine find_item
 
-    subroutine pass_item(visitor, item, place, starts)
+    subroutine pass_item(visitor, item, address, starts)
       import :: visitor_t, item_t, c_ptr
       class(visitor_t), intent(inout) :: visitor
       type(item_t), intent(in) :: item
-      type(c_ptr), intent(in) :: place              !! first value
+      type(c_ptr), intent(in) :: address              !! first value
       integer, intent(in), optional :: starts(:)    !! of a stream
     end subroutine pass_item
 
@@ -176,9 +176,9 @@ contains
 
   !> Items of a type without allocatable components, as they lie in memory; for programs of the same
   !> build.
-  subroutine plain(visitor, place, n_bit, n)
+  subroutine plain(visitor, address, n_bit, n)
     class(visitor_t), intent(inout) :: visitor
-    type(c_ptr), intent(in) :: place
+    type(c_ptr), intent(in) :: address
     integer, intent(in) :: n_bit  !! storage size of an item
     integer, intent(in) :: n      !! items
     type(item_t) :: item
@@ -186,51 +186,51 @@ contains
     if (visitor%is_partial) return
     item%content = as_bytes
     item%extents(1) = n_bit/8*n
-    call visitor%pass(item, place)
+    call visitor%pass(item, address)
   end subroutine plain
 
   !> An integer.
-  subroutine visit_integer(visitor, name, value, lowest, highest, what)
+  subroutine visit_integer(visitor, name, value, lowest, highest, problem)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     integer, intent(inout) :: value
     integer, intent(in), optional :: lowest, highest
-    character(*), intent(in), optional :: what !! it has where it is not within these bounds
+    character(*), intent(in), optional :: problem !! it has where it is not within these bounds
     integer, allocatable :: values(:)
 
     if (visitor%is_partial) return
     values = [value]
-    call visitor%visit(name, values, whole, lowest, highest, what)
+    call visitor%visit(name, values, whole, lowest, highest, problem)
     if (.not. allocated(visitor%error)) value = values(1)
   end subroutine visit_integer
 
   !> A long integer.
-  subroutine visit_long(visitor, name, value, highest, what)
+  subroutine visit_long(visitor, name, value, highest, problem)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     integer(long), intent(inout) :: value
     integer(long), intent(in) :: highest
-    character(*), intent(in) :: what           !! it has where it is not from 0 to this
+    character(*), intent(in) :: problem           !! it has where it is not from 0 to this
     integer(long), target :: copy
 
     copy = value
     call visitor%pass(item_t(name, as_index, 1, [1, 1]), c_loc(copy))
-    call visitor%expect(name, copy >= 0 .and. copy <= highest, what)
+    call visitor%expect(name, copy >= 0 .and. copy <= highest, problem)
     if (.not. allocated(visitor%error)) value = copy
   end subroutine visit_long
 
   !> A real.
-  subroutine visit_real(visitor, name, value, lowest, what)
+  subroutine visit_real(visitor, name, value, lowest, problem)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     real(wp), intent(inout) :: value
     real(wp), intent(in), optional :: lowest
-    character(*), intent(in), optional :: what !! it has where it is less
+    character(*), intent(in), optional :: problem !! it has where it is less
     real(wp), allocatable :: values(:)
 
     if (visitor%is_partial) return
     values = [value]
-    call visitor%visit(name, values, whole, lowest, what)
+    call visitor%visit(name, values, whole, lowest, problem)
     if (.not. allocated(visitor%error)) value = values(1)
   end subroutine visit_real
 
@@ -264,14 +264,14 @@ contains
   end subroutine visit_text
 
   !> An array of integers.
-  subroutine visit_integers(visitor, name, values, of, lowest, highest, what)
+  subroutine visit_integers(visitor, name, values, of, lowest, highest, problem)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     integer, allocatable, intent(inout), target :: values(:)
     integer, intent(in), optional :: of, lowest, highest
-    character(*), intent(in), optional :: what
+    character(*), intent(in), optional :: problem
     type(item_t) :: item
-    type(c_ptr) :: place
+    type(c_ptr) :: address
 
     item = item_t(name, as_integer, 1)
     if (present(of)) item%of = of
@@ -279,24 +279,24 @@ contains
     if (.not. visitor%is_partial) call visitor%find(item)
     if (item%is_new .and. allocated(values)) deallocate (values)
     if (item%is_new .and. item%extents(1) /= absent) allocate (values(item%extents(1)))
-    place = c_null_ptr
-    if (allocated(values)) place = c_loc(values)
-    call visitor%pass(item, place)
-    if (.not. visitor%validates .or. .not. (allocated(values) .and. present(what))) return
-    if (present(lowest)) call visitor%expect(name, all(values >= lowest), what)
-    if (present(highest)) call visitor%expect(name, all(values <= highest), what)
+    address = c_null_ptr
+    if (allocated(values)) address = c_loc(values)
+    call visitor%pass(item, address)
+    if (.not. visitor%validates .or. .not. (allocated(values) .and. present(problem))) return
+    if (present(lowest)) call visitor%expect(name, all(values >= lowest), problem)
+    if (present(highest)) call visitor%expect(name, all(values <= highest), problem)
   end subroutine visit_integers
 
   !> An array of reals.
-  subroutine visit_reals(visitor, name, values, of, lowest, what)
+  subroutine visit_reals(visitor, name, values, of, lowest, problem)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     real(wp), allocatable, intent(inout), target :: values(:)
     integer, intent(in), optional :: of
     real(wp), intent(in), optional :: lowest
-    character(*), intent(in), optional :: what
+    character(*), intent(in), optional :: problem
     type(item_t) :: item
-    type(c_ptr) :: place
+    type(c_ptr) :: address
 
     item = item_t(name, as_real, 1)
     if (present(of)) item%of = of
@@ -304,13 +304,13 @@ contains
     if (.not. visitor%is_partial) call visitor%find(item)
     if (item%is_new .and. allocated(values)) deallocate (values)
     if (item%is_new .and. item%extents(1) /= absent) allocate (values(item%extents(1)))
-    place = c_null_ptr
-    if (allocated(values)) place = c_loc(values)
-    call visitor%pass(item, place)
+    address = c_null_ptr
+    if (allocated(values)) address = c_loc(values)
+    call visitor%pass(item, address)
     if (.not. visitor%validates .or. .not. allocated(values)) return
     call visitor%expect(name, all(is_finite(values)), not_finite)
-    if (visitor%validates .and. present(what)) call visitor%expect(name, all(values >= lowest), &
-      what)
+    if (visitor%validates .and. present(problem)) call visitor%expect(name, all(values >= lowest), &
+      problem)
   end subroutine visit_reals
 
   !> An array of truths.
@@ -333,7 +333,7 @@ contains
     integer, allocatable, intent(inout), target :: values(:, :)
     integer, intent(in), optional :: of
     type(item_t) :: item
-    type(c_ptr) :: place
+    type(c_ptr) :: address
 
     item = item_t(name, as_integer, 2, [absent, absent])
     if (present(of)) item%of = of
@@ -342,9 +342,9 @@ contains
     if (item%is_new .and. allocated(values)) deallocate (values)
     if (item%is_new .and. item%extents(1) /= absent) &
       allocate (values(item%extents(1), item%extents(2)))
-    place = c_null_ptr
-    if (allocated(values)) place = c_loc(values)
-    call visitor%pass(item, place)
+    address = c_null_ptr
+    if (allocated(values)) address = c_loc(values)
+    call visitor%pass(item, address)
   end subroutine visit_integer_table
 
   !> A table of reals.
@@ -354,7 +354,7 @@ contains
     real(wp), allocatable, intent(inout), target :: values(:, :)
     integer, intent(in), optional :: of
     type(item_t) :: item
-    type(c_ptr) :: place
+    type(c_ptr) :: address
 
     item = item_t(name, as_real, 2, [absent, absent])
     if (present(of)) item%of = of
@@ -363,9 +363,9 @@ contains
     if (item%is_new .and. allocated(values)) deallocate (values)
     if (item%is_new .and. item%extents(1) /= absent) &
       allocate (values(item%extents(1), item%extents(2)))
-    place = c_null_ptr
-    if (allocated(values)) place = c_loc(values)
-    call visitor%pass(item, place)
+    address = c_null_ptr
+    if (allocated(values)) address = c_loc(values)
+    call visitor%pass(item, address)
     if (.not. visitor%validates .or. .not. allocated(values)) return
     call visitor%expect(name, all(is_finite(values)), not_finite)
   end subroutine visit_real_table
@@ -442,15 +442,15 @@ contains
   end subroutine same_integers
 
   !> Refuse what a visitor has brought unless it is sound.
-  subroutine expect(visitor, name, is_sound, what)
+  subroutine expect(visitor, name, is_sound, problem)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     logical, intent(in) :: is_sound
-    character(*), intent(in) :: what !! it has where it is not
+    character(*), intent(in) :: problem !! it has where it is not
 
     if (visitor%validates .and. .not. is_sound) call &
       visitor%fail('the restart file '//visitor%path &
-      //' is refused: its '//visitor%folder//name//' has '//what, status_input)
+      //' is refused: its '//visitor%folder//name//' has '//problem, status_input)
   end subroutine expect
 
   !> Note a failure, unless there is one already.

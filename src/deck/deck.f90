@@ -11,7 +11,7 @@ module deck_m
   use model_m, only : model_t
   use eos_m, only : eos_t
   use parts_m, only : hourglass_t
-  use deck_contact_sides_m, only : mesh_outline_t
+  use deck_contact_sides_m, only : mesh_boundary_t
   use deck_contacts_m, only : read_contacts
   use deck_control_m, only : read_controls, read_outputs, read_relaxation, read_ends
   use deck_curves_m, only : table_t, read_curves, read_systems
@@ -30,7 +30,7 @@ module deck_m
   use deck_report_m, only : emit_warnings, emit_errors, list_findings
   use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, a_curve, &
     a_system, a_node_set, a_part_set, a_segment_set, a_shell_set
-  use deck_lines_m, only : deck_t, place_t, line_error, line_warning, file_paths, flag_blank
+  use deck_lines_m, only : deck_t, location_t, line_error, line_warning, file_paths, flag_blank
   use deck_reader_m, only : read_file, cut_deck
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
@@ -142,8 +142,8 @@ contains
     integer, allocatable :: codes(:), owner(:)
     type(hourglass_t) :: hourglass
     logical :: erodes
-    type(place_t), allocatable :: places(:)          !! of pressure loads
-    type(mesh_outline_t) :: body
+    type(location_t), allocatable :: locations(:)          !! of pressure loads
+    type(mesh_boundary_t) :: body
     integer :: i, step_line
 
     call read_curves(deck, model, tables)
@@ -168,7 +168,7 @@ contains
     call read_nodal_loads(deck, model)
     call read_rigid_loads(deck, model)
     call read_body_loads(deck, model)
-    call read_pressures(deck, model, places)
+    call read_pressures(deck, model, locations)
     call read_masses(deck, model)
     call read_common_motions(deck, model)
     call read_global_damping(deck, model)
@@ -179,7 +179,7 @@ contains
     call warn_of_bores(deck, model)
     allocate (model%mesh%deck_node(model%mesh%n_node))
     model%mesh%deck_node = [(i, i=1, model%mesh%n_node)]
-    call read_contacts(deck, kinds, places, is_sound, body, model)
+    call read_contacts(deck, kinds, locations, is_sound, body, model)
     call read_relaxation(deck, model)
     call read_ends(deck, model, body%is_sound)
   end subroutine read_model

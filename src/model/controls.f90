@@ -194,9 +194,9 @@ contains
   end subroutine list_boundaries
 
   !> Rows of what acts on some nodes or bodies, each once.
-  subroutine add_rows(condition, places, ids, rows, row_at)
+  subroutine add_rows(condition, items, ids, rows, row_at)
     integer, intent(in) :: condition
-    integer, intent(in) :: places(:)   !! indices, any of them several times
+    integer, intent(in) :: items(:)   !! indices, any of them several times
     integer, intent(in) :: ids(:)      !! their user numbers
     type(boundary_rows_t), intent(inout) :: rows
     integer, intent(out) :: row_at(:)  !! row of each index, 0 = none
@@ -205,7 +205,7 @@ contains
     integer :: i
 
     is_there = .false.
-    is_there(places) = .true.
+    is_there(items) = .true.
     found = pack([(i, i=1, size(ids))], is_there)
     found = found(sorted_order(int(ids(found), long)))
     row_at = 0

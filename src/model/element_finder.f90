@@ -6,7 +6,7 @@
 module element_finder_m
   use kinds_m, only : wp, long
   use model_m, only : model_t
-  use sorting_m, only : place_among, sorted_order
+  use sorting_m, only : index_among, sorted_order
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -257,7 +257,7 @@ contains
     real(wp), intent(out) :: at(most_crossed)
     integer, allocatable :: order(:)
     integer :: low(2), high(2), ix, iy, i, k, t, cell
-    real(wp) :: place
+    real(wp) :: position
 
     n = 0
     if (any(maxval(line, 2) < view%finder%low .or. minval(line, 2) > view%finder%high)) return
@@ -269,16 +269,16 @@ contains
         do i = view%finder%first(cell) + 1, view%finder%first(cell + 1)
           associate (element => view%finder%items(i))
             do k = 1, 4
-              t = place_among(surface%nodes, view%order, model%mesh%element_nodes(k, element))
+              t = index_among(surface%nodes, view%order, model%mesh%element_nodes(k, element))
               if (t > 0) t = surface%outgoing(t)
               if (t == 0) cycle
               if (surface%segment_element(t) /= element) cycle
               if (n == most_crossed .or. any(crossed(:n) == t)) cycle
-              call cross(line, ends_of(model, surface, t), place)
-              if (.not. place > 0.0_wp) cycle
+              call cross(line, ends_of(model, surface, t), position)
+              if (.not. position > 0.0_wp) cycle
               n = n + 1
               crossed(n) = t
-              at(n) = place
+              at(n) = position
             end do
           end associate
         end do
@@ -290,17 +290,17 @@ contains
   end subroutine list_crossed
 
   !> Where on one line (0 to 1) another goes through it, 0 where it does not.
-  pure subroutine cross(one, two, place)
+  pure subroutine cross(one, two, position)
     real(wp), intent(in), dimension(2, 2) :: one, two !! ends
-    real(wp), intent(out) :: place
+    real(wp), intent(out) :: position
     real(wp) :: a(2), b(2), least
 
-    place = 0.0_wp
+    position = 0.0_wp
     a = [across(two, one(:, 1)), across(two, one(:, 2))]
     b = [across(one, two(:, 1)), across(one, two(:, 2))]
     least = least_crossing*min(norm2(one(:, 2) - one(:, 1)), norm2(two(:, 2) - two(:, 1)))
     if (a(1)*a(2) >= 0.0_wp .or. b(1)*b(2) >= 0.0_wp) return
-    if (minval(abs([a, b])) > least) place = a(1)/(a(1) - a(2))
+    if (minval(abs([a, b])) > least) position = a(1)/(a(1) - a(2))
   end subroutine cross
 
   !> Signed distance of a place from the line through two others.

@@ -8,7 +8,7 @@ module initial_overlap_m
   use geometry_m, only : local_coordinates_t, coordinates_on_segment, closest_distance
   use kinds_m, only : wp
   use model_m, only : model_t
-  use sorting_m, only : place_among
+  use sorting_m, only : index_among
   use surfaces_m, only : surface_t
   implicit none
   private
@@ -23,12 +23,13 @@ module initial_overlap_m
   real(wp), parameter :: same_way = 0.5_wp
 
   !> A place of a surface that is looked at.
-  type :: place_t
+  type :: sample_t
     real(wp) :: x(2)
     integer :: nodes(2)           !! mesh: node of the place twice, or ends of its segment
     real(wp) :: normal(2)         !! outward, 0 at a node
-    integer :: beside(5)          !! segments next to it where it lies on the surface asked, or 0
-  end type place_t
+    integer :: neighbours(5)          !! segments next to it where it lies on the surface asked, or
+                                      !! 0
+  end type sample_t
 
   !> The place of one surface that is deepest in the bodies of another, by the depth allowed there.
   type :: overlap_t
@@ -74,93 +75,93 @@ contains
     type(overlap_t), intent(out) :: found
     integer :: s, i, n, n_checked, ends(2), crossed(most_crossed)
     real(wp) :: x(2, 2), at(most_crossed)
-    type(place_t) :: place
+    type(sample_t) :: sample
 
     n_checked = 0
     do s = 1, own%n_segment
       if (n_checked >= max_checked) return
       ends = own%nodes(own%segments(:, s))
       x = ends_of(model, own, s)
-      place%beside = 0
+      sample%neighbours = 0
       if (is_same) then
-        place%beside(1:3) = [s, own%previous(s), own%next(s)]
-        if (place%beside(2) > 0) place%beside(4) = own%previous(place%beside(2))
-        if (place%beside(3) > 0) place%beside(5) = own%next(place%beside(3))
+        sample%neighbours(1:3) = [s, own%previous(s), own%next(s)]
+        if (sample%neighbours(2) > 0) sample%neighbours(4) = own%previous(sample%neighbours(2))
+        if (sample%neighbours(3) > 0) sample%neighbours(5) = own%next(sample%neighbours(3))
       end if
-      place%normal = 0.0_wp
+      sample%normal = 0.0_wp
       do i = 1, merge(2, 1, own%next(s) == 0)
-        place%x = x(:, i)
-        place%nodes = ends(i)
-        call check_position(model, other, view, place, n_checked, found)
+        sample%x = x(:, i)
+        sample%nodes = ends(i)
+        call check_sample(model, other, view, sample, n_checked, found)
       end do
-      place%normal = normal_of(x)
-      place%nodes = ends
-      place%x = 0.5_wp*(x(:, 1) + x(:, 2))
-      call check_position(model, other, view, place, n_checked, found)
+      sample%normal = normal_of(x)
+      sample%nodes = ends
+      sample%x = 0.5_wp*(x(:, 1) + x(:, 2))
+      call check_sample(model, other, view, sample, n_checked, found)
       call list_crossed(model, other, view, x, n, crossed, at)
       do i = 2, n
-        place%x = x(:, 1) + 0.5_wp*(at(i - 1) + at(i))*(x(:, 2) - x(:, 1))
-        call check_position(model, other, view, place, n_checked, found)
+        sample%x = x(:, 1) + 0.5_wp*(at(i - 1) + at(i))*(x(:, 2) - x(:, 1))
+        call check_sample(model, other, view, sample, n_checked, found)
       end do
     end do
   end subroutine find_overlap
 
   !> Keep one place if it is too deep and the deepest so far.
-  pure subroutine check_position(model, other, view, place, n_checked, found)
+  pure subroutine check_sample(model, other, view, sample, n_checked, found)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: other
     type(body_view_t), intent(in) :: view
-    type(place_t), intent(in) :: place
+    type(sample_t), intent(in) :: sample
     integer, intent(inout) :: n_checked
     type(overlap_t), intent(inout) :: found
     integer :: k, node, near(8)
     type(overlap_t) :: new
     type(local_coordinates_t) :: local
 
-    if (.not. is_inside_body(view%finder, model, place%x, place%nodes)) return
+    if (.not. is_inside_body(view%finder, model, sample%x, sample%nodes)) return
     associate (corners => model%mesh%element_nodes(:, &
-      element_at(view%finder, model, place%x, place%nodes)))
+      element_at(view%finder, model, sample%x, sample%nodes)))
       do k = 1, 4
         near(2*k - 1:2*k) = 0
-        node = place_among(other%nodes, view%order, corners(k))
+        node = index_among(other%nodes, view%order, corners(k))
         if (node > 0) near(2*k - 1:2*k) = [other%incoming(node), other%outgoing(node)]
       end do
     end associate
-    call measure(model, other, place, near, new)
+    call measure(model, other, sample, near, new)
     if (new%segment > 0 .and. new%depth < new%allowed) return
     n_checked = n_checked + 1
-    call measure(model, other, place, [(k, k=1, other%n_segment)], new)
+    call measure(model, other, sample, [(k, k=1, other%n_segment)], new)
     if (new%segment == 0 .or. new%depth < new%allowed) return
     ! Beyond a segment at the end of an open chain.
-    local = local_from(model, other, new%segment, place%x)
+    local = local_from(model, other, new%segment, sample%x)
     if (local%along < 0.0_wp .and. other%previous(new%segment) == 0) return
     if (local%along > local%square .and. other%next(new%segment) == 0) return
     if (found%segment > 0) then
       if (new%depth*found%allowed <= found%depth*new%allowed) return
     end if
     found = new
-  end subroutine check_position
+  end subroutine check_sample
 
   !> How deep a place lies behind that of some segments behind which it is least deep, by what is
   !> allowed there.
-  pure subroutine measure(model, other, place, segments, least)
+  pure subroutine measure(model, other, sample, segments, least)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: other
-    type(place_t), intent(in) :: place
+    type(sample_t), intent(in) :: sample
     integer, intent(in) :: segments(:) !! 0 counts for nothing
     type(overlap_t), intent(out) :: least
     real(wp) :: depth, allowed
     integer :: k
 
-    least%nodes = place%nodes
+    least%nodes = sample%nodes
     do k = 1, size(segments)
       associate (s => segments(k))
-        if (s == 0 .or. any(place%beside == s)) cycle
-        if (dot_product(place%normal, normal_of(ends_of(model, other, s))) > same_way) cycle
-        depth = sqrt(closest_distance(local_from(model, other, s, place%x)))
+        if (s == 0 .or. any(sample%neighbours == s)) cycle
+        if (dot_product(sample%normal, normal_of(ends_of(model, other, s))) > same_way) cycle
+        depth = sqrt(closest_distance(local_from(model, other, s, sample%x)))
         allowed = half_thickness(model, other, s)
         if (least%segment > 0 .and. depth*least%allowed >= least%depth*allowed) cycle
-        least = overlap_t(place%nodes, s, depth, allowed)
+        least = overlap_t(sample%nodes, s, depth, allowed)
       end associate
     end do
     if (least%depth >= (1.0_wp - tolerance)*least%allowed) least%depth = max(least%depth, &

@@ -15,7 +15,7 @@ module layout_building_m
   !> Cells of the Hilbert curve along each axis, 2^16.
   integer, parameter :: curve_bits = 16
   !> More than any place on the curve.
-  integer(long), parameter :: behind_all = 2_long**40
+  integer(long), parameter :: beyond_curve = 2_long**40
 
   !> Of nodes that are no tile's to sum.
   integer, parameter :: no_owner = 0
@@ -31,7 +31,7 @@ contains
     integer, allocatable :: order(:), tile(:)
     integer :: n_tile, n_moving, i, i_chunk
 
-    order = sorted_order(hilbert_keys(mesh) + merge(behind_all, 0_long, is_rigid))
+    order = sorted_order(hilbert_keys(mesh) + merge(beyond_curve, 0_long, is_rigid))
     n_moving = count(.not. is_rigid)
     n_tile = max(1, (n_moving + tile_elements - 1)/tile_elements)
     allocate (layout%tiles(n_tile), tile(mesh%n_element))
@@ -216,41 +216,41 @@ contains
     logical, intent(inout) :: is_special(:) !! (n_node) in: wanted special; out: all special nodes
     type(layout_t), intent(inout) :: layout
     integer, allocatable, intent(out) :: order(:) !! (n_node) present index of each new node
-    logical, allocatable :: is_placed(:)
+    logical, allocatable :: is_numbered(:)
     integer, allocatable :: owner(:), marks(:), nodes(:)
-    integer :: i, k, n_placed
+    integer :: i, k, n_numbered
 
     call find_owners(mesh, is_rigid, layout, is_special, owner)
     allocate (order(mesh%n_node), marks(mesh%n_node), source=0)
-    allocate (is_placed(mesh%n_node), source=.false.)
-    n_placed = 0
+    allocate (is_numbered(mesh%n_node), source=.false.)
+    n_numbered = 0
     do i = 1, size(layout%tiles)
-      layout%tiles(i)%first_owned = n_placed + 1
+      layout%tiles(i)%first_owned = n_numbered + 1
       call list_nodes(mesh, layout%tiles(i), layout%slot_element, i, marks, nodes)
-      call place(pack(nodes, owner(nodes) == i))
-      layout%tiles(i)%last_owned = n_placed
+      call append(pack(nodes, owner(nodes) == i))
+      layout%tiles(i)%last_owned = n_numbered
     end do
-    call place(pack([(k, k=1, mesh%n_node)], is_special .and. .not. is_placed))
-    layout%tiles(size(layout%tiles))%last_owned = n_placed
-    layout%n_special = n_placed
+    call append(pack([(k, k=1, mesh%n_node)], is_special .and. .not. is_numbered))
+    layout%tiles(size(layout%tiles))%last_owned = n_numbered
+    layout%n_special = n_numbered
     do i = 1, size(layout%tiles)
-      layout%tiles(i)%first_node = n_placed + 1
+      layout%tiles(i)%first_node = n_numbered + 1
       call list_nodes(mesh, layout%tiles(i), layout%slot_element, -i, marks, nodes)
-      call place(pack(nodes, owner(nodes) == no_owner .and. .not. is_placed(nodes)))
-      layout%tiles(i)%last_node = n_placed
+      call append(pack(nodes, owner(nodes) == no_owner .and. .not. is_numbered(nodes)))
+      layout%tiles(i)%last_node = n_numbered
     end do
-    call place(pack([(k, k=1, mesh%n_node)], .not. (is_special .or. is_placed)))
+    call append(pack([(k, k=1, mesh%n_node)], .not. (is_special .or. is_numbered)))
 
   contains
 
     !> The next nodes.
-    subroutine place(next)
+    subroutine append(next)
       integer, intent(in) :: next(:)
 
-      order(n_placed + 1:n_placed + size(next)) = next
-      is_placed(next) = .true.
-      n_placed = n_placed + size(next)
-    end subroutine place
+      order(n_numbered + 1:n_numbered + size(next)) = next
+      is_numbered(next) = .true.
+      n_numbered = n_numbered + size(next)
+    end subroutine append
 
   end subroutine order_nodes
 
@@ -264,11 +264,11 @@ contains
     type(layout_t), intent(in) :: layout
     logical, intent(inout) :: is_special(:)
     integer, allocatable, intent(out) :: owner(:) !! (n_node) a tile or no_owner
-    integer, allocatable :: last_tile(:), seen(:), n_touch(:), nodes(:), n_common(:)
+    integer, allocatable :: last_tile(:), last_seen(:), n_touch(:), nodes(:), n_common(:)
     integer :: i_tile, i
 
     allocate (owner(mesh%n_node), source=no_owner)
-    allocate (last_tile(mesh%n_node), seen(mesh%n_node), n_touch(mesh%n_node), &
+    allocate (last_tile(mesh%n_node), last_seen(mesh%n_node), n_touch(mesh%n_node), &
       n_common(size(layout%tiles)), source=0)
     do i_tile = 1, size(layout%tiles)
       call list_nodes(mesh, layout%tiles(i_tile), layout%slot_element, i_tile, last_tile, nodes)
@@ -276,7 +276,7 @@ contains
     end do
     is_special = is_special .or. n_touch > 1 .or. (n_touch == 0 .neqv. is_rigid)
     do i_tile = 1, size(layout%tiles)
-      call list_nodes(mesh, layout%tiles(i_tile), layout%slot_element, i_tile, seen, nodes)
+      call list_nodes(mesh, layout%tiles(i_tile), layout%slot_element, i_tile, last_seen, nodes)
       nodes = pack(nodes, is_special(nodes) .and. owner(nodes) == no_owner)
       do i = 1, size(nodes)
         associate (n => n_common(last_tile(nodes(i))))

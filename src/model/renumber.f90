@@ -236,9 +236,9 @@ contains
     do i = 1, size(model%walls)
       associate (wall => model%walls(i))
         wall%nodes = rising(new_index(wall%nodes))
-        allocate (wall%place(model%layout%n_special), source=0)
+        allocate (wall%node_index(model%layout%n_special), source=0)
         do k = 1, size(wall%nodes)
-          wall%place(wall%nodes(k)) = k
+          wall%node_index(wall%nodes(k)) = k
         end do
       end associate
     end do

@@ -209,7 +209,7 @@ contains
         if (.not. is_left(i)) is_near(mesh%element_nodes(:, i)) = .true.
       end do
       call find_boundary(mesh%element_nodes, is_chosen, is_near, boundary)
-      call walk_outline(mesh, is_chosen, boundary, surface)
+      call walk_boundary(mesh, is_chosen, boundary, surface)
       surface%parts = initial%parts
     else
       call copy_remaining(is_left, initial, surface)
@@ -225,27 +225,27 @@ contains
     type(surface_t), intent(in) :: initial
     type(surface_t), intent(out) :: surface
     integer, allocatable :: segments(:), nodes(:)
-    integer :: place(initial%n_node), s
+    integer :: new_index(initial%n_node), s
 
     segments = pack([(s, s=1, initial%n_segment)], is_left(initial%segment_element))
     surface%segment_element = initial%segment_element(segments)
     surface%segments = initial%segments(:, segments)
-    place = 0
+    new_index = 0
     do s = 1, size(segments)
-      place(surface%segments(:, s)) = 1
+      new_index(surface%segments(:, s)) = 1
     end do
-    nodes = pack([(s, s=1, initial%n_node)], place > 0)
-    place(nodes) = [(s, s=1, size(nodes))]
+    nodes = pack([(s, s=1, initial%n_node)], new_index > 0)
+    new_index(nodes) = [(s, s=1, size(nodes))]
     surface%nodes = initial%nodes(nodes)
     do s = 1, size(segments)
-      surface%segments(:, s) = place(surface%segments(:, s))
+      surface%segments(:, s) = new_index(surface%segments(:, s))
     end do
     call link_segments(surface)
   end subroutine copy_remaining
 
   !> Closed chains of a boundary. Where it touches itself in a node a chain goes on along the
   !> elements that it came by.
-  pure subroutine walk_outline(mesh, is_chosen, boundary, surface)
+  pure subroutine walk_boundary(mesh, is_chosen, boundary, surface)
     type(mesh_t), intent(in) :: mesh
     logical, intent(in) :: is_chosen(:)
     type(boundary_t), intent(in) :: boundary
@@ -271,7 +271,7 @@ contains
       end do
     end do
     call chain_edges(boundary, edges, is_first, surface)
-  end subroutine walk_outline
+  end subroutine walk_boundary
 
   !> Chosen elements at nodes that several edges leave.
   pure subroutine find_corners(mesh, is_chosen, boundary, corners)

@@ -19,7 +19,7 @@ module walls_m
     real(wp) :: birth = 0.0_wp               !! the wall is there from this time
     real(wp) :: death = 1.0e20_wp            !! until this time
     integer, allocatable :: nodes(:)         !! indices of the nodes that see it
-    integer, allocatable :: place(:)         !! (n_special) where each special node stands in
+    integer, allocatable :: node_index(:)    !! (n_special) where each special node stands in
                                              !! `nodes`, 0 = not there
   contains
     procedure :: visit => visit_wall
@@ -58,7 +58,7 @@ contains
     call visitor%visit('birth', self%birth)
     call visitor%visit('death', self%death)
     call visitor%visit('nodes', self%nodes)
-    call visitor%visit('place', self%place)
+    call visitor%visit('node_index', self%node_index)
   end subroutine visit_wall
 
 end module walls_m

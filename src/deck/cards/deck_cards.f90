@@ -5,7 +5,7 @@ module deck_cards_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use text_m, only : read_integer, number_good
-  use deck_lines_m, only : deck_t, place_t, line_text, line_warning, replace_line, flag_blank, &
+  use deck_lines_m, only : deck_t, location_t, line_text, line_warning, replace_line, flag_blank, &
     flag_parameter, block_of_line, given_by, format_long, max_field
   use deck_fields_m, only : card_spec_t, make_spec, field_number, card_t, begin_card, cut_card, &
     read_numbers, field_text, field_error
@@ -278,47 +278,47 @@ contains
   end subroutine report_number
 
   !> An error of a field that was given, on a card that was read some time ago.
-  subroutine reject_field(deck, place, message)
+  subroutine reject_field(deck, location, message)
     type(deck_t), intent(inout) :: deck
-    type(place_t), intent(in) :: place
+    type(location_t), intent(in) :: location
     character(*), intent(in) :: message
     type(card_t) :: card
     integer :: k
 
-    call reread_card(deck, place, card, k)
+    call reread_card(deck, location, card, k)
     call field_error(deck, card, k, message)
   end subroutine reject_field
 
   !> A warning of a field that was given, on a card that was read some time ago; the same one of
   !> fields of one name is told once.
-  subroutine warn_of_field(deck, place, message)
+  subroutine warn_of_field(deck, location, message)
     type(deck_t), intent(inout) :: deck
-    type(place_t), intent(in) :: place
+    type(location_t), intent(in) :: location
     character(*), intent(in) :: message
     character(:), allocatable :: text
     type(card_t) :: card
     integer :: k
 
-    call reread_card(deck, place, card, k)
-    text = given_by(deck, place%line, k)//' '
+    call reread_card(deck, location, card, k)
+    text = given_by(deck, location%line, k)//' '
     if (len(text) == 1) text = 'card '//to_text(card%number)//' field '//to_text(k)//' (' &
       //trim(card%names(k))//'): "'//field_text(deck, card, k)//'" '
-    call line_warning(deck, merge(place%line, 0, text(1:1) == 'c'), 'field '//trim(card%names(k)) &
-      //message, text//message)
+    call line_warning(deck, merge(location%line, 0, text(1:1) == 'c'), &
+      'field '//trim(card%names(k))//message, text//message)
   end subroutine warn_of_field
 
   !> The card of a place, and the position of its field.
-  subroutine reread_card(deck, place, card, k)
+  subroutine reread_card(deck, location, card, k)
     type(deck_t), intent(inout) :: deck
-    type(place_t), intent(in) :: place
+    type(location_t), intent(in) :: location
     type(card_t), intent(out) :: card
     integer, intent(out) :: k
     type(cursor_t) :: cursor
 
-    call open_cursor(deck, block_of_line(deck, place%line), cursor)
-    call cut_card(deck, cursor%specs(place%card), cursor%source, place%line, card)
-    k = place%field
-    if (len_trim(place%name) > 0) k = field_number(card%names, place%name)
+    call open_cursor(deck, block_of_line(deck, location%line), cursor)
+    call cut_card(deck, cursor%specs(location%card), cursor%source, location%line, card)
+    k = location%field
+    if (len_trim(location%name) > 0) k = field_number(card%names, location%name)
   end subroutine reread_card
 
 end module deck_cards_m

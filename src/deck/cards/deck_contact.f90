@@ -12,13 +12,13 @@ module deck_contact_m
     type_segmented_mortar, type_missing, type_chosen, contact_t, contact_kind_t, friction_rule_t, &
     kind_text, is_tied, breaks, penalty_per_node, penalty_distributed, penalty_factor, &
     penalty_share, penalty_implicit, implicit_factor, tie_none, tie_always, tie_breaks, tie_factor
-  use deck_lines_m, only : deck_t, place_t, line_error, line_warning, given_by
+  use deck_lines_m, only : deck_t, location_t, line_error, line_warning, given_by
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &
     report_field, reject_field, warn_of_field
   use deck_edits_m, only : given_number, set_field, rewrite_block
   use deck_ids_m, only : a_curve
-  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, place_of, read_active_time, &
+  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, location_of, read_active_time, &
     find_id
   use deck_friction_m, only : default_friction_t, read_friction, read_stock_friction, &
     read_penalty_friction, warn_of_rule
@@ -108,7 +108,7 @@ contains
     type(default_friction_t), intent(inout) :: default
     type(contact_cards_t), intent(inout) :: entry
     type(cursor_t) :: cursor
-    type(place_t) :: place       !! of the coefficient of friction
+    type(location_t) :: location       !! of the coefficient of friction
     character(:), allocatable :: name
     integer :: k
 
@@ -128,17 +128,18 @@ contains
         call read_slideline(deck, cards, contact)
         call read_interference(deck, cards(3), model, contact)
         call read_tie(deck, cards, contact)
-        call read_friction(cards, contact%friction, place)
+        call read_friction(cards, contact%friction, location)
       case ('CONTACT_2D_PENALTY', 'CONTACT_2D_PENALTY_FRICTION', 'CONTACT_2D_SLIDING_VOIDS', &
           'CONTACT_2D_TIED_SLIDING')
         call read_penalty(deck, entry)
-        if (cursor%n_card > 2) call read_penalty_friction(deck, cards(3), contact%friction, place)
+        if (cursor%n_card > 2) call read_penalty_friction(deck, cards(3), contact%friction, &
+          location)
       case default
         call read_automatic(deck, cards, contact)
         if (index(name, '_TIED') > 0) then
           contact%tie_distance = real_of(cards(3), 'TIEDGAP')
         else
-          call read_stock_friction(cards, default, contact%friction, place)
+          call read_stock_friction(cards, default, contact%friction, location)
         end if
       end select
       if (index(name, '_TIED') > 0) then
@@ -150,7 +151,7 @@ contains
         contact%search_interval = 0
         contact%damping = 0.0_wp
       end if
-      entry%friction_line = place%line
+      entry%friction_line = location%line
       call check_tie(deck, deck%blocks(entry%block)%keyword, contact)
       if (name == slideline_keyword) call check_slideline(deck, cards, kinds, contact)
     end associate
@@ -275,7 +276,7 @@ contains
     subroutine refuse(what)
       character(*), intent(in) :: what
 
-      call reject_field(deck, place_of(card, 'LCINT'), 'is a curve of interference that '//what)
+      call reject_field(deck, location_of(card, 'LCINT'), 'is a curve of interference that '//what)
     end subroutine refuse
 
   end subroutine read_interference
@@ -390,8 +391,8 @@ contains
           call report_field(deck, card, names(k), 'is not a strength: ties that break (TIE 2) ' &
           //'need NFLS and SFLS, more than 0')
       else if (abs(contact%strength(k)) > 0.0_wp) then
-        call warn_of_field(deck, place_of(card, names(k)), 'has no effect: only ties that break ' &
-          //'(TIE 2) have strengths')
+        call warn_of_field(deck, location_of(card, names(k)), &
+          'has no effect: only ties that break '//'(TIE 2) have strengths')
         contact%strength(k) = 0.0_wp
       end if
     end do

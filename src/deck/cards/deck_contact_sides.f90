@@ -15,26 +15,26 @@ module deck_contact_sides_m
     chain_broken, chain_repeated, chain_short
   use deck_ids_m, only : index_of, kind_names, a_node_set, a_part, a_part_set, a_segment_set, &
     a_shell_set
-  use deck_lines_m, only : deck_t, place_t, line_warning
+  use deck_lines_m, only : deck_t, location_t, line_warning
   use deck_cards_m, only : reject_field
   use deck_contact_m, only : contact_cards_t, side_fields
-  use deck_values_m, only : resolve_id, place_of
-  use sorting_m, only : distinct, place_among
+  use deck_values_m, only : resolve_id, location_of
+  use sorting_m, only : distinct, index_among
   implicit none
   private
-  public :: mesh_outline_t, elements_of, find_side, set_nodes, mark_surface, find_surface, &
+  public :: mesh_boundary_t, elements_of, find_side, set_nodes, mark_surface, find_surface, &
     check_overlap
 
   !> Where surfaces are looked for. Of a mesh some elements of which are refused those are made that
   !> have no nodes of them: mistakes that do not follow from theirs are told in the same pass.
-  type :: mesh_outline_t
+  type :: mesh_boundary_t
     type(boundary_t) :: outside
     logical :: is_sound = .true.        !! no element is refused
     logical, allocatable :: is_uncertain(:) !! (n_node) refused elements have them
     logical, allocatable :: is_whole(:) !! of each node set: all its nodes exist
     integer, allocatable :: elements(:) !! (n_element) by their parts, and in rising order
     integer, allocatable :: ends(:)     !! (0:parts) where those of each part end
-  end type mesh_outline_t
+  end type mesh_boundary_t
 
   !> What a side is given by.
   integer, parameter :: side_none = 0, side_parts = 1, side_nodes = 2, side_segments = 3
@@ -45,7 +45,7 @@ contains
 
   !> The elements of some parts, in rising order.
   pure function elements_of(body, parts) result(elements)
-    type(mesh_outline_t), intent(in) :: body
+    type(mesh_boundary_t), intent(in) :: body
     integer, intent(in) :: parts(:)
     integer, allocatable :: elements(:)
     integer :: i, n
@@ -87,7 +87,7 @@ contains
   subroutine mark_surface(deck, entry, body, model, is_on)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
-    type(mesh_outline_t), intent(in) :: body
+    type(mesh_boundary_t), intent(in) :: body
     type(model_t), intent(in) :: model
     logical, intent(out) :: is_on(:)  !! (n_node)
     logical :: is_of_part(size(model%parts))
@@ -137,7 +137,7 @@ contains
       end do
       if (len(same_ids) > 0) same_ids(1:1) = ';'
       if (id /= 0) call resolve_id(deck, merge(a_part_set, a_node_set, id > 0), abs(id), &
-        place_of(entry%cards(1), side_fields(side)), found, same_ids)
+        location_of(entry%cards(1), side_fields(side)), found, same_ids)
     end associate
   end subroutine refuse_side
 
@@ -147,32 +147,32 @@ contains
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
     integer, intent(in) :: side
-    type(mesh_outline_t), intent(in) :: body
+    type(mesh_boundary_t), intent(in) :: body
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
-    type(place_t) :: place
+    type(location_t) :: location
     integer :: kind, found
 
-    place = place_of(entry%cards(1), side_fields(side))
+    location = location_of(entry%cards(1), side_fields(side))
     call find_side(deck, entry, side, kind, found)
     if (kind == side_none) then
       call refuse_side(deck, entry, side)
     else if (is_known_surface(body, model, kind, found)) then
       select case (kind)
       case (side_parts)
-        call surface_of_parts(deck, model%part_sets(found)%parts, place, body, model, surface)
+        call surface_of_parts(deck, model%part_sets(found)%parts, location, body, model, surface)
       case (side_nodes)
         if (body%is_whole(found)) call surface_of_nodes(deck, model%node_sets(found)%nodes, side, &
-          place, body%outside, model, surface)
+          location, body%outside, model, surface)
       case (side_segments)
         if (allocated(model%segment_sets(found)%parts)) then
-          call surface_of_parts(deck, model%segment_sets(found)%parts, place, body, model, &
+          call surface_of_parts(deck, model%segment_sets(found)%parts, location, body, model, &
             surface)
         else
-          call surface_of_segments(deck, model%segment_sets(found), place, body%outside, model, &
+          call surface_of_segments(deck, model%segment_sets(found), location, body%outside, model, &
             surface)
           if (entry%contact%is_self .and. allocated(surface%previous)) then
-            if (any(surface%previous == 0)) call reject_field(deck, place, 'is a segment set ' &
+            if (any(surface%previous == 0)) call reject_field(deck, location, 'is a segment set ' &
               //'with an open chain; contact of a surface with itself is that of whole outlines')
           end if
         end if
@@ -184,7 +184,7 @@ contains
 
   !> Whether no refused element has nodes of the surface.
   pure function is_known_surface(body, model, kind, found)
-    type(mesh_outline_t), intent(in) :: body
+    type(mesh_boundary_t), intent(in) :: body
     type(model_t), intent(in) :: model
     integer, intent(in) :: kind, found
     logical :: is_known_surface
@@ -198,10 +198,10 @@ contains
   end function is_known_surface
 
   !> Chains of the edges of a segment set, in any order and walked either way.
-  subroutine surface_of_segments(deck, set, place, outside, model, surface)
+  subroutine surface_of_segments(deck, set, location, outside, model, surface)
     type(deck_t), intent(inout) :: deck
     type(segment_set_t), intent(in) :: set
-    type(place_t), intent(in) :: place
+    type(location_t), intent(in) :: location
     type(boundary_t), intent(in) :: outside
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
@@ -213,7 +213,7 @@ contains
       edge = find_edge(outside, set%nodes(1, i), set%nodes(2, i))
       if (edge == 0) edge = find_edge(outside, set%nodes(2, i), set%nodes(1, i))
       if (edge == 0) then
-        call reject_field(deck, place, 'is a set with the edge between nodes ' &
+        call reject_field(deck, location, 'is a set with the edge between nodes ' &
           //to_text(model%mesh%node_id(set%nodes(1, i)))//' and ' &
           //to_text(model%mesh%node_id(set%nodes(2, i)))//', which is no outer edge of the mesh')
         return
@@ -221,16 +221,17 @@ contains
       is_chosen(edge) = .true.
     end do
     call boundary_surface(outside, is_chosen, surface, crossing)
-    if (crossing > 0) call reject_field(deck, place, 'is a set whose edges touch each other at ' &
+    if (crossing > 0) call reject_field(deck, location, &
+      'is a set whose edges touch each other at ' &
       //'node '//to_text(model%mesh%node_id(crossing))//'; give the surface as a node set')
   end subroutine surface_of_segments
 
   !> Exterior boundary of a set of parts, found in a mesh of these parts alone.
-  subroutine surface_of_parts(deck, parts, place, body, model, surface)
+  subroutine surface_of_parts(deck, parts, location, body, model, surface)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: parts(:)
-    type(place_t), intent(in) :: place
-    type(mesh_outline_t), intent(in) :: body
+    type(location_t), intent(in) :: location
+    type(mesh_boundary_t), intent(in) :: body
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
     type(boundary_t) :: boundary
@@ -239,7 +240,7 @@ contains
 
     elements = elements_of(body, parts)
     if (size(elements) == 0) then
-      call reject_field(deck, place, 'has no boundary: its parts have no elements')
+      call reject_field(deck, location, 'has no boundary: its parts have no elements')
       return
     end if
     element_nodes = model%mesh%element_nodes(:, elements)
@@ -247,14 +248,14 @@ contains
     order = [(i, i=1, size(nodes))]
     do i = 1, size(elements)
       do k = 1, 4
-        element_nodes(k, i) = place_among(nodes, order, element_nodes(k, i))
+        element_nodes(k, i) = index_among(nodes, order, element_nodes(k, i))
       end do
     end do
     call find_boundary(element_nodes, spread(.true., 1, size(elements)), &
       spread(.true., 1, size(nodes)), boundary)
     call boundary_surface(boundary, spread(.true., 1, boundary%n_edge), surface, crossing)
     if (crossing > 0) then
-      call reject_field(deck, place, 'has a boundary that touches itself at node ' &
+      call reject_field(deck, location, 'has a boundary that touches itself at node ' &
         //to_text(model%mesh%node_id(nodes(crossing)))//'; give the surface as a node set')
       return
     end if
@@ -264,11 +265,11 @@ contains
   end subroutine surface_of_parts
 
   !> Chain of a node set.
-  subroutine surface_of_nodes(deck, nodes, side, place, outside, model, surface)
+  subroutine surface_of_nodes(deck, nodes, side, location, outside, model, surface)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: nodes(:)
     integer, intent(in) :: side
-    type(place_t), intent(in) :: place
+    type(location_t), intent(in) :: location
     type(boundary_t), intent(in) :: outside
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
@@ -277,20 +278,20 @@ contains
     call chain_surface(outside, nodes, surface, outcome, bad_nodes)
     select case (outcome)
     case (chain_turned)
-      call line_warning(deck, place%line, 'turned'//to_text(place%line)//side_names(side), &
+      call line_warning(deck, location%line, 'turned'//to_text(location%line)//side_names(side), &
         'the '//trim(side_names(side))//' surface was walked clockwise round its body and ' &
         //'has been turned')
     case (chain_ordered)
-      call line_warning(deck, place%line, 'ordered'//to_text(place%line)//side_names(side), &
+      call line_warning(deck, location%line, 'ordered'//to_text(location%line)//side_names(side), &
         'the nodes of the '//trim(side_names(side))//' surface were not in walking order and ' &
         //'have been put in order')
     case (chain_short)
-      call reject_field(deck, place, 'is a set with fewer than two nodes, which is no surface')
+      call reject_field(deck, location, 'is a set with fewer than two nodes, which is no surface')
     case (chain_repeated)
-      call reject_field(deck, place, 'is a set with node ' &
+      call reject_field(deck, location, 'is a set with node ' &
         //to_text(model%mesh%node_id(bad_nodes(1)))//' in it twice')
     case (chain_broken)
-      call reject_field(deck, place, 'is a set whose nodes do not follow an outer edge of the ' &
+      call reject_field(deck, location, 'is a set whose nodes do not follow an outer edge of the ' &
         //'mesh: the first break is between nodes ' &
         //to_text(model%mesh%node_id(bad_nodes(1)))//' and ' &
         //to_text(model%mesh%node_id(bad_nodes(2))))
@@ -303,7 +304,7 @@ contains
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
     type(surface_t), intent(in) :: sides(2)
-    type(mesh_outline_t), intent(in) :: body
+    type(mesh_boundary_t), intent(in) :: body
     type(model_t), intent(in) :: model
     type(body_view_t) :: views(2)
     type(overlap_t) :: found(2)
@@ -319,7 +320,7 @@ contains
       call find_crossing(model, sides(k), views(k), pair)
       if (pair(1) == 0) cycle
       crosses = .true.
-      call reject_field(deck, place_of(entry%cards(1), side_fields(k)), 'is a surface that ' &
+      call reject_field(deck, location_of(entry%cards(1), side_fields(k)), 'is a surface that ' &
         //'crosses itself: the segment between '//ends_text(model, sides(k), pair(1)) &
         //' crosses the one between '//ends_text(model, sides(k), pair(2)))
     end do
@@ -327,7 +328,8 @@ contains
     if (.not. (has_closed_chain(sides(1)) .or. has_closed_chain(sides(2)))) return
     do k = 1, n_side
       call find_overlap(model, sides(k), sides(k), views(k), .true., found(k))
-      if (found(k)%segment > 0) call reject_field(deck, place_of(entry%cards(1), side_fields(k)), &
+      if (found(k)%segment > 0) call reject_field(deck, location_of(entry%cards(1), &
+        side_fields(k)), &
         'is a surface that overlaps itself: '//depth_text(model, sides(k), found(k)))
     end do
     if (n_side == 1) return
@@ -339,7 +341,7 @@ contains
     k = 1
     if (found(2)%depth*found(1)%allowed > found(1)%depth*found(2)%allowed &
       .or. found(1)%segment == 0) k = 2
-    call reject_field(deck, place_of(entry%cards(1), 'SURFB'), 'overlaps the slave surface at ' &
+    call reject_field(deck, location_of(entry%cards(1), 'SURFB'), 'overlaps the slave surface at ' &
       //'the start: '//depth_text(model, sides(3 - k), found(k)))
   end subroutine check_overlap
 

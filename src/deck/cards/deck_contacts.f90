@@ -10,19 +10,19 @@ module deck_contacts_m
   use surfaces_m, only : surface_t, part_at_axis
   use model_m, only : model_t
   use boundary_m, only : find_boundary
-  use deck_lines_m, only : deck_t, place_t, blocks_of, line_error, line_warning
+  use deck_lines_m, only : deck_t, location_t, blocks_of, line_error, line_warning
   use deck_fields_m, only : card_t
   use deck_cards_m, only : reject_field, warn_of_field
   use deck_choose_type_m, only : choose_type
   use deck_contact_m, only : contact_cards_t, transducer, read_contact
-  use deck_contact_sides_m, only : mesh_outline_t, find_side, set_nodes, mark_surface, &
+  use deck_contact_sides_m, only : mesh_boundary_t, find_side, set_nodes, mark_surface, &
     find_surface, check_overlap
   use deck_control_m, only : control_cards, warn_of_explicit
   use deck_friction_m, only : default_friction_t, read_friction_rule, warn_of_unused
   use deck_loads_m, only : orient_pressures
   use deck_overrides_m, only : check_words
-  use deck_values_m, only : integer_of, real_of, has_field, place_of, refuse_duplicates
-  use sorting_m, only : place_among, sorted_order
+  use deck_values_m, only : integer_of, real_of, has_field, location_of, refuse_duplicates
+  use sorting_m, only : index_among, sorted_order
   implicit none
   private
   public :: read_contacts
@@ -30,12 +30,12 @@ module deck_contacts_m
 contains
 
   !> All interfaces and transducers, and the edges of pressure loads. All else but ends is known.
-  subroutine read_contacts(deck, kinds, places, is_sound, body, model)
+  subroutine read_contacts(deck, kinds, locations, is_sound, body, model)
     type(deck_t), intent(inout) :: deck
     type(contact_kind_t), intent(in) :: kinds(:)          !! contact types that exist
-    type(place_t), intent(in) :: places(:)                !! where each pressure load stands
+    type(location_t), intent(in) :: locations(:)                !! where each pressure load stands
     logical, intent(in) :: is_sound(:)                    !! (n_element) elements not refused
-    type(mesh_outline_t), intent(inout) :: body                !! gets the outer edges
+    type(mesh_boundary_t), intent(inout) :: body                !! gets the outer edges
     type(model_t), intent(inout) :: model
     type(contact_cards_t), allocatable :: contacts(:), transducers(:)
     integer :: i
@@ -47,7 +47,7 @@ contains
       end do
     end if
     call find_outer_edges(deck, contacts, is_sound, model, body)
-    call orient_pressures(deck, places, body%outside, body%is_uncertain, model)
+    call orient_pressures(deck, locations, body%outside, body%is_uncertain, model)
     allocate (model%contacts(size(contacts)))
     do i = 1, size(contacts)
       call build_surfaces(deck, body, model, contacts(i))
@@ -92,7 +92,7 @@ contains
       model%controls%contact_step = integer_of(cards(2), 'ECDT')
       if (model%controls%implicit%is_on) call warn_of_explicit(deck, cards(2), 'ECDT')
       call read_friction_rule(cards(3), cards(3), ['SFRIC', 'DFRIC', 'EDC  ', 'VFC  '], &
-        default%rule, default%place)
+        default%rule, default%location)
     end do
     blocks = blocks_of(deck, 'CONTACT_')
     measures = deck%blocks(blocks)%name == transducer
@@ -123,7 +123,7 @@ contains
     type(contact_cards_t), intent(in) :: contacts(:)
     logical, intent(in) :: is_sound(:)
     type(model_t), intent(in) :: model
-    type(mesh_outline_t), intent(inout) :: body
+    type(mesh_boundary_t), intent(inout) :: body
     logical, allocatable :: among(:)
     integer :: i, k, n, kind, found
 
@@ -152,7 +152,7 @@ contains
   !> The elements of each part, so that an interface looks at its own alone. Part 0: not there.
   subroutine sort_by_part(model, body)
     type(model_t), intent(in) :: model
-    type(mesh_outline_t), intent(inout) :: body
+    type(mesh_boundary_t), intent(inout) :: body
     integer :: i
 
     allocate (body%ends(0:size(model%parts)), source=0)
@@ -175,7 +175,7 @@ contains
   !> chooses.
   subroutine build_surfaces(deck, body, model, entry)
     type(deck_t), intent(inout) :: deck
-    type(mesh_outline_t), intent(in) :: body
+    type(mesh_boundary_t), intent(in) :: body
     type(model_t), intent(in) :: model
     type(contact_cards_t), intent(inout) :: entry
     type(surface_t) :: sides(2)
@@ -211,7 +211,7 @@ contains
 
     if (size(sides(1)%nodes) == 0 .or. size(sides(2)%nodes) == 0) return
     order = sorted_order(int(sides(1)%nodes, long))
-    shared = pack(sides(2)%nodes, [(place_among(sides(1)%nodes, order, sides(2)%nodes(i)) > 0, &
+    shared = pack(sides(2)%nodes, [(index_among(sides(1)%nodes, order, sides(2)%nodes(i)) > 0, &
       i=1, size(sides(2)%nodes))])
     n = size(shared)
     names = ''
@@ -219,7 +219,7 @@ contains
       names = names//' '//to_text(model%mesh%node_id(shared(i)))
     end do
     if (n > 5) names = names//' and '//to_text(n - 5)//' more'
-    if (n > 0) call reject_field(deck, place_of(entry%cards(1), 'SURFB'), &
+    if (n > 0) call reject_field(deck, location_of(entry%cards(1), 'SURFB'), &
       'shares nodes with the slave surface:'//names)
   end subroutine check_common_nodes
 
@@ -227,7 +227,7 @@ contains
   subroutine build_transducers(deck, entries, body, model)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entries(:)
-    type(mesh_outline_t), intent(in) :: body
+    type(mesh_boundary_t), intent(in) :: body
     type(model_t), intent(inout) :: model
     logical, allocatable :: touches(:), is_on(:) !! (n_node)
     integer :: i, k
@@ -266,8 +266,8 @@ contains
     if (entry%contact%damping > 0.0_wp) call line_warning(deck, &
       deck%blocks(entry%block)%keyword, 'implicit contact damping', &
       'contact damping (VDC) '//no_effect)
-    if (entry%contact%search_interval > 0) call warn_of_field(deck, place_of(entry%cards(merge(1, &
-      2, has_field(entry%cards(1), 'FREQ'))), 'FREQ'), no_effect)
+    if (entry%contact%search_interval > 0) call warn_of_field(deck, &
+      location_of(entry%cards(merge(1, 2, has_field(entry%cards(1), 'FREQ'))), 'FREQ'), no_effect)
     select case (entry%contact%penalty_unit)
     case (penalty_share)
       reason = 'asks for a share of the largest stable penalty of an explicit step'
@@ -276,7 +276,7 @@ contains
     case default
       return
     end select
-    call reject_field(deck, place_of(entry%cards(2), 'PUNIT'), reason//', which the implicit ' &
+    call reject_field(deck, location_of(entry%cards(2), 'PUNIT'), reason//', which the implicit ' &
       //'method does not have (0, 1 or 2)')
   end subroutine check_implicit_method
 
@@ -449,8 +449,8 @@ contains
     type(contact_cards_t), intent(in) :: entry
     character(*), intent(in) :: message
 
-    call reject_field(deck, place_of(entry%cards(2), 'PUNIT'), 'asks for implicit springs, which ' &
-      //'in this version '//message)
+    call reject_field(deck, location_of(entry%cards(2), 'PUNIT'), &
+      'asks for implicit springs, which '//'in this version '//message)
   end subroutine refuse
 
 end module deck_contacts_m

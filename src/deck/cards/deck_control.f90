@@ -19,7 +19,7 @@ module deck_control_m
     check_rest, report_field, warn_of_field
   use deck_ids_m, only : a_node, a_curve
   use deck_supports_m, only : find_body
-  use deck_values_m, only : integer_of, real_of, place_of, is_blank, has_field, find_id
+  use deck_values_m, only : integer_of, real_of, location_of, is_blank, has_field, find_id
   use history_tables_m, only : history_tables, n_table, table_of_keyword, table_nodout, &
     table_elout, table_nodfor, table_secforc
   use deck_part_m, only : hourglass_form, hourglass_coefficient
@@ -62,7 +62,7 @@ contains
 
     k = field_number(card%names, name)
     if (.not. card%blank(k) .and. (card%i(k) /= 0 .or. abs(card%r(k)) > 0.0_wp)) call &
-      warn_of_field(deck, place_of(card, name), 'has no effect with the implicit method')
+      warn_of_field(deck, location_of(card, name), 'has no effect with the implicit method')
   end subroutine warn_of_explicit
 
   !> End, step, units and what parts have of hourglass control. Curves, and whether the run is
@@ -203,7 +203,7 @@ contains
       if (len(word) == 0) word = trim(defaults(k))
       call find_unit(k, word, units%names(k), values(k))
       if (len_trim(units%names(k)) > 0) cycle
-      call warn_of_field(deck, place_of(card, fields(k)), 'is no unit that messages know (' &
+      call warn_of_field(deck, location_of(card, fields(k)), 'is no unit that messages know (' &
         //trim(known(k))//'), so that they name none')
       values(k) = 0.0_wp
     end do

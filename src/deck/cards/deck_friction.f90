@@ -4,10 +4,10 @@ module deck_friction_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use contacts_m, only : contact_t, friction_rule_t, has_friction
-  use deck_lines_m, only : deck_t, place_t, line_warning
+  use deck_lines_m, only : deck_t, location_t, line_warning
   use deck_fields_m, only : card_t, smallest_value
   use deck_cards_m, only : report_field, warn_of_field
-  use deck_values_m, only : real_of, is_bad, place_of
+  use deck_values_m, only : real_of, is_bad, location_of
   implicit none
   private
   public :: read_friction, read_stock_friction, read_penalty_friction, read_friction_rule, &
@@ -16,76 +16,76 @@ module deck_friction_m
   !> Friction of *CONTROL_CONTACT.
   type :: default_friction_t
     type(friction_rule_t) :: rule
-    type(place_t) :: place      !! SFRIC, line 0 without the keyword
+    type(location_t) :: location      !! SFRIC, line 0 without the keyword
     logical :: acts = .false.   !! some interface takes it
   end type default_friction_t
 
 contains
 
   !> *CONTACT_2D_SLIDELINE: FD follows FS where it is blank or 0.
-  subroutine read_friction(cards, rule, place)
+  subroutine read_friction(cards, rule, location)
     type(card_t), intent(in) :: cards(:)
     type(friction_rule_t), intent(inout) :: rule
-    type(place_t), intent(out) :: place       !! of the coefficient
+    type(location_t), intent(out) :: location       !! of the coefficient
 
-    call read_friction_rule(cards(1), cards(3), ['FS', 'FD', 'DC', 'VC'], rule, place)
+    call read_friction_rule(cards(1), cards(3), ['FS', 'FD', 'DC', 'VC'], rule, location)
     if (.not. abs(real_of(cards(1), 'FD')) > 0.0_wp) rule%sliding = rule%at_rest
     rule%stiffness = real_of(cards(3), 'TFAC')
   end subroutine read_friction
 
   !> *CONTACT_2D_AUTOMATIC_: without friction of its own that of *CONTROL_CONTACT.
-  subroutine read_stock_friction(cards, default, rule, place)
+  subroutine read_stock_friction(cards, default, rule, location)
     type(card_t), intent(in) :: cards(:)
     type(default_friction_t), intent(inout) :: default
     type(friction_rule_t), intent(inout) :: rule
-    type(place_t), intent(out) :: place       !! of the coefficient
+    type(location_t), intent(out) :: location       !! of the coefficient
 
-    call read_friction_rule(cards(1), cards(3), ['FS', 'FD', 'DC', 'VC'], rule, place)
+    call read_friction_rule(cards(1), cards(3), ['FS', 'FD', 'DC', 'VC'], rule, location)
     if (max(abs(rule%at_rest), abs(rule%sliding), abs(rule%decay), abs(rule%most)) > 0.0_wp) return
     default%acts = .true.
     if (.not. max(default%rule%at_rest, default%rule%sliding) > 0.0_wp) return
     rule = default%rule
-    place = default%place
+    location = default%location
   end subroutine read_stock_friction
 
   !> Coefficients at rest and sliding, decay, largest stress; and where the coefficient stands. A
   !> coefficient in fast sliding of 0 where there is one at rest: stock cards mean it. As our own
   !> card means FS by it, the smallest number stands for it: a deck that is written with our card
   !> then gives the same bits.
-  subroutine read_friction_rule(card, last, names, rule, place)
+  subroutine read_friction_rule(card, last, names, rule, location)
     type(card_t), intent(in) :: card, last     !! of the first three, of the stress
     character(*), intent(in) :: names(4)
     type(friction_rule_t), intent(inout) :: rule
-    type(place_t), intent(out) :: place
+    type(location_t), intent(out) :: location
 
     rule%at_rest = real_of(card, trim(names(1)))
     rule%sliding = real_of(card, trim(names(2)))
     if (rule%at_rest > 0.0_wp .and. .not. abs(rule%sliding) > 0.0_wp) rule%sliding = smallest_value
     rule%decay = real_of(card, trim(names(3)))
     rule%most = real_of(last, trim(names(4)))
-    place = place_of(card, trim(names(1)))
+    location = location_of(card, trim(names(1)))
     if (rule%sliding > 0.0_wp .and. .not. rule%at_rest > 0.0_wp) &
-      place = place_of(card, trim(names(2)))
+      location = location_of(card, trim(names(2)))
   end subroutine read_friction_rule
 
   !> *CONTACT_2D_PENALTY_FRICTION: FRIC alone, or FRIC_L and FRIC_H as FS and FD. The card has no
   !> decay between two that differ.
-  subroutine read_penalty_friction(deck, card, rule, place)
+  subroutine read_penalty_friction(deck, card, rule, location)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     type(friction_rule_t), intent(inout) :: rule
-    type(place_t), intent(out) :: place       !! of the coefficient
+    type(location_t), intent(out) :: location       !! of the coefficient
     character(6), parameter :: names(3) = ['FRIC  ', 'FRIC_L', 'FRIC_H']
     integer :: i
 
-    place = place_of(card, names(1))
+    location = location_of(card, names(1))
     do i = 1, size(names)
       if (is_bad(card, names(i)) .or. .not. real_of(card, names(i)) > 0.0_wp) cycle
       if (.not. rule%at_rest > 0.0_wp) then
         rule%at_rest = real_of(card, names(i))
-        place = place_of(card, names(i))
+        location = location_of(card, names(i))
       else if (abs(real_of(card, names(i)) - rule%at_rest) > 0.0_wp) then
-        call report_field(deck, card, names(i), 'is not '//trim(place%name) &
+        call report_field(deck, card, names(i), 'is not '//trim(location%name) &
           //' "'//to_text(rule%at_rest)//'", and the card does not say at which speeds they ' &
           //'act; *CONTACT_2D_SLIDELINE has FS, FD and the decay DC')
       end if
@@ -99,7 +99,7 @@ contains
     type(default_friction_t), intent(in) :: default
 
     if (max(default%rule%at_rest, default%rule%sliding) > 0.0_wp .and. .not. default%acts) &
-      call warn_of_field(deck, default%place, 'has no effect here: it is the friction of ' &
+      call warn_of_field(deck, default%location, 'has no effect here: it is the friction of ' &
       //'*CONTACT_2D_AUTOMATIC_ cards that have none (FS, FD, DC and VC 0)')
   end subroutine warn_of_unused
 

@@ -14,7 +14,7 @@ module deck_hardening_m
   use deck_cards_m, only : cursor_t, next_card, report_field, warn_of_field
   use deck_curves_m, only : table_t
   use deck_ids_m, only : a_curve, a_table, index_of
-  use deck_values_m, only : integer_of, real_of, is_bad, find_id, reals_of, place_of
+  use deck_values_m, only : integer_of, real_of, is_bad, find_id, reals_of, location_of
   implicit none
   private
   public :: read_piecewise, read_hydro, read_tangent_modulus, read_johnson_cook, &
@@ -314,7 +314,7 @@ contains
       if (real_of(heat, 'PC') < 0.0_wp) then
         material%spall = nint(real_of(heat, 'SPALL'))
       else if (nint(real_of(heat, 'SPALL')) /= spall_stress) then
-        call warn_of_field(deck, place_of(heat, 'SPALL'), 'has no effect: PC is 0, so that ' &
+        call warn_of_field(deck, location_of(heat, 'SPALL'), 'has no effect: PC is 0, so that ' &
           //'nothing breaks by tension')
       end if
       flow%d = [reals_of(heat, 'D1', 'D4'), real_of(damage, 'D5')]
@@ -339,7 +339,7 @@ contains
       if (any(card%bad) .or. material%needs_eos) return
       associate (shear => young/(2.0_wp*(1.0_wp + poisson)))
         if (abs(shear - material%shear) > same_shear*material%shear) call warn_of_field(deck, &
-          place_of(card, 'G'), 'is not E/(2 (1 + PR)) = '//to_text(shear)//': the deviator ' &
+          location_of(card, 'G'), 'is not E/(2 (1 + PR)) = '//to_text(shear)//': the deviator ' &
           //'goes with G; E and PR give the bulk modulus where there is no equation of state')
       end associate
       material%bulk = young/(3.0_wp*(1.0_wp - 2.0_wp*poisson))

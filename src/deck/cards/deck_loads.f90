@@ -15,7 +15,7 @@ module deck_loads_m
     check_rest, report_field, reject_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, a_part, a_part_set, a_curve, a_segment_set, a_system
-  use deck_lines_m, only : deck_t, place_t, blocks_of, line_text, line_error
+  use deck_lines_m, only : deck_t, location_t, blocks_of, line_text, line_error
   use deck_sets_m, only : check_edge
   use deck_supports_m, only : card_nodes, find_body, mark_axis, mark_nodes_with_mass, &
     warn_of_nodes, across_axis
@@ -138,18 +138,18 @@ contains
   end subroutine read_rigid_loads
 
   !> *LOAD_SEGMENT and _SET: edges as the cards name them, until the outer edges are known.
-  subroutine read_pressures(deck, model, places)
+  subroutine read_pressures(deck, model, locations)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
-    type(place_t), allocatable, intent(out) :: places(:) !! where each stands
+    type(location_t), allocatable, intent(out) :: locations(:) !! where each stands
     type(pressure_load_t), allocatable :: loads(:)
-    type(place_t), allocatable :: all_places(:)
+    type(location_t), allocatable :: all_locations(:)
     type(cursor_t) :: cursor
     type(card_t) :: card
     integer, allocatable :: edges(:, :)
     integer :: curve, set, k, n
 
-    allocate (loads(64), all_places(64))
+    allocate (loads(64), all_locations(64))
     n = 0
     do while (next_of(deck, 'LOAD_SEGMENT', cursor, card))
       if (has_field(card, 'N1')) call check_edge(deck, card)
@@ -168,37 +168,37 @@ contains
       do k = 1, size(edges, 2)
         if (n == size(loads)) then
           loads = [loads, loads]
-          all_places = [all_places, all_places]
+          all_locations = [all_locations, all_locations]
         end if
         n = n + 1
         loads(n) = pressure_load_t(edges(:, k), curve, real_of(card, 'SF'), real_of(card, 'AT'))
-        all_places(n) = place_t(card%line, 1, merge('N1  ', 'SSID', has_field(card, 'N1')))
+        all_locations(n) = location_t(card%line, 1, merge('N1  ', 'SSID', has_field(card, 'N1')))
       end do
     end do
     model%conditions%pressures = loads(:n)
-    places = all_places(:n)
+    locations = all_locations(:n)
   end subroutine read_pressures
 
   !> Edges that carry pressure walked counter-clockwise round the body; others are errors, one for
   !> each card.
-  subroutine orient_pressures(deck, places, outside, is_uncertain, model)
+  subroutine orient_pressures(deck, locations, outside, is_uncertain, model)
     type(deck_t), intent(inout) :: deck
-    type(place_t), intent(in) :: places(:)       !! where each load stands
+    type(location_t), intent(in) :: locations(:)       !! where each load stands
     type(boundary_t), intent(in) :: outside
     logical, intent(in) :: is_uncertain(:)           !! (n_node) edges of these are not judged
     type(model_t), intent(inout) :: model
     integer :: i, reported_line
 
     reported_line = 0
-    do i = 1, size(places)
+    do i = 1, size(locations)
       associate (nodes => model%conditions%pressures(i)%nodes)
         if (any(is_uncertain(nodes))) cycle
         if (find_edge(outside, nodes(1), nodes(2)) > 0) cycle
         if (find_edge(outside, nodes(2), nodes(1)) > 0) then
           nodes = nodes([2, 1])
-        else if (places(i)%line /= reported_line) then
-          reported_line = places(i)%line
-          call reject_field(deck, places(i), ': nodes '//to_text(model%mesh%node_id(nodes(1))) &
+        else if (locations(i)%line /= reported_line) then
+          reported_line = locations(i)%line
+          call reject_field(deck, locations(i), ': nodes '//to_text(model%mesh%node_id(nodes(1))) &
             //' and '//to_text(model%mesh%node_id(nodes(2)))//' are not the ends of an outer ' &
             //'edge of the mesh')
         end if

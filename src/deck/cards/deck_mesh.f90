@@ -6,7 +6,7 @@ module deck_mesh_m
   use log_m, only : to_text
   use mesh_m, only : mesh_t
   use model_m, only : model_t
-  use deck_lines_m, only : deck_t, place_t, count_rows, line_error, line_warning
+  use deck_lines_m, only : deck_t, location_t, count_rows, line_error, line_warning
   use deck_fields_m, only : field_number, card_t
   use deck_cards_m, only : cursor_t, next_of, report_field, reject_field
   use deck_ids_m, only : a_node, an_element, a_part
@@ -145,7 +145,7 @@ contains
     associate (x => mesh%coordinates)
       do i = 1, mesh%n_node
         if (x(1, i) < -tolerance) then
-          call reject_field(deck, place_t(deck%maps(a_node)%lines(i), 1, 'X'), ': node ' &
+          call reject_field(deck, location_t(deck%maps(a_node)%lines(i), 1, 'X'), ': node ' &
             //to_text(mesh%node_id(i))//' lies at a radius below 0 (an axisymmetric deck ' &
             //'turns about x = 0, and x is the radius)')
         else if (x(1, i) <= tolerance) then
@@ -189,7 +189,7 @@ contains
       end associate
       is_sound(i) = len(problem) == 0
       if (.not. is_sound(i)) then
-        call reject_field(deck, place_t(deck%maps(an_element)%lines(i), 1, 'EID'), problem)
+        call reject_field(deck, location_t(deck%maps(an_element)%lines(i), 1, 'EID'), problem)
       else if (area <= 0.0_wp) then
         mesh%element_nodes(:, i) = mesh%element_nodes([1, 4, 3, 2], i)
         if (mesh%element_nodes(2, i) == mesh%element_nodes(3, i)) &

@@ -10,7 +10,7 @@ module deck_part_m
   use parts_m, only : section_t, hourglass_t, part_t, hourglass_viscous, hourglass_stiffness, &
     hourglass_assumed, form_one_point, form_full, form_axisym_one_point, form_axisym_full
   use deck_ids_m, only : a_part, a_section, a_material, an_hourglass, an_element
-  use deck_lines_m, only : deck_t, place_t, blocks_of, count_rows, line_text, line_error, &
+  use deck_lines_m, only : deck_t, location_t, blocks_of, count_rows, line_text, line_error, &
     line_warning, flag_blank
   use deck_fields_m, only : field_number, card_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
@@ -240,8 +240,8 @@ contains
     first = findloc(is_known, .true., dim=1)
     do i = 1, size(model%parts)
       if (.not. is_known(i) .or. (is_axisymmetric(i) .eqv. is_axisymmetric(first))) cycle
-      call reject_field(deck, place_t(deck%maps(a_part)%lines(i), 2, 'SECID'), 'is a section of ' &
-        //trim(forms(merge(2, 1, &
+      call reject_field(deck, location_t(deck%maps(a_part)%lines(i), 2, 'SECID'), &
+        'is a section of '//trim(forms(merge(2, 1, &
         is_axisymmetric(i))))//', but part '//to_text(model%parts(first)%id) &
         //' is of '//trim(forms(merge(2, 1, is_axisymmetric(first))))//': a deck is of one kind')
     end do
@@ -339,15 +339,15 @@ contains
     integer, intent(in) :: i                !! body
     type(model_t), intent(in) :: model
     integer, intent(inout) :: owner(:)      !! (n_node) of the bodies so far
-    type(place_t) :: place
+    type(location_t) :: location
     integer :: k
 
     associate (body => model%rigids(i))
-      place = place_t(deck%maps(a_part)%lines(body%part), 2, 'PID')
+      location = location_t(deck%maps(a_part)%lines(body%part), 2, 'PID')
       if (size(body%nodes) == 0 .and. .not. deck%maps(an_element)%has_refused) &
-        call reject_field(deck, place, ': this rigid part has no elements, so no mass')
+        call reject_field(deck, location, ': this rigid part has no elements, so no mass')
       k = findloc(owner(body%nodes) > 0, .true., dim=1)
-      if (k > 0) call reject_field(deck, place, ': node ' &
+      if (k > 0) call reject_field(deck, location, ': node ' &
         //to_text(model%mesh%node_id(body%nodes(k)))//' belongs to this rigid part and to rigid ' &
         //'part '//to_text(model%parts(model%rigids(owner(body%nodes(k)))%part)%id) &
         //'; bodies that share nodes must be one part')

@@ -32,8 +32,8 @@ module deck_sets_m
     integer :: n_named = 0              !! members that its cards name
     integer :: n = 0
     integer, allocatable :: members(:)  !! n, while it is read maybe longer
-    integer, allocatable :: place(:)    !! (n_node) of a general set, while it is read: where each
-                                        !! node stands, 0 where it does not
+    integer, allocatable :: position(:)    !! (n_node) of a general set, while it is read: where
+                                           !! each node stands, 0 where it does not
   end type set_t
 
 contains
@@ -167,8 +167,8 @@ contains
     set%is_boundary = index(deck%blocks(i_block)%name, 'SET_2D_SEGMENT') == 1
     set%is_whole = is_sound
     set%members = set%members(:set%n)
-    if (allocated(set%place)) then
-      set%members = pack(set%members, set%place(set%members) == [(k, k=1, set%n)])
+    if (allocated(set%position)) then
+      set%members = pack(set%members, set%position(set%members) == [(k, k=1, set%n)])
       set%n_named = size(set%members)
     end if
     if (is_sound .and. set%n_named == 0) call line_error(deck, set%line, 'the set is empty')
@@ -255,7 +255,7 @@ contains
     integer :: i, k, found
 
     action = upper_case(field_text(deck, card, 1))
-    if (.not. allocated(set%place)) allocate (set%place(model%mesh%n_node), source=0)
+    if (.not. allocated(set%position)) allocate (set%position(model%mesh%n_node), source=0)
     if (all(action /= ['ALL  ', 'NODE ', 'DNODE', 'PART ', 'DPART'])) then
       call report_field(deck, card, 'OPTION', 'is not ALL, NODE, DNODE, PART or DPART (boxes are ' &
         //'not available in slideline)')
@@ -286,10 +286,10 @@ contains
       do j = 1, size(nodes)
         if (nodes(j) == 0) cycle
         if (action(1:1) == 'D') then
-          set%place(nodes(j)) = 0
-        else if (set%place(nodes(j)) == 0) then
+          set%position(nodes(j)) = 0
+        else if (set%position(nodes(j)) == 0) then
           call append(set, nodes(j:j))
-          set%place(nodes(j)) = set%n
+          set%position(nodes(j)) = set%n
         end if
       end do
     end subroutine change_members

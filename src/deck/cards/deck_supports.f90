@@ -11,7 +11,7 @@ module deck_supports_m
   use deck_cards_m, only : cursor_t, next_of, report_field, reject_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, an_element, a_part, a_curve, a_node_set, a_system
-  use deck_lines_m, only : deck_t, place_t, blocks_of, line_warning, line_error
+  use deck_lines_m, only : deck_t, location_t, blocks_of, line_warning, line_error
   use deck_sets_m, only : remove_duplicates
   use deck_values_m, only : integer_of, real_of, has_field, read_active_time, find_id, along_axes
   implicit none
@@ -61,15 +61,15 @@ contains
   end subroutine find_body
 
   !> A warning of nodes where there are some: how many, the first of them.
-  subroutine warn_of_nodes(deck, line, key, model, nodes, what, advice)
+  subroutine warn_of_nodes(deck, line, key, model, nodes, text, advice)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line
     character(*), intent(in) :: key
     type(model_t), intent(in) :: model
     integer, intent(in) :: nodes(:)
-    character(*), intent(in) :: what, advice !! between the two, and behind them
+    character(*), intent(in) :: text, advice !! between the two, and behind them
 
-    if (size(nodes) > 0) call line_warning(deck, line, key, to_text(size(nodes))//what &
+    if (size(nodes) > 0) call line_warning(deck, line, key, to_text(size(nodes))//text &
       //to_text(model%mesh%node_id(nodes(1)))//advice)
   end subroutine warn_of_nodes
 
@@ -108,8 +108,8 @@ contains
     allocate (fixed(2, model%mesh%n_node), source=.false.)
     do i = 1, model%mesh%n_node
       if (codes(i) >= 0 .and. codes(i) <= 7) fixed(:, i) = along_axes(:2, codes(i))
-      if (any(fixed(:, i))) call refuse_rigid(deck, place_t(deck%maps(a_node)%lines(i), 1, 'TC'), &
-        [i], owner, model, 'CON1 and CON2 of *MAT_RIGID hold the body')
+      if (any(fixed(:, i))) call refuse_rigid(deck, location_t(deck%maps(a_node)%lines(i), 1, &
+        'TC'), [i], owner, model, 'CON1 and CON2 of *MAT_RIGID hold the body')
       if (is_free(i)) fixed(:, i) = .true.
     end do
     nodes = pack([(i, i=1, size(is_free))], is_free .and. model%mesh%n_element > 0 &
@@ -120,8 +120,8 @@ contains
       if (any(card%bad)) cycle
       call card_nodes(deck, card, model, nodes)
       along = [integer_of(card, 'DOFX'), integer_of(card, 'DOFY')] == 1
-      if (any(along)) call refuse_rigid(deck, place_t(card%line, 1, field=1), nodes, owner, model, &
-        'CON1 and CON2 of *MAT_RIGID hold the body')
+      if (any(along)) call refuse_rigid(deck, location_t(card%line, 1, field=1), nodes, owner, &
+        model, 'CON1 and CON2 of *MAT_RIGID hold the body')
       if (integer_of(card, 'CID') /= 0) then
         call fix_along_axes(deck, card, along, nodes, model, fixed)
       else
@@ -185,16 +185,16 @@ contains
   !> Nodes of a rigid body follow the body: nothing else may hold or move them. (LS-DYNA passes over
   !> such constraints or turns them into some of the body, according to its version.) One error for
   !> each card.
-  subroutine refuse_rigid(deck, place, nodes, owner, model, advice)
+  subroutine refuse_rigid(deck, location, nodes, owner, model, advice)
     type(deck_t), intent(inout) :: deck
-    type(place_t), intent(in) :: place
+    type(location_t), intent(in) :: location
     integer, intent(in) :: nodes(:), owner(:)
     type(model_t), intent(in) :: model
     character(*), intent(in) :: advice
     integer :: i
 
     i = findloc(owner(nodes) > 0, .true., dim=1)
-    if (i > 0) call reject_field(deck, place, ': node '//to_text(model%mesh%node_id(nodes(i))) &
+    if (i > 0) call reject_field(deck, location, ': node '//to_text(model%mesh%node_id(nodes(i))) &
       //' belongs to rigid part '//to_text(model%parts(model%rigids(owner(nodes(i)))%part)%id) &
       //' and follows it; '//advice)
   end subroutine refuse_rigid
@@ -228,7 +228,7 @@ contains
         cycle
       end if
       call card_nodes(deck, card, model, nodes)
-      call refuse_rigid(deck, place_t(card%line, 1, field=1), nodes, owner, model, &
+      call refuse_rigid(deck, location_t(card%line, 1, field=1), nodes, owner, model, &
         '*BOUNDARY_PRESCRIBED_MOTION_RIGID moves the body')
       if (motion%kind == motion_acceleration .and. is_static) call report_field(deck, card, 'VAD', &
         'is an acceleration, which has no meaning in statics ' &
@@ -292,7 +292,7 @@ contains
         if (.not. has_mass(motion%node)) message = &
           'belongs to no element, so it has no mass to be moved'
         reported_line = lines(i)
-        if (len(message) > 0) call reject_field(deck, place_t(reported_line, 1, field=1), &
+        if (len(message) > 0) call reject_field(deck, location_t(reported_line, 1, field=1), &
           ': node '//to_text(model%mesh%node_id(motion%node))//' '//message)
       end associate
     end do

@@ -4,13 +4,13 @@
 module deck_values_m
   use kinds_m, only : wp
   use deck_ids_m, only : id_map_t, map_ids, index_of, kind_names, a_node, an_element, a_part
-  use deck_lines_m, only : place_t, deck_t, line_error, where_text
+  use deck_lines_m, only : location_t, deck_t, line_error, where_text
   use deck_fields_m, only : field_number, card_t
   use log_m, only : to_text
   use deck_cards_m, only : reject_field, report_field
   implicit none
   private
-  public :: integer_of, real_of, reals_of, has_field, is_blank, is_bad, place_of, &
+  public :: integer_of, real_of, reals_of, has_field, is_blank, is_bad, location_of, &
     read_active_time, define, map_defined, find_id, resolve_id, refuse_duplicates, note_refused
 
   !> Directions x, y and z of the codes TC, DOF and CON: 0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7
@@ -86,14 +86,14 @@ contains
   end function is_bad
 
   !> Where a field stands, for what is found later.
-  function place_of(card, name) result(place)
+  function location_of(card, name) result(location)
     type(card_t), intent(in) :: card
     character(*), intent(in) :: name
-    type(place_t) :: place
+    type(location_t) :: location
 
-    place = place_t(line=card%line, card=card%number, name=name, &
+    location = location_t(line=card%line, card=card%number, name=name, &
       field=field_number(card%names, name))
-  end function place_of
+  end function location_of
 
   !> Times from which and until when something acts; the default of the end, also that of 0, is
   !> never.
@@ -164,7 +164,7 @@ contains
     do i = 1, size(duplicates)
       name = field
       if (present(of_beams)) name = merge('PID  ', name, of_beams(duplicates(i)))
-      call reject_field(deck, place_t(map%lines(duplicates(i)), merge(2, 1, kind == a_part), &
+      call reject_field(deck, location_t(map%lines(duplicates(i)), merge(2, 1, kind == a_part), &
         trim(name)), 'is the number of another '//trim(kind_names(kind))//' (' &
         //where_text(deck, map%lines(index_of(map, map%ids(duplicates(i)))))//')')
     end do
@@ -205,10 +205,10 @@ contains
   end subroutine find_by_position
 
   !> As `find_id`, of a card that was read some time ago.
-  subroutine resolve_id(deck, kind, id, place, found, suffix)
+  subroutine resolve_id(deck, kind, id, location, found, suffix)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: kind, id
-    type(place_t), intent(in) :: place
+    type(location_t), intent(in) :: location
     integer, intent(out) :: found
     character(*), intent(in), optional :: suffix !! how the message goes on
     character(:), allocatable :: message
@@ -217,7 +217,7 @@ contains
     if (found > 0 .or. deck%maps(kind)%incomplete) return
     message = 'is no '//trim(kind_names(kind))//' of this deck'
     if (present(suffix)) message = message//suffix
-    call reject_field(deck, place, message)
+    call reject_field(deck, location, message)
   end subroutine resolve_id
 
   !> An error of the line of each number that has come before.

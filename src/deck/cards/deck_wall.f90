@@ -50,7 +50,7 @@ contains
     type(model_t), intent(in) :: model
     type(wall_t), intent(inout) :: wall
     type(cursor_t) :: cursor
-    type(card_t) :: card, place
+    type(card_t) :: card, plane_card
     character(:), allocatable :: title
     logical :: is_tracked(model%mesh%n_node)
     integer :: k
@@ -58,17 +58,18 @@ contains
     call open_cursor(deck, i_block, cursor)
     if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, wall%id, title)
     call next_card(deck, cursor, 1, card)
-    call next_card(deck, cursor, 2, place)
+    call next_card(deck, cursor, 2, plane_card)
     call check_rest(deck, cursor)
     call read_active_time(deck, card, ['BIRTH', 'DEATH'], wall%birth, wall%death)
-    call read_plane(deck, place, wall)
-    wall%friction = real_of(place, 'FRIC')
+    call read_plane(deck, plane_card, wall)
+    wall%friction = real_of(plane_card, 'FRIC')
     if (any(.not. abs(wall%friction - [2.0_wp, 3.0_wp]) > 0.0_wp)) then
-      call report_field(deck, place, 'FRIC', 'asks for welding of nodes to the wall, which this ' &
+      call report_field(deck, plane_card, 'FRIC', &
+        'asks for welding of nodes to the wall, which this ' &
         //'version does not have (0 none, 1 sticks, between: coefficient of friction)')
     else if (wall%friction < 0.0_wp .or. wall%friction > friction_sticks) then
-      call report_field(deck, place, 'FRIC', 'is not the friction of a wall (0 none, 1 sticks, ' &
-        //'between: coefficient of friction)')
+      call report_field(deck, plane_card, 'FRIC', &
+        'is not the friction of a wall (0 none, 1 sticks, '//'between: coefficient of friction)')
     end if
     call find_nodes(deck, card, deck%blocks(i_block)%keyword, model, is_tracked)
     is_tracked = is_tracked .and. mark_nodes_with_mass(deck, model)

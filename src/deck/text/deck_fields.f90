@@ -338,7 +338,7 @@ contains
     type(card_spec_t), intent(in) :: spec
     type(card_t), intent(inout) :: card
     integer, intent(in) :: k
-    character(:), allocatable :: name, place
+    character(:), allocatable :: name, location
 
     if (spec%zeros(k) == ' ') return
     name = to_text(spec%defaults(k))
@@ -346,8 +346,8 @@ contains
       - anint(spec%defaults(k))) > 0.0_wp) name = to_text(nint(spec%defaults(k)))
     name = trim(spec%names(k))//' = '//name//' of *' &
       //deck%blocks(block_of_line(deck, card%line))%given
-    place = where_text(deck, card%line)
-    place = ' ('//place(:index(place, ': *', back=.true.) - 1)//')'
+    location = where_text(deck, card%line)
+    location = ' ('//location(:index(location, ': *', back=.true.) - 1)//')'
     if (spec%zeros(k) == '~') then
       call append_zero(deck%kept_zeros)
       return
@@ -364,7 +364,7 @@ contains
       if (.not. allocated(list)) list = ''
       if (index(', '//list, ', '//name//' (') > 0) return
       if (len(list) > 0) list = list//', '
-      list = list//name//place
+      list = list//name//location
     end subroutine append_zero
 
   end subroutine interpret_zero

@@ -69,16 +69,16 @@ contains
     type(id_map_t), intent(in) :: map
     integer, intent(in) :: id
     integer :: found
-    integer :: place
+    integer :: position
 
     found = 0
     if (allocated(map%table)) then
       if (id < map%low .or. id - map%low >= size(map%table)) return
       found = map%table(id - map%low + 1)
     else if (allocated(map%sorted)) then
-      place = first_position(map%sorted, id)
-      if (place > size(map%sorted)) return
-      if (map%sorted(place) == id) found = map%order(place)
+      position = first_position(map%sorted, id)
+      if (position > size(map%sorted)) return
+      if (map%sorted(position) == id) found = map%order(position)
     end if
   end function index_of
 
@@ -108,23 +108,23 @@ contains
   end subroutine ids_between
 
   !> First place in an increasing list that holds `id` or more.
-  pure function first_position(sorted, id) result(place)
+  pure function first_position(sorted, id) result(position)
     integer, intent(in) :: sorted(:)
     integer, intent(in) :: id
-    integer :: place
+    integer :: position
     integer :: low, high
 
     low = 0
     high = size(sorted) + 1
     do while (high - low > 1)
-      place = low + (high - low)/2
-      if (sorted(place) < id) then
-        low = place
+      position = low + (high - low)/2
+      if (sorted(position) < id) then
+        low = position
       else
-        high = place
+        high = position
       end if
     end do
-    place = high
+    position = high
   end function first_position
 
 end module deck_ids_m

@@ -13,7 +13,7 @@ module deck_lines_m
   use log_m, only : to_text
   implicit none
   private
-  public :: deck_t, blocks_of, count_rows, source_t, block_t, place_t, file_paths, &
+  public :: deck_t, blocks_of, count_rows, source_t, block_t, location_t, file_paths, &
     line_text, order_line, block_of_line, where_text, line_error, &
     line_warning, replace_line, written_text, line_finding, shown_text, marked_line, &
     layout_marks, word_t, made_line_t, given_by, words_of, format_standard, format_long, &
@@ -54,12 +54,12 @@ module deck_lines_m
   end type block_t
 
   !> A field of a card, for messages after the card has been left.
-  type :: place_t
+  type :: location_t
     integer :: line = 0
     integer :: card = 1
     character(12) :: name = ''  !! of the field
     integer :: field = 0        !! its position, where there is no name: members of sets
-  end type place_t
+  end type location_t
 
   !> A word of the command line that changes the deck.
   type :: word_t

@@ -41,7 +41,7 @@ contains
     integer, intent(in) :: source
     character(:), allocatable, intent(inout) :: folders !! of *INCLUDE_PATH so far, a line each; as
                                                         !! before behind the file
-    integer :: start, last, next, number, n_before, n_above
+    integer :: start, last, next, number, n_stray_lines, n_above
     integer(int8) :: flags
     logical :: in_block
 
@@ -49,7 +49,7 @@ contains
     n_above = len(folders)
     start = 1
     number = 0
-    n_before = 0
+    n_stray_lines = 0
     in_block = .false.
     if (index(deck%sources(source)%text(:min(3, len(deck%sources(source)%text))), &
       char(239)//char(187)//char(191)) == 1) start = 4
@@ -77,14 +77,14 @@ contains
           call limit_line(deck)
         end if
       else if (last >= start) then
-        if (len_trim(deck%sources(source)%text(start:last)) > 0) n_before = n_before + 1
+        if (len_trim(deck%sources(source)%text(start:last)) > 0) n_stray_lines = n_stray_lines + 1
       end if
       start = next
     end do
     if (in_block) call close_block(deck, source, folders)
     folders = folders(:n_above)
-    if (n_before > 0) call line_error(deck, 0, 'in '//deck%sources(source)%path//', ' &
-      //to_text(n_before)//' line(s) before the first keyword (a line that starts with *)')
+    if (n_stray_lines > 0) call line_error(deck, 0, 'in '//deck%sources(source)%path//', ' &
+      //to_text(n_stray_lines)//' line(s) before the first keyword (a line that starts with *)')
   end subroutine cut_source
 
   !> The last line may not be too long.

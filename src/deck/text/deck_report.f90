@@ -239,7 +239,7 @@ contains
     integer, intent(in) :: order(:) !! of the errors, from the first of the kind on
     integer, intent(in) :: k
     character(:), allocatable :: text
-    character(:), allocatable :: place, before
+    character(:), allocatable :: location, before
     integer :: i, n
 
     text = '  | '//to_text(report%kinds(k)%n)//' times'
@@ -248,16 +248,16 @@ contains
     do i = 1, size(order)
       associate (note => report%errors(order(i)))
         if (note%kind /= k .or. .not. allocated(note%finding%file)) cycle
-        place = note%finding%file//':'//to_text(note%finding%line)
+        location = note%finding%file//':'//to_text(note%finding%line)
       end associate
-      if (place == before) cycle
+      if (location == before) cycle
       if (n == 3) then
         text = text//' and so on'
         exit
       end if
       n = n + 1
-      text = text//trim(merge(': ', ', ', n == 1))//' '//place
-      before = place
+      text = text//trim(merge(': ', ', ', n == 1))//' '//location
+      before = location
     end do
     text = text//new_line('a')
   end function count_text
