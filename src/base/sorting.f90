@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Sorting by key, and looking for keys among sorted ones.
+!> Sorting by key and binary search.
 module sorting_m
   use kinds_m, only : long
   implicit none
@@ -57,7 +57,7 @@ contains
     end do
   end subroutine merge_runs
 
-  !> The values of a list, each once, in rising order.
+  !> The distinct values of a list in increasing order.
   pure function distinct(values) result(rising)
     integer, intent(in) :: values(:)
     integer, allocatable :: rising(:)
@@ -77,7 +77,7 @@ contains
     rising = rising(:n)
   end function distinct
 
-  !> Where a value stands on a list, 0: nowhere. `order` sorts the list.
+  !> Index of a value in a list that `order` sorts; 0 where it is not in the list.
   pure function index_among(values, order, value) result(found)
     integer, intent(in) :: values(:), order(:)
     integer, intent(in) :: value

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> What can not be right of contact surfaces at time zero: a chain that crosses itself, and bodies
-!> that lie in each other deeper than whole outlines are caught (doc/theory/contact.md, sections 3.4
-!> and 3.7). Linear in elements and segments. Used once, when the deck is read.
+!> Checks of contact surfaces at time zero: chains that cross themselves, and bodies that overlap by
+!> more than contact of closed boundaries resolves (doc/theory/contact.md, sections 3.4 and 3.7).
+!> Linear in elements and segments. Used once, when the deck is read.
 module initial_overlap_m
   use element_finder_m, only : body_view_t, most_crossed, half_thickness, list_crossed, ends_of, &
     is_inside_body, element_at
@@ -14,34 +14,33 @@ module initial_overlap_m
   private
   public :: overlap_t, find_crossing, find_overlap
 
-  !> Part of the allowed depth by which bodies that lie half an element deep may miss it.
+  !> Relative tolerance of the allowed depth.
   real(wp), parameter :: tolerance = 1.0e-9_wp
-  !> Deep places for which all segments are looked at; bodies with more of them overlap anyway.
+  !> Maximum number of deep samples that are compared with all segments.
   integer, parameter :: max_checked = 1000
 
-  !> Cosine of the angle between two outward normals from which on they look the same way.
+  !> Cosine of the angle between two outward normals from which on they count as parallel.
   real(wp), parameter :: same_way = 0.5_wp
 
-  !> A place of a surface that is looked at.
+  !> A sample position on a surface.
   type :: sample_t
     real(wp) :: x(2)
-    integer :: nodes(2)           !! mesh: node of the place twice, or ends of its segment
+    integer :: nodes(2)           !! mesh: its node, twice, or the ends of its segment
     real(wp) :: normal(2)         !! outward, 0 at a node
-    integer :: neighbours(5)          !! segments next to it where it lies on the surface asked, or
-                                      !! 0
+    integer :: neighbours(5)      !! adjacent segments where both surfaces are the same, or 0
   end type sample_t
 
-  !> The place of one surface that is deepest in the bodies of another, by the depth allowed there.
+  !> The deepest sample of one surface in the bodies of another, relative to the allowed depth.
   type :: overlap_t
-    integer :: nodes(2) = 0       !! as above
-    integer :: segment = 0        !! of the other surface; 0: nothing found
-    real(wp) :: depth = 0.0_wp    !! distance to that, m
-    real(wp) :: allowed = 0.0_wp  !! half of the row of elements behind it, m
+    integer :: nodes(2) = 0       !! of the sample
+    integer :: segment = 0        !! of the other surface; 0: no overlap
+    real(wp) :: depth = 0.0_wp    !! distance from the segment, m
+    real(wp) :: allowed = 0.0_wp  !! half of the thickness of the element behind it, m
   end type overlap_t
 
 contains
 
-  !> The first two segments of one chain that cross, 0 where there are none.
+  !> The first pair of segments of one chain that cross each other; 0 where there is none.
   pure subroutine find_crossing(model, surface, view, pair)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: surface
@@ -62,11 +61,11 @@ contains
     pair = 0
   end subroutine find_crossing
 
-  !> The place of `own` that is deepest behind `other`, where it is half of a row of elements deep
-  !> or deeper behind all segments but those that look the same way as its own: these it has come
-  !> through from behind. Places are nodes, middles of segments, and middles of what of a segment
-  !> lies between two crossings. What stands nearest to an open end of `other` is no contact and is
-  !> left alone, and so are the segments next to its own where both are one surface.
+  !> The deepest sample of `own` in the bodies of `other`, if it is at least half of an element
+  !> thickness behind all segments. Segments with a normal parallel to that of the sample are
+  !> skipped: the sample has reached them from behind. Samples are nodes, midpoints of segments, and
+  !> midpoints between two crossings of a segment. Samples closest to an open end of `other` are
+  !> skipped, and so are adjacent segments where both surfaces are the same.
   pure subroutine find_overlap(model, own, other, view, is_same, found)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: own, other
@@ -106,7 +105,7 @@ contains
     end do
   end subroutine find_overlap
 
-  !> Keep one place if it is too deep and the deepest so far.
+  !> Record a sample if it is too deep and the deepest so far.
   pure subroutine check_sample(model, other, view, sample, n_checked, found)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: other
@@ -168,7 +167,7 @@ contains
       least%allowed)
   end subroutine measure
 
-  !> Outward unit normal of a segment with these ends.
+  !> Outward unit normal of a segment.
   pure function normal_of(ends) result(normal)
     real(wp), intent(in) :: ends(2, 2)
     real(wp) :: normal(2)
@@ -176,7 +175,7 @@ contains
     normal = [ends(2, 2) - ends(2, 1), ends(1, 1) - ends(1, 2)]/norm2(ends(:, 2) - ends(:, 1))
   end function normal_of
 
-  !> A place seen from a segment.
+  !> Local coordinates of a position on a segment.
   pure function local_from(model, surface, segment, x) result(local)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: surface

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> User ids to indices: a direct table where ids lie close together, a sorted list elsewhere.
+!> Map from user ids to indices: a table where ids are dense, else a sorted list.
 module deck_ids_m
   use kinds_m, only : long
   use sorting_m, only : sorted_order
@@ -9,7 +9,7 @@ module deck_ids_m
     a_part, a_section, a_material, an_eos, an_hourglass, a_curve, a_table, a_node_set, a_part_set, &
     a_segment_set, a_shell_set, a_system
 
-  !> Kinds of things that have user ids.
+  !> Kinds of entities with user ids.
   integer, parameter :: n_kind = 14, a_node = 1, an_element = 2, a_part = 3, a_section = 4, &
     a_material = 5, an_eos = 6, an_hourglass = 7, a_curve = 8, a_table = 9, a_node_set = 10, &
     a_part_set = 11, a_segment_set = 12, a_shell_set = 13, a_system = 14
@@ -17,13 +17,13 @@ module deck_ids_m
     'section', 'material', 'equation of state', '*HOURGLASS', 'curve', 'table', 'node set', &
     'part set', 'segment set', 'shell set', 'coordinate system']
 
-  !> Index of every id of one kind.
+  !> Map of one kind of entity.
   type :: id_map_t
     logical :: has_refused = .false.                !! some definitions were refused: others may be
                                                     !! meant
-    logical :: incomplete = .false.          !! lost, or there is none where a deck has some
-    integer :: n = 0                         !! things defined so far
-    integer, allocatable :: ids(:), lines(:) !! of each, and where it is defined
+    logical :: incomplete = .false.          !! some are refused, or none where a deck needs some
+    integer :: n = 0                         !! number defined so far
+    integer, allocatable :: ids(:), lines(:) !! ids and lines of their definitions
     integer :: low = 1                       !! smallest id of the table
     integer, allocatable :: table(:)         !! index of id low, low + 1, ..., 0 where there is none
     integer, allocatable :: sorted(:)        !! ids in increasing order ...
@@ -107,7 +107,7 @@ contains
     end if
   end subroutine ids_between
 
-  !> First place in an increasing list that holds `id` or more.
+  !> Position of the first element of an increasing list that is at least `id`.
   pure function first_position(sorted, id) result(position)
     integer, intent(in) :: sorted(:)
     integer, intent(in) :: id
