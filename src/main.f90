@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> slideline: arguments in, exit status out.
+!> Main program of slideline.
 program slideline
   use, intrinsic :: iso_c_binding, only : c_int, c_null_char
   use check_m, only : check_deck

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> The surfaces of an interface from the sets that SURFA and SURFB name: parts, nodes or segments.
-!> Those that can not be right as the bodies stand at time zero are refused: one that crosses or
-!> overlaps itself, and bodies that overlap deeper than contact between whole outlines takes up.
+!> Surfaces of an interface from the sets SURFA and SURFB: parts, nodes or segments. Surfaces that
+!> cross or overlap themselves at time zero are errors, and bodies that overlap by more than contact
+!> of closed boundaries resolves.
 module deck_contact_sides_m
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -25,25 +25,25 @@ module deck_contact_sides_m
   public :: mesh_boundary_t, elements_of, find_side, set_nodes, mark_surface, find_surface, &
     check_overlap
 
-  !> Where surfaces are looked for. Of a mesh some elements of which are refused those are made that
-  !> have no nodes of them: mistakes that do not follow from theirs are told in the same pass.
+  !> Boundary data of the mesh. Surfaces without nodes of refused elements are built even where some
+  !> elements are refused, so that independent errors are reported in the same pass.
   type :: mesh_boundary_t
     type(boundary_t) :: outside
     logical :: is_sound = .true.        !! no element is refused
-    logical, allocatable :: is_uncertain(:) !! (n_node) refused elements have them
-    logical, allocatable :: is_whole(:) !! of each node set: all its nodes exist
-    integer, allocatable :: elements(:) !! (n_element) by their parts, and in rising order
-    integer, allocatable :: ends(:)     !! (0:parts) where those of each part end
+    logical, allocatable :: is_uncertain(:) !! (n_node) nodes of refused elements
+    logical, allocatable :: is_whole(:) !! (node sets) all nodes of the set exist
+    integer, allocatable :: elements(:) !! (n_element) sorted by part, then increasing
+    integer, allocatable :: ends(:)     !! (0:parts) end of each part in `elements`
   end type mesh_boundary_t
 
-  !> What a side is given by.
+  !> Kind of set of a side.
   integer, parameter :: side_none = 0, side_parts = 1, side_nodes = 2, side_segments = 3
   !> Names of the two sides in messages.
   character(6), parameter :: side_names(2) = ['slave ', 'master']
 
 contains
 
-  !> The elements of some parts, in rising order.
+  !> The elements of some parts, in increasing order.
   pure function elements_of(body, parts) result(elements)
     type(mesh_boundary_t), intent(in) :: body
     integer, intent(in) :: parts(:)
@@ -61,8 +61,8 @@ contains
     elements = distinct(elements)
   end function elements_of
 
-  !> The set of one side: a part set (more than 0) or a node set (less than 0), or the segment set
-  !> where the deck has no such set of that number.
+  !> The set of one side: a part set (more than 0) or a node set (less than 0), else the segment set
+  !> of this number.
   subroutine find_side(deck, entry, side, kind, found)
     type(deck_t), intent(in) :: deck
     type(contact_cards_t), intent(in) :: entry
@@ -82,8 +82,8 @@ contains
     end associate
   end subroutine find_side
 
-  !> Nodes of a transducer, with an error where there is no such set; of parts all, since the inner
-  !> ones carry no contact. None where they are in doubt.
+  !> Mark the nodes of a transducer (of parts all nodes), or report that its set does not exist.
+  !> None are marked where they belong to refused elements.
   subroutine mark_surface(deck, entry, body, model, is_on)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
@@ -120,7 +120,7 @@ contains
     if (kind == side_segments) nodes = [model%segment_sets(found)%nodes]
   end function set_nodes
 
-  !> An error of a side that names no set, with what else has its number.
+  !> Report a side whose set does not exist, and other entities with its number.
   subroutine refuse_side(deck, entry, side)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
@@ -141,8 +141,8 @@ contains
     end associate
   end subroutine refuse_side
 
-  !> The surface of one side of an interface. It has no nodes where some of a node set do not exist,
-  !> which has been told, and where it is in doubt.
+  !> The surface of one side of an interface; without nodes where errors of the set or of its
+  !> elements have been reported.
   subroutine find_surface(deck, entry, side, body, model, surface)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
@@ -173,7 +173,7 @@ contains
             surface)
           if (entry%contact%is_self .and. allocated(surface%previous)) then
             if (any(surface%previous == 0)) call reject_field(deck, location, 'is a segment set ' &
-              //'with an open chain; contact of a surface with itself is that of whole outlines')
+              //'with an open chain; self contact needs closed boundaries')
           end if
         end if
       end select
@@ -197,7 +197,7 @@ contains
     is_known_surface = .not. any(body%is_uncertain(set_nodes(model, kind, found)))
   end function is_known_surface
 
-  !> Chains of the edges of a segment set, in any order and walked either way.
+  !> Surface of a segment set, with edges in any order and direction.
   subroutine surface_of_segments(deck, set, location, outside, model, surface)
     type(deck_t), intent(inout) :: deck
     type(segment_set_t), intent(in) :: set
@@ -226,7 +226,7 @@ contains
       //'node '//to_text(model%mesh%node_id(crossing))//'; give the surface as a node set')
   end subroutine surface_of_segments
 
-  !> Exterior boundary of a set of parts, found in a mesh of these parts alone.
+  !> Surface of a set of parts: their exterior boundary.
   subroutine surface_of_parts(deck, parts, location, body, model, surface)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: parts(:)
@@ -264,7 +264,7 @@ contains
     if (model%erodes) surface%parts = parts
   end subroutine surface_of_parts
 
-  !> Chain of a node set.
+  !> Surface of a node set: a chain.
   subroutine surface_of_nodes(deck, nodes, side, location, outside, model, surface)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: nodes(:)
@@ -279,12 +279,12 @@ contains
     select case (outcome)
     case (chain_turned)
       call line_warning(deck, location%line, 'turned'//to_text(location%line)//side_names(side), &
-        'the '//trim(side_names(side))//' surface was walked clockwise round its body and ' &
-        //'has been turned')
+        'the '//trim(side_names(side))//' surface is numbered clockwise about its body and has ' &
+        //'been reversed')
     case (chain_ordered)
       call line_warning(deck, location%line, 'ordered'//to_text(location%line)//side_names(side), &
-        'the nodes of the '//trim(side_names(side))//' surface were not in walking order and ' &
-        //'have been put in order')
+        'the nodes of the '//trim(side_names(side))//' surface are not in walking order and ' &
+        //'have been sorted')
     case (chain_short)
       call reject_field(deck, location, 'is a set with fewer than two nodes, which is no surface')
     case (chain_repeated)
@@ -298,8 +298,8 @@ contains
     end select
   end subroutine surface_of_nodes
 
-  !> Check one interface. With a birth time after zero bodies may be anywhere before it; between
-  !> open chains penetrations are taken as they are, however deep.
+  !> Check the surfaces of an interface for crossings and overlaps. Overlaps are not checked with a
+  !> birth time after zero, nor between open chains.
   subroutine check_overlap(deck, entry, sides, body, model)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
@@ -333,7 +333,8 @@ contains
         'is a surface that overlaps itself: '//depth_text(model, sides(k), found(k)))
     end do
     if (n_side == 1) return
-    ! Either side in the bodies of the other: the deeper one by the depth allowed is told.
+    ! Each side in the bodies of the other; the deeper one relative to the allowed depth is
+    ! reported.
     do k = 1, 2
       call find_overlap(model, sides(k), sides(3 - k), views(3 - k), .false., found(k))
     end do
@@ -345,7 +346,7 @@ contains
       //'the start: '//depth_text(model, sides(3 - k), found(k)))
   end subroutine check_overlap
 
-  !> Which place lies how deep, behind what, and how deep it may.
+  !> Text of an overlap: position, segment, depth and allowed depth.
   function depth_text(model, other, found) result(text)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: other
@@ -353,12 +354,12 @@ contains
     character(:), allocatable :: text
 
     text = 'node '//to_text(model%mesh%node_id(found%nodes(1)))
-    if (found%nodes(1) /= found%nodes(2)) text = 'a place between nodes ' &
+    if (found%nodes(1) /= found%nodes(2)) text = 'a point between nodes ' &
       //to_text(model%mesh%node_id(found%nodes(1)))//' and ' &
       //to_text(model%mesh%node_id(found%nodes(2)))
     text = text//' lies '//to_text(found%depth)//in_units(model%controls%units, 'L') &
       //' deep behind the segment between ' &
-      //ends_text(model, other, found%segment)//'; contact takes up less than ' &
+      //ends_text(model, other, found%segment)//'; contact resolves less than ' &
       //to_text(found%allowed)//in_units(model%controls%units, 'L') &
       //' there, half of the element behind it'
   end function depth_text
