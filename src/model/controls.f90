@@ -13,7 +13,7 @@ module controls_m
   private
   public :: boundary_rows_t, list_boundaries, boundary_load, boundary_body_load, &
     boundary_pressure, boundary_motion, boundary_body_motion, force_group_t, group_nodes, &
-    cross_section_t, find_edges, mark_corners, end_condition_t, end_node_coordinate, &
+    cross_section_t, set_edges, set_corners, end_condition_t, end_node_coordinate, &
     end_node_contact, end_body_displacement, end_body_distance, end_contact, controls_t, &
     relaxation_t, &
     implicit_t, output_plan_t, interval_t, is_asked, length_by_side, length_by_diagonal, &
@@ -241,7 +241,7 @@ contains
   end function group_nodes
 
   !> Set the edges of a cross section: element edges with both nodes in it, each once.
-  subroutine find_edges(element_nodes, section)
+  subroutine set_edges(element_nodes, section)
     integer, intent(in) :: element_nodes(:, :) !! (4, n_element)
     type(cross_section_t), intent(inout) :: section
     integer(long), allocatable :: keys(:)
@@ -266,10 +266,10 @@ contains
     order = sorted_order(keys)
     keys = keys(order)
     section%edges = edges(:, pack(order, [(i == 1 .or. keys(i) > keys(max(i - 1, 1)), i=1, n)]))
-  end subroutine find_edges
+  end subroutine set_edges
 
   !> Set the element corners that are nodes of a cross section, after the layout is built.
-  subroutine mark_corners(layout, n_node, section)
+  subroutine set_corners(layout, n_node, section)
     type(layout_t), intent(in) :: layout
     integer, intent(in) :: n_node
     type(cross_section_t), intent(inout) :: section
@@ -283,7 +283,7 @@ contains
       section%is_corner(:, i) = &
         is_in(layout%slot_nodes(:, layout%element_slot(section%elements(i))))
     end do
-  end subroutine mark_corners
+  end subroutine set_corners
 
   !> Visit the components of a cross section.
   subroutine visit_section(self, visitor)

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Renumbers the nodes of a complete model and builds its layout.
 module renumber_m
-  use controls_m, only : list_boundaries, is_asked, group_nodes, mark_corners, &
+  use controls_m, only : list_boundaries, is_asked, group_nodes, set_corners, &
     end_node_coordinate, end_node_contact
   use exposed_quads_m, only : find_exposed
   use history_tables_m, only : table_bndout
@@ -208,7 +208,7 @@ contains
         section%edges(2, :) = new_index(section%edges(2, :))
         section%elements = section%elements(sorted_order(int( &
           model%layout%element_slot(section%elements), long)))
-        call mark_corners(model%layout, model%mesh%n_node, section)
+        call set_corners(model%layout, model%mesh%n_node, section)
       end associate
     end do
   end subroutine renumber_sections

@@ -158,7 +158,7 @@ def test_a_word_that_is_too_long_is_refused(slideline, tmp_path, name):
     word = name + "x" * (4097 - len(name))
     done = slideline(word, deck=drop(end_time=0.002))
     assert done.returncode == 1
-    assert word[:50] in done.stderr and "has 4097 characters: an argument may have 4096" in done.stderr
+    assert word[:50] in done.stderr and "has 4097 characters; the limit is 4096" in done.stderr
     assert not (tmp_path / "job.log").exists()
     if name == "memory=":
         assert slideline(word[:-1], deck=drop(end_time=0.002)).returncode == 0

@@ -46,7 +46,7 @@ contains
         call check_implicit_method(deck, contacts(i))
       end do
     end if
-    call find_outer_edges(deck, contacts, is_sound, model, body)
+    call set_outer_edges(deck, contacts, is_sound, model, body)
     call orient_pressures(deck, locations, body%outside, body%is_uncertain, model)
     allocate (model%contacts(size(contacts)))
     do i = 1, size(contacts)
@@ -118,7 +118,7 @@ contains
 
   !> Find the outer edges between nodes of contact sets and of pressure loads, and the nodes of
   !> refused elements.
-  subroutine find_outer_edges(deck, contacts, is_sound, model, body)
+  subroutine set_outer_edges(deck, contacts, is_sound, model, body)
     type(deck_t), intent(in) :: deck
     type(contact_cards_t), intent(in) :: contacts(:)
     logical, intent(in) :: is_sound(:)
@@ -147,7 +147,7 @@ contains
     end do
     call find_boundary(model%mesh%element_nodes, is_sound, among, body%outside)
     call sort_by_part(model, body)
-  end subroutine find_outer_edges
+  end subroutine set_outer_edges
 
   !> Sort the elements by part, so that an interface visits its own elements only. Part 0: refused.
   subroutine sort_by_part(model, body)

@@ -8,7 +8,7 @@ module deck_overrides_m
   use deck_fields_m, only : largest_value, smallest_value
   use deck_lines_m, only : deck_t, word_t, line_error, line_warning
   use deck_edits_m, only : given_number, set_field, append_block
-  use deck_parameter_table_m, only : parameter_t, add_parameter
+  use deck_parameter_table_m, only : parameter_t, add_parameter, find_given
   implicit none
   private
   public :: is_override, override_error, read_words, edit_controls, edit_contact, find_word, &
@@ -63,7 +63,11 @@ contains
       if (len(problem) > 0) then
         call line_error(deck, 0, word%phrase//problem)
       else if (index(word%name, 'P:') == 1) then
-        ! A value from the command line wins over the deck.
+        if (find_given(deck%parameters, word%name(3:), 0) > 0) then
+          call line_error(deck, 0, word%phrase//': the parameter is given twice')
+          cycle
+        end if
+        ! A value from the command line prevails over the deck.
         item = parameter_t(name=word%name(3:), kind='?', fixed=.true.)
         item%text = word%text
         call add_parameter(deck%parameters, item)

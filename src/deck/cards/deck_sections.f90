@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> *DATABASE_CROSS_SECTION_SET: a node set and a shell set in each row, with an optional heading.
 module deck_sections_m
-  use controls_m, only : cross_section_t, find_edges
+  use controls_m, only : cross_section_t, set_edges
   use log_m, only : to_text
   use model_m, only : model_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, row_comes, report_field
@@ -76,7 +76,7 @@ contains
     if (any(model%mesh%element_nodes < 1)) return
     if (size(section%nodes) == 0 .or. size(section%elements) == 0) return
     call check_section(deck, card, model, section)
-    call find_edges(model%mesh%element_nodes, section)
+    call set_edges(model%mesh%element_nodes, section)
     is_sound = .true.
   end subroutine read_section
 

@@ -78,9 +78,9 @@ contains
     end do
     report%n_error = report%n_error + 1
     if (allocated(finding%keyword)) then
-      call find_kind(report, key_of(finding%keyword, finding%name, finding%message), k)
+      call get_kind(report, key_of(finding%keyword, finding%name, finding%message), k)
     else
-      call find_kind(report, key_of('', '', text), k)
+      call get_kind(report, key_of('', '', text), k)
     end if
     is_kept = report%n_kept < max_kept
     if (k > 0) then
@@ -108,7 +108,7 @@ contains
 
     is_done = report%n_kept >= max_kept
     if (.not. is_done) return
-    call find_kind(report, key_of(keyword, name, message), k)
+    call get_kind(report, key_of(keyword, name, message), k)
     if (k > 0) is_done = report%kinds(k)%n >= first_kept
     if (.not. is_done) return
     report%n_error = report%n_error + 1
@@ -116,7 +116,7 @@ contains
   end subroutine count_only
 
   !> Index of the kind of a key, added where there is room; 0 where there is not.
-  subroutine find_kind(report, key, k)
+  subroutine get_kind(report, key, k)
     type(report_t), intent(inout) :: report
     character(*), intent(in) :: key
     integer, intent(out) :: k
@@ -129,7 +129,7 @@ contains
     report%n_kind = report%n_kind + 1
     k = report%n_kind
     report%kinds(k)%key = key
-  end subroutine find_kind
+  end subroutine get_kind
 
   !> Key of a kind of errors: keyword, field and message, with # for each integer in field and
   !> message (the members of a set have numbered fields).
