@@ -21,7 +21,7 @@ contains
   !> Allocate an error with its message and exit status.
   subroutine raise(error, message, status)
     type(error_t), allocatable, intent(out) :: error !! the error made
-    character(*), intent(in) :: message              !! what was found and what was expected
+    character(*), intent(in) :: message
     integer, intent(in) :: status                    !! exit status
 
     allocate (error)

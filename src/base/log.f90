@@ -79,7 +79,7 @@ contains
     log%n_pending = 0
   end subroutine clear_pending
 
-  !> A warning: counted, logged and shown on standard error.
+  !> Count a warning, and write it to the log and to standard error.
   subroutine warn(log, text)
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: text

@@ -194,7 +194,7 @@ contains
     character(*), intent(in) :: name
     integer, intent(inout) :: value
     integer, intent(in), optional :: lowest, highest
-    character(*), intent(in), optional :: problem !! it has where it is not within these bounds
+    character(*), intent(in), optional :: problem !! description of a value out of bounds
     integer, allocatable :: values(:)
 
     if (visitor%is_partial) return
@@ -209,7 +209,7 @@ contains
     character(*), intent(in) :: name
     integer(long), intent(inout) :: value
     integer(long), intent(in) :: highest
-    character(*), intent(in) :: problem           !! it has where it is not from 0 to this
+    character(*), intent(in) :: problem        !! description of a value out of bounds
     integer(long), target :: copy
 
     copy = value
@@ -224,7 +224,7 @@ contains
     character(*), intent(in) :: name
     real(wp), intent(inout) :: value
     real(wp), intent(in), optional :: lowest
-    character(*), intent(in), optional :: problem !! it has where it is less
+    character(*), intent(in), optional :: problem !! description of a value below `lowest`
     real(wp), allocatable :: values(:)
 
     if (visitor%is_partial) return
@@ -445,7 +445,7 @@ contains
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     logical, intent(in) :: is_sound
-    character(*), intent(in) :: problem !! it has where it is not
+    character(*), intent(in) :: problem !! description of an invalid value
 
     if (visitor%validates .and. .not. is_sound) call &
       visitor%fail('the restart file '//visitor%path &

@@ -141,13 +141,13 @@ contains
     found = new
   end subroutine check_sample
 
-  !> How deep a place lies behind that of some segments behind which it is least deep, by what is
-  !> allowed there.
+  !> The overlap of a sample with the segment behind which it is least deep, relative to the allowed
+  !> depth.
   pure subroutine measure(model, other, sample, segments, least)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: other
     type(sample_t), intent(in) :: sample
-    integer, intent(in) :: segments(:) !! 0 counts for nothing
+    integer, intent(in) :: segments(:) !! 0 is skipped
     type(overlap_t), intent(out) :: least
     real(wp) :: depth, allowed
     integer :: k

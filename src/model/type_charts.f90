@@ -34,7 +34,7 @@ module type_charts_m
   real(wp), parameter :: estimates(n_type, 4) = reshape([0.0_wp*patch, max(patch, hertz), &
     max(patch, sliding), max(patch, ironing)], [n_type, 4])
 
-  !> Contact time of each type over that of type 1.
+  !> Contact time of each type over the time of type 1.
   real(wp), parameter :: published_time(n_type) = [1.0_wp, 1.08_wp, 1.44_wp, 1.83_wp, 2.06_wp, &
     2.43_wp, 2.58_wp]
 

@@ -56,7 +56,7 @@ contains
       end if
       contact%master_penalty = contact%penalty
     end if
-    ! The card shows what was chosen.
+    ! The effective deck has the choice.
     call set_field(deck, i_block, 'CTYPE', to_text(contact%contact_type))
     call set_field(deck, i_block, 'PEN', shortest(contact%penalty))
     call set_field(deck, i_block, 'PUNIT', to_text(contact%penalty_unit))

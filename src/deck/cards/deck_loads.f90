@@ -182,7 +182,7 @@ contains
     type(deck_t), intent(inout) :: deck
     type(location_t), intent(in) :: locations(:)       !! where each load stands
     type(boundary_t), intent(in) :: outside
-    logical, intent(in) :: is_uncertain(:)           !! (n_node) edges of these are not judged
+    logical, intent(in) :: is_uncertain(:)       !! (n_node) nodes whose edges are not checked
     type(model_t), intent(inout) :: model
     integer :: i, reported_line
 

@@ -37,7 +37,7 @@ contains
     allocate (is_sound(model%mesh%n_element))
     if (size(is_sound) > 0) is_sound = all(model%mesh%element_nodes > 0, dim=1)
     if (has_coordinates) call check_shapes(deck, model%mesh, is_sound)
-    ! A part or node that was lost with its own mistake is not told again where it is named.
+    ! References to refused parts and nodes are not reported.
     if (.not. has_coordinates .or. deck%maps(a_node)%has_refused &
       .or. deck%maps(an_element)%has_refused) is_sound = .false.
     sound = deck%report%n_error == n_before .and. model%mesh%n_node > 0 &
