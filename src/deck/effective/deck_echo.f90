@@ -65,6 +65,15 @@ contains
     call echo_short_curves(model, log)
     if (model%controls%dt_curve > 0) call write_log(log, 'time step limited by curve ' &
       //to_text(model%curves(model%controls%dt_curve)%id))
+    call echo_outputs(model, log)
+  end subroutine echo_model
+
+  !> Write the intervals of states, histories and restart files to the log.
+  subroutine echo_outputs(model, log)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    integer :: i
+
     call echo_interval('states', model%controls%output%plot)
     do i = 1, n_table
       call echo_interval(trim(history_tables(i)%name), model%controls%output%histories(i))
@@ -97,7 +106,7 @@ contains
       end if
     end subroutine echo_interval
 
-  end subroutine echo_model
+  end subroutine echo_outputs
 
   !> Write the curves that end before the end time.
   subroutine echo_short_curves(model, log)
