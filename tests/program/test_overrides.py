@@ -116,7 +116,7 @@ def test_blank_or_bad_field_that_the_command_line_gives(slideline, said, tmp_pat
     ("2,,2.0e5,", ",,0,0.0,101.0", "vdc=101.0", '"{0}101.0" {1}is not a damping in per cent of critical (0 to 100)'),
     ("2,,2.0e5,", ",,\n0.0,1.5", "tfac=1.5", '"{0}1.5" {1}is not a ratio of the tangential to the normal penalty (above 0, at most 1)'),
     ("2,,-1.0,", None, "pen=-1.0", '"{0}-1.0" {1}is not a penalty (more than 0)'),
-    ("9,,2.0e5,", None, "ctype=9", '"{0}9" {1}is not a contact type (1 classical NTS, 2 NTS-AR'),
+    ("9,,2.0e5,", None, "ctype=9", '"{0}9" {1}is not a contact type (0 the program chooses, 1 classical NTS, 2 NTS-AR'),
     ("2,11,2.0e5,", None, "ngauss=11", '"{0}11" {1}is not a number of Gauss points (1 to 10)'),
     ("2,,2.0e5,", ",,5", "punit=5", '"{0}5" {1}is not a unit of the penalty (0 force per length at each contact node, 1 stress'),
 ])
