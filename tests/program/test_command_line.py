@@ -228,6 +228,12 @@ def test_penalty(slideline, tmp_path):
     assert over != other
 
 
+def test_a_parameter_given_twice_is_refused(slideline):
+    done = slideline("p:V0=-1.0", "p:v0=-2.0", deck=drop(parametric=True))
+    assert done.returncode == 1 and '"p:v0=-2.0" on the command line: the parameter is given twice' in done.stderr
+    assert "no such parameter" not in done.stderr
+
+
 def test_parameter(slideline, tmp_path):
     assert slideline("d=a", "p:tend=0.004", "p:V0=-1.0", deck=drop(parametric=True)).returncode == 0
     assert numbers(tmp_path / "a" / "job.glstat.csv", "time")[-1] == pytest.approx(0.004, rel=1e-12)
