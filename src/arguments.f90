@@ -200,7 +200,7 @@ contains
       if (i > 0) arguments%timing = i - 1
       if (i == 0) call note('timing="'//value//'": expected phase, interface or off', problems)
     case ('memory', 'memory2')
-      continue ! memory is taken as it is needed
+      continue ! memory is allocated as needed
     case ('o', 'g', 's', 'f', 'a', 'x', 'para')
       if (index(' '//arguments%ignored, ' '//name//'=') == 0) &
         arguments%ignored = trim(adjustl(arguments%ignored//' '//name//'='))

@@ -17,10 +17,10 @@ module parts_m
     spall_tension, johnson_cook_t, rubber_t, mooney_rivlin, blatz_ko, blatz_ko_poisson, &
     erosion_t, asks_for_strain, asks_for_stress
 
-  !> Element forms. Only the element dispatcher asks for them.
+  !> Element forms, known to the element dispatcher only.
   integer, parameter :: form_one_point = 1, form_full = 2, form_axisym_one_point = 3, &
     form_axisym_full = 4
-  !> Material laws. Only the material dispatcher asks for them.
+  !> Material laws, known to the material dispatcher only.
   integer, parameter :: law_elastic = 1, law_plastic = 2, law_piecewise = 3, &
     law_johnson_cook = 4, law_crushable_foam = 5, law_hot_johnson_cook = 6, law_null = 7, &
     law_mooney_rivlin = 8, law_blatz_ko = 9

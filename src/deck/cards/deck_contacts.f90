@@ -33,7 +33,7 @@ contains
   subroutine read_contacts(deck, kinds, locations, is_sound, body, model)
     type(deck_t), intent(inout) :: deck
     type(contact_kind_t), intent(in) :: kinds(:)          !! contact types that exist
-    type(location_t), intent(in) :: locations(:)                !! where each pressure load stands
+    type(location_t), intent(in) :: locations(:)          !! of the pressure loads
     logical, intent(in) :: is_sound(:)                    !! (n_element) elements not refused
     type(mesh_boundary_t), intent(inout) :: body          !! its outer edges are set here
     type(model_t), intent(inout) :: model

@@ -138,7 +138,7 @@ contains
   subroutine read_pressures(deck, model, locations)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
-    type(location_t), allocatable, intent(out) :: locations(:) !! where each stands
+    type(location_t), allocatable, intent(out) :: locations(:) !! of the loads
     type(pressure_load_t), allocatable :: loads(:)
     type(location_t), allocatable :: all_locations(:)
     type(cursor_t) :: cursor
@@ -180,7 +180,7 @@ contains
   !> each card.
   subroutine orient_pressures(deck, locations, outside, is_uncertain, model)
     type(deck_t), intent(inout) :: deck
-    type(location_t), intent(in) :: locations(:)       !! where each load stands
+    type(location_t), intent(in) :: locations(:) !! of the loads
     type(boundary_t), intent(in) :: outside
     logical, intent(in) :: is_uncertain(:)       !! (n_node) nodes whose edges are not checked
     type(model_t), intent(inout) :: model

@@ -31,8 +31,8 @@ module deck_sets_m
     integer :: n_named = 0              !! number of members on its cards
     integer :: n = 0
     integer, allocatable :: members(:)  !! (n), longer while the set is read
-    integer, allocatable :: position(:)    !! (n_node) of a general set, while it is read: where
-                                           !! each node stands, 0 where it does not
+    integer, allocatable :: position(:) !! (n_node) of each node in a general set while it is read,
+                                        !! 0: not in it
   end type set_t
 
 contains

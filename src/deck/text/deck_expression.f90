@@ -34,7 +34,7 @@ contains
   subroutine evaluate(text, parameters, source, value, message)
     character(*), intent(in) :: text
     type(parameters_t), intent(in) :: parameters
-    integer, intent(in) :: source !! file that the text stands in
+    integer, intent(in) :: source !! file of the text
     real(wp), intent(out) :: value
     character(:), allocatable, intent(out) :: message
     type(scanner_t) :: scanner

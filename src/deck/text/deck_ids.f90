@@ -19,8 +19,7 @@ module deck_ids_m
 
   !> Map of one kind of entity.
   type :: id_map_t
-    logical :: has_refused = .false.                !! some definitions were refused: others may be
-                                                    !! meant
+    logical :: has_refused = .false.         !! some definitions were refused
     logical :: incomplete = .false.          !! some are refused, or none where a deck needs some
     integer :: n = 0                         !! number defined so far
     integer, allocatable :: ids(:), lines(:) !! ids and lines of their definitions
@@ -32,7 +31,7 @@ module deck_ids_m
 
 contains
 
-  !> Make the map; `twice` lists the positions of ids that have come before.
+  !> Build a map; `duplicates` has the positions of repeated ids.
   subroutine map_ids(ids, map, duplicates)
     integer, intent(in) :: ids(:)
     type(id_map_t), intent(out) :: map

@@ -21,7 +21,7 @@ module deck_parameter_table_m
     integer :: next = 0                   !! previous parameter with the same hash
   end type parameter_t
 
-  !> All parameters, in the order they come.
+  !> All parameters, in the order of their definitions.
   type :: parameters_t
     type(parameter_t), allocatable :: items(:)
     integer :: n = 0
