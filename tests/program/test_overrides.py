@@ -63,7 +63,7 @@ def test_reference_to_no_curve_finds_none_with_a_step_either(said, cards, number
     deck = with_cards(cards.format(number), deck=free_of_curves())
     for words in ((), ("dt=1.0e-6",)):
         status, text = said(deck, *words)
-        assert status == 1 and f'"{number}" is no curve' in text, text
+        assert status == 1 and f'"{number}" matches no curve' in text, text
 
 
 def test_restart_with_changes_does_not_meet_the_curve_of_the_step(slideline, tmp_path):

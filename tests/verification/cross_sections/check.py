@@ -87,7 +87,7 @@ def check_balance(run, kind):
     n_x, n_y = 10, 6
     deck = Deck("two blocks").control(0.02).hourglass(4, 0.1)
     deck.part(1).elastic(RHO, YOUNG, POISSON).part(2)
-    deck.plastic(RHO, YOUNG, POISSON, 5.0e3, 1.0e5, material=2).add("the implicit method does not have *DAMPING_PART_STIFFNESS", (1, 0.05))
+    deck.plastic(RHO, YOUNG, POISSON, 5.0e3, 1.0e5, material=2).add("*DAMPING_PART_STIFFNESS", (1, 0.05))
     lower, upper = grid(n_x, n_y, 0.5, 0.3), grid(7, 4, 0.35, 0.2, (0.08, 0.3005))
     nodes = deck.mesh(*lower)
     above = deck.mesh(*upper, part=2)
