@@ -358,9 +358,7 @@ contains
         contact%master, contact%slave, memory%reversed, memory%positions, increments, &
         memory%positions(:, n + 1:))
     end associate
-    ! In a trial of an implicit step they stay: they are no part of the tangent.
-    if (has_offsets(memory) .and. .not. memory%slave_status%pass%is_trial) &
-      call update_offsets(contact, memory)
+    if (has_offsets(memory)) call update_offsets(contact, memory)
 
   contains
 

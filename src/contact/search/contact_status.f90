@@ -189,6 +189,7 @@ contains
     if (found%is_active .or. .not. status%pass%is_trial) status%offset(i) = found%offset
     status%has_offset = status%has_offset .or. found%offset > 0.0_wp
     if (found%is_active) then
+      status%faded(i) = -found%offset
       status%state(i) = active
       status%next_search(i) = huge(1.0_wp)
     else
