@@ -35,8 +35,6 @@ module energy_limit_m
   !> Share of what holds the nodes back that is counted on in the half step to come: it is foretold
   !> from the step before, and falls off where contact opens.
   real(wp), parameter :: relied_on = 0.5_wp
-  !> How far one limited cycle makes `recent` rise; any other with force lowers it by one.
-  integer, parameter :: rise = 20
 
 contains
 
@@ -258,11 +256,7 @@ contains
     type(energy_limit_t), intent(inout) :: limit
 
     limit%n_loaded = limit%n_loaded + 1
-    if (.not. factor < 1.0_wp) then
-      limit%recent = max(0, limit%recent - 1)
-      return
-    end if
-    limit%recent = limit%recent + rise
+    if (.not. factor < 1.0_wp) return
     limit%n_limited = limit%n_limited + 1
     if (.not. factor < limit%least_factor) return
     limit%least_factor = factor
