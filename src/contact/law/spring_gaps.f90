@@ -19,8 +19,8 @@ module spring_gaps_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: has_offsets, update_offsets, add_offsets, faded_work, begin_ramp, store_overlaps, &
-    ramp_gaps, gather_moment, limit_moment
+  public :: has_offsets, reduce_new_offsets, update_offsets, add_offsets, faded_work, begin_ramp, &
+    store_overlaps, ramp_gaps, gather_moment, limit_moment
 
   !> Least slope by which an offset fades with the slip.
   real(wp), parameter :: ramp = 0.05_wp
@@ -36,14 +36,12 @@ contains
       .or. memory%master_status%has_offset)
   end function has_offsets
 
-  !> After the search: reduce new offsets, limit all by the present depths, and let them fade. In a
-  !> trial of an implicit step they stay: they are no part of the tangent.
+  !> Limit all offsets by the present depths, and let them fade: after the search; in implicit runs
+  !> at the end of a step.
   pure subroutine update_offsets(contact, memory)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
 
-    if (memory%has%overlaps) call reduce_new_offsets(memory)
-    if (memory%slave_status%pass%is_trial) return
     call fade_offsets(memory%slave_status, contact%slave, contact%master, memory%positions, &
       memory%scratch%increment)
     if (memory%master_status%n > 0) call fade_offsets(memory%master_status, contact%master, &
