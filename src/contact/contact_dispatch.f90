@@ -44,7 +44,7 @@ module contact_dispatch_m
   end type formulation_t
 
   !> Fewer slave segments are not worth a thread.
-  integer, parameter :: least_segments = 256
+  integer, parameter :: least_segments = 512
 
   !> All formulations.
   type(formulation_t), parameter :: formulations(*) = [ &
