@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> The command line:
 !> `i=DECK r=FILE d=DIR jobid=NAME ncpu=N perthread=N timing=... memory=... OVERRIDES`;
-!> a bare path works as i=. Words of LS-DYNA mean what they mean there, or are told to be without
-!> effect.
+!> a bare path works as i=. Arguments of LS-DYNA have their meaning there, or are ignored with a
+!> warning.
 module arguments_m
   use deck_lines_m, only : shown_text
   use deck_overrides_m, only : is_override, override_error, contact_names, run_names
@@ -15,39 +15,39 @@ module arguments_m
   public :: arguments_t, read_arguments, help, file_stem, only_end_time, timing_by_interface, &
     timing_off
 
-  !> Longest single argument.
+  !> Maximum length of an argument.
   integer, parameter :: argument_length = 4096
 
-  !> What is timed: phases, contact phases of each interface too, or the run as a whole.
+  !> Timing of phases, of contact phases by interface too, or of the whole run.
   integer, parameter :: timing_by_phase = 0, timing_by_interface = 1, timing_off = 2
   character(9), parameter :: timings(3) = ['phase    ', 'interface', 'off      ']
 
-  !> Words of more than a letter that are this program's own, for what is misspelt.
+  !> Other arguments of more than one letter, for suggestions.
   character(9), parameter :: own_words(9) = [character(9) :: 'NCPU', 'PERTHREAD', 'JOBID', &
     'QUIET', 'TIMING', 'MEMORY', '--help', '--version', '--json']
 
-  !> What --help prints.
+  !> Text of --help.
   character(91), parameter :: help(*) = [character(91) :: &
     'slideline: 2D explicit contact dynamics', &
     '', &
     'usage: slideline i=DECK [d=DIR] [jobid=NAME] [ncpu=N] [timing=...] [OVERRIDES]', &
-    '       slideline r=FILE [i=CHANGES] [d=DIR] [ncpu=N] [endtim=T]   go on from a restart file', &
+    '       slideline r=FILE [i=CHANGES] [d=DIR] [ncpu=N] [endtim=T]   restart', &
     '       slideline DECK ...     the same', &
     '       slideline check DECK [--json] [d=DIR] [OVERRIDES]   all errors and warnings, without', &
     '                     a run; d= writes the state at time zero', &
     '', &
     '  i=DECK        LS-DYNA style keyword deck', &
-    '  r=FILE        restart file (JOB.dump01.h5, JOB.runrsf.h5): the run goes on from there, in', &
-    '                its folder unless d= says otherwise; i= then names a small deck of changes', &
+    '  r=FILE        restart file (JOB.dump01.h5, JOB.runrsf.h5): the run continues there, in', &
+    '                its folder unless d= is given; i= is then a small deck of changes', &
     '  d=DIR         folder of the results, made with its parents (default: .)', &
     '  jobid=NAME    stem of the result files (default: the deck''s)', &
     '  ncpu=N        threads at most (default 1); the results have the same bits at any number', &
     '  perthread=N   elements for each of several threads, at least (default 300)', &
     '  timing=HOW    phase: wall clock by phase (default); interface: contact phases of each', &
     '                interface too; off: the total alone', &
-    '  quiet=1       one line on the screen: how the run has ended', &
+    '  quiet=1       one line on the screen: the end of the run', &
     '  c=SECONDS     processor time after which the run stops as by a signal', &
-    '  d=nodump      no numbered restart files, whatever the deck asks for', &
+    '  d=nodump      no numbered restart files, whatever the deck says', &
     '  memory=...    and memory2=...: accepted and ignored; so are, with a warning, LS-DYNA''s', &
     '                o= g= s= f= a= x= and para=', &
     '', &
@@ -55,45 +55,47 @@ module arguments_m
     '  ctype=T ngauss=N pen=P      contact of every interface; ctype.2=T of interface 2', &
     '  punit=U pent=P vdc=D        unit of the penalty, that of the master pass, damping', &
     '  fs=M fd=M dc=C vc=T tfac=R  friction: coefficients, decay, largest stress, spring', &
-    '  target=E                    with ctype=0: the largest estimate of the error', &
+    '  ctype=0                     the program chooses the type, with target=E the cheapest one', &
+    '                              whose error estimate is at most E', &
     '  smooth=DEGREES              segments that turn by less stand for arcs (0: 16; -1: none)', &
     '  endtim=T dt=DT tssfac=F     end time, constant step, safety factor', &
     '  p:NAME=VALUE                a *PARAMETER of the deck', &
     '', &
     'results: JOB.vtkhdf (ParaView), JOB.*.csv, JOB.log, JOB.effective.k (the deck as run)', &
-    'while it runs: status.out (JOB.status.out with jobid=) says how far it is and how long it', &
-    'may take; a file DIR/d3kil with sw1 (restart file, stop), sw2 (status line), sw3 (restart', &
+    'while it runs: status.out (JOB.status.out with jobid=) shows progress and remaining time;', &
+    'a file DIR/d3kil with sw1 (restart file, stop), sw2 (status line), sw3 (restart', &
     'file), sw4 (plot state), swa (histories up to date) or stop; signals TERM, INT, HUP and', &
     'XCPU (stop), USR1 (sw3), USR2 (sw4)', &
     'exit status: 0 normal, 1 refused input, 2 error in the run, 3 files, 4 stopped on request', &
     '--version prints the version, compiler and options']
 
-  !> What the command line asks for.
+  !> Values of the command line.
   type :: arguments_t
     logical :: help = .false.
     logical :: version = .false.
-    logical :: check = .false.              !! look at the deck, no run
-    logical :: json = .false.               !! what the check finds, for programs
-    character(:), allocatable :: deck       !! path of the deck; with a restart, of what changes, or
+    logical :: check = .false.              !! check the deck without a run
+    logical :: json = .false.               !! print the findings of a check as JSON
+    character(:), allocatable :: deck       !! path of the deck; at a restart of the changes, or
                                             !! unset
-    character(:), allocatable :: restart    !! path of the restart file to go on from, or unset
-    character(:), allocatable :: directory  !! where results go; of a check perhaps unset
+    character(:), allocatable :: restart    !! path of the restart file, or unset
+    character(:), allocatable :: directory  !! folder of the results; unset in a check without d=
     character(:), allocatable :: job        !! stem of the result files
     character(:), allocatable :: line       !! all arguments in one line, for the record
-    integer :: n_thread = 1                 !! at most
-    integer :: thread_share = 300           !! elements for each of several threads, at least:
-                                            !! below, waiting costs more than sharing saves
+    integer :: n_thread = 1                 !! maximum number of threads
+    integer :: thread_share = 300           !! minimum number of elements for each of several
+                                            !! threads: less costs more than it saves
     integer :: timing = timing_by_phase     !! one of the `timing_` constants
-    logical :: quiet = .false.              !! nothing on the screen but how the run has ended
+    logical :: quiet = .false.              !! only the end of the run on the screen
     logical :: no_dump = .false.            !! no numbered restart files (d=nodump)
-    integer :: cpu_seconds = 0              !! processor time after which to stop (c=), 0 = no limit
-    character(:), allocatable :: ignored    !! words of LS-DYNA that have no effect here
+    integer :: cpu_seconds = 0              !! limit of the processor time (c=), 0 = none
+    character(:), allocatable :: ignored    !! arguments of LS-DYNA without effect
     character(argument_length), allocatable :: overrides(:) !! ctype=5, p:NAME=VALUE, ...
   end type arguments_t
 
 contains
 
-  !> Read the arguments; all mistakes are reported together.
+  !> Read the arguments, and report all errors together. Errors of overrides alone are reported with
+  !> those of the deck.
   subroutine read_arguments(arguments, error)
     type(arguments_t), intent(out) :: arguments
     type(error_t), allocatable, intent(out) :: error
@@ -108,8 +110,8 @@ contains
     do i = 1, command_argument_count()
       call get_command_argument(i, word, length=length)
       if (length > argument_length) then
-        call note('"'//shown_text(word(:60))//'..." has '//to_text(length)//' characters: an ' &
-          //'argument may have '//to_text(argument_length), problems)
+        call note('"'//shown_text(word(:60))//'..." has '//to_text(length)//' characters; the ' &
+          //'limit is '//to_text(argument_length), problems)
         cycle
       end if
       if (i > 1) arguments%line = arguments%line//' '
@@ -119,12 +121,12 @@ contains
     end do
     if (arguments%help .or. arguments%version) return
     if (.not. (allocated(arguments%deck) .or. allocated(arguments%restart))) &
-      call note('no deck given: expected i=DECK (or r=FILE to go on)', problems)
+      call note('no deck given: expected i=DECK (or r=FILE to restart)', problems)
     if (arguments%check .and. allocated(arguments%restart)) &
-      call note('check looks at a deck: r= has no meaning', problems)
-    if (arguments%json .and. .not. arguments%check) call note('--json goes with check', problems)
+      call note('check reads a deck: r= has no meaning', problems)
+    if (arguments%json .and. .not. arguments%check) call note('--json needs check', problems)
     if (len(problems) > 0) then
-      ! Else the deck tells them with its own.
+      ! Otherwise they are reported with those of the deck.
       do i = 1, size(arguments%overrides)
         call note(override_error(trim(arguments%overrides(i))), problems)
       end do
@@ -139,7 +141,7 @@ contains
     if (.not. allocated(arguments%job)) arguments%job = file_stem(arguments%deck)
   end subroutine read_arguments
 
-  !> Understand one argument.
+  !> Read one argument.
   subroutine read_word(word, arguments, problems)
     character(*), intent(in) :: word
     type(arguments_t), intent(inout) :: arguments
@@ -148,14 +150,14 @@ contains
     integer :: i, equals
 
     do i = 1, len(word)
-      ! They would make lines of their own in logs and status.out, or act on terminals.
+      ! They would break lines of logs and status.out, or control terminals.
       if (iachar(word(i:i)) >= 32 .and. iachar(word(i:i)) /= 127) cycle
       call note('"'//trim(shown_text(word))//'" has a control character (line feed, escape or ' &
         //'the like) where ? stands: expected none', problems)
       return
     end do
     equals = index(word, '=')
-    ! No name before a value holds a slash: this is a path.
+    ! A slash before the =: this is a path.
     if (equals > 0 .and. index(word(:equals), '/') > 0) equals = 0
     if (equals == 0 .and. index(word, '-') /= 1) then
       call set_once(arguments%deck, word, 'deck', problems)
@@ -199,7 +201,7 @@ contains
       if (i > 0) arguments%timing = i - 1
       if (i == 0) call note('timing="'//value//'": expected phase, interface or off', problems)
     case ('memory', 'memory2')
-      continue ! memory is taken as it is needed
+      continue ! memory is allocated as needed
     case ('o', 'g', 's', 'f', 'a', 'x', 'para')
       if (index(' '//arguments%ignored, ' '//name//'=') == 0) &
         arguments%ignored = trim(adjustl(arguments%ignored//' '//name//'='))
@@ -212,9 +214,9 @@ contains
     end select
   end subroutine read_word
 
-  !> `; did you mean NAME=?`, NAME the nearest of all words; nothing where none is near.
+  !> `; did you mean NAME=?` with the most similar argument; empty where there is none.
   pure function suggestion(word) result(text)
-    character(*), intent(in) :: word !! that is not known
+    character(*), intent(in) :: word !! unknown argument
     character(:), allocatable :: text
     character(*), parameter :: words(*) = [character(9) :: run_names, contact_names, own_words]
     character(:), allocatable :: given, known
@@ -234,19 +236,19 @@ contains
     if (len_trim(nearest) > 0) text = '; did you mean '//trim(nearest)//'?'
   end function suggestion
 
-  !> Keep what is wrong with one word.
+  !> Add a problem to the list.
   pure subroutine note(problem, problems)
-    character(*), intent(in) :: problem !! empty: nothing
+    character(*), intent(in) :: problem !! empty: none
     character(:), allocatable, intent(inout) :: problems
 
     if (len(problem) > 0) problems = problems//problem//new_line('a')
   end subroutine note
 
-  !> Understand a number from 1 to `most`.
+  !> Read an integer from 1 to `most`.
   pure subroutine read_count(name, value, most, count, problems)
     character(*), intent(in) :: name, value
     integer, intent(in) :: most
-    integer, intent(inout) :: count !! kept where the value is wrong
+    integer, intent(inout) :: count !! unchanged where the value is wrong
     character(:), allocatable, intent(inout) :: problems
     integer :: number, status
 
@@ -260,7 +262,7 @@ contains
     end if
   end subroutine read_count
 
-  !> Set a text once.
+  !> Set a text that may be given once.
   subroutine set_once(target_text, value, name, problems)
     character(:), allocatable, intent(inout) :: target_text
     character(*), intent(in) :: value, name
@@ -269,7 +271,7 @@ contains
     if (allocated(target_text)) then
       call note(name//' is given twice: "'//target_text//'" and "'//value//'"', problems)
       if (name == 'deck') &
-        call note('(the one command that may come before a deck is check)', problems)
+        call note('(the only command before a deck is check)', problems)
     else if (len_trim(value) == 0) then
       call note(name//' is empty', problems)
     else
@@ -277,7 +279,7 @@ contains
     end if
   end subroutine set_once
 
-  !> The text with letters A to Z made lower case, in which words of the command line are told.
+  !> The text with letters A to Z in lower case.
   pure function lower_case(text) result(lower)
     character(*), intent(in) :: text
     character(len(text)) :: lower
@@ -289,7 +291,7 @@ contains
     end do
   end function lower_case
 
-  !> Whether the command line changes nothing of a deck but its end time.
+  !> Whether all overrides are endtim=.
   pure function only_end_time(arguments) result(only)
     type(arguments_t), intent(in) :: arguments
     logical :: only
@@ -301,7 +303,7 @@ contains
     end do
   end function only_end_time
 
-  !> File name without folders and last extension.
+  !> File name without folders and extension.
   pure function file_stem(path) result(stem)
     character(*), intent(in) :: path
     character(:), allocatable :: stem

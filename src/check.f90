@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> `slideline check`: all that is wrong or strange in a deck, and what a run would say at its start,
-!> without a run. With d= the state at time zero and the model are written, for programs that draw
-!> them; else no file is.
+!> `slideline check`: errors and warnings of a deck and of the start of its run, without time steps.
+!> With d= it writes the state at time zero and the model, for plots; otherwise it writes no file.
 module check_m
   use arguments_m, only : arguments_t
   use build_info_m, only : version
@@ -29,8 +28,7 @@ module check_m
 
 contains
 
-  !> Check the deck that the command line names; `error` holds what a run would end with. What is
-  !> accepted is said in a line where no program has asked.
+  !> Check the deck of the command line and print its findings; `error` is that of a run.
   subroutine check_deck(arguments, error)
     type(arguments_t), intent(in) :: arguments
     type(error_t), allocatable, intent(out) :: error
@@ -56,7 +54,7 @@ contains
     end if
     if (arguments%json) then
       call print_line(findings_text(arguments%deck, findings, allocated(error)), failure)
-      ! Who asked for these lines has not got them: that counts more than what they would have said.
+      ! A failure to print prevails over an error of the deck.
       if (allocated(failure)) call raise(error, failure%message, status_files)
     else if (.not. allocated(error)) then
       call print_line(arguments%deck//': accepted, '//counted(model%mesh%n_element, &
@@ -66,9 +64,8 @@ contains
     end if
   end subroutine check_deck
 
-  !> The state at time zero: forces, step or acceleration, and what the run says of them; with d= in
-  !> the file `<job>.start.vtkhdf`, with the model in it. A model that can not start is written all
-  !> the same, undeformed.
+  !> Compute the state at time zero with its warnings; with d= write it and the model to
+  !> `<job>.start.vtkhdf`, undeformed where the run cannot start.
   subroutine start_run(arguments, info, model, monitor, error)
     type(arguments_t), intent(in) :: arguments
     type(run_info_t), intent(inout) :: info
@@ -117,7 +114,7 @@ contains
     if (allocated(failure) .and. .not. allocated(error)) call move_alloc(failure, error)
   end subroutine start_run
 
-  !> The warnings that wait in a log.
+  !> Add the pending warnings of a log.
   subroutine add_warnings(log, findings)
     type(log_t), intent(in) :: log
     character(:), allocatable, intent(inout) :: findings
@@ -133,7 +130,7 @@ contains
     end do
   end subroutine add_warnings
 
-  !> So many of something, in words.
+  !> A number with a noun in singular or plural.
   pure function counted(n, name) result(text)
     integer, intent(in) :: n
     character(*), intent(in) :: name
@@ -143,7 +140,7 @@ contains
     if (n /= 1) text = text//'s'
   end function counted
 
-  !> A finding that no line of the deck is known for.
+  !> Add a finding without a location.
   subroutine add_message(severity, message, findings)
     character(*), intent(in) :: severity, message
     character(:), allocatable, intent(inout) :: findings

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> slideline: arguments in, exit status out.
+!> Main program of slideline.
 program slideline
   use, intrinsic :: iso_c_binding, only : c_int, c_null_char
   use check_m, only : check_deck
@@ -18,7 +18,7 @@ program slideline
   type(error_t), allocatable :: error
   integer(c_int) :: status
   integer :: i
-  logical :: has_ended = .true. !! no end is left to be told
+  logical :: has_ended = .true. !! the last line has been printed
 
   call join_ranks(ranks)
   call catch_requests()

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> The model of a deck in the file of its state at time zero, for programs that draw it: tables in
-!> the group /model, one dataset a column, all by user ids and in deck order. What has no rows has
-!> no table; columns of texts are one text with a line for each row.
+!> Writes the model to the file of the state at time zero, for plots: tables in the group /model
+!> with one dataset for each column, by user ids and in deck order. Empty tables are omitted; a
+!> column of texts is one text with a line for each row.
 module model_tables_m
   use archive_m, only : archive_t
   use conditions_m, only : prescribed_motion_t, nodal_load_t
@@ -18,7 +18,7 @@ module model_tables_m
   private
   public :: write_model
 
-  !> A table that is being written.
+  !> The table in progress.
   type, extends(archive_t) :: table_t
   contains
     procedure :: open => open_table
@@ -30,11 +30,11 @@ module model_tables_m
 
 contains
 
-  !> All tables.
+  !> Write all tables.
   subroutine write_model(id, model, error)
     integer(hid_t), intent(in) :: id                   !! open file
     type(model_t), intent(in) :: model
-    type(error_t), allocatable, intent(inout) :: error !! nothing is written when there is one
+    type(error_t), allocatable, intent(inout) :: error !! nothing is written where allocated
     type(table_t) :: table
 
     if (allocated(error)) return
@@ -47,7 +47,7 @@ contains
     call move_alloc(table%error, error)
   end subroutine write_model
 
-  !> Make a table unless it would be empty.
+  !> Create a table unless it is empty.
   subroutine open_table(table, name, n_row)
     class(table_t), intent(inout) :: table
     character(*), intent(in) :: name
@@ -57,8 +57,8 @@ contains
     if (n_row > 0) call make_group(table%id, 'model/'//name, table%error)
   end subroutine open_table
 
-  !> A column of whole numbers. What comes from arrays of types stands in brackets where it is
-  !> handed over: the compiler would make a temporary for it by itself.
+  !> Write a column of integers. Components of derived types are passed in brackets, since the
+  !> compiler would make a temporary anyway.
   subroutine put_integers(table, name, values)
     class(table_t), intent(inout) :: table
     character(*), intent(in) :: name
@@ -69,7 +69,7 @@ contains
     if (size(copy) > 0) call table%visit(name, copy)
   end subroutine put_integers
 
-  !> A column of reals.
+  !> Write a column of reals.
   subroutine put_reals(table, name, values)
     class(table_t), intent(inout) :: table
     character(*), intent(in) :: name
@@ -80,7 +80,7 @@ contains
     if (size(copy) > 0) call table%visit(name, copy)
   end subroutine put_reals
 
-  !> A column of texts, each with its line end.
+  !> Write a column of texts with line ends.
   subroutine put_text(table, name, lines)
     class(table_t), intent(inout) :: table
     character(*), intent(in) :: name, lines
@@ -88,7 +88,7 @@ contains
     call write_text(table%id, table%folder//name, utf8_text(lines), table%error)
   end subroutine put_text
 
-  !> Title and form of the model, its parts, node sets and curves.
+  !> Write title and kind of the model, parts, node sets and curves.
   subroutine write_parts(table, model)
     type(table_t), intent(inout) :: table
     type(model_t), intent(in) :: model
@@ -133,7 +133,7 @@ contains
     call table%put('node', [model%mesh%node_id(model%controls%output%history_nodes)])
   end subroutine write_parts
 
-  !> What holds nodes and bodies, what makes nodes heavier, and rigid walls.
+  !> Write constraints of nodes and rigid bodies, lumped masses and rigid walls.
   subroutine write_supports(table, model)
     type(table_t), intent(inout) :: table
     type(model_t), intent(in) :: model
@@ -174,7 +174,7 @@ contains
     end associate
   end subroutine write_supports
 
-  !> Prescribed motions and loads of nodes, edges and bodies.
+  !> Write prescribed motions and loads of nodes, edges and rigid bodies.
   subroutine write_loads(table, model)
     type(table_t), intent(inout) :: table
     type(model_t), intent(in) :: model
@@ -202,7 +202,7 @@ contains
 
   contains
 
-    !> Motions of nodes or bodies; nothing of those that the deck has none of.
+    !> Write motions of nodes or rigid bodies, unless absent.
     subroutine put_motions(name, column, ids, motions)
       character(*), intent(in) :: name, column
       integer, intent(in) :: ids(:)  !! of nodes or parts
@@ -216,7 +216,7 @@ contains
       call put_scale([motions%curve], [motions%scale])
     end subroutine put_motions
 
-    !> The same of loads.
+    !> Write loads on nodes or rigid bodies, unless absent.
     subroutine put_loads(name, column, ids, loads)
       character(*), intent(in) :: name, column
       integer, intent(in) :: ids(:)
@@ -229,7 +229,7 @@ contains
       call put_scale([loads%curve], [loads%scale])
     end subroutine put_loads
 
-    !> Curves and their factors.
+    !> Write curves and their scale factors.
     subroutine put_scale(curves, factors)
       integer, intent(in) :: curves(:)
       real(wp), intent(in) :: factors(:)
@@ -240,7 +240,7 @@ contains
 
   end subroutine write_loads
 
-  !> Interfaces, and their segments in walking direction: both nodes of each, slave before master.
+  !> Write interfaces, and the nodes of their segments in walking order, slave before master.
   subroutine write_interfaces(table, model)
     type(table_t), intent(inout) :: table
     type(model_t), intent(in) :: model

@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The cyclic redundancy check CRC-32 of IEEE 802.3 (that of zip and PNG), by zlib: every change of
-!> up to 32 neighbouring bits is noticed, any other with all but one chance in four thousand
-!> million.
+!> Cyclic redundancy check CRC-32 of IEEE 802.3 (as in zip and PNG), by zlib: it detects every error
+!> burst of up to 32 bits, and any other error with probability 1 - 2^-32.
 module checksum_m
   use, intrinsic :: iso_c_binding, only : c_char, c_long, c_size_t
   use kinds_m, only : long
@@ -21,7 +20,7 @@ module checksum_m
 
 contains
 
-  !> Take more bytes.
+  !> Update the checksum with more bytes.
   pure subroutine add_bytes(checksum, bytes)
     integer(long), intent(inout) :: checksum   !! 0 of nothing
     character(*), intent(in) :: bytes

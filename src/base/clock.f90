@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Wall time per phase of the run. One clock read per change of phase: `lap` gives the time since
-!> the last read to the phase that just ended, so that the phases add up to the total exactly. What
-!> an interface took is told from what its laps added to the contact phases: no read of its own.
+!> Wall time per phase of the run. One clock read per change of phase: `lap` adds the time since the
+!> last read to the phase that has ended, so that the phases add up to the total exactly. The time
+!> of an interface is the increase of the contact phases during its laps.
 module clock_m
   use kinds_m, only : wp, long
   implicit none
@@ -24,11 +24,11 @@ module clock_m
   type :: clock_t
     logical :: is_on = .true.           !! laps are taken; else only the total is known
     integer(long) :: first = 0          !! tick at the start
-    integer(long) :: last = 0           !! tick of the last lap or look
+    integer(long) :: last = 0           !! tick of the last read
     integer(long) :: ticks(n_phase) = 0 !! ticks spent in each phase
-    integer(long) :: calls(n_phase) = 0 !! laps given to each phase
-    !> (n_contact_phase, 0:n_interface) ticks and laps of the contact phases by interface, in column
-    !> 0 those of all together; allocated on request.
+    integer(long) :: calls(n_phase) = 0 !! laps of each phase
+    !> (n_contact_phase, 0:n_interface) ticks and laps of the contact phases by interface, their
+    !> sums in column 0; allocated on request.
     integer(long), allocatable :: interface_ticks(:, :), interface_calls(:, :)
   end type clock_t
 
@@ -42,7 +42,7 @@ contains
     clock%last = clock%first
   end subroutine start_clock
 
-  !> Give the time since the last lap to `phase`.
+  !> Add the time since the last lap to `phase`.
   subroutine lap(clock, phase)
     type(clock_t), intent(inout) :: clock
     integer, intent(in) :: phase
@@ -55,15 +55,14 @@ contains
     clock%last = now
   end subroutine lap
 
-  !> What time it is, where no laps tell: at the end of what is timed, and now and
-  !> then for those who watch.
+  !> Read the clock where no laps are taken: for progress output and for the total at the end.
   subroutine read_clock(clock)
     type(clock_t), intent(inout) :: clock
 
     if (.not. clock%is_on) call system_clock(clock%last)
   end subroutine read_clock
 
-  !> Keep the contact phases by interface from now on.
+  !> Record the contact phases by interface from now on.
   pure subroutine track_interfaces(clock, n_interface)
     type(clock_t), intent(inout) :: clock
     integer, intent(in) :: n_interface
@@ -72,7 +71,7 @@ contains
     allocate (clock%interface_calls(n_contact_phase, 0:n_interface), source=0_long)
   end subroutine track_interfaces
 
-  !> Give what the contact phases have gained since the last call to one interface.
+  !> Add the increase of the contact phases since the last call to one interface.
   pure subroutine lap_interface(clock, i_interface)
     type(clock_t), intent(inout) :: clock
     integer, intent(in) :: i_interface
@@ -88,7 +87,8 @@ contains
     end associate
   end subroutine lap_interface
 
-  !> Cost of one lap on this machine, the least of several short series, since others disturb.
+  !> Cost of one lap on this machine: the minimum of several short series, since other processes
+  !> interfere.
   function lap_seconds() result(seconds)
     real(wp) :: seconds
     integer, parameter :: n_series = 20, n_lap = 50

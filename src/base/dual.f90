@@ -8,10 +8,10 @@ module dual_m
   public :: dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
     operator(/), sqrt
 
-  !> Partial derivatives that a number carries.
+  !> Number of partial derivatives.
   integer, parameter :: n_partial = 16
 
-  !> The number. Without default values, which would be written before each use.
+  !> Value and partial derivatives; no default values, whose initialisation would cost time.
   type :: dual_t
     real(wp) :: value
     real(wp) :: slope(n_partial)
@@ -39,7 +39,7 @@ module dual_m
 
 contains
 
-  !> A number that depends on nothing.
+  !> A constant: all partial derivatives are zero.
   elemental function constant(value) result(c)
     real(wp), intent(in) :: value
     type(dual_t) :: c

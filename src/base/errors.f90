@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Errors as values: a procedure that can fail ends with
-!> `type(error_t), allocatable, intent(out) :: error` and its caller asks
-!> `if (allocated(error)) return`.
+!> `type(error_t), allocatable, intent(out) :: error` and its caller tests `allocated(error)`.
 module errors_m
   implicit none
   private
@@ -11,7 +10,7 @@ module errors_m
   integer, parameter :: status_normal = 0, status_input = 1, status_run = 2, status_files = 3, &
     status_stopped = 4
 
-  !> What went wrong, in words for the user, and the exit status that follows from it.
+  !> Message to the user and exit status.
   type :: error_t
     character(:), allocatable :: message !! may hold several lines
     integer :: status = status_input     !! one of the `status_` constants
@@ -19,10 +18,10 @@ module errors_m
 
 contains
 
-  !> Make an error.
+  !> Allocate an error with its message and exit status.
   subroutine raise(error, message, status)
     type(error_t), allocatable, intent(out) :: error !! the error made
-    character(*), intent(in) :: message              !! what was found and what was expected
+    character(*), intent(in) :: message
     integer, intent(in) :: status                    !! exit status
 
     allocate (error)

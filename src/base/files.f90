@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Files and directories by name: paths, what stands under a name (kind, identity, length), making,
-!> removing and renaming. By the C library, which tells why something failed.
+!> Files and directories: paths, kind, identity and length of a file, create, remove, rename; by the
+!> C library, which gives the reason of a failure.
 module files_m
   use, intrinsic :: iso_c_binding, only : c_bool, c_char, c_int, c_int64_t, c_null_char, c_size_t
   use errors_m, only : error_t, raise, status_files
@@ -12,16 +12,16 @@ module files_m
     system_reason, unfinished, file_facts_t, facts_of_name, facts_of_target, &
     facts_of_descriptor, write_obstacle, is_same_file
 
-  !> Behind the name of a file that is not complete: it is written aside and renamed when it is.
+  !> Suffix of an incomplete file; the file is renamed when it is complete.
   character(*), parameter :: unfinished = '.part'
 
-  !> What is known of a file.
+  !> Properties of a file.
   type, bind(c) :: file_facts_t
     logical(c_bool) :: is_there = .false._c_bool
     logical(c_bool) :: is_regular = .false._c_bool
-    integer(c_int) :: kind = 0         !! what else it is, see `write_obstacle`
+    integer(c_int) :: kind = 0         !! 0 regular file, others: see `write_obstacle`
     integer(c_int64_t) :: device = 0   !! of the file system
-    integer(c_int64_t) :: identity = 0 !! inode, of its own within a device
+    integer(c_int64_t) :: identity = 0 !! inode, unique within a device
     integer(c_int64_t) :: n_name = 0   !! hard links; 0: removed while open
     integer(c_int64_t) :: n_byte = 0   !! length
   end type file_facts_t
@@ -35,7 +35,7 @@ module files_m
     end function call_by_path
   end interface
 
-  !> Make a directory; remove a file, but no directory; bring either onto the disk (system.cpp).
+  !> Create a directory; remove a file; flush a file or directory to the disk (system.cpp).
   procedure(call_by_path), bind(c, name='make_folder') :: c_mkdir
   procedure(call_by_path), bind(c, name='unlink') :: c_unlink
   procedure(call_by_path), bind(c, name='force_path') :: c_force
@@ -55,7 +55,7 @@ module files_m
       integer(c_int) :: status
     end function c_truncate
 
-    !> Facts of an open file, or of the one of this name (system.cpp).
+    !> Properties of an open file or of a path (system.cpp).
     subroutine c_facts(descriptor, path, follows, facts) bind(c, name='find_facts')
       import :: c_bool, c_char, c_int, file_facts_t
       integer(c_int), value :: descriptor           !! below 0: by name
@@ -64,7 +64,7 @@ module files_m
       type(file_facts_t), intent(out) :: facts
     end subroutine c_facts
 
-    !> What the system says of its last failure (system.cpp).
+    !> Reason of the last failure of the system (system.cpp).
     subroutine c_reason(text, n) bind(c, name='reason_text')
       import :: c_char, c_int
       character(kind=c_char), intent(out) :: text(*)
@@ -120,8 +120,8 @@ contains
     if (len(folder) == 0) folder = '.'
   end function folder_of
 
-  !> Whether there is something of this name (a file or a directory). Blanks at the end of the name
-  !> are significant to the file system but not to Fortran: they are not seen here.
+  !> Whether a file or directory of this name exists. Trailing blanks of the name, significant to
+  !> the file system, are ignored here as in Fortran.
   function file_exists(path) result(found)
     character(*), intent(in) :: path
     logical :: found
@@ -141,8 +141,8 @@ contains
     end if
   end function is_directory
 
-  !> Make a directory with its parents; nothing happens to one that is there. No shell is
-  !> involved, so blanks and quotes in the name are safe.
+  !> Create a directory with its parents, unless it exists. No shell is involved, so blanks and
+  !> quotes in the name are safe.
   recursive subroutine make_directory(path, error)
     character(*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
@@ -163,7 +163,7 @@ contains
     end if
   end subroutine make_directory
 
-  !> Remove a file; nothing happens when there is none.
+  !> Remove a file if it exists.
   subroutine remove_file(path, error)
     character(*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
@@ -175,8 +175,7 @@ contains
       status_files)
   end subroutine remove_file
 
-  !> Give a file another name in the same directory, in one step; a file of that name is replaced,
-  !> but nothing else.
+  !> Rename a file within its directory, atomically; only a regular file is replaced.
   subroutine rename_file(old, new, error)
     character(*), intent(in) :: old, new
     type(error_t), allocatable, intent(out) :: error
@@ -188,17 +187,16 @@ contains
       //open_failure(new), status_files)
   end subroutine rename_file
 
-  !> Bring what has been written to a file onto the disk itself, so that a power
-  !> failure does not lose it.
+  !> Flush a file to the disk, so that it survives a power failure.
   subroutine force_to_disk(path, error)
     character(*), intent(in) :: path
     type(error_t), allocatable, intent(out) :: error
 
-    if (c_force(path//c_null_char) /= 0) call raise(error, 'cannot bring '//path &
-      //' onto the disk: '//system_reason(), status_files)
+    if (c_force(path//c_null_char) /= 0) call raise(error, 'cannot flush '//path &
+      //' to the disk: '//system_reason(), status_files)
   end subroutine force_to_disk
 
-  !> Bring a file to at least a length, with zeros behind what it has.
+  !> Extend a file with zeros to at least a length.
   subroutine lengthen_file(path, length, is_done)
     character(*), intent(in) :: path
     integer(long), intent(in) :: length !! bytes
@@ -210,8 +208,8 @@ contains
     if (.not. is_done) is_done = c_truncate(path//c_null_char, length) == 0
   end subroutine lengthen_file
 
-  !> Whether `path` is there and is not a file of known size with something in it: a pipe, a device,
-  !> or an empty file. To open a pipe could wait for ever, and a device may have no end.
+  !> Whether `path` is a pipe, a device or an empty file: opening a pipe may block, and a device may
+  !> have no end.
   function is_endless(path) result(endless)
     character(*), intent(in) :: path
     logical :: endless
@@ -222,7 +220,7 @@ contains
     if (endless) endless = .not. is_directory(path)
   end function is_endless
 
-  !> Why a file cannot be made, in words; to be asked at once after the failure.
+  !> Reason why a file cannot be created; to be called right after the failure.
   function open_failure(path) result(reason)
     character(*), intent(in) :: path
     character(:), allocatable :: reason, from_system
@@ -237,7 +235,7 @@ contains
     end if
   end function open_failure
 
-  !> What the system says of its last failure.
+  !> Reason of the last failure of the system.
   function system_reason() result(reason)
     character(:), allocatable :: reason
     character(200) :: text
@@ -246,7 +244,7 @@ contains
     reason = trim(text)
   end function system_reason
 
-  !> Facts of what stands under a name; of a symbolic link they are the link's own.
+  !> Properties of a path; symbolic links are not followed.
   function facts_of_name(path) result(facts)
     character(*), intent(in) :: path
     type(file_facts_t) :: facts
@@ -254,7 +252,7 @@ contains
     call c_facts(-1, path//c_null_char, .false._c_bool, facts)
   end function facts_of_name
 
-  !> Facts of the file that a name leads to, over links too.
+  !> Properties of a path; symbolic links are followed.
   function facts_of_target(path) result(facts)
     character(*), intent(in) :: path
     type(file_facts_t) :: facts
@@ -262,7 +260,7 @@ contains
     call c_facts(-1, path//c_null_char, .true._c_bool, facts)
   end function facts_of_target
 
-  !> Facts of an open file.
+  !> Properties of an open file.
   function facts_of_descriptor(descriptor) result(facts)
     integer(c_int), intent(in) :: descriptor
     type(file_facts_t) :: facts
@@ -270,8 +268,8 @@ contains
     call c_facts(descriptor, c_null_char, .false._c_bool, facts)
   end function facts_of_descriptor
 
-  !> What under a name is in the way of a file to be written, in words; empty when nothing is: a
-  !> name that is free or that of a regular file.
+  !> Why a file of this name cannot be written; empty where the name is free or names a regular
+  !> file.
   function write_obstacle(path) result(reason)
     character(*), intent(in) :: path
     character(:), allocatable :: reason
@@ -290,7 +288,7 @@ contains
     end select
   end function write_obstacle
 
-  !> Whether two facts are of one file.
+  !> Whether two sets of properties belong to one file.
   pure function is_same_file(a, b) result(same)
     type(file_facts_t), intent(in) :: a, b
     logical :: same

@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> How a point lies to a segment: closest point, gap and normal.
-!> Places are given as (X, Y, u_x, u_y): coordinates at time zero and displacement. Everything is
-!> formed from differences of X plus differences of u, never from positions, so that no digit is
-!> lost far from the origin (doc/theory/contact.md, section 2).
+!> A point in the local coordinates of a segment: projection, gap and normal.
+!> Positions are given as (X, Y, u_x, u_y), coordinates at time zero and displacement. Vectors are
+!> differences of X plus differences of u, so that no digit is lost far from the origin
+!> (doc/theory/contact.md, section 2).
 module geometry_m
   use kinds_m, only : wp
   implicit none
@@ -10,8 +10,8 @@ module geometry_m
   public :: local_coordinates_t, coordinates_on_segment, separation, closest_distance, local_gap, &
     local_normal, segment_length
 
-  !> A point seen from a segment a-b with the vector t = b - a and the outward normal (t_y,
-  !> -t_x)/|t|. Without default values, which would be written before each use.
+  !> Local coordinates of a point on a segment a-b with the vector t = b - a and the outward normal
+  !> (t_y, -t_x)/|t|. No default values, whose initialisation would cost time.
   type :: local_coordinates_t
     real(wp) :: t(2)    !! vector of the segment, m
     real(wp) :: d(2)    !! vector from a to the point, m
@@ -22,7 +22,7 @@ module geometry_m
 
 contains
 
-  !> Vector from place q to place p.
+  !> Vector from position q to position p, m.
   pure function separation(p, q) result(d)
     real(wp), intent(in) :: p(4), q(4) !! X, Y, u_x, u_y
     real(wp) :: d(2)
@@ -31,7 +31,7 @@ contains
     d(2) = (p(2) - q(2)) + (p(4) - q(4))
   end function separation
 
-  !> See `point` from the segment a-b.
+  !> Local coordinates of `point` on the segment a-b.
   pure function coordinates_on_segment(point, a, b) result(local)
     real(wp), intent(in) :: point(4), a(4), b(4)
     type(local_coordinates_t) :: local
@@ -45,7 +45,7 @@ contains
     local%across = local%d(1)*local%t(2) - local%d(2)*local%t(1)
   end function coordinates_on_segment
 
-  !> Square of the distance from the point to the segment, ends included.
+  !> Squared distance of the point from its closest point on the segment.
   pure function closest_distance(local) result(square)
     type(local_coordinates_t), intent(in) :: local
     real(wp) :: square !! m^2
@@ -59,7 +59,7 @@ contains
     end if
   end function closest_distance
 
-  !> Signed distance to the line of the segment, negative behind it.
+  !> Gap: signed distance from the line of the segment, m, negative on the inner side.
   pure function local_gap(local) result(gap)
     type(local_coordinates_t), intent(in) :: local
     real(wp) :: gap
@@ -75,7 +75,7 @@ contains
     normal = [local%t(2), -local%t(1)]/sqrt(local%square)
   end function local_normal
 
-  !> Length of the segment between two places.
+  !> Length of the segment between two positions, m.
   pure function segment_length(a, b) result(length)
     real(wp), intent(in) :: a(4), b(4)
     real(wp) :: length

@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> The run log: what was understood, warnings and the summary.
-!> Lines that come before the file is open are kept and written when it opens, since the job name
-!> is known only after the command line and nothing may be lost of a deck that is refused.
-!> A file that takes no more does not end the run: the first failure is kept in `trouble`.
+!> The run log: the model as read, warnings and the summary.
+!> Lines written before the file is open are stored and written when it opens, since the job name is
+!> known only after the command line has been read. A failure to write does not end the run: the
+!> first one is stored in `first_error`.
 module log_m
   use errors_m, only : error_t
   use kinds_m, only : wp
@@ -22,19 +22,19 @@ module log_m
   !> One log.
   type :: log_t
     logical :: is_open = .false.
-    logical :: is_silent = .false.          !! takes no lines: what they say has been said before
+    logical :: is_silent = .false.        !! lines are ignored: they have been written before
     type(text_file_t) :: file
     type(error_t), allocatable :: first_error !! first failure to write
     integer :: n_warning = 0              !! warnings so far
-    character(:), allocatable :: pending  !! lines from before the file was open, blanks behind
+    character(:), allocatable :: pending  !! lines from before the file was open, padded with blanks
     integer :: n_pending = 0              !! characters of these lines
   end type log_t
 
 contains
 
-  !> Open the file, behind what it holds where a run goes on, and write what has been waiting. Fails
-  !> when the file cannot be made, or is that of a run that is going on: the log stands for all
-  !> files of a run, since it is the first to be opened and the last to be closed.
+  !> Open the file, for appending at a restart, and write the pending lines. It is an error when the
+  !> file cannot be created or belongs to a running job: the log locks all files of a run, since it
+  !> is the first to be opened and the last to be closed.
   subroutine open_log(log, path, is_restart, error)
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: path
@@ -71,7 +71,7 @@ contains
     log%n_pending = last
   end subroutine write_log
 
-  !> Forget the lines that wait for the file.
+  !> Discard the pending lines.
   subroutine clear_pending(log)
     type(log_t), intent(inout) :: log
 
@@ -79,7 +79,7 @@ contains
     log%n_pending = 0
   end subroutine clear_pending
 
-  !> A warning: counted, logged and shown on standard error.
+  !> Count a warning, and write it to the log and to standard error.
   subroutine warn(log, text)
     type(log_t), intent(inout) :: log
     character(*), intent(in) :: text
@@ -90,7 +90,7 @@ contains
     call print_error('warning: '//text)
   end subroutine warn
 
-  !> Close the file; safe to call when none is open. What went wrong is in `trouble`.
+  !> Close the file if one is open; failures are stored in `first_error`.
   subroutine close_log(log)
     type(log_t), intent(inout) :: log
     type(error_t), allocatable :: error
@@ -118,13 +118,13 @@ contains
     character(24) :: buffer
 
     write (buffer, '(ss,es13.6)') number
-    ! Where the exponent takes three digits that form drops the letter.
+    ! That format drops the letter of an exponent of three digits.
     if (index(buffer, 'E') == 0 .and. scan(buffer, '0123456789') > 0) &
       write (buffer, '(ss,es14.6e3)') number
     text = trim(adjustl(buffer))
   end function real_to_text
 
-  !> `part` of `whole` in per cent, with two decimals.
+  !> `part`/`whole` in per cent with two decimals.
   pure function percent(part, whole) result(text)
     real(wp), intent(in) :: part, whole
     character(:), allocatable :: text

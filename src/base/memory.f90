@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What Linux tells of the machine in files: the processor, and how much memory there is. Linux
-!> hands out more than it has and ends the program that uses it, so that asking for memory is no
-!> test of whether it is there.
+!> Processor name and available memory from the files of Linux. Linux overcommits memory and kills
+!> the program that uses it, so that a successful allocation does not prove that memory is there.
 module memory_m
   use kinds_m, only : long
   implicit none
@@ -13,7 +12,7 @@ module memory_m
 
 contains
 
-  !> Bytes that can still be had, as far as the system says; otherwise the largest number.
+  !> Bytes of available memory; the largest number where the system does not report them.
   function available_bytes(root) result(bytes)
     character(*), intent(in), optional :: root !! folder with proc and sys, for tests; absent: /
     integer(long) :: bytes
@@ -25,8 +24,8 @@ contains
     bytes = huge(bytes)
     limit = number_in(top//'/proc/meminfo', 'MemAvailable:')
     if (limit >= 0) bytes = 1024*limit
-    ! The limit of a container, where there is one ("max" otherwise, which is no number). What it
-    ! uses holds copies of files that are given up on demand.
+    ! Memory limit of a container ("max" where there is none). Its usage contains file caches that
+    ! the system releases on demand.
     limit = number_in(top//'/sys/fs/cgroup/memory.max', '')
     used = number_in(top//'/sys/fs/cgroup/memory.current', '')
     if (limit < 0 .or. used < 0) return
@@ -34,7 +33,7 @@ contains
     bytes = min(bytes, max(limit - used, 0_long))
   end function available_bytes
 
-  !> The number behind a label at the start of a line; -1 without file, label or number.
+  !> The number that follows a label at the start of a line; -1 without file, label or number.
   function number_in(file, label) result(number)
     character(*), intent(in) :: file
     character(*), intent(in) :: label
@@ -47,7 +46,7 @@ contains
     if (status /= 0) number = -1
   end function number_in
 
-  !> The processor that the program runs on, by the name that Linux knows; `unknown` elsewhere.
+  !> Processor name; `unknown` where the system is not Linux.
   function processor_name() result(name)
     character(:), allocatable :: name
 
@@ -56,7 +55,7 @@ contains
     if (len(name) == 0) name = 'unknown'
   end function processor_name
 
-  !> What stands behind a label at the start of a line; empty without file or label.
+  !> Text that follows a label at the start of a line; empty without file or label.
   function text_behind(file, label) result(text)
     character(*), intent(in) :: file, label
     character(:), allocatable :: text

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Text of numbers by the C++ library: exact, and in a ninth of the time of gfortran's formatted
-// writes. `n` is the number of bytes written.
+// Conversion of numbers to text and back by the C++ library: exact, and nine times as fast as
+// gfortran's formatted writes. `n` is the number of bytes written.
 #include <algorithm>
 #include <cfenv>
 #include <charconv>
@@ -28,8 +28,8 @@ extern "C" void integer_text(int value, char *text, int *n) {
   end_at(text, std::to_chars(text, text + 11, value).ptr, n);
 }
 
-// As ESw.d with d at most 16. Exponents have two digits, which layouts of fixed width are made for:
-// beyond stand zero and the largest number.
+// As ESw.d with d at most 16. Exponents have two digits, as in layouts of fixed width; numbers
+// beyond are written as zero and as the largest number.
 extern "C" void scientific_text(double value, int width, int n_digit, char *text) {
   char digits[24];
   int n = 3;
@@ -47,7 +47,8 @@ extern "C" void scientific_text(double value, int width, int n_digit, char *text
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 static bool is_sign(char c) { return c == '-' || c == '+'; }
 
-// A real as strtod reads it, empty where it is none. Its exponent may lack the letter or have a D.
+// A real in the form of strtod, empty where it is invalid. Its exponent may lack the letter or have
+// a D.
 static std::string plain_form(const char *text, const char *end) {
   std::string plain;
   while (text < end && (is_digit(*text) || *text == '.')) plain += *text++;
@@ -66,8 +67,7 @@ static void trim_blanks(const char *&text, const char *&end) {
   while (text < end && *text == ' ') ++text;
 }
 
-// The number in n bytes, blanks around it allowed. Status 0; 1 where it is none; 2 where it is
-// 1e300 or larger.
+// The real in n bytes, with blanks around it. Status 0; 1 invalid; 2 from 1e300 on.
 extern "C" void real_of_text(const char *text, int n, double *value, int *status) {
   const char *end = text + n;
   *value = 0.0;
@@ -78,10 +78,10 @@ extern "C" void real_of_text(const char *text, int n, double *value, int *status
   if (text == end || !(is_digit(*text) || *text == '.')) return;
   double found = 0.0;
   const auto result = std::from_chars(text, end, found);
-  if (result.ptr != end || result.ec != std::errc()) { // written otherwise, too large or too small
+  if (result.ptr != end || result.ec != std::errc()) { // other forms, overflow or underflow
     const std::string plain = plain_form(text, end);
     char *stop = nullptr;
-    std::fenv_t exceptions; // those of strtod nobody is to see
+    std::fenv_t exceptions; // ignore those of strtod
     std::feholdexcept(&exceptions);
     found = std::strtod(plain.c_str(), &stop);
     std::fesetenv(&exceptions);
@@ -91,8 +91,8 @@ extern "C" void real_of_text(const char *text, int n, double *value, int *status
   if (*status == 0) *value = negative ? 0.0 - found : found;
 }
 
-// A whole number, which may be written as a real. Status as before; 2 beyond 2^31 - 1; 3 where it
-// is not whole.
+// The integer in n bytes, which may be written as a real. Status as above; 2 beyond 2^31 - 1; 3 where
+// it is not whole.
 extern "C" void integer_of_text(const char *text, int n, int *value, int *status) {
   const char *first = text, *end = text + n;
   *value = *status = 0;

@@ -1,10 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> A visitor that carries values from one process to another, or aside: the same visit counts them,
-!> loads them one behind the other and unloads them. As they lie in memory: who loads and who
-!> unloads are programs of one build.
+!> A visitor that packs values into a buffer, for another process or for a copy in memory. One visit
+!> counts them, a second packs them, a third unpacks them. Values are copied as they lie in memory:
+!> both sides run the same build.
 !>
-!> A buffer takes all that is not divided among processes; of arrays that are, it gives the lengths
-!> alone. A partial one takes ranges of these.
+!> A complete buffer holds all values that are not distributed over processes, and the extents of
+!> distributed arrays. A partial buffer holds ranges of distributed arrays.
 module packed_buffer_m
   use, intrinsic :: iso_c_binding, only : c_intptr_t, c_loc, c_ptr, c_size_t
   use kinds_m, only : wp
@@ -21,20 +21,20 @@ module packed_buffer_m
   type, extends(visitor_t) :: packed_buffer_t
     integer :: n = 0                    !! values passed so far
     logical :: is_unpacking = .false.
-    real(wp), allocatable :: values(:)  !! not there while they are only counted
-    integer :: ranges(2, n_of) = spread([1, 0], 2, n_of) !! of a partial one: first and last that it
-                                        !! takes of what is divided, by the `of_` constants
+    real(wp), allocatable :: values(:)  !! unallocated while values are counted
+    integer :: ranges(2, n_of) = spread([1, 0], 2, n_of) !! first and last index of each kind of
+                                        !! distributed array, by the `of_` constants; partial only
   contains
     procedure :: find => pass_extents
     procedure :: pass => pass_values
-    procedure :: carry => copy_bytes
+    procedure :: transfer_bytes => copy_bytes
   end type packed_buffer_t
 
-  !> A partial one that gives the memory of its ranges back: nobody asks for them any more. The
-  !> arrays stay as long as they are.
+  !> A partial buffer that releases the memory pages of its ranges, whose values are not needed any
+  !> more. The arrays keep their shapes.
   type, extends(packed_buffer_t) :: memory_release_t
   contains
-    procedure :: carry => release
+    procedure :: transfer_bytes => release
   end type memory_release_t
 
   interface
@@ -48,7 +48,7 @@ module packed_buffer_m
 
 contains
 
-  !> Once the values are counted: room for them.
+  !> Allocate the values after they have been counted.
   pure subroutine start_packing(buffer)
     type(packed_buffer_t), intent(inout) :: buffer
 
@@ -56,7 +56,7 @@ contains
     buffer%n = 0
   end subroutine start_packing
 
-  !> Back to the first value, to put them into arrays.
+  !> Return to the first value, to unpack.
   pure subroutine start_unpacking(buffer)
     type(packed_buffer_t), intent(inout) :: buffer
 
@@ -64,7 +64,7 @@ contains
     buffer%is_unpacking = .true.
   end subroutine start_unpacking
 
-  !> A buffer of a range of what is divided.
+  !> A partial buffer of one range of one kind of distributed array.
   pure function part_of(of, range) result(buffer)
     integer, intent(in) :: of       !! one of the `of_` constants
     integer, intent(in) :: range(2)
@@ -74,13 +74,13 @@ contains
     buffer%ranges(:, of) = range
   end function part_of
 
-  !> The slots of a range of chunks, and their streams.
+  !> Choose the slots and streams of a range of chunks.
   pure subroutine choose_slots(buffer, chunks, chunk_size, with_fixed, with_chunks)
     class(packed_buffer_t), intent(inout) :: buffer
     integer, intent(in) :: chunks(2)
     integer, intent(in) :: chunk_size
-    logical, intent(in) :: with_fixed  !! what steps do not change too
-    logical, intent(in) :: with_chunks !! values of whole chunks too
+    logical, intent(in) :: with_fixed  !! include arrays that time steps do not change
+    logical, intent(in) :: with_chunks !! include values per chunk
     integer :: slots(2)
 
     buffer%is_partial = .true.
@@ -95,23 +95,23 @@ contains
     if (with_chunks) buffer%ranges(:, new_chunks) = chunks
   end subroutine choose_slots
 
-  !> Extents go along, so that who unloads can allocate.
+  !> Pass the extents of an array, so that the receiver can allocate it.
   subroutine pass_extents(visitor, item)
     class(packed_buffer_t), intent(inout) :: visitor
     type(item_t), intent(inout) :: item
     integer, target :: extents(2)
 
     extents = item%extents
-    call visitor%carry(c_loc(extents), int(2*integer_bytes, c_size_t))
+    call visitor%transfer_bytes(c_loc(extents), int(2*integer_bytes, c_size_t))
     item%extents = extents
     item%is_new = visitor%is_unpacking
   end subroutine pass_extents
 
-  !> All values of an array, or those of a range of it.
-  subroutine pass_values(visitor, item, place, starts)
+  !> Pass all values of an array, or the chosen range.
+  subroutine pass_values(visitor, item, address, starts)
     class(packed_buffer_t), intent(inout) :: visitor
     type(item_t), intent(in) :: item
-    type(c_ptr), intent(in) :: place
+    type(c_ptr), intent(in) :: address
     integer, intent(in), optional :: starts(:)
     integer(c_size_t) :: n_byte
     integer :: range(2), k
@@ -122,7 +122,7 @@ contains
     if (item%content == as_bytes) n_byte = 1
     if (.not. visitor%is_partial) then
       n_byte = n_byte*product(int(item%extents(:item%rank), c_size_t))
-      if (n_byte > 0) call visitor%carry(place, n_byte)
+      if (n_byte > 0) call visitor%transfer_bytes(address, n_byte)
       return
     end if
     range = visitor%ranges(:, item%of)
@@ -131,30 +131,31 @@ contains
     if (range(2) < range(1)) return
     if (any(item%of == [of_columns, fixed_columns])) then
       do k = 1, item%extents(2)
-        call visitor%carry(behind(place, n_byte*(int(k - 1, c_size_t)*item%extents(1) &
-          + range(1) - 1)), n_byte*(range(2) - range(1) + 1))
+        call visitor%transfer_bytes(offset_address(address, n_byte*(int(k - 1, &
+          c_size_t)*item%extents(1) + range(1) - 1)), n_byte*(range(2) - range(1) + 1))
       end do
     else
       if (item%rank == 2) n_byte = n_byte*item%extents(1)
-      call visitor%carry(behind(place, n_byte*(range(1) - 1)), n_byte*(range(2) - range(1) + 1))
+      call visitor%transfer_bytes(offset_address(address, n_byte*(range(1) - 1)), n_byte*(range(2) &
+        - range(1) + 1))
     end if
   end subroutine pass_values
 
-  !> The place so many bytes behind another.
-  pure function behind(place, n_byte) result(there)
-    type(c_ptr), intent(in) :: place
+  !> The address `n_byte` bytes after another.
+  pure function offset_address(address, n_byte) result(shifted)
+    type(c_ptr), intent(in) :: address
     integer(c_size_t), intent(in) :: n_byte
-    type(c_ptr) :: there
-    integer(c_intptr_t) :: address
+    type(c_ptr) :: shifted
+    integer(c_intptr_t) :: bits
 
-    address = transfer(place, address) + n_byte
-    there = transfer(address, there)
-  end function behind
+    bits = transfer(address, bits) + n_byte
+    shifted = transfer(bits, shifted)
+  end function offset_address
 
-  !> Bytes that lie side by side. They take a whole number of reals.
-  subroutine copy_bytes(visitor, place, n_byte)
+  !> Copy contiguous bytes; they occupy a whole number of reals in the buffer.
+  subroutine copy_bytes(visitor, address, n_byte)
     class(packed_buffer_t), intent(inout), target :: visitor
-    type(c_ptr), intent(in) :: place
+    type(c_ptr), intent(in) :: address
     integer(c_size_t), intent(in) :: n_byte
     type(c_ptr) :: ignored
     integer :: last
@@ -162,26 +163,26 @@ contains
     last = visitor%n + int((n_byte + real_bytes - 1)/real_bytes)
     if (allocated(visitor%values)) then
       if (visitor%is_unpacking) then
-        ignored = c_memcpy(place, c_loc(visitor%values(visitor%n + 1)), n_byte)
+        ignored = c_memcpy(address, c_loc(visitor%values(visitor%n + 1)), n_byte)
       else
         visitor%values(last) = 0.0_wp
-        ignored = c_memcpy(c_loc(visitor%values(visitor%n + 1)), place, n_byte)
+        ignored = c_memcpy(c_loc(visitor%values(visitor%n + 1)), address, n_byte)
       end if
     end if
     visitor%n = last
   end subroutine copy_bytes
 
-  !> Their pages go back to the system.
-  subroutine release(visitor, place, n_byte)
+  !> Release the memory pages of contiguous bytes.
+  subroutine release(visitor, address, n_byte)
     class(memory_release_t), intent(inout), target :: visitor
-    type(c_ptr), intent(in) :: place
+    type(c_ptr), intent(in) :: address
     integer(c_size_t), intent(in) :: n_byte
 
-    call release_pages(place, n_byte)
+    call release_pages(address, n_byte)
     visitor%n = visitor%n + int(n_byte/real_bytes)
   end subroutine release
 
-  !> Ranges of a stream that only some chunks of elements have a part of.
+  !> First index of each range of chunks in a stream that only some chunks have a part of.
   pure function stream_starts(chunks, chunk_start, n_value) result(starts)
     integer, intent(in) :: chunks(0:)      !! ranges of chunks
     integer, intent(in) :: chunk_start(:)  !! where a chunk's part starts, 0 = none

@@ -8,8 +8,8 @@ module quadrature_m
 
 contains
 
-  !> Points (rising) and weights (sum 1) of the n-point rule on 0 .. 1, n = size(xi): roots of the
-  !> Legendre polynomial by Newton's method from the usual cosine estimate.
+  !> Points xi (increasing) and weights (sum 1) of the n-point rule on 0 .. 1, n = size(xi): roots
+  !> of the Legendre polynomial by Newton's method from the usual cosine estimate.
   pure subroutine gauss_rule(xi, weight)
     real(wp), intent(out) :: xi(:)
     real(wp), intent(out) :: weight(:) !! (size(xi))

@@ -1,41 +1,42 @@
 ! SPDX-License-Identifier: MIT
-!> Long loops in ranges that threads share. Where ranges begin depends on the length of the loop
-!> alone, so that sums over ranges do not depend on the number of threads. A loop over ranges is a
-!> `taskloop`: the one thread that does the serial part of a cycle makes the tasks, and those that
-!> wait at its barrier help. Where nobody waits it does them all.
+!> Long loops in ranges, one for each thread: a `taskloop` over them in the serial part of a cycle,
+!> by the one thread that does that part and those that wait at the barrier behind it. No result
+!> may depend on where ranges begin.
 module ranges_m
   use kinds_m, only : long
+  use omp_lib, only : omp_get_num_threads
   implicit none
   private
-  public :: n_ranges, first_of, last_of, most_ranges
-
-  !> Least length of a range, and most ranges of a loop.
-  integer, parameter :: least_length = 128, most_ranges = 64
+  public :: n_ranges, first_of, last_of
 
 contains
 
-  !> Number of ranges of a loop; 1: too short to be shared.
-  pure function n_ranges(n)
-    integer, intent(in) :: n !! length of the loop
+  !> Number of ranges of a loop: as many as threads of the team, but none shorter than `least`.
+  function n_ranges(n, least)
+    integer, intent(in) :: n     !! length of the loop
+    integer, intent(in) :: least !! length that is worth a thread
     integer :: n_ranges
 
-    n_ranges = max(1, min(n/least_length, most_ranges))
+    n_ranges = 1
+    if (n >= 2*least) n_ranges = min(n/least, omp_get_num_threads())
   end function n_ranges
 
   !> First index of a range.
-  pure function first_of(i, n) result(first)
-    integer, intent(in) :: i, n !! range, length of the loop
+  pure function first_of(i, n_range, n) result(first)
+    integer, intent(in) :: i       !! range
+    integer, intent(in) :: n_range !! number of them
+    integer, intent(in) :: n       !! length of the loop
     integer :: first
 
-    first = 1 + int((i - 1)*int(n, long)/n_ranges(n))
+    first = 1 + int((i - 1)*int(n, long)/n_range)
   end function first_of
 
   !> Last index of a range.
-  pure function last_of(i, n) result(last)
-    integer, intent(in) :: i, n !! range, length of the loop
+  pure function last_of(i, n_range, n) result(last)
+    integer, intent(in) :: i, n_range, n
     integer :: last
 
-    last = first_of(i + 1, n) - 1
+    last = first_of(i + 1, n_range, n) - 1
   end function last_of
 
 end module ranges_m

@@ -1,10 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> Sorting by key, and looking for keys among sorted ones.
+!> Sorting by key and binary search.
 module sorting_m
   use kinds_m, only : long
   implicit none
   private
-  public :: sorted_order, distinct, place_among
+  public :: sorted_order, distinct, index_among
 
 contains
 
@@ -57,7 +57,7 @@ contains
     end do
   end subroutine merge_runs
 
-  !> The values of a list, each once, in rising order.
+  !> The distinct values of a list in increasing order.
   pure function distinct(values) result(rising)
     integer, intent(in) :: values(:)
     integer, allocatable :: rising(:)
@@ -77,11 +77,11 @@ contains
     rising = rising(:n)
   end function distinct
 
-  !> Where a value stands on a list, 0: nowhere. `order` sorts the list.
-  pure function place_among(values, order, value) result(place)
+  !> Index of a value in a list that `order` sorts; 0 where it is not in the list.
+  pure function index_among(values, order, value) result(found)
     integer, intent(in) :: values(:), order(:)
     integer, intent(in) :: value
-    integer :: place
+    integer :: found
     integer :: low, high, middle
 
     low = 1
@@ -94,9 +94,9 @@ contains
         high = middle
       end if
     end do
-    place = 0
+    found = 0
     if (high < 1) return
-    if (values(order(low)) == value) place = order(low)
-  end function place_among
+    if (values(order(low)) == value) found = order(low)
+  end function index_among
 
 end module sorting_m

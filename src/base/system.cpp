@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the program asks of the system and the C library: signals, how it ends, memory, and files.
-// Where something fails the reason is in errno. Handlers have no argument to carry a state, so that
-// it is saved here.
+// System calls: signals, exit status, memory and files. The reason of a failure is in errno.
+// Handlers have no argument for a state, so that it is stored in static variables.
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
@@ -24,21 +23,30 @@ static void record_signal(int number) {
   received[number == SIGUSR1 ? 1 : number == SIGUSR2 ? 2 : 0] = 1;
 }
 
-// A pipe whose reader has gone and a file of the largest size allowed are failed writes.
-extern "C" void catch_requests() {
-  std::signal(SIGUSR1, record_signal);
-  std::signal(SIGUSR2, record_signal);
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);
+// System calls that a signal interrupts are restarted. Returns the previous handler.
+static void (*set_handler(int number, void (*handler)(int)))(int) {
+  struct sigaction next = {}, previous = {};
+  next.sa_handler = handler;
+  next.sa_flags = SA_RESTART;
+  sigaction(number, &next, &previous);
+  return previous.sa_handler;
 }
 
-// A signal that was ignored when the program started stays so: SIGHUP under nohup, SIGINT in a job
-// that a script has put behind itself.
+// A pipe without reader and a file at its size limit are failed writes.
+extern "C" void catch_requests() {
+  set_handler(SIGUSR1, record_signal);
+  set_handler(SIGUSR2, record_signal);
+  set_handler(SIGPIPE, SIG_IGN);
+  set_handler(SIGXFSZ, SIG_IGN);
+}
+
+// A signal that was ignored when the program started stays ignored: SIGHUP under nohup, SIGINT in a
+// background job of a script.
 extern "C" void catch_stops() {
   for (const int number : {SIGHUP, SIGINT})
-    if (std::signal(number, SIG_IGN) != SIG_IGN) std::signal(number, record_signal);
-  std::signal(SIGTERM, record_signal);
-  std::signal(SIGXCPU, record_signal);
+    if (set_handler(number, SIG_IGN) != SIG_IGN) set_handler(number, record_signal);
+  set_handler(SIGTERM, record_signal);
+  set_handler(SIGXCPU, record_signal);
 }
 
 extern "C" void limit_processor(int seconds) {
@@ -59,18 +67,18 @@ extern "C" bool is_requested(int request) {
 extern "C" bool output_is_terminal() { return isatty(1) == 1; }
 
 // ---- ends --------------------------------------------------------------------------------------
-static bool is_exit_allowed = false; // the program ends by itself
+static bool is_exit_allowed = false; // the end is regular
 static std::string last_line;
 static int last_status;
 
 static void write_text(int file, const char *text) {
-  if (write(file, text, std::strlen(text)) < 0) return; // nobody is left to be told
+  if (write(file, text, std::strlen(text)) < 0) return; // nothing is left to report it to
 }
 
-// Fortran's own units may be busy with what has failed.
+// Without Fortran units, which may be in use by the failed statement.
 static void handle_exit() {
   if (is_exit_allowed) return;
-  write_text(2, "slideline could not go on, for the reason above (error termination)\n");
+  write_text(2, "slideline stopped for the reason above (error termination)\n");
   write_text(1, last_line.c_str());
   _exit(last_status);
 }
@@ -84,20 +92,20 @@ extern "C" void guard_exit(const char *line, int status) {
 extern "C" void allow_exit() { is_exit_allowed = true; }
 
 // ---- memory ------------------------------------------------------------------------------------
-// Fortran looks at the answer of `allocate`, but not at that of assignments which allocate and of
-// copies of derived types: it would write through a null pointer. The linker hands all calls for
-// memory to the procedures below (--wrap); handle_exit gives the status.
+// gfortran checks the result of malloc in `allocate`, but not in assignments that allocate and in
+// copies of derived types: it would write through a null pointer. The linker redirects all
+// allocations to the procedures below (--wrap); handle_exit sets the status.
 extern "C" void *__real_malloc(std::size_t n);
 extern "C" void *__real_calloc(std::size_t n, std::size_t size);
 extern "C" void *__real_realloc(void *old, std::size_t n);
 
 static bool is_failure_expected = false;
 
-// Nothing here may ask for memory.
-static void *checked(void *place, std::size_t n) {
-  if (place != nullptr || n == 0 || is_failure_expected) return place;
+// Must not allocate.
+static void *checked(void *block, std::size_t n) {
+  if (block != nullptr || n == 0 || is_failure_expected) return block;
   char line[80];
-  std::snprintf(line, sizeof line, "the system refuses memory: %zu bytes more\n", n);
+  std::snprintf(line, sizeof line, "out of memory: %zu more bytes are not available\n", n);
   write_text(2, line);
   std::exit(1);
 }
@@ -124,8 +132,8 @@ extern "C" void release_memory() {
 }
 
 extern "C" void release_pages(char *start, std::size_t n) {
-  const std::uintptr_t page = getpagesize(), place = reinterpret_cast<std::uintptr_t>(start);
-  const std::uintptr_t first = (place + page - 1) / page * page, last = (place + n) / page * page;
+  const std::uintptr_t page = getpagesize(), begin = reinterpret_cast<std::uintptr_t>(start);
+  const std::uintptr_t first = (begin + page - 1) / page * page, last = (begin + n) / page * page;
   if (last > first) madvise(reinterpret_cast<void *>(first), last - first, MADV_DONTNEED);
 }
 
@@ -170,7 +178,7 @@ extern "C" bool is_locked_by_another(int file) {
 extern "C" std::size_t write_bytes(int file, const char *bytes, std::size_t n) {
   std::size_t n_written = 0;
   while (n_written < n) {
-    const ssize_t n_new = write(file, bytes + n_written, n - n_written);
+    const ssize_t n_new = write(file, bytes + n_written, n - n_written); // may be a part
     if (n_new <= 0) break;
     n_written += n_new;
   }
@@ -179,7 +187,7 @@ extern "C" std::size_t write_bytes(int file, const char *bytes, std::size_t n) {
 
 extern "C" int make_folder(const char *path) { return mkdir(path, 0777); }
 
-// A directory opens for reading alone.
+// Read-only, as directories cannot be opened for writing.
 extern "C" int force_path(const char *path) {
   const int file = open(path, O_RDONLY);
   if (file < 0) return -1;

@@ -78,9 +78,8 @@ contains
     end do
   end function upper_case
 
-  !> A real: `1.`, `.5`, `1e-3`, `1.0D0`, `8.9-3`; blanks around it are allowed.
-  !> The value is the correctly rounded one. A magnitude of 1e300 and more is `number_range`:
-  !> squares of deck values may be the only thing to overflow later.
+  !> Read a real, correctly rounded: `1.`, `.5`, `1e-3`, `1.0D0`, `8.9-3`, with blanks around it.
+  !> The status is `number_range` from 1e300 on.
   pure subroutine read_real(text, value, status)
     character(*), intent(in) :: text
     real(wp), intent(out) :: value
@@ -89,7 +88,7 @@ contains
     call c_read_real(text, len(text), value, status)
   end subroutine read_real
 
-  !> A whole number; `3.0` is one, `3.5` is not. Range: plus or minus 2^31 - 1.
+  !> Read an integer, `3` or `3.0`, of at most 2^31 - 1 in magnitude.
   pure subroutine read_integer(text, value, status)
     character(*), intent(in) :: text
     integer, intent(out) :: value
@@ -130,7 +129,7 @@ contains
     end do
   end function es_several
 
-  !> A text that may be missing.
+  !> The text, empty where it is not allocated.
   pure function text_of(text) result(known)
     character(:), allocatable, intent(in) :: text
     character(:), allocatable :: known
@@ -139,8 +138,8 @@ contains
     if (allocated(text)) known = text
   end function text_of
 
-  !> Bytes of the character of UTF-8 (RFC 3629) that a text begins with; 0 when it begins with none:
-  !> overlong forms, halves of surrogate pairs and codes beyond 10FFFF are none.
+  !> Bytes of the first UTF-8 character of a text (RFC 3629); 0 where it is not valid: overlong
+  !> forms, surrogate halves and codes above 10FFFF.
   pure function utf8_length(text) result(n)
     character(*), intent(in) :: text !! not empty
     integer :: n

@@ -14,50 +14,49 @@ module text_files_m
     read_whole, write_whole, overwrite_start, line_file_t, open_lines, put_lines, flush_due, &
     flush_lines, close_lines, print_line, print_text, print_error, normal_ending, error_ending
 
-  !> How a run says that it ended.
+  !> Last line of a run.
   character(*), parameter :: normal_ending = ' N o r m a l    t e r m i n a t i o n', &
     error_ending = ' E r r o r    t e r m i n a t i o n'
 
-  !> Bytes of lines that wait, at most.
+  !> Size of the line buffer, bytes.
   integer, parameter :: buffer_size = 65536
 
   !> An open text file.
   type :: text_file_t
     character(:), allocatable :: path   !! for messages
     integer(c_int) :: descriptor = -1   !! -1 while no file is open
-    integer(long) :: n_byte = -1        !! length that this program knows of; -1: no matter
+    integer(long) :: n_byte = -1        !! expected length; -1: not checked
   end type text_file_t
 
-  !> A text file whose whole lines wait for each other: they reach it with one system call, at the
-  !> latest a second after they came.
+  !> A text file with a buffer of whole lines, which one system call writes, at most a second later.
   type :: line_file_t
-    logical :: is_open = .false.           !! lines are taken only while open
+    logical :: is_open = .false.
     type(text_file_t) :: file
-    character(:), allocatable :: buffer    !! lines that wait
+    character(:), allocatable :: buffer    !! pending lines
     integer :: n_pending = 0               !! bytes of them
     integer(long) :: flushed = 0           !! clock tick of the last write
-    type(error_t), allocatable :: first_error  !! first failure, which ends the writing
+    type(error_t), allocatable :: first_error !! nothing is written after it
   end type line_file_t
 
-  ! By the C library, and not by a Fortran unit: gfortran's `flush` and `close` report success on a
-  ! full disk, and one `write` of whole lines leaves no half line behind when the process is killed.
+  ! By the C library, not by a Fortran unit: gfortran's `flush` and `close` report success on a full
+  ! disk, and one `write` of whole lines leaves no incomplete line when the process is killed.
   interface
     !> Open a file (system.cpp); -1 on failure.
     function c_open(path, mode) bind(c, name='open_file') result(descriptor)
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: path(*) !! ends with a null
-      character(kind=c_char), intent(in) :: mode    !! w: empty; a: behind what it holds; r: neither
+      character(kind=c_char), intent(in) :: mode    !! w: truncate; a: append; r: overwrite
       integer(c_int) :: descriptor
     end function c_open
 
-    !> Take a file for this process alone, without waiting; whether another one has it (system.cpp).
+    !> Lock a file without waiting; true where another process has locked it (system.cpp).
     function c_is_locked(descriptor) bind(c, name='is_locked_by_another') result(is_locked)
       import :: c_bool, c_int
       integer(c_int), value :: descriptor
       logical(c_bool) :: is_locked
     end function c_is_locked
 
-    !> Write; bytes that have been taken (system.cpp).
+    !> Write bytes; the number of bytes written (system.cpp).
     function c_write(descriptor, bytes, n_byte) bind(c, name='write_bytes') result(n_written)
       import :: c_char, c_int, c_size_t
       integer(c_int), value :: descriptor
@@ -75,9 +74,9 @@ module text_files_m
 
 contains
 
-  !> Make a text file, empty; one of the same name is removed before, so that other names of it
-  !> (hard links) keep what they have. What is no regular file is refused: to open a pipe could wait
-  !> for ever, and a link leads elsewhere.
+  !> Create an empty text file. A file of the same name is removed first, so that its hard links
+  !> keep their content. A name of anything but a regular file is an error: opening a pipe may
+  !> block, and a link leads elsewhere.
   subroutine create_text_file(file, path, error)
     type(text_file_t), intent(out) :: file
     character(*), intent(in) :: path
@@ -101,13 +100,13 @@ contains
       call raise(error, 'cannot write '//path//': '//open_failure(path), status_files)
   end subroutine open_stream
 
-  !> Open a text file to write on behind what it holds, or from its start, for this process alone as
-  !> long as it is open; it is made when there is none. A file that holds something is not written
-  !> to: a copy, or an empty file, takes its place, so that other names of it keep what they have.
+  !> Open a text file for appending, or empty, and lock it while it is open; it is created when it
+  !> does not exist. A copy or an empty file replaces an existing file, so that its hard links keep
+  !> their content.
   subroutine continue_text_file(file, path, keeps_content, error)
     type(text_file_t), intent(out) :: file
     character(*), intent(in) :: path
-    logical, intent(in) :: keeps_content !! what it holds
+    logical, intent(in) :: keeps_content !! append to the present content
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: ignored
     type(text_file_t) :: before
@@ -125,8 +124,7 @@ contains
     if (keeps_content .and. .not. allocated(error)) then
       call read_whole(path, text, is_read)
       if (is_read) call append_text(file, text, error)
-      if (.not. is_read) call raise(error, 'cannot read '//path//', behind which the run would ' &
-        //'write', status_files)
+      if (.not. is_read) call raise(error, 'cannot read '//path//' to append to it', status_files)
     end if
     if (.not. allocated(error)) call rename_file(path//unfinished, path, error)
     if (allocated(error)) call remove_file(path//unfinished, ignored)
@@ -135,9 +133,9 @@ contains
     call close_text_file(before, ignored)
   end subroutine continue_text_file
 
-  !> Open a file behind what it holds and lock it; it is made when there is none. The lock ends with
-  !> the process, however that ends; where the file system has no locks there is none. A file that
-  !> another one has replaced meanwhile is that of a run that has just begun.
+  !> Open a file for appending and lock it; it is created when it does not exist. The lock ends with
+  !> the process; file systems without locks have none. A file that has been replaced meanwhile
+  !> belongs to a run that has just started.
   subroutine open_alone(file, path, error)
     type(text_file_t), intent(out) :: file
     character(*), intent(in) :: path
@@ -153,11 +151,11 @@ contains
       file%n_byte = facts%n_byte
       is_locked = is_locked .or. .not. is_same_file(facts, facts_of_name(path))
     end if
-    if (is_locked) call raise(error, 'cannot write '//path//': another run that is going on has ' &
-      //'it open; give this one another name (jobid=) or folder (d=)', status_files)
+    if (is_locked) call raise(error, 'cannot write '//path//': another run in progress has it ' &
+      //'open; choose another name (jobid=) or folder (d=)', status_files)
   end subroutine open_alone
 
-  !> All bytes of a file.
+  !> Read all bytes of a file.
   subroutine read_whole(path, text, is_read)
     character(*), intent(in) :: path
     character(:), allocatable, intent(out) :: text
@@ -176,8 +174,8 @@ contains
     is_read = status == 0
   end subroutine read_whole
 
-  !> Append text as it is, line ends included, with one system call as long as the system takes all.
-  !> Fails too where the file is no longer what this program has written.
+  !> Append text, line ends included, with one system call as long as the system accepts all of it.
+  !> It is an error where another program has changed the file.
   subroutine append_text(file, text, error)
     type(text_file_t), intent(inout) :: file
     character(*), intent(in) :: text
@@ -187,12 +185,12 @@ contains
     call check_untouched(file, error)
     if (allocated(error)) return
     n_written = c_write(file%descriptor, text, len(text, c_size_t))
-    if (n_written < len(text, long)) call raise(error, 'cannot write on to '//file%path//': ' &
+    if (n_written < len(text, long)) call raise(error, 'cannot append to '//file%path//': ' &
       //system_reason(), status_files)
     if (file%n_byte >= 0) file%n_byte = file%n_byte + n_written
   end subroutine append_text
 
-  !> Make a text file that holds this text and no more.
+  !> Create a text file with this content.
   subroutine write_whole(path, text, error)
     character(*), intent(in) :: path, text
     type(error_t), allocatable, intent(out) :: error
@@ -206,7 +204,7 @@ contains
     if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
   end subroutine write_whole
 
-  !> Put text in the place of the first bytes of a file that is there.
+  !> Overwrite the first bytes of an existing file.
   subroutine overwrite_start(path, text, error)
     character(*), intent(in) :: path
     character(*), intent(in) :: text
@@ -221,7 +219,7 @@ contains
     if (.not. allocated(error) .and. allocated(closing)) call move_alloc(closing, error)
   end subroutine overwrite_start
 
-  !> Whether the open file still has its name and the length that this program gave it.
+  !> Check that the open file still has its name and the expected length.
   subroutine check_untouched(file, error)
     type(text_file_t), intent(in) :: file
     type(error_t), allocatable, intent(out) :: error
@@ -231,15 +229,15 @@ contains
     facts = facts_of_descriptor(file%descriptor)
     if (.not. facts%is_there) return
     if (.not. is_same_file(facts, facts_of_name(file%path))) then
-      call raise(error, 'cannot write on to '//file%path//': it has been removed or renamed ' &
+      call raise(error, 'cannot append to '//file%path//': it has been removed or renamed ' &
         //'during the run', status_files)
     else if (facts%n_byte /= file%n_byte) then
-      call raise(error, 'cannot write on to '//file%path//': somebody else has changed it during ' &
+      call raise(error, 'cannot append to '//file%path//': another program has changed it during ' &
         //'the run', status_files)
     end if
   end subroutine check_untouched
 
-  !> Close; nothing happens when no file is open.
+  !> Close the file if it is open.
   subroutine close_text_file(file, error)
     type(text_file_t), intent(inout) :: file
     type(error_t), allocatable, intent(out) :: error
@@ -253,7 +251,7 @@ contains
       ': the file system refused the last bytes', status_files)
   end subroutine close_text_file
 
-  !> Make a file of lines, empty.
+  !> Create an empty file of lines.
   subroutine open_lines(lines, path, error)
     type(line_file_t), intent(out) :: lines
     character(*), intent(in) :: path
@@ -266,7 +264,7 @@ contains
     call system_clock(lines%flushed)
   end subroutine open_lines
 
-  !> Take text, line ends included; a line is shorter than the buffer.
+  !> Add text to the buffer, line ends included; a line is shorter than the buffer.
   subroutine put_lines(lines, text)
     type(line_file_t), intent(inout) :: lines
     character(*), intent(in) :: text
@@ -276,7 +274,7 @@ contains
     lines%n_pending = lines%n_pending + len(text)
   end subroutine put_lines
 
-  !> Write what has waited for a second.
+  !> Write the pending lines if the last write was more than a second ago.
   subroutine flush_due(lines)
     type(line_file_t), intent(inout) :: lines
     integer(long) :: now, rate
@@ -285,7 +283,7 @@ contains
     if (now - lines%flushed > rate) call write_pending(lines)
   end subroutine flush_due
 
-  !> Write what waits. The first failure is remembered and ends the writing.
+  !> Write the pending lines; nothing is written after the first failure.
   subroutine write_pending(lines)
     type(line_file_t), intent(inout) :: lines
     type(error_t), allocatable :: error
@@ -298,7 +296,7 @@ contains
     call system_clock(lines%flushed)
   end subroutine write_pending
 
-  !> Bring all lines into the file; nothing happens to one that is not open.
+  !> Write all pending lines if the file is open.
   subroutine flush_lines(lines, error)
     type(line_file_t), intent(inout) :: lines
     type(error_t), allocatable, intent(out) :: error
@@ -308,7 +306,7 @@ contains
     if (allocated(lines%first_error)) error = lines%first_error
   end subroutine flush_lines
 
-  !> Bring all lines into the file and close it.
+  !> Write all pending lines and close the file.
   subroutine close_lines(lines, error)
     type(line_file_t), intent(inout) :: lines
     type(error_t), allocatable, intent(out) :: error
@@ -321,18 +319,18 @@ contains
     if (allocated(closing) .and. .not. allocated(error)) call move_alloc(closing, error)
   end subroutine close_lines
 
-  !> A line (or several, separated by new_line) on standard output.
+  !> Write a line (or several, separated by new_line) to standard output.
   subroutine print_line(text, error)
     character(*), intent(in) :: text
-    type(error_t), allocatable, intent(out), optional :: error !! absent: a failure is no matter
+    type(error_t), allocatable, intent(out), optional :: error !! absent: failures are ignored
 
     call print_text(text//new_line('a'), error)
   end subroutine print_line
 
-  !> Text on standard output, without a line end.
+  !> Write text to standard output, without a line end.
   subroutine print_text(text, error)
     character(*), intent(in) :: text
-    type(error_t), allocatable, intent(out), optional :: error !! absent: a failure is no matter
+    type(error_t), allocatable, intent(out), optional :: error !! absent: failures are ignored
     type(error_t), allocatable :: failure
     type(text_file_t) :: screen
 
@@ -341,7 +339,7 @@ contains
     if (present(error) .and. allocated(failure)) call move_alloc(failure, error)
   end subroutine print_text
 
-  !> A line (or several) on standard error.
+  !> Write a line (or several) to standard error.
   subroutine print_error(text)
     character(*), intent(in) :: text
     type(error_t), allocatable :: ignored

@@ -1,11 +1,11 @@
 ! SPDX-License-Identifier: MIT
-!> Visits of all that is stored of a state or a model. Each type names its components once, in its
-!> `visit`; what is done with them is the visitor's: to write or read a restart file (`archive_m`),
-!> to send them to another process or to give memory back (`packed_buffer_m`).
+!> Visitor pattern for the stored components of states and models. Each type lists its components
+!> once, in its `visit`; the visitor writes or reads a restart file (`archive_m`), sends them to
+!> another process or releases memory (`packed_buffer_m`).
 !>
-!> A visitor that brings values gives an array the extents that come with them; others leave arrays
-!> that are not allocated as they are. One that judges looks at bounds and refuses what it brings;
-!> its first failure stays and ends its work.
+!> A visitor that reads values allocates arrays with the extents that come with them; others leave
+!> unallocated arrays as they are. One that validates checks bounds; nothing is done after its first
+!> error.
 module visitor_m
   use, intrinsic :: iso_c_binding, only : c_loc, c_null_ptr, c_ptr
   use, intrinsic :: iso_fortran_env, only : int16
@@ -18,44 +18,44 @@ module visitor_m
     whole, any_length, of_nodes, of_elements, of_slots, of_columns, of_stresses, of_streams, &
     of_chunks, of_forces, new_chunks, fixed_slots, fixed_columns, n_of
 
-  !> What an item holds: float64, int32, int64; or bytes that only a program of one build reads.
+  !> Content of an item: float64, int32, int64; or bytes that only the same build can read.
   integer, parameter :: as_real = 1, as_integer = 2, as_index = 3, as_bytes = 4
-  !> What the last extent of an array counts: nothing that is divided among processes; that, and any
-  !> number of it; nodes of the mesh, elements in deck order, slots of elements, their chunks, force
-  !> slots. `of_columns`: the first extent counts slots; `of_stresses`: 16 values a slot;
-  !> `of_streams`: only some chunks have a part of it. Steps do not change what is `fixed_`, and set
-  !> what is `new_` before it is asked for, so that no restart file holds it.
+  !> Meaning of the last extent of an array: not distributed over processes; not distributed, any
+  !> length; nodes of the mesh, elements in deck order, element slots, chunks, force slots.
+  !> `of_columns`: the first extent counts slots; `of_stresses`: 16 values a slot; `of_streams`:
+  !> only some chunks have a part of it. Time steps do not change `fixed_` arrays and set `new_`
+  !> arrays before they are used, so that restart files do not contain them.
   integer, parameter :: whole = 0, any_length = 1, of_nodes = 2, of_elements = 3, of_slots = 4, &
     of_columns = 5, of_stresses = 6, of_streams = 7, of_chunks = 8, of_forces = 9, &
     new_chunks = 10, fixed_slots = 11, fixed_columns = 12, n_of = 12
-  !> Extent of what is not allocated.
+  !> Extent of an unallocated array.
   integer, parameter :: absent = -1
-  character(*), parameter :: not_finite = 'values that are no finite numbers'
-  character(*), parameter :: other_numbers = 'other numbers than follow from the deck'
+  character(*), parameter :: not_finite = 'values that are not finite numbers'
+  character(*), parameter :: other_numbers = 'numbers that differ from those of the deck'
 
-  !> A component as visitors see it.
+  !> Description of one component.
   type :: item_t
     character(24) :: name = ''
     integer :: content = as_real              !! one of the `as_` constants
     integer :: rank = 1
     integer :: extents(2) = [absent, 1]
-    integer :: of = whole                     !! what the array is indexed by
-    logical :: is_new = .false.               !! to be allocated with these extents, if not absent
+    integer :: of = whole                     !! meaning of the last extent
+    logical :: is_new = .false.               !! to be allocated with these extents, unless absent
   end type item_t
 
-  !> Who visits.
+  !> A visitor.
   type, abstract :: visitor_t
-    logical :: validates = .false.               !! what it brings may be wrong
-    logical :: is_partial = .false.           !! it asks only for arrays that are divided
-    integer :: n_item = 0                     !! length that `makes` has found
+    logical :: validates = .false.            !! its values may be wrong
+    logical :: is_partial = .false.           !! visits distributed arrays only
+    integer :: n_item = 0                     !! length set by `makes`
     integer :: n_node = 0                     !! nodes of the mesh, for bounds
     character(:), allocatable :: path         !! file, for messages
-    character(:), allocatable :: folder       !! where the component is, ends with / or is empty
+    character(:), allocatable :: folder       !! of the component, ends with / or is empty
     type(error_t), allocatable :: error       !! first failure
   contains
-    !> Extents that an array will have.
+    !> Get the extents of an array.
     procedure(find_item), deferred :: find
-    !> Its values.
+    !> Pass its values.
     procedure(pass_item), deferred :: pass
     procedure :: enter
     procedure :: leave
@@ -76,7 +76,7 @@ module visitor_m
       visit_short_table, same_integer, same_integers
   end type visitor_t
 
-  !> What is stored: it hands its components over.
+  !> A type with stored components.
   type, abstract :: visited_t
   contains
     procedure(visit_components), deferred :: visit
@@ -86,14 +86,14 @@ module visitor_m
     subroutine find_item(visitor, item)
       import :: visitor_t, item_t
       class(visitor_t), intent(inout) :: visitor
-      type(item_t), intent(inout) :: item    !! with the extents that it has; then those that come
+      type(item_t), intent(inout) :: item    !! in: present extents; out: extents of the values
     end subroutine find_item
 
-    subroutine pass_item(visitor, item, place, starts)
+    subroutine pass_item(visitor, item, address, starts)
       import :: visitor_t, item_t, c_ptr
       class(visitor_t), intent(inout) :: visitor
       type(item_t), intent(in) :: item
-      type(c_ptr), intent(in) :: place              !! first value
+      type(c_ptr), intent(in) :: address              !! first value
       integer, intent(in), optional :: starts(:)    !! of a stream
     end subroutine pass_item
 
@@ -106,7 +106,7 @@ module visitor_m
 
 contains
 
-  !> Items of a list, `absent` where it is not allocated.
+  !> Length of a list, `absent` where it is not allocated.
   pure function length(list) result(n)
     class(*), intent(in), optional :: list(:)
     integer :: n
@@ -115,7 +115,7 @@ contains
     if (present(list)) n = size(list)
   end function length
 
-  !> Go into a component that has components.
+  !> Enter a component that has components of its own.
   subroutine enter(visitor, name)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
@@ -124,7 +124,7 @@ contains
     visitor%folder = visitor%folder//name//'/'
   end subroutine enter
 
-  !> Back to the one that has it.
+  !> Leave a component that has components of its own.
   subroutine leave(visitor)
     class(visitor_t), intent(inout) :: visitor
 
@@ -132,7 +132,7 @@ contains
       back=.true.))
   end subroutine leave
 
-  !> A component that has components.
+  !> Visit a component that has components of its own.
   subroutine part(visitor, name, item)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
@@ -143,7 +143,7 @@ contains
     call visitor%leave()
   end subroutine part
 
-  !> A list of them, numbered from 1.
+  !> Visit a list of components with components of their own, numbered from 1.
   subroutine each(visitor, name, items)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
@@ -159,11 +159,11 @@ contains
     call visitor%leave()
   end subroutine each
 
-  !> Whether a list of types is to be allocated, with `visitor%n_item` items: where the visitor
-  !> brings one.
+  !> Whether a list of derived types is to be allocated with `visitor%n_item` items, because the
+  !> visitor reads one.
   function makes(visitor, n)
     class(visitor_t), intent(inout) :: visitor
-    integer, intent(in) :: n !! its present length or `absent`
+    integer, intent(in) :: n !! present length or `absent`
     logical :: makes
     type(item_t) :: item
 
@@ -174,11 +174,10 @@ contains
     makes = item%is_new .and. visitor%n_item /= absent
   end function makes
 
-  !> Items of a type without allocatable components, as they lie in memory; for programs of the same
-  !> build.
-  subroutine plain(visitor, place, n_bit, n)
+  !> Visit items of a type without allocatable components as bytes; for programs of the same build.
+  subroutine plain(visitor, address, n_bit, n)
     class(visitor_t), intent(inout) :: visitor
-    type(c_ptr), intent(in) :: place
+    type(c_ptr), intent(in) :: address
     integer, intent(in) :: n_bit  !! storage size of an item
     integer, intent(in) :: n      !! items
     type(item_t) :: item
@@ -186,55 +185,55 @@ contains
     if (visitor%is_partial) return
     item%content = as_bytes
     item%extents(1) = n_bit/8*n
-    call visitor%pass(item, place)
+    call visitor%pass(item, address)
   end subroutine plain
 
-  !> An integer.
-  subroutine visit_integer(visitor, name, value, lowest, highest, what)
+  !> Visit an integer.
+  subroutine visit_integer(visitor, name, value, lowest, highest, problem)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     integer, intent(inout) :: value
     integer, intent(in), optional :: lowest, highest
-    character(*), intent(in), optional :: what !! it has where it is not within these bounds
+    character(*), intent(in), optional :: problem !! description of a value out of bounds
     integer, allocatable :: values(:)
 
     if (visitor%is_partial) return
     values = [value]
-    call visitor%visit(name, values, whole, lowest, highest, what)
+    call visitor%visit(name, values, whole, lowest, highest, problem)
     if (.not. allocated(visitor%error)) value = values(1)
   end subroutine visit_integer
 
-  !> A long integer.
-  subroutine visit_long(visitor, name, value, highest, what)
+  !> Visit a long integer of 0 or more.
+  subroutine visit_long(visitor, name, value, highest, problem)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     integer(long), intent(inout) :: value
     integer(long), intent(in) :: highest
-    character(*), intent(in) :: what           !! it has where it is not from 0 to this
+    character(*), intent(in) :: problem        !! description of a value out of bounds
     integer(long), target :: copy
 
     copy = value
     call visitor%pass(item_t(name, as_index, 1, [1, 1]), c_loc(copy))
-    call visitor%expect(name, copy >= 0 .and. copy <= highest, what)
+    call visitor%expect(name, copy >= 0 .and. copy <= highest, problem)
     if (.not. allocated(visitor%error)) value = copy
   end subroutine visit_long
 
-  !> A real.
-  subroutine visit_real(visitor, name, value, lowest, what)
+  !> Visit a real.
+  subroutine visit_real(visitor, name, value, lowest, problem)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     real(wp), intent(inout) :: value
     real(wp), intent(in), optional :: lowest
-    character(*), intent(in), optional :: what !! it has where it is less
+    character(*), intent(in), optional :: problem !! description of a value below `lowest`
     real(wp), allocatable :: values(:)
 
     if (visitor%is_partial) return
     values = [value]
-    call visitor%visit(name, values, whole, lowest, what)
+    call visitor%visit(name, values, whole, lowest, problem)
     if (.not. allocated(visitor%error)) value = values(1)
   end subroutine visit_real
 
-  !> A truth, as 0 or 1.
+  !> Visit a logical, stored as 0 or 1.
   subroutine visit_logical(visitor, name, value)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
@@ -243,11 +242,11 @@ contains
 
     if (visitor%is_partial) return
     number = merge(1, 0, value)
-    call visitor%visit(name, number, 0, 1, 'a truth other than 0 and 1')
+    call visitor%visit(name, number, 0, 1, 'a logical other than 0 and 1')
     if (.not. allocated(visitor%error)) value = number == 1
   end subroutine visit_logical
 
-  !> A text that may not be there; for programs of the same build.
+  !> Visit a text or an unallocated text; for programs of the same build.
   subroutine visit_text(visitor, name, text)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
@@ -263,15 +262,15 @@ contains
     if (item%extents(1) > 0) call visitor%pass(item, c_loc(text))
   end subroutine visit_text
 
-  !> An array of integers.
-  subroutine visit_integers(visitor, name, values, of, lowest, highest, what)
+  !> Visit an array of integers.
+  subroutine visit_integers(visitor, name, values, of, lowest, highest, problem)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     integer, allocatable, intent(inout), target :: values(:)
     integer, intent(in), optional :: of, lowest, highest
-    character(*), intent(in), optional :: what
+    character(*), intent(in), optional :: problem
     type(item_t) :: item
-    type(c_ptr) :: place
+    type(c_ptr) :: address
 
     item = item_t(name, as_integer, 1)
     if (present(of)) item%of = of
@@ -279,24 +278,24 @@ contains
     if (.not. visitor%is_partial) call visitor%find(item)
     if (item%is_new .and. allocated(values)) deallocate (values)
     if (item%is_new .and. item%extents(1) /= absent) allocate (values(item%extents(1)))
-    place = c_null_ptr
-    if (allocated(values)) place = c_loc(values)
-    call visitor%pass(item, place)
-    if (.not. visitor%validates .or. .not. (allocated(values) .and. present(what))) return
-    if (present(lowest)) call visitor%expect(name, all(values >= lowest), what)
-    if (present(highest)) call visitor%expect(name, all(values <= highest), what)
+    address = c_null_ptr
+    if (allocated(values)) address = c_loc(values)
+    call visitor%pass(item, address)
+    if (.not. visitor%validates .or. .not. (allocated(values) .and. present(problem))) return
+    if (present(lowest)) call visitor%expect(name, all(values >= lowest), problem)
+    if (present(highest)) call visitor%expect(name, all(values <= highest), problem)
   end subroutine visit_integers
 
-  !> An array of reals.
-  subroutine visit_reals(visitor, name, values, of, lowest, what)
+  !> Visit an array of reals.
+  subroutine visit_reals(visitor, name, values, of, lowest, problem)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     real(wp), allocatable, intent(inout), target :: values(:)
     integer, intent(in), optional :: of
     real(wp), intent(in), optional :: lowest
-    character(*), intent(in), optional :: what
+    character(*), intent(in), optional :: problem
     type(item_t) :: item
-    type(c_ptr) :: place
+    type(c_ptr) :: address
 
     item = item_t(name, as_real, 1)
     if (present(of)) item%of = of
@@ -304,16 +303,16 @@ contains
     if (.not. visitor%is_partial) call visitor%find(item)
     if (item%is_new .and. allocated(values)) deallocate (values)
     if (item%is_new .and. item%extents(1) /= absent) allocate (values(item%extents(1)))
-    place = c_null_ptr
-    if (allocated(values)) place = c_loc(values)
-    call visitor%pass(item, place)
+    address = c_null_ptr
+    if (allocated(values)) address = c_loc(values)
+    call visitor%pass(item, address)
     if (.not. visitor%validates .or. .not. allocated(values)) return
     call visitor%expect(name, all(is_finite(values)), not_finite)
-    if (visitor%validates .and. present(what)) call visitor%expect(name, all(values >= lowest), &
-      what)
+    if (visitor%validates .and. present(problem)) call visitor%expect(name, all(values >= lowest), &
+      problem)
   end subroutine visit_reals
 
-  !> An array of truths.
+  !> Visit an array of logicals.
   subroutine visit_logicals(visitor, name, values)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
@@ -322,18 +321,18 @@ contains
 
     if (visitor%is_partial) return
     if (allocated(values)) allocate (numbers, source=merge(1, 0, values))
-    call visitor%visit(name, numbers, whole, 0, 1, 'truths other than 0 and 1')
+    call visitor%visit(name, numbers, whole, 0, 1, 'logicals other than 0 and 1')
     if (allocated(numbers) .and. .not. allocated(visitor%error)) values = numbers == 1
   end subroutine visit_logicals
 
-  !> A table of integers.
+  !> Visit a table of integers.
   subroutine visit_integer_table(visitor, name, values, of)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     integer, allocatable, intent(inout), target :: values(:, :)
     integer, intent(in), optional :: of
     type(item_t) :: item
-    type(c_ptr) :: place
+    type(c_ptr) :: address
 
     item = item_t(name, as_integer, 2, [absent, absent])
     if (present(of)) item%of = of
@@ -342,19 +341,19 @@ contains
     if (item%is_new .and. allocated(values)) deallocate (values)
     if (item%is_new .and. item%extents(1) /= absent) &
       allocate (values(item%extents(1), item%extents(2)))
-    place = c_null_ptr
-    if (allocated(values)) place = c_loc(values)
-    call visitor%pass(item, place)
+    address = c_null_ptr
+    if (allocated(values)) address = c_loc(values)
+    call visitor%pass(item, address)
   end subroutine visit_integer_table
 
-  !> A table of reals.
+  !> Visit a table of reals.
   subroutine visit_real_table(visitor, name, values, of)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     real(wp), allocatable, intent(inout), target :: values(:, :)
     integer, intent(in), optional :: of
     type(item_t) :: item
-    type(c_ptr) :: place
+    type(c_ptr) :: address
 
     item = item_t(name, as_real, 2, [absent, absent])
     if (present(of)) item%of = of
@@ -363,14 +362,14 @@ contains
     if (item%is_new .and. allocated(values)) deallocate (values)
     if (item%is_new .and. item%extents(1) /= absent) &
       allocate (values(item%extents(1), item%extents(2)))
-    place = c_null_ptr
-    if (allocated(values)) place = c_loc(values)
-    call visitor%pass(item, place)
+    address = c_null_ptr
+    if (allocated(values)) address = c_loc(values)
+    call visitor%pass(item, address)
     if (.not. visitor%validates .or. .not. allocated(values)) return
     call visitor%expect(name, all(is_finite(values)), not_finite)
   end subroutine visit_real_table
 
-  !> A table of short integers; for programs of the same build.
+  !> Visit a table of short integers; for programs of the same build.
   subroutine visit_short_table(visitor, name, values, of)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
@@ -387,7 +386,7 @@ contains
     if (allocated(values)) call visitor%pass(item, c_loc(values))
   end subroutine visit_short_table
 
-  !> An array of fixed size.
+  !> Visit an array of fixed size.
   subroutine fixed(visitor, name, values)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
@@ -400,7 +399,7 @@ contains
     if (.not. allocated(visitor%error)) values = copy
   end subroutine fixed
 
-  !> A stream that only some chunks of elements have a part of, and where these start.
+  !> Visit a stream that only some chunks have a part of, and the first index of each part.
   subroutine stream(visitor, name, values, name_of_starts, starts)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name, name_of_starts
@@ -414,7 +413,7 @@ contains
     if (visitor%validates) call visitor%expect(name, all(is_finite(values)), not_finite)
   end subroutine stream
 
-  !> An integer that follows from the model.
+  !> Check that a stored integer equals that of the model.
   subroutine same_integer(visitor, name, value)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
@@ -423,11 +422,11 @@ contains
 
     found = value
     call visitor%visit(name, found)
-    if (found /= value) call visitor%expect(name, .false., 'the number '//to_text(found)//', and ' &
-      //to_text(value)//' is expected here')
+    if (found /= value) call visitor%expect(name, .false., 'the number '//to_text(found)//', ' &
+      //'expected '//to_text(value))
   end subroutine same_integer
 
-  !> An array of integers that follow from the model.
+  !> Check that stored integers equal those of the model.
   subroutine same_integers(visitor, name, values)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
@@ -441,19 +440,19 @@ contains
       call visitor%expect(name, all(found == values), other_numbers)
   end subroutine same_integers
 
-  !> Refuse what a visitor has brought unless it is sound.
-  subroutine expect(visitor, name, is_sound, what)
+  !> Raise an error unless the value of a component is valid.
+  subroutine expect(visitor, name, is_sound, problem)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: name
     logical, intent(in) :: is_sound
-    character(*), intent(in) :: what !! it has where it is not
+    character(*), intent(in) :: problem !! description of an invalid value
 
     if (visitor%validates .and. .not. is_sound) call &
       visitor%fail('the restart file '//visitor%path &
-      //' is refused: its '//visitor%folder//name//' has '//what, status_input)
+      //' is refused: its '//visitor%folder//name//' has '//problem, status_input)
   end subroutine expect
 
-  !> Note a failure, unless there is one already.
+  !> Raise an error unless there is one already.
   subroutine fail(visitor, message, status)
     class(visitor_t), intent(inout) :: visitor
     character(*), intent(in) :: message
@@ -463,7 +462,7 @@ contains
     if (.not. allocated(visitor%error)) call raise(visitor%error, message, status)
   end subroutine fail
 
-  !> Whether a real is a finite number, by its bits: a comparison could trap.
+  !> Whether a real is finite, by its bits: a comparison could trap.
   elemental function is_finite(value)
     real(wp), intent(in) :: value
     logical :: is_finite

@@ -6,7 +6,7 @@ module contact_dispatch_m
   use arcs_m, only : curve_points
   use assembly_m, only : add_point_tangents, add_nodal_tangents
   use contact_law_m, only : law_penalty
-  use contact_state_m, only : contact_state_t, contact_points_t, allocate_points
+  use contact_state_m, only : contact_state_t, contact_points_t, allocate_points, make_room
   use contacts_m, only : type_nts, type_nts_ar, type_two_pass_ar, type_vts_ppt, &
     type_nts_mar, type_mortar, type_segmented_mortar, contact_t, contact_kind_t
   use kinds_m, only : wp
@@ -16,8 +16,8 @@ module contact_dispatch_m
   use points_nts_m, only : points_nts, points_nts_ar, points_at_slave_nodes, points_nts_mar, &
     finish_nts_mar
   use points_vts_ppt_m, only : points_vts_ppt
-  use point_list_m, only : append_list
-  use ranges_m, only : n_ranges, first_of, last_of, most_ranges
+  use point_list_m, only : copy_list
+  use ranges_m, only : n_ranges, first_of, last_of
   use sparse_m, only : sparse_t
   use positions_m, only : points_at_nodes, points_at_quarters, points_at_gauss_points
   use tangent_nodes_m, only : linearise_nodes, add_vts_ppt_tangent
@@ -43,6 +43,9 @@ module contact_dispatch_m
     real(wp) :: self_share = 0.5_wp       !! part of the penalty that either pass of a surface with
                                           !! itself has
   end type formulation_t
+
+  !> Fewer slave segments are not worth a thread.
+  integer, parameter :: least_segments = 512
 
   !> All formulations.
   type(formulation_t), parameter :: formulations(*) = [ &
@@ -118,72 +121,70 @@ contains
     call move_alloc(points, memory%points)
   end subroutine generate_points
 
-  !> The points of all ranges of virtual nodes or slave segments, in order. Threads share those of a
-  !> large interface: each range then has a list of its own first.
+  !> The points of virtual nodes or slave segments, in order. Threads share those of a long
+  !> interface: the first range fills the list, each other one a list of its own, which is copied
+  !> behind.
   subroutine points_in_ranges(contact, n, memory, points)
     type(contact_t), intent(in) :: contact
     integer, intent(in) :: n !! virtual nodes or slave segments
     type(contact_state_t), intent(inout) :: memory
     type(contact_points_t), intent(inout) :: points
     type(contact_points_t), allocatable :: parts(:)
-    integer :: n_released(most_ranges), i, n_range
+    integer :: i, n_range, range(2)
 
-    n_range = n_ranges(n)
+    n_range = n_ranges(n, least_segments)
     if (n_range == 1) then
-      call points_of_range(contact, memory, 1, n, points, n_released(1))
+      call points_of_range(contact, memory, [1, n], points)
     else
       call move_alloc(memory%scratch%parts, parts)
-      call start_parts(n_range, parts)
-      !$omp taskloop default(shared)
+      if (allocated(parts)) then
+        if (size(parts) < n_range) deallocate (parts)
+      end if
+      if (.not. allocated(parts)) allocate (parts(n_range))
+      parts%n = 0
+      !$omp taskloop default(shared) private(range) grainsize(1)
       do i = 1, n_range
-        call points_of_range(contact, memory, first_of(i, n), last_of(i, n), parts(i), &
-          n_released(i))
+        if (.not. allocated(parts(i)%gap)) call allocate_points(parts(i), 0)
+        range = [first_of(i, n_range, n), last_of(i, n_range, n)]
+        if (i == 1) then
+          call points_of_range(contact, memory, range, points)
+        else
+          call points_of_range(contact, memory, range, parts(i))
+        end if
       end do
       !$omp end taskloop
+      call make_room(points, sum(parts%n))
+      !$omp taskloop default(shared) grainsize(1)
       do i = 1, n_range
-        call append_list(parts(i), points)
+        call copy_list(parts(i), points%n + sum(parts(:i - 1)%n), points)
       end do
+      !$omp end taskloop
+      points%n = points%n + sum(parts%n)
       call move_alloc(parts, memory%scratch%parts)
     end if
-    memory%slave_status%n_released = memory%slave_status%n_released + sum(n_released(:n_range))
   end subroutine points_in_ranges
 
   !> The points of one range.
-  pure subroutine points_of_range(contact, memory, first, last, points, n_released)
+  subroutine points_of_range(contact, memory, range, points)
     type(contact_t), intent(in) :: contact
     type(contact_state_t), intent(inout) :: memory
-    integer, intent(in) :: first, last
+    integer, intent(in) :: range(2) !! first and last
     type(contact_points_t), intent(inout) :: points
-    integer, intent(out) :: n_released !! first contacts deeper than the limit
+    integer :: n_released !! first contacts deeper than the limit
 
     n_released = 0
     select case (contact%contact_type)
-    case (type_vts_ppt); call points_vts_ppt(contact, memory, first, last, points)
+    case (type_vts_ppt); call points_vts_ppt(contact, memory, range(1), range(2), points)
     case (type_nts_mar)
-      call points_nts_mar(contact, memory, first, last, points, n_released)
-    case (type_mortar); call points_mortar(contact, memory, first, last, points)
+      call points_nts_mar(contact, memory, range(1), range(2), points, n_released)
+    case (type_mortar); call points_mortar(contact, memory, range(1), range(2), points)
     case (type_segmented_mortar)
-      call points_segmented_mortar(contact, memory, first, last, points, n_released)
+      call points_segmented_mortar(contact, memory, range(1), range(2), points, n_released)
     end select
+    if (n_released == 0) return
+    !$omp atomic
+    memory%slave_status%n_released = memory%slave_status%n_released + n_released
   end subroutine points_of_range
-
-  !> Empty lists for so many ranges.
-  pure subroutine start_parts(n, parts)
-    integer, intent(in) :: n
-    type(contact_points_t), allocatable, intent(inout) :: parts(:)
-    integer :: i
-
-    if (allocated(parts)) then
-      if (size(parts) < n) deallocate (parts)
-    end if
-    if (.not. allocated(parts)) then
-      allocate (parts(n))
-      do i = 1, n
-        call allocate_points(parts(i), 0)
-      end do
-    end if
-    parts%n = 0
-  end subroutine start_parts
 
   !> Add the derivative of minus the contact forces, as evaluate_contact has left them in the
   !> memory, with respect to u (doc/theory/contact.md, section 9): exact while the points stay on

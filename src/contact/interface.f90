@@ -13,7 +13,8 @@ module interface_m
   use search_state_m, only : pass_t, separated
   use contacts_m, only : contact_t, breaks, penalty_implicit, tie_always
   use damping_m, only : damp_points, find_lag
-  use spring_gaps_m, only : has_offsets, update_offsets, faded_work, begin_ramp
+  use spring_gaps_m, only : has_offsets, reduce_new_offsets, update_offsets, faded_work, &
+    begin_ramp
   use energy_limit_m, only : store_previous_springs, form_springs, limit_forces, admit_entry_work
   use friction_m, only : store_previous_tractions, form_tractions, has_decay
   use initial_status_m, only : activate_deep_points, activate_deep_segments
@@ -359,9 +360,10 @@ contains
         contact%master, contact%slave, memory%reversed, memory%positions, increments, &
         memory%positions(:, n + 1:))
     end associate
+    if (.not. has_offsets(memory)) return
+    if (memory%has%overlaps) call reduce_new_offsets(memory)
     ! In a trial of an implicit step they stay: they are no part of the tangent.
-    if (has_offsets(memory) .and. .not. memory%slave_status%pass%is_trial) &
-      call update_offsets(contact, memory)
+    if (.not. memory%slave_status%pass%is_trial) call update_offsets(contact, memory)
 
   contains
 

@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Deck in, model out: the families of keywords in their order.
+!> Reads a deck into a model.
 !>
-!> The file is cut into keyword blocks, parameters are read, then each family of keywords is read
-!> into the model when its turn comes. All mistakes on the way are collected and come back as one
-!> error, in deck order.
+!> The file is split into keyword blocks, parameters are read, then each family of keywords in an
+!> order in which its references are known. All errors are collected and returned as one, in deck
+!> order.
 module deck_m
   use errors_m, only : error_t, raise, status_input
   use log_m, only : log_t, write_log
@@ -11,7 +11,7 @@ module deck_m
   use model_m, only : model_t
   use eos_m, only : eos_t
   use parts_m, only : hourglass_t
-  use deck_contact_sides_m, only : mesh_outline_t
+  use deck_contact_sides_m, only : mesh_boundary_t
   use deck_contacts_m, only : read_contacts
   use deck_control_m, only : read_controls, read_outputs, read_relaxation, read_ends
   use deck_curves_m, only : table_t, read_curves, read_systems
@@ -30,7 +30,7 @@ module deck_m
   use deck_report_m, only : emit_warnings, emit_errors, list_findings
   use deck_ids_m, only : a_node, an_element, a_part, a_section, a_material, an_eos, a_curve, &
     a_system, a_node_set, a_part_set, a_segment_set, a_shell_set
-  use deck_lines_m, only : deck_t, place_t, line_error, line_warning, file_paths, flag_blank
+  use deck_lines_m, only : deck_t, location_t, line_error, line_warning, file_paths, flag_blank
   use deck_reader_m, only : read_file, cut_deck
   use deck_schema_m, only : nearest_keyword, find_keyword, known_honoured, known_ignored, &
     known_refused
@@ -44,25 +44,24 @@ module deck_m
   private
   public :: deck_request_t, read_deck, interpret_deck
 
-  !> What is to be read.
+  !> The deck to read, and changes of the command line.
   type :: deck_request_t
     character(:), allocatable :: path
     character(:), allocatable :: overrides(:) !! `name=value`, `name.interface=value`,
                                               !! `p:NAME=value`
-    character(:), allocatable :: text         !! of the deck where it is no file; `path` names it
-                                              !! then
-    character(:), allocatable :: files(:)     !! that have been read: the deck, what it includes
+    character(:), allocatable :: text         !! of the deck instead of a file; `path` is its name
+    character(:), allocatable :: files(:)     !! files read: the deck and its includes
   end type deck_request_t
 
-  !> What takes the place of *CASE, behind its refusals.
-  character(*), parameter :: instead_of_cases = ' not available in slideline: run the deck once ' &
-    //'for each, in a shell loop or by tools/batch/sweep.sh, with ctype=, p:NAME=VALUE of a ' &
-    //'*PARAMETER and the like, and *INCLUDE what several decks share'
+  !> Advice in errors of *CASE.
+  character(*), parameter :: instead_of_cases = ': run the deck once for each case, in a shell ' &
+    //'loop or by tools/batch/sweep.sh, with ctype= or p:NAME=VALUE for a *PARAMETER, and ' &
+    //'*INCLUDE what several decks share'
 
 contains
 
-  !> Read a deck. `error` holds every mistake of it, one after the other; warnings and the echo of
-  !> what was understood go to the log.
+  !> Read a deck. `error` has the messages of all errors; warnings and the echo of the model are
+  !> written to the log.
   subroutine read_deck(request, kinds, log, model, effective, error, findings)
     type(deck_request_t), intent(inout) :: request
     type(contact_kind_t), intent(in) :: kinds(:)             !! contact types that exist
@@ -90,7 +89,7 @@ contains
     if (present(findings)) call list_findings(deck%report, findings)
   end subroutine read_deck
 
-  !> As `read_deck`, of a deck that has been cut into blocks.
+  !> Read a deck that has been split into blocks (see `read_deck`).
   subroutine interpret_deck(deck, request, kinds, log, model, effective, error)
     type(deck_t), intent(inout) :: deck
     type(deck_request_t), intent(in) :: request
@@ -99,7 +98,7 @@ contains
     type(model_t), intent(out) :: model
     character(:), allocatable, intent(out) :: effective
     type(error_t), allocatable, intent(out) :: error
-    logical :: is_ended                !! it has *CONTROL_TERMINATION, be it misspelt
+    logical :: is_ended                !! it has *CONTROL_TERMINATION, possibly misspelt
     integer :: i
 
     allocate (deck%words(0))
@@ -124,14 +123,14 @@ contains
     call emit_errors(deck%report, request%path, error)
     if (allocated(error)) return
     call echo_model(model, request%path, log)
-    if (allocated(deck%default_zeros)) call write_log(log, 'a 0 in these fields stands for the ' &
+    if (allocated(deck%default_zeros)) call write_log(log, 'a 0 in these fields means the ' &
       //'default, as in LS-DYNA: '//deck%default_zeros)
-    if (allocated(deck%kept_zeros)) call write_log(log, 'a 0 in these fields is kept, where ' &
+    if (allocated(deck%kept_zeros)) call write_log(log, 'a 0 in these fields means 0, where ' &
       //'LS-DYNA takes the default: '//deck%kept_zeros)
     call write_effective(deck, effective)
   end subroutine interpret_deck
 
-  !> All families of keywords in an order in which each finds what it refers to.
+  !> Read all families of keywords, in an order in which their references are known.
   subroutine read_model(deck, kinds, model)
     type(deck_t), intent(inout) :: deck
     type(contact_kind_t), intent(in) :: kinds(:)     !! contact types that exist
@@ -142,8 +141,8 @@ contains
     integer, allocatable :: codes(:), owner(:)
     type(hourglass_t) :: hourglass
     logical :: erodes
-    type(place_t), allocatable :: places(:)          !! of pressure loads
-    type(mesh_outline_t) :: body
+    type(location_t), allocatable :: locations(:)          !! of pressure loads
+    type(mesh_boundary_t) :: body
     integer :: i, step_line
 
     call read_curves(deck, model, tables)
@@ -168,7 +167,7 @@ contains
     call read_nodal_loads(deck, model)
     call read_rigid_loads(deck, model)
     call read_body_loads(deck, model)
-    call read_pressures(deck, model, places)
+    call read_pressures(deck, model, locations)
     call read_masses(deck, model)
     call read_common_motions(deck, model)
     call read_global_damping(deck, model)
@@ -179,21 +178,23 @@ contains
     call warn_of_bores(deck, model)
     allocate (model%mesh%deck_node(model%mesh%n_node))
     model%mesh%deck_node = [(i, i=1, model%mesh%n_node)]
-    call read_contacts(deck, kinds, places, is_sound, body, model)
+    call read_contacts(deck, kinds, locations, is_sound, body, model)
     call read_relaxation(deck, model)
     call read_ends(deck, model, body%is_sound)
   end subroutine read_model
 
-  !> Look every keyword up: canonical names, options taken off; unknown and refused ones are errors,
-  !> those without effect one warning each.
+  !> Identify all keywords: canonical names without options; unknown and refused ones are errors,
+  !> each one without effect is a warning.
   subroutine identify_keywords(deck, is_ended)
     type(deck_t), intent(inout) :: deck
     logical, intent(inout) :: is_ended
     character(:), allocatable :: reason
     character(100) :: name
-    logical :: has_beams     !! beams are bodies, not the edges of a mesh
+    character(:), allocatable :: advice !! on *CASE, in its first error only
+    logical :: has_beams     !! *ELEMENT_BEAM are elements, not edges of a mesh
     integer :: i, known
 
+    advice = instead_of_cases
     has_beams = any([(index(deck%blocks(i)%name, 'SECTION_BEAM') == 1, i=1, deck%n_block)])
     if (deck%n_block == 0) call line_error(deck, 0, 'holds no keyword (a line that starts with *)')
     do i = 1, deck%n_block
@@ -206,7 +207,7 @@ contains
         end if
         if (has_beams .and. name == 'ELEMENT_BEAM') then
           known = known_refused
-          reason = 'with beams as bodies (*SECTION_BEAM) this element is'
+          reason = 'beam elements (*SECTION_BEAM) are'
         end if
         select case (known)
         case (known_honoured)
@@ -220,7 +221,8 @@ contains
           call line_warning(deck, block%keyword, 'ignored'//block%given, 'has no effect here')
         case (known_refused)
           if (index(block%given, 'CASE') == 1) then
-            call line_error(deck, block%keyword, reason//instead_of_cases)
+            call line_error(deck, block%keyword, reason//' not available in slideline'//advice)
+            advice = ''
           else
             call line_error(deck, block%keyword, reason//' not available in slideline' &
               //suggestion(block%given))
@@ -231,15 +233,17 @@ contains
             //suggestion(block%given))
           call note_refused_keyword(deck, i, is_ended)
         end select
-        if (block%name /= 'COMMENT' .and. index(' '//upper_case(block%rest), ' CID=') > 0) &
-          call line_error(deck, block%keyword, 'keywords of one of several runs (CID=) are' &
-          //instead_of_cases)
+        if (block%name /= 'COMMENT' .and. index(' '//upper_case(block%rest), ' CID=') > 0) then
+          call line_error(deck, block%keyword, 'keywords of one *CASE (CID=) are not available ' &
+            //'in slideline'//advice)
+          advice = ''
+        end if
       end associate
     end do
   end subroutine identify_keywords
 
-  !> A block without its first card, which is an error and not read. A blank line is a card where a
-  !> keyword has one card, and none where it has rows.
+  !> Report a block without its first card, which is then not read. A blank line is a card, except
+  !> in keywords with rows.
   subroutine check_empty(deck, i_block)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
@@ -263,7 +267,7 @@ contains
     end associate
   end subroutine check_empty
 
-  !> What a name that is not known may have been meant for, for a message.
+  !> `; did you mean *NAME?` for an unknown keyword, or nothing.
   function suggestion(given) result(text)
     character(*), intent(in) :: given
     character(:), allocatable :: text
@@ -272,8 +276,8 @@ contains
     if (len(text) > 0) text = '; did you mean *'//text//'?'
   end function suggestion
 
-  !> What a refused keyword would have defined, by its name and by what that may have been meant
-  !> for.
+  !> Note the kinds of entities that a refused keyword, or the one most similar to it, would have
+  !> defined.
   subroutine note_refused_keyword(deck, i_block, is_ended)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block

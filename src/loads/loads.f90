@@ -1,9 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> What curves ask for at an instant. Loads from outside: nodal forces, pressure on edges, base
-!> acceleration; rates of damping by mass (*DAMPING_GLOBAL and *DAMPING_PART_MASS). Fixed and
-!> prescribed degrees of freedom, and the motion at time zero: both have no inverse mass, so that
-!> forces do not move them; prescribed ones are then set from their curves. The step that the deck
-!> makes of a stable one.
+!> Values of load curves at a time: nodal forces, edge pressures, base acceleration, mass damping
+!> (*DAMPING_GLOBAL and *DAMPING_PART_MASS), prescribed motion, time step limit. Fixed and
+!> prescribed degrees of freedom have zero inverse mass, so that forces do not accelerate them;
+!> prescribed velocities are then set from their curves.
 module loads_m
   use conditions_m, only : conditions_t, prescribed_motion_t, motion_velocity, &
     motion_acceleration, motion_displacement
@@ -45,9 +44,9 @@ contains
     end associate
   end subroutine add_nodal_loads
 
-  !> Pressures at `time` on the present geometry, half of that on an edge to each node: against the
-  !> outward normal (t_y, -t_x). On an axisymmetric body per radian: with the edge times (2 r_a +
-  !> r_b)/6 to node a.
+  !> Add pressures at `time` on the present geometry, against the outward normal (t_y, -t_x), half
+  !> of the force of an edge to each node. Axisymmetric, per radian: pressure, edge length and (2
+  !> r_a + r_b)/6 to node a.
   subroutine add_pressures(model, motion, time, force)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)    !! (4, n_node)
@@ -75,7 +74,7 @@ contains
     end do
   end subroutine add_pressures
 
-  !> Acceleration that *LOAD_BODY gives every node: minus the base acceleration.
+  !> Acceleration of all nodes by *LOAD_BODY: minus the base acceleration.
   pure function body_acceleration(conditions, curves, time) result(acceleration)
     type(conditions_t), intent(in) :: conditions
     type(curve_t), intent(in) :: curves(:)
@@ -92,7 +91,7 @@ contains
     end do
   end function body_acceleration
 
-  !> D per direction of the global damping f = -D m v.
+  !> D per direction of the global damping f = -D m v, 1/s.
   pure function damping_rate(conditions, curves, time) result(rate)
     type(conditions_t), intent(in) :: conditions
     type(curve_t), intent(in) :: curves(:)
@@ -107,8 +106,8 @@ contains
     end associate
   end function damping_rate
 
-  !> D per direction at `time` of each part, and in the last column of masses on nodes, which belong
-  !> to no part: that of *DAMPING_GLOBAL.
+  !> D per direction at `time` of each part; in the last column that of lumped masses, by
+  !> *DAMPING_GLOBAL only.
   pure function damping_rates(model, time) result(rates)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: time
@@ -121,7 +120,7 @@ contains
     end do
   end function damping_rates
 
-  !> D per direction that the masses of a part have at `time`; cards of one part add up.
+  !> D per direction of a part at `time` by *DAMPING_PART_MASS, the sum of its cards, 1/s.
   pure function part_damping_rate(model, part, time) result(rate)
     type(model_t), intent(in) :: model
     integer, intent(in) :: part
@@ -139,12 +138,11 @@ contains
     end do
   end function part_damping_rate
 
-  !> Displacement zero, velocity as the deck gives it; fixed degrees of freedom rest, and those
-  !> with a prescribed velocity start with the curve's first value (a body that is driven from the
-  !> start moves from the start).
+  !> Motion at time zero: displacement zero, initial velocity of the deck; zero velocity of fixed
+  !> degrees of freedom, the value of the curve at time zero of prescribed velocities.
   subroutine start_motion(model, known, motion)
     type(model_t), intent(in) :: model
-    integer, intent(in) :: known(:, :) !! (2, n) first and last node of those that are asked for
+    integer, intent(in) :: known(:, :) !! (2, n) first and last node of ranges that are set
     real(wp), allocatable, intent(out) :: motion(:, :) !! (4, n_node)
     integer :: i
 
@@ -178,7 +176,7 @@ contains
     end associate
   end subroutine start_motion
 
-  !> Take the inverse mass of fixed degrees of freedom away, and of those that move with others.
+  !> Set the inverse mass of fixed and of constrained degrees of freedom to zero.
   subroutine fix_nodes(model, inverse_mass)
     type(model_t), intent(in) :: model
     real(wp), intent(inout) :: inverse_mass(:, :) !! (2, n_node)
@@ -196,7 +194,7 @@ contains
     end do
   end subroutine fix_nodes
 
-  !> Whether a prescribed motion holds at `time`.
+  !> Whether a prescribed motion is active at `time`.
   elemental function is_active(prescribed, time) result(active)
     type(prescribed_motion_t), intent(in) :: prescribed
     real(wp), intent(in) :: time
@@ -205,8 +203,8 @@ contains
     active = time >= prescribed%birth .and. time < prescribed%death
   end function is_active
 
-  !> Give prescribed degrees of freedom their inverse mass while their motion does not hold. Deaths
-  !> first, so that a motion that takes over in the same step keeps its node.
+  !> Set the inverse mass of prescribed degrees of freedom: zero while their motion is active.
+  !> Inactive motions first, so that a motion that becomes active in the same step prevails.
   subroutine update_activity(model, time, mass, inverse_mass)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: time
@@ -226,8 +224,8 @@ contains
     end associate
   end subroutine update_activity
 
-  !> v(n+1/2) of a prescribed degree of freedom: the curve at t(n+1/2); the integral of the curve;
-  !> or what leads to the curve's position at t(n+1).
+  !> v(n+1/2) of a prescribed degree of freedom: the curve at t(n+1/2); the integral of an
+  !> acceleration; or the velocity that reaches the prescribed displacement at t(n+1).
   pure function next_velocity(model, prescribed, time, dt, dt_before, displacement, velocity) &
     result(next)
     type(model_t), intent(in) :: model
@@ -253,8 +251,8 @@ contains
     end associate
   end function next_velocity
 
-  !> TSSFAC times the limit, or the curve that caps it: s, at `time`. A curve above the limit has
-  !> no say; a constant one below it takes the place of TSSFAC.
+  !> Time step at `time`, s: TSSFAC times the stability limit, at most the curve LCTM. A curve above
+  !> the limit has no effect; a constant one below it replaces TSSFAC.
   pure function scaled_step(model, limit, time) result(dt)
     type(model_t), intent(in) :: model
     real(wp), intent(in) :: limit, time

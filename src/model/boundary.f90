@@ -7,27 +7,27 @@ module boundary_m
   private
   public :: boundary_t, find_boundary, find_edge
 
-  !> Exterior edges (of exactly one element), each walked counter-clockwise round its element,
-  !> sorted by the node they leave.
+  !> Exterior edges (edges of exactly one element), each counter-clockwise about its element, sorted
+  !> by first node.
   type :: boundary_t
     integer :: n_edge = 0
     integer, allocatable :: nodes(:, :)  !! (2, n_edge)
-    integer, allocatable :: elements(:)  !! (n_edge) the element behind
-    integer, allocatable :: start(:)     !! (n_node + 1) first edge leaving each node
+    integer, allocatable :: elements(:)  !! (n_edge) element of each edge
+    integer, allocatable :: start(:)     !! (n_node + 1) first edge that starts at each node
   end type boundary_t
 
 contains
 
-  !> Edges that exactly one of the chosen elements has. Only edges with both nodes in `among` are
-  !> looked at. Linear in elements and nodes, but for the sorting of the edges found.
+  !> Exterior edges of the chosen elements with both nodes in `among`. Linear in elements and nodes,
+  !> except for the sorting of the edges found.
   pure subroutine find_boundary(element_nodes, chosen, among, boundary)
     integer, intent(in) :: element_nodes(:, :) !! (4, n) counter-clockwise; triangles repeat node 3
     logical, intent(in) :: chosen(:)           !! (n)
     logical, intent(in) :: among(:)            !! (n_node)
     type(boundary_t), intent(out) :: boundary
-    integer, allocatable :: latest(:)   !! (n_node) last edge so far whose lower node is this one
-    integer, allocatable :: before(:)   !! edge of the same lower node before each, 0: none
-    logical, allocatable :: is_outer(:) !! by edge: 4 (element - 1) + its first corner
+    integer, allocatable :: latest(:)   !! (n_node) last edge so far with this lower node
+    integer, allocatable :: before(:)   !! previous edge with the same lower node, 0: none
+    logical, allocatable :: is_outer(:) !! by edge: 4 (element - 1) + first corner
     integer, allocatable :: outer(:)
     integer :: i, edge, other, node, ends(2)
 
@@ -48,7 +48,7 @@ contains
       latest(node) = edge
     end do
     outer = pack([(i, i=1, size(is_outer))], is_outer)
-    ! By the node that they leave, then the lower one, then the element.
+    ! By first node, then lower node, then element.
     outer = outer(sorted_order([(sum(ends_of(outer(i))*[size(among) + 1_long, 0_long]) &
       + minval(ends_of(outer(i))), i=1, size(outer))]))
     boundary%n_edge = size(outer)

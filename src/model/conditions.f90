@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Constraints, loads and initial values as data, every set already resolved to nodes.
+!> Constraints, loads and initial values; sets are resolved to nodes.
 module conditions_m
   use, intrinsic :: iso_c_binding, only : c_loc
   use kinds_m, only : wp
@@ -10,7 +10,7 @@ module conditions_m
     damping_t, part_damping_t, lumped_mass_t, common_motion_t, skew_support_t, motion_velocity, &
     motion_acceleration, motion_displacement
 
-  !> What a prescribed motion gives (VAD of *BOUNDARY_PRESCRIBED_MOTION).
+  !> Kind of a prescribed motion (VAD of *BOUNDARY_PRESCRIBED_MOTION).
   integer, parameter :: motion_velocity = 0, motion_acceleration = 1, motion_displacement = 2
 
   !> Motion of one degree of freedom of one node.
@@ -32,13 +32,13 @@ module conditions_m
     real(wp) :: scale = 1.0_wp
   end type nodal_load_t
 
-  !> Pressure on one edge; positive pushes against the outward normal. The edge is walked
-  !> counter-clockwise round its body (the deck layer turns it where needed).
+  !> Pressure on one edge, positive against the outward normal. The edge runs counter-clockwise
+  !> about its body.
   type :: pressure_load_t
     integer :: nodes(2) = 0
     integer :: curve = 0
     real(wp) :: scale = 1.0_wp
-    real(wp) :: arrival = 0.0_wp !! no load before this time; the curve starts then
+    real(wp) :: arrival = 0.0_wp !! AT: start time of the load and of its curve
   end type pressure_load_t
 
   !> *DAMPING_GLOBAL: f = -D m v, factor per direction.
@@ -62,7 +62,7 @@ module conditions_m
     real(wp) :: mass = 0.0_wp           !! kg per metre of depth or per radian
   end type lumped_mass_t
 
-  !> *CONSTRAINED_NODE_SET: nodes that move alike along x, y or both.
+  !> *CONSTRAINED_NODE_SET: nodes with equal translations in x, y or both.
   type, extends(visited_t) :: common_motion_t
     integer, allocatable :: nodes(:)
     logical :: along(2) = .false.
@@ -70,38 +70,39 @@ module conditions_m
     procedure :: visit => visit_common_motion
   end type common_motion_t
 
-  !> A node that does not move along a direction that is neither x nor y.
+  !> A node that is fixed in a direction other than x and y.
   type :: skew_support_t
     integer :: node = 0
     real(wp) :: normal(2) = 0.0_wp      !! unit vector of the fixed direction
   end type skew_support_t
 
-  !> All conditions of a model. What is not always there is present only when the deck asks.
+  !> All conditions of a model; optional ones are allocated only where the deck has them.
   type, extends(visited_t) :: conditions_t
     integer, allocatable :: fixed_nodes(:)      !! nodes with a fixed degree of freedom ...
     integer, allocatable :: fixed_directions(:) !! ... and its direction, each pair once
-    integer :: n_support = 0                    !! nodes with mass that are held, once renumbered
+    integer :: n_support = 0                    !! constrained nodes with mass, after renumbering
     type(prescribed_motion_t), allocatable :: motions(:)
-    type(prescribed_motion_t), allocatable :: rigid_motions(:) !! of bodies: `node` is the body, 3
-                                                               !! its turn
+    type(prescribed_motion_t), allocatable :: rigid_motions(:) !! of rigid bodies: `node` is the
+                                                               !! body, direction 3 its rotation
     type(nodal_load_t), allocatable :: nodal_loads(:)
     type(pressure_load_t), allocatable :: pressures(:)
-    type(nodal_load_t), allocatable :: body_loads(:)  !! base acceleration, without a node: bodies
-                                                      !! feel minus the curve (*LOAD_BODY_X, _Y)
-    type(damping_t), allocatable :: damping     !! present only when the deck asks
+    type(nodal_load_t), allocatable :: body_loads(:)  !! base acceleration (*LOAD_BODY_X, _Y): the
+                                                      !! load is minus the curve; `node` unused
+    type(damping_t), allocatable :: damping
     type(part_damping_t), allocatable :: part_damping(:)
     type(lumped_mass_t), allocatable :: lumped_masses(:)
     type(common_motion_t), allocatable :: common_motions(:)
     type(skew_support_t), allocatable :: skew_supports(:)
-    type(nodal_load_t), allocatable :: rigid_loads(:) !! on bodies: `node` is the body, 3 the moment
-    real(wp), allocatable :: initial_velocity(:, :) !! (2, n_node), present only when the deck asks
+    type(nodal_load_t), allocatable :: rigid_loads(:) !! on rigid bodies: `node` is the body,
+                                                      !! direction 3 the moment
+    real(wp), allocatable :: initial_velocity(:, :)   !! (2, n_node)
   contains
     procedure :: visit => visit_conditions
   end type conditions_t
 
 contains
 
-  !> Its components.
+  !> Visit the components of a common motion.
   subroutine visit_common_motion(self, visitor)
     class(common_motion_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -110,7 +111,7 @@ contains
     call visitor%plain(c_loc(self%along), storage_size(self%along), size(self%along))
   end subroutine visit_common_motion
 
-  !> Its components, but for fixed degrees of freedom: each process gets those of its nodes.
+  !> Visit the components of the conditions.
   subroutine visit_conditions(self, visitor)
     class(conditions_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

@@ -14,39 +14,37 @@ module contacts_m
     penalty_distributed, penalty_factor, penalty_share, &
     penalty_implicit, implicit_factor, tie_none, tie_always, tie_breaks, tie_factor
 
-  !> Numbers of the contact types (CTYPE): the deck layer maps stock keywords to them, the contact
+  !> Numbers of the contact types (CTYPE). The deck layer maps stock keywords to them; the contact
   !> dispatcher has a row for each.
   integer, parameter, public :: type_nts = 1, type_nts_ar = 2, type_two_pass_ar = 3, &
     type_vts_ppt = 4, type_nts_mar = 5, type_mortar = 6, type_segmented_mortar = 7
-  !> What stands in place of a type in decks: the program chooses; there is none.
+  !> Other values of CTYPE: the program chooses; blank.
   integer, parameter, public :: type_chosen = 0, type_missing = -1
 
   !> Unit of the penalty (PUNIT): N/m per contact node, N/m^2, factor on the built-in estimate,
-  !> share of the largest stable penalty, factor on K L/A of springs whose forces are those of the
-  !> end of the step.
+  !> share of the largest stable penalty, factor on K L/A of implicit springs (forces of the end of
+  !> the step).
   integer, parameter :: penalty_per_node = 0, penalty_distributed = 1, penalty_factor = 2, &
     penalty_share = 3, penalty_implicit = 4
-  !> PEN of such springs where the deck gives none.
+  !> Default PEN of implicit springs.
   real(wp), parameter :: implicit_factor = 10.0_wp
 
-  !> What holds the surfaces together (TIE): nothing, springs that stay, or springs that break at
-  !> their strengths.
+  !> TIE: contact, tied, or tiebreak.
   integer, parameter :: tie_none = 0, tie_always = 1, tie_breaks = 2
-  !> PEN of ties where the deck gives none, as a factor on the built-in estimate: 1 on K L/A with
-  !> the default of SLSFAC.
+  !> Default PEN of ties, as a factor on the built-in estimate: K L/A with the default of SLSFAC.
   real(wp), parameter :: tie_factor = 10.0_wp
 
-  !> Most Gauss points of a slave segment.
+  !> Maximum number of Gauss points of a slave segment.
   integer, parameter :: most_gauss = 10
 
-  !> A formulation that the program knows: the deck layer is handed this list, so that only the
-  !> contact dispatcher knows the types.
+  !> Properties of a contact type; the contact dispatcher passes a list of all types to the deck
+  !> layer.
   type :: contact_kind_t
     integer :: number = 0             !! CTYPE
     character(40) :: name = ''        !! name in messages
-    logical :: uses_gauss_points = .false. !! whether NGAUSS has a meaning
-    logical :: has_strict_rule = .false.   !! whether IPF has a meaning
-    logical :: has_implicit_springs = .false. !! whether PUNIT may be 4
+    logical :: uses_gauss_points = .false. !! NGAUSS applies
+    logical :: has_strict_rule = .false.   !! IPF applies
+    logical :: has_implicit_springs = .false. !! PUNIT may be 4
   end type contact_kind_t
 
   !> Regularised Coulomb friction: mu = FD + (FS - FD) exp(-DC speed).
@@ -64,9 +62,8 @@ module contacts_m
     character(:), allocatable :: title     !! heading of the _TITLE option
     integer :: contact_type = 0            !! CTYPE
     logical :: chosen_by_keyword = .false. !! a stock keyword chose the type
-    character(:), allocatable :: reason    !! why the program chose it (CTYPE 0); else none
-    real(wp) :: target = 0.0_wp            !! TARGET: largest estimate that is to be kept; 0 where
-                                           !! the type is the deck's alone
+    character(:), allocatable :: reason    !! of the program's choice (CTYPE 0)
+    real(wp) :: target = 0.0_wp            !! TARGET: bound of the error estimate; 0: none
     integer :: scene = 0                   !! with a target: kind of scene (type_charts_m)
     type(surface_t) :: slave, master       !! SURFA, SURFB
     integer :: n_gauss = 2                 !! NGAUSS
@@ -81,26 +78,25 @@ module contacts_m
     logical :: strict = .false.            !! IPF = 1: strict rule, of kinds that have one
     integer :: search_interval = 0         !! FREQ, cycles between global searches; 0 = the
                                            !! program's choice
-    real(wp) :: search_depth = 0.0_wp      !! SRCH: deepest first contact that is caught; 0 =
+    real(wp) :: search_depth = 0.0_wp      !! SRCH: largest penetration at first contact; 0 =
                                            !! automatic
     type(friction_rule_t) :: friction
     integer :: tie = tie_none              !! TIE, one of the `tie_` constants
-    real(wp) :: tie_distance = 0.0_wp         !! what is farther apart is not tied, m; below 0 per
-                                              !! cent of the mean master segment; 0 = 1 per cent
-    real(wp) :: strength(2) = 0.0_wp       !! NFLS, SFLS of a tie that breaks, N/m^2
-    type(curve_t), allocatable :: interference !! LCINT: the part of an initial overlap that acts,
-                                           !! from 0 to 1
+    real(wp) :: tie_distance = 0.0_wp      !! largest gap that is tied, m; below 0 per cent of the
+                                           !! mean master segment; 0 = 1 per cent
+    real(wp) :: strength(2) = 0.0_wp       !! NFLS, SFLS of tiebreak, N/m^2
+    type(curve_t), allocatable :: interference !! LCINT: active share of the initial overlap, 0 to 1
     logical :: is_axisymmetric = .false.   !! axisymmetric: lengths weigh with their radius
     logical :: is_self = .false.           !! SURFB 0: one surface with itself; both sides are it
   contains
     procedure :: visit => visit_contact
   end type contact_t
 
-  !> A surface on which the forces of all interfaces are added up.
+  !> A surface on which the contact forces of all interfaces are summed.
   type, extends(visited_t) :: transducer_t
     integer :: id = 0
     character(:), allocatable :: title
-    integer, allocatable :: nodes(:) !! those of its surface that interfaces have
+    integer, allocatable :: nodes(:) !! nodes of its surface that belong to interfaces
   contains
     procedure :: visit => visit_transducer
   end type transducer_t
@@ -123,7 +119,7 @@ contains
     tied = contact%tie /= tie_none
   end function is_tied
 
-  !> Whether the ties of an interface break.
+  !> Whether an interface has tiebreak.
   elemental function breaks(contact)
     type(contact_t), intent(in) :: contact
     logical :: breaks
@@ -131,7 +127,7 @@ contains
     breaks = contact%tie == tie_breaks
   end function breaks
 
-  !> Whether an interface has tractions along its surfaces.
+  !> Whether an interface has tangential tractions.
   elemental function has_shear(contact) result(has)
     type(contact_t), intent(in) :: contact
     logical :: has
@@ -147,7 +143,7 @@ contains
     text = trim(kind%name)//' (type '//to_text(kind%number)//')'
   end function kind_text
 
-  !> Its components.
+  !> Visit the components of an interface.
   subroutine visit_contact(self, visitor)
     class(contact_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -182,7 +178,7 @@ contains
     call visitor%visit('is_self', self%is_self)
   end subroutine visit_contact
 
-  !> Its components.
+  !> Visit the components of a transducer.
   subroutine visit_transducer(self, visitor)
     class(transducer_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Controls of the run: end, time step and output plan, with what the histories have rows of.
+!> Controls of the run: termination, time step, implicit method, outputs and the rows of histories.
 module controls_m
   use, intrinsic :: iso_c_binding, only : c_loc
   use conditions_m, only : conditions_t
@@ -13,18 +13,18 @@ module controls_m
   private
   public :: boundary_rows_t, list_boundaries, boundary_load, boundary_body_load, &
     boundary_pressure, boundary_motion, boundary_body_motion, force_group_t, group_nodes, &
-    cross_section_t, find_edges, mark_corners, end_condition_t, end_node_coordinate, &
+    cross_section_t, set_edges, set_corners, end_condition_t, end_node_coordinate, &
     end_node_contact, end_body_displacement, end_body_distance, end_contact, controls_t, &
     relaxation_t, &
     implicit_t, output_plan_t, interval_t, is_asked, length_by_side, length_by_diagonal, &
     contact_step_warns, contact_step_free, contact_step_rules
 
-  !> What acts: a force on a node, on a body, pressure on edges of a node, prescribed motion of a
-  !> node, of a body. Rows come in this order.
+  !> Boundary conditions of bndout, in the order of its rows: force on a node, on a rigid body,
+  !> pressure on edges of a node, prescribed motion of a node, of a rigid body.
   integer, parameter :: boundary_load = 1, boundary_body_load = 2, boundary_pressure = 3, &
     boundary_motion = 4, boundary_body_motion = 5
 
-  !> The rows, and which belong to the prescribed motions.
+  !> Rows of bndout, and the rows of the prescribed motions.
   type, extends(visited_t) :: boundary_rows_t
     integer, allocatable :: condition(:)       !! one of `boundary_`
     integer, allocatable :: where(:)           !! index of the node, or of the body
@@ -47,20 +47,20 @@ module controls_m
     integer :: id = 0                   !! user number, or its position in the deck
     character(:), allocatable :: title
     integer, allocatable :: nodes(:)    !! node indices, each once
-    integer, allocatable :: elements(:) !! element indices, each once; by rising slot once there is
-                                        !! a layout
-    logical, allocatable :: is_corner(:, :) !! (4, elements) corners that are nodes of it
-    integer, allocatable :: edges(:, :) !! (2, n) edges of the elements with both nodes in it
+    integer, allocatable :: elements(:) !! element indices, each once; by increasing slot after the
+                                        !! layout is built
+    logical, allocatable :: is_corner(:, :) !! (4, elements) corners that are nodes of the section
+    integer, allocatable :: edges(:, :) !! (2, n) element edges with both nodes in the section
   contains
     procedure :: visit => visit_section
   end type cross_section_t
 
-  !> The kinds: a coordinate of a node, a node in contact, a displacement of a body along an axis,
-  !> the length of that displacement, an interface without force.
+  !> Kinds of termination conditions: coordinate of a node, contact of a node, displacement of a
+  !> rigid body along an axis, magnitude of its displacement, interface without force.
   integer, parameter :: end_node_coordinate = 1, end_node_contact = 2, end_body_displacement = 3, &
     end_body_distance = 4, end_contact = 5
 
-  !> One of them.
+  !> One *TERMINATION_ condition.
   type :: end_condition_t
     integer :: kind = 0
     integer :: id = 0                  !! user number of the node, part or interface
@@ -76,32 +76,30 @@ module controls_m
   !> Element length of the stable step (ISDO): area over longest side, or over longest diagonal.
   integer, parameter :: length_by_side = 0, length_by_diagonal = 1
 
-  !> What the contact springs do to the step (ECDT): the start warns where it is too large for them,
-  !> nothing, or the stable step is that of elements and springs together.
+  !> Contact springs and the time step (ECDT): a warning at the start where the step is too large
+  !> for them; no check; or a step that is stable for elements and springs.
   integer, parameter :: contact_step_warns = 0, contact_step_free = 1, contact_step_rules = 2
 
   !> Time between two outputs of one file; off while both are zero.
   type :: interval_t
     real(wp) :: dt = 0.0_wp  !! constant interval
     integer :: curve = 0     !! index of a curve of the interval against time, 0 = none
-    logical :: is_text = .false.   !! a DYNA text file is written too (BINARY)
-    logical :: is_binout = .false. !! binout data are asked for (BINARY)
+    logical :: is_text = .false.   !! also write a DYNA text file (BINARY)
+    logical :: is_binout = .false. !! binout requested (BINARY)
   end type interval_t
 
-  !> What is written, and how often.
+  !> Outputs and their intervals.
   type, extends(visited_t) :: output_plan_t
     type(interval_t) :: plot    !! VTKHDF states and contact rows (*DATABASE_BINARY_D3PLOT)
-    type(interval_t) :: histories(n_table)   !! by the `table_` constants; that of contact is
-                                             !! unused
+    type(interval_t) :: histories(n_table)   !! by the `table_` constants; contact is unused
     integer, allocatable :: history_nodes(:) !! node indices of *DATABASE_HISTORY_NODE
     integer, allocatable :: history_elements(:) !! element indices of *DATABASE_HISTORY_SHELL
-    type(boundary_rows_t) :: boundaries      !! only where *DATABASE_BNDOUT asks for them
-    type(force_group_t), allocatable :: force_groups(:) !! only where the deck has any
-    type(cross_section_t), allocatable :: cross_sections(:) !! likewise
-    integer :: dump_cycles = -1    !! cycles between restart files that stay
-                                   !! (*DATABASE_BINARY_D3DUMP), 0 = at the end alone, -1 = none
-    integer :: running_cycles = 0  !! cycles between restart files that replace each other (RUNRSF),
-                                   !! 0 = none
+    type(boundary_rows_t) :: boundaries      !! with *DATABASE_BNDOUT
+    type(force_group_t), allocatable :: force_groups(:)
+    type(cross_section_t), allocatable :: cross_sections(:)
+    integer :: dump_cycles = -1    !! cycles between numbered restart files
+                                   !! (*DATABASE_BINARY_D3DUMP), 0 = at the end only, -1 = none
+    integer :: running_cycles = 0  !! cycles between running restart files (RUNRSF), 0 = none
     integer :: status_interval = 0 !! cycles between progress lines (IKEDIT); 0 = the program's
                                    !! choice
   contains
@@ -124,21 +122,20 @@ module controls_m
     real(wp) :: energy_tolerance = 1.0e-20_wp  !! ECTOL: |dU.R|/|dU0.R0|
     real(wp) :: step_tolerance = 0.0_wp        !! DCTOL: |dU|/|U(n+1) - U(n)|, 0 = off
     real(wp) :: residual_tolerance = 0.0_wp    !! RCTOL: |R|/|R0|, 0 = off
-    real(wp) :: search_tolerance = 0.9_wp      !! LSTOL: line search until |dU.R| falls below this
-                                               !! part
-    logical :: is_automatic = .false.  !! IAUTO = 1: steps grow and shrink
+    real(wp) :: search_tolerance = 0.9_wp      !! LSTOL: line search while |dU.R|/|dU0.R0| is larger
+    logical :: is_automatic = .false.  !! IAUTO = 1: automatic step
     integer :: best_iterations = 11    !! ITEOPT
     integer :: iteration_window = 5    !! ITEWIN
     real(wp) :: dt_least = 0.0_wp      !! DTMIN, 0 = a thousandth of DT0
     real(wp) :: dt_most = 0.0_wp       !! DTMAX, 0 = ten times DT0
   end type implicit_t
 
-  !> Dynamic relaxation (*CONTROL_DYNAMIC_RELAXATION): a first phase in which velocities are scaled
-  !> down in every cycle until the body rests.
+  !> Dynamic relaxation (*CONTROL_DYNAMIC_RELAXATION): an initial phase with velocities scaled down
+  !> in every cycle until the kinetic energy vanishes.
   type :: relaxation_t
     logical :: is_on = .false.         !! IDRFLG = 1, or a curve of the phase (SIDR 1 or 2)
     integer :: check_cycles = 250      !! NRCYCK
-    real(wp) :: tolerance = 1.0e-3_wp  !! DRTOL: of the kinetic energy over its largest
+    real(wp) :: tolerance = 1.0e-3_wp  !! DRTOL: kinetic energy over its maximum
     real(wp) :: factor = 0.995_wp      !! DRFCTR
     real(wp) :: most_time = huge(1.0_wp) !! DRTERM
     real(wp) :: step_scale = 0.0_wp    !! TSSFDR, 0 = TSSFAC
@@ -152,15 +149,15 @@ module controls_m
     real(wp) :: dt_floor = 0.0_wp            !! DTMIN, as a factor on the first step
     real(wp) :: energy_limit = 0.0_wp        !! ENDENG: change of the energy ratio in per cent, 0 =
                                              !! off
-    type(end_condition_t), allocatable :: ends(:) !! *TERMINATION_, only where the deck has any
+    type(end_condition_t), allocatable :: ends(:) !! *TERMINATION_
     logical :: check_only = .false.          !! NOSOL: stop after initialisation
     real(wp) :: dt_initial = 0.0_wp          !! DTINIT, 0 = computed
     real(wp) :: dt_scale = 0.9_wp            !! TSSFAC
     integer :: length_rule = length_by_side  !! ISDO
     integer :: dt_curve = 0                  !! LCTM: index of the curve that caps the step
-    real(wp) :: mass_step = 0.0_wp           !! DT2MS: stable step of scaled elements; below 0
-                                             !! mass is added alone
-    logical :: masses_stay = .false.         !! MS1ST: masses are scaled at the start alone
+    real(wp) :: mass_step = 0.0_wp           !! DT2MS: stable step of scaled elements; below 0 mass
+                                             !! is only added
+    logical :: masses_stay = .false.         !! MS1ST: mass scaling at the start only
     real(wp) :: most_added = 0.0_wp          !! ENDMAS: added mass in per cent, 0 = off
     type(relaxation_t) :: relaxation
     real(wp) :: penalty_scale = 0.1_wp       !! SLSFAC
@@ -174,7 +171,7 @@ module controls_m
 
 contains
 
-  !> All rows, by what acts and then by rising user number.
+  !> All rows of bndout, by kind of condition and increasing user number.
   subroutine list_boundaries(conditions, node_ids, body_ids, rows)
     type(conditions_t), intent(in) :: conditions
     integer, intent(in) :: node_ids(:), body_ids(:) !! user numbers
@@ -193,11 +190,11 @@ contains
     rows%body_motion_rows = row_at(conditions%rigid_motions%node)
   end subroutine list_boundaries
 
-  !> Rows of what acts on some nodes or bodies, each once.
-  subroutine add_rows(condition, places, ids, rows, row_at)
+  !> Append the rows of one kind of condition, one for each node or body.
+  subroutine add_rows(condition, items, ids, rows, row_at)
     integer, intent(in) :: condition
-    integer, intent(in) :: places(:)   !! indices, any of them several times
-    integer, intent(in) :: ids(:)      !! their user numbers
+    integer, intent(in) :: items(:)    !! indices of nodes or bodies, possibly repeated
+    integer, intent(in) :: ids(:)      !! user numbers
     type(boundary_rows_t), intent(inout) :: rows
     integer, intent(out) :: row_at(:)  !! row of each index, 0 = none
     logical :: is_there(size(ids))
@@ -205,7 +202,7 @@ contains
     integer :: i
 
     is_there = .false.
-    is_there(places) = .true.
+    is_there(items) = .true.
     found = pack([(i, i=1, size(ids))], is_there)
     found = found(sorted_order(int(ids(found), long)))
     row_at = 0
@@ -214,7 +211,7 @@ contains
     rows%where = [rows%where, found]
   end subroutine add_rows
 
-  !> Its components.
+  !> Visit the components of the rows.
   subroutine visit_rows(self, visitor)
     class(boundary_rows_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -225,7 +222,7 @@ contains
     call visitor%visit('body_motion_rows', self%body_motion_rows)
   end subroutine visit_rows
 
-  !> Its components.
+  !> Visit the components of a force group.
   subroutine visit_group(self, visitor)
     class(force_group_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -234,7 +231,7 @@ contains
     call visitor%visit('nodes', self%nodes)
   end subroutine visit_group
 
-  !> Nodes of all groups, one group behind the other.
+  !> Nodes of all groups, group after group.
   pure function group_nodes(groups) result(nodes)
     type(force_group_t), intent(in) :: groups(:)
     integer, allocatable :: nodes(:)
@@ -243,8 +240,8 @@ contains
     nodes = [(groups(i)%nodes, i=1, size(groups))]
   end function group_nodes
 
-  !> The edges of the elements that lie in the section, each once.
-  subroutine find_edges(element_nodes, section)
+  !> Set the edges of a cross section: element edges with both nodes in it, each once.
+  subroutine set_edges(element_nodes, section)
     integer, intent(in) :: element_nodes(:, :) !! (4, n_element)
     type(cross_section_t), intent(inout) :: section
     integer(long), allocatable :: keys(:)
@@ -269,10 +266,10 @@ contains
     order = sorted_order(keys)
     keys = keys(order)
     section%edges = edges(:, pack(order, [(i == 1 .or. keys(i) > keys(max(i - 1, 1)), i=1, n)]))
-  end subroutine find_edges
+  end subroutine set_edges
 
-  !> Find the corners of the elements that are nodes of the section, once there is a layout.
-  subroutine mark_corners(layout, n_node, section)
+  !> Set the element corners that are nodes of a cross section, after the layout is built.
+  subroutine set_corners(layout, n_node, section)
     type(layout_t), intent(in) :: layout
     integer, intent(in) :: n_node
     type(cross_section_t), intent(inout) :: section
@@ -286,9 +283,9 @@ contains
       section%is_corner(:, i) = &
         is_in(layout%slot_nodes(:, layout%element_slot(section%elements(i))))
     end do
-  end subroutine mark_corners
+  end subroutine set_corners
 
-  !> Its components.
+  !> Visit the components of a cross section.
   subroutine visit_section(self, visitor)
     class(cross_section_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -304,7 +301,7 @@ contains
     call visitor%visit('edges', self%edges)
   end subroutine visit_section
 
-  !> Whether the deck asks for this output.
+  !> Whether an output is requested.
   pure function is_asked(interval) result(asked)
     type(interval_t), intent(in) :: interval
     logical :: asked
@@ -312,7 +309,7 @@ contains
     asked = interval%dt > 0.0_wp .or. interval%curve > 0
   end function is_asked
 
-  !> Its components.
+  !> Visit the components of the output plan.
   subroutine visit_output(self, visitor)
     class(output_plan_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -331,7 +328,7 @@ contains
     call visitor%visit('status_interval', self%status_interval)
   end subroutine visit_output
 
-  !> Its components, but for implicit runs, which have one process.
+  !> Visit the components of the controls, without `implicit`: implicit runs have one process.
   subroutine visit_controls(self, visitor)
     class(controls_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Load curves: piecewise linear, the end values held outside the range of the abscissa.
+!> Load curves: piecewise linear, constant outside the range of the abscissa.
 module curves_m
   use kinds_m, only : wp
   use visitor_m, only : visited_t, visitor_t, any_length
@@ -13,14 +13,14 @@ module curves_m
     real(wp), allocatable :: abscissa(:)   !! increasing, one or more points
     real(wp), allocatable :: ordinate(:)   !! same length
     integer :: phase = 0                   !! SIDR: 0 run, 1 dynamic relaxation, 2 both
-    logical :: is_of_time = .true.         !! false for one that a material uses
+    logical :: is_of_time = .true.         !! false for curves of materials
   contains
     procedure :: visit => visit_curve
   end type curve_t
 
 contains
 
-  !> Ordinate at `x`: linear between points, end values outside.
+  !> Ordinate at `x`.
   pure function curve_value(curve, x) result(y)
     type(curve_t), intent(in) :: curve
     real(wp), intent(in) :: x
@@ -75,7 +75,7 @@ contains
     constant = maxval(curve%ordinate) <= minval(curve%ordinate)
   end function curve_is_constant
 
-  !> Its components.
+  !> Visit the components of a curve.
   subroutine visit_curve(self, visitor)
     class(curve_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

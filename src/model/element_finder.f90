@@ -1,24 +1,24 @@
 ! SPDX-License-Identifier: MIT
-!> Bodies at time zero: whether a place lies inside the elements of certain parts, and not just on
-!> their boundary; which segments of a surface a line crosses, and how thick the elements behind
-!> these are. Elements are sorted into the cells of a uniform grid by their boxes; used once, at the
+!> Point location in bodies at time zero: whether a position lies in the interior of given parts;
+!> segments of a surface that a line crosses, and the thickness of the elements behind them.
+!> Elements are sorted into the cells of a uniform grid by their bounding boxes. Used once, at the
 !> start.
 module element_finder_m
   use kinds_m, only : wp, long
   use model_m, only : model_t
-  use sorting_m, only : place_among, sorted_order
+  use sorting_m, only : index_among, sorted_order
   use surfaces_m, only : surface_t
   implicit none
   private
   public :: element_finder_t, start_finder, is_inside_body, element_at, cell_of, body_view_t, &
     most_crossed, view_body, half_thickness, list_crossed, ends_of, initial_length, area_behind
 
-  !> Part of a cell by which a node must lie within the boundary.
+  !> Distance from the boundary, over the cell size, from which on a position is interior.
   real(wp), parameter :: margin = 1.0e-6_wp
-  !> Part of an edge by which a place may lie outside of an element and still count as in it.
+  !> Distance outside an element, over the edge length, up to which a position counts as inside.
   real(wp), parameter :: round_off = 1.0e-9_wp
 
-  !> Part of the places' box by which elements outside of it are taken too.
+  !> Margin of the search box over its size.
   real(wp), parameter :: box_margin = 1.0e-4_wp
 
   !> The grid; `cells = 0` when there is no element.
@@ -27,31 +27,31 @@ module element_finder_m
     real(wp) :: high(2) = 0.0_wp      !! upper corner
     real(wp) :: cell(2) = 1.0_wp      !! sides of a cell, m
     integer :: cells(2) = 0           !! number of cells along x and y
-    integer, allocatable :: first(:)  !! (cells + 1) where each cell starts ...
+    integer, allocatable :: first(:)  !! (cells + 1) start of each cell ...
     integer, allocatable :: items(:)  !! ... in this list of elements
   end type element_finder_t
 
-  !> Part of the shorter segment by which two segments have to reach through each other at least:
-  !> less may be round-off of the coordinates.
+  !> Minimum distance of the ends of crossing segments from each other's line, over the length of
+  !> the shorter one: less may be round-off of the coordinates.
   real(wp), parameter :: least_crossing = 1.0e-4_wp
-  !> Segments of a surface that one segment is known to cross, at most.
+  !> Maximum number of crossings that are listed for one segment.
   integer, parameter :: most_crossed = 16
-  !> A surface and the bodies behind it.
+  !> Search structure of a surface and the bodies behind it.
   type :: body_view_t
     type(element_finder_t) :: finder
-    integer, allocatable :: order(:) !! (n_node of the surface) that sorts its nodes
+    integer, allocatable :: order(:) !! (n_node of the surface) sorts its nodes
   end type body_view_t
 
 contains
 
-  !> Sort the elements of those parts that hold any of `members`, as far as they come near the
-  !> places that will be asked about.
+  !> Sort the elements of the parts of `members` into the grid, as far as they lie near the box of
+  !> `nodes`.
   pure subroutine start_finder(model, members, nodes, finder, behind)
     type(model_t), intent(in) :: model
     integer, intent(in) :: members(:) !! element indices
-    integer, intent(in) :: nodes(:)   !! places lie between these
+    integer, intent(in) :: nodes(:)   !! positions lie in the box of these nodes
     type(element_finder_t), intent(out) :: finder
-    integer, intent(in), optional :: behind(:) !! the elements of those parts, where they are known
+    integer, intent(in), optional :: behind(:) !! all elements of these parts
     logical, allocatable :: is_wanted(:)
     integer, allocatable :: elements(:)
     real(wp) :: size_of_box(2), low(2), high(2), box(2, 2)
@@ -88,7 +88,7 @@ contains
     call sort_elements(model, elements, finder)
   end subroutine start_finder
 
-  !> Lower and upper corner of the box of an element.
+  !> Lower and upper corner of the bounding box of an element.
   pure function box_of(model, element) result(box)
     type(model_t), intent(in) :: model
     integer, intent(in) :: element
@@ -100,7 +100,7 @@ contains
     box(:, 2) = maxval(x, 2)
   end function box_of
 
-  !> Counting sort of the elements into the cells that their boxes touch.
+  !> Counting sort of the elements into the cells that their bounding boxes overlap.
   pure subroutine sort_elements(model, elements, finder)
     type(model_t), intent(in) :: model
     integer, intent(in) :: elements(:)
@@ -130,7 +130,7 @@ contains
     end do
   end subroutine sort_elements
 
-  !> Cell that holds x, counted from 0; the nearest one for places outside.
+  !> Cell of position x, counted from 0; the nearest one for positions outside.
   pure function cell_of(finder, x) result(cell)
     type(element_finder_t), intent(in) :: finder
     real(wp), intent(in) :: x(2)
@@ -139,8 +139,8 @@ contains
     cell = max(0, min(finder%cells - 1, int((x - finder%low)/finder%cell)))
   end function cell_of
 
-  !> Whether four places round `x`, a hair away, are all in elements that do not have the nodes
-  !> which carry the place. (x alone would not tell an edge between two elements from the boundary.)
+  !> Whether four positions close to `x` all lie in elements that do not contain all owner nodes of
+  !> x. (x alone does not distinguish an interior edge from the boundary.)
   pure function is_inside_body(finder, model, x, owner_nodes) result(inside)
     type(element_finder_t), intent(in) :: finder
     type(model_t), intent(in) :: model
@@ -158,7 +158,7 @@ contains
       owner_nodes) > 0
   end function is_inside_body
 
-  !> An element that x is in and that does not have all of `carriers`, or 0.
+  !> An element that contains x but not all of `owner_nodes`, or 0.
   pure function element_at(finder, model, x, owner_nodes) result(element)
     type(element_finder_t), intent(in) :: finder
     type(model_t), intent(in) :: model
@@ -181,7 +181,7 @@ contains
     end do
   end function element_at
 
-  !> Whether x is in an element, edges included.
+  !> Whether an element contains x, edges included.
   pure function is_in_element(model, element, x) result(is_in)
     type(model_t), intent(in) :: model
     integer, intent(in) :: element
@@ -199,12 +199,13 @@ contains
     is_in = .true.
   end function is_in_element
 
-  !> Know the bodies behind a surface, for looks at it and at another one. It must have a segment.
+  !> Build the search structure of a surface with one or more segments, for positions of it and of
+  !> another surface.
   pure subroutine view_body(model, surface, other, view, behind)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: surface, other
     type(body_view_t), intent(out) :: view
-    integer, intent(in), optional :: behind(:) !! elements of these bodies, where they are known
+    integer, intent(in), optional :: behind(:) !! all elements of these bodies
 
     call start_finder(model, surface%segment_element, [surface%nodes, other%nodes], view%finder, &
       behind)
@@ -246,8 +247,8 @@ contains
       - (x(1, 4) - x(1, 2))*(x(2, 3) - x(2, 1)))
   end function area_behind
 
-  !> Segments that a line a-b and that cross each other, in order along it, and where on it (0 to
-  !> 1): each reaches through the other with both ends. All behind which elements lie in its way.
+  !> Segments of the surface that a line crosses, in order along the line, and the parameters of the
+  !> crossings on it (0 to 1).
   pure subroutine list_crossed(model, surface, view, line, n, crossed, at)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: surface
@@ -257,7 +258,7 @@ contains
     real(wp), intent(out) :: at(most_crossed)
     integer, allocatable :: order(:)
     integer :: low(2), high(2), ix, iy, i, k, t, cell
-    real(wp) :: place
+    real(wp) :: position
 
     n = 0
     if (any(maxval(line, 2) < view%finder%low .or. minval(line, 2) > view%finder%high)) return
@@ -269,41 +270,41 @@ contains
         do i = view%finder%first(cell) + 1, view%finder%first(cell + 1)
           associate (element => view%finder%items(i))
             do k = 1, 4
-              t = place_among(surface%nodes, view%order, model%mesh%element_nodes(k, element))
+              t = index_among(surface%nodes, view%order, model%mesh%element_nodes(k, element))
               if (t > 0) t = surface%outgoing(t)
               if (t == 0) cycle
               if (surface%segment_element(t) /= element) cycle
               if (n == most_crossed .or. any(crossed(:n) == t)) cycle
-              call cross(line, ends_of(model, surface, t), place)
-              if (.not. place > 0.0_wp) cycle
+              call cross(line, ends_of(model, surface, t), position)
+              if (.not. position > 0.0_wp) cycle
               n = n + 1
               crossed(n) = t
-              at(n) = place
+              at(n) = position
             end do
           end associate
         end do
       end do
     end do
-    order = sorted_order(transfer(at(:n), [0_long])) ! bits of positive numbers sort as these
+    order = sorted_order(transfer(at(:n), [0_long])) ! bits of positive numbers sort alike
     crossed(:n) = crossed(order)
     at(:n) = at(order)
   end subroutine list_crossed
 
-  !> Where on one line (0 to 1) another goes through it, 0 where it does not.
-  pure subroutine cross(one, two, place)
+  !> Parameter on line `one` (0 to 1) of its crossing with line `two`; 0 where they do not cross.
+  pure subroutine cross(one, two, position)
     real(wp), intent(in), dimension(2, 2) :: one, two !! ends
-    real(wp), intent(out) :: place
+    real(wp), intent(out) :: position
     real(wp) :: a(2), b(2), least
 
-    place = 0.0_wp
+    position = 0.0_wp
     a = [across(two, one(:, 1)), across(two, one(:, 2))]
     b = [across(one, two(:, 1)), across(one, two(:, 2))]
     least = least_crossing*min(norm2(one(:, 2) - one(:, 1)), norm2(two(:, 2) - two(:, 1)))
     if (a(1)*a(2) >= 0.0_wp .or. b(1)*b(2) >= 0.0_wp) return
-    if (minval(abs([a, b])) > least) place = a(1)/(a(1) - a(2))
+    if (minval(abs([a, b])) > least) position = a(1)/(a(1) - a(2))
   end subroutine cross
 
-  !> Signed distance of a place from the line through two others.
+  !> Signed distance of x from a line, m.
   pure function across(line, x) result(distance)
     real(wp), intent(in) :: line(2, 2), x(2)
     real(wp) :: distance
@@ -313,7 +314,7 @@ contains
     end associate
   end function across
 
-  !> Places of the two ends of a segment.
+  !> Positions of the two ends of a segment, m.
   pure function ends_of(model, surface, segment) result(x)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: surface

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Equations of state: pressure p (compression positive) by relative volume v = V/V0 and internal
-!> energy per initial volume E, p = A(mu) + B(mu) E with mu = 1/v - 1.
+!> Equations of state p = A(mu) + B(mu) E: pressure p (compression positive) from mu = 1/v - 1 with
+!> the relative volume v = V/V0, and from the internal energy per initial volume E.
 module eos_m
   use kinds_m, only : wp
   implicit none
@@ -8,16 +8,16 @@ module eos_m
   public :: eos_t, initial_stiffness, initial_pressure, asymptote, &
     eos_logarithmic, eos_linear_polynomial, eos_gruneisen, eos_by_law
 
-  !> Kinds. Only the dispatcher of the equations of state asks for them.
-  !> By law: the law of the material gives the pressure too, of all its strain.
+  !> Kinds, known to the dispatcher of the equations of state only. By law: the material law gives
+  !> stress and pressure from the total strain.
   integer, parameter :: eos_logarithmic = 1, eos_linear_polynomial = 2, eos_gruneisen = 3, &
     eos_by_law = 4
 
-  !> Denominator of Gruneisen's equation at which its pressure, which goes with the inverse square,
-  !> counts as without bound.
+  !> Denominator of Gruneisen's equation from which on its pressure, proportional to the inverse
+  !> square, is treated as unbounded.
   real(wp), parameter :: least_denominator = 0.1_wp
 
-  !> One *EOS, or what stands for it in a material with failure.
+  !> One *EOS, or the internal one of a material with failure.
   type :: eos_t
     integer :: id = 0                 !! user id
     integer :: kind = eos_logarithmic !! one of the `eos_` constants
@@ -28,9 +28,9 @@ module eos_m
     real(wp) :: gamma = 0.0_wp        !! Gruneisen's gamma at the start
     real(wp) :: correction = 0.0_wp   !! a
     real(wp) :: energy = 0.0_wp       !! E at the start, J per initial volume
-    real(wp) :: datum = 0.0_wp        !! what a body under pressure at the start has stored beyond
-                                      !! that, J per initial volume
-    real(wp) :: least_ratio = 0.0_wp  !! V/V0 at which the pressure has next to no bound
+    real(wp) :: datum = 0.0_wp        !! elastic energy of the initial pressure beyond `energy`, J
+                                      !! per initial volume
+    real(wp) :: least_ratio = 0.0_wp  !! V/V0 at which the pressure becomes unbounded
   end type eos_t
 
 contains
@@ -65,9 +65,9 @@ contains
     end select
   end function initial_pressure
 
-  !> Bound of the volume of Gruneisen's equation: V/V0 at the least mu > 0 where its denominator
-  !> (`form_gruneisen`) is next to 0; 0 where it never is. With y = mu/(1 + mu) = 1 - v
-  !> the denominator is (1 - S1 y - S2 y^2 - S3 y^3)/(1 - y).
+  !> Volume bound of Gruneisen's equation: V/V0 at the smallest mu > 0 where its denominator
+  !> (`form_gruneisen`) vanishes; 0 where it does not. With y = mu/(1 + mu) = 1 - v the denominator
+  !> is (1 - S1 y - S2 y^2 - S3 y^3)/(1 - y).
   pure function asymptote(s) result(ratio)
     real(wp), intent(in) :: s(3) !! S1 to S3
     real(wp) :: ratio

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Plane one-point quads whose nodes carry hardly any mass but their own: single elements, ends of
-!> strips one element thick, what is dense in something light. L/c is above their stable step
+!> Exposed quads: plane one-point quads that own most of the mass of their nodes, such as single
+!> elements, ends of strips one element thick, and dense inclusions. Their stable step is below L/c
 !> (doc/theory/elements.md, "Stable step").
 module exposed_quads_m
   use kinds_m, only : wp
@@ -9,25 +9,27 @@ module exposed_quads_m
   private
   public :: find_exposed
 
-  !> From this share of the mass of a node on, what else is there weighs about half or less of it.
+  !> Main share of the mass of a node: other elements have at most about half of this mass.
   real(wp), parameter :: main_share = 0.66_wp
 
-  !> More than half: round-off is not to choose in strips and at straight edges of regular meshes.
+  !> Half share, above 0.5 so that round-off does not decide in strips and at edges of regular
+  !> meshes.
   real(wp), parameter :: half_share = 0.51_wp
 
-  !> An element with less of the mass of a node is no neighbour there.
+  !> Share of the mass of a node below which an element is not counted as a neighbour.
   real(wp), parameter :: small_share = 0.1_wp
 
 contains
 
-  !> Shares of exposed quads in what elements weigh at their nodes (masses of *ELEMENT_MASS only
-  !> allow larger steps), 0 in all other elements and, but for round-off, at nodes that a
-  !> support, a prescribed motion or a rigid body holds. A quad is exposed that has the main share
-  !> of two nodes, or more than half of three; above a Poisson's ratio of 0.4 also the main share of
-  !> one, where every element around it has one too (four quads in a block: 0.94 L/c and less).
+  !> Shares of exposed quads in the element masses of their nodes (masses of *ELEMENT_MASS only
+  !> increase the stable step); 0 in all other elements and, up to round-off, at nodes with a
+  !> support, a prescribed motion or a rigid body. A quad is exposed if it has the main share of two
+  !> nodes or more than half of three nodes; above a Poisson's ratio of 0.4 also if it has the main
+  !> share of one node and so have all elements around it (four quads in a block: 0.94 L/c and
+  !> less).
   pure function find_exposed(model, is_left) result(shares)
     type(model_t), intent(in) :: model
-    logical, intent(in) :: is_left(:)  !! (n_element) elements that have not eroded
+    logical, intent(in) :: is_left(:)  !! (n_element) not eroded
     real(wp), allocatable :: shares(:, :)  !! (4, n_element)
     real(wp), allocatable :: mass(:)
     logical, allocatable :: is_surrounded(:)
@@ -103,8 +105,8 @@ contains
     end associate
   end function is_exposed
 
-  !> Nodes that are held or prescribed in a direction during the whole run move as if a mirror image
-  !> hung on them: their mass counts as infinite.
+  !> Set the mass of nodes with a constraint or a prescribed motion during the whole run to
+  !> infinity: they act like nodes of a mirror image.
   pure subroutine hold_nodes(model, mass)
     type(model_t), intent(in) :: model
     real(wp), intent(inout) :: mass(:)  !! (n_node)

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Yield stress against plastic strain, point by point, and its dependence on the strain rate.
+!> Piecewise linear yield stress against plastic strain, and its dependence on the strain rate.
 module hardenings_m
   use kinds_m, only : wp, long
   use curves_m, only : curve_t
@@ -9,17 +9,15 @@ module hardenings_m
   private
   public :: hardening_t, make_hardening, depends_on_rate
 
-  !> Hardening of one material: rows of points, one for each strain rate, all at the same
-  !> plastic strains. Between points and between rates the yield stress is linear; outside the
-  !> rates the outermost row holds.
+  !> Hardening of one material: a row of points for each strain rate, all at the same plastic
+  !> strains. The yield stress is linear between points and between rates, and constant outside the
+  !> range of rates.
   type, extends(visited_t) :: hardening_t
     real(wp), allocatable :: strain(:)     !! (n) plastic strain of the points, increasing, the
                                            !! first 0
     real(wp), allocatable :: stress(:, :)  !! (n, n_rate) yield stress at the points
-    real(wp), allocatable :: slope(:, :)   !! (n, n_rate) from each point on; the last goes on for
-                                           !! ever
-    real(wp), allocatable :: rate(:)       !! (n_rate) increasing, 1/s; a single row holds at any
-                                           !! rate
+    real(wp), allocatable :: slope(:, :)   !! (n, n_rate) after each point
+    real(wp), allocatable :: rate(:)       !! (n_rate) increasing, 1/s; one row: at any rate
     real(wp) :: rate_constant = 0.0_wp     !! C of Cowper and Symonds, 1/s, 0 = none
     real(wp) :: rate_exponent = 1.0_wp     !! 1/P
     type(curve_t), allocatable :: rate_factor !! factor on the yield stress against the strain rate
@@ -29,8 +27,9 @@ module hardenings_m
 
 contains
 
-  !> Rows from curves of yield stress against plastic strain, which start at 0. Each is continued by
-  !> its last slope where that rises, by its last value where it falls; all get the points of all.
+  !> Hardening from curves of yield stress against plastic strain that start at 0. A curve is
+  !> extrapolated by its last slope if that is positive, else by its last value; all rows have the
+  !> points of all curves.
   pure function make_hardening(curves, rates) result(hardening)
     type(curve_t), intent(in) :: curves(:) !! one for each rate
     real(wp), intent(in) :: rates(:)       !! increasing
@@ -40,7 +39,7 @@ contains
 
     hardening%rate = rates
     strains = [(curves(i)%abscissa, i=1, size(curves))]
-    ! Bits of numbers that are not negative sort as the numbers.
+    ! Bits of non-negative numbers sort like the numbers.
     strains = strains(sorted_order(transfer(strains, [0_long])))
     hardening%strain = pack(strains, [(i == 1 .or. strains(i) > strains(max(i - 1, 1)), i=1, &
       size(strains))])
@@ -51,7 +50,7 @@ contains
     end do
   end function make_hardening
 
-  !> Values and slopes of one curve at points that hold its own.
+  !> Values and slopes of one curve at points that include its own.
   pure subroutine fill_row(curve, strain, stress, slope)
     type(curve_t), intent(in) :: curve
     real(wp), intent(in) :: strain(:)
@@ -59,7 +58,7 @@ contains
     integer :: i, k, n
 
     n = size(curve%abscissa)
-    k = 1 ! a curve with mistakes may begin beyond the first value
+    k = 1 ! a curve with errors may begin beyond the first value
     do i = 1, size(strain)
       if (k < n) then
         if (strain(i) >= curve%abscissa(k + 1)) k = k + 1
@@ -86,7 +85,7 @@ contains
       .or. allocated(hardening%rate_factor)
   end function depends_on_rate
 
-  !> Its components.
+  !> Visit the components of a hardening.
   subroutine visit_hardening(self, visitor)
     class(hardening_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

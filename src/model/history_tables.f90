@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> The history files, one row each: what reading decks, schedules, files, restarts, results and
-!> names of results walk by loops. What fills the columns stands in `history_rows_m`, layouts of
-!> text in `dyna_layouts_m`; how to add either is told in doc/add_a_history.md.
+!> Table of the history files, over which deck reader, schedules, files, restarts and results loop.
+!> `history_rows_m` fills the columns, `dyna_layouts_m` has the text layouts; doc/add_a_history.md
+!> explains how to add a history.
 module history_tables_m
   use text_m, only : upper_case
   implicit none
@@ -13,29 +13,29 @@ module history_tables_m
     each_part, each_wall, each_support, each_history_element, each_body, each_boundary, &
     each_group_node, each_section, text_none, text_rows, text_instants
 
-  !> The files. Their order is that in restart files and results.
+  !> Indices of the files, in the order of restart files and results.
   integer, parameter :: n_table = 13
   integer, parameter :: table_glstat = 1, table_rcforc = 2, table_nodout = 3, table_contact = 4, &
     table_matsum = 5, table_rwforc = 6, table_sleout = 7, table_spcforc = 8, &
     table_elout = 9, table_rbdout = 10, table_bndout = 11, table_nodfor = 12, &
     table_secforc = 13
 
-  !> Who asks for a file: its keyword; its keyword, or else it is there in every run and goes with
-  !> the states; the states, it has no keyword.
+  !> Interval of a file: by its keyword; by its keyword, or with the states where there is none;
+  !> with the states, without a keyword.
   integer, parameter :: asked_alone = 1, asked_or_states = 2, asked_by_states = 3
 
-  !> What an instant has rows of. Where the model has none of it there is no file.
+  !> Entities of the rows of an instant. Without such entities in the model there is no file.
   integer, parameter :: each_run = 1, each_contact = 2, each_history_node = 3, each_part = 4, &
     each_wall = 5, each_support = 6, each_history_element = 7, each_body = 8, &
     each_boundary = 9, each_group_node = 10, each_section = 11
 
-  !> A text file in DYNA's layout beside it (BINARY): none, each row a block of lines of its own, or
-  !> the rows of an instant together.
+  !> Additional text file in DYNA's layout (BINARY): none, one block of lines for each row, or one
+  !> for all rows of an instant.
   integer, parameter :: text_none = 0, text_rows = 1, text_instants = 2
 
-  !> One file. Columns before the semicolon are in the CSV file, all are in the results file. Before
-  !> a name: # a whole number, @ a side of an interface (1 slave, 2 master), + only where masses are
-  !> scaled, - only where elements may leave the mesh.
+  !> One file. Columns before the semicolon are in the CSV file, all columns in the results file.
+  !> Marks before a name: # integer, @ side of an interface (1 slave, 2 master), + only with mass
+  !> scaling, - only where elements may erode.
   type :: history_table_t
     character(8) :: name     !! end of the file's name, and of its keyword *DATABASE_<NAME>
     integer :: asked         !! one of `asked_`
@@ -77,7 +77,7 @@ module history_tables_m
 
 contains
 
-  !> The table whose interval a keyword without its asterisk gives (DATABASE_GLSTAT); 0 = none.
+  !> Index of the table whose interval a keyword gives (DATABASE_GLSTAT, no asterisk); 0: none.
   pure function table_of_keyword(keyword) result(i_table)
     character(*), intent(in) :: keyword   !! in capital letters
     integer :: i_table

@@ -1,14 +1,13 @@
 ! SPDX-License-Identifier: MIT
-!> How elements and nodes lie in memory while the run steps.
+!> Memory layout of elements and nodes during the time steps.
 !>
-!> Elements stand in slots. A chunk is `chunk_size` consecutive slots of one part; its last slots
-!> may be padding. A tile is a run of chunks whose elements are neighbours in space. Nodes are
-!> numbered so that the special ones come first (touched by several tiles, or by contact, loads or
-!> prescribed motion) and then, tile after tile, the interior nodes that belong to that tile alone.
-!> Elements of rigid bodies have slots behind all tiles, and their nodes that nothing touches come
-!> last: the step passes over both. A tile sums the forces of its interior nodes and moves them;
-!> forces on special nodes go into one force slot per tile and node and are added in a fixed order,
-!> so that the result has the same bits at any number of threads.
+!> Elements are stored in slots. A chunk is `chunk_size` consecutive slots of one part; its last
+!> slots may be padding. A tile is a sequence of chunks whose elements are neighbours in space.
+!> Special nodes come first (nodes of several tiles, contact, loads or prescribed motion), then,
+!> tile by tile, the interior nodes of one tile. Elements of rigid bodies have slots after all
+!> tiles; their other nodes come last, and time steps skip both. A tile assembles the forces of its
+!> interior nodes and moves them. Forces on special nodes are stored in one force slot per tile and
+!> node and added in a fixed order, so that results have the same bits at any number of threads.
 module layout_m
   use, intrinsic :: iso_fortran_env, only : int16
   use, intrinsic :: iso_c_binding, only : c_loc
@@ -18,20 +17,20 @@ module layout_m
   private
   public :: layout_t, tile_t, chunk_size, local_kind, slot_part, first_slot, last_slot
 
-  !> Kind of local numbers: a tile has at most 512 elements with 2048 nodes.
+  !> Integer kind of local node numbers: a tile has at most 512 elements with 2048 nodes.
   integer, parameter :: local_kind = int16
 
-  !> Elements per chunk; from 32 to 128 the speed hardly differs, beyond that
-  !> chunks leave the L1 cache.
+  !> Elements per chunk; the speed is about the same from 32 to 128, larger chunks exceed the L1
+  !> cache.
   integer, parameter :: chunk_size = 64
 
   !> One tile.
   type :: tile_t
     integer :: first_chunk = 1, last_chunk = 0
     integer :: first_node = 1, last_node = 0     !! interior nodes
-    integer :: first_owned = 1, last_owned = 0   !! special nodes that its thread sums and moves; of
-                                                 !! the last tile also those that none touches
-    integer :: first_special = 1, last_special = 0 !! its range in the list of force slots
+    integer :: first_owned = 1, last_owned = 0   !! special nodes that its thread assembles and
+                                                 !! moves; in the last tile also unconnected ones
+    integer :: first_special = 1, last_special = 0 !! range in the list of force slots
   end type tile_t
 
   !> The layout of the whole model.
@@ -42,7 +41,7 @@ module layout_m
     integer :: n_local = 0         !! largest number of local nodes of a tile
     type(tile_t), allocatable :: tiles(:)
     integer, allocatable :: chunk_part(:)    !! (n_chunk) part index
-    integer, allocatable :: chunk_elements(:) !! (n_chunk) elements in it, in its first slots
+    integer, allocatable :: chunk_elements(:) !! (n_chunk) number of elements, in the first slots
     integer, allocatable :: slot_element(:)  !! (n_slot) element index, 0 for padding
     integer, allocatable :: element_slot(:)  !! (n_element) slot of each element
     integer, allocatable :: slot_nodes(:, :) !! (4, n_slot) node indices; all equal in padding
@@ -50,10 +49,10 @@ module layout_m
                                              !! interior nodes from 1, then its special nodes;
                                              !! all equal in padding
     integer, allocatable :: exposed(:)       !! slots of exposed quads (`find_exposed`)
-    real(wp), allocatable :: exposed_shares(:, :) !! (4, size(exposed)) in the masses of nodes
+    real(wp), allocatable :: exposed_shares(:, :) !! (4, size(exposed)) shares of nodal masses
     integer, allocatable :: special_node(:)  !! (force slots) node of each force slot, tile by tile
-    integer, allocatable :: node_slots(:)    !! (n_special + 1) where each special node's list
-                                             !! starts ...
+    integer, allocatable :: node_slots(:)    !! (n_special + 1) start of each special node's list
+                                             !! ...
     integer, allocatable :: slot_list(:)     !! ... in this list of force slots
   contains
     procedure :: visit => visit_layout
@@ -83,7 +82,7 @@ contains
     last_slot = tile%last_chunk*chunk_size
   end function last_slot
 
-  !> Its components.
+  !> Visit the components of the layout.
   subroutine visit_layout(self, visitor)
     class(layout_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Makes the layout of a mesh: elements along a Hilbert curve, cut into tiles and chunks; the order
-!> of the nodes in memory, by the tiles that sum and move them; their numbers in the tiles.
+!> Builds the layout of a mesh: elements along a Hilbert curve, divided into tiles and chunks; order
+!> of the nodes in memory, by the tiles that own them; local node numbers of the tiles.
 module layout_building_m
   use kinds_m, only : wp, long
   use layout_m, only : layout_t, tile_t, chunk_size, local_kind, first_slot, last_slot
@@ -10,28 +10,28 @@ module layout_building_m
   private
   public :: build_slots, build_local_numbers, order_nodes
 
-  !> Elements of a tile: its nodes and forces stay in the fast caches, and few nodes are shared.
+  !> Elements of a tile: its nodes and forces fit into the fast caches, and few nodes are shared.
   integer, parameter :: tile_elements = 512
   !> Cells of the Hilbert curve along each axis, 2^16.
   integer, parameter :: curve_bits = 16
-  !> More than any place on the curve.
-  integer(long), parameter :: behind_all = 2_long**40
+  !> More than any distance along the curve.
+  integer(long), parameter :: beyond_curve = 2_long**40
 
-  !> Of nodes that are no tile's to sum.
+  !> Owner of nodes that no tile assembles.
   integer, parameter :: no_owner = 0
 
 contains
 
-  !> Tiles, chunks and slots of the elements (no node numbers yet): tile by tile along the curve,
-  !> rigid elements behind all tiles; in a tile part by part, each from the first slot of a chunk.
+  !> Build tiles, chunks and slots of the elements: tile by tile along the curve, rigid elements
+  !> after all tiles; in a tile part by part, each from the first slot of a chunk.
   subroutine build_slots(mesh, is_rigid, layout)
     type(mesh_t), intent(in) :: mesh
     logical, intent(in) :: is_rigid(:)    !! (n_element) of a rigid body
-    type(layout_t), intent(out) :: layout !! tiles' chunks, chunk_part, slot_element, element_slot
+    type(layout_t), intent(out) :: layout !! without node numbers
     integer, allocatable :: order(:), tile(:)
     integer :: n_tile, n_moving, i, i_chunk
 
-    order = sorted_order(hilbert_keys(mesh) + merge(behind_all, 0_long, is_rigid))
+    order = sorted_order(hilbert_keys(mesh) + merge(beyond_curve, 0_long, is_rigid))
     n_moving = count(.not. is_rigid)
     n_tile = max(1, (n_moving + tile_elements - 1)/tile_elements)
     allocate (layout%tiles(n_tile), tile(mesh%n_element))
@@ -56,7 +56,7 @@ contains
     end do
   end subroutine build_slots
 
-  !> Slot of each element: by tile, part and number.
+  !> Slot of each element: by tile, part and element number.
   subroutine fill_slots(mesh, tile, layout)
     type(mesh_t), intent(in) :: mesh
     integer, intent(in) :: tile(:)           !! (n_element)
@@ -80,8 +80,8 @@ contains
     layout%n_slot = layout%n_chunk*chunk_size
   end subroutine fill_slots
 
-  !> Node numbers of the slots, global and local to the tile, and the force slots of special nodes.
-  !> `mesh` holds the new node order.
+  !> Node numbers of the slots, global and local to the tile, and the force slots of special nodes;
+  !> `mesh` has been renumbered.
   subroutine build_local_numbers(mesh, layout)
     type(mesh_t), intent(in) :: mesh
     type(layout_t), intent(inout) :: layout
@@ -95,7 +95,7 @@ contains
     do i_tile = 1, size(layout%tiles)
       call number_tile(mesh, i_tile, layout, marks, local, special, n_special_slots)
     end do
-    ! Slots behind all tiles have no local numbers.
+    ! Slots after all tiles have no local numbers.
     do slot = last_slot(layout%tiles(size(layout%tiles))) + 1, layout%n_slot
       layout%slot_local(:, slot) = 0_local_kind
       if (layout%slot_element(slot) > 0) then
@@ -105,7 +105,7 @@ contains
       end if
     end do
     layout%special_node = special(:n_special_slots)
-    ! For each special node the force slots that hold its parts, in rising order.
+    ! Force slots of each special node, in increasing order.
     layout%slot_list = sorted_order(int(layout%special_node, long))
     allocate (layout%node_slots(layout%n_special + 1), source=1)
     do i = 1, size(layout%slot_list)
@@ -116,13 +116,13 @@ contains
     end do
   end subroutine build_local_numbers
 
-  !> Local numbers of one tile; its special nodes get the next force slots, by number: those that
-  !> one thread shares with another then lie together.
+  !> Local numbers of one tile. Its special nodes get the next force slots, by node number, so that
+  !> nodes that two threads share are contiguous.
   subroutine number_tile(mesh, i_tile, layout, marks, local, special, n_special_slots)
     type(mesh_t), intent(in) :: mesh
     integer, intent(in) :: i_tile
     type(layout_t), intent(inout) :: layout
-    integer, intent(inout) :: marks(:)        !! (n_node) last tile that has each node
+    integer, intent(inout) :: marks(:)        !! (n_node) last tile of each node
     integer, intent(inout) :: local(:)        !! (n_special) last force slot of each special node
     integer, intent(inout) :: special(:)      !! node of each force slot
     integer, intent(inout) :: n_special_slots
@@ -207,68 +207,67 @@ contains
     end do
   end function hilbert_distance
 
-  !> New order of the nodes: special ones first, by the tile that owns them, then the interior nodes
-  !> of each tile, last those of rigid bodies that nothing touches; in the first classes in the
-  !> order in which the elements touch them. Fills the tiles' node ranges.
+  !> New order of the nodes: special nodes by owning tile, interior nodes by tile, other nodes of
+  !> rigid bodies; within a tile in the order of its elements. Sets the node ranges of the tiles.
   subroutine order_nodes(mesh, is_rigid, is_special, layout, order)
     type(mesh_t), intent(in) :: mesh
     logical, intent(in) :: is_rigid(:)      !! (n_node) of a rigid body
-    logical, intent(inout) :: is_special(:) !! (n_node) in: wanted special; out: all special nodes
+    logical, intent(inout) :: is_special(:) !! (n_node) in: by contact, loads etc.; out: all
     type(layout_t), intent(inout) :: layout
     integer, allocatable, intent(out) :: order(:) !! (n_node) present index of each new node
-    logical, allocatable :: is_placed(:)
+    logical, allocatable :: is_numbered(:)
     integer, allocatable :: owner(:), marks(:), nodes(:)
-    integer :: i, k, n_placed
+    integer :: i, k, n_numbered
 
     call find_owners(mesh, is_rigid, layout, is_special, owner)
     allocate (order(mesh%n_node), marks(mesh%n_node), source=0)
-    allocate (is_placed(mesh%n_node), source=.false.)
-    n_placed = 0
+    allocate (is_numbered(mesh%n_node), source=.false.)
+    n_numbered = 0
     do i = 1, size(layout%tiles)
-      layout%tiles(i)%first_owned = n_placed + 1
+      layout%tiles(i)%first_owned = n_numbered + 1
       call list_nodes(mesh, layout%tiles(i), layout%slot_element, i, marks, nodes)
-      call place(pack(nodes, owner(nodes) == i))
-      layout%tiles(i)%last_owned = n_placed
+      call append(pack(nodes, owner(nodes) == i))
+      layout%tiles(i)%last_owned = n_numbered
     end do
-    call place(pack([(k, k=1, mesh%n_node)], is_special .and. .not. is_placed))
-    layout%tiles(size(layout%tiles))%last_owned = n_placed
-    layout%n_special = n_placed
+    call append(pack([(k, k=1, mesh%n_node)], is_special .and. .not. is_numbered))
+    layout%tiles(size(layout%tiles))%last_owned = n_numbered
+    layout%n_special = n_numbered
     do i = 1, size(layout%tiles)
-      layout%tiles(i)%first_node = n_placed + 1
+      layout%tiles(i)%first_node = n_numbered + 1
       call list_nodes(mesh, layout%tiles(i), layout%slot_element, -i, marks, nodes)
-      call place(pack(nodes, owner(nodes) == no_owner .and. .not. is_placed(nodes)))
-      layout%tiles(i)%last_node = n_placed
+      call append(pack(nodes, owner(nodes) == no_owner .and. .not. is_numbered(nodes)))
+      layout%tiles(i)%last_node = n_numbered
     end do
-    call place(pack([(k, k=1, mesh%n_node)], .not. (is_special .or. is_placed)))
+    call append(pack([(k, k=1, mesh%n_node)], .not. (is_special .or. is_numbered)))
 
   contains
 
-    !> The next nodes.
-    subroutine place(next)
+    !> Append the next nodes.
+    subroutine append(next)
       integer, intent(in) :: next(:)
 
-      order(n_placed + 1:n_placed + size(next)) = next
-      is_placed(next) = .true.
-      n_placed = n_placed + size(next)
-    end subroutine place
+      order(n_numbered + 1:n_numbered + size(next)) = next
+      is_numbered(next) = .true.
+      n_numbered = n_numbered + size(next)
+    end subroutine append
 
   end subroutine order_nodes
 
-  !> Special nodes, and the tile that owns each. Nodes that several tiles touch are special; so is a
-  !> node without any element, and a node of a rigid body with an element that is not rigid. Every
-  !> tile gets every second of the special nodes that it has in common with a later one, and those
-  !> that only it is left to take: the threads that share nodes wait for each other.
+  !> Special nodes and their owning tiles. Nodes of several tiles are special, nodes without an
+  !> element, and nodes of a rigid body with a deformable element. Of the special nodes shared with
+  !> a later tile, every second one belongs to the earlier tile, which balances the work of the
+  !> threads.
   subroutine find_owners(mesh, is_rigid, layout, is_special, owner)
     type(mesh_t), intent(in) :: mesh
     logical, intent(in) :: is_rigid(:)
     type(layout_t), intent(in) :: layout
     logical, intent(inout) :: is_special(:)
     integer, allocatable, intent(out) :: owner(:) !! (n_node) a tile or no_owner
-    integer, allocatable :: last_tile(:), seen(:), n_touch(:), nodes(:), n_common(:)
+    integer, allocatable :: last_tile(:), last_seen(:), n_touch(:), nodes(:), n_common(:)
     integer :: i_tile, i
 
     allocate (owner(mesh%n_node), source=no_owner)
-    allocate (last_tile(mesh%n_node), seen(mesh%n_node), n_touch(mesh%n_node), &
+    allocate (last_tile(mesh%n_node), last_seen(mesh%n_node), n_touch(mesh%n_node), &
       n_common(size(layout%tiles)), source=0)
     do i_tile = 1, size(layout%tiles)
       call list_nodes(mesh, layout%tiles(i_tile), layout%slot_element, i_tile, last_tile, nodes)
@@ -276,7 +275,7 @@ contains
     end do
     is_special = is_special .or. n_touch > 1 .or. (n_touch == 0 .neqv. is_rigid)
     do i_tile = 1, size(layout%tiles)
-      call list_nodes(mesh, layout%tiles(i_tile), layout%slot_element, i_tile, seen, nodes)
+      call list_nodes(mesh, layout%tiles(i_tile), layout%slot_element, i_tile, last_seen, nodes)
       nodes = pack(nodes, is_special(nodes) .and. owner(nodes) == no_owner)
       do i = 1, size(nodes)
         associate (n => n_common(last_tile(nodes(i))))
@@ -288,13 +287,13 @@ contains
     end do
   end subroutine find_owners
 
-  !> The nodes of a tile in the order in which its elements touch them.
+  !> The nodes of a tile in the order of its elements.
   subroutine list_nodes(mesh, tile, slot_element, mark, marks, nodes)
     type(mesh_t), intent(in) :: mesh
     type(tile_t), intent(in) :: tile
     integer, intent(in) :: slot_element(:)
     integer, intent(in) :: mark                !! of this tile
-    integer, intent(inout) :: marks(:)         !! (n_node) a node that bears the mark is on the list
+    integer, intent(inout) :: marks(:)         !! (n_node) marks of listed nodes
     integer, allocatable, intent(out) :: nodes(:)
     integer :: list(4*(last_slot(tile) - first_slot(tile) + 1)), slot, k, n, node
 

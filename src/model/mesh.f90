@@ -1,9 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Nodes and elements.
-!> The deck layer fills the mesh in deck order. `renumber_model` then puts nodes into the order the
-!> step is fastest in and keeps the way back in `deck_node`; elements stay in deck order here and
-!> are laid out in chunks by `layout_t`, and an explicit run gives the arrays of their nodes and
-!> parts up before it steps (`release_start_data`). User ids never appear in any index array.
+!> Nodes and elements. The deck layer fills the mesh in deck order. `renumber_model` then sorts the
+!> nodes for fast time steps and stores the inverse in `deck_node`; elements stay in deck order, and
+!> `layout_t` has their chunks. An explicit run deallocates nodes and parts of elements before the
+!> first step (`release_start_data`). Index arrays never contain user ids.
 module mesh_m
   use kinds_m, only : wp
   use visitor_m, only : visited_t, visitor_t, of_elements, of_nodes
@@ -21,15 +20,14 @@ module mesh_m
     integer, allocatable :: element_nodes(:, :) !! (4, n_element) node indices, counter-clockwise;
                                                 !! a triangle repeats its third node
     integer, allocatable :: element_part(:)     !! (n_element) index into model%parts
-    integer, allocatable :: deck_node(:)        !! (n_node) index of the node that came k-th in the
-                                                !! deck
+    integer, allocatable :: deck_node(:)        !! (n_node) index of the k-th node of the deck
   contains
     procedure :: visit => visit_mesh
   end type mesh_t
 
 contains
 
-  !> Its components, but for the order of results, which the first process writes.
+  !> Visit the components of the mesh, without `deck_node`: the first process writes the results.
   subroutine visit_mesh(self, visitor)
     class(mesh_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

@@ -1,11 +1,10 @@
 ! SPDX-License-Identifier: MIT
-!> The model: what the deck described, constant once the run starts.
+!> The model of a deck, constant after the start of the run.
 !>
-!> Filled in three moves. The deck layer reads every card (user ids), then resolves ids to indices
-!> and sets to nodes (all mistakes found are reported together). `renumber_model` last puts the
-!> nodes into the order of the step and the elements into chunks (`layout`). From then on nobody
-!> writes to it. All index arrays refer to the arrays of this type; user ids appear in components
-!> named `id` and `..._id` only, and are used for messages and output.
+!> The deck layer reads all cards (user ids) and resolves ids to indices and sets to nodes; it
+!> reports all errors together. `renumber_model` then sorts the nodes and arranges the elements in
+!> chunks (`layout`). Index arrays refer to the arrays of this type; user ids appear only in
+!> components named `id` and `..._id`, for messages and output.
 module model_m
   use, intrinsic :: iso_c_binding, only : c_loc
   use curves_m, only : curve_t
@@ -23,10 +22,10 @@ module model_m
   public :: model_t, mark_meshed_nodes, mark_supports, node_set_t, segment_set_t, part_set_t, &
     shell_set_t
 
-  !> *SET_NODE: members in the order of the deck (walking order where a surface is meant).
+  !> *SET_NODE: members in the order of the deck (for surfaces the walking order).
   type :: node_set_t
     integer :: id = 0
-    character(:), allocatable :: title !! only where the deck gives one
+    character(:), allocatable :: title !! allocated where the deck has one
     integer, allocatable :: nodes(:) !! node indices
   end type node_set_t
 
@@ -34,8 +33,7 @@ module model_m
   type :: segment_set_t
     integer :: id = 0
     integer, allocatable :: nodes(:, :) !! (2, n) node indices
-    integer, allocatable :: parts(:)    !! indices of the parts whose boundary they are, where they
-                                        !! are one
+    integer, allocatable :: parts(:)    !! *SET_2D_SEGMENT: indices of the parts of the boundary
   end type segment_set_t
 
   !> *SET_PART.
@@ -50,7 +48,7 @@ module model_m
     integer, allocatable :: elements(:) !! element indices
   end type shell_set_t
 
-  !> A whole problem.
+  !> The whole model.
   type, extends(visited_t) :: model_t
     type(mesh_t) :: mesh
     type(layout_t) :: layout
@@ -64,11 +62,11 @@ module model_m
     type(shell_set_t), allocatable :: shell_sets(:)
     type(conditions_t) :: conditions
     type(contact_t), allocatable :: contacts(:)
-    type(transducer_t), allocatable :: transducers(:) !! only where the deck has any
+    type(transducer_t), allocatable :: transducers(:)
     type(rigid_t), allocatable :: rigids(:)
-    type(wall_t), allocatable :: walls(:)       !! only where the deck has any
+    type(wall_t), allocatable :: walls(:)
     type(controls_t) :: controls
-    logical :: erodes = .false.   !! elements may leave the mesh
+    logical :: erodes = .false.   !! elements may erode
     logical :: is_axisymmetric = .false. !! axisymmetric: x is the radius, y the axis; forces,
                                   !! masses and energies per radian
   contains
@@ -77,7 +75,7 @@ module model_m
 
 contains
 
-  !> Its components, but for sets: conditions and surfaces have been made of them.
+  !> Visit the components of the model, without sets, which are resolved in conditions and surfaces.
   subroutine visit_model(self, visitor)
     class(model_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -107,7 +105,7 @@ contains
     call visitor%visit('is_axisymmetric', self%is_axisymmetric)
   end subroutine visit_model
 
-  !> (n_node) nodes that some element has, so that they have mass.
+  !> (n_node) Whether a node belongs to an element, so that it has mass.
   pure function mark_meshed_nodes(model) result(is_meshed)
     type(model_t), intent(in) :: model
     logical :: is_meshed(model%mesh%n_node)
@@ -116,8 +114,7 @@ contains
     is_meshed(pack(model%mesh%element_nodes, model%mesh%element_nodes > 0)) = .true.
   end function mark_meshed_nodes
 
-  !> (n_node) nodes with mass and a fixed degree of freedom, or held along an axis that is neither x
-  !> nor y.
+  !> (n_node) Whether a node has mass and a fixed degree of freedom or a skew support.
   pure function mark_supports(model) result(is_support)
     type(model_t), intent(in) :: model
     logical :: is_support(model%mesh%n_node)

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Parts and what they refer to: section, material, hourglass control and bulk viscosity.
+!> Parts, sections, materials, hourglass control and bulk viscosity.
 module parts_m
   use, intrinsic :: iso_c_binding, only : c_loc
   use curves_m, only : curve_t
@@ -17,15 +17,15 @@ module parts_m
     spall_tension, johnson_cook_t, rubber_t, mooney_rivlin, blatz_ko, blatz_ko_poisson, &
     erosion_t, asks_for_strain, asks_for_stress
 
-  !> Element forms. Only the element dispatcher asks for them.
+  !> Element forms, known to the element dispatcher only.
   integer, parameter :: form_one_point = 1, form_full = 2, form_axisym_one_point = 3, &
     form_axisym_full = 4
-  !> Material laws. Only the material dispatcher asks for them.
+  !> Material laws, known to the material dispatcher only.
   integer, parameter :: law_elastic = 1, law_plastic = 2, law_piecewise = 3, &
     law_johnson_cook = 4, law_crushable_foam = 5, law_hot_johnson_cook = 6, law_null = 7, &
     law_mooney_rivlin = 8, law_blatz_ko = 9
-  !> What a cut-off of the pressure means: a bound on tension; or the largest tensile stress, or the
-  !> largest tension, at which a point breaks.
+  !> Meaning of the pressure cut-off (SPALL): bound of the tension; tensile stress at failure;
+  !> tension at failure.
   integer, parameter :: spall_pressure = 1, spall_stress = 2, spall_tension = 3
   !> Hourglass control: viscous (IHQ 1 to 3 and blank), stiffness (4 and 5) or assumed strain (6).
   integer, parameter :: hourglass_viscous = 1, hourglass_stiffness = 2, hourglass_assumed = 3
@@ -52,9 +52,9 @@ module parts_m
     real(wp) :: d(5) = 0.0_wp            !! D1 to D5
     real(wp) :: least = 0.0_wp           !! EFMIN, bound on the strain at fracture
     logical :: is_viscoplastic = .false. !! the rate is that of the plastic strain
-    logical :: keeps_broken = .false.    !! broken elements stay in the mesh (EROD)
+    logical :: keeps_broken = .false.    !! failed elements are not deleted (EROD)
     logical :: has_damage = .false.
-    logical :: has_memory = .false.      !! points keep a temperature and a damage
+    logical :: has_memory = .false.      !! points have temperature and damage
   end type johnson_cook_t
 
   !> Poisson's ratio of the law of Blatz and Ko.
@@ -67,11 +67,11 @@ module parts_m
     real(wp) :: exponent = 0.0_wp      !! Blatz & Ko: U = 2A (J^-exponent - 1)/exponent
   end type rubber_t
 
-  !> When an element of a material leaves the mesh; what no deck asks for is out of reach. Criteria:
-  !> those of its law, of *CONTROL_TIMESTEP, and of *MAT_ADD_EROSION.
+  !> Erosion criteria of a material: of its law, of *CONTROL_TIMESTEP, and of *MAT_ADD_EROSION;
+  !> criteria that the deck does not give are infinite.
   type :: erosion_t
-    logical :: by_law = .false.         !! goes once all of its points have failed
-    logical :: by_step = .false.        !! goes where its step, or its volume, has vanished (ERODE)
+    logical :: by_law = .false.         !! when all integration points have failed
+    logical :: by_step = .false.        !! ERODE: when its time step or volume vanishes
     real(wp) :: least_step = 0.0_wp     !! DTMIN, s
     real(wp) :: most_pressure = huge(1.0_wp)       !! MXPRES
     real(wp) :: least_pressure = -huge(1.0_wp)     !! MNPRES
@@ -80,15 +80,15 @@ module parts_m
     real(wp) :: most_strain = huge(1.0_wp)         !! MXEPS, logarithmic as all strains
     real(wp) :: least_strain = -huge(1.0_wp)       !! MNEPS
     real(wp) :: effective_strain = huge(1.0_wp)    !! EFFEPS
-    real(wp) :: shear_strain = huge(1.0_wp)        !! EPSSH, half the difference of the outer ones
+    real(wp) :: shear_strain = huge(1.0_wp)        !! EPSSH, half of max - min principal strain
     real(wp) :: most_volume = huge(1.0_wp)         !! VOLEPS above 0: ln(V/V0)
     real(wp) :: least_volume = -huge(1.0_wp)       !! VOLEPS below 0
     real(wp) :: threshold = 0.0_wp                 !! SIGTH
     real(wp) :: impulse = huge(1.0_wp)             !! IMPULSE
     real(wp) :: time = huge(1.0_wp)                !! FAILTM
-    integer :: n_given = 0                         !! criteria of the card that the deck gives
-    integer :: n_criteria = 1                      !! NCS: how many must hold at once
-    integer :: n_point = 1                         !! NUMFIP: at how many points
+    integer :: n_given = 0                         !! number of criteria on the card
+    integer :: n_criteria = 1                      !! NCS: number of criteria that must hold
+    integer :: n_point = 1                         !! NUMFIP: number of points where they must hold
   end type erosion_t
 
   !> One material. Moduli follow from E and nu once, in the deck layer.
@@ -105,22 +105,21 @@ module parts_m
     real(wp) :: hardening = 0.0_wp !! plastic modulus E_p = E Et/(E - Et)
     real(wp) :: beta = 1.0_wp      !! 1 isotropic, 0 kinematic, between mixed
     real(wp) :: viscosity = 0.0_wp !! dynamic viscosity of a fluid, Pa s
-    type(hardening_t), allocatable :: curve !! yield stress by points, of a piecewise linear law
-    type(johnson_cook_t), allocatable :: flow !! of the laws of Johnson and Cook
-    type(rubber_t), allocatable :: rubber !! hyperelastic: stress and energy follow from F
-    type(curve_t), allocatable :: crush !! of a foam: largest compression against 1 - V/V0
-    real(wp) :: tension = 0.0_wp   !! and its largest tension
-    type(eos_t), allocatable :: eos !! pressure with a memory: an equation of state, or where
-                                    !! points may fail one that stands for K ln(J)
-    real(wp) :: failure_strain = huge(1.0_wp) !! plastic strain from which a point has no stress
-    real(wp) :: cutoff = -huge(1.0_wp) !! least pressure, 0 or below
-    integer :: spall = spall_pressure  !! what the cut-off means
-    type(erosion_t), allocatable :: erosion !! elements of it may leave the mesh
-    logical :: takes_eos = .false.   !! its parts may name an equation of state
-    logical :: needs_eos = .false.   !! and must: the law has no pressure of its own
-    logical :: is_rigid = .false.  !! no stress: parts of it are rigid bodies; E and nu serve
-                                   !! contact
-    logical :: is_fixed(3) = .false. !! of a rigid body: x, y and the turn about z do not move
+    type(hardening_t), allocatable :: curve !! piecewise linear yield stress
+    type(johnson_cook_t), allocatable :: flow !! constants of Johnson and Cook
+    type(rubber_t), allocatable :: rubber !! hyperelastic constants
+    type(curve_t), allocatable :: crush !! crushable foam: yield stress against 1 - V/V0
+    real(wp) :: tension = 0.0_wp   !! crushable foam: tensile cut-off stress
+    type(eos_t), allocatable :: eos !! pressure with history: equation of state, or K ln(J) where
+                                    !! points may fail
+    real(wp) :: failure_strain = huge(1.0_wp) !! plastic strain at failure
+    real(wp) :: cutoff = -huge(1.0_wp) !! pressure cut-off, 0 or below
+    integer :: spall = spall_pressure  !! meaning of the cut-off
+    type(erosion_t), allocatable :: erosion !! allocated where its elements may erode
+    logical :: takes_eos = .false.   !! its parts may have an equation of state
+    logical :: needs_eos = .false.   !! its parts must have an equation of state
+    logical :: is_rigid = .false.  !! rigid bodies; E and nu for contact only
+    logical :: is_fixed(3) = .false. !! rigid body: fixed x, y and rotation about z
   contains
     procedure :: visit => visit_material
   end type material_t
@@ -140,16 +139,16 @@ module parts_m
     character(:), allocatable :: title !! heading
     integer :: section = 0            !! index into model%sections
     integer :: material = 0           !! index into model%materials
-    type(hourglass_t) :: hourglass    !! what holds for this part
-    real(wp) :: stiffness_damping = 0.0_wp !! COEF of *DAMPING_PART_STIFFNESS: a share of critical
-                                           !! damping of the fastest mode, below 0 a time in s
+    type(hourglass_t) :: hourglass
+    real(wp) :: stiffness_damping = 0.0_wp !! COEF of *DAMPING_PART_STIFFNESS: fraction of critical
+                                           !! damping of the highest mode, below 0 a time in s
   contains
     procedure :: visit => visit_part
   end type part_t
 
 contains
 
-  !> Whether points of a material keep a temperature and a damage.
+  !> Whether integration points of a material have temperature and damage.
   pure elemental function has_memory_of_heat(material) result(yes)
     type(material_t), intent(in) :: material
     logical :: yes
@@ -158,7 +157,7 @@ contains
     if (allocated(material%flow)) yes = material%flow%has_memory
   end function has_memory_of_heat
 
-  !> Whether the law of a material gives its pressure too.
+  !> Whether the law of a material gives the pressure too.
   pure function gives_pressure(material) result(yes)
     type(material_t), intent(in) :: material
     logical :: yes
@@ -167,7 +166,7 @@ contains
     if (allocated(material%eos)) yes = material%eos%kind == eos_by_law
   end function gives_pressure
 
-  !> Whether points of a material may lose their stress.
+  !> Whether integration points of a material may fail.
   pure elemental function may_fail(material) result(yes)
     type(material_t), intent(in) :: material
     logical :: yes
@@ -176,7 +175,7 @@ contains
     if (allocated(material%flow)) yes = yes .or. material%flow%has_damage
   end function may_fail
 
-  !> Mooney and Rivlin: C so that the undeformed body is free of stress, D for Poisson's ratio.
+  !> Constants of Mooney and Rivlin: C for zero initial stress, D for Poisson's ratio.
   pure function mooney_rivlin(a, b, poisson) result(rubber)
     real(wp), intent(in) :: a, b, poisson
     type(rubber_t) :: rubber
@@ -188,7 +187,7 @@ contains
       /(2.0_wp*(1.0_wp - 2.0_wp*poisson))
   end function mooney_rivlin
 
-  !> Blatz and Ko: B = 0.
+  !> Constants of Blatz and Ko; B = 0.
   pure function blatz_ko(shear) result(rubber)
     real(wp), intent(in) :: shear
     type(rubber_t) :: rubber
@@ -197,7 +196,7 @@ contains
     rubber%exponent = 2.0_wp*blatz_ko_poisson/(1.0_wp - 2.0_wp*blatz_ko_poisson)
   end function blatz_ko
 
-  !> Whether some criterion looks at strains.
+  !> Whether an erosion criterion depends on strains.
   pure function asks_for_strain(erosion) result(asks)
     type(erosion_t), intent(in) :: erosion
     logical :: asks
@@ -206,7 +205,7 @@ contains
       -erosion%least_strain) < huge(1.0_wp)
   end function asks_for_strain
 
-  !> Whether some criterion looks at stresses of points.
+  !> Whether an erosion criterion depends on stresses of integration points.
   pure function asks_for_stress(erosion) result(asks)
     type(erosion_t), intent(in) :: erosion
     logical :: asks
@@ -214,7 +213,7 @@ contains
     asks = min(erosion%principal_stress, erosion%mises, erosion%impulse) < huge(1.0_wp)
   end function asks_for_stress
 
-  !> Its components.
+  !> Visit the components of a material.
   subroutine visit_material(self, visitor)
     class(material_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -254,7 +253,7 @@ contains
     call visitor%plain(c_loc(self%is_fixed), storage_size(self%is_fixed), size(self%is_fixed))
   end subroutine visit_material
 
-  !> Its components.
+  !> Visit the components of a part.
   subroutine visit_part(self, visitor)
     class(part_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

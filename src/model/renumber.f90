@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Puts a finished model into the order of the step: nodes renumbered everywhere, layout built.
+!> Renumbers the nodes of a complete model and builds its layout.
 module renumber_m
-  use controls_m, only : list_boundaries, is_asked, group_nodes, mark_corners, &
+  use controls_m, only : list_boundaries, is_asked, group_nodes, set_corners, &
     end_node_coordinate, end_node_contact
   use exposed_quads_m, only : find_exposed
   use history_tables_m, only : table_bndout
@@ -16,7 +16,7 @@ module renumber_m
 
 contains
 
-  !> Renumber the nodes of the whole model and build its layout. Called once, after the deck layer.
+  !> Renumber the nodes of the model and build its layout; called once, after the deck is read.
   subroutine renumber_model(model)
     type(model_t), intent(inout) :: model
     logical, allocatable :: is_special(:), is_rigid(:)
@@ -62,8 +62,8 @@ contains
     end associate
   end subroutine renumber_model
 
-  !> Give up what only the start of an explicit run reads: elements stand in the layout, initial
-  !> velocities and sets in the state and the conditions.
+  !> Deallocate arrays that only the start of an explicit run needs: element nodes and parts,
+  !> initial velocities and sets.
   subroutine release_start_data(model)
     type(model_t), intent(inout) :: model
 
@@ -78,10 +78,10 @@ contains
       deallocate (model%mesh%deck_node)
   end subroutine release_start_data
 
-  !> Nodes that contact, loads, prescribed motion or walls touch.
+  !> Mark nodes with contact, loads, prescribed motion, force groups or rigid walls.
   subroutine mark_touched_nodes(model, is_special)
     type(model_t), intent(in) :: model
-    logical, intent(inout) :: is_special(:) !! (n_node), or of special ones alone
+    logical, intent(inout) :: is_special(:) !! (n_node) or (n_special)
     integer :: i
 
     do i = 1, size(model%contacts)
@@ -96,7 +96,7 @@ contains
       if (allocated(conditions%common_motions)) is_special([(conditions%common_motions(i)%nodes, &
         i=1, size(conditions%common_motions))]) = .true.
       is_special([(conditions%pressures(i)%nodes, i=1, size(conditions%pressures))]) = .true.
-      ! Their forces are asked for in every cycle.
+      ! Their forces are needed in every cycle.
       if (allocated(output%force_groups)) is_special(group_nodes(output%force_groups)) = .true.
     end associate
     if (allocated(model%controls%ends)) then
@@ -110,7 +110,7 @@ contains
       is_special([(model%walls(i)%nodes, i=1, size(model%walls))]) = .true.
   end subroutine mark_touched_nodes
 
-  !> Special nodes that contact, loads, prescribed motion, walls or rigid bodies may move.
+  !> Mark special nodes with contact, loads, prescribed motion, rigid walls or rigid bodies.
   subroutine mark_moved_nodes(model, is_moved)
     type(model_t), intent(in) :: model
     logical, allocatable, intent(out) :: is_moved(:) !! (n_special)
@@ -120,12 +120,12 @@ contains
     call mark_touched_nodes(model, is_moved)
     do i = 1, size(model%rigids)
       associate (nodes => model%rigids(i)%nodes)
-        is_moved(nodes(:count(nodes <= size(is_moved)))) = .true. ! they rise
+        is_moved(nodes(:count(nodes <= size(is_moved)))) = .true. ! nodes are sorted
       end associate
     end do
   end subroutine mark_moved_nodes
 
-  !> Nodes that may come to the surface of parts in contact as their elements leave the mesh.
+  !> Mark interior nodes of parts in contact that erosion may expose.
   subroutine mark_hidden_nodes(model, is_special)
     type(model_t), intent(in) :: model
     logical, intent(inout) :: is_special(:) !! (n_node)
@@ -147,7 +147,7 @@ contains
     end do
   end subroutine mark_hidden_nodes
 
-  !> Conditions, output plan, ends of the run and sets.
+  !> Renumber conditions, outputs, termination conditions and sets.
   subroutine renumber_conditions(model, order, new_index)
     type(model_t), intent(inout) :: model
     integer, intent(in) :: order(:), new_index(:)
@@ -195,7 +195,7 @@ contains
     end do
   end subroutine renumber_conditions
 
-  !> Cross sections: nodes and edges; elements by their slots.
+  !> Renumber nodes and edges of cross sections and sort their elements by slot.
   subroutine renumber_sections(model, new_index)
     type(model_t), intent(inout) :: model
     integer, intent(in) :: new_index(:)
@@ -208,13 +208,13 @@ contains
         section%edges(2, :) = new_index(section%edges(2, :))
         section%elements = section%elements(sorted_order(int( &
           model%layout%element_slot(section%elements), long)))
-        call mark_corners(model%layout, model%mesh%n_node, section)
+        call set_corners(model%layout, model%mesh%n_node, section)
       end associate
     end do
   end subroutine renumber_sections
 
-  !> Contact surfaces, transducers, rigid bodies and walls. Nodes of bodies and walls come in rising
-  !> order, so that special ones come first; walls know where each special node stands among theirs.
+  !> Renumber contact surfaces, transducers, rigid bodies and walls. Nodes of bodies and walls are
+  !> sorted, so that special nodes come first; walls get the index of each special node.
   subroutine renumber_bodies(model, new_index)
     type(model_t), intent(inout) :: model
     integer, intent(in) :: new_index(:)
@@ -236,16 +236,16 @@ contains
     do i = 1, size(model%walls)
       associate (wall => model%walls(i))
         wall%nodes = rising(new_index(wall%nodes))
-        allocate (wall%place(model%layout%n_special), source=0)
+        allocate (wall%node_index(model%layout%n_special), source=0)
         do k = 1, size(wall%nodes)
-          wall%place(wall%nodes(k)) = k
+          wall%node_index(wall%nodes(k)) = k
         end do
       end associate
     end do
 
   contains
 
-    !> Numbers in rising order.
+    !> Numbers in increasing order.
     function rising(numbers) result(sorted)
       integer, intent(in) :: numbers(:)
       integer :: sorted(size(numbers))

@@ -11,17 +11,17 @@ module rigids_m
   !> One body.
   type, extends(visited_t) :: rigid_t
     integer :: part = 0               !! index into model%parts
-    integer, allocatable :: nodes(:)  !! node indices, rising: those that forces reach come first
-    logical :: is_fixed(3) = .false.  !! x, y and the turn about z (CON1 and CON2 of *MAT_RIGID)
-    logical :: has_velocity = .false. !! the deck gives the body a velocity of its own:
-    real(wp) :: velocity(3) = 0.0_wp  !! that of the centre of mass and the spin
+    integer, allocatable :: nodes(:)  !! node indices, increasing, so that special nodes come first
+    logical :: is_fixed(3) = .false.  !! x, y and rotation about z (CON1 and CON2 of *MAT_RIGID)
+    logical :: has_velocity = .false. !! *INITIAL_VELOCITY_RIGID_BODY gives `velocity`
+    real(wp) :: velocity(3) = 0.0_wp  !! of the centre of mass, m/s, and angular velocity, 1/s
   contains
     procedure :: visit => visit_rigid
   end type rigid_t
 
 contains
 
-  !> Nodes that belong to a rigid body.
+  !> (n_node) Whether a node belongs to a rigid body.
   pure function mark_rigid_nodes(rigids, n_node) result(is_rigid)
     type(rigid_t), intent(in) :: rigids(:)
     integer, intent(in) :: n_node
@@ -34,7 +34,7 @@ contains
     end do
   end function mark_rigid_nodes
 
-  !> Its components.
+  !> Visit the components of a rigid body.
   subroutine visit_rigid(self, visitor)
     class(rigid_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Surfaces from exterior edges: the whole boundary as chains, the chain that a list of nodes
-!> describes, and what is left of a surface once elements have gone.
+!> Builds surfaces from exterior edges: the boundary as chains, the chain of a list of nodes, and
+!> the remaining surface after erosion.
 module surface_building_m
   use boundary_m, only : boundary_t, find_boundary, find_edge
   use kinds_m, only : wp
@@ -11,20 +11,20 @@ module surface_building_m
   public :: boundary_surface, chain_surface, remaining_surface, chain_good, chain_turned, &
     chain_ordered, chain_broken, chain_repeated, chain_short
 
-  !> How a list of nodes became a chain: as given, walked the other way, put into order; or why not:
-  !> two neighbours in the list share no exterior edge, a node comes twice, fewer than two nodes.
+  !> Result of a chain from a list of nodes: as given, reversed, sorted; or an error: two neighbours
+  !> in the list without an exterior edge, a repeated node, fewer than two nodes.
   integer, parameter :: chain_good = 0, chain_turned = 1, chain_ordered = 2, chain_broken = 3, &
     chain_repeated = 4, chain_short = 5
 
-  !> Elements at the nodes where the boundary touches itself.
+  !> Elements at nodes that the boundary passes more than once.
   type :: corners_t
     integer, allocatable :: node(:), element(:)
   end type corners_t
 
 contains
 
-  !> The whole boundary, or its chosen edges, as chains, open ones first. `crossing` is a node where
-  !> they touch each other (no chains can be made then), or 0.
+  !> The chosen edges of a boundary as chains, open ones first. `crossing` is a node where chains
+  !> touch, in which case there is no surface, or 0.
   pure subroutine boundary_surface(boundary, is_chosen, surface, crossing)
     type(boundary_t), intent(in) :: boundary
     logical, intent(in) :: is_chosen(:)    !! (n_edge)
@@ -66,8 +66,8 @@ contains
     call chain_edges(boundary, edges(:n), is_first(:n), surface)
   end subroutine boundary_surface
 
-  !> The surface of edges in walking order. A chain that comes back to its first node is closed; a
-  !> node stands in the surface once for each passage.
+  !> The surface of edges in walking order. A chain that ends at its first node is closed; the
+  !> surface has a node once for each passage.
   pure subroutine chain_edges(boundary, edges, is_first, surface)
     type(boundary_t), intent(in) :: boundary
     integer, intent(in) :: edges(:)
@@ -107,16 +107,14 @@ contains
 
   end subroutine chain_edges
 
-  !> The chain that a list of nodes describes; its first node repeated at the end makes it closed.
-  !> The list may be walked backwards, or in no order as long as its exterior edges form one
-  !> chain, closed where the list is; `outcome` says which. When it fails `trouble` holds the two
-  !> nodes of the first break, or the repeated node.
+  !> The chain of a list of nodes; the first node repeated at the end makes it closed. The list may
+  !> be reversed, or unsorted if its exterior edges form one chain.
   pure subroutine chain_surface(boundary, given, surface, outcome, bad_nodes)
     type(boundary_t), intent(in) :: boundary
     integer, intent(in) :: given(:)        !! node indices
     type(surface_t), intent(out) :: surface
     integer, intent(out) :: outcome        !! one of the `chain_` constants
-    integer, intent(out) :: bad_nodes(2)
+    integer, intent(out) :: bad_nodes(2)   !! nodes of the first break, or the repeated node
     integer, allocatable :: ahead(:), back(:)
     logical, allocatable :: is_listed(:)
     logical :: closed
@@ -151,18 +149,19 @@ contains
       call order_chain(boundary, is_listed, given(:n), closed, surface, outcome)
     end if
     if (outcome /= chain_broken) return
-    ! In the walking direction that most of the edges have.
+    ! In the walking direction of most edges.
     if (count(ahead > 0) < count(back > 0)) ahead = back
     i = findloc(ahead > 0, .false., 1)
     bad_nodes = given([i, mod(i, n) + 1])
   end subroutine chain_surface
 
-  !> The one chain of the exterior edges between nodes of a list; a closed one starts at the first.
+  !> The single chain of the exterior edges between nodes of a list; a closed one starts at the
+  !> first node of the list.
   pure subroutine order_chain(boundary, is_listed, given, closed, surface, outcome)
     type(boundary_t), intent(in) :: boundary
     logical, intent(in) :: is_listed(:)    !! (n_node)
     integer, intent(in) :: given(:)        !! the list
-    logical, intent(in) :: closed          !! it has to be
+    logical, intent(in) :: closed          !! a closed chain is required
     type(surface_t), intent(out) :: surface
     integer, intent(out) :: outcome
     type(surface_t) :: found
@@ -182,12 +181,12 @@ contains
     surface%segment_element = cshift(surface%segment_element, shift)
   end subroutine order_chain
 
-  !> The outline of the elements that are left, where the surface is that of parts; else its
-  !> segments whose elements are left, in their order.
+  !> The surface after erosion: the boundary of the remaining elements of its parts; of other
+  !> surfaces the segments of remaining elements, in their order.
   pure subroutine remaining_surface(mesh, is_left, initial, surface)
     type(mesh_t), intent(in) :: mesh
     logical, intent(in) :: is_left(:)     !! (n_element)
-    type(surface_t), intent(in) :: initial !! of the deck, before anything left
+    type(surface_t), intent(in) :: initial !! without erosion
     type(surface_t), intent(out) :: surface
     type(boundary_t) :: boundary
     logical, allocatable :: chosen_part(:), is_chosen(:), is_near(:)
@@ -202,14 +201,14 @@ contains
         return
       end if
       is_chosen = is_chosen .and. is_left
-      ! Nodes that the outline can have: those of the deck's, and of elements that have gone.
+      ! Candidates: nodes of the initial surface and of eroded elements.
       allocate (is_near(size(mesh%coordinates, 2)), source=.false.)
       is_near(initial%nodes) = .true.
       do i = 1, size(is_left)
         if (.not. is_left(i)) is_near(mesh%element_nodes(:, i)) = .true.
       end do
       call find_boundary(mesh%element_nodes, is_chosen, is_near, boundary)
-      call walk_outline(mesh, is_chosen, boundary, surface)
+      call walk_boundary(mesh, is_chosen, boundary, surface)
       surface%parts = initial%parts
     else
       call copy_remaining(is_left, initial, surface)
@@ -219,33 +218,33 @@ contains
     call part_at_axis(surface)
   end subroutine remaining_surface
 
-  !> Segments of a surface whose elements are left.
+  !> The segments of a surface with remaining elements.
   pure subroutine copy_remaining(is_left, initial, surface)
     logical, intent(in) :: is_left(:)
     type(surface_t), intent(in) :: initial
     type(surface_t), intent(out) :: surface
     integer, allocatable :: segments(:), nodes(:)
-    integer :: place(initial%n_node), s
+    integer :: new_index(initial%n_node), s
 
     segments = pack([(s, s=1, initial%n_segment)], is_left(initial%segment_element))
     surface%segment_element = initial%segment_element(segments)
     surface%segments = initial%segments(:, segments)
-    place = 0
+    new_index = 0
     do s = 1, size(segments)
-      place(surface%segments(:, s)) = 1
+      new_index(surface%segments(:, s)) = 1
     end do
-    nodes = pack([(s, s=1, initial%n_node)], place > 0)
-    place(nodes) = [(s, s=1, size(nodes))]
+    nodes = pack([(s, s=1, initial%n_node)], new_index > 0)
+    new_index(nodes) = [(s, s=1, size(nodes))]
     surface%nodes = initial%nodes(nodes)
     do s = 1, size(segments)
-      surface%segments(:, s) = place(surface%segments(:, s))
+      surface%segments(:, s) = new_index(surface%segments(:, s))
     end do
     call link_segments(surface)
   end subroutine copy_remaining
 
-  !> Closed chains of a boundary. Where it touches itself in a node a chain goes on along the
-  !> elements that it came by.
-  pure subroutine walk_outline(mesh, is_chosen, boundary, surface)
+  !> Closed chains of a boundary. At a node that it passes more than once a chain follows the
+  !> elements of its last edge.
+  pure subroutine walk_boundary(mesh, is_chosen, boundary, surface)
     type(mesh_t), intent(in) :: mesh
     logical, intent(in) :: is_chosen(:)
     type(boundary_t), intent(in) :: boundary
@@ -258,7 +257,7 @@ contains
     is_used = .false.
     is_first = .false.
     n = 0
-    ! Edges are sorted by the node that they leave.
+    ! Edges are sorted by first node.
     do start = 1, boundary%n_edge
       if (is_used(start)) cycle
       edge = start
@@ -271,9 +270,9 @@ contains
       end do
     end do
     call chain_edges(boundary, edges, is_first, surface)
-  end subroutine walk_outline
+  end subroutine walk_boundary
 
-  !> Chosen elements at nodes that several edges leave.
+  !> Chosen elements at nodes where several edges start.
   pure subroutine find_corners(mesh, is_chosen, boundary, corners)
     type(mesh_t), intent(in) :: mesh
     logical, intent(in) :: is_chosen(:)
@@ -297,7 +296,7 @@ contains
     end do
   end subroutine find_corners
 
-  !> The edge that follows another along its elements.
+  !> The edge that follows another along the elements of their common node.
   pure function edge_behind(mesh, boundary, corners, edge) result(next)
     type(mesh_t), intent(in) :: mesh
     type(boundary_t), intent(in) :: boundary
@@ -325,7 +324,7 @@ contains
     next = boundary%start(node)
   end function edge_behind
 
-  !> The node that follows another round an element, 0 where it has not that one.
+  !> The node that follows another around an element; 0 where the element does not have it.
   pure function node_behind(nodes, node) result(behind)
     integer, intent(in) :: nodes(4), node
     integer :: behind

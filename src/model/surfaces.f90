@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Contact surfaces: ordered chains of 2-node segments, walked counter-clockwise round their own
-!> body, so that the outward normal of a segment with unit tangent t is n = (t_y, -t_x).
-!> A surface may hold several chains, open or closed.
+!> Contact surfaces: ordered chains of 2-node segments, counter-clockwise about their own body, so
+!> that the outward normal of a segment with unit tangent t is n = (t_y, -t_x). A surface may have
+!> several chains, open or closed.
 module surfaces_m
   use visitor_m, only : visited_t, visitor_t
   implicit none
@@ -13,27 +13,25 @@ module surfaces_m
   type, extends(visited_t) :: surface_t
     integer :: n_node = 0
     integer :: n_segment = 0
-    integer, allocatable :: nodes(:)           !! (n_node) node indices in the mesh, chain after
-                                               !! chain
+    integer, allocatable :: nodes(:)           !! (n_node) node indices in the mesh, chain by chain
     integer, allocatable :: segments(:, :)     !! (2, n_segment) local numbers of start and end node
     integer, allocatable :: segment_element(:) !! (n_segment) index of the element behind
-    integer, allocatable :: previous(:)        !! (n_segment) segment before, 0 at a chain's start
-    integer, allocatable :: next(:)            !! (n_segment) segment after, 0 at a chain's end
-    integer, allocatable :: chain(:)           !! (n_segment) number of the chain that it belongs to
+    integer, allocatable :: previous(:)        !! (n_segment) previous segment, 0 at a chain's start
+    integer, allocatable :: next(:)            !! (n_segment) next segment, 0 at a chain's end
+    integer, allocatable :: chain(:)           !! (n_segment) chain number
     integer, allocatable :: incoming(:)        !! (n_node) segment that ends at the node, or 0
     integer, allocatable :: outgoing(:)        !! (n_node) segment that starts at the node, or 0
-    integer, allocatable :: parts(:)           !! whose outline it is; only where elements may leave
-                                               !! the mesh
-    logical, allocatable :: is_on_axis(:)      !! (n_node) axisymmetry alone: nodes on the axis
+    integer, allocatable :: parts(:)           !! parts whose boundary it is, where they may erode
+    logical, allocatable :: is_on_axis(:)      !! (n_node) node on the axis, axisymmetric only
   contains
     procedure :: visit => visit_surface
   end type surface_t
 
 contains
 
-  !> Fill the neighbour lists from `nodes` and `segments`.
+  !> Set the neighbour lists from `nodes` and `segments`.
   pure subroutine link_segments(surface)
-    type(surface_t), intent(inout) :: surface !! its neighbour lists are made anew
+    type(surface_t), intent(inout) :: surface
     integer :: s
 
     surface%n_node = size(surface%nodes)
@@ -47,8 +45,8 @@ contains
     call number_chains(surface)
   end subroutine link_segments
 
-  !> Whether a segment begins, or ends, on the axis of a body of revolution: its chain may end
-  !> there, the surface does not.
+  !> Whether a segment starts or ends on the axis of an axisymmetric body: the chain may end there,
+  !> the surface does not.
   pure function meets_axis(surface, segment, at_start)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: segment
@@ -60,7 +58,7 @@ contains
       segment))
   end function meets_axis
 
-  !> Whether a segment lies on the axis of a body of revolution: it is no face.
+  !> Whether a segment lies on the axis of an axisymmetric body, so that it is not a contact face.
   pure function is_axis_edge(surface, segment) result(is)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: segment
@@ -70,7 +68,7 @@ contains
     if (is) is = all(surface%is_on_axis(surface%segments(:, segment)))
   end function is_axis_edge
 
-  !> Part the faces of a body of revolution from its edges on the axis: no face goes on there.
+  !> Separate the contact faces of an axisymmetric body from its edges on the axis.
   pure subroutine part_at_axis(surface)
     type(surface_t), intent(inout) :: surface
     integer :: s
@@ -97,7 +95,7 @@ contains
     call number_chains(surface)
   end subroutine part_at_axis
 
-  !> At how many of its two sides no segment follows a node; on the axis nothing lies beyond.
+  !> (n_node) Number of sides of a node without a segment; 0 on the axis.
   pure function open_ends(surface) result(n)
     type(surface_t), intent(in) :: surface
     integer :: n(surface%n_node)
@@ -109,7 +107,7 @@ contains
     end do
   end function open_ends
 
-  !> Whether some chain of a surface is closed, if only along the axis.
+  !> Whether a surface has a closed chain, also one closed along the axis.
   pure function has_closed_chain(surface) result(closed)
     type(surface_t), intent(in) :: surface
     logical :: closed
@@ -147,7 +145,7 @@ contains
     end do
   end subroutine number_chains
 
-  !> Its components.
+  !> Visit the components of a surface.
   subroutine visit_surface(self, visitor)
     class(surface_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor

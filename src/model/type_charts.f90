@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> What the published studies say of the contact types, as far as the program chooses by it: the
-!> estimate of each in scenes of a kind, the largest of all meshes, and the time of its contact.
-!> Tests compare these figures with the pages (doc/studies/choosing.md, speed_accuracy.md).
+!> Results of the published studies of the contact types, by which the program chooses a type: the
+!> largest error estimate of each type in each kind of scene, and its contact time. Tests compare
+!> the figures with the pages (doc/studies/choosing.md, speed_accuracy.md).
 module type_charts_m
   use kinds_m, only : wp
   implicit none
@@ -9,18 +9,19 @@ module type_charts_m
   public :: scene_bound, scene_matching, scene_general, scene_sliding, scene_friction, &
     scene_names, estimates, cheapest_type, better_type, mesh_order
 
-  !> Kinds of scenes: something else binds the type; flat faces that match and stay so; any; led
-  !> along each other; with friction.
+  !> Kinds of scenes: type determined by other fields; flat matching meshes without sliding;
+  !> general; prescribed sliding; friction.
   integer, parameter :: scene_bound = 0, scene_matching = 1, scene_general = 2, scene_sliding = 3, &
     scene_friction = 4
 
-  !> The kinds but the first, for the log.
-  character(30), parameter :: scene_names(4) = [character(30) :: 'flat faces that match', &
-    'uneven meshes and round faces', 'faces led along each other', 'friction']
+  !> Names of scenes 1 to 4 in messages.
+  character(30), parameter :: scene_names(4) = [character(30) :: 'flat matching faces', &
+    'non-matching or curved faces', 'prescribed sliding', 'friction']
 
   integer, parameter :: n_type = 7
 
-  !> Largest deviation of the patch test, estimates of cylinder and spheres, sliding, ironing.
+  !> Largest error of each type in the patch test, and estimates for cylinder and spheres, sliding,
+  !> and ironing.
   real(wp), parameter :: patch(n_type) = [0.71_wp, 0.50_wp, 0.72_wp, 0.0_wp, 0.0_wp, 0.046_wp, &
     0.0_wp]
   real(wp), parameter :: hertz(n_type) = [0.02573_wp, 0.02572_wp, 0.02068_wp, 0.02814_wp, &
@@ -29,21 +30,21 @@ module type_charts_m
     0.0412_wp, 0.0284_wp, 0.0285_wp]
   real(wp), parameter :: ironing(n_type) = [2.173_wp, 0.5273_wp, 0.1062_wp, 0.0923_wp, &
     0.0964_wp, 0.0857_wp, 0.0829_wp]
-  !> The estimate of each type in scenes of each kind. Faces that match: all types are exact.
+  !> Error estimate of each type in each kind of scene. All types are exact on matching faces.
   real(wp), parameter :: estimates(n_type, 4) = reshape([0.0_wp*patch, max(patch, hertz), &
     max(patch, sliding), max(patch, ironing)], [n_type, 4])
 
-  !> Time of contact over that of type 1.
+  !> Contact time of each type over the time of type 1.
   real(wp), parameter :: published_time(n_type) = [1.0_wp, 1.08_wp, 1.44_wp, 1.83_wp, 2.06_wp, &
     2.43_wp, 2.58_wp]
 
-  !> Order at which the estimate falls with the mesh, in the mean where it does.
+  !> Mean order of convergence of the estimate.
   real(wp), parameter :: mesh_order = 0.89_wp
 
 contains
 
-  !> The cheapest type that keeps the estimate at or below a bound, or if there is none the one with
-  !> the smallest. Type 1 has no row of its own on flat faces that match: type 2 weighs their ends.
+  !> The cheapest type with an estimate of at most `bound`, or the type with the smallest estimate.
+  !> On flat matching faces type 1 is excluded: type 2 weights the ends correctly.
   pure function cheapest_type(scene, bound) result(best)
     integer, intent(in) :: scene
     real(wp), intent(in) :: bound
@@ -56,10 +57,9 @@ contains
     if (.not. any(estimates(:, scene) <= bound)) best = minloc(estimates(:, scene), 1)
   end function cheapest_type
 
-  !> What would keep a bound that the present type has not kept: the cheapest type of those that
-  !> the studies say would, or if there is none the one with the smallest estimate; and the
-  !> estimate that it should have. Scenes that bind the type keep it; faces that were to match have
-  !> moved.
+  !> The cheapest type expected to reach a bound that the present type has exceeded, or the type
+  !> with the smallest estimate, and its expected estimate. A type determined by other fields is
+  !> kept; matching faces are treated as general since they have moved.
   pure subroutine better_type(scene, present, estimate, bound, best, expected)
     integer, intent(in) :: scene, present
     real(wp), intent(in) :: estimate, bound

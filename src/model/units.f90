@@ -1,19 +1,19 @@
 ! SPDX-License-Identifier: MIT
-!> Names of the units of a deck in messages: those of *CONTROL_UNITS, and none without it. Numbers
-!> are never converted.
+!> Names of the units of a deck in messages, from *CONTROL_UNITS; none without it. Numbers are not
+!> converted.
 module units_m
   use kinds_m, only : wp
   implicit none
   private
   public :: units_t, find_unit, set_force, in_units, per_depth
 
-  !> Names of the units; blank where the deck does not tell them.
+  !> Names of the units; blank where the deck does not give them.
   type :: units_t
     character(8) :: names(3) = '' !! of length, time and mass
     character(16) :: force = ''
   end type units_t
 
-  !> A unit as decks write it.
+  !> One unit of *CONTROL_UNITS.
   type :: unit_t
     integer :: quantity       !! 1 length, 2 time, 3 mass
     character(8) :: word      !! in the deck, upper case
@@ -33,13 +33,13 @@ module units_m
     unit_t(3, 'LB', 'lb', 0.45359237_wp), unit_t(3, 'SLUG', 'slug', 14.5939029372_wp), &
     unit_t(3, 'SLINCH', 'slinch', 175.126835246_wp)]
 
-  !> Forces that have a name, in N.
+  !> Names of force units, and their values in N.
   character(3), parameter :: force_names(*) = ['N  ', 'kN ', 'MN ', 'mN ', 'lbf']
   real(wp), parameter :: forces(*) = [1.0_wp, 1.0e3_wp, 1.0e6_wp, 1.0e-3_wp, 4.4482216_wp]
 
 contains
 
-  !> The unit that a word of *CONTROL_UNITS means; a blank name where it means none.
+  !> Name and value of a unit of *CONTROL_UNITS; the name is blank where the word is unknown.
   pure subroutine find_unit(quantity, word, name, value)
     integer, intent(in) :: quantity         !! 1 length, 2 time, 3 mass
     character(*), intent(in) :: word        !! upper case
@@ -56,7 +56,7 @@ contains
     end do
   end subroutine find_unit
 
-  !> The unit of force that follows from length, time and mass.
+  !> Set the unit of force from length, time and mass.
   pure subroutine set_force(values, units)
     real(wp), intent(in) :: values(3) !! units in m, s and kg
     type(units_t), intent(inout) :: units
@@ -72,8 +72,8 @@ contains
     end do
   end subroutine set_force
 
-  !> The name of a unit, behind a blank, from F, L and T for force, length and time: ' N/mm^2' for
-  !> 'F/L^2'. Nothing where the deck does not tell its units.
+  !> A blank and the name of a unit, from F, L and T for force, length and time: ' N/mm^2' for
+  !> 'F/L^2'; empty where the deck does not give its units.
   pure function in_units(units, form) result(text)
     type(units_t), intent(in) :: units
     character(*), intent(in) :: form
@@ -97,7 +97,7 @@ contains
     end do
   end function in_units
 
-  !> The same of what plane bodies have per unit of their depth and axisymmetric ones per radian.
+  !> As `in_units`, per unit depth of plane bodies and per radian of axisymmetric bodies.
   pure function per_depth(units, form, is_axisymmetric) result(text)
     type(units_t), intent(in) :: units
     character(*), intent(in) :: form

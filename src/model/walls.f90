@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Rigid walls: fixed planes that nodes do not pass.
+!> Rigid walls: fixed planes that nodes cannot penetrate.
 module walls_m
   use kinds_m, only : wp
   use visitor_m, only : visited_t, visitor_t
@@ -7,27 +7,26 @@ module walls_m
   private
   public :: wall_t, wall_distance, wall_tangent, friction_sticks
 
-  !> Coefficient of a wall that lets no node slide.
+  !> FRIC of a wall without sliding.
   real(wp), parameter :: friction_sticks = 1.0_wp
 
   !> One *RIGIDWALL_PLANAR.
   type, extends(visited_t) :: wall_t
-    integer :: id = 0                        !! user id, or one that the deck layer gives
+    integer :: id = 0                        !! user id, or assigned by the deck layer
     real(wp) :: point(2) = 0.0_wp             !! a point of the wall (tail)
-    real(wp) :: normal(2) = [0.0_wp, 1.0_wp] !! of length 1, into the free side (tail to head)
-    real(wp) :: friction = 0.0_wp            !! 0 none, `friction_sticks`, between: of Coulomb
-    real(wp) :: birth = 0.0_wp               !! the wall is there from this time
-    real(wp) :: death = 1.0e20_wp            !! until this time
-    integer, allocatable :: nodes(:)         !! indices of the nodes that see it
-    integer, allocatable :: place(:)         !! (n_special) where each special node stands in
-                                             !! `nodes`, 0 = not there
+    real(wp) :: normal(2) = [0.0_wp, 1.0_wp] !! unit normal, from tail to head
+    real(wp) :: friction = 0.0_wp            !! coefficient of friction, or `friction_sticks`
+    real(wp) :: birth = 0.0_wp               !! birth time, s
+    real(wp) :: death = 1.0e20_wp            !! death time, s
+    integer, allocatable :: nodes(:)         !! indices of its nodes
+    integer, allocatable :: node_index(:)    !! (n_special) index in `nodes`, 0 = not in it
   contains
     procedure :: visit => visit_wall
   end type wall_t
 
 contains
 
-  !> Distance of a place from the wall, negative behind it.
+  !> Distance of a position from the wall, m, negative behind it.
   pure function wall_distance(wall, coordinates, displacement) result(distance)
     type(wall_t), intent(in) :: wall
     real(wp), intent(in) :: coordinates(2)  !! at time zero
@@ -38,7 +37,7 @@ contains
       + dot_product(wall%normal, displacement)
   end function wall_distance
 
-  !> Direction along the wall: its normal turned by 90 degrees, counter-clockwise.
+  !> Unit tangent of the wall: its normal rotated by 90 degrees counter-clockwise.
   pure function wall_tangent(wall) result(tangent)
     type(wall_t), intent(in) :: wall
     real(wp) :: tangent(2)
@@ -46,7 +45,7 @@ contains
     tangent = [-wall%normal(2), wall%normal(1)]
   end function wall_tangent
 
-  !> Its components.
+  !> Visit the components of a wall.
   subroutine visit_wall(self, visitor)
     class(wall_t), intent(inout), target :: self
     class(visitor_t), intent(inout) :: visitor
@@ -58,7 +57,7 @@ contains
     call visitor%visit('birth', self%birth)
     call visitor%visit('death', self%death)
     call visitor%visit('nodes', self%nodes)
-    call visitor%visit('place', self%place)
+    call visitor%visit('node_index', self%node_index)
   end subroutine visit_wall
 
 end module walls_m

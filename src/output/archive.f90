@@ -77,22 +77,22 @@ contains
   end subroutine find_extents
 
   !> Write an array, or read it; what belongs to others is given up before the next one.
-  subroutine exchange(visitor, item, place, starts)
+  subroutine exchange(visitor, item, address, starts)
     class(archive_t), intent(inout) :: visitor
     type(item_t), intent(in) :: item
-    type(c_ptr), intent(in) :: place
+    type(c_ptr), intent(in) :: address
     integer, intent(in), optional :: starts(:)
     integer :: k
 
     if (item%of == new_chunks .or. allocated(visitor%error)) return
     if (.not. visitor%is_read) then
-      call put_array(visitor, item, place)
+      call put_array(visitor, item, address)
       return
     end if
-    call get_array(visitor, item, place)
+    call get_array(visitor, item, address)
     if (.not. allocated(visitor%releases) .or. item%extents(1) == absent) return
     do k = 1, size(visitor%releases)
-      call visitor%releases(k)%pass(item, place, starts)
+      call visitor%releases(k)%pass(item, address, starts)
     end do
   end subroutine exchange
 

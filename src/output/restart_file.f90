@@ -28,7 +28,7 @@ module restart_file_m
 
   !> Layout of the file. To be raised when a component of the state comes, goes or changes its
   !> meaning, and when nodes or elements get another order: arrays lie in that order.
-  integer, parameter :: format_version = 25
+  integer, parameter :: format_version = 26
   character(*), parameter :: mark = 'slideline restart '
   !> Bytes of the head, and of a block that is read.
   integer, parameter :: head_size = 512, block_size = 65536

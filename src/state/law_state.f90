@@ -90,8 +90,8 @@ module law_state_m
     integer :: n_limited = 0          !! cycles whose forces were scaled down
     real(wp) :: least_factor = 1.0_wp !! of all cycles
     real(wp) :: least_time = 0.0_wp   !! of that factor, s
-    integer :: recent = 0             !! rises with limited cycles, falls with others
-    logical :: warned = .false.       !! the log has told that it is limited again and again
+    real(wp) :: withheld = 0.0_wp     !! most that springs held beyond what they were given, J/m
+    logical :: warned = .false.       !! the log tells that this is much
   contains
     procedure :: visit => visit_limit
   end type energy_limit_t
@@ -273,7 +273,7 @@ contains
     call visitor%visit('n_limited', self%n_limited)
     call visitor%visit('least_factor', self%least_factor)
     call visitor%visit('least_time', self%least_time)
-    call visitor%visit('recent', self%recent)
+    call visitor%visit('withheld', self%withheld)
     call visitor%visit('warned', self%warned)
   end subroutine visit_limit
 

@@ -56,7 +56,7 @@ module search_state_m
     real(wp), allocatable :: next_search(:)  !! (n) next search time: travel before which the point
                                              !! can not touch; huge while active
     real(wp), allocatable :: faded(:)        !! (n) scratch: by which offsets have faded in this
-                                             !! call, m
+                                             !! call, m; below 0: the offset is new
     logical :: has_offset = .false.          !! some offset is above 0
     integer :: n_released = 0                !! first contacts deeper than the limit so far
     real(wp), allocatable :: point_depth(:)  !! (n) deepest first contact of a point, m

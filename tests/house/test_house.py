@@ -42,7 +42,7 @@ LAYERS = {
     "solve": {"base", "parallel", "model", "state", "output", "run", "solve_start", "solve_explicit", "solve_implicit"},
 }
 #: modules from outside -> layers that may use them
-OUTSIDE = {"hdf5": {"output"}, "mpi": {"parallel"}, "omp_lib": {"state", "element", "contact", "solve_explicit", ""}}
+OUTSIDE = {"hdf5": {"output"}, "mpi": {"parallel"}, "omp_lib": {"base"}}
 #: what decides between kinds -> the one file that may ask for it
 DISPATCHERS = {
     "contact_type": "contact_dispatch.f90",

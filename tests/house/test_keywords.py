@@ -58,8 +58,8 @@ def test_page_names_what_is_ignored_and_refused():
             assert f"`*{keyword}`" in (ignored if reason.strip() == "ignored" else refused)
 
 
-#: a field asked for by name, as in `real_of(card, 'FS')`, `find_field(cursor, 1, 'NID')`, `place_t(line, 1, 'LCID')`
-ASKED = re.compile(r"\b(?:integer_of|real_of|reals_of|is_blank|is_bad|has_field|place_of|place_t|report_field|refuse_negative|"
+#: a field asked for by name, as in `real_of(card, 'FS')`, `find_field(cursor, 1, 'NID')`, `location_t(line, 1, 'LCID')`
+ASKED = re.compile(r"\b(?:integer_of|real_of|reals_of|is_blank|is_bad|has_field|location_of|location_t|report_field|refuse_negative|"
                    r"refuse_outside|require_id|check_\w+|hourglass_\w+|note_explicit|find_field|find_keyword_field)"
                    r"\((?:deck, )?\w+(?:%\w+)*(?:\([^()]*\))?(?:, (?:cursor|card|cards\(\d\)|\d))*, '(\w+)'(?:, '(\w+)')?")
 

@@ -76,7 +76,7 @@ def test_what_is_settled_is_told(exe, tmp_path):
     done = run(exe, tmp_path, "i=job.k", "d=out")
     log = (tmp_path / "out/job.log").read_text()
     assert "per radian" in log
-    assert "3 node(s) at r = 0 keep to it" in log
+    assert "3 node(s) at r = 0 are fixed in r; rigid bodies move along the axis only" in log
     assert "18 node(s) on the axis or of rigid bodies have an initial velocity in r" in done.stderr + log
     with h5py.File(tmp_path / "out/job.vtkhdf") as stream:
         moved = stream["VTKHDF/PointData/displacement"][-30:]

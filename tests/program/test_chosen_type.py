@@ -87,7 +87,7 @@ def same_bits(slideline, tmp_path, deck):
     (5, "strict", {"ipf": 1}),
     (5, "tie", {"tie": 1}),
     (7, "friction", {"fs": 0.2}),
-    (7, "along", {"push": (1.0, -1.0)}),
+    (7, "prescribed sliding", {"push": (1.0, -1.0)}),
     (7, "PUNIT 4", {"punit": 4}),
 ])
 def test_type_and_reason(slideline, chosen, tmp_path, wanted, words, scene):
@@ -109,12 +109,12 @@ def test_penalty_that_is_left_to_the_program(slideline, chosen, tmp_path, implic
 
 
 @pytest.mark.parametrize("target, wanted, words, scene", [
-    (0.2, 4, "the cheapest that keeps", {"columns": (3, 4)}),
-    (0.6, 2, "the cheapest that keeps", {"columns": (3, 4)}),
-    (0.01, 5, "none keeps", {"columns": (3, 4)}),
-    (0.001, 2, "flat faces that match", {}),
-    (0.035, 4, "led along", {"push": (1.0, -1.0)}),
-    (0.01, 7, "none keeps", {"push": (1.0, -1.0)}),
+    (0.2, 4, ", the cheapest type within the target", {"columns": (3, 4)}),
+    (0.6, 2, ", the cheapest type within the target", {"columns": (3, 4)}),
+    (0.01, 5, "no type reaches", {"columns": (3, 4)}),
+    (0.001, 2, "flat matching faces", {}),
+    (0.035, 4, "prescribed sliding", {"push": (1.0, -1.0)}),
+    (0.01, 7, "no type reaches", {"push": (1.0, -1.0)}),
     (0.09, 6, "friction", {"fs": 0.2}),
     (0.01, 5, "tie", {"tie": 1, "columns": (3, 4)}),
 ])
@@ -154,10 +154,10 @@ def test_targets_that_are_refused(slideline):
     """All in one pass, by name."""
     done = slideline("target=1e-2", "target.2=1e-2", "pen=-1", deck=press(ctype=5, pen=1.0e6))
     assert done.returncode == 1
-    for words in ('"target=1e-2" on the command line is for types that the program chooses (CTYPE 0); interface 1 has NTS-mAR '
+    for words in ('"target=1e-2" on the command line needs CTYPE 0 (the program chooses the type); interface 1 has NTS-mAR '
                   "(type 5)", "changes interface 2, which the deck does not have", '"pen=-1"'):
         assert words in done.stderr, done.stderr
-    for word, words in (("target=1", "is not a target of the estimate of contact (above 0, below 1)"), ("target=0", "not a number above 0"),
+    for word, words in (("target=1", "is not a target of the contact error estimate (above 0, below 1)"), ("target=0", "not a number above 0"),
                         ("target=small", "not a number above 0"), ("target=", "not NAME=VALUE")):
         done = slideline(word, deck=press(pen=1.0e6))
         assert done.returncode == 1 and words in done.stderr, (word, done.stderr)

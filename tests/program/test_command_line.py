@@ -158,7 +158,7 @@ def test_a_word_that_is_too_long_is_refused(slideline, tmp_path, name):
     word = name + "x" * (4097 - len(name))
     done = slideline(word, deck=drop(end_time=0.002))
     assert done.returncode == 1
-    assert word[:50] in done.stderr and "has 4097 characters: an argument may have 4096" in done.stderr
+    assert word[:50] in done.stderr and "has 4097 characters; the limit is 4096" in done.stderr
     assert not (tmp_path / "job.log").exists()
     if name == "memory=":
         assert slideline(word[:-1], deck=drop(end_time=0.002)).returncode == 0
@@ -226,6 +226,12 @@ def test_penalty(slideline, tmp_path):
     over, plain, other = ((tmp_path / d / "job.rcforc.csv").read_bytes() for d in "abc")
     assert over == plain
     assert over != other
+
+
+def test_a_parameter_given_twice_is_refused(slideline):
+    done = slideline("p:V0=-1.0", "p:v0=-2.0", deck=drop(parametric=True))
+    assert done.returncode == 1 and '"p:v0=-2.0" on the command line: the parameter is given twice' in done.stderr
+    assert "no such parameter" not in done.stderr
 
 
 def test_parameter(slideline, tmp_path):

@@ -24,7 +24,7 @@ TABLE = "*DEFINE_TABLE\n7,\n0.0,\n10.0,\n*DEFINE_CURVE\n8,\n0.0,2.0e4\n1.0,3.0e4
 @pytest.mark.parametrize("cards, words", [
     ("*CONTROL_HOURGLASS\n4,0.0", "means the default 0.1"),
     ("*MAT_RIGID\n5,1000.0,1.0e6,0.3\n0.0,7,7", "CON1 and CON2 have no effect while CMO is 0"),
-    ("*CONTROL_UNITS\nmm,ms,stone", '(MASS): "stone" is no unit that messages know (kg, g, mg'),
+    ("*CONTROL_UNITS\nmm,ms,stone", '(MASS): "stone" is not a known unit (kg, g, mg'),
     (PIECEWISE + "0.0,0.0,5\n0.0,0.1\n2.0e4,3.0e4\n" + CURVE, "EPS and ES have no effect where LCSS"),
     (PIECEWISE + "40.0,5.0,7\n" + TABLE, "a table (LCSS) gives the rate effect: LCSR, C and P have none"),
     (PIECEWISE + "40.0,5.0,5,6\n" + CURVE + "\n" + FACTOR, "LCSR gives the rate effect: C and P have none"),
@@ -42,7 +42,7 @@ def test_cards_without_effect_are_named(slideline, tmp_path, cards, words):
     ("SECFORC", "CROSS_SECTION_SET", "5,,,5\n*SET_SHELL_LIST\n5\n1,2,3\n*SET_NODE_LIST\n5\n2,3")])
 def test_a_history_of_nothing_is_named(slideline, tmp_path, name, needed, card):
     """A history without the keyword that says of what was nowhere told, and there was no file."""
-    told = f"*DATABASE_{name}: asks for a history and the deck has no *DATABASE_{needed}: no file is written"
+    told = f"*DATABASE_{name}: asks for a history, but the deck has no *DATABASE_{needed}: no file is written"
     cards = [f"*DATABASE_{name}\n1.0e-4"]
     assert told in said_by(slideline, tmp_path, *cards)[1]
     assert not (tmp_path / "out" / f"job.{name.lower()}.csv").exists()
@@ -72,7 +72,7 @@ def test_what_erode_passes_over_is_named(slideline, tmp_path, law, stays):
     done = slideline("d=out", deck=deck)
     assert done.returncode == 0, done.stderr
     said = (tmp_path / "out" / "job.log").read_text()
-    assert ("ERODE takes no elements of part 2, which is rubber or foam" in said) == stays, said
+    assert ("ERODE does not erode part 2, which is rubber or foam" in said) == stays, said
 
 
 @pytest.mark.parametrize("cards, words, line", [
@@ -194,7 +194,7 @@ def test_a_zero_of_other_fields_is_their_default(slideline, tmp_path, cards, fie
 def test_a_zero_that_is_kept_is_named(slideline, tmp_path):
     """Bulk viscosity of a written 0 is none; LS-DYNA would take 1.5 and 0.06."""
     status, said = said_by(slideline, tmp_path, "*CONTROL_BULK_VISCOSITY\n0.0,0.0")
-    assert status == 0 and "kept, where LS-DYNA takes the default: Q1 = 1.500000E+00 of *CONTROL_BULK_VISCOSITY (" in said, said
+    assert status == 0 and "a 0 in these fields means 0, where LS-DYNA takes the default: Q1 = 1.500000E+00 of *CONTROL_BULK_VISCOSITY (" in said, said
     assert not np.any(numbers(tmp_path / "out/job.glstat.csv", "viscous"))
 
 
@@ -209,7 +209,7 @@ def test_damping_of_foam_is_left_out(slideline, tmp_path):
         return deck.output(glstat=1.0e-4)
     done = slideline("d=damped", deck=foams("0.1"))
     assert done.returncode == 0, done.stderr
-    assert done.stderr.count("warning: ") == 1 and '(DAMP): "0.1" has no effect here: the viscous damping of the foam' in done.stderr
+    assert done.stderr.count("warning: ") == 1 and '(DAMP): "0.1" has no effect here: the rate effect of the foam (viscous damping) is not included' in done.stderr
     assert slideline("d=plain", deck=foams("")).stderr == ""
     assert (tmp_path / "damped/job.glstat.csv").read_bytes() == (tmp_path / "plain/job.glstat.csv").read_bytes()
 

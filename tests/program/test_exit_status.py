@@ -336,7 +336,7 @@ def test_memory_that_is_refused_is_no_refused_input(exe, tmp_path, plots, portio
         if done.returncode == 0:
             break
         assert done.returncode == 2, (size, done.returncode, done.stderr)
-        assert "refuses memory" in done.stderr or "llocat" in done.stderr, done.stderr
+        assert "out of memory" in done.stderr or "llocat" in done.stderr, done.stderr
         assert "error termination" in done.stderr and "E r r o r    t e r m i n a t i o n" in done.stdout, done.stderr
     assert found.count(2) > 20 and found[-1] == 0, found
 

@@ -73,12 +73,12 @@ def test_friction_that_counts(asked, cards, control, words, expected):
 
 
 @pytest.mark.parametrize("cards, control, words, warning", [
-    (ours("0.2,0.3,1.0"), None, (), '(FD) of interface 1, "3.000000E-01", is above that at rest (FS), "2.000000E-01"'),
+    (ours("0.2,0.3,1.0"), None, (), '(FD) of interface 1, "3.000000E-01", is above the static one (FS), "2.000000E-01"'),
     (ours("0.2,0.3,1.0"), None, ("fs=0.4",), None),
-    (ours("0.3,0.2,1.0"), None, ("fs=0.1",), "is above that at rest (FS)"),
-    (ours("0.3,0.2"), None, (), "without a decay (DC) the coefficient of friction of interface 1 is that at rest"),
+    (ours("0.3,0.2,1.0"), None, ("fs=0.1",), "is above the static one (FS)"),
+    (ours("0.3,0.2"), None, (), "without a decay (DC) the friction of interface 1 is static (FS) at any speed: the dynamic coefficient (FD) has no effect"),
     (stock("0.3"), None, (), None),
-    (ours("", "1.0e5"), None, (), "the largest friction stress (VC) of interface 1 has no effect without"),
+    (ours("", "1.0e5"), None, (), "the limit of the friction stress (VC) of interface 1 has no effect without"),
     (ours(), "0.4,", (), '(SFRIC): "0.4" has no effect here: it is the friction of *CONTACT_2D_AUTOMATIC_ cards'),
     (stock("0.1"), "0.4,", (), '(SFRIC): "0.4" has no effect here'),
     (stock(), "0.4,", (), None),

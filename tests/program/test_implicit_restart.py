@@ -256,7 +256,7 @@ def test_small_deck_changes_end_and_intervals(slideline, tmp_path, automatic):
     assert times == pytest.approx([0.0, 0.1, 0.2, 0.3, 0.4, 0.5, *after], abs=1.0e-9)
     (tmp_path / "changes.k").write_text("*CONTROL_IMPLICIT_GENERAL\n0,\n")
     done = slideline("r=a/job.dump01.h5", "i=changes.k")
-    assert done.returncode == 1 and "changes.k:1: *CONTROL_IMPLICIT_GENERAL can not change" in done.stderr
+    assert done.returncode == 1 and "changes.k:1: *CONTROL_IMPLICIT_GENERAL cannot change at a restart; *CONTROL_TERMINATION and the intervals of *DATABASE_ can" in done.stderr
 
 
 def test_last_cycle_of_the_deck(slideline, tmp_path):

@@ -60,6 +60,14 @@ def test_mean_of_a_history_is_what_the_head_says(exe, tmp_path, deck, words, tab
     assert sum(values) / len(values) == pytest.approx(wanted, rel=tolerance)
 
 
+def test_little_energy_withheld_is_listed_without_a_warning(exe, tmp_path):
+    """Forces are limited in every third cycle, and 0.12 % of the energy is withheld."""
+    run(exe, tmp_path, "hopkinson/hopkinson.k", "p:dtplot=1.0")
+    log = (tmp_path / "job.log").read_text(encoding="ascii")
+    assert log.count("contact forces limited") == 2
+    assert "warning: interface" not in log
+
+
 @pytest.mark.parametrize("deck", PATCHES)
 def test_patch_at_rest(exe, tmp_path, deck):
     """The pressure of 1 Pa arrives at every slave node with a type that passes the test."""

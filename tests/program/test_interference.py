@@ -84,13 +84,13 @@ def test_an_overridden_deck_keeps_its_curve(slideline, tmp_path):
 
 
 @pytest.mark.parametrize("words, message", [
-    ({"curve": ((0.0, 0.0), (0.02, 0.9))}, "is a curve of interference that ends at 9.000000E-01, not at 1"),
-    ({"curve": ((0.0, 0.5), (0.02, 1.0))}, "is a curve of interference that begins at 5.000000E-01, not at 0"),
+    ({"curve": ((0.0, 0.0), (0.02, 0.9))}, "is an interference curve that ends at 9.000000E-01, not at 1"),
+    ({"curve": ((0.0, 0.5), (0.02, 1.0))}, "is an interference curve that begins at 5.000000E-01, not at 0"),
     ({"curve": ((0.0, 0.0), (0.01, 1.5), (0.02, 1.0))}, "leaves the range from 0 to 1"),
     ({"curve": ((-0.1, 0.0), (0.02, 1.0))}, "begins at the time -1.000000E-01, before the run"),
-    ({"card": (0.0, 1.0, 0, None, None, 8)}, '"8" is no curve of this deck'),
+    ({"card": (0.0, 1.0, 0, None, None, 8)}, '"8" matches no curve of this deck'),
     ({"card": (0.0, 1.0, 0, None, None, -7)}, "(LCINT)"),
-    ({"card": (0.0, 1.0, 1, None, None, 7)}, "which a tie does not have"),
+    ({"card": (0.0, 1.0, 1, None, None, 7)}, "asks for an interference curve, which ties do not have (a tie keeps its gaps)"),
     ({"whole": True, "overlap": 0.03}, "overlaps the slave surface at the start"),
 ])
 def test_refused(slideline, words, message):
@@ -101,6 +101,6 @@ def test_refused(slideline, words, message):
 
 def test_what_the_log_warns_of(slideline):
     done = slideline(deck=pressed(5, curve=((0.0, 0.0), (0.5, 1.0))))
-    assert done.returncode == 0 and "after the run; the overlap does not act in full" in done.stdout + done.stderr
+    assert done.returncode == 0 and ", after the end time; the full overlap is not reached" in done.stdout + done.stderr
     done = slideline(deck=pressed(5, overlap=-1.0e-3))
     assert done.returncode == 0 and "(LCINT) has no effect, for nothing overlaps" in done.stdout + done.stderr

@@ -63,7 +63,7 @@ def test_reference_to_no_curve_finds_none_with_a_step_either(said, cards, number
     deck = with_cards(cards.format(number), deck=free_of_curves())
     for words in ((), ("dt=1.0e-6",)):
         status, text = said(deck, *words)
-        assert status == 1 and f'"{number}" is no curve' in text, text
+        assert status == 1 and f'"{number}" matches no curve' in text, text
 
 
 def test_restart_with_changes_does_not_meet_the_curve_of_the_step(slideline, tmp_path):
@@ -71,7 +71,7 @@ def test_restart_with_changes_does_not_meet_the_curve_of_the_step(slideline, tmp
     as_run(slideline, tmp_path, deck, "dt=1.0e-6")
     (tmp_path / "changes.k").write_text("*CONTROL_TERMINATION\n0.002,\n*DATABASE_GLSTAT\n0.0,0,1\n")
     done = slideline("r=out/job.dump01.h5", "i=changes.k")
-    assert done.returncode == 1 and '"1" is no curve of this deck' in done.stderr
+    assert done.returncode == 1 and '"1" matches no curve of this deck' in done.stderr
     (tmp_path / "whole.k").write_text(deck.replace("*CONTROL_TERMINATION\n0.001", "*CONTROL_TERMINATION\n0.0012"))
     done = slideline("r=out/job.dump01.h5", "i=whole.k", "dt=1.0e-6")
     assert done.returncode == 0, done.stderr
@@ -114,9 +114,9 @@ def test_blank_or_bad_field_that_the_command_line_gives(slideline, said, tmp_pat
 
 @pytest.mark.parametrize("card_1, card_2, word, message", [
     ("2,,2.0e5,", ",,0,0.0,101.0", "vdc=101.0", '"{0}101.0" {1}is not a damping in per cent of critical (0 to 100)'),
-    ("2,,2.0e5,", ",,\n0.0,1.5", "tfac=1.5", '"{0}1.5" {1}is not a tangential over the normal penalty (above 0, at most 1)'),
+    ("2,,2.0e5,", ",,\n0.0,1.5", "tfac=1.5", '"{0}1.5" {1}is not a ratio of the tangential to the normal penalty (above 0, at most 1)'),
     ("2,,-1.0,", None, "pen=-1.0", '"{0}-1.0" {1}is not a penalty (more than 0)'),
-    ("9,,2.0e5,", None, "ctype=9", '"{0}9" {1}is not a contact type (1 classical NTS, 2 NTS-AR'),
+    ("9,,2.0e5,", None, "ctype=9", '"{0}9" {1}is not a contact type (0 the program chooses, 1 classical NTS, 2 NTS-AR'),
     ("2,11,2.0e5,", None, "ngauss=11", '"{0}11" {1}is not a number of Gauss points (1 to 10)'),
     ("2,,2.0e5,", ",,5", "punit=5", '"{0}5" {1}is not a unit of the penalty (0 force per length at each contact node, 1 stress'),
 ])
@@ -141,11 +141,11 @@ def test_scale_of_the_step_above_one_is_warned_of(said, scale, word, told):
 def test_first_step_that_the_curve_overrules_is_warned_of(said):
     plain = slide("2,,2.0e5,")
     deck = plain.replace("0.0,0.9,0,0.0,0.0,9001", "1.0e-5,0.9,0,0.0,0.0,9001")
-    assert "DTINIT has no effect beside the curve LCTM" in said(deck)[1]
+    assert "DTINIT has no effect with the curve LCTM" in said(deck)[1]
     assert "DTINIT" not in said(plain)[1]
     deck = plain.replace("0.0,0.9,0,0.0,0.0,9001", "1.0e-5,0.9")
     assert "DTINIT" not in said(deck)[1]
-    assert 'DTINIT has no effect beside "dt=1.0e-4" on the command line' in said(deck, "dt=1.0e-4")[1]
+    assert 'DTINIT has no effect with "dt=1.0e-4" on the command line' in said(deck, "dt=1.0e-4")[1]
 
 
 def test_curve_number_below_0_stays_a_mistake_of_an_implicit_deck(said):
@@ -224,13 +224,13 @@ TIE = SLIDELINE + "\n\n,,1"
     (IMPLICIT, "tssfac=0.8", "{0} has no effect with the implicit method"),
     (IMPLICIT, "punit=3 pen=0.5", "{0} asks for a share of the largest stable penalty"),
     (SLIDELINE, "tssfac=1.2", "{0} is above 1: the run may become unstable"),
-    (SLIDELINE, "dt=5e-5", "DTINIT has no effect beside {0}"),
+    (SLIDELINE, "dt=5e-5", "DTINIT has no effect with {0}"),
     (SLIDELINE, "punit=4 ctype=7 vdc=5", "{0} asks for implicit springs, which in this version have no damping"),
     (SLIDELINE, "punit=3 pen=2", '{1} is not a share of the largest stable penalty (PUNIT 3: above 0, at most 1)'),
     (SLIDELINE, "punit=3", "card 1 field 5 (PEN): \"2.0e5\" is not a share of the largest stable penalty (PUNIT 3: above 0, at most 1)\n"
                               "  | -2,-3,2,,2.0e5,\n  |          ^^^^^\n  | with {0}"),
     (TIE, "vdc=20", "interface 1 is tied: ties have no contact damping; {0} has no effect on it"),
-    (TIE, "punit=3 pen=0.5", "interface 1 is tied: its penalty can not be a share of the largest stable one; {0} has no effect on it"),
+    (TIE, "punit=3 pen=0.5", "interface 1 is tied: its penalty cannot be a share of the largest stable penalty; {0} has no effect on it"),
     (TIE, "fs=0.1", "interface 1 is tied: {0} has no effect on it"),
     ("", "pen=1e5", "{0} changes PEN of all interfaces, but the deck has none")])
 def test_messages_of_words_say_where_they_stand(said, cards, words, told):

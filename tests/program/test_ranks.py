@@ -190,7 +190,7 @@ def test_files_are_those_of_one_process(tmp_path, scene):
         assert_same(tmp_path / "one", tmp_path / f"on{n}")
     log = "\n".join(log_of(tmp_path / "one"))
     assert "wake" not in scene or "steps of tiles: " in log
-    assert "leave" not in scene or "leave the mesh" in log
+    assert "leave" not in scene or "elements erode" in log
     assert "fail" not in scene or "points fail" in log
     assert ("end before" in scene) == ("*TERMINATION_BODY" in log)
     assert ("by default" in scene) == ("the step obeys its springs" in log)

@@ -43,7 +43,7 @@ def fast_sliding(kind):
 
 def long_interface(kind):
     """Blocks with so many segments that threads share the contact of them."""
-    return block(kind, n_slave=601, n_master=600)
+    return block(kind, n_slave=1201, n_master=1200)
 
 
 def fine_patch(kind):

@@ -102,7 +102,7 @@ def test_contacts_of_five_kinds(results):
     for k in range(1, 6):
         force = table(folder, "rcforc", interface=k, side="slave")["fx"]
         assert (np.abs(force).max() > 0.0) == (k < 5) # the fifth is between blocks that do not meet
-    assert "has been turned" in (folder / "job.log").read_text() # node sets walked the wrong way
+    assert "has been reversed" in (folder / "job.log").read_text() # node sets walked the wrong way
 
 
 def test_parameters_reach_the_include(results):
@@ -157,7 +157,7 @@ def test_titles_are_no_cards(results):
     folder = results("titles")
     log = (folder / "job.log").read_text()
     assert 'part 2 "part 2, 1, 2, 3": 4 elements' in log
-    assert "12 fixed and 0 moved degrees of freedom, 0 nodal loads, 2 pressure edges" in log
+    assert "12 fixed and 0 prescribed degrees of freedom, 0 nodal loads, 2 pressure edges" in log
     assert table(folder, "matsum", part=3)["momentum_x"] == pytest.approx(7800.0 * 1.0e-4, rel=1e-9)
 
 

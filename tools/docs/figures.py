@@ -156,7 +156,7 @@ def blocks_deck(folder):
     return path
 
 
-def spots(kind):
+def points_of_type(kind):
     """Where a formulation looks: (x, side) with side 1 slave, 2 master."""
     slave, master = np.linspace(0, 1, N_SLAVE + 1), np.linspace(0, 1, N_MASTER + 1)
 
@@ -172,7 +172,7 @@ def spots(kind):
 
 
 def contact_points(program, folder):
-    """A panel for each type: spots, and the nodal forces of the program."""
+    """A panel for each type: contact points, and the nodal forces of the program."""
     deck = blocks_deck(folder)
     n_row = len(TYPES) // 2 + 1  # the last panel is the key
     figure, panels = plt.subplots(n_row, 2, figsize=(9.0, 1.8 * n_row))
@@ -196,7 +196,7 @@ def contact_points(program, folder):
                     axes.annotate("", xy=(x[k], base + scale * force[k]), xytext=(x[k], base),
                                   arrowprops={"arrowstyle": "-|>", "color": side, "linewidth": 1.6,
                                               "shrinkA": 0, "shrinkB": 0})
-        for place, side in spots(kind):
+        for place, side in points_of_type(kind):
             axes.plot(place, lift / 2 + (0.022 if side == 1 else -0.022), "x", markersize=6,
                       color=SLAVE if side == 1 else MASTER, markeredgewidth=1.6)
         axes.set_title(f"{kind}  {TYPES[kind]}", fontsize=10, loc="left", color=INK)

@@ -86,7 +86,8 @@ def main(arguments=None):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left to flush
         return NO_READER
     except (UserError, OSError) as problem:
-        print(f"slideline-tools: {one_line(problem)}", file=sys.stderr)
+        text = str(problem) if getattr(problem, "has_lines", False) else one_line(problem)
+        print(f"slideline-tools: {text}", file=sys.stderr)
         return UNUSABLE
     except Exception as problem:
         # A damaged file that no reader has noticed must not end in a traceback, nor hide where it

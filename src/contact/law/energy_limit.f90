@@ -8,7 +8,6 @@ module energy_limit_m
   use law_state_m, only : energy_limit_t
   use spring_gaps_m, only : limit_moment
   use kinds_m, only : wp
-  use ranges_m, only : n_ranges, first_of, last_of, most_ranges
   implicit none
   private
   public :: store_previous_springs, form_springs, limit_forces, admit_entry_work, &
@@ -36,8 +35,6 @@ module energy_limit_m
   !> Share of what holds the nodes back that is counted on in the half step to come: it is foretold
   !> from the step before, and falls off where contact opens.
   real(wp), parameter :: relied_on = 0.5_wp
-  !> How far one limited cycle makes `recent` rise; any other with force lowers it by one.
-  integer, parameter :: rise = 20
 
 contains
 
@@ -95,7 +92,7 @@ contains
 
   !> Scale the forces of the interface, with the pressures and the part of damping, by what the
   !> springs may return; before they are added to those of the mesh and their work is counted.
-  subroutine limit_forces(motion, time, dt, memory)
+  pure subroutine limit_forces(motion, time, dt, memory)
     real(wp), intent(in), contiguous :: motion(:, :) !! (4, n_node) u(n), v(n-1/2)
     real(wp), intent(in) :: time                     !! of u, s
     real(wp), intent(in) :: dt                       !! step that led to u, s
@@ -123,7 +120,7 @@ contains
 
   !> The factor of this cycle. The sums that are formed in each cycle bound what may be returned;
   !> only where that is too much, most often just before contact opens, all is summed.
-  subroutine find_factor(energy, nodes, motion, dt, previous, present, velocity, limit, factor)
+  pure subroutine find_factor(energy, nodes, motion, dt, previous, present, velocity, limit, factor)
     real(wp), intent(in) :: energy       !! of the springs up to the cycle before, J/m
     integer, intent(in), contiguous :: nodes(:)
     real(wp), intent(in), contiguous :: motion(:, :)   !! (4, n_node of the mesh)
@@ -158,58 +155,31 @@ contains
     limit%recoil = factor**2*limit%recoil
   end subroutine find_factor
 
-  !> The velocities, the powers of previous and present forces, and what these do to the nodes.
-  subroutine sum_powers(n, nodes, motion, previous, present, inverse_mass, velocity, sums)
-    integer, intent(in) :: n
-    integer, intent(in) :: nodes(n)
+  !> The velocities, the powers of previous and present forces, and what these do to the nodes. One
+  !> loop gathers, the other goes through lists that lie in one piece: that is vectorised.
+  pure subroutine sum_powers(n, nodes, motion, previous, present, inverse_mass, velocity, sums)
+    integer, intent(in) :: n, nodes(n)
     real(wp), intent(in) :: motion(4, *)
     real(wp), intent(in), dimension(2*n) :: previous, present, inverse_mass !! x and y of each node
     real(wp), intent(inout) :: velocity(2*n)
     type(power_sums_t), intent(out) :: sums
-    type(power_sums_t) :: parts(most_ranges)
-    integer :: i, n_range
-
-    n_range = n_ranges(n)
-    if (n_range == 1) then
-      call sum_range(1, n, nodes, motion, previous, present, inverse_mass, velocity, sums)
-      return
-    end if
-    !$omp taskloop default(shared)
-    do i = 1, n_range
-      call sum_range(first_of(i, n), last_of(i, n), nodes, motion, previous, present, &
-        inverse_mass, velocity, parts(i))
-    end do
-    !$omp end taskloop
-    sums = power_sums_t(sum(parts(:n_range)%present), sum(parts(:n_range)%previous), &
-      sum(parts(:n_range)%recoil))
-  end subroutine sum_powers
-
-  !> The same for a range of nodes. One loop gathers, the other goes through lists that lie in one
-  !> piece: that is vectorised.
-  pure subroutine sum_range(first, last, nodes, motion, previous, present, inverse_mass, velocity, &
-      sums)
-    integer, intent(in) :: first, last, nodes(*)
-    real(wp), intent(in) :: motion(4, *)
-    real(wp), intent(in), dimension(*) :: previous, present, inverse_mass
-    real(wp), intent(inout) :: velocity(*)
-    type(power_sums_t), intent(out) :: sums
     real(wp) :: power, previous_power, recoil
     integer :: i
 
-    do i = first, last
+    do i = 1, n
       velocity(2*i - 1:2*i) = motion(3:4, nodes(i))
     end do
     power = 0.0_wp
     previous_power = 0.0_wp
     recoil = 0.0_wp
     !$omp simd reduction(+:power, previous_power, recoil)
-    do i = 2*first - 1, 2*last
+    do i = 1, 2*n
       power = power + velocity(i)*present(i)
       previous_power = previous_power + velocity(i)*previous(i)
       recoil = recoil + inverse_mass(i)*(present(i)*present(i))
     end do
     sums = power_sums_t(power, previous_power, recoil)
-  end subroutine sum_range
+  end subroutine sum_powers
 
   !> Work that all else does on the nodes in the half step to come: forces as in the cycle before,
   !> in the free directions of each node no larger than the contact force there was.
@@ -286,11 +256,7 @@ contains
     type(energy_limit_t), intent(inout) :: limit
 
     limit%n_loaded = limit%n_loaded + 1
-    if (.not. factor < 1.0_wp) then
-      limit%recent = max(0, limit%recent - 1)
-      return
-    end if
-    limit%recent = limit%recent + rise
+    if (.not. factor < 1.0_wp) return
     limit%n_limited = limit%n_limited + 1
     if (.not. factor < limit%least_factor) return
     limit%least_factor = factor

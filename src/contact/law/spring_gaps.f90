@@ -3,7 +3,8 @@
 !> Entry offsets: a point that has come behind a face without coming through it starts without
 !> force, with the gap g + offset. The offset is never more than the depth, and fades with the slip
 !> over half of the segment, small ones as over a ramp of 1 to 20; the work of its fading is
-!> admissible energy (doc/theory/contact.md, section 3.3).
+!> admissible energy. What overlaps beside the node have borne is no part of it
+!> (doc/theory/contact.md, section 3.3).
 !> Interference (LCINT; section 6.5): a site that overlaps by d at time zero has the gap
 !> g + (1 - s) d, where the curve s leads from 0 to 1. So a press fit starts without force, and at
 !> the end the overlap acts as it is. What the curve does is external work.
@@ -18,8 +19,8 @@ module spring_gaps_m
   use surfaces_m, only : surface_t
   implicit none
   private
-  public :: has_offsets, update_offsets, add_offsets, faded_work, begin_ramp, store_overlaps, &
-    ramp_gaps, gather_moment, limit_moment
+  public :: has_offsets, reduce_new_offsets, update_offsets, add_offsets, faded_work, begin_ramp, &
+    store_overlaps, ramp_gaps, gather_moment, limit_moment
 
   !> Least slope by which an offset fades with the slip.
   real(wp), parameter :: ramp = 0.05_wp
@@ -46,6 +47,30 @@ contains
     if (memory%master_status%n > 0) call fade_offsets(memory%master_status, contact%master, &
       contact%slave, memory%positions, memory%scratch%increment)
   end subroutine update_offsets
+
+  !> Nodes that have come behind a face beside overlaps: the depth that these, or springs of master
+  !> nodes there as they weigh at the node, bore in the call before is no part of a new offset.
+  pure subroutine reduce_new_offsets(memory)
+    type(contact_state_t), intent(inout) :: memory
+    real(wp) :: borne
+    integer :: k, p
+
+    associate (status => memory%slave_status, points => memory%points)
+      do k = 1, status%n_active
+        associate (i => status%active_points(k))
+          if (.not. status%faded(i) < 0.0_wp) cycle
+          borne = 0.0_wp
+          if (memory%has%nodal_pressure) borne = memory%node_pressure(i)/memory%slave_penalty
+          do p = 1, merge(0, points%n, memory%has%nodal_pressure)
+            borne = max(borne, points%pressure(p)/points%stiffness(p) &
+              *sum(points%slave_weights(:, p), mask=points%slave_nodes(:, p) == i))
+          end do
+          status%faded(i) = 0.0_wp
+          status%offset(i) = max(0.0_wp, status%offset(i) - borne)
+        end associate
+      end do
+    end associate
+  end subroutine reduce_new_offsets
 
   !> The offsets of one pass.
   pure subroutine fade_offsets(status, own, other, positions, increments)

@@ -11,7 +11,7 @@ module point_list_m
   use tributary_lengths_m, only : radius_between
   implicit none
   private
-  public :: point_block_t, append_block, add_point, known_projection, append_active, append_list, &
+  public :: point_block_t, append_block, add_point, known_projection, append_active, copy_list, &
     finish_segment_points
 
   !> Positions on slave segments that are to be points, with their projections on the master: many
@@ -125,16 +125,13 @@ contains
     points%n = points%n + status%n_active
   end subroutine append_active
 
-  !> Append all points of another list.
-  pure subroutine append_list(list, points)
+  !> Copy all points of another list behind the first `n_before`, where there is room for them.
+  pure subroutine copy_list(list, n_before, points)
     type(contact_points_t), intent(in) :: list
+    integer, intent(in) :: n_before
     type(contact_points_t), intent(inout) :: points
-    integer :: n
 
-    n = list%n
-    if (n == 0) return
-    call make_room(points, n)
-    associate (first => points%n + 1, last => points%n + n)
+    associate (n => list%n, first => n_before + 1, last => n_before + list%n)
       points%slave_nodes(:, first:last) = list%slave_nodes(:, :n)
       points%slave_weights(:, first:last) = list%slave_weights(:, :n)
       points%master_nodes(:, first:last) = list%master_nodes(:, :n)
@@ -144,8 +141,7 @@ contains
       points%area(first:last) = list%area(:n)
       points%stiffness(first:last) = list%stiffness(:n)
     end associate
-    points%n = points%n + n
-  end subroutine append_list
+  end subroutine copy_list
 
   !> Points on slave segments: reduce their areas to what is opposed to the master, and drop those
   !> without; in axisymmetry let them weigh with the radius where they stand.

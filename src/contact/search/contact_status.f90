@@ -8,27 +8,15 @@ module contact_status_m
   use projection_m, only : projection_t, follow_contact, gentle_turn
   use projection_block_m, only : projection_block_t, n_block, project_block, resolve_ambiguous
   use kinds_m, only : wp
-  use ranges_m, only : n_ranges, first_of, last_of, most_ranges
   use surfaces_m, only : surface_t
   implicit none
   private
   public :: update_status, list_active, reset_status
 
-  !> What points of a range that were due change beside their own status. Without default values,
-  !> which would be written before each use.
-  type :: changes_t
-    integer :: first, last     !! range of the list of those due
-    integer :: n_released      !! first contacts deeper than the limit
-    logical :: has_offset      !! some entry offset is above 0
-    logical :: has_changed     !! some point has become active or separated
-    real(wp) :: earliest_search !! next search time of the first of them, m
-  end type changes_t
-
 contains
 
-  !> Bring the status of all points up to date and list the active ones. Threads share both the
-  !> active points and those that are due.
-  subroutine update_status(status, own, other, pairs, positions, increments, points)
+  !> Bring the status of all points up to date and list the active ones.
+  pure subroutine update_status(status, own, other, pairs, positions, increments, points)
     type(contact_status_t), intent(inout) :: status
     type(surface_t), intent(in) :: own                  !! of the points
     type(surface_t), intent(in) :: other                !! of the segments
@@ -36,60 +24,30 @@ contains
     real(wp), intent(in), contiguous :: positions(:, :) !! (4, n_node) of the interface
     real(wp), intent(in), contiguous :: increments(:, :) !! (2, n_node) displacements of the step, m
     real(wp), intent(in), contiguous :: points(:, :)    !! (4, n) positions of the points
-    type(changes_t) :: changes(most_ranges)
     real(wp) :: travel
-    integer :: n_left, n_due, n, i
+    integer :: n_due, k
+    logical :: was_active, has_changed
 
-    n_left = 0
+    n_due = 0
     if (status%n_active > 0) call follow_active(status, other, &
-      positions(:, status%pass%other_at + 1:), points, n_left)
+      positions(:, status%pass%other_at + 1:), points, n_due)
     ! Distances are to segments; contact begins at the closed gap.
     travel = status%pass%travel + status%pass%closed_gap
-    if (n_left == 0 .and. travel < status%earliest_search) return
-    n_due = n_left
     if (.not. travel < status%earliest_search) call list_due(status%n, status%next_search, travel, &
       status%earliest_search, status%due, n_due)
-    n = n_ranges(n_due)
-    do i = 1, n
-      changes(i) = changes_t(first_of(i, n_due), last_of(i, n_due), 0, .false., .false., &
-        huge(1.0_wp))
-    end do
-    if (n == 1) then
-      call search_due(status, own, other, pairs, positions, increments, points, changes(1))
-    else
-      !$omp taskloop default(shared)
-      do i = 1, n
-        call search_due(status, own, other, pairs, positions, increments, points, changes(i))
-      end do
-      !$omp end taskloop
-    end if
-    status%n_released = status%n_released + sum(changes(:n)%n_released)
-    status%has_offset = status%has_offset .or. any(changes(:n)%has_offset)
-    status%earliest_search = min(status%earliest_search, minval(changes(:n)%earliest_search))
-    if (any(changes(:n)%has_changed)) call list_active(status)
-  end subroutine update_status
-
-  !> The points that need a decision or are due, one by one.
-  pure subroutine search_due(status, own, other, pairs, positions, increments, points, changes)
-    type(contact_status_t), intent(inout) :: status
-    type(surface_t), intent(in) :: own, other
-    type(candidates_t), intent(in) :: pairs
-    real(wp), intent(in), contiguous :: positions(:, :), increments(:, :), points(:, :)
-    type(changes_t), intent(inout) :: changes
-    integer :: k
-    logical :: was_active
-
-    do k = changes%first, changes%last
+    has_changed = .false.
+    do k = 1, n_due
       associate (i => status%due(k))
         was_active = status%state(i) == active
         if (was_active) call follow_point(status, own, other, pairs, positions, points(:, i), i)
         if (status%state(i) /= active) call store_found(status, i, find_contact(status, own, &
-          other, pairs, positions, increments, points(:, i), i), changes)
-        changes%has_changed = changes%has_changed .or. (status%state(i) == active .neqv. was_active)
-        changes%earliest_search = min(changes%earliest_search, status%next_search(i))
+          other, pairs, positions, increments, points(:, i), i))
+        has_changed = has_changed .or. (status%state(i) == active .neqv. was_active)
+        status%earliest_search = min(status%earliest_search, status%next_search(i))
       end associate
     end do
-  end subroutine search_due
+    if (has_changed) call list_active(status)
+  end subroutine update_status
 
   !> Append the points whose next search time has come, and find the first one of the others. That
   !> of active points never comes.
@@ -113,45 +71,17 @@ contains
 
   !> The common case of active points: still over their segment, behind it, and no nearer to a
   !> neighbour than to it. The others are listed in `due`.
-  subroutine follow_active(status, surface, polyline, points, n_left)
+  pure subroutine follow_active(status, surface, polyline, points, n_left)
     type(contact_status_t), intent(inout) :: status
     type(surface_t), intent(in) :: surface
     real(wp), intent(in), contiguous :: polyline(:, :), points(:, :)
     integer, intent(out) :: n_left    !! points that were not kept
-    integer :: n_of_range(most_ranges), i, n
-
-    n = status%n_active
-    if (n_ranges(n) == 1) then
-      call follow_range(status, surface, polyline, points, 1, n, n_left)
-      return
-    end if
-    !$omp taskloop default(shared)
-    do i = 1, n_ranges(n)
-      call follow_range(status, surface, polyline, points, first_of(i, n), last_of(i, n), &
-        n_of_range(i))
-    end do
-    !$omp end taskloop
-    n_left = 0
-    do i = 1, n_ranges(n)
-      status%due(n_left + 1:n_left + n_of_range(i)) = &
-        status%due(first_of(i, n):first_of(i, n) + n_of_range(i) - 1)
-      n_left = n_left + n_of_range(i)
-    end do
-  end subroutine follow_active
-
-  !> The same of a range of the active points, listed in `due` from the first of the range on.
-  pure subroutine follow_range(status, surface, polyline, points, from, to, n_left)
-    type(contact_status_t), intent(inout) :: status
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in), contiguous :: polyline(:, :), points(:, :)
-    integer, intent(in) :: from, to
-    integer, intent(out) :: n_left
     type(projection_block_t) :: block
     integer :: first, i, k
 
     n_left = 0
-    do first = from, to, n_block
-      block%n = min(n_block, to - first + 1)
+    do first = 1, status%n_active, n_block
+      block%n = min(n_block, status%n_active - first + 1)
       call vectors_to_points(block%n, status%active_points(first), status%segment, &
         surface%segments, polyline, points, block%segment, block%t, block%d)
       call project_block(block)
@@ -169,9 +99,9 @@ contains
         end do
       end if
       if (block%n_ambiguous > 0) call list_ambiguous(block%n, block%ambiguous, &
-        status%active_points(first), status%due(from), n_left)
+        status%active_points(first), status%due, n_left)
     end do
-  end subroutine follow_range
+  end subroutine follow_active
 
   !> Append the points of a block that need a decision.
   pure subroutine list_ambiguous(n, ambiguous, points, due, n_due)
@@ -249,17 +179,17 @@ contains
   end subroutine follow_point
 
   !> A separated point: it becomes active, or has a next search time.
-  pure subroutine store_found(status, i, found, changes)
+  pure subroutine store_found(status, i, found)
     type(contact_status_t), intent(inout) :: status
     integer, intent(in) :: i
     type(found_contact_t), intent(in) :: found
-    type(changes_t), intent(inout) :: changes
 
     call store_projection(status, i, found%projection)
-    if (found%is_released) changes%n_released = changes%n_released + 1
+    if (found%is_released) status%n_released = status%n_released + 1
     if (found%is_active .or. .not. status%pass%is_trial) status%offset(i) = found%offset
-    changes%has_offset = changes%has_offset .or. found%offset > 0.0_wp
+    status%has_offset = status%has_offset .or. found%offset > 0.0_wp
     if (found%is_active) then
+      status%faded(i) = -found%offset
       status%state(i) = active
       status%next_search(i) = huge(1.0_wp)
     else

@@ -12,7 +12,6 @@ module positions_m
   use geometry_m, only : segment_length
   use kinds_m, only : wp
   use quadrature_m, only : gauss_rule
-  use ranges_m, only : n_ranges, first_of, last_of, most_ranges
   use surfaces_m, only : surface_t
   use tributary_lengths_m, only : centroid
   implicit none
@@ -37,54 +36,39 @@ contains
   !> Copy the present displacements into the memory, and what each node has moved, and let its
   !> travel grow by a bound on how far any two nodes have moved relative to each other since the
   !> last call.
-  subroutine gather_positions(motion, memory)
+  pure subroutine gather_positions(motion, memory)
     real(wp), intent(in), contiguous :: motion(:, :)
     type(contact_state_t), intent(inout) :: memory
-    real(wp) :: boxes(4, most_ranges)
-    integer :: i, n, n_range
 
-    n = size(memory%nodes)
-    n_range = n_ranges(n)
-    if (n_range == 1) then
-      call gather_range(1, n, memory%nodes, motion, memory%positions, memory%scratch%increment, &
-        boxes(:, 1))
-    else
-      !$omp taskloop default(shared)
-      do i = 1, n_range
-        call gather_range(first_of(i, n), last_of(i, n), memory%nodes, motion, memory%positions, &
-          memory%scratch%increment, boxes(:, i))
-      end do
-      !$omp end taskloop
-    end if
-    memory%advance = sqrt((maxval(boxes(3, :n_range)) - minval(boxes(1, :n_range)))**2 &
-      + (maxval(boxes(4, :n_range)) - minval(boxes(2, :n_range)))**2)
+    call gather(size(memory%nodes), memory%nodes, motion, memory%positions, &
+      memory%scratch%increment, memory%advance)
     memory%travel = memory%travel + memory%advance
     ! That of a pause is not that of a step.
     if (memory%is_stale) memory%advance = 0.0_wp
   end subroutine gather_positions
 
-  !> Copy u of a range of nodes; what it has changed by, and the box of these changes: the diagonal
-  !> of that of all nodes bounds the relative motion.
-  pure subroutine gather_range(first, last, nodes, motion, positions, changes, box)
-    integer, intent(in) :: first, last, nodes(*)
+  !> Copy u of all nodes; what it has changed by, and the diagonal of the box of these changes: it
+  !> bounds the relative motion.
+  pure subroutine gather(n, nodes, motion, positions, changes, diagonal)
+    integer, intent(in) :: n, nodes(n)
     real(wp), intent(in) :: motion(4, *)
-    real(wp), intent(inout) :: positions(4, *), changes(2, *) !! m
-    real(wp), intent(out) :: box(4) !! low x, low y, high x, high y, m
+    real(wp), intent(inout) :: positions(4, n), changes(2, n) !! m
+    real(wp), intent(out) :: diagonal !! m
     real(wp), dimension(2) :: low, high, change
     integer :: i
 
     low = huge(1.0_wp)
     high = -huge(1.0_wp)
     !GCC$ NOVECTOR
-    do i = first, last
+    do i = 1, n
       change = motion(1:2, nodes(i)) - positions(3:4, i)
       positions(3:4, i) = motion(1:2, nodes(i))
       changes(:, i) = change
       low = merge(change, low, change < low)
       high = merge(change, high, change > high)
     end do
-    box = [low, high]
-  end subroutine gather_range
+    diagonal = sqrt((high(1) - low(1))**2 + (high(2) - low(2))**2)
+  end subroutine gather
 
   !> Positions on each segment and the part of its length that each stands for; nothing is allocated
   !> for points at nodes.

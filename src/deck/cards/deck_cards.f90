@@ -1,11 +1,11 @@
 ! SPDX-License-Identifier: MIT
-!> Walking through the cards of a block: cards in order, rows of a table, text lines; parameters
-!> put in; fields without effect or support noticed.
+!> Reads the cards of a block: cards in order, rows of a table, text lines; replaces parameters and
+!> reports fields without effect or support.
 module deck_cards_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use text_m, only : read_integer, number_good
-  use deck_lines_m, only : deck_t, place_t, line_text, line_warning, replace_line, flag_blank, &
+  use deck_lines_m, only : deck_t, location_t, line_text, line_warning, replace_line, flag_blank, &
     flag_parameter, block_of_line, given_by, format_long, max_field
   use deck_fields_m, only : card_spec_t, make_spec, field_number, card_t, begin_card, cut_card, &
     read_numbers, field_text, field_error
@@ -17,25 +17,25 @@ module deck_cards_m
   public :: cursor_t, open_cursor, first_card, skip_title, next_card, next_row, next_of, &
     next_text, next_heading, check_rest, report_field, row_comes, reject_field, warn_of_field
 
-  !> A place in a block.
+  !> Position of the reader in a block.
   type :: cursor_t
     integer :: block = 0
     integer :: source = 0
     integer :: line = 1           !! next line
     integer :: last = 0           !! last line of the block
-    integer :: n_card = 0         !! cards that the keyword has
+    integer :: n_card = 0         !! number of cards of the keyword
     character(60) :: options = '' !! of the keyword (`deck_schema_m`)
     type(card_spec_t) :: specs(max_card)
   end type cursor_t
 
-  !> An error of a field of a card just read, by the field's name or its position.
+  !> Report an error of a field of a card just read, by its name or its position.
   interface report_field
     module procedure report_name, report_number
   end interface report_field
 
 contains
 
-  !> Start at the first data line of a block.
+  !> Move to the first data line of a block.
   subroutine open_cursor(deck, i_block, cursor)
     type(deck_t), intent(in) :: deck
     integer, intent(in) :: i_block
@@ -53,7 +53,7 @@ contains
     end do
   end subroutine open_cursor
 
-  !> Start at card 1 of a block, behind its title.
+  !> Read card 1 of a block, after its title.
   subroutine first_card(deck, i_block, cursor, card)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
@@ -65,7 +65,7 @@ contains
     call next_card(deck, cursor, 1, card)
   end subroutine first_card
 
-  !> Card number `number`: the next line, blank or not; all defaults when the block has ended.
+  !> Read the next line, blank or not, as card `number`; all defaults after the end of the block.
   subroutine next_card(deck, cursor, number, card)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
@@ -80,7 +80,7 @@ contains
     call read_line(deck, cursor, number, card)
   end subroutine next_card
 
-  !> Read the next line that is not blank as card `number`; false at the end of the block.
+  !> Read the next non-blank line as card `number`; false at the end of the block.
   function next_row(deck, cursor, number, card) result(found)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
@@ -92,8 +92,8 @@ contains
     if (found) call read_line(deck, cursor, number, card)
   end function next_row
 
-  !> Read the next row that is not blank, as card 1, of the keywords that begin with `head`, from
-  !> the first of them on where the cursor is at none yet; false behind the last row of the last.
+  !> Read the next non-blank row, as card 1, of all keywords that begin with `head`; false after the
+  !> last row of the last keyword.
   function next_of(deck, head, cursor, card) result(found)
     type(deck_t), intent(inout) :: deck
     character(*), intent(in) :: head
@@ -114,7 +114,7 @@ contains
     end do
   end function next_of
 
-  !> Whether a line that is not blank is left; those before it are passed.
+  !> Move past blank lines; false at the end of the block.
   function row_comes(deck, cursor) result(found)
     type(deck_t), intent(in) :: deck
     type(cursor_t), intent(inout) :: cursor
@@ -127,7 +127,7 @@ contains
     found = cursor%line <= cursor%last
   end function row_comes
 
-  !> The next line as plain text (titles and names are never cut).
+  !> Read the next line as plain text.
   subroutine next_text(deck, cursor, text)
     type(deck_t), intent(in) :: deck
     type(cursor_t), intent(inout) :: cursor
@@ -139,9 +139,8 @@ contains
     cursor%line = cursor%line + 1
   end subroutine next_text
 
-  !> The title line of something that has a number: the number in columns 1 to 10 where there is
-  !> one (0: there is none), then the name. In the long layout the number has 20 columns; one that
-  !> stands in the first ten counts there too.
+  !> Read a title line with an optional number in columns 1 to 10 (0: none), then a name. In the
+  !> long layout the number has 20 columns; a number in the first ten is accepted there too.
   subroutine next_heading(deck, cursor, number, name)
     type(deck_t), intent(in) :: deck
     type(cursor_t), intent(inout) :: cursor
@@ -160,7 +159,7 @@ contains
     name = trim(adjustl(text))
   end subroutine next_heading
 
-  !> Move past the title line of a keyword that has the option.
+  !> Move past the title line of a keyword with a title.
   subroutine skip_title(deck, cursor)
     type(deck_t), intent(in) :: deck
     type(cursor_t), intent(inout) :: cursor
@@ -169,7 +168,7 @@ contains
       cursor%line = cursor%line + 1
   end subroutine skip_title
 
-  !> Read one line as card `number`.
+  !> Read the next line as card `number`, with parameters replaced.
   subroutine read_line(deck, cursor, number, card)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
@@ -197,7 +196,7 @@ contains
     cursor%line = cursor%line + 1
   end subroutine read_line
 
-  !> The line of a card with its references replaced, in free format.
+  !> The line of a card with its parameters replaced, in free format.
   subroutine substitute(deck, spec, source, card, text)
     type(deck_t), intent(inout) :: deck
     type(card_spec_t), intent(in) :: spec
@@ -224,7 +223,7 @@ contains
     end do
   end subroutine substitute
 
-  !> A field that is not honoured: a warning or an error when it asks for something.
+  !> Report a field that is not honoured and neither 0 nor its default.
   subroutine notice_field(deck, spec, card, k)
     type(deck_t), intent(inout) :: deck
     type(card_spec_t), intent(in) :: spec
@@ -247,17 +246,17 @@ contains
     end if
   end subroutine notice_field
 
-  !> Lines that are left over once all cards have been read.
+  !> Warn of lines after the last card of a keyword.
   subroutine check_rest(deck, cursor)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
 
     if (row_comes(deck, cursor)) call line_warning(deck, cursor%line, 'rest' &
-      //to_text(cursor%line), 'from here to the next keyword ignored: more lines than the ' &
-      //'keyword has cards')
+      //to_text(cursor%line), 'lines from here to the next keyword are ignored: the keyword has ' &
+      //'no further cards')
   end subroutine check_rest
 
-  !> An error of the field of a name, of a card just read.
+  !> Report an error of a field by its name.
   subroutine report_name(deck, card, name, message)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -267,7 +266,7 @@ contains
     call report_field(deck, card, field_number(card%names, name), message)
   end subroutine report_name
 
-  !> An error of field `k` of a card just read.
+  !> Report an error of field `k`.
   subroutine report_number(deck, card, k, message)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -277,48 +276,48 @@ contains
     if (.not. card%bad(k)) call field_error(deck, card, k, message)
   end subroutine report_number
 
-  !> An error of a field that was given, on a card that was read some time ago.
-  subroutine reject_field(deck, place, message)
+  !> Report an error of a field of a card that was read before, by its location.
+  subroutine reject_field(deck, location, message)
     type(deck_t), intent(inout) :: deck
-    type(place_t), intent(in) :: place
+    type(location_t), intent(in) :: location
     character(*), intent(in) :: message
     type(card_t) :: card
     integer :: k
 
-    call reread_card(deck, place, card, k)
+    call reread_card(deck, location, card, k)
     call field_error(deck, card, k, message)
   end subroutine reject_field
 
-  !> A warning of a field that was given, on a card that was read some time ago; the same one of
-  !> fields of one name is told once.
-  subroutine warn_of_field(deck, place, message)
+  !> Warn of a field of a card that was read before, by its location; equal warnings of fields of
+  !> one name are reported once.
+  subroutine warn_of_field(deck, location, message)
     type(deck_t), intent(inout) :: deck
-    type(place_t), intent(in) :: place
+    type(location_t), intent(in) :: location
     character(*), intent(in) :: message
     character(:), allocatable :: text
     type(card_t) :: card
     integer :: k
 
-    call reread_card(deck, place, card, k)
-    text = given_by(deck, place%line, k)//' '
+    call reread_card(deck, location, card, k)
+    text = given_by(deck, location%line, k)//' '
     if (len(text) == 1) text = 'card '//to_text(card%number)//' field '//to_text(k)//' (' &
       //trim(card%names(k))//'): "'//field_text(deck, card, k)//'" '
-    call line_warning(deck, merge(place%line, 0, text(1:1) == 'c'), 'field '//trim(card%names(k)) &
-      //message, text//message)
+    call line_warning(deck, merge(location%line, 0, text(1:1) == 'c'), &
+      'field '//trim(card%names(k))//message, text//message)
   end subroutine warn_of_field
 
-  !> The card of a place, and the position of its field.
-  subroutine reread_card(deck, place, card, k)
+  !> Read the card of a location again, with the position of the field.
+  subroutine reread_card(deck, location, card, k)
     type(deck_t), intent(inout) :: deck
-    type(place_t), intent(in) :: place
+    type(location_t), intent(in) :: location
     type(card_t), intent(out) :: card
     integer, intent(out) :: k
     type(cursor_t) :: cursor
 
-    call open_cursor(deck, block_of_line(deck, place%line), cursor)
-    call cut_card(deck, cursor%specs(place%card), cursor%source, place%line, card)
-    k = place%field
-    if (len_trim(place%name) > 0) k = field_number(card%names, place%name)
+    call open_cursor(deck, block_of_line(deck, location%line), cursor)
+    call cut_card(deck, cursor%specs(location%card), cursor%source, location%line, card)
+    k = location%field
+    if (len_trim(location%name) > 0) k = field_number(card%names, location%name)
   end subroutine reread_card
 
 end module deck_cards_m

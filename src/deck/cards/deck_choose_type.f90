@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> CTYPE 0: the program chooses the contact type, once, from how the scene stands in the published
-!> studies (doc/choose.md): the type as such, or the cheapest that keeps a target. The effective
-!> deck has the type chosen and the target, so that runs from it and restarts go on in the same way.
+!> CTYPE 0: the program chooses the contact type when the deck is read, by the kind of scene and the
+!> published studies (doc/choose.md): the recommended type, or the cheapest type within a target.
+!> The effective deck contains the chosen type and the target, for restarts and repeated runs.
 module deck_choose_type_m
   use contacts_m, only : type_nts_ar, type_nts_mar, type_segmented_mortar, type_chosen, &
     contact_t, has_friction, is_tied, penalty_factor, penalty_share, &
@@ -18,16 +18,16 @@ module deck_choose_type_m
   private
   public :: choose_type
 
-  !> By how much faces that are flat may be uneven, and nodes that match be apart, over a segment.
+  !> Tolerance of flat faces and matching nodes, over the mean segment length.
   real(wp), parameter :: exactly = 1.0e-6_wp
-  !> Part of a motion along faces from which on they are led along each other.
+  !> Tangential share of a motion or load from which on it counts as sliding.
   real(wp), parameter :: sliding_share = 0.1_wp
-  !> The target where none is given: types above it have lost the surface.
+  !> Default target; types with a larger estimate do not represent the surface.
   real(wp), parameter :: default_target = 0.1_wp
 
 contains
 
-  !> Choose for one interface that asks for it; one with a target has its kind of scene.
+  !> Choose the type of an interface with CTYPE 0; set the kind of scene of one with a target.
   subroutine choose_type(deck, i_block, model, contact)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block       !! of the interface
@@ -46,7 +46,7 @@ contains
     end if
     if (.not. has_target) contact%target = default_target
     if (.not. abs(contact%penalty) > 0.0_wp) then
-      ! The largest that an explicit step bears; K L/A of implicit runs and ties, up to which
+      ! The largest penalty of a stable explicit step; K L/A of implicit runs and ties, up to which
       ! contact costs next to nothing.
       contact%penalty_unit = penalty_share
       contact%penalty = 1.0_wp
@@ -56,7 +56,7 @@ contains
       end if
       contact%master_penalty = contact%penalty
     end if
-    ! The card shows what was chosen.
+    ! The effective deck has the choice.
     call set_field(deck, i_block, 'CTYPE', to_text(contact%contact_type))
     call set_field(deck, i_block, 'PEN', shortest(contact%penalty))
     call set_field(deck, i_block, 'PUNIT', to_text(contact%penalty_unit))
@@ -64,14 +64,14 @@ contains
     call set_field(deck, i_block, 'TARGET', shortest(contact%target))
   end subroutine choose_type
 
-  !> How the scene stands, the first that holds.
+  !> The kind of scene; the first that applies.
   pure function scene_of(model, contact) result(scene)
     type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact
     integer :: scene
     real(wp) :: along(2)
 
-    ! Unit vector from the first to the last node of a surface that is one open chain; else none.
+    ! Unit vector from the first to the last node of a surface of one open chain; else zero.
     along = 0.0_wp
     associate (x => model%mesh%coordinates, nodes => contact%slave%nodes)
       if (count(contact%slave%previous == 0) == 1) along = x(:, nodes(size(nodes))) - x(:, nodes(1))
@@ -85,7 +85,7 @@ contains
       else if (any(abs(along(given%motions%direction)) > sliding_share) &
         .or. any(abs(along(pack([given%rigid_motions%direction], &
         given%rigid_motions%direction <= 2))) > sliding_share)) then
-        ! A prescribed motion, of nodes or rigid bodies, leads along the faces.
+        ! Prescribed motion of nodes or rigid bodies along the faces.
         scene = scene_sliding
       else if (is_at_rest(model, contact, along) .and. match(model, contact, along)) then
         scene = scene_matching
@@ -95,7 +95,7 @@ contains
     end associate
   end function scene_of
 
-  !> The type and the reason, without a target.
+  !> Choose the type by the kind of scene, without a target.
   pure subroutine decide_by_scene(contact)
     type(contact_t), intent(inout) :: contact
 
@@ -103,48 +103,46 @@ contains
     select case (contact%scene)
     case (scene_friction)
       contact%contact_type = type_segmented_mortar
-      contact%reason = 'with friction its force is the smoothest'
+      contact%reason = 'smoothest forces with friction'
     case (scene_sliding)
       contact%contact_type = type_segmented_mortar
-      contact%reason = 'a motion leads along the faces, and its force is the smoothest'
+      contact%reason = 'smoothest forces in prescribed sliding'
     case (scene_matching)
       contact%contact_type = type_nts_ar
-      contact%reason = 'the faces are flat, match and stay beside each other: the cheapest ' &
-        //'that is exact then'
+      contact%reason = 'flat matching faces without sliding: the cheapest exact type'
     case (scene_general)
       contact%reason = 'exact pressure on any mesh'
     case default
       if (contact%penalty_unit == penalty_implicit) then
         contact%contact_type = type_segmented_mortar
-        contact%reason = 'implicit springs (PUNIT 4) are its own'
+        contact%reason = 'only this type has implicit springs (PUNIT 4)'
       else if (contact%strict) then
-        contact%reason = 'the strict rule (IPF 1) is its own'
+        contact%reason = 'only this type has the strict rule (IPF 1)'
       else
-        contact%reason = 'ties of uneven meshes are exact with it'
+        contact%reason = 'exact ties of non-matching meshes'
       end if
     end select
   end subroutine decide_by_scene
 
-  !> The cheapest type that keeps the target in the published studies, and the reason.
+  !> Choose the cheapest type within the target in the published studies.
   pure subroutine decide_by_charts(contact)
     type(contact_t), intent(inout) :: contact
 
     contact%contact_type = cheapest_type(contact%scene, contact%target)
     associate (estimate => estimates(contact%contact_type, contact%scene))
-      contact%reason = 'in studies of '//trim(scene_names(contact%scene)) &
-        //' its estimate is up to '//to_text(estimate)
+      contact%reason = 'error estimate up to '//to_text(estimate)//' in studies of ' &
+        //trim(scene_names(contact%scene))
       if (estimate <= contact%target) then
-        contact%reason = contact%reason//', the cheapest that keeps the target ' &
+        contact%reason = contact%reason//', the cheapest type within the target ' &
           //to_text(contact%target)
       else
-        contact%reason = contact%reason//', the smallest: none keeps the target ' &
-          //to_text(contact%target)//' on their meshes'
+        contact%reason = contact%reason//', the smallest; no type reaches the target ' &
+          //to_text(contact%target)//' there'
       end if
     end associate
   end subroutine decide_by_charts
 
-  !> Whether nothing starts or pulls one face along the other: initial velocities, loads on nodes,
-  !> edges and bodies, base acceleration.
+  !> Whether no initial velocity, load or base acceleration acts along the faces.
   pure function is_at_rest(model, contact, along) result(at_rest)
     type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact
@@ -176,8 +174,8 @@ contains
     end associate
   end function is_at_rest
 
-  !> Whether each node of the slave stands before one of the master, neighbours before neighbours,
-  !> both on straight lines side by side. The chains run against each other.
+  !> Whether each slave node faces a master node, in order, and both surfaces are straight and
+  !> parallel. The chains have opposite directions.
   pure function match(model, contact, along)
     type(model_t), intent(in) :: model
     type(contact_t), intent(in) :: contact
@@ -201,7 +199,7 @@ contains
         end do
         separation = x(:, master(k)) - x(:, slave(i))
         if (i == 1) gap = dot_product(separation, across)
-        ! Nodes of a finer master between would get no force.
+        ! Nodes of a finer master between them would get no force.
         if (i > 1 .and. k /= previous - 1) return
         if (abs(dot_product(separation, along)) > tolerance) return
         if (abs(dot_product(separation, across) - gap) > tolerance) return

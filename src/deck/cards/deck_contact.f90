@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> *CONTACT_2D_ cards. Contact types are numbers and names handed in by the caller; the stock
-!> keywords stand for types that must be among them. A stock card that the command line changes, or
-!> that leaves the type to the program, is written as our own card first.
+!> *CONTACT_2D_ cards. The caller passes numbers and names of the contact types; the types of stock
+!> keywords must be among them. A stock card that the command line changes is rewritten as
+!> *CONTACT_2D_SLIDELINE first.
 module deck_contact_m
   use kinds_m, only : wp
   use text_m, only : shortest
@@ -12,13 +12,13 @@ module deck_contact_m
     type_segmented_mortar, type_missing, type_chosen, contact_t, contact_kind_t, friction_rule_t, &
     kind_text, is_tied, breaks, penalty_per_node, penalty_distributed, penalty_factor, &
     penalty_share, penalty_implicit, implicit_factor, tie_none, tie_always, tie_breaks, tie_factor
-  use deck_lines_m, only : deck_t, place_t, line_error, line_warning, given_by
+  use deck_lines_m, only : deck_t, location_t, line_error, line_warning, given_by
   use deck_fields_m, only : card_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, check_rest, &
     report_field, reject_field, warn_of_field
   use deck_edits_m, only : given_number, set_field, rewrite_block
   use deck_ids_m, only : a_curve
-  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, place_of, read_active_time, &
+  use deck_values_m, only : integer_of, real_of, is_blank, is_bad, location_of, read_active_time, &
     find_id
   use deck_friction_m, only : default_friction_t, read_friction, read_stock_friction, &
     read_penalty_friction, warn_of_rule
@@ -27,22 +27,22 @@ module deck_contact_m
   private
   public :: contact_cards_t, transducer, side_fields, read_contact
 
-  !> One interface or transducer with its cards, until it has its surfaces.
+  !> One interface or transducer with its cards, for messages about its surfaces.
   type :: contact_cards_t
     integer :: block = 0                !! keyword block in the deck
     integer :: position = 0             !! among those of the deck
     type(contact_t) :: contact
     type(card_t) :: cards(4)
     integer :: sides(2) = 0             !! SURFA, SURFB: > 0 part set, < 0 node set
-    integer :: friction_line = 0        !! of FS, or of what stands for it
+    integer :: friction_line = 0        !! line of the coefficient of friction
   end type contact_cards_t
 
-  !> Fields of the two sides, of the times between which an interface acts.
+  !> Fields of the two sides, and of birth and death time.
   character(5), parameter :: side_fields(2) = ['SURFA', 'SURFB']
   character(6), parameter :: active_time(2) = ['TBIRTH', 'TDEATH']
   character(*), parameter :: slideline_keyword = 'CONTACT_2D_SLIDELINE', &
     transducer = 'CONTACT_2D_FORCE_TRANSDUCER'
-  !> How near to 0 and 1 the ends of a curve of interference must be: that is round-off of factors.
+  !> Tolerance of the first and last ordinate of an interference curve, 0 and 1.
   real(wp), parameter :: round_off = 1.0e-12_wp
 
   !> One degree, rad, and the largest turn of segments that stand for arcs where the deck does not
@@ -51,8 +51,7 @@ module deck_contact_m
 
 contains
 
-  !> One interface, or one *CONTACT_2D_FORCE_TRANSDUCER: a surface on which forces are added up.
-  !> Curves are known.
+  !> Read one interface or one *CONTACT_2D_FORCE_TRANSDUCER. Curves have been read.
   subroutine read_contact(deck, entry, kinds, model, default)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(inout) :: entry         !! has its block and position
@@ -84,14 +83,15 @@ contains
       contact%damping = contact%damping/100.0_wp
       contact%chosen_by_keyword = is_stock .and. find_word(deck, 'CTYPE', contact%id) == 0
       if (contact%chosen_by_keyword .and. .not. any(kinds%number == contact%contact_type)) &
-        call line_error(deck, deck%blocks(entry%block)%keyword, 'stands for contact type ' &
+        call line_error(deck, deck%blocks(entry%block)%keyword, 'means contact type ' &
         //to_text(contact%contact_type)//', which this version does not have'//kind_names(kinds))
       if (.not. is_tied(contact) .or. breaks(contact)) call warn_of_rule(deck, &
         entry%friction_line, contact)
     end associate
   end subroutine read_contact
 
-  !> The title and the number of an interface or transducer: its own, or its position in the deck.
+  !> Read title and number of an interface or transducer; the default number is its position in the
+  !> deck.
   subroutine read_number(deck, entry, cursor)
     type(deck_t), intent(in) :: deck
     type(contact_cards_t), intent(inout) :: entry
@@ -104,7 +104,7 @@ contains
     if (entry%contact%id == 0) entry%contact%id = entry%position
   end subroutine read_number
 
-  !> The cards of an interface with what they mean, and their rules.
+  !> Read the cards of an interface and check their rules.
   subroutine read_cards(deck, kinds, model, default, entry)
     type(deck_t), intent(inout) :: deck
     type(contact_kind_t), intent(in) :: kinds(:)
@@ -112,7 +112,7 @@ contains
     type(default_friction_t), intent(inout) :: default
     type(contact_cards_t), intent(inout) :: entry
     type(cursor_t) :: cursor
-    type(place_t) :: place       !! of the coefficient of friction
+    type(location_t) :: location       !! of the coefficient of friction
     character(:), allocatable :: name
     integer :: k
 
@@ -133,35 +133,35 @@ contains
         call read_slideline(deck, cards, contact)
         call read_interference(deck, cards(3), model, contact)
         call read_tie(deck, cards, contact)
-        call read_friction(cards, contact%friction, place)
+        call read_friction(cards, contact%friction, location)
       case ('CONTACT_2D_PENALTY', 'CONTACT_2D_PENALTY_FRICTION', 'CONTACT_2D_SLIDING_VOIDS', &
           'CONTACT_2D_TIED_SLIDING')
         call read_penalty(deck, entry)
-        if (cursor%n_card > 2) call read_penalty_friction(deck, cards(3), contact%friction, place)
+        if (cursor%n_card > 2) call read_penalty_friction(deck, cards(3), contact%friction, &
+          location)
       case default
         call read_automatic(deck, cards, contact)
         if (index(name, '_TIED') > 0) then
           contact%tie_distance = real_of(cards(3), 'TIEDGAP')
         else
-          call read_stock_friction(cards, default, contact%friction, place)
+          call read_stock_friction(cards, default, contact%friction, location)
         end if
       end select
       if (index(name, '_TIED') > 0) then
-        ! SFACT multiplies the factor of the program; what there is for contact that opens has no
-        ! effect: friction, damping, FREQ.
+        ! SFACT multiplies the default penalty of ties; damping and FREQ have no effect.
         contact%tie = tie_always
         contact%penalty = tie_factor*contact%penalty
         contact%master_penalty = contact%penalty
         contact%search_interval = 0
         contact%damping = 0.0_wp
       end if
-      entry%friction_line = place%line
+      entry%friction_line = location%line
       call check_tie(deck, deck%blocks(entry%block)%keyword, contact)
       if (name == slideline_keyword) call check_slideline(deck, cards, kinds, contact)
     end associate
   end subroutine read_cards
 
-  !> The type that a stock keyword stands for; 0 for our own.
+  !> The contact type of a stock keyword; 0 for *CONTACT_2D_SLIDELINE.
   pure function stock_type(name) result(contact_type)
     character(*), intent(in) :: name
     integer :: contact_type
@@ -185,8 +185,8 @@ contains
     end select
   end function stock_type
 
-  !> SURFA and SURFB. A surface with itself is a part set: our keyword says so by SURFB 0, those of
-  !> a single surface by their name.
+  !> SURFA and SURFB. Self contact needs a part set: SURFB 0 of *CONTACT_2D_SLIDELINE, or a
+  !> _SINGLE_SURFACE keyword.
   subroutine read_sides(deck, name, entry)
     type(deck_t), intent(inout) :: deck
     character(*), intent(in) :: name !! of the keyword
@@ -202,11 +202,10 @@ contains
       if (name == slideline_keyword) is_self = integer_of(card, 'SURFA') > 0 &
         .and. integer_of(card, 'SURFB') == 0 .and. .not. is_bad(card, 'SURFB')
       if (is_single .and. integer_of(card, 'SURFA') < 0) call report_field(deck, card, 'SURFA', &
-        'is not a part set (more than 0): contact of a surface with itself is that of whole ' &
-        //'outlines')
+        'is not a part set (more than 0): self contact needs closed boundaries')
       do k = 1, merge(1, 2, name == transducer .or. is_self)
         if (k == 2 .and. name == slideline_keyword) of_itself = &
-          '; SURFA with itself (0) only where that '//'is a part set'
+          '; self contact (0) needs a part set in SURFA'
         if (integer_of(card, side_fields(k)) == 0) call report_field(deck, card, side_fields(k), &
           'is not a surface (more than 0: part set, less than 0: node set)'//of_itself)
         if (.not. is_bad(card, side_fields(k))) entry%sides(k) = integer_of(card, side_fields(k))
@@ -214,7 +213,7 @@ contains
     end associate
   end subroutine read_sides
 
-  !> *CONTACT_2D_SLIDELINE. VDC is per cent until all is read.
+  !> *CONTACT_2D_SLIDELINE. VDC is in per cent here.
   subroutine read_slideline(deck, cards, contact)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: cards(:)
@@ -241,7 +240,7 @@ contains
     end select
   end subroutine read_slideline
 
-  !> LCINT: the curve by which an initial overlap grows, which must lead from 0 to 1.
+  !> LCINT: the curve of the active share of an initial overlap, from 0 to 1.
   subroutine read_interference(deck, card, model, contact)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -251,11 +250,11 @@ contains
 
     if (integer_of(card, 'LCINT') == 0) return
     if (integer_of(card, 'TIE') /= tie_none) call report_field(deck, card, 'LCINT', &
-      'asks for an overlap that grows, which a tie does not have (it keeps its gaps)')
+      'asks for an interference curve, which ties do not have (a tie keeps its gaps)')
     if (contact%is_self) call report_field(deck, card, 'LCINT', &
-      'asks for an overlap that grows, which is not supported of a surface with itself (SURFB 0)')
+      'asks for an interference curve, which self contact (SURFB 0) does not have')
     if (contact%birth > 0.0_wp) call report_field(deck, card, 'LCINT', &
-      'asks for the overlap of time zero to grow; the interface must act from then on (TBIRTH 0)')
+      'asks for an interference curve, which needs contact from time zero on (TBIRTH 0)')
     if (is_bad(card, 'LCINT')) return
     allocate (contact%interference)
     call find_id(deck, a_curve, card, 'LCINT', found)
@@ -272,19 +271,20 @@ contains
       if (curve%abscissa(1) < 0.0_wp) call refuse('begins at the time ' &
         //to_text(curve%abscissa(1))//', before the run')
       if (curve%abscissa(n) > model%controls%end_time) call line_warning(deck, card%line, &
-        'interference'//to_text(contact%id), 'interface '//to_text(contact%id)//': the curve of ' &
-        //'its interference ends at '//to_text(curve%abscissa(n)) &
-        //in_units(model%controls%units, 'T')//', after the run; the overlap does not act in full')
+        'interference'//to_text(contact%id), 'interface '//to_text(contact%id)//': its ' &
+        //'interference curve ends at '//to_text(curve%abscissa(n)) &
+        //in_units(model%controls%units, 'T')//', after the end time; the full overlap is not ' &
+        //'reached')
       contact%interference = curve
     end associate
 
   contains
 
-    !> One error of the curve; there may be more.
+    !> Report an error of the curve.
     subroutine refuse(what)
       character(*), intent(in) :: what
 
-      call reject_field(deck, place_of(card, 'LCINT'), 'is a curve of interference that '//what)
+      call reject_field(deck, location_of(card, 'LCINT'), 'is an interference curve that '//what)
     end subroutine refuse
 
   end subroutine read_interference
@@ -303,8 +303,8 @@ contains
     contact%damping = real_of(cards(3), 'VDC')
   end subroutine read_automatic
 
-  !> *CONTACT_2D_PENALTY and its kin with friction: node sets, written with a positive number there;
-  !> PEN is the factor on the built-in estimate that the others multiply from SFACT and SLSFAC.
+  !> *CONTACT_2D_PENALTY, _PENALTY_FRICTION, _SLIDING_VOIDS and _TIED_SLIDING: node sets with
+  !> positive numbers; PEN corresponds to SFACT times SLSFAC of the other keywords.
   subroutine read_penalty(deck, entry)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(inout) :: entry
@@ -323,8 +323,7 @@ contains
     end associate
   end subroutine read_penalty
 
-  !> Rules of the type and the penalty of *CONTACT_2D_SLIDELINE; PUNIT 4 has a PEN where that is
-  !> blank.
+  !> Check type and penalty of *CONTACT_2D_SLIDELINE; set the default PEN of PUNIT 4.
   subroutine check_slideline(deck, cards, kinds, contact)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: cards(:)
@@ -341,7 +340,7 @@ contains
     lacks_penalty = type_chosen == contact%contact_type .and. .not. abs(contact%penalty) > 0.0_wp &
       .and. contact%penalty_unit /= penalty_distributed
     if (.not. any([type_chosen, kinds%number] == contact%contact_type)) call report_field(deck, &
-      cards(1), 'CTYPE', 'is not a contact type'//kind_names(kinds))
+      cards(1), 'CTYPE', 'is not a contact type'//kind_names(kinds, 'the program chooses'))
     if (contact%penalty <= 0.0_wp .and. contact%penalty_unit /= penalty_implicit &
       .and. .not. lacks_penalty) call report_field(deck, cards(1), 'PEN', &
       'is not a penalty (more than 0)')
@@ -351,16 +350,15 @@ contains
       kinds%has_implicit_springs, .true., 1)))//' has (CTYPE)')
     if (len(given_by(deck, cards(3)%line, findloc(cards(3)%names, 'TARGET', 1))) > 0 &
       .and. type_chosen /= contact%contact_type) call report_field(deck, cards(3), 'TARGET', &
-      'is for types that the program chooses (CTYPE 0); interface '//to_text(contact%id) &
+      'needs CTYPE 0 (the program chooses the type); interface '//to_text(contact%id) &
       //' has '//name)
     if (contact%penalty_unit == penalty_share .and. contact%penalty > 1.0_wp) call report_field( &
       deck, cards(1), 'PEN', &
       'is not a share of the largest stable penalty (PUNIT 3: above 0, at most 1)')
   end subroutine check_slideline
 
-  !> *CONTACT_2D_SLIDELINE: with TIE 1 or 2 SRCH is the reach of the tie. Without PEN its penalty is
-  !> the factor of the program where the unit is a factor, or not given (blank and 0 are the same);
-  !> PENT stays where it is given.
+  !> TIE, NFLS and SFLS of *CONTACT_2D_SLIDELINE. With TIE 1 or 2 SRCH is the largest gap that is
+  !> tied. PEN 0 with PUNIT 0 or 2 means the default factor of ties.
   subroutine read_tie(deck, cards, contact)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: cards(:)
@@ -375,8 +373,8 @@ contains
     if (all(contact%penalty_unit /= [penalty_factor, penalty_per_node])) return
     if (abs(contact%master_penalty) > 0.0_wp) then
       if (contact%penalty_unit == penalty_per_node) call report_field(deck, cards(2), 'PENT', &
-        'is a force per length (PUNIT 0) beside a blank PEN, which ties take as a factor on ' &
-        //'the built-in estimate; give PEN too, or PUNIT 2')
+        'is a force per length (PUNIT 0), but the default of PEN for ties is a factor on the ' &
+        //'built-in estimate; give PEN too, or PUNIT 2')
     else
       contact%master_penalty = tie_factor
     end if
@@ -384,7 +382,7 @@ contains
     contact%penalty = tie_factor
   end subroutine read_tie
 
-  !> NFLS and SFLS: both, where ties break.
+  !> NFLS and SFLS, which tiebreak needs both.
   subroutine read_strength(deck, card, contact)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -396,18 +394,18 @@ contains
       contact%strength(k) = real_of(card, names(k))
       if (integer_of(card, 'TIE') == tie_breaks) then
         if (.not. contact%strength(k) > 0.0_wp .and. .not. is_bad(card, names(k))) &
-          call report_field(deck, card, names(k), 'is not a strength: ties that break (TIE 2) ' &
-          //'need NFLS and SFLS, more than 0')
+          call report_field(deck, card, names(k), 'is not a strength: tiebreak (TIE 2) needs ' &
+          //'NFLS and SFLS above 0')
       else if (abs(contact%strength(k)) > 0.0_wp) then
-        call warn_of_field(deck, place_of(card, names(k)), 'has no effect: only ties that break ' &
-          //'(TIE 2) have strengths')
+        call warn_of_field(deck, location_of(card, names(k)), &
+          'has no effect: only tiebreak (TIE 2) has strengths')
         contact%strength(k) = 0.0_wp
       end if
     end do
   end subroutine read_strength
 
-  !> What ties do not have: an error, or without effect. Ties that break have damping, friction and
-  !> FREQ of contact where they have failed.
+  !> Report fields that ties do not support, and fields without effect. Tiebreak has damping,
+  !> friction and FREQ, for contact after failure.
   subroutine check_tie(deck, line, contact)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line !! of the keyword
@@ -421,11 +419,11 @@ contains
     if (.not. is_tied(contact)) return
     what = 'interface '//to_text(contact%id)//' is tied'
     if (contact%is_self) call line_error(deck, line, what &
-      //': a surface can not be tied to itself (SURFB 0)')
+      //': a surface cannot be tied to itself (SURFB 0)')
     if (contact%penalty_unit == penalty_share) call line_error(deck, line, what//': its ' &
-      //'penalty can not be a share of the largest stable one (PUNIT 3)')
+      //'penalty cannot be a share of the largest stable penalty (PUNIT 3)')
     if (contact%birth > 0.0_wp) call line_error(deck, line, what//' in the reference geometry: ' &
-      //'a time from which on it acts (TBIRTH) is not supported')
+      //'a birth time (TBIRTH) is not supported')
     if (breaks(contact)) return
     if (contact%damping > 0.0_wp) call line_error(deck, line, what &
       //': contact damping (VDC) of ties is not supported')
@@ -438,12 +436,12 @@ contains
       if (is_given(k)) ignored = ignored//', '//trim(fields(k))
     end do
     if (any(is_given)) call line_warning(deck, line, 'friction of a tie'//to_text(contact%id), &
-      what//': '//ignored(3:)//' of contact that opens has no effect')
+      what//': '//ignored(3:)//' without effect')
     contact%friction = friction_rule_t()
     contact%search_interval = 0
   end subroutine check_tie
 
-  !> Fields of a stock card that are below 0 and that the command line replaces are left blank.
+  !> Blank the negative fields of a stock card that the command line replaces.
   subroutine blank_negatives(deck, i_block, id)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
@@ -461,7 +459,7 @@ contains
     end do
   end subroutine blank_negatives
 
-  !> Write a stock card as *CONTACT_2D_SLIDELINE. What is as without a field is left blank.
+  !> Rewrite a stock card as *CONTACT_2D_SLIDELINE; fields with default values are blank.
   subroutine write_as_slideline(deck, entry)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
@@ -491,17 +489,19 @@ contains
     call rewrite_block(deck, entry%block, slideline_keyword, text//third)
   end subroutine write_as_slideline
 
-  !> ` (1 name, 2 name, ...)`.
-  pure function kind_names(kinds) result(text)
+  !> ` (1 name, 2 name, ...)`, with type 0 where it has a name.
+  pure function kind_names(kinds, zero_name) result(text)
     type(contact_kind_t), intent(in) :: kinds(:)
+    character(*), intent(in), optional :: zero_name
     character(:), allocatable :: text
     integer :: i
 
     text = ''
+    if (present(zero_name)) text = ', 0 '//zero_name
     do i = 1, size(kinds)
-      text = text//merge(' (', ', ', i == 1)//to_text(kinds(i)%number)//' '//trim(kinds(i)%name)
+      text = text//', '//to_text(kinds(i)%number)//' '//trim(kinds(i)%name)
     end do
-    if (size(kinds) > 0) text = text//')'
+    if (len(text) > 0) text = ' ('//text(3:)//')'
   end function kind_names
 
 end module deck_contact_m

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> The surfaces of an interface from the sets that SURFA and SURFB name: parts, nodes or segments.
-!> Those that can not be right as the bodies stand at time zero are refused: one that crosses or
-!> overlaps itself, and bodies that overlap deeper than contact between whole outlines takes up.
+!> Surfaces of an interface from the sets SURFA and SURFB: parts, nodes or segments. Surfaces that
+!> cross or overlap themselves at time zero are errors, and bodies that overlap by more than contact
+!> of closed boundaries resolves.
 module deck_contact_sides_m
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -15,37 +15,37 @@ module deck_contact_sides_m
     chain_broken, chain_repeated, chain_short
   use deck_ids_m, only : index_of, kind_names, a_node_set, a_part, a_part_set, a_segment_set, &
     a_shell_set
-  use deck_lines_m, only : deck_t, place_t, line_warning
+  use deck_lines_m, only : deck_t, location_t, line_warning
   use deck_cards_m, only : reject_field
   use deck_contact_m, only : contact_cards_t, side_fields
-  use deck_values_m, only : resolve_id, place_of
-  use sorting_m, only : distinct, place_among
+  use deck_values_m, only : resolve_id, location_of
+  use sorting_m, only : distinct, index_among
   implicit none
   private
-  public :: mesh_outline_t, elements_of, find_side, set_nodes, mark_surface, find_surface, &
+  public :: mesh_boundary_t, elements_of, find_side, set_nodes, mark_surface, find_surface, &
     check_overlap
 
-  !> Where surfaces are looked for. Of a mesh some elements of which are refused those are made that
-  !> have no nodes of them: mistakes that do not follow from theirs are told in the same pass.
-  type :: mesh_outline_t
+  !> Boundary data of the mesh. Surfaces without nodes of refused elements are built even where some
+  !> elements are refused, so that independent errors are reported in the same pass.
+  type :: mesh_boundary_t
     type(boundary_t) :: outside
     logical :: is_sound = .true.        !! no element is refused
-    logical, allocatable :: is_uncertain(:) !! (n_node) refused elements have them
-    logical, allocatable :: is_whole(:) !! of each node set: all its nodes exist
-    integer, allocatable :: elements(:) !! (n_element) by their parts, and in rising order
-    integer, allocatable :: ends(:)     !! (0:parts) where those of each part end
-  end type mesh_outline_t
+    logical, allocatable :: is_uncertain(:) !! (n_node) nodes of refused elements
+    logical, allocatable :: is_whole(:) !! (node sets) all nodes of the set exist
+    integer, allocatable :: elements(:) !! (n_element) sorted by part, then increasing
+    integer, allocatable :: ends(:)     !! (0:parts) end of each part in `elements`
+  end type mesh_boundary_t
 
-  !> What a side is given by.
+  !> Kind of set of a side.
   integer, parameter :: side_none = 0, side_parts = 1, side_nodes = 2, side_segments = 3
   !> Names of the two sides in messages.
   character(6), parameter :: side_names(2) = ['slave ', 'master']
 
 contains
 
-  !> The elements of some parts, in rising order.
+  !> The elements of some parts, in increasing order.
   pure function elements_of(body, parts) result(elements)
-    type(mesh_outline_t), intent(in) :: body
+    type(mesh_boundary_t), intent(in) :: body
     integer, intent(in) :: parts(:)
     integer, allocatable :: elements(:)
     integer :: i, n
@@ -61,8 +61,8 @@ contains
     elements = distinct(elements)
   end function elements_of
 
-  !> The set of one side: a part set (more than 0) or a node set (less than 0), or the segment set
-  !> where the deck has no such set of that number.
+  !> The set of one side: a part set (more than 0) or a node set (less than 0), else the segment set
+  !> of this number.
   subroutine find_side(deck, entry, side, kind, found)
     type(deck_t), intent(in) :: deck
     type(contact_cards_t), intent(in) :: entry
@@ -82,12 +82,12 @@ contains
     end associate
   end subroutine find_side
 
-  !> Nodes of a transducer, with an error where there is no such set; of parts all, since the inner
-  !> ones carry no contact. None where they are in doubt.
+  !> Mark the nodes of a transducer (of parts all nodes), or report that its set does not exist.
+  !> None are marked where they belong to refused elements.
   subroutine mark_surface(deck, entry, body, model, is_on)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
-    type(mesh_outline_t), intent(in) :: body
+    type(mesh_boundary_t), intent(in) :: body
     type(model_t), intent(in) :: model
     logical, intent(out) :: is_on(:)  !! (n_node)
     logical :: is_of_part(size(model%parts))
@@ -120,7 +120,7 @@ contains
     if (kind == side_segments) nodes = [model%segment_sets(found)%nodes]
   end function set_nodes
 
-  !> An error of a side that names no set, with what else has its number.
+  !> Report a side whose set does not exist, and other entities with its number.
   subroutine refuse_side(deck, entry, side)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
@@ -137,43 +137,43 @@ contains
       end do
       if (len(same_ids) > 0) same_ids(1:1) = ';'
       if (id /= 0) call resolve_id(deck, merge(a_part_set, a_node_set, id > 0), abs(id), &
-        place_of(entry%cards(1), side_fields(side)), found, same_ids)
+        location_of(entry%cards(1), side_fields(side)), found, same_ids)
     end associate
   end subroutine refuse_side
 
-  !> The surface of one side of an interface. It has no nodes where some of a node set do not exist,
-  !> which has been told, and where it is in doubt.
+  !> The surface of one side of an interface; without nodes where errors of the set or of its
+  !> elements have been reported.
   subroutine find_surface(deck, entry, side, body, model, surface)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
     integer, intent(in) :: side
-    type(mesh_outline_t), intent(in) :: body
+    type(mesh_boundary_t), intent(in) :: body
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
-    type(place_t) :: place
+    type(location_t) :: location
     integer :: kind, found
 
-    place = place_of(entry%cards(1), side_fields(side))
+    location = location_of(entry%cards(1), side_fields(side))
     call find_side(deck, entry, side, kind, found)
     if (kind == side_none) then
       call refuse_side(deck, entry, side)
     else if (is_known_surface(body, model, kind, found)) then
       select case (kind)
       case (side_parts)
-        call surface_of_parts(deck, model%part_sets(found)%parts, place, body, model, surface)
+        call surface_of_parts(deck, model%part_sets(found)%parts, location, body, model, surface)
       case (side_nodes)
         if (body%is_whole(found)) call surface_of_nodes(deck, model%node_sets(found)%nodes, side, &
-          place, body%outside, model, surface)
+          location, body%outside, model, surface)
       case (side_segments)
         if (allocated(model%segment_sets(found)%parts)) then
-          call surface_of_parts(deck, model%segment_sets(found)%parts, place, body, model, &
+          call surface_of_parts(deck, model%segment_sets(found)%parts, location, body, model, &
             surface)
         else
-          call surface_of_segments(deck, model%segment_sets(found), place, body%outside, model, &
+          call surface_of_segments(deck, model%segment_sets(found), location, body%outside, model, &
             surface)
           if (entry%contact%is_self .and. allocated(surface%previous)) then
-            if (any(surface%previous == 0)) call reject_field(deck, place, 'is a segment set ' &
-              //'with an open chain; contact of a surface with itself is that of whole outlines')
+            if (any(surface%previous == 0)) call reject_field(deck, location, 'is a segment set ' &
+              //'with an open chain; self contact needs closed boundaries')
           end if
         end if
       end select
@@ -184,7 +184,7 @@ contains
 
   !> Whether no refused element has nodes of the surface.
   pure function is_known_surface(body, model, kind, found)
-    type(mesh_outline_t), intent(in) :: body
+    type(mesh_boundary_t), intent(in) :: body
     type(model_t), intent(in) :: model
     integer, intent(in) :: kind, found
     logical :: is_known_surface
@@ -197,11 +197,11 @@ contains
     is_known_surface = .not. any(body%is_uncertain(set_nodes(model, kind, found)))
   end function is_known_surface
 
-  !> Chains of the edges of a segment set, in any order and walked either way.
-  subroutine surface_of_segments(deck, set, place, outside, model, surface)
+  !> Surface of a segment set, with edges in any order and direction.
+  subroutine surface_of_segments(deck, set, location, outside, model, surface)
     type(deck_t), intent(inout) :: deck
     type(segment_set_t), intent(in) :: set
-    type(place_t), intent(in) :: place
+    type(location_t), intent(in) :: location
     type(boundary_t), intent(in) :: outside
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
@@ -213,7 +213,7 @@ contains
       edge = find_edge(outside, set%nodes(1, i), set%nodes(2, i))
       if (edge == 0) edge = find_edge(outside, set%nodes(2, i), set%nodes(1, i))
       if (edge == 0) then
-        call reject_field(deck, place, 'is a set with the edge between nodes ' &
+        call reject_field(deck, location, 'is a set with the edge between nodes ' &
           //to_text(model%mesh%node_id(set%nodes(1, i)))//' and ' &
           //to_text(model%mesh%node_id(set%nodes(2, i)))//', which is no outer edge of the mesh')
         return
@@ -221,16 +221,17 @@ contains
       is_chosen(edge) = .true.
     end do
     call boundary_surface(outside, is_chosen, surface, crossing)
-    if (crossing > 0) call reject_field(deck, place, 'is a set whose edges touch each other at ' &
+    if (crossing > 0) call reject_field(deck, location, &
+      'is a set whose edges touch each other at ' &
       //'node '//to_text(model%mesh%node_id(crossing))//'; give the surface as a node set')
   end subroutine surface_of_segments
 
-  !> Exterior boundary of a set of parts, found in a mesh of these parts alone.
-  subroutine surface_of_parts(deck, parts, place, body, model, surface)
+  !> Surface of a set of parts: their exterior boundary.
+  subroutine surface_of_parts(deck, parts, location, body, model, surface)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: parts(:)
-    type(place_t), intent(in) :: place
-    type(mesh_outline_t), intent(in) :: body
+    type(location_t), intent(in) :: location
+    type(mesh_boundary_t), intent(in) :: body
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
     type(boundary_t) :: boundary
@@ -239,7 +240,7 @@ contains
 
     elements = elements_of(body, parts)
     if (size(elements) == 0) then
-      call reject_field(deck, place, 'has no boundary: its parts have no elements')
+      call reject_field(deck, location, 'has no boundary: its parts have no elements')
       return
     end if
     element_nodes = model%mesh%element_nodes(:, elements)
@@ -247,14 +248,14 @@ contains
     order = [(i, i=1, size(nodes))]
     do i = 1, size(elements)
       do k = 1, 4
-        element_nodes(k, i) = place_among(nodes, order, element_nodes(k, i))
+        element_nodes(k, i) = index_among(nodes, order, element_nodes(k, i))
       end do
     end do
     call find_boundary(element_nodes, spread(.true., 1, size(elements)), &
       spread(.true., 1, size(nodes)), boundary)
     call boundary_surface(boundary, spread(.true., 1, boundary%n_edge), surface, crossing)
     if (crossing > 0) then
-      call reject_field(deck, place, 'has a boundary that touches itself at node ' &
+      call reject_field(deck, location, 'has a boundary that touches itself at node ' &
         //to_text(model%mesh%node_id(nodes(crossing)))//'; give the surface as a node set')
       return
     end if
@@ -263,12 +264,12 @@ contains
     if (model%erodes) surface%parts = parts
   end subroutine surface_of_parts
 
-  !> Chain of a node set.
-  subroutine surface_of_nodes(deck, nodes, side, place, outside, model, surface)
+  !> Surface of a node set: a chain.
+  subroutine surface_of_nodes(deck, nodes, side, location, outside, model, surface)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: nodes(:)
     integer, intent(in) :: side
-    type(place_t), intent(in) :: place
+    type(location_t), intent(in) :: location
     type(boundary_t), intent(in) :: outside
     type(model_t), intent(in) :: model
     type(surface_t), intent(out) :: surface
@@ -277,33 +278,33 @@ contains
     call chain_surface(outside, nodes, surface, outcome, bad_nodes)
     select case (outcome)
     case (chain_turned)
-      call line_warning(deck, place%line, 'turned'//to_text(place%line)//side_names(side), &
-        'the '//trim(side_names(side))//' surface was walked clockwise round its body and ' &
-        //'has been turned')
+      call line_warning(deck, location%line, 'turned'//to_text(location%line)//side_names(side), &
+        'the '//trim(side_names(side))//' surface is numbered clockwise about its body and has ' &
+        //'been reversed')
     case (chain_ordered)
-      call line_warning(deck, place%line, 'ordered'//to_text(place%line)//side_names(side), &
-        'the nodes of the '//trim(side_names(side))//' surface were not in walking order and ' &
-        //'have been put in order')
+      call line_warning(deck, location%line, 'ordered'//to_text(location%line)//side_names(side), &
+        'the nodes of the '//trim(side_names(side))//' surface are not in walking order and ' &
+        //'have been sorted')
     case (chain_short)
-      call reject_field(deck, place, 'is a set with fewer than two nodes, which is no surface')
+      call reject_field(deck, location, 'is a set with fewer than two nodes, which is no surface')
     case (chain_repeated)
-      call reject_field(deck, place, 'is a set with node ' &
+      call reject_field(deck, location, 'is a set with node ' &
         //to_text(model%mesh%node_id(bad_nodes(1)))//' in it twice')
     case (chain_broken)
-      call reject_field(deck, place, 'is a set whose nodes do not follow an outer edge of the ' &
+      call reject_field(deck, location, 'is a set whose nodes do not follow an outer edge of the ' &
         //'mesh: the first break is between nodes ' &
         //to_text(model%mesh%node_id(bad_nodes(1)))//' and ' &
         //to_text(model%mesh%node_id(bad_nodes(2))))
     end select
   end subroutine surface_of_nodes
 
-  !> Check one interface. With a birth time after zero bodies may be anywhere before it; between
-  !> open chains penetrations are taken as they are, however deep.
+  !> Check the surfaces of an interface for crossings and overlaps. Overlaps are not checked with a
+  !> birth time after zero, nor between open chains.
   subroutine check_overlap(deck, entry, sides, body, model)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
     type(surface_t), intent(in) :: sides(2)
-    type(mesh_outline_t), intent(in) :: body
+    type(mesh_boundary_t), intent(in) :: body
     type(model_t), intent(in) :: model
     type(body_view_t) :: views(2)
     type(overlap_t) :: found(2)
@@ -319,7 +320,7 @@ contains
       call find_crossing(model, sides(k), views(k), pair)
       if (pair(1) == 0) cycle
       crosses = .true.
-      call reject_field(deck, place_of(entry%cards(1), side_fields(k)), 'is a surface that ' &
+      call reject_field(deck, location_of(entry%cards(1), side_fields(k)), 'is a surface that ' &
         //'crosses itself: the segment between '//ends_text(model, sides(k), pair(1)) &
         //' crosses the one between '//ends_text(model, sides(k), pair(2)))
     end do
@@ -327,11 +328,13 @@ contains
     if (.not. (has_closed_chain(sides(1)) .or. has_closed_chain(sides(2)))) return
     do k = 1, n_side
       call find_overlap(model, sides(k), sides(k), views(k), .true., found(k))
-      if (found(k)%segment > 0) call reject_field(deck, place_of(entry%cards(1), side_fields(k)), &
+      if (found(k)%segment > 0) call reject_field(deck, location_of(entry%cards(1), &
+        side_fields(k)), &
         'is a surface that overlaps itself: '//depth_text(model, sides(k), found(k)))
     end do
     if (n_side == 1) return
-    ! Either side in the bodies of the other: the deeper one by the depth allowed is told.
+    ! Each side in the bodies of the other; the deeper one relative to the allowed depth is
+    ! reported.
     do k = 1, 2
       call find_overlap(model, sides(k), sides(3 - k), views(3 - k), .false., found(k))
     end do
@@ -339,11 +342,11 @@ contains
     k = 1
     if (found(2)%depth*found(1)%allowed > found(1)%depth*found(2)%allowed &
       .or. found(1)%segment == 0) k = 2
-    call reject_field(deck, place_of(entry%cards(1), 'SURFB'), 'overlaps the slave surface at ' &
+    call reject_field(deck, location_of(entry%cards(1), 'SURFB'), 'overlaps the slave surface at ' &
       //'the start: '//depth_text(model, sides(3 - k), found(k)))
   end subroutine check_overlap
 
-  !> Which place lies how deep, behind what, and how deep it may.
+  !> Text of an overlap: position, segment, depth and allowed depth.
   function depth_text(model, other, found) result(text)
     type(model_t), intent(in) :: model
     type(surface_t), intent(in) :: other
@@ -351,12 +354,12 @@ contains
     character(:), allocatable :: text
 
     text = 'node '//to_text(model%mesh%node_id(found%nodes(1)))
-    if (found%nodes(1) /= found%nodes(2)) text = 'a place between nodes ' &
+    if (found%nodes(1) /= found%nodes(2)) text = 'a point between nodes ' &
       //to_text(model%mesh%node_id(found%nodes(1)))//' and ' &
       //to_text(model%mesh%node_id(found%nodes(2)))
     text = text//' lies '//to_text(found%depth)//in_units(model%controls%units, 'L') &
       //' deep behind the segment between ' &
-      //ends_text(model, other, found%segment)//'; contact takes up less than ' &
+      //ends_text(model, other, found%segment)//'; contact resolves less than ' &
       //to_text(found%allowed)//in_units(model%controls%units, 'L') &
       //' there, half of the element behind it'
   end function depth_text

@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Interfaces and transducers of a deck: their cards, then their surfaces; and what interfaces do
-!> not go with: the implicit method, elements that leave the mesh, and what implicit penalties do
-!> not have.
+!> Interfaces and transducers of a deck: their cards, their surfaces, and checks against the
+!> implicit method, eroding elements and implicit penalties.
 module deck_contacts_m
   use kinds_m, only : long, wp
   use log_m, only : to_text
@@ -10,32 +9,33 @@ module deck_contacts_m
   use surfaces_m, only : surface_t, part_at_axis
   use model_m, only : model_t
   use boundary_m, only : find_boundary
-  use deck_lines_m, only : deck_t, place_t, blocks_of, line_error, line_warning
+  use deck_lines_m, only : deck_t, location_t, blocks_of, line_error, line_warning
   use deck_fields_m, only : card_t
   use deck_cards_m, only : reject_field, warn_of_field
   use deck_choose_type_m, only : choose_type
   use deck_contact_m, only : contact_cards_t, transducer, read_contact
-  use deck_contact_sides_m, only : mesh_outline_t, find_side, set_nodes, mark_surface, &
+  use deck_contact_sides_m, only : mesh_boundary_t, find_side, set_nodes, mark_surface, &
     find_surface, check_overlap
   use deck_control_m, only : control_cards, warn_of_explicit
   use deck_friction_m, only : default_friction_t, read_friction_rule, warn_of_unused
   use deck_loads_m, only : orient_pressures
   use deck_overrides_m, only : check_words
-  use deck_values_m, only : integer_of, real_of, has_field, place_of, refuse_duplicates
-  use sorting_m, only : place_among, sorted_order
+  use deck_values_m, only : integer_of, real_of, has_field, location_of, refuse_duplicates
+  use sorting_m, only : index_among, sorted_order
   implicit none
   private
   public :: read_contacts
 
 contains
 
-  !> All interfaces and transducers, and the edges of pressure loads. All else but ends is known.
-  subroutine read_contacts(deck, kinds, places, is_sound, body, model)
+  !> Read all interfaces and transducers, and orient the edges of pressure loads. Everything else
+  !> except termination conditions has been read.
+  subroutine read_contacts(deck, kinds, locations, is_sound, body, model)
     type(deck_t), intent(inout) :: deck
     type(contact_kind_t), intent(in) :: kinds(:)          !! contact types that exist
-    type(place_t), intent(in) :: places(:)                !! where each pressure load stands
+    type(location_t), intent(in) :: locations(:)          !! of the pressure loads
     logical, intent(in) :: is_sound(:)                    !! (n_element) elements not refused
-    type(mesh_outline_t), intent(inout) :: body                !! gets the outer edges
+    type(mesh_boundary_t), intent(inout) :: body          !! its outer edges are set here
     type(model_t), intent(inout) :: model
     type(contact_cards_t), allocatable :: contacts(:), transducers(:)
     integer :: i
@@ -46,8 +46,8 @@ contains
         call check_implicit_method(deck, contacts(i))
       end do
     end if
-    call find_outer_edges(deck, contacts, is_sound, model, body)
-    call orient_pressures(deck, places, body%outside, body%is_uncertain, model)
+    call set_outer_edges(deck, contacts, is_sound, model, body)
+    call orient_pressures(deck, locations, body%outside, body%is_uncertain, model)
     allocate (model%contacts(size(contacts)))
     do i = 1, size(contacts)
       call build_surfaces(deck, body, model, contacts(i))
@@ -72,7 +72,7 @@ contains
     call check_implicit_penalties(deck, contacts, model, body%is_sound)
   end subroutine read_contacts
 
-  !> The cards, those of *CONTROL_CONTACT first; each number is that of one thing.
+  !> Read the cards, those of *CONTROL_CONTACT first; numbers must be unique.
   subroutine read_all(deck, kinds, model, contacts, transducers)
     type(deck_t), intent(inout) :: deck
     type(contact_kind_t), intent(in) :: kinds(:)
@@ -92,7 +92,7 @@ contains
       model%controls%contact_step = integer_of(cards(2), 'ECDT')
       if (model%controls%implicit%is_on) call warn_of_explicit(deck, cards(2), 'ECDT')
       call read_friction_rule(cards(3), cards(3), ['SFRIC', 'DFRIC', 'EDC  ', 'VFC  '], &
-        default%rule, default%place)
+        default%rule, default%location)
     end do
     blocks = blocks_of(deck, 'CONTACT_')
     measures = deck%blocks(blocks)%name == transducer
@@ -116,14 +116,14 @@ contains
     call check_words(deck, pack(ids, .not. measures))
   end subroutine read_all
 
-  !> The outer edges between nodes of contact node and segment sets and of pressure loads, and the
-  !> nodes of refused elements.
-  subroutine find_outer_edges(deck, contacts, is_sound, model, body)
+  !> Find the outer edges between nodes of contact sets and of pressure loads, and the nodes of
+  !> refused elements.
+  subroutine set_outer_edges(deck, contacts, is_sound, model, body)
     type(deck_t), intent(in) :: deck
     type(contact_cards_t), intent(in) :: contacts(:)
     logical, intent(in) :: is_sound(:)
     type(model_t), intent(in) :: model
-    type(mesh_outline_t), intent(inout) :: body
+    type(mesh_boundary_t), intent(inout) :: body
     logical, allocatable :: among(:)
     integer :: i, k, n, kind, found
 
@@ -147,12 +147,12 @@ contains
     end do
     call find_boundary(model%mesh%element_nodes, is_sound, among, body%outside)
     call sort_by_part(model, body)
-  end subroutine find_outer_edges
+  end subroutine set_outer_edges
 
-  !> The elements of each part, so that an interface looks at its own alone. Part 0: not there.
+  !> Sort the elements by part, so that an interface visits its own elements only. Part 0: refused.
   subroutine sort_by_part(model, body)
     type(model_t), intent(in) :: model
-    type(mesh_outline_t), intent(inout) :: body
+    type(mesh_boundary_t), intent(inout) :: body
     integer :: i
 
     allocate (body%ends(0:size(model%parts)), source=0)
@@ -171,11 +171,10 @@ contains
     end do
   end subroutine sort_by_part
 
-  !> Give an interface its surfaces, with what is wrong with them and the type that the program
-  !> chooses.
+  !> Build and check the surfaces of an interface, and choose its type where CTYPE is 0.
   subroutine build_surfaces(deck, body, model, entry)
     type(deck_t), intent(inout) :: deck
-    type(mesh_outline_t), intent(in) :: body
+    type(mesh_boundary_t), intent(in) :: body
     type(model_t), intent(in) :: model
     type(contact_cards_t), intent(inout) :: entry
     type(surface_t) :: sides(2)
@@ -195,11 +194,11 @@ contains
     entry%contact%master = sides(2)
     if (deck%report%n_error > n_error) return
     call check_overlap(deck, entry, sides, body, model)
-    ! The choice looks at conditions and materials: they have to be sound as well.
+    ! The choice depends on conditions and materials, which must be free of errors.
     if (deck%report%n_error == 0) call choose_type(deck, entry%block, model, entry%contact)
   end subroutine build_surfaces
 
-  !> A node may stand on one side of an interface only.
+  !> Report nodes that both sides of an interface share.
   subroutine check_common_nodes(deck, entry, sides, model)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
@@ -211,7 +210,7 @@ contains
 
     if (size(sides(1)%nodes) == 0 .or. size(sides(2)%nodes) == 0) return
     order = sorted_order(int(sides(1)%nodes, long))
-    shared = pack(sides(2)%nodes, [(place_among(sides(1)%nodes, order, sides(2)%nodes(i)) > 0, &
+    shared = pack(sides(2)%nodes, [(index_among(sides(1)%nodes, order, sides(2)%nodes(i)) > 0, &
       i=1, size(sides(2)%nodes))])
     n = size(shared)
     names = ''
@@ -219,15 +218,15 @@ contains
       names = names//' '//to_text(model%mesh%node_id(shared(i)))
     end do
     if (n > 5) names = names//' and '//to_text(n - 5)//' more'
-    if (n > 0) call reject_field(deck, place_of(entry%cards(1), 'SURFB'), &
+    if (n > 0) call reject_field(deck, location_of(entry%cards(1), 'SURFB'), &
       'shares nodes with the slave surface:'//names)
   end subroutine check_common_nodes
 
-  !> Of each transducer the nodes that interfaces have: no others carry contact forces.
+  !> Build the transducers: the nodes of each that belong to interfaces.
   subroutine build_transducers(deck, entries, body, model)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entries(:)
-    type(mesh_outline_t), intent(in) :: body
+    type(mesh_boundary_t), intent(in) :: body
     type(model_t), intent(inout) :: model
     logical, allocatable :: touches(:), is_on(:) !! (n_node)
     integer :: i, k
@@ -248,15 +247,13 @@ contains
         transducer%title = entry%contact%title
         transducer%nodes = pack([(k, k=1, size(is_on))], is_on .and. touches)
         if (size(transducer%nodes) == 0 .and. body%is_sound) call line_warning(deck, &
-          deck%blocks(entry%block)%keyword, 'transducer'//to_text(transducer%id), 'no interface ' &
-          //'has nodes of the surface of transducer '//to_text(transducer%id) &
-          //': it measures nothing')
+          deck%blocks(entry%block)%keyword, 'transducer'//to_text(transducer%id), &
+          'transducer '//to_text(transducer%id)//' has no nodes of an interface: its forces are 0')
       end associate
     end do
   end subroutine build_transducers
 
-  !> What the implicit method asks of an interface: automatic and implicit penalties are made for
-  !> explicit steps.
+  !> Report fields of an interface that the implicit method does not support.
   subroutine check_implicit_method(deck, entry)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
@@ -266,8 +263,8 @@ contains
     if (entry%contact%damping > 0.0_wp) call line_warning(deck, &
       deck%blocks(entry%block)%keyword, 'implicit contact damping', &
       'contact damping (VDC) '//no_effect)
-    if (entry%contact%search_interval > 0) call warn_of_field(deck, place_of(entry%cards(merge(1, &
-      2, has_field(entry%cards(1), 'FREQ'))), 'FREQ'), no_effect)
+    if (entry%contact%search_interval > 0) call warn_of_field(deck, &
+      location_of(entry%cards(merge(1, 2, has_field(entry%cards(1), 'FREQ'))), 'FREQ'), no_effect)
     select case (entry%contact%penalty_unit)
     case (penalty_share)
       reason = 'asks for a share of the largest stable penalty of an explicit step'
@@ -276,11 +273,11 @@ contains
     case default
       return
     end select
-    call reject_field(deck, place_of(entry%cards(2), 'PUNIT'), reason//', which the implicit ' &
+    call reject_field(deck, location_of(entry%cards(2), 'PUNIT'), reason//', which the implicit ' &
       //'method does not have (0, 1 or 2)')
   end subroutine check_implicit_method
 
-  !> Ties and initial overlaps do not follow surfaces that change.
+  !> Report ties and interference curves on surfaces that may erode.
   subroutine check_eroding_contacts(deck, contacts, model)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: contacts(:)
@@ -297,14 +294,14 @@ contains
         if (.not. (touches(contact%slave%segment_element) &
           .or. touches(contact%master%segment_element))) cycle
         call line_error(deck, deck%blocks(contacts(i)%block)%keyword, trim(merge( &
-          'ties                  ', 'has an overlap (LCINT)', is_tied(contact)))//' on elements ' &
-          //'that may leave the mesh, which this version does not have')
+          'ties                             ', 'has an interference curve (LCINT)', &
+          is_tied(contact)))//' on elements that may erode, which this version does not have')
       end associate
     end do
 
   contains
 
-    !> Whether some of the elements may leave.
+    !> Whether some of the elements may erode.
     pure function touches(elements)
       integer, intent(in) :: elements(:)
       logical :: touches
@@ -314,7 +311,7 @@ contains
 
   end subroutine check_eroding_contacts
 
-  !> What implicit penalties (PUNIT 4) do not have: refused by name.
+  !> Report fields that implicit penalties (PUNIT 4) do not support.
   subroutine check_implicit_penalties(deck, contacts, model, sound)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: contacts(:)
@@ -326,25 +323,25 @@ contains
     do i = 1, size(contacts)
       associate (entry => contacts(i), contact => contacts(i)%contact)
         if (contact%penalty_unit /= penalty_implicit) cycle
-        if (contact%is_self) call refuse(deck, entry, 'do not act between a surface and itself')
-        if (is_tied(contact)) call refuse(deck, entry, 'only push: a tie (TIE) has other springs')
-        if (contact%damping > 0.0_wp) call refuse(deck, entry, 'have no damping of their own (VDC)')
+        if (contact%is_self) call refuse(deck, entry, 'do not support self contact')
+        if (is_tied(contact)) call refuse(deck, entry, 'do not support ties (TIE)')
+        if (contact%damping > 0.0_wp) call refuse(deck, entry, 'have no damping (VDC)')
         if (allocated(contact%interference)) call refuse(deck, entry, &
-          'have no initial overlap that grows (LCINT)')
-        if (model%erodes) call refuse(deck, entry, 'do not act where elements may leave the mesh')
+          'do not support interference curves (LCINT)')
+        if (model%erodes) call refuse(deck, entry, 'do not support eroding elements')
       end associate
     end do
     if (sound) call check_shared_nodes(deck, contacts, model)
     if (sound) call check_shared_bodies(deck, contacts, model)
   end subroutine check_implicit_penalties
 
-  !> One error for each interface, rigid wall, set of nodes that move alike and skew support that
-  !> has nodes of such an interface too.
+  !> Report nodes of implicit penalties that another interface, a rigid wall, a
+  !> *CONSTRAINED_NODE_SET or a skew support has too, one error for each.
   subroutine check_shared_nodes(deck, contacts, model)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: contacts(:)
     type(model_t), intent(in) :: model
-    integer, parameter :: most = 4 !! owners of a node that are known
+    integer, parameter :: most = 4 !! maximum number of owners of a node
     integer, allocatable :: owners(:, :), reported(:), nodes(:), others(:)
     character(:), allocatable :: name
     integer :: i, k, n, free, n_contact, n_wall
@@ -372,7 +369,7 @@ contains
           if (any(reported == owner)) cycle
           reported = [reported, owner]
           call get_owner(owner, others, name)
-          call refuse(deck, contacts(i), 'share no nodes with others: node ' &
+          call refuse(deck, contacts(i), 'cannot share nodes: node ' &
             //to_text(model%mesh%node_id(node))//' belongs to '//name//' too')
         end associate
       end do
@@ -380,8 +377,7 @@ contains
 
   contains
 
-    !> Nodes and name of an owner: interfaces come first, then walls, sets of nodes that move alike,
-    !> supports.
+    !> Nodes and name of an owner: interfaces, then walls, *CONSTRAINED_NODE_SET, skew supports.
     subroutine get_owner(owner, nodes, name)
       integer, intent(in) :: owner
       integer, allocatable, intent(out) :: nodes(:)
@@ -396,17 +392,17 @@ contains
         name = 'rigid wall '//to_text(model%walls(owner - n_contact)%id)
       else if (owner < n) then
         nodes = model%conditions%common_motions(owner - n_contact - n_wall)%nodes
-        name = 'a set of nodes that move alike'
+        name = 'a *CONSTRAINED_NODE_SET'
       else
         if (allocated(model%conditions%skew_supports)) nodes = model%conditions%skew_supports%node
-        name = 'a support along neither x nor y'
+        name = 'a support along an axis of a coordinate system'
       end if
     end subroutine get_owner
 
   end subroutine check_shared_nodes
 
-  !> One error for each rigid body, free to move, that another such interface presses too: the
-  !> pressures of both would depend on each other.
+  !> Report free rigid bodies in several interfaces with implicit penalties, one error for each:
+  !> their pressures would be coupled.
   subroutine check_shared_bodies(deck, contacts, model)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: contacts(:)
@@ -433,9 +429,9 @@ contains
               last(body) = i
               if (pass == 1) n_interface(body) = n_interface(body) + 1
               if (pass == 2 .and. n_interface(body) > 1) call refuse(deck, contacts(i), &
-                'share no rigid body that may move: part ' &
+                'cannot share a free rigid body: part ' &
                 //to_text(model%parts(model%rigids(body)%part)%id) &
-                //' is pressed by another interface of PUNIT 4 too')
+                //' is in another interface with PUNIT 4 too')
             end associate
           end do
         end associate
@@ -443,14 +439,14 @@ contains
     end do
   end subroutine check_shared_bodies
 
-  !> An error of an interface with implicit penalties.
+  !> Report an error of an interface with implicit penalties.
   subroutine refuse(deck, entry, message)
     type(deck_t), intent(inout) :: deck
     type(contact_cards_t), intent(in) :: entry
     character(*), intent(in) :: message
 
-    call reject_field(deck, place_of(entry%cards(2), 'PUNIT'), 'asks for implicit springs, which ' &
-      //'in this version '//message)
+    call reject_field(deck, location_of(entry%cards(2), 'PUNIT'), &
+      'asks for implicit springs, which '//'in this version '//message)
   end subroutine refuse
 
 end module deck_contacts_m

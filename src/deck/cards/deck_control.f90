@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> *TITLE, *CONTROL_ cards but those of the implicit method and of contact, and the *DATABASE_ cards
-!> that say how often files are written; *TERMINATION_.
+!> *TITLE, *CONTROL_ cards (except the implicit method and contact), *DATABASE_ cards with output
+!> intervals, and *TERMINATION_.
 module deck_control_m
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -19,7 +19,7 @@ module deck_control_m
     check_rest, report_field, warn_of_field
   use deck_ids_m, only : a_node, a_curve
   use deck_supports_m, only : find_body
-  use deck_values_m, only : integer_of, real_of, place_of, is_blank, has_field, find_id
+  use deck_values_m, only : integer_of, real_of, location_of, is_blank, has_field, find_id
   use history_tables_m, only : history_tables, n_table, table_of_keyword, table_nodout, &
     table_elout, table_nodfor, table_secforc
   use deck_part_m, only : hourglass_form, hourglass_coefficient
@@ -27,12 +27,12 @@ module deck_control_m
   private
   public :: control_cards, warn_of_explicit, read_controls, read_outputs, read_relaxation, read_ends
 
-  !> Files of the output plan: states, and histories by their `table_` constants.
+  !> Index of the states; histories have their `table_` constants.
   integer, parameter :: output_plot = 0
 
 contains
 
-  !> The cards of one *CONTROL_ keyword in order. Of two the later one counts.
+  !> Read the cards of a *CONTROL_ keyword. A repeated keyword replaces the previous one.
   subroutine control_cards(deck, i_block, cards)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
@@ -43,17 +43,17 @@ contains
     call open_cursor(deck, i_block, cursor)
     do k = 1, cursor%n_card
       if (k == 3 .and. deck%blocks(i_block)%name == 'CONTROL_IMPLICIT_SOLUTION') then
-        ! The card of strict tolerances comes with a negative DNORM alone.
+        ! The card of strict tolerances is present with a negative DNORM only.
         if (integer_of(cards(2), 'DNORM') >= 0) cycle
       end if
       call next_card(deck, cursor, k, cards(k))
     end do
     call check_rest(deck, cursor)
     if (any(deck%blocks(:i_block - 1)%name == deck%blocks(i_block)%name)) call line_warning(deck, &
-      deck%blocks(i_block)%keyword, 'again'//to_text(i_block), 'is given again; this one counts')
+      deck%blocks(i_block)%keyword, 'again'//to_text(i_block), 'is given twice; this one is used')
   end subroutine control_cards
 
-  !> A field that the implicit method leaves, where it asks for something.
+  !> Warn of a field that has no effect with the implicit method, where it is not 0.
   subroutine warn_of_explicit(deck, card, name)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
@@ -62,15 +62,15 @@ contains
 
     k = field_number(card%names, name)
     if (.not. card%blank(k) .and. (card%i(k) /= 0 .or. abs(card%r(k)) > 0.0_wp)) call &
-      warn_of_field(deck, place_of(card, name), 'has no effect with the implicit method')
+      warn_of_field(deck, location_of(card, name), 'has no effect with the implicit method')
   end subroutine warn_of_explicit
 
-  !> End, step, units and what parts have of hourglass control. Curves, and whether the run is
-  !> implicit, are known.
+  !> Read termination, time step, units and the default hourglass control. Curves and IMFLAG have
+  !> been read.
   subroutine read_controls(deck, model, hourglass, erodes, step_line)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
-    type(hourglass_t), intent(out) :: hourglass !! of parts that name no control of their own
+    type(hourglass_t), intent(out) :: hourglass !! of parts without HGID
     logical, intent(out) :: erodes              !! ERODE of *CONTROL_TIMESTEP
     integer, intent(out) :: step_line           !! its card, 0 = none
     type(card_t) :: cards(6), step
@@ -157,7 +157,7 @@ contains
     controls%masses_stay = integer_of(card, 'MS1ST') == 1
   end subroutine read_timestep
 
-  !> The curve that caps the step, and rules of the step, from the card or from a word.
+  !> Read LCTM, and check fields of the time step from the card or the command line.
   subroutine check_step(deck, card, model)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -170,7 +170,7 @@ contains
         if (k > 0) then
           if (minval(model%curves(k)%ordinate) <= 0.0_wp) call line_error(deck, &
             deck%maps(a_curve)%lines(k), 'curve '//to_text(integer_of(card, 'LCTM')) &
-            //' caps the time step (LCTM) and must be above 0 everywhere')
+            //' limits the time step (LCTM) and must be above 0 everywhere')
         end if
       end if
       if (controls%implicit%is_on) return
@@ -181,11 +181,11 @@ contains
       given = given_by(deck, card%line, field_number(card%names, 'LCTM'))
       if (len(given) == 0) given = 'the curve LCTM'
       if (controls%dt_initial > 0.0_wp .and. integer_of(card, 'LCTM') > 0) call line_warning(deck, &
-        card%line, 'dtinit', 'DTINIT has no effect beside '//given)
+        card%line, 'dtinit', 'DTINIT has no effect with '//given)
     end associate
   end subroutine check_step
 
-  !> *CONTROL_UNITS: names for messages alone. A word that is not known leaves them without.
+  !> *CONTROL_UNITS: names of units for messages; none with an unknown word.
   subroutine read_units(deck, card, units)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
@@ -203,15 +203,15 @@ contains
       if (len(word) == 0) word = trim(defaults(k))
       call find_unit(k, word, units%names(k), values(k))
       if (len_trim(units%names(k)) > 0) cycle
-      call warn_of_field(deck, place_of(card, fields(k)), 'is no unit that messages know (' &
-        //trim(known(k))//'), so that they name none')
+      call warn_of_field(deck, location_of(card, fields(k)), 'is not a known unit (' &
+        //trim(known(k))//'): messages have no units')
       values(k) = 0.0_wp
     end do
     if (all(values > 0.0_wp)) call set_force(values, units)
   end subroutine read_units
 
-  !> *CONTROL_DYNAMIC_RELAXATION: whether the run begins with it, which curves may ask for too, and
-  !> what may not be in it. All else of the model is known.
+  !> *CONTROL_DYNAMIC_RELAXATION and SIDR of curves; report what relaxation does not support. The
+  !> rest of the model has been read.
   subroutine read_relaxation(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
@@ -241,7 +241,7 @@ contains
         dim=1))
       if (model%controls%implicit%is_on) call refuse('with the implicit method')
       if (size(model%contacts) > 0) call refuse('with contact')
-      if (model%erodes) call refuse('with elements that may leave the mesh')
+      if (model%erodes) call refuse('with elements that may erode')
       if (allocated(model%walls)) call refuse('with rigid walls')
       if (size(model%rigids) > 0) call refuse('with rigid bodies')
       if (size(conditions%motions) > 0) call refuse('with prescribed motion')
@@ -250,7 +250,7 @@ contains
 
   contains
 
-    !> One error.
+    !> Report an error.
     subroutine refuse(what)
       character(*), intent(in) :: what
 
@@ -260,8 +260,8 @@ contains
 
   end subroutine read_relaxation
 
-  !> *DATABASE_ keywords with an interval; of one that is given again the later one counts. The end
-  !> time and curves are known.
+  !> *DATABASE_ keywords with an interval; a repeated keyword replaces the previous one. End time
+  !> and curves have been read.
   subroutine read_outputs(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
@@ -309,7 +309,7 @@ contains
     end associate
   end subroutine read_outputs
 
-  !> Interval of one output file.
+  !> Read the interval of one output file.
   subroutine read_interval(deck, name, curves, card, interval)
     type(deck_t), intent(inout) :: deck
     character(*), intent(in) :: name            !! of the field of its curve
@@ -326,7 +326,7 @@ contains
       //' is an output interval and must be above 0 everywhere')
   end subroutine read_interval
 
-  !> A history that is asked for and has no file, for want of a keyword that says of what.
+  !> Warn of a history without a file, because the keyword with its entities is missing.
   subroutine warn_of_empty(deck, line, table, interval)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line, table
@@ -339,12 +339,12 @@ contains
     k = findloc(tables, table, 1)
     if (k == 0 .or. deck%incomplete) return
     if (is_asked(interval) .and. size(blocks_of(deck, trim(needed(k)))) == 0) call &
-      line_warning(deck, line, 'empty '//history_tables(table)%name, 'asks for a history and the ' &
-      //'deck has no *'//trim(needed(k))//': no file is written')
+      line_warning(deck, line, 'empty '//history_tables(table)%name, 'asks for a history, but ' &
+      //'the deck has no *'//trim(needed(k))//': no file is written')
   end subroutine warn_of_empty
 
-  !> *TERMINATION_: nodes, rigid bodies and interfaces that end a run. Rigid bodies and interfaces
-  !> of the model are known.
+  !> *TERMINATION_: termination by nodes, rigid bodies and interfaces. Rigid bodies and interfaces
+  !> have been read.
   subroutine read_ends(deck, model, sound)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
@@ -368,7 +368,7 @@ contains
         call find_id(deck, a_node, card, 'NID', ending%where)
         if (ending%kind == end_node_contact .and. ending%where > 0 .and. sound) then
           if (.not. is_in_contact(model, ending%where)) call report_field(deck, card, 'NID', &
-            'is no node of an interface')
+            'is not a node of an interface')
         end if
       else
         call read_end_bounds(deck, card, end_body_displacement, end_body_distance, ending)
@@ -395,14 +395,14 @@ contains
     ending%where = findloc(model%contacts%id, ending%id, 1)
     if (ending%where == 0) then
       if (.not. deck%incomplete) call report_field(deck, card, 'CID', &
-        'is no interface of this deck')
+        'matches no interface of this deck')
     else if (model%contacts(ending%where)%is_self) then
-      call report_field(deck, card, 'CID', 'is an interface of a surface with itself, whose ' &
-        //'forces cancel')
+      call report_field(deck, card, 'CID', 'is an interface with self contact, whose total force ' &
+        //'is 0')
     end if
   end subroutine read_contact_end
 
-  !> Bounds of a node or a rigid body. A bound that is blank, of bodies also 0, does not count.
+  !> Read the bounds of a node or a rigid body. Blank bounds, for bodies also 0, are not used.
   subroutine read_end_bounds(deck, card, along, other, ending)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -417,14 +417,14 @@ contains
     if (along == end_body_displacement) is_open = is_open .or. [abs(real_of(card, 'MAXC')), &
       abs(real_of(card, 'MINC'))] <= 0.0_wp
     if (ending%kind == end_body_distance) is_open(2) = .true.
-    if (all(is_open)) call report_field(deck, card, 'MAXC', 'is no bound, nor is MINC: ' &
-      //'nothing would end the run')
+    if (all(is_open)) call report_field(deck, card, 'MAXC', 'is not a bound, nor is MINC: the ' &
+      //'condition would never end the run')
     if (.not. is_open(1)) ending%most = real_of(card, 'MAXC')
     if (.not. is_open(2)) ending%least = real_of(card, 'MINC')
     if (ending%least >= ending%most) call report_field(deck, card, 'MINC', 'is not below MAXC')
   end subroutine read_end_bounds
 
-  !> Whether some interface has the node.
+  !> Whether a node belongs to an interface.
   pure function is_in_contact(model, node) result(yes)
     type(model_t), intent(in) :: model
     integer, intent(in) :: node

@@ -15,8 +15,8 @@ module deck_curves_m
   private
   public :: table_t, read_curves, read_systems
 
-  !> One *DEFINE_TABLE: its values, and the first and last of its curves, which are those of the
-  !> blocks that come next. The last lies before the first where there are not enough.
+  !> One *DEFINE_TABLE: its values, and the first and last of its curves, which follow it in the
+  !> deck. The last is less than the first where curves are missing.
   type :: table_t
     real(wp), allocatable :: values(:)
     integer :: curves(2) = [1, 0]
@@ -24,7 +24,7 @@ module deck_curves_m
 
 contains
 
-  !> All curves and tables: points, then scale factors and offsets applied, x = SFA*(x + OFFA).
+  !> Read all curves and tables, with scale factors and offsets applied: x = SFA*(x + OFFA).
   subroutine read_curves(deck, model, tables)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
@@ -61,7 +61,7 @@ contains
     call read_tables(deck, of_block, tables)
   end subroutine read_curves
 
-  !> *DEFINE_TABLE: a number, and a value for each of the curves that come next.
+  !> *DEFINE_TABLE: a number, and a value for each of the next curves.
   subroutine read_tables(deck, of_block, tables)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: of_block(:)   !! curve of each block, 0 for none
@@ -84,7 +84,7 @@ contains
       tables(n)%values = values(1, :)
       if (index_of(deck%maps(a_curve), integer_of(head, 'TBID')) > 0) call &
         report_field(deck, head, 'TBID', 'is the number of a curve too')
-      ! Its curves are those of the blocks that come next.
+      ! Its curves are the next blocks.
       associate (table => tables(n), n_value => size(tables(n)%values))
         m = 0
         do k = blocks(i) + 1, deck%n_block
@@ -92,26 +92,26 @@ contains
           if (deck%blocks(k)%dropped) cycle
           if (deck%blocks(k)%name /= 'DEFINE_CURVE') exit
           m = m + 1
-          if (of_block(k) == 0) exit ! its own mistake has been reported
+          if (of_block(k) == 0) exit ! its error has been reported
           if (m == 1) table%curves(1) = of_block(k)
           if (m == n_value) table%curves(2) = of_block(k)
         end do
         if (m < n_value .and. .not. deck%maps(a_curve)%has_refused) call line_error(deck, &
           head%line, &
           'table '//to_text(integer_of(head, 'TBID'))//' has '//to_text(n_value)//' values but ' &
-          //to_text(m)//' *DEFINE_CURVE right behind it: it takes one for each value, in that ' &
-          //'order')
+          //to_text(m)//' *DEFINE_CURVE right after it; it needs one for each value, in this order')
       end associate
     end do
     call map_defined(deck, a_table, 'TBID')
   end subroutine read_tables
 
-  !> The rows behind it, scale*(value + offset) in each column; the first column must increase.
+  !> Read the rows of a curve or table, scale*(value + offset) in each column; the first column must
+  !> increase.
   subroutine read_rows(deck, names, scale, offset, not_beyond, cursor, rows)
     type(deck_t), intent(inout) :: deck
     character(*), intent(in) :: names(:)               !! (n_column) fields of a row
     real(wp), intent(in) :: scale(:), offset(:)        !! (n_column)
-    character(*), intent(in) :: not_beyond             !! what to say where it does not
+    character(*), intent(in) :: not_beyond             !! message where it does not
     type(cursor_t), intent(inout) :: cursor
     real(wp), allocatable, intent(out) :: rows(:, :)   !! (n_column, n_row)
     type(card_t) :: card
@@ -134,15 +134,15 @@ contains
       last = rows(1, n)
     end do
     rows = rows(:, :n)
-    ! What has been refused is looked at further, with values that at least increase.
+    ! Refused rows are checked further with increasing values.
     if (.not. is_sound) rows(1, :) = [(real(i, wp), i=0, n - 1)]
   end subroutine read_rows
 
-  !> *DEFINE_COORDINATE_SYSTEM: the x axis goes from the origin to the point L; the point P is on
-  !> the side of the y axis.
+  !> *DEFINE_COORDINATE_SYSTEM: the x axis points from the origin to point L; point P is on the side
+  !> of the y axis.
   subroutine read_systems(deck)
     type(deck_t), intent(inout) :: deck
-    character(*), parameter :: out_of_plane = 'takes the axes out of the plane of the model'
+    character(*), parameter :: out_of_plane = 'tilts the axes out of the plane of the model'
     type(cursor_t) :: cursor
     type(card_t) :: card, more
     integer, allocatable :: blocks(:)
@@ -169,7 +169,7 @@ contains
         call report_field(deck, card, 'XL', ': the point on the x axis is the origin')
       else if (.not. abs(across) > 0.0_wp) then
         call report_field(deck, more, 'XP', &
-          ': the point in the plane of the axes lies on the x axis')
+          ': the point on the side of the y axis lies on the x axis')
       end if
       if (norm2(to_l) > 0.0_wp) to_l = to_l/norm2(to_l)
       deck%axes(:, 1, n) = to_l

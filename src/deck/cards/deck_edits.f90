@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Edits of the text of a deck before its cards are read: fields, blocks. The edited lines are
-!> parsed and checked as those of a file, and stand in the effective deck.
+!> Edits fields and blocks of a deck before its cards are read. Edited lines are parsed and checked
+!> like lines of a file, and are part of the effective deck.
 module deck_edits_m
   use text_m, only : read_real, number_good
   use kinds_m, only : wp
@@ -15,8 +15,8 @@ module deck_edits_m
 
 contains
 
-  !> Number of a field of a keyword with one line for each card, parameters put in; 0 where it is
-  !> blank or none.
+  !> Value of a field of a keyword with one line for each card, parameters replaced; 0 where it is
+  !> blank or not a number.
   subroutine given_number(deck, i_block, name, value)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
@@ -37,13 +37,13 @@ contains
     if (status /= number_good) value = 0.0_wp
   end subroutine given_number
 
-  !> Give a field of a keyword with one line for each card another text.
+  !> Replace the text of a field of a keyword with one line for each card.
   subroutine set_field(deck, i_block, name, text, word)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
     character(*), intent(in) :: name              !! of the field
     character(*), intent(in) :: text
-    integer, intent(in), optional :: word         !! that gives it
+    integer, intent(in), optional :: word         !! override that gives it
     type(card_spec_t) :: spec
     type(card_t) :: card
     character(:), allocatable :: new
@@ -67,7 +67,7 @@ contains
     if (present(word)) deck%made(line - deck%n_written)%words(k) = word
   end subroutine set_field
 
-  !> Where a field stands: its card, line and position; 0: the keyword has no such field.
+  !> Card, line and position of a field; position 0: the keyword does not have the field.
   subroutine find_field(deck, i_block, name, spec, line, k)
     type(deck_t), intent(in) :: deck
     integer, intent(in) :: i_block
@@ -89,7 +89,7 @@ contains
     k = 0
   end subroutine find_field
 
-  !> Let a block have lines that were made, in place of its own and `n_least` at least.
+  !> Replace the lines of a block by generated lines, at least `n_least`.
   subroutine make_lines(deck, i_block, n_least)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block, n_least
@@ -115,11 +115,11 @@ contains
     end associate
   end subroutine make_lines
 
-  !> One more line that was made, blank.
+  !> Append a blank generated line.
   subroutine append_line(deck, i_block, number)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
-    integer, value :: number !! of the line in the file that messages name; a copy, as lists grow
+    integer, value :: number !! line number in messages; a copy, since the lists are reallocated
     integer :: n
 
     if (.not. allocated(deck%made)) then
@@ -132,12 +132,12 @@ contains
     deck%made(n) = made_line_t(block=i_block)
   end subroutine append_line
 
-  !> Give a block another keyword and other lines.
+  !> Replace keyword and lines of a block.
   subroutine rewrite_block(deck, i_block, name, text)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
     character(*), intent(in) :: name !! of the keyword, without options
-    character(*), intent(in) :: text !! lines, each with its end; a title where the block has one
+    character(*), intent(in) :: text !! lines with line ends; first the title of a titled block
     integer :: start, next, number
 
     associate (block => deck%blocks(i_block))
@@ -156,10 +156,10 @@ contains
     end associate
   end subroutine rewrite_block
 
-  !> One more keyword at the end of the deck.
+  !> Append a keyword to the deck.
   subroutine append_block(deck, name, text)
     type(deck_t), intent(inout) :: deck
-    character(*), intent(in) :: name, text        !! as those of `rewrite_block`
+    character(*), intent(in) :: name, text        !! as in `rewrite_block`
 
     call append_line(deck, deck%n_block + 1, 0)
     call open_block(deck, 1, name)

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> *MAT_ADD_EROSION, and which materials may leave the mesh.
+!> *MAT_ADD_EROSION, and the materials that may erode.
 module deck_erosion_m
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -15,13 +15,14 @@ module deck_erosion_m
   private
   public :: read_erosions
 
-  !> Laws whose pressure can be lost.
+  !> Laws that can erode.
   integer, parameter :: can_erode(6) = [law_elastic, law_plastic, law_piecewise, law_johnson_cook, &
     law_hot_johnson_cook, law_null]
 
 contains
 
-  !> Give materials their criteria, before they get their pressures. Parts are known.
+  !> Read the erosion criteria of all materials, before their pressure moduli are set. Parts have
+  !> been read.
   subroutine read_erosions(deck, by_step, step_line, model)
     type(deck_t), intent(inout) :: deck
     logical, intent(in) :: by_step       !! ERODE
@@ -37,7 +38,7 @@ contains
     end do
     do m = 1, size(model%materials)
       associate (material => model%materials(m))
-        ! What the law itself and ERODE ask for.
+        ! Criteria of the law and of ERODE.
         by_law = material%failure_strain < huge(1.0_wp)
         if (allocated(material%flow)) by_law = by_law .or. (material%flow%has_damage &
           .and. .not. material%flow%keeps_broken)
@@ -54,15 +55,15 @@ contains
       call check_parts(deck, by_step, step_line, model)
       return
     end if
-    if (by_step .and. model%erodes) call line_error(deck, step_line, 'ERODE lets elements leave ' &
-      //'the mesh, which the implicit method does not have')
+    if (by_step .and. model%erodes) call line_error(deck, step_line, 'ERODE asks for erosion, ' &
+      //'which the implicit method does not have')
     model%erodes = .false.
     do m = 1, size(model%materials)
       if (allocated(model%materials(m)%erosion)) deallocate (model%materials(m)%erosion)
     end do
   end subroutine read_erosions
 
-  !> Criteria of one material. A field that is blank, or equal to EXCL, is none.
+  !> Read the criteria of one material. Fields that are blank or equal to EXCL are not used.
   subroutine read_erosion(deck, i_block, model)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
@@ -83,7 +84,7 @@ contains
       if (.not. is_bad(card, 'NUMFIP')) erosion%n_point = max(1, nint(real_of(card, 'NUMFIP')))
       erosion%n_criteria = max(1, nint(real_of(card, 'NCS')))
       if (erosion%n_given == 0 .and. .not. erosion%least_step > 0.0_wp) then
-        call report_field(deck, card, 'MID', 'gets no criterion: all of them are blank or EXCL')
+        call report_field(deck, card, 'MID', 'has no criterion: all fields are blank or EXCL')
       else if (real_of(card, 'NCS') > n_most) then
         call report_field(deck, card, 'NCS', 'is not a number of criteria that may hold at ' &
           //'once (1 to '//to_text(n_most)//', which are given)')
@@ -93,13 +94,13 @@ contains
     if (m == 0) return
     associate (material => model%materials(m))
       if (allocated(material%erosion)) then
-        call report_field(deck, cards(1), 'MID', 'has criteria of erosion already')
+        call report_field(deck, cards(1), 'MID', 'has erosion criteria already')
       else if (.not. any(can_erode == material%law) .or. material%is_rigid) then
         call report_field(deck, cards(1), 'MID', &
-          'is a material whose elements can not leave the mesh')
+          'is a material that cannot erode')
       else
         if (model%controls%implicit%is_on) call line_error(deck, cards(1)%line, &
-          'lets elements leave the mesh, which the implicit method does not have')
+          'asks for erosion, which the implicit method does not have')
         do i = m, size(model%materials)
           if (model%materials(i)%id == material%id) model%materials(i)%erosion = erosion
         end do
@@ -114,7 +115,7 @@ contains
     end associate
   end subroutine read_erosion
 
-  !> Cards 1 and 2.
+  !> Read the criteria of cards 1 and 2.
   subroutine read_criteria(deck, card, more, erosion)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card, more
@@ -128,8 +129,8 @@ contains
       if (real_of(card, 'VOLEPS') < 0.0_wp) call read_limit(card, 'VOLEPS', erosion%least_volume)
       if (.not. abs(real_of(card, 'VOLEPS')) > 0.0_wp) then
         erosion%n_given = erosion%n_given + 1
-        call report_field(deck, card, 'VOLEPS', 'is no volumetric strain at failure (more than 0 ' &
-          //'in tension, less than 0 in compression)')
+        call report_field(deck, card, 'VOLEPS', 'is not a volumetric strain at failure (above 0 ' &
+          //'in tension, below 0 in compression)')
       end if
     end if
     call read_limit(more, 'MNPRES', erosion%least_pressure)
@@ -143,7 +144,7 @@ contains
     if (real_of(more, 'SIGTH') < 0.0_wp) call report_field(deck, more, 'SIGTH', 'is negative')
     erosion%threshold = max(0.0_wp, real_of(more, 'SIGTH'))
     if (.not. is_given(more, 'IMPULSE')) call report_field(deck, more, 'SIGTH', &
-      'is a threshold without the impulse IMPULSE that it belongs to')
+      'is a threshold stress without IMPULSE')
 
   contains
 
@@ -157,7 +158,7 @@ contains
         .and. abs(real_of(card_of, name) - real_of(card, 'EXCL')) > 0.0_wp
     end function is_given
 
-    !> A criterion: of either sign where it may be, else above 0.
+    !> Read a criterion, of either sign where allowed, else above 0.
     subroutine read_limit(card_of, name, value)
       type(card_t), intent(inout) :: card_of
       character(*), intent(in) :: name
@@ -176,8 +177,8 @@ contains
 
   end subroutine read_criteria
 
-  !> Hourglass works of each element are those of the viscous and the stiffness form; ERODE passes
-  !> over rubber and foam, which can not lose their pressure.
+  !> Report parts that may erode with assumed strain hourglass control, which has no hourglass
+  !> energy per element, and rubber and foam with ERODE.
   subroutine check_parts(deck, by_step, step_line, model)
     type(deck_t), intent(inout) :: deck
     logical, intent(in) :: by_step
@@ -191,13 +192,13 @@ contains
         associate (material => model%materials(part%material))
           if (by_step .and. .not. (material%is_rigid .or. any(can_erode == material%law))) call &
             line_warning(deck, step_line, 'ERODE and part '//to_text(part%id), &
-            'ERODE takes no elements of part '//to_text(part%id)//', which is rubber or foam: a ' &
-            //'step of theirs below DTMIN ends the run')
+            'ERODE does not erode part '//to_text(part%id)//', which is rubber or foam: a time ' &
+            //'step below DTMIN ends the run')
           if (.not. allocated(material%erosion)) cycle
           if (model%sections(part%section)%is_full) cycle
           if (part%hourglass%form == hourglass_assumed) call line_error(deck, &
             deck%maps(a_part)%lines(k), 'part '//to_text(part%id)//' has hourglass control by ' &
-            //'assumed strain (IHQ 6), and elements that may leave the mesh, which have IHQ 1 to 5')
+            //'assumed strain (IHQ 6), but elements that may erode, which need IHQ 1 to 5')
         end associate
       end associate
     end do

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Yield stress and failure: by points (*MAT_PIECEWISE_LINEAR_PLASTICITY and
-!> _ELASTIC_PLASTIC_HYDRO), by Johnson and Cook (*MAT_JOHNSON_COOK and _SIMPLIFIED_JOHNSON_COOK).
+!> Yield stress and failure of *MAT_PIECEWISE_LINEAR_PLASTICITY, _ELASTIC_PLASTIC_HYDRO,
+!> _JOHNSON_COOK and _SIMPLIFIED_JOHNSON_COOK.
 module deck_hardening_m
   use kinds_m, only : wp
   use curves_m, only : curve_t
@@ -14,15 +14,15 @@ module deck_hardening_m
   use deck_cards_m, only : cursor_t, next_card, report_field, warn_of_field
   use deck_curves_m, only : table_t
   use deck_ids_m, only : a_curve, a_table, index_of
-  use deck_values_m, only : integer_of, real_of, is_bad, find_id, reals_of, place_of
+  use deck_values_m, only : integer_of, real_of, is_bad, find_id, reals_of, location_of
   implicit none
   private
   public :: read_piecewise, read_hydro, read_tangent_modulus, read_johnson_cook, &
     read_simplified_johnson_cook, read_failure, read_cutoff
 
-  !> A strain at failure from here on means never.
+  !> Strain at failure from which on there is no failure.
   real(wp), parameter :: never = 1.0e16_wp
-  !> How far G may be off E/(2 (1 + PR)) without a word: decks give three digits.
+  !> Relative difference of G and E/(2 (1 + PR)) without a warning: decks give three digits.
   real(wp), parameter :: same_shear = 0.01_wp
 
 contains
@@ -33,7 +33,7 @@ contains
     type(cursor_t), intent(inout) :: cursor
     type(card_t), intent(inout) :: card
     type(table_t), intent(in) :: tables(:)
-    type(model_t), intent(inout) :: model     !! its curves get to know what they are of
+    type(model_t), intent(inout) :: model     !! `is_of_time` of its curves is set
     type(material_t), intent(inout) :: material
     type(card_t) :: rate, points(2)
 
@@ -41,7 +41,7 @@ contains
     call read_failure(card, 'FAIL', material)
     call next_card(deck, cursor, 2, rate)
     if (real_of(rate, 'C') > 0.0_wp .and. .not. real_of(rate, 'P') > 0.0_wp) call &
-      report_field(deck, rate, 'P', 'is not an exponent (more than 0) for the C beside it')
+      report_field(deck, rate, 'P', 'is not an exponent (more than 0), which C needs')
     call next_card(deck, cursor, 3, points(1))
     call next_card(deck, cursor, 4, points(2))
     if (integer_of(rate, 'LCSS') > 0) then
@@ -59,7 +59,7 @@ contains
     call read_rate_effect(deck, rate, model, material)
   end subroutine read_piecewise
 
-  !> *MAT_ELASTIC_PLASTIC_HYDRO: its pressure comes from an equation of state.
+  !> *MAT_ELASTIC_PLASTIC_HYDRO, which needs an equation of state.
   subroutine read_hydro(deck, cursor, card, material)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
@@ -86,11 +86,11 @@ contains
     end if
   end subroutine read_hydro
 
-  !> Slope of the yield stress over plastic strain from that of the uniaxial curve, ETAN beside E.
+  !> Plastic modulus E_p = E ETAN/(E - ETAN) from the uniaxial tangent modulus.
   subroutine read_tangent_modulus(deck, card, modulus)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
-    real(wp), intent(inout) :: modulus   !! as it was where the card has mistakes
+    real(wp), intent(inout) :: modulus   !! unchanged where the card has errors
 
     associate (young => real_of(card, 'E'), tangent => real_of(card, 'ETAN'))
       if (tangent >= young .and. .not. is_bad(card, 'E')) call report_field(deck, card, 'ETAN', &
@@ -99,7 +99,7 @@ contains
     end associate
   end subroutine read_tangent_modulus
 
-  !> SIGY, and a slope behind it.
+  !> Linear hardening from SIGY.
   subroutine read_linear_hardening(deck, card, modulus, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
@@ -114,7 +114,7 @@ contains
     call set_initial_yield(deck, card, material)
   end subroutine read_linear_hardening
 
-  !> Whether cards of EPS and ES have any.
+  !> Whether cards of EPS and ES have values.
   pure function has_points(cards) result(yes)
     type(card_t), intent(in) :: cards(:)
     logical :: yes
@@ -123,11 +123,11 @@ contains
     yes = any([(any(abs(cards(i)%r(:8)) > 0.0_wp), i=1, size(cards))])
   end function has_points
 
-  !> EPS and ES, eight on a card: as many points as there are up to the last that is not zero.
+  !> EPS and ES, eight on a card: points up to the last nonzero one.
   subroutine read_hardening_points(deck, card, cards, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
-    type(card_t), intent(inout) :: cards(:)   !! of EPS, then as many of ES
+    type(card_t), intent(inout) :: cards(:)   !! of EPS, then of ES
     type(material_t), intent(inout) :: material
     type(curve_t) :: points(1)
     real(wp), allocatable :: strain(:), stress(:)
@@ -156,7 +156,7 @@ contains
     call set_initial_yield(deck, card, material)
   end subroutine read_hardening_points
 
-  !> LCSS: a curve, or a table of them.
+  !> LCSS: a curve or a table.
   subroutine read_hardening_curves(deck, card, rate, tables, model, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
@@ -178,7 +178,7 @@ contains
       ends = k
       rates = [0.0_wp]
       if (k == 0 .and. .not. (deck%maps(a_curve)%has_refused .or. deck%maps(a_table)%has_refused)) &
-        call report_field(deck, rate, 'LCSS', 'is no curve or table of this deck')
+        call report_field(deck, rate, 'LCSS', 'matches no curve or table of this deck')
     end if
     if (ends(1) == 0 .or. ends(2) < ends(1)) return
     if (rates(1) < 0.0_wp) call report_field(deck, rate, 'LCSS', 'is a table with negative ' &
@@ -200,7 +200,7 @@ contains
     call set_initial_yield(deck, card, material)
   end subroutine read_hardening_curves
 
-  !> What the law starts with, and a fall that it cannot follow.
+  !> Set the initial yield stress and modulus, and report softening that has no solution.
   subroutine set_initial_yield(deck, card, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(in) :: card
@@ -210,10 +210,10 @@ contains
     material%hardening = material%curve%slope(1, 1)
     if (minval(material%curve%slope) <= -3.0_wp*material%shear .and. material%shear > 0.0_wp) call &
       line_error(deck, card%line, 'the yield stress of material '//to_text(material%id) &
-      //' falls faster than 3G: no stress would be in balance')
+      //' falls faster than 3G: the return mapping would have no solution')
   end subroutine set_initial_yield
 
-  !> Rate effect: a table comes before LCSR, LCSR before C and P.
+  !> Read the rate effect: a table prevails over LCSR, LCSR over C and P.
   subroutine read_rate_effect(deck, card, model, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -250,11 +250,11 @@ contains
       'asks for the viscoplastic rate form, which this version does not have; 0 scales the ' &
       //'yield stress with the total strain rate')
     if (minval(material%curve%slope) < 0.0_wp) call report_field(deck, card, 'C', &
-      'begins a card with a rate effect, but the yield stress falls somewhere: both together ' &
-      //'are not part of this law')
+      'begins a card with a rate effect, but the yield stress falls somewhere: this law does ' &
+      //'not have both')
   end subroutine read_rate_effect
 
-  !> A plastic strain at failure; 0 means never.
+  !> Read the plastic strain at failure; 0 means no failure.
   subroutine read_failure(card, name, material)
     type(card_t), intent(in) :: card
     character(*), intent(in) :: name
@@ -264,7 +264,7 @@ contains
       material%failure_strain = real_of(card, name)
   end subroutine read_failure
 
-  !> The cut-off PC of the pressure; 0 means none.
+  !> Read the pressure cut-off PC; 0 means none.
   subroutine read_cutoff(card, material)
     type(card_t), intent(in) :: card
     type(material_t), intent(inout) :: material
@@ -272,7 +272,7 @@ contains
     if (real_of(card, 'PC') < 0.0_wp) material%cutoff = real_of(card, 'PC')
   end subroutine read_cutoff
 
-  !> *MAT_SIMPLIFIED_JOHNSON_COOK: neither heat nor damage.
+  !> *MAT_SIMPLIFIED_JOHNSON_COOK: without heat and damage.
   subroutine read_simplified_johnson_cook(deck, cursor, card, material)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
@@ -308,17 +308,17 @@ contains
       call next_card(deck, cursor, 4, damage)
       call read_flow_stress(card, stress, flow)
       call read_heat(deck, stress, heat, material)
-      ! PC and what it means, SPALL 1, 2 or 3, which count from 1 as the constants do.
+      ! PC, and SPALL 1, 2 or 3, equal to the `spall_` constants.
       call read_cutoff(heat, material)
       material%spall = spall_pressure
       if (real_of(heat, 'PC') < 0.0_wp) then
         material%spall = nint(real_of(heat, 'SPALL'))
       else if (nint(real_of(heat, 'SPALL')) /= spall_stress) then
-        call warn_of_field(deck, place_of(heat, 'SPALL'), 'has no effect: PC is 0, so that ' &
-          //'nothing breaks by tension')
+        call warn_of_field(deck, location_of(heat, 'SPALL'), 'has no effect without PC: there is ' &
+          //'no failure in tension')
       end if
       flow%d = [reals_of(heat, 'D1', 'D4'), real_of(damage, 'D5')]
-      ! Tension breaks sooner, whichever sign of pressure and D3 the deck has in mind.
+      ! Tension reduces the failure strain, whatever the sign convention of D3 in the deck.
       flow%d(3) = -abs(flow%d(3))
       flow%has_damage = any(abs(flow%d(1:2)) > 0.0_wp)
       flow%keeps_broken = abs(real_of(damage, 'EROD')) > 0.0_wp
@@ -328,7 +328,7 @@ contains
     end associate
   end subroutine read_johnson_cook
 
-  !> E and PR, where no equation of state gives the pressure: K of K ln(J).
+  !> E and PR: bulk modulus where there is no equation of state.
   subroutine read_bulk_modulus(deck, card, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -339,14 +339,14 @@ contains
       if (any(card%bad) .or. material%needs_eos) return
       associate (shear => young/(2.0_wp*(1.0_wp + poisson)))
         if (abs(shear - material%shear) > same_shear*material%shear) call warn_of_field(deck, &
-          place_of(card, 'G'), 'is not E/(2 (1 + PR)) = '//to_text(shear)//': the deviator ' &
-          //'goes with G; E and PR give the bulk modulus where there is no equation of state')
+          location_of(card, 'G'), 'is not E/(2 (1 + PR)) = '//to_text(shear)//'; G gives the ' &
+          //'deviatoric stress, E and PR the bulk modulus where there is no equation of state')
       end associate
       material%bulk = young/(3.0_wp*(1.0_wp - 2.0_wp*poisson))
     end associate
   end subroutine read_bulk_modulus
 
-  !> A, B, N, C and EPSO, and whose rate counts (VP): 0 the total one, 1 that of the plastic strain.
+  !> A, B, N, C, EPSO and VP.
   subroutine read_flow_stress(card, stress, flow)
     type(card_t), intent(in) :: card, stress
     type(johnson_cook_t), intent(inout) :: flow
@@ -359,7 +359,7 @@ contains
     flow%rate = real_of(stress, 'EPSO')
   end subroutine read_flow_stress
 
-  !> A bound on the flow stress; its default is none.
+  !> An upper bound of the flow stress; the default is none.
   subroutine read_stress_bound(deck, card, name, bound)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -367,13 +367,13 @@ contains
     real(wp), intent(inout) :: bound
 
     if (real_of(card, name) < real_of(card, 'A')) then
-      call report_field(deck, card, name, 'is below A: a bound on the flow stress is not')
+      call report_field(deck, card, name, 'is below A: a bound of the flow stress must not be')
     else
       bound = real_of(card, name)
     end if
   end subroutine read_stress_bound
 
-  !> CP with M, TM and TR: without a specific heat nothing warms.
+  !> CP with M, TM and TR: there is no heating without CP.
   subroutine read_heat(deck, stress, card, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: stress, card
@@ -382,7 +382,7 @@ contains
     material%flow%room = real_of(stress, 'TR')
     if (.not. real_of(card, 'CP') > 0.0_wp) return
     if (.not. real_of(stress, 'M') > 0.0_wp) call report_field(deck, stress, 'M', &
-      'is not an exponent (more than 0) beside a specific heat CP')
+      'is not an exponent (more than 0), which CP needs')
     if (.not. real_of(stress, 'TM') > real_of(stress, 'TR')) call report_field(deck, stress, &
       'TM', 'is not above TR: it is the temperature of melting')
     if (any(stress%bad) .or. any(card%bad) .or. .not. material%density > 0.0_wp) return

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> *CONTROL_IMPLICIT_ cards, and what the implicit method asks of the rest of the deck.
+!> *CONTROL_IMPLICIT_ cards, and checks of the deck against the implicit method.
 module deck_implicit_m
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -16,12 +16,12 @@ module deck_implicit_m
   private
   public :: read_implicit, check_implicit
 
-  !> Spectral radius at infinite frequency where the deck gives none.
+  !> Default spectral radius at infinite frequency.
   real(wp), parameter :: default_radius = 0.8_wp
 
 contains
 
-  !> The implicit method: its cards, then its scheme.
+  !> Read the cards of the implicit method and set its time integration.
   subroutine read_implicit(deck, implicit)
     type(deck_t), intent(inout) :: deck
     type(implicit_t), intent(inout) :: implicit
@@ -55,7 +55,7 @@ contains
         if (is_blank(cards(1), 'RHO')) call report_field(deck, cards(1), 'RHO', &
           'is not a spectral radius (0 to 1)')
       case ('CONTROL_IMPLICIT_SOLUTION')
-        ! Every iteration forms the tangent anew (full Newton), whatever ILIMIT.
+        ! Full Newton: a new tangent in every iteration, whatever ILIMIT.
         implicit%is_linear = integer_of(cards(1), 'NSOLVR') == 1
         implicit%max_iteration = integer_of(cards(1), 'MAXREF')
         implicit%step_tolerance = real_of(cards(1), 'DCTOL')
@@ -69,16 +69,15 @@ contains
     end do
     if (.not. implicit%is_on) return
     call set_scheme(newmark, -alpha, radius, implicit)
-    ! Only Newmark's method with parameters of the deck can be one that is not stable at every step.
+    ! Only Newmark's method with parameters of the deck can be conditionally stable.
     least = 0.25_wp*(implicit%gamma + 0.5_wp)**2
     if (implicit%is_dynamic .and. implicit%beta < least*(1.0_wp - round_off)) call line_warning( &
       deck, line, 'newmark', 'Newmark''s method with GAMMA '//to_text(implicit%gamma) &
-      //' and BETA '//to_text(implicit%beta)//' is stable for small steps only: for all steps ' &
-      //'BETA must be at least (GAMMA + 1/2)^2/4 = '//to_text(least))
+      //' and BETA '//to_text(implicit%beta)//' is conditionally stable; for unconditional ' &
+      //'stability BETA must be at least (GAMMA + 1/2)^2/4 = '//to_text(least))
   end subroutine read_implicit
 
-  !> GAMMA and BETA of *CONTROL_IMPLICIT_DYNAMICS ask for Newmark's method (ALPHA below 0 for HHT);
-  !> blank fields leave the generalised-alpha method with its spectral radius.
+  !> GAMMA and BETA of *CONTROL_IMPLICIT_DYNAMICS: Newmark's method where they are not 0.
   subroutine read_newmark(deck, card, newmark)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -105,7 +104,7 @@ contains
     integer, parameter :: many = 1000000
 
     implicit%is_automatic = integer_of(card, 'IAUTO') == 1
-    ! Their sum must stay a whole number.
+    ! Their sum must not overflow.
     implicit%best_iterations = min(integer_of(card, 'ITEOPT'), many)
     implicit%iteration_window = min(integer_of(card, 'ITEWIN'), many)
     implicit%dt_least = real_of(card, 'DTMIN')
@@ -114,8 +113,8 @@ contains
       deck, card, 'DTMAX', 'is below the smallest step DTMIN = '//to_text(implicit%dt_least))
   end subroutine read_automatic
 
-  !> Parameters of the time integration from what the cards gave (Chung & Hulbert 1993, eqs. 17, 20,
-  !> 25; HHT with alpha_f = -ALPHA; Newmark). A spectral radius of our own keyword comes first.
+  !> Set the parameters of the time integration (Chung & Hulbert 1993, eqs. 17, 20, 25; HHT with
+  !> alpha_f = -ALPHA; Newmark). *CONTROL_IMPLICIT_SPECTRAL_RADIUS prevails.
   subroutine set_scheme(newmark, hht, radius, implicit)
     real(wp), intent(in) :: newmark(2) !! GAMMA, BETA, 0 where blank
     real(wp), intent(in) :: hht        !! -ALPHA
@@ -144,8 +143,8 @@ contains
     implicit%beta = 0.25_wp*(1.0_wp - implicit%alpha_m + implicit%alpha_f)**2
   end subroutine set_scheme
 
-  !> What the implicit method asks of the rest of the deck: no bulk viscosity, and no laws with
-  !> rates, heat, energy or failure, which have no tangent.
+  !> Report bulk viscosity, and material laws without a tangent: rate effects, heat, energy,
+  !> failure.
   subroutine check_implicit(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(in) :: model
@@ -182,7 +181,7 @@ contains
 
   contains
 
-    !> One error.
+    !> Report an error.
     subroutine refuse(what)
       character(*), intent(in) :: what
 

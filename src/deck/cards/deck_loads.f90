@@ -15,7 +15,7 @@ module deck_loads_m
     check_rest, report_field, reject_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, a_part, a_part_set, a_curve, a_segment_set, a_system
-  use deck_lines_m, only : deck_t, place_t, blocks_of, line_text, line_error
+  use deck_lines_m, only : deck_t, location_t, blocks_of, line_text, line_error
   use deck_sets_m, only : check_edge
   use deck_supports_m, only : card_nodes, find_body, mark_axis, mark_nodes_with_mass, &
     warn_of_nodes, across_axis
@@ -25,8 +25,7 @@ module deck_loads_m
   public :: read_nodal_loads, read_pressures, orient_pressures, read_body_loads, read_masses, &
     read_rigid_loads, read_global_damping, read_mass_damping, read_stiffness_damping, warn_of_bores
 
-  !> No bore is narrower than this share of the largest radius: its nodes were meant to be on the
-  !> axis.
+  !> Fraction of the largest radius below which free nodes are probably meant to lie on the axis.
   real(wp), parameter :: bore_share = 1.0e-6_wp
 
 contains
@@ -70,10 +69,10 @@ contains
     is_axis = mark_axis(model)
     call warn_of_nodes(deck, first_radial, 'radial load', model, pack([loads(:n)%node], &
       is_axis(loads(:n)%node) .and. loads(:n)%direction == 1), ' load(s) in r act on nodes on ' &
-      //'the axis (x = 0), which do not move in r: they do nothing; the first is on node ', '')
+      //'the axis (x = 0), which are fixed in r, and have no effect; the first is on node ', '')
   end subroutine read_nodal_loads
 
-  !> The direction of a load in the axes of the model; 0 for a moment.
+  !> Unit vector of the direction of a load in model axes; 0 for a moment.
   subroutine load_axes(deck, card, axis)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -89,8 +88,7 @@ contains
     if (system > 0) axis = deck%axes(:, direction, system)
   end subroutine load_axes
 
-  !> Warn of free nodes next to the axis: the hoop stress at the rim of a bore is not that of a body
-  !> without one, however narrow it is.
+  !> Warn of free nodes close to the axis: a bore, however narrow, changes the hoop stress.
   subroutine warn_of_bores(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(in) :: model
@@ -105,9 +103,8 @@ contains
       is_bore(pack(conditions%fixed_nodes, conditions%fixed_directions == 1)) = .false.
       nodes = pack([(i, i=1, size(is_bore))], is_bore)
       if (size(nodes) > 0) call warn_of_nodes(deck, deck%maps(a_node)%lines(nodes(1)), 'bore', &
-        model, nodes, ' node(s) lie next to the axis but not on it, and move in r as the rim of ' &
-        //'a bore; the first is ', ' at the radius '//to_text(radius(nodes(1))) &
-        //'; give them x = 0, or hold them')
+        model, nodes, ' node(s) lie next to the axis but not on it, and form a bore; the first ' &
+        //'is ', ' at radius '//to_text(radius(nodes(1)))//'; set x = 0, or fix them in r')
     end associate
   end subroutine warn_of_bores
 
@@ -137,19 +134,19 @@ contains
     end do
   end subroutine read_rigid_loads
 
-  !> *LOAD_SEGMENT and _SET: edges as the cards name them, until the outer edges are known.
-  subroutine read_pressures(deck, model, places)
+  !> *LOAD_SEGMENT and _SET: edges with the nodes of the cards, not yet oriented.
+  subroutine read_pressures(deck, model, locations)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
-    type(place_t), allocatable, intent(out) :: places(:) !! where each stands
+    type(location_t), allocatable, intent(out) :: locations(:) !! of the loads
     type(pressure_load_t), allocatable :: loads(:)
-    type(place_t), allocatable :: all_places(:)
+    type(location_t), allocatable :: all_locations(:)
     type(cursor_t) :: cursor
     type(card_t) :: card
     integer, allocatable :: edges(:, :)
     integer :: curve, set, k, n
 
-    allocate (loads(64), all_places(64))
+    allocate (loads(64), all_locations(64))
     n = 0
     do while (next_of(deck, 'LOAD_SEGMENT', cursor, card))
       if (has_field(card, 'N1')) call check_edge(deck, card)
@@ -168,37 +165,37 @@ contains
       do k = 1, size(edges, 2)
         if (n == size(loads)) then
           loads = [loads, loads]
-          all_places = [all_places, all_places]
+          all_locations = [all_locations, all_locations]
         end if
         n = n + 1
         loads(n) = pressure_load_t(edges(:, k), curve, real_of(card, 'SF'), real_of(card, 'AT'))
-        all_places(n) = place_t(card%line, 1, merge('N1  ', 'SSID', has_field(card, 'N1')))
+        all_locations(n) = location_t(card%line, 1, merge('N1  ', 'SSID', has_field(card, 'N1')))
       end do
     end do
     model%conditions%pressures = loads(:n)
-    places = all_places(:n)
+    locations = all_locations(:n)
   end subroutine read_pressures
 
-  !> Edges that carry pressure walked counter-clockwise round the body; others are errors, one for
+  !> Orient the edges with pressure counter-clockwise about their body; report others, one error for
   !> each card.
-  subroutine orient_pressures(deck, places, outside, is_uncertain, model)
+  subroutine orient_pressures(deck, locations, outside, is_uncertain, model)
     type(deck_t), intent(inout) :: deck
-    type(place_t), intent(in) :: places(:)       !! where each load stands
+    type(location_t), intent(in) :: locations(:) !! of the loads
     type(boundary_t), intent(in) :: outside
-    logical, intent(in) :: is_uncertain(:)           !! (n_node) edges of these are not judged
+    logical, intent(in) :: is_uncertain(:)       !! (n_node) nodes whose edges are not checked
     type(model_t), intent(inout) :: model
     integer :: i, reported_line
 
     reported_line = 0
-    do i = 1, size(places)
+    do i = 1, size(locations)
       associate (nodes => model%conditions%pressures(i)%nodes)
         if (any(is_uncertain(nodes))) cycle
         if (find_edge(outside, nodes(1), nodes(2)) > 0) cycle
         if (find_edge(outside, nodes(2), nodes(1)) > 0) then
           nodes = nodes([2, 1])
-        else if (places(i)%line /= reported_line) then
-          reported_line = places(i)%line
-          call reject_field(deck, places(i), ': nodes '//to_text(model%mesh%node_id(nodes(1))) &
+        else if (locations(i)%line /= reported_line) then
+          reported_line = locations(i)%line
+          call reject_field(deck, locations(i), ': nodes '//to_text(model%mesh%node_id(nodes(1))) &
             //' and '//to_text(model%mesh%node_id(nodes(2)))//' are not the ends of an outer ' &
             //'edge of the mesh')
         end if
@@ -206,7 +203,7 @@ contains
     end do
   end subroutine orient_pressures
 
-  !> *LOAD_BODY_X and _Y: base accelerations. Across the axis of revolution they have no meaning.
+  !> *LOAD_BODY_X and _Y: base accelerations; axisymmetric decks have *LOAD_BODY_Y only.
   subroutine read_body_loads(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
@@ -253,7 +250,7 @@ contains
       call card_nodes(deck, card, model, nodes)
       k = findloc(has_mass(nodes), .false., dim=1)
       if (k > 0) call report_field(deck, card, 2, ': node '//to_text(model%mesh%node_id(nodes(k))) &
-        //' belongs to no element and can not carry a mass')
+        //' belongs to no element and cannot have a mass')
       if (.not. real_of(card, 'MASS') > 0.0_wp) cycle
       do k = 1, size(nodes)
         if (n == size(masses)) masses = [masses, masses]
@@ -310,8 +307,8 @@ contains
         call next_card(deck, cursor, 2, factors)
         damping%factor = reals_of(factors, 'STX', 'STY')
       else
-        ! A second card of zeros, which common writers put where FLAG is 0 too, is no row: there is
-        ! no part 0.
+        ! Skip a second card of zeros, which some programs write with FLAG 0 too: there is no part
+        ! 0.
         found = row_comes(deck, cursor)
         if (found) found = verify(line_text(deck, cursor%line), ' 0.,+-eEdD') == 0
         if (found) cursor%line = cursor%line + 1
@@ -343,17 +340,17 @@ contains
     do while (next_of(deck, 'DAMPING_PART_STIFFNESS', cursor, card))
       if (any(card%bad)) cycle
       if (model%controls%implicit%is_on) call line_error(deck, card%line, &
-        '*DAMPING_PART_STIFFNESS is damping that the implicit method does not have')
+        'the implicit method does not have *DAMPING_PART_STIFFNESS')
       call card_parts(deck, card, model, parts)
       do k = 1, size(parts)
         associate (part => model%parts(parts(k)))
           if (part%material == 0) cycle
           if (allocated(model%materials(part%material)%eos) .or. &
             gives_pressure(model%materials(part%material))) call report_field(deck, card, 1, &
-            ': part '//to_text(part%id)//' has an equation of state, or is a rubber or a law ' &
-            //'whose points may fail, for which there is no damping by stiffness')
+            ': part '//to_text(part%id)//' has an equation of state, a rubber law or failure, ' &
+            //'for which this version has no stiffness damping')
           if (abs(part%stiffness_damping) > 0.0_wp) call report_field(deck, card, 1, &
-            ': part '//to_text(part%id)//' is damped by stiffness by another card too')
+            ': part '//to_text(part%id)//' has stiffness damping by another card too')
           if (model%materials(part%material)%is_rigid) cycle
           part%stiffness_damping = real_of(card, 'COEF')
         end associate
@@ -379,7 +376,7 @@ contains
     end if
   end subroutine card_parts
 
-  !> The curve of damping over time, which may not push.
+  !> Index of a damping curve, which must not be negative.
   subroutine find_curve(deck, card, model, curve)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -389,10 +386,10 @@ contains
     call find_id(deck, a_curve, card, 'LCID', curve)
     if (curve == 0) return
     if (minval(model%curves(curve)%ordinate) < 0.0_wp) call report_field(deck, card, 'LCID', &
-      'is a curve with values below 0: forces that push along with the velocity would feed energy')
+      'is a curve with values below 0: negative damping would create energy')
   end subroutine find_curve
 
-  !> Damping by mass acts on velocities.
+  !> Report mass damping in statics.
   subroutine refuse_static(deck, model, line, name)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(in) :: model
@@ -401,7 +398,7 @@ contains
 
     associate (implicit => model%controls%implicit)
       if (implicit%is_on .and. .not. implicit%is_dynamic) call line_error(deck, line, name &
-        //' damps velocities, which statics do not have (IMASS 1 of *CONTROL_IMPLICIT_DYNAMICS)')
+        //' has no effect in statics; dynamics need IMASS 1 of *CONTROL_IMPLICIT_DYNAMICS')
     end associate
   end subroutine refuse_static
 

@@ -1,6 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> *MAT_: laws, with the curves and tables that they name, and *EOS_: the pressures of materials.
-!> Ranges of fields stand in the schema.
+!> *MAT_ with their curves and tables, and *EOS_.
 module deck_material_m
   use kinds_m, only : wp
   use model_m, only : model_t
@@ -56,7 +55,7 @@ contains
       case ('MAT_PIECEWISE_LINEAR_PLASTICITY')
         call read_piecewise(deck, cursor, card, tables, model, material)
       case ('MAT_NULL')
-        ! A fluid: its pressure comes from an equation of state.
+        ! A fluid, which needs an equation of state.
         material%law = law_null
         material%takes_eos = .true.
         material%needs_eos = .true.
@@ -89,7 +88,7 @@ contains
     call map_defined(deck, a_material, 'MID')
   end subroutine read_materials
 
-  !> Number, density, and moduli from G or from E and PR, where the card has them.
+  !> Number, density, and moduli from G or from E and PR.
   subroutine read_moduli(card, material)
     type(card_t), intent(in) :: card
     type(material_t), intent(inout) :: material
@@ -108,7 +107,7 @@ contains
     material%sound_speed = sqrt((material%bulk + 4.0_wp*material%shear/3.0_wp)/material%density)
   end subroutine read_moduli
 
-  !> *MAT_CRUSHABLE_FOAM: elastic up to a curve, which must not fall, and to TSC in tension.
+  !> *MAT_CRUSHABLE_FOAM: a yield stress curve, which must not fall, and TSC in tension.
   subroutine read_crushable_foam(deck, card, model, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -159,7 +158,7 @@ contains
     end associate
   end subroutine read_mooney_rivlin
 
-  !> Moduli of small strain.
+  !> Set the moduli of small strain.
   pure subroutine set_moduli(poisson, material)
     real(wp), intent(in) :: poisson
     type(material_t), intent(inout) :: material
@@ -199,7 +198,7 @@ contains
     end if
   end subroutine read_rigid
 
-  !> All equations of state. Bodies start with the density of their material.
+  !> Read all equations of state.
   subroutine read_equations(deck, equations)
     type(deck_t), intent(inout) :: deck
     type(eos_t), allocatable, intent(out) :: equations(:)
@@ -236,15 +235,15 @@ contains
     call map_defined(deck, an_eos, 'EOSID')
   end subroutine read_equations
 
-  !> EOSID of a part: its material gets the equation of state. A material whose parts name different
-  !> ones becomes as many materials.
+  !> Assign the equation of state of a part (EOSID) to its material. A material of parts with
+  !> different equations of state is copied.
   subroutine assign_equation(deck, card, equations, model, equation_of, material)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card      !! of the part
     type(eos_t), intent(in) :: equations(:)
     type(model_t), intent(inout) :: model
     integer, allocatable, intent(inout) :: equation_of(:) !! equation of state of each material, 0
-                                                          !! none, -1 not known yet
+                                                          !! none, -1 unknown
     integer, intent(inout) :: material       !! index, of a copy in the end
     integer :: k, m
 
@@ -281,7 +280,8 @@ contains
     if (k > 0) model%materials(m)%eos = equations(k)
   end subroutine assign_equation
 
-  !> Moduli that follow from the pressure; where points may fail, one that can be lost.
+  !> Set the moduli of materials with an equation of state, and the internal one of materials that
+  !> may erode.
   subroutine set_pressure_moduli(deck, equations, model)
     type(deck_t), intent(inout) :: deck
     type(eos_t), intent(in) :: equations(:)
@@ -299,11 +299,11 @@ contains
           .or. model%materials(m)%eos%id == equations(k)%id
       end do
       if (.not. is_named) call line_warning(deck, deck%maps(an_eos)%lines(k), 'unused', &
-        'no part names equation of state '//to_text(equations(k)%id)//' (EOSID of *PART)')
+        'no part uses equation of state '//to_text(equations(k)%id)//' (EOSID of *PART)')
     end do
   end subroutine set_pressure_moduli
 
-  !> One material.
+  !> Set the moduli of one material.
   subroutine set_pressure_modulus(deck, line, material)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line
@@ -317,8 +317,8 @@ contains
       end if
       material%bulk = initial_stiffness(material%eos)
       if (.not. material%bulk > 0.0_wp) call line_error(deck, line, 'material ' &
-        //to_text(material%id)//' is not stiff under pressure at the start: the bulk modulus of ' &
-        //'its equation of state '//to_text(material%eos%id)//' is '//to_text(material%bulk))
+        //to_text(material%id)//' has no initial stiffness: the bulk modulus of its equation of ' &
+        //'state '//to_text(material%eos%id)//' is '//to_text(material%bulk))
       if (material%bulk > 0.0_wp) material%eos%datum = max(0.0_wp, &
         0.5_wp*initial_pressure(material%eos)**2/material%bulk - material%eos%energy)
     else if (allocated(material%erosion) .or. material%takes_eos) then

@@ -1,12 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> *NODE and *ELEMENT_SHELL, and the checks of the mesh, also of one some elements of which are
-!> refused: mistakes that do not follow from theirs are told in the same pass.
+!> *NODE and *ELEMENT_SHELL, and checks of the mesh. Independent errors are reported in the same
+!> pass even where some elements are refused.
 module deck_mesh_m
   use kinds_m, only : wp
   use log_m, only : to_text
   use mesh_m, only : mesh_t
   use model_m, only : model_t
-  use deck_lines_m, only : deck_t, place_t, count_rows, line_error, line_warning
+  use deck_lines_m, only : deck_t, location_t, count_rows, line_error, line_warning
   use deck_fields_m, only : field_number, card_t
   use deck_cards_m, only : cursor_t, next_of, report_field, reject_field
   use deck_ids_m, only : a_node, an_element, a_part
@@ -15,19 +15,17 @@ module deck_mesh_m
   private
   public :: read_mesh
 
-  !> Radii below this share of the largest are the axis.
+  !> Fraction of the largest radius below which a node lies on the axis.
   real(wp), parameter :: axis_share = 1.0e-10_wp
 
 contains
 
-  !> Nodes and elements. Parts are known. `sound` tells whether the elements may be looked at
-  !> further.
+  !> Read nodes and elements. Parts have been read. `sound`: the mesh has no errors.
   subroutine read_mesh(deck, model, codes, is_sound, sound)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
     integer, allocatable, intent(out) :: codes(:)    !! (n_node) TC
-    logical, allocatable, intent(out) :: is_sound(:) !! (n_element) of each whether its edges are
-                                                     !! those that were meant
+    logical, allocatable, intent(out) :: is_sound(:) !! (n_element) no errors of element and nodes
     logical, intent(out) :: sound
     integer :: n_before
     logical :: has_coordinates
@@ -39,7 +37,7 @@ contains
     allocate (is_sound(model%mesh%n_element))
     if (size(is_sound) > 0) is_sound = all(model%mesh%element_nodes > 0, dim=1)
     if (has_coordinates) call check_shapes(deck, model%mesh, is_sound)
-    ! A part or node that was lost with its own mistake is not told again where it is named.
+    ! References to refused parts and nodes are not reported.
     if (.not. has_coordinates .or. deck%maps(a_node)%has_refused &
       .or. deck%maps(an_element)%has_refused) is_sound = .false.
     sound = deck%report%n_error == n_before .and. model%mesh%n_node > 0 &
@@ -96,7 +94,7 @@ contains
     end if
   end subroutine read_nodes
 
-  !> *ELEMENT_SHELL: id, part and corner nodes; N4 = 0 or N3 makes a triangle.
+  !> *ELEMENT_SHELL: id, part and corner nodes; N4 = 0 or N3 is a triangle.
   subroutine read_elements(deck, mesh)
     type(deck_t), intent(inout) :: deck
     type(mesh_t), intent(inout) :: mesh
@@ -134,7 +132,7 @@ contains
       'the deck has no elements (*ELEMENT_SHELL)')
   end subroutine read_elements
 
-  !> Radii must not be below zero; those that are none are made exactly zero.
+  !> Report negative radii, and set radii at round-off to zero.
   subroutine snap_to_axis(deck, mesh)
     type(deck_t), intent(inout) :: deck
     type(mesh_t), intent(inout) :: mesh
@@ -145,9 +143,9 @@ contains
     associate (x => mesh%coordinates)
       do i = 1, mesh%n_node
         if (x(1, i) < -tolerance) then
-          call reject_field(deck, place_t(deck%maps(a_node)%lines(i), 1, 'X'), ': node ' &
-            //to_text(mesh%node_id(i))//' lies at a radius below 0 (an axisymmetric deck ' &
-            //'turns about x = 0, and x is the radius)')
+          call reject_field(deck, location_t(deck%maps(a_node)%lines(i), 1, 'X'), ': node ' &
+            //to_text(mesh%node_id(i))//' has a negative radius (the axis of an axisymmetric ' &
+            //'deck is x = 0)')
         else if (x(1, i) <= tolerance) then
           x(1, i) = 0.0_wp
         end if
@@ -155,12 +153,12 @@ contains
     end associate
   end subroutine snap_to_axis
 
-  !> Elements must have area, be convex and run counter-clockwise; clockwise ones are turned. Those
-  !> with a node that does not exist have been refused.
+  !> Report elements without area and non-convex elements, and reverse clockwise ones. Elements with
+  !> missing nodes have been reported.
   subroutine check_shapes(deck, mesh, is_sound)
     type(deck_t), intent(inout) :: deck
     type(mesh_t), intent(inout) :: mesh
-    logical, intent(inout) :: is_sound(:) !! (n_element) what is refused here is not
+    logical, intent(inout) :: is_sound(:) !! (n_element) false for elements refused here
     character(:), allocatable :: problem
     integer :: i, n_turned, first_turned
     real(wp) :: corners(4), area, tolerance
@@ -189,7 +187,7 @@ contains
       end associate
       is_sound(i) = len(problem) == 0
       if (.not. is_sound(i)) then
-        call reject_field(deck, place_t(deck%maps(an_element)%lines(i), 1, 'EID'), problem)
+        call reject_field(deck, location_t(deck%maps(an_element)%lines(i), 1, 'EID'), problem)
       else if (area <= 0.0_wp) then
         mesh%element_nodes(:, i) = mesh%element_nodes([1, 4, 3, 2], i)
         if (mesh%element_nodes(2, i) == mesh%element_nodes(3, i)) &
@@ -199,8 +197,8 @@ contains
       end if
     end do
     if (n_turned > 0) call line_warning(deck, deck%maps(an_element)%lines(first_turned), &
-      'clockwise', to_text(n_turned)//' element(s) were numbered clockwise and have been turned; ' &
-      //'the first is '//to_text(mesh%element_id(first_turned)))
+      'clockwise', to_text(n_turned)//' element(s) are numbered clockwise and have been ' &
+      //'reversed; the first is '//to_text(mesh%element_id(first_turned)))
   end subroutine check_shapes
 
   !> Twice the signed area of the triangle at each corner of an element.

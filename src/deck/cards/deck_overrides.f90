@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What the command line changes of a deck, `name=value`, `name.interface=value` and
-!> `p:NAME=value`: edits of its text before the cards are read.
+!> Overrides of the command line, `name=value`, `name.interface=value` and `p:NAME=value`, as edits
+!> of the deck before its cards are read.
 module deck_overrides_m
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -8,24 +8,24 @@ module deck_overrides_m
   use deck_fields_m, only : largest_value, smallest_value
   use deck_lines_m, only : deck_t, word_t, line_error, line_warning
   use deck_edits_m, only : given_number, set_field, append_block
-  use deck_parameter_table_m, only : parameter_t, add_parameter
+  use deck_parameter_table_m, only : parameter_t, add_parameter, find_given
   implicit none
   private
   public :: is_override, override_error, read_words, edit_controls, edit_contact, find_word, &
     check_words, contact_names, run_names
 
-  !> Values of interfaces, fields of *CONTACT_2D_SLIDELINE; the others are those of the run.
+  !> Overrides of interfaces (fields of *CONTACT_2D_SLIDELINE), and of the run.
   character(6), parameter :: contact_names(13) = [character(6) :: 'CTYPE', 'NGAUSS', 'PEN', &
     'PUNIT', 'PENT', 'VDC', 'FS', 'FD', 'DC', 'VC', 'TFAC', 'TARGET', 'SMOOTH']
   character(6), parameter :: run_names(3) = [character(6) :: 'ENDTIM', 'DT', 'TSSFAC']
-  !> Those that may be 0, whole numbers, and friction.
+  !> Overrides that may be 0, integers, and friction.
   character(6), parameter :: zero_names(5) = [character(6) :: 'VDC', 'FS', 'FD', 'DC', 'VC'], &
     whole_names(4) = [character(6) :: 'CTYPE', 'NGAUSS', 'PUNIT', 'SMOOTH'], &
     friction_names(5) = [character(6) :: 'FS', 'FD', 'DC', 'VC', 'TFAC']
 
 contains
 
-  !> Whether `name` may stand before the = of an override.
+  !> Whether `name` is the name of an override.
   pure function is_override(name) result(known)
     character(*), intent(in) :: name
     logical :: known
@@ -39,7 +39,7 @@ contains
       .and. verify(name(dot + 1:), '0123456789') == 0)
   end function is_override
 
-  !> What is wrong with an override by itself, whatever the deck has; empty where nothing is.
+  !> Message about an override that is invalid for any deck; empty where it is valid.
   pure function override_error(text) result(problem)
     character(*), intent(in) :: text
     character(:), allocatable :: problem
@@ -49,7 +49,7 @@ contains
     if (len(problem) > 0) problem = '"'//text//'"'//problem
   end function override_error
 
-  !> Take the words of the command line apart; those of parameters go to the parameters.
+  !> Read the overrides of the command line; those of parameters are added to the parameters.
   subroutine read_words(texts, deck)
     character(*), intent(in) :: texts(:)
     type(deck_t), intent(inout) :: deck
@@ -63,7 +63,11 @@ contains
       if (len(problem) > 0) then
         call line_error(deck, 0, word%phrase//problem)
       else if (index(word%name, 'P:') == 1) then
-        ! A value from the command line wins over the deck.
+        if (find_given(deck%parameters, word%name(3:), 0) > 0) then
+          call line_error(deck, 0, word%phrase//': the parameter is given twice')
+          cycle
+        end if
+        ! A value from the command line prevails over the deck.
         item = parameter_t(name=word%name(3:), kind='?', fixed=.true.)
         item%text = word%text
         call add_parameter(deck%parameters, item)
@@ -73,11 +77,11 @@ contains
     end do
   end subroutine read_words
 
-  !> Name, interface and value of a word; what is wrong with it goes on from `"WORD"`.
+  !> Parse an override into name, interface and value.
   pure subroutine parse_override(text, word, problem)
     character(*), intent(in) :: text
     type(word_t), intent(out) :: word
-    character(:), allocatable, intent(out) :: problem  !! empty: none
+    character(:), allocatable, intent(out) :: problem  !! message after `"WORD"`, empty: none
     integer :: equals, dot, status
 
     problem = ''
@@ -105,7 +109,7 @@ contains
     end if
   end subroutine parse_override
 
-  !> What is wrong with the number of a word: PEN may be below 0, with a meaning of its own.
+  !> Message about an invalid value of an override; PEN may be negative.
   pure function value_error(word) result(problem)
     type(word_t), intent(in) :: word
     character(:), allocatable :: problem
@@ -129,8 +133,8 @@ contains
     problem = ': the value is not a number '//problem//' (numbers reach 1e40)'
   end function value_error
 
-  !> The word of a name that counts for an interface (0: the run), the last one given, one that
-  !> names the interface before one for all; 0: none.
+  !> Index of the override of a name for an interface (0: the run): the last one, one for this
+  !> interface before one for all; 0: none.
   pure function find_word(deck, name, interface) result(found)
     type(deck_t), intent(in) :: deck
     character(*), intent(in) :: name
@@ -149,8 +153,7 @@ contains
     end do
   end function find_word
 
-  !> Values of the run. dt= is DT0 where the deck is implicit; otherwise a constant curve, named as
-  !> LCTM.
+  !> Apply the overrides of the run. dt= is DT0 of an implicit deck, else a constant curve in LCTM.
   subroutine edit_controls(deck)
     type(deck_t), intent(inout) :: deck
     character(:), allocatable :: number, text
@@ -176,13 +179,13 @@ contains
     call append_block(deck, 'DEFINE_CURVE', number//','//new_line('a')//'0.0'//text//'1.0e20'//text)
   end subroutine edit_controls
 
-  !> Put the value of a word into a field of all keywords of a name, of a new one where there is
-  !> none.
+  !> Set a field of all keywords of a name to the value of an override; append the keyword where
+  !> there is none.
   subroutine edit_control(deck, keyword, field, word, text)
     type(deck_t), intent(inout) :: deck
     character(*), intent(in) :: keyword, field
     integer, intent(in) :: word                      !! 0: none
-    character(*), intent(in), optional :: text       !! in place of the value
+    character(*), intent(in), optional :: text       !! replaces the value
     character(:), allocatable :: value
     integer :: i
     logical :: found
@@ -197,9 +200,8 @@ contains
     end do
   end subroutine edit_control
 
-  !> A number that nothing in the deck holds, for one more curve, so that a reference to nothing
-  !> stays one. It is high, so that the deck of changes that a restart may have does not meet it by
-  !> chance either.
+  !> A number for a new curve that does not occur in the deck, so that references to missing curves
+  !> stay errors. It is high, so that changes at a restart are unlikely to use it.
   function unused_number(deck) result(number)
     type(deck_t), intent(in) :: deck
     character(:), allocatable :: number
@@ -214,9 +216,8 @@ contains
     end do
   end function unused_number
 
-  !> Values of an interface, whose block is one of *CONTACT_2D_SLIDELINE. PENT and FD follow PEN and
-  !> FS where the deck makes them the same; a type that the command line names is not the program's
-  !> to change.
+  !> Apply the overrides of an interface to its *CONTACT_2D_SLIDELINE. PENT and FD follow PEN and FS
+  !> where they are equal in the deck; a nonzero CTYPE removes TARGET.
   subroutine edit_contact(deck, i_block, id)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
@@ -238,7 +239,7 @@ contains
       case ('FS')
         call given_number(deck, i_block, 'FD', other)
         call read_real(deck%words(word)%text, given, status)
-        ! FD of a stock card of 0 is the smallest number beside FS.
+        ! FD 0 of a stock card has been replaced by the smallest number.
         if (.not. abs(value - other) > 0.0_wp .or. max(given, abs(other)) <= smallest_value) &
           call set_field(deck, i_block, 'FD', '')
       case ('CTYPE')
@@ -248,8 +249,8 @@ contains
     end do
   end subroutine edit_contact
 
-  !> What ties do not have passes them by, with a warning: friction, damping, a share of the largest
-  !> stable penalty. Ties that break have friction and damping of contact where they have failed.
+  !> Find overrides that do not apply to a tie, with a warning: friction, damping, a share of the
+  !> largest stable penalty. Tiebreak has friction and damping, for contact after failure.
   subroutine pass_tie(deck, i_block, id, passed)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
@@ -268,7 +269,7 @@ contains
       call read_real(deck%words(word)%text, value, status)
       why = ''
       if (contact_names(k) == 'PUNIT' .and. nint(value) == 3) then
-        why = 'its penalty can not be a share of the largest stable one; '
+        why = 'its penalty cannot be a share of the largest stable penalty; '
         where (contact_names == 'PEN' .or. contact_names == 'PENT') passed = .true.
       else if (nint(tie) == 2) then
         cycle
@@ -284,8 +285,8 @@ contains
     end do
   end subroutine pass_tie
 
-  !> What is meant for one interface must find it; what is meant for all says so where there is
-  !> none.
+  !> Report overrides of interfaces that the deck does not have; warn of overrides of all interfaces
+  !> where there are none.
   subroutine check_words(deck, ids)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: ids(:) !! of the interfaces

@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> *PARAMETER and its relatives: names with values, put in place of `&name` and `-&name`.
-!> All definitions are read before any other keyword, so that a name may be used before the line
-!> that defines it.
+!> *PARAMETER_: values of references `&name` and `-&name`. All definitions are read before other
+!> keywords, so that a name may be used before its definition.
 module deck_parameters_m
   use kinds_m, only : wp
   use text_m, only : upper_case, read_real, shortest, number_good
@@ -16,8 +15,8 @@ module deck_parameters_m
   private
   public :: read_parameters
 
-  !> What happens when a name is defined again (*PARAMETER_DUPLICATION DFLAG); by default a second
-  !> definition with another value is an error.
+  !> Treatment of a second definition with another value (*PARAMETER_DUPLICATION DFLAG); the default
+  !> is an error.
   integer, parameter :: duplicate_error = 0, duplicate_warn_keep = 1, duplicate_warn_replace = 2, &
     duplicate_error_keep = 3, duplicate_replace = 4
 
@@ -53,7 +52,7 @@ contains
     end do
   end subroutine read_parameters
 
-  !> `; the nearest is NAME`, at most two letters away; nothing where no name is so near.
+  !> `; the nearest is NAME`, at most two letters different; empty where there is none.
   pure function nearest_name(parameters, given) result(text)
     type(parameters_t), intent(in) :: parameters
     character(*), intent(in) :: given
@@ -71,7 +70,7 @@ contains
     if (len_trim(nearest) > 0) text = '; the nearest is '//trim(nearest)
   end function nearest_name
 
-  !> Pairs of name and value, four to a line.
+  !> Read pairs of name and value, four on a line.
   subroutine read_values(deck, cursor)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
@@ -99,7 +98,7 @@ contains
     end do
   end subroutine read_values
 
-  !> Expressions, one to a line; a line with a blank name goes on with the one before.
+  !> Read expressions, one on a line; a line with a blank name continues the previous one.
   subroutine read_expressions(deck, cursor)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(in) :: cursor
@@ -140,8 +139,7 @@ contains
     end do
   end subroutine read_expressions
 
-  !> Define the parameter named in field `k` of a card (type letter first), for its file alone where
-  !> the keyword says so.
+  !> Define the parameter in field `k` of a card (type letter first), local to its file with _LOCAL.
   subroutine define(deck, card, k, k_value, given)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -169,7 +167,7 @@ contains
       end if
     end if
     if (kind == 'I') then
-      ! An expression may miss a whole number by rounding; otherwise the fraction is cut off.
+      ! Round values within round-off of an integer; otherwise truncate.
       if (abs(value - anint(value)) <= 1.0e-9_wp*max(1.0_wp, abs(value))) value = anint(value)
       if (abs(value) > real(huge(k), wp)) then
         call field_error(deck, card, k, 'is too large for an integer parameter')
@@ -185,7 +183,7 @@ contains
     call store_parameter(deck, card%line, item)
   end subroutine define
 
-  !> Put a definition into the table, minding one of the same name that is there.
+  !> Store a definition in the table, or treat it as a duplicate.
   subroutine store_parameter(deck, line, item)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line

@@ -1,6 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> *PART, *SECTION_SHELL and *HOURGLASS, what parts of a deck have to have in common, and rigid
-!> bodies from the parts of *MAT_RIGID.
+!> *PART, *SECTION_SHELL and *HOURGLASS, checks across parts, and rigid bodies of *MAT_RIGID.
 module deck_part_m
   use kinds_m, only : wp
   use text_m, only : read_integer, number_good
@@ -10,7 +9,7 @@ module deck_part_m
   use parts_m, only : section_t, hourglass_t, part_t, hourglass_viscous, hourglass_stiffness, &
     hourglass_assumed, form_one_point, form_full, form_axisym_one_point, form_axisym_full
   use deck_ids_m, only : a_part, a_section, a_material, an_hourglass, an_element
-  use deck_lines_m, only : deck_t, place_t, blocks_of, count_rows, line_text, line_error, &
+  use deck_lines_m, only : deck_t, location_t, blocks_of, count_rows, line_text, line_error, &
     line_warning, flag_blank
   use deck_fields_m, only : field_number, card_t
   use deck_cards_m, only : cursor_t, open_cursor, skip_title, next_card, next_row, next_text, &
@@ -23,7 +22,7 @@ module deck_part_m
 
 contains
 
-  !> *PART: a heading and a card for each part. Sections and materials are known.
+  !> *PART: a heading and a card for each part. Sections and materials have been read.
   subroutine read_parts(deck, default, equations, model)
     type(deck_t), intent(inout) :: deck
     type(hourglass_t), intent(in) :: default     !! of parts that name no control of their own
@@ -49,7 +48,8 @@ contains
         call next_text(deck, cursor, part%title)
         part%title = trim(adjustl(part%title))
         if (.not. next_row(deck, cursor, 2, card)) then
-          call line_error(deck, cursor%line - 1, 'a heading without the card of its part after it')
+          call line_error(deck, cursor%line - 1, &
+            'the card of the part is missing after this heading')
           exit
         end if
         call define(deck, a_part, card, n)
@@ -93,7 +93,7 @@ contains
     end do
   end subroutine skip_separators
 
-  !> *SECTION_SHELL: two cards each; only the element form matters.
+  !> *SECTION_SHELL: two cards each.
   subroutine read_sections(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
@@ -130,7 +130,7 @@ contains
     call map_defined(deck, a_section, 'SECID')
   end subroutine read_sections
 
-  !> ELFORM.
+  !> Check ELFORM.
   subroutine check_form(deck, card)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -140,14 +140,14 @@ contains
     case (13, 15)
       return
     case (12)
-      message = 'is plane stress, which this version does not have; 13 (plane strain) and 15 ' &
-        //'(axisymmetric) are what it has'
+      message = 'is plane stress, which this version does not have; it has 13 (plane strain) ' &
+        //'and 15 (axisymmetric)'
     case (14)
-      message = 'is axisymmetric and area weighted, which this version does not have; 15 ' &
-        //'(axisymmetric, volume weighted) is what it has'
+      message = 'is axisymmetric and area weighted, which this version does not have; it has 15 ' &
+        //'(axisymmetric, volume weighted)'
     case default
-      message = 'is not an element form for the plane; 13 (plane strain) and 15 (axisymmetric) ' &
-        //'are what this version has'
+      message = 'is not a 2D element form of this version; it has 13 (plane strain) and 15 ' &
+        //'(axisymmetric)'
     end select
     call report_field(deck, card, 'ELFORM', message)
   end subroutine check_form
@@ -155,7 +155,7 @@ contains
   !> *HOURGLASS: one card each.
   subroutine read_hourglasses(deck, default, hourglasses)
     type(deck_t), intent(inout) :: deck
-    type(hourglass_t), intent(in) :: default   !! bulk viscosity where a card leaves it blank
+    type(hourglass_t), intent(in) :: default   !! bulk viscosity of blank fields
     type(hourglass_t), allocatable, intent(out) :: hourglasses(:)
     type(hourglass_t) :: hourglass
     type(cursor_t) :: cursor
@@ -178,7 +178,7 @@ contains
     call map_defined(deck, an_hourglass, 'HGID')
   end subroutine read_hourglasses
 
-  !> The form in the field of a name.
+  !> Read an hourglass form.
   subroutine hourglass_form(deck, card, name, form)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -194,16 +194,15 @@ contains
     case (6)
       form = hourglass_assumed
     case (7)
-      call report_field(deck, card, name, 'is the total form of 6, whose forces pull ' &
-        //'back to the initial shape whatever has yielded since; this version has the form in ' &
-        //'increments (6), which is the same while the strains are small and elastic')
+      call report_field(deck, card, name, 'is assumed strain in total form, which this version ' &
+        //'does not have; the incremental form (6) is equivalent for small elastic strains')
     case default
       call report_field(deck, card, name, &
         'is not an hourglass form (1 to 3 viscous, 4 and 5 stiffness, 6 assumed strain)')
     end select
   end subroutine hourglass_form
 
-  !> Hourglass coefficient in the field of a name: 0 and blank are 0.1, as in LS-DYNA.
+  !> Read an hourglass coefficient; 0 and blank are 0.1, as in LS-DYNA.
   subroutine hourglass_coefficient(deck, card, name, coefficient)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -217,12 +216,12 @@ contains
       coefficient = given
     else if (.not. is_blank(card, name) .and. .not. is_bad(card, name)) then
       call line_warning(deck, card%line, 'qh'//to_text(card%line), &
-        'an hourglass coefficient of 0 means the default 0.1; give a very small one for almost ' &
-        //'none')
+        'an hourglass coefficient of 0 means the default 0.1; give a very small one for hardly ' &
+        //'any')
     end if
   end subroutine hourglass_coefficient
 
-  !> Whether the deck is axisymmetric: all of its parts, or none.
+  !> Set whether the model is axisymmetric; parts with another formulation are errors.
   subroutine set_formulation(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
@@ -240,24 +239,22 @@ contains
     first = findloc(is_known, .true., dim=1)
     do i = 1, size(model%parts)
       if (.not. is_known(i) .or. (is_axisymmetric(i) .eqv. is_axisymmetric(first))) cycle
-      call reject_field(deck, place_t(deck%maps(a_part)%lines(i), 2, 'SECID'), 'is a section of ' &
-        //trim(forms(merge(2, 1, &
+      call reject_field(deck, location_t(deck%maps(a_part)%lines(i), 2, 'SECID'), &
+        'is a section of '//trim(forms(merge(2, 1, &
         is_axisymmetric(i))))//', but part '//to_text(model%parts(first)%id) &
-        //' is of '//trim(forms(merge(2, 1, is_axisymmetric(first))))//': a deck is of one kind')
+        //' has '//trim(forms(merge(2, 1, is_axisymmetric(first))))//': all parts must be of one ' &
+        //'kind')
     end do
   end subroutine set_formulation
 
-  !> Parts of one-point quads: those with assumed strain must resist shear; in implicit runs those
-  !> without it, or of rubber, whose tangent is that of full integration, are fully integrated,
-  !> whatever the deck says.
+  !> Check and set the integration of one-point quads. Assumed strain needs a shear modulus.
+  !> Implicit runs integrate parts fully that have rubber or no assumed strain, whatever NIP.
   subroutine set_integration(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
     character(:), allocatable :: changed
     type(section_t) :: full_section
-    integer :: full_sections(size(model%sections)) !! fully integrated ones, which other parts may
-                                                   !! go on sharing as they are; 0 where there is
-                                                   !! none
+    integer :: full_sections(size(model%sections)) !! fully integrated copy of each section, 0: none
     integer :: i, line
 
     changed = ''
@@ -268,7 +265,7 @@ contains
         if (model%sections(part%section)%is_full .or. model%materials(part%material)%is_rigid) cycle
         if (part%hourglass%form == hourglass_assumed .and. .not. (model%controls%implicit%is_on &
           .and. allocated(model%materials(part%material)%rubber))) then
-          ! The stiffness of assumed strain is that of shear.
+          ! Assumed strain takes its stiffness from the shear modulus.
           associate (material => model%materials(part%material))
             if (material%needs_eos .and. .not. material%shear > 0.0_wp) call line_error(deck, &
               deck%maps(a_part)%lines(i), 'part '//to_text(part%id)//' has hourglass control by ' &
@@ -291,15 +288,15 @@ contains
       end associate
     end do
     if (len(changed) > 0) call line_warning(deck, line, 'implicit points', 'the implicit method ' &
-      //'takes parts whose NIP is not 4 as NIP 4 where hourglass control is not by ' &
-      //'assumed strain (IHQ 6), which would keep them as they are (but for rubber): '//changed(3:))
+      //'integrates these parts fully, as with NIP 4 (one-point elements need IHQ 6 and no ' &
+      //'rubber): '//changed(3:))
   end subroutine set_integration
 
-  !> One body for each part of *MAT_RIGID.
+  !> Make one rigid body for each part of *MAT_RIGID.
   subroutine make_rigids(deck, model, owner)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
-    integer, allocatable, intent(out) :: owner(:) !! (n_node) the body of each node, 0 for none
+    integer, allocatable, intent(out) :: owner(:) !! (n_node) body of each node, 0: none
     integer, allocatable :: parts(:)
     logical :: is_there(0:model%mesh%n_node)
     integer :: i, k
@@ -329,25 +326,25 @@ contains
       deck%maps(a_material)%lines(model%parts(parts(1))%material), '*MAT_RIGID: the implicit ' &
       //'method does not have rigid bodies')
     if (size(parts) == size(model%parts) .and. model%controls%dt_curve == 0) call line_error(deck, &
-      deck%maps(a_part)%lines(1), 'all parts are rigid, so no element gives a time step; give ' &
-      //'one by a curve (LCTM of *CONTROL_TIMESTEP)')
+      deck%maps(a_part)%lines(1), 'all parts are rigid, so that no element has a time step; give ' &
+      //'a curve LCTM of *CONTROL_TIMESTEP')
   end subroutine make_rigids
 
-  !> No node may have two bodies, and a body needs some.
+  !> Report a rigid body without nodes, and nodes of two rigid bodies.
   subroutine own_nodes(deck, i, model, owner)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i                !! body
     type(model_t), intent(in) :: model
     integer, intent(inout) :: owner(:)      !! (n_node) of the bodies so far
-    type(place_t) :: place
+    type(location_t) :: location
     integer :: k
 
     associate (body => model%rigids(i))
-      place = place_t(deck%maps(a_part)%lines(body%part), 2, 'PID')
+      location = location_t(deck%maps(a_part)%lines(body%part), 2, 'PID')
       if (size(body%nodes) == 0 .and. .not. deck%maps(an_element)%has_refused) &
-        call reject_field(deck, place, ': this rigid part has no elements, so no mass')
+        call reject_field(deck, location, ': this rigid part has no elements, so no mass')
       k = findloc(owner(body%nodes) > 0, .true., dim=1)
-      if (k > 0) call reject_field(deck, place, ': node ' &
+      if (k > 0) call reject_field(deck, location, ': node ' &
         //to_text(model%mesh%node_id(body%nodes(k)))//' belongs to this rigid part and to rigid ' &
         //'part '//to_text(model%parts(model%rigids(owner(body%nodes(k)))%part)%id) &
         //'; bodies that share nodes must be one part')

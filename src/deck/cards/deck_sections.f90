@@ -1,8 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> *DATABASE_CROSS_SECTION_SET: nodes and shells in each row, behind a heading each where the
-!> keyword has one.
+!> *DATABASE_CROSS_SECTION_SET: a node set and a shell set in each row, with an optional heading.
 module deck_sections_m
-  use controls_m, only : cross_section_t, find_edges
+  use controls_m, only : cross_section_t, set_edges
   use log_m, only : to_text
   use model_m, only : model_t
   use deck_cards_m, only : cursor_t, open_cursor, next_card, next_heading, row_comes, report_field
@@ -17,7 +16,7 @@ module deck_sections_m
 
 contains
 
-  !> All of the deck. The sets and the mesh are known.
+  !> Read all cross sections. Mesh and sets have been read.
   subroutine read_cross_sections(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
@@ -55,7 +54,7 @@ contains
     model%controls%output%cross_sections = sections(:n)
   end subroutine read_cross_sections
 
-  !> One row.
+  !> Read one row.
   subroutine read_section(deck, cursor, model, section, is_sound)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
@@ -73,15 +72,15 @@ contains
     call remove_duplicates(model%node_sets(nodes)%nodes, model%mesh%n_node, section%nodes)
     call remove_duplicates(model%shell_sets(shells)%elements, model%mesh%n_element, &
       section%elements)
-    ! Of a mesh with mistakes only these are told; a set of none is told where it stands.
+    ! Errors of the mesh and empty sets have been reported.
     if (any(model%mesh%element_nodes < 1)) return
     if (size(section%nodes) == 0 .or. size(section%elements) == 0) return
     call check_section(deck, card, model, section)
-    call find_edges(model%mesh%element_nodes, section)
+    call set_edges(model%mesh%element_nodes, section)
     is_sound = .true.
   end subroutine read_section
 
-  !> Each node has an element of the section, and no element is rigid.
+  !> Report nodes without an element of the section, and rigid elements.
   subroutine check_section(deck, card, model, section)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card

@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> *SET_, and *ELEMENT_BEAM, as mesh generators write the edges of a plane mesh: no elements here,
-!> but the segment set and the node set of the number of their part. What *DATABASE_HISTORY_ and
-!> *DATABASE_NODAL_FORCE_GROUP choose.
+!> *SET_; *ELEMENT_BEAM, by which mesh generators write the edges of a plane mesh: a segment set and
+!> a node set with the number of their part; *DATABASE_HISTORY_ and *DATABASE_NODAL_FORCE_GROUP.
 module deck_sets_m
   use kinds_m, only : long
   use log_m, only : to_text
@@ -21,29 +20,28 @@ module deck_sets_m
   private
   public :: read_sets, read_histories, remove_duplicates, check_edge
 
-  !> One set: indices of its members, in a segment set pairs of nodes.
+  !> One set of any kind; members of a segment set are pairs of nodes.
   type :: set_t
     integer :: id = 0
     integer :: line = 0
     character(:), allocatable :: title
     logical :: of_beams = .false.
-    logical :: is_whole = .true.        !! all that its cards name exists
-    logical :: is_boundary = .false.    !! of a segment set: the members are parts
-    integer :: n_named = 0              !! members that its cards name
+    logical :: is_whole = .true.        !! all members on its cards exist
+    logical :: is_boundary = .false.    !! segment set whose members are parts
+    integer :: n_named = 0              !! number of members on its cards
     integer :: n = 0
-    integer, allocatable :: members(:)  !! n, while it is read maybe longer
-    integer, allocatable :: place(:)    !! (n_node) of a general set, while it is read: where each
-                                        !! node stands, 0 where it does not
+    integer, allocatable :: members(:)  !! (n), longer while the set is read
+    integer, allocatable :: position(:) !! (n_node) of each node in a general set while it is read,
+                                        !! 0: not in it
   end type set_t
 
 contains
 
-  !> All sets of the deck. The mesh and parts are known.
+  !> Read all sets. Mesh and parts have been read.
   subroutine read_sets(deck, model, is_whole)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
-    logical, allocatable, intent(out) :: is_whole(:) !! of each node set: all nodes that its cards
-                                                     !! name exist
+    logical, allocatable, intent(out) :: is_whole(:) !! (node sets) all nodes on the cards exist
     type(set_t), allocatable :: sets(:), beams(:, :)
     type(boundary_t) :: boundary
     logical, allocatable :: is_chosen(:), all_nodes(:)
@@ -79,7 +77,7 @@ contains
       if (sets(i)%is_boundary) then
         call move_alloc(sets(i)%members, model%segment_sets(i)%parts)
         allocate (model%segment_sets(i)%nodes(2, 0))
-        ! Of a mesh with mistakes only these are told.
+        ! Errors of the mesh have been reported.
         if (any(model%mesh%element_nodes < 1)) cycle
         is_of_part = .false.
         is_of_part(model%segment_sets(i)%parts) = .true.
@@ -93,10 +91,10 @@ contains
     end do
   end subroutine read_sets
 
-  !> The sets of one kind, with those of beams among them in the order of the deck.
+  !> Read the sets of one kind, and merge the sets of beams in the order of the deck.
   subroutine read_kind(deck, word, kind, model, sets, of_beams)
     type(deck_t), intent(inout) :: deck
-    character(*), intent(in) :: word         !! in the names of their keywords
+    character(*), intent(in) :: word         !! part of the names of their keywords
     integer, intent(in) :: kind
     type(model_t), intent(in) :: model
     type(set_t), allocatable, intent(out) :: sets(:)
@@ -126,12 +124,12 @@ contains
     call map_defined(deck, kind, 'SID', [sets%of_beams])
   end subroutine read_kind
 
-  !> A set of nodes, parts, elements or segments: its number, then its members.
+  !> Read a set of nodes, parts, elements or segments: its number, then its members.
   subroutine read_set(deck, i_block, model, set)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
     type(model_t), intent(in) :: model
-    type(set_t), intent(out) :: set           !! its id is 0 where it was refused
+    type(set_t), intent(out) :: set           !! id 0: refused
     type(cursor_t) :: cursor
     type(card_t) :: head, card
     logical :: is_sound
@@ -167,8 +165,8 @@ contains
     set%is_boundary = index(deck%blocks(i_block)%name, 'SET_2D_SEGMENT') == 1
     set%is_whole = is_sound
     set%members = set%members(:set%n)
-    if (allocated(set%place)) then
-      set%members = pack(set%members, set%place(set%members) == [(k, k=1, set%n)])
+    if (allocated(set%position)) then
+      set%members = pack(set%members, set%position(set%members) == [(k, k=1, set%n)])
       set%n_named = size(set%members)
     end if
     if (is_sound .and. set%n_named == 0) call line_error(deck, set%line, 'the set is empty')
@@ -177,7 +175,7 @@ contains
     if (.not. is_bad(head, 'SID')) set%id = integer_of(head, 'SID')
   end subroutine read_set
 
-  !> More members; 0 is none.
+  !> Append members; 0 is skipped.
   subroutine append(set, members)
     type(set_t), intent(inout) :: set
     integer, intent(in) :: members(:)
@@ -192,7 +190,7 @@ contains
     end do
   end subroutine append
 
-  !> The ids of a row, one in each of its fields; zeros are padding.
+  !> Read the ids of a row, one in each field; zeros are padding.
   subroutine read_members(deck, card, kind, set)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -208,7 +206,7 @@ contains
     end do
   end subroutine read_members
 
-  !> Pairs of first and last id.
+  !> Read pairs of first and last id.
   subroutine read_id_ranges(deck, card, kind, set)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -221,18 +219,18 @@ contains
       if (all(card%i(k:k + 1) == 0)) cycle
       if (card%i(k) < 1) call report_field(deck, card, k, 'is not a number of 1 or more')
       if (card%i(k + 1) < card%i(k)) call report_field(deck, card, k + 1, &
-        'is not the end of a block that begins with "'//to_text(card%i(k))//'"')
+        'is not the end of a range that begins with "'//to_text(card%i(k))//'"')
       if (any(card%bad(k:k + 1))) cycle
       call ids_between(deck%maps(kind), card%i(k), card%i(k + 1), block)
       if (size(block) == 0 .and. .not. deck%maps(kind)%incomplete) call &
         report_field(deck, card, k, 'to "'//to_text(card%i(k + 1))//'": there is no ' &
-        //trim(kind_names(kind))//' in this block')
+        //trim(kind_names(kind))//' in this range')
       set%n_named = set%n_named + 1
       call append(set, block)
     end do
   end subroutine read_id_ranges
 
-  !> Two nodes from N1 on.
+  !> Read the nodes N1 and N2 of an edge.
   subroutine read_edge(deck, card, set)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -244,8 +242,8 @@ contains
     call append(set, ends)
   end subroutine read_edge
 
-  !> A row of a general set: what it adds or takes out. Each node stands in the set once, where it
-  !> was added.
+  !> Read a row of *SET_NODE_GENERAL, which adds or removes nodes. Each node is in the set once, at
+  !> the position where it was added.
   subroutine read_option(deck, card, model, set)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -255,7 +253,7 @@ contains
     integer :: i, k, found
 
     action = upper_case(field_text(deck, card, 1))
-    if (.not. allocated(set%place)) allocate (set%place(model%mesh%n_node), source=0)
+    if (.not. allocated(set%position)) allocate (set%position(model%mesh%n_node), source=0)
     if (all(action /= ['ALL  ', 'NODE ', 'DNODE', 'PART ', 'DPART'])) then
       call report_field(deck, card, 'OPTION', 'is not ALL, NODE, DNODE, PART or DPART (boxes are ' &
         //'not available in slideline)')
@@ -278,7 +276,7 @@ contains
 
   contains
 
-    !> Add nodes that are not there, or take them out; 0 is none.
+    !> Add nodes that are not in the set, or remove them; 0 is skipped.
     subroutine change_members(nodes)
       integer, intent(in) :: nodes(:)
       integer :: j
@@ -286,17 +284,17 @@ contains
       do j = 1, size(nodes)
         if (nodes(j) == 0) cycle
         if (action(1:1) == 'D') then
-          set%place(nodes(j)) = 0
-        else if (set%place(nodes(j)) == 0) then
+          set%position(nodes(j)) = 0
+        else if (set%position(nodes(j)) == 0) then
           call append(set, nodes(j:j))
-          set%place(nodes(j)) = set%n
+          set%position(nodes(j)) = set%n
         end if
       end do
     end subroutine change_members
 
   end subroutine read_option
 
-  !> N1 to N4 of an edge: two nodes, and what may stand behind them.
+  !> Check N1 to N4 of an edge: two nodes, then 0 or repeated nodes.
   subroutine check_edge(deck, card)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -308,11 +306,11 @@ contains
     do k = first + 2, first + 3
       if (any(card%bad)) exit
       if (all(card%i(k) /= [0, card%i(first:first + 1)])) call report_field(deck, card, k, &
-        'is a further node; an edge in the plane has two (repeat N2 or leave it 0)')
+        'is a third node; an edge in the plane has two (repeat N2 or leave it 0)')
     end do
   end subroutine check_edge
 
-  !> *ELEMENT_BEAM: the node set and the segment set of the number of each part.
+  !> *ELEMENT_BEAM: a node set and a segment set with the number of each part.
   subroutine read_beams(deck, model, sets)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(in) :: model
@@ -328,9 +326,9 @@ contains
     do while (next_of(deck, 'ELEMENT_BEAM', cursor, card))
       if (any(card%bad)) call note_refused(deck, [a_node_set, a_segment_set])
       if (any(card%bad)) cycle
-      call line_warning(deck, card%line, 'beams', 'beams are no elements of a plane mesh: the ' &
-        //'edges of each of their parts are the segment set, and the node set, of its number')
-      ! The last part is mostly the one.
+      call line_warning(deck, card%line, 'beams', 'beams are edges here, not elements: those of ' &
+        //'each part are the segment set and the node set with its number')
+      ! Most often the last part.
       do i = size(edges), 1, -1
         if (edges(i)%id == integer_of(card, 'PID')) exit
       end do
@@ -353,8 +351,8 @@ contains
     end do
   end subroutine read_beams
 
-  !> Nodes and elements of *DATABASE_HISTORY_, each once, in deck order; force groups of
-  !> *DATABASE_NODAL_FORCE_GROUP, none of their node sets twice.
+  !> Read nodes and elements of *DATABASE_HISTORY_, each once, in deck order, and the force groups
+  !> of *DATABASE_NODAL_FORCE_GROUP.
   subroutine read_histories(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
@@ -389,7 +387,7 @@ contains
     model%controls%output%force_groups = groups(:n)
   end subroutine read_histories
 
-  !> What the keywords that begin so name: members, and by those that end so sets.
+  !> Read the members and sets of keywords that begin with `head`.
   subroutine read_chosen(deck, head, kinds, members, sets)
     type(deck_t), intent(inout) :: deck
     character(*), intent(in) :: head
@@ -409,7 +407,7 @@ contains
     sets = chosen(2)%members(:chosen(2)%n)
   end subroutine read_chosen
 
-  !> Members of a list, each where it comes first.
+  !> Members of a list without repetitions, in order.
   pure subroutine remove_duplicates(members, n_all, kept)
     integer, intent(in) :: members(:)
     integer, intent(in) :: n_all           !! members are 1 to this

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What holds and moves nodes and rigid bodies: TC of *NODE, *BOUNDARY_SPC_,
+!> Constraints and prescribed motion of nodes and rigid bodies: TC of *NODE, *BOUNDARY_SPC_,
 !> *BOUNDARY_PRESCRIBED_MOTION_ and *CONSTRAINED_NODE_SET.
 module deck_supports_m
   use kinds_m, only : wp
@@ -11,7 +11,7 @@ module deck_supports_m
   use deck_cards_m, only : cursor_t, next_of, report_field, reject_field
   use deck_fields_m, only : card_t
   use deck_ids_m, only : a_node, an_element, a_part, a_curve, a_node_set, a_system
-  use deck_lines_m, only : deck_t, place_t, blocks_of, line_warning, line_error
+  use deck_lines_m, only : deck_t, location_t, blocks_of, line_warning, line_error
   use deck_sets_m, only : remove_duplicates
   use deck_values_m, only : integer_of, real_of, has_field, read_active_time, find_id, along_axes
   implicit none
@@ -19,13 +19,13 @@ module deck_supports_m
   public :: read_supports, read_motions, read_common_motions, card_nodes, find_body, mark_axis, &
     mark_nodes_with_mass, mark_constrained, warn_of_nodes
 
-  !> Why a rigid body of an axisymmetric deck does not go where it is told to.
+  !> Message about motion of a rigid body in an axisymmetric deck.
   character(*), parameter, public :: across_axis = 'asks a rigid body of an axisymmetric deck ' &
-    //'(ELFORM 15) to move in r or to turn; it moves along the axis alone'
+    //'(ELFORM 15) to move in r or to rotate; it can move along the axis only'
 
 contains
 
-  !> Nodes of the field NID or NSID of a card, each once. Empty when the id is wrong.
+  !> Nodes of NID or NSID of a card, each once; empty where the id is wrong.
   subroutine card_nodes(deck, card, model, nodes)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -43,12 +43,12 @@ contains
     end if
   end subroutine card_nodes
 
-  !> The rigid body of the part PID of a card; 0 where there is none, which is an error.
+  !> Index of the rigid body of PID; 0 with an error where there is none.
   subroutine find_body(deck, card, model, advice, body)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
     type(model_t), intent(in) :: model
-    character(*), intent(in) :: advice !! how the message goes on
+    character(*), intent(in) :: advice !! end of the message
     integer, intent(out) :: body
     integer :: part
 
@@ -60,20 +60,20 @@ contains
     if (body == 0) call report_field(deck, card, 'PID', 'is not a rigid part (*MAT_RIGID)'//advice)
   end subroutine find_body
 
-  !> A warning of nodes where there are some: how many, the first of them.
-  subroutine warn_of_nodes(deck, line, key, model, nodes, what, advice)
+  !> Warn of a list of nodes, unless it is empty: their number and the first of them.
+  subroutine warn_of_nodes(deck, line, key, model, nodes, text, advice)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line
     character(*), intent(in) :: key
     type(model_t), intent(in) :: model
     integer, intent(in) :: nodes(:)
-    character(*), intent(in) :: what, advice !! between the two, and behind them
+    character(*), intent(in) :: text, advice !! between number and node, and after the node
 
-    if (size(nodes) > 0) call line_warning(deck, line, key, to_text(size(nodes))//what &
+    if (size(nodes) > 0) call line_warning(deck, line, key, to_text(size(nodes))//text &
       //to_text(model%mesh%node_id(nodes(1)))//advice)
   end subroutine warn_of_nodes
 
-  !> (n_node) nodes on the axis of an axisymmetric deck.
+  !> (n_node) Whether a node lies on the axis of an axisymmetric model.
   pure function mark_axis(model) result(is_there)
     type(model_t), intent(in) :: model
     logical :: is_there(model%mesh%n_node)
@@ -82,7 +82,7 @@ contains
     if (model%is_axisymmetric) is_there = .not. model%mesh%coordinates(1, :) > 0.0_wp
   end function mark_axis
 
-  !> (n_node) nodes that some element has, all where elements have been refused.
+  !> (n_node) Whether a node belongs to an element; true where elements have been refused.
   pure function mark_nodes_with_mass(deck, model) result(has_mass)
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
@@ -92,7 +92,7 @@ contains
     if (.not. deck%maps(an_element)%has_refused) has_mass = mark_meshed_nodes(model)
   end function mark_nodes_with_mass
 
-  !> Fixed degrees of freedom: codes of *NODE, *BOUNDARY_SPC_, nodes without an element.
+  !> Read fixed degrees of freedom: TC of *NODE, *BOUNDARY_SPC_, nodes without an element.
   subroutine read_supports(deck, codes, owner, model, fixed)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: codes(:), owner(:) !! (n_node) TC, rigid body or 0
@@ -108,8 +108,8 @@ contains
     allocate (fixed(2, model%mesh%n_node), source=.false.)
     do i = 1, model%mesh%n_node
       if (codes(i) >= 0 .and. codes(i) <= 7) fixed(:, i) = along_axes(:2, codes(i))
-      if (any(fixed(:, i))) call refuse_rigid(deck, place_t(deck%maps(a_node)%lines(i), 1, 'TC'), &
-        [i], owner, model, 'CON1 and CON2 of *MAT_RIGID hold the body')
+      if (any(fixed(:, i))) call refuse_rigid(deck, location_t(deck%maps(a_node)%lines(i), 1, &
+        'TC'), [i], owner, model, 'CON1 and CON2 of *MAT_RIGID hold the body')
       if (is_free(i)) fixed(:, i) = .true.
     end do
     nodes = pack([(i, i=1, size(is_free))], is_free .and. model%mesh%n_element > 0 &
@@ -120,8 +120,8 @@ contains
       if (any(card%bad)) cycle
       call card_nodes(deck, card, model, nodes)
       along = [integer_of(card, 'DOFX'), integer_of(card, 'DOFY')] == 1
-      if (any(along)) call refuse_rigid(deck, place_t(card%line, 1, field=1), nodes, owner, model, &
-        'CON1 and CON2 of *MAT_RIGID hold the body')
+      if (any(along)) call refuse_rigid(deck, location_t(card%line, 1, field=1), nodes, owner, &
+        model, 'CON1 and CON2 of *MAT_RIGID hold the body')
       if (integer_of(card, 'CID') /= 0) then
         call fix_along_axes(deck, card, along, nodes, model, fixed)
       else
@@ -136,8 +136,8 @@ contains
     end associate
   end subroutine read_supports
 
-  !> Fix nodes along the axes of a coordinate system. Axes along x and y, and both of any two, are
-  !> plain supports; a node that two skew supports hold does not move at all.
+  !> Fix nodes along axes of a coordinate system. Axes parallel to x or y, and both axes, give
+  !> ordinary constraints; a node with two skew supports is fixed.
   subroutine fix_along_axes(deck, card, along, nodes, model, fixed)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -174,7 +174,7 @@ contains
           conditions%skew_supports = [conditions%skew_supports, support]
         else
           associate (a => conditions%skew_supports(j)%normal, b => support%normal)
-            ! Along two axes; the same axis twice is one.
+            ! Two different axes.
             if (abs(a(1)*b(2) - a(2)*b(1)) >= aligned) fixed(:, nodes(k)) = .true.
           end associate
         end if
@@ -182,19 +182,18 @@ contains
     end associate
   end subroutine fix_along_axes
 
-  !> Nodes of a rigid body follow the body: nothing else may hold or move them. (LS-DYNA passes over
-  !> such constraints or turns them into some of the body, according to its version.) One error for
-  !> each card.
-  subroutine refuse_rigid(deck, place, nodes, owner, model, advice)
+  !> Report constraints and motion of nodes of rigid bodies, one error for each card. (LS-DYNA
+  !> ignores them or applies them to the body, depending on its version.)
+  subroutine refuse_rigid(deck, location, nodes, owner, model, advice)
     type(deck_t), intent(inout) :: deck
-    type(place_t), intent(in) :: place
+    type(location_t), intent(in) :: location
     integer, intent(in) :: nodes(:), owner(:)
     type(model_t), intent(in) :: model
     character(*), intent(in) :: advice
     integer :: i
 
     i = findloc(owner(nodes) > 0, .true., dim=1)
-    if (i > 0) call reject_field(deck, place, ': node '//to_text(model%mesh%node_id(nodes(i))) &
+    if (i > 0) call reject_field(deck, location, ': node '//to_text(model%mesh%node_id(nodes(i))) &
       //' belongs to rigid part '//to_text(model%parts(model%rigids(owner(nodes(i)))%part)%id) &
       //' and follows it; '//advice)
   end subroutine refuse_rigid
@@ -228,7 +227,7 @@ contains
         cycle
       end if
       call card_nodes(deck, card, model, nodes)
-      call refuse_rigid(deck, place_t(card%line, 1, field=1), nodes, owner, model, &
+      call refuse_rigid(deck, location_t(card%line, 1, field=1), nodes, owner, model, &
         '*BOUNDARY_PRESCRIBED_MOTION_RIGID moves the body')
       if (motion%kind == motion_acceleration .and. is_static) call report_field(deck, card, 'VAD', &
         'is an acceleration, which has no meaning in statics ' &
@@ -249,8 +248,8 @@ contains
     call check_motions(deck, model, lines(:n), fixed)
   end subroutine read_motions
 
-  !> A moved degree of freedom may not be fixed, nor moved twice at one time, nor without mass. One
-  !> error for each card.
+  !> Report prescribed degrees of freedom that are fixed, prescribed twice at one time, or without
+  !> mass, one error for each card.
   subroutine check_motions(deck, model, lines, fixed)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(in) :: model
@@ -269,7 +268,7 @@ contains
     message = ''
     do i = 1, size(lines)
       associate (motion => model%conditions%motions(i))
-        ! Motions of one degree of freedom are chained backwards.
+        ! Motions of one degree of freedom are linked backwards.
         before(i) = last(motion%direction, motion%node)
         last(motion%direction, motion%node) = i
         if (len(message) > 0 .and. lines(i) == reported_line) cycle
@@ -288,17 +287,17 @@ contains
           'is fixed in this direction and cannot be moved by this card too'
         if (model%is_axisymmetric .and. motion%direction == 1 .and. .not. &
           model%mesh%coordinates(1, motion%node) > 0.0_wp) message = &
-          'lies on the axis (x = 0) of an axisymmetric deck and can not move in r'
+          'lies on the axis (x = 0) of an axisymmetric deck and cannot move in r'
         if (.not. has_mass(motion%node)) message = &
-          'belongs to no element, so it has no mass to be moved'
+          'belongs to no element and has no mass'
         reported_line = lines(i)
-        if (len(message) > 0) call reject_field(deck, place_t(reported_line, 1, field=1), &
+        if (len(message) > 0) call reject_field(deck, location_t(reported_line, 1, field=1), &
           ': node '//to_text(model%mesh%node_id(motion%node))//' '//message)
       end associate
     end do
   end subroutine check_motions
 
-  !> *BOUNDARY_PRESCRIBED_MOTION_RIGID. A moved degree of freedom may not be fixed, nor moved twice
+  !> *BOUNDARY_PRESCRIBED_MOTION_RIGID; report degrees of freedom that are fixed or prescribed twice
   !> at one time.
   subroutine read_rigid_motion(deck, card, motion, lines, model)
     type(deck_t), intent(inout) :: deck
@@ -329,8 +328,7 @@ contains
     lines = [lines, card%line]
   end subroutine read_rigid_motion
 
-  !> *CONSTRAINED_NODE_SET: the sets whose nodes nothing else holds or moves along the same
-  !> direction.
+  !> *CONSTRAINED_NODE_SET; report nodes with other constraints or motion in the same direction.
   subroutine read_common_motions(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
@@ -349,7 +347,7 @@ contains
     do while (next_of(deck, 'CONSTRAINED_NODE_SET', cursor, card))
       if (any(card%bad)) cycle
       if (model%controls%implicit%is_on) call line_error(deck, card%line, &
-        '*CONSTRAINED_NODE_SET is a constraint that the implicit method does not have')
+        'the implicit method does not have *CONSTRAINED_NODE_SET')
       call card_nodes(deck, card, model, common%nodes)
       common%along = along_axes(:2, integer_of(card, 'DOF'))
       if (.not. any(common%along) .or. size(common%nodes) == 0) cycle
@@ -357,7 +355,7 @@ contains
         associate (node => common%nodes(i))
           message = ''
           if (any(constrained(:, node) .and. common%along)) message = &
-            'is held, moved or in another such set along the same direction'
+            'is fixed, moved or in another *CONSTRAINED_NODE_SET in the same direction'
           if (is_rigid(node)) message = 'belongs to a rigid part and follows it'
           if (.not. meshed(node)) message = 'belongs to no element'
           if (len(message) > 0) call report_field(deck, card, 'NSID', ': node ' &
@@ -374,7 +372,7 @@ contains
     end do
   end subroutine read_common_motions
 
-  !> Degrees of freedom that something holds or moves.
+  !> (2, n_node) Whether a degree of freedom is fixed or prescribed.
   pure function mark_constrained(model) result(constrained)
     type(model_t), intent(in) :: model
     logical :: constrained(2, model%mesh%n_node)

@@ -1,31 +1,30 @@
 ! SPDX-License-Identifier: MIT
-!> Values of a card by the names that the table of keywords gives its fields, and what they refer
-!> to. A name that is not there, or a kind that is another, is a fault of the program and ends it.
+!> Values of a card by field name, and indices of the entities that they refer to. A wrong name or
+!> kind is a bug and stops the program.
 module deck_values_m
   use kinds_m, only : wp
   use deck_ids_m, only : id_map_t, map_ids, index_of, kind_names, a_node, an_element, a_part
-  use deck_lines_m, only : place_t, deck_t, line_error, where_text
+  use deck_lines_m, only : location_t, deck_t, line_error, where_text
   use deck_fields_m, only : field_number, card_t
   use log_m, only : to_text
   use deck_cards_m, only : reject_field, report_field
   implicit none
   private
-  public :: integer_of, real_of, reals_of, has_field, is_blank, is_bad, place_of, &
+  public :: integer_of, real_of, reals_of, has_field, is_blank, is_bad, location_of, &
     read_active_time, define, map_defined, find_id, resolve_id, refuse_duplicates, note_refused
 
-  !> Directions x, y and z of the codes TC, DOF and CON: 0 none, 1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7
-  !> xyz.
+  !> Directions x, y and z of the direction codes TC, DOF and CON (0 to 7).
   logical, parameter, public :: along_axes(3, 0:7) = reshape([.false., .false., .false., .true., &
     .false., .false., .false., .true., .false., .false., .false., .true., .true., .true., .false., &
     .false., .true., .true., .true., .false., .true., .true., .true., .true.], [3, 8])
-  !> Index of what a field refers to.
+  !> Index of the entity that a field refers to.
   interface find_id
     module procedure find_by_name, find_by_position
   end interface find_id
 
 contains
 
-  !> A whole number.
+  !> Value of an integer field.
   function integer_of(card, name) result(value)
     type(card_t), intent(in) :: card
     character(*), intent(in) :: name
@@ -33,11 +32,11 @@ contains
     integer :: k
 
     k = field_number(card%names, name)
-    if (card%kinds(k) /= 'i') error stop 'a field that is no whole number was asked for one'
+    if (card%kinds(k) /= 'i') error stop 'internal error: the field is not an integer'
     value = card%i(k)
   end function integer_of
 
-  !> A real number.
+  !> Value of a real field.
   function real_of(card, name) result(value)
     type(card_t), intent(in) :: card
     character(*), intent(in) :: name
@@ -45,11 +44,11 @@ contains
     integer :: k
 
     k = field_number(card%names, name)
-    if (card%kinds(k) /= 'f') error stop 'a field that is no real number was asked for one'
+    if (card%kinds(k) /= 'f') error stop 'internal error: the field is not a real'
     value = card%r(k)
   end function real_of
 
-  !> Real numbers of the fields from one name to another.
+  !> Values of the real fields from one name to another.
   function reals_of(card, first, last) result(values)
     type(card_t), intent(in) :: card
     character(*), intent(in) :: first, last
@@ -58,7 +57,7 @@ contains
     values = card%r(field_number(card%names, first):field_number(card%names, last))
   end function reals_of
 
-  !> Whether a card has a field of a name.
+  !> Whether a card has a field.
   pure function has_field(card, name) result(yes)
     type(card_t), intent(in) :: card
     character(*), intent(in) :: name
@@ -67,7 +66,7 @@ contains
     yes = any(card%names == name)
   end function has_field
 
-  !> Whether a field was left blank.
+  !> Whether a field is blank.
   function is_blank(card, name) result(yes)
     type(card_t), intent(in) :: card
     character(*), intent(in) :: name
@@ -85,18 +84,17 @@ contains
     yes = card%bad(field_number(card%names, name))
   end function is_bad
 
-  !> Where a field stands, for what is found later.
-  function place_of(card, name) result(place)
+  !> Location of a field, for later messages.
+  function location_of(card, name) result(location)
     type(card_t), intent(in) :: card
     character(*), intent(in) :: name
-    type(place_t) :: place
+    type(location_t) :: location
 
-    place = place_t(line=card%line, card=card%number, name=name, &
+    location = location_t(line=card%line, card=card%number, name=name, &
       field=field_number(card%names, name))
-  end function place_of
+  end function location_of
 
-  !> Times from which and until when something acts; the default of the end, also that of 0, is
-  !> never.
+  !> Birth and death time; the default death time, also of 0, is never.
   subroutine read_active_time(deck, card, names, birth, death)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -113,8 +111,8 @@ contains
     end if
   end subroutine read_active_time
 
-  !> One more thing of a kind, which has its number in the first field of a card: its index, 0 where
-  !> the number was refused.
+  !> Define an entity by the number in the first field of its card; index 0 where the number is
+  !> refused.
   subroutine define(deck, kind, card, n)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: kind
@@ -139,12 +137,12 @@ contains
     end associate
   end subroutine define
 
-  !> The map of a kind of which all are defined, with an error for each id that comes again.
+  !> Build the map of a kind after all definitions, and report repeated ids.
   subroutine map_defined(deck, kind, field, of_beams)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: kind
     character(*), intent(in) :: field            !! of the ids
-    logical, intent(in), optional :: of_beams(:) !! the number of a set is that of a part
+    logical, intent(in), optional :: of_beams(:) !! sets with the number of a beam part
     integer, allocatable :: ids(:), lines(:), duplicates(:)
     type(id_map_t) :: map
     character(5) :: name
@@ -164,13 +162,13 @@ contains
     do i = 1, size(duplicates)
       name = field
       if (present(of_beams)) name = merge('PID  ', name, of_beams(duplicates(i)))
-      call reject_field(deck, place_t(map%lines(duplicates(i)), merge(2, 1, kind == a_part), &
+      call reject_field(deck, location_t(map%lines(duplicates(i)), merge(2, 1, kind == a_part), &
         trim(name)), 'is the number of another '//trim(kind_names(kind))//' (' &
         //where_text(deck, map%lines(index_of(map, map%ids(duplicates(i)))))//')')
     end do
   end subroutine map_defined
 
-  !> Definitions of a kind that were refused: a reference to them is no further mistake.
+  !> Note that definitions of these kinds have been refused, so that references are not errors.
   pure subroutine note_refused(deck, kinds)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: kinds(:)
@@ -179,8 +177,7 @@ contains
     deck%maps(kinds)%incomplete = .true.
   end subroutine note_refused
 
-  !> Index of what a field of a card just read refers to, by the field's name; 0 with an error of
-  !> the field where there is none.
+  !> Index of the entity that a field refers to, by field name; 0 with an error where there is none.
   subroutine find_by_name(deck, kind, card, name, found)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: kind
@@ -191,7 +188,8 @@ contains
     call find_by_position(deck, kind, card, field_number(card%names, name), found)
   end subroutine find_by_name
 
-  !> The same by the position of the field.
+  !> Index of the entity that a field refers to, by field position; 0 with an error where there is
+  !> none.
   subroutine find_by_position(deck, kind, card, k, found)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: kind
@@ -201,30 +199,30 @@ contains
 
     found = index_of(deck%maps(kind), card%i(k))
     if (found == 0 .and. .not. deck%maps(kind)%incomplete) call report_field(deck, card, k, &
-      'is no '//trim(kind_names(kind))//' of this deck')
+      'matches no '//trim(kind_names(kind))//' of this deck')
   end subroutine find_by_position
 
-  !> As `find_id`, of a card that was read some time ago.
-  subroutine resolve_id(deck, kind, id, place, found, suffix)
+  !> Index of an entity, for a card that was read before (see `find_id`).
+  subroutine resolve_id(deck, kind, id, location, found, suffix)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: kind, id
-    type(place_t), intent(in) :: place
+    type(location_t), intent(in) :: location
     integer, intent(out) :: found
-    character(*), intent(in), optional :: suffix !! how the message goes on
+    character(*), intent(in), optional :: suffix !! end of the message
     character(:), allocatable :: message
 
     found = index_of(deck%maps(kind), id)
     if (found > 0 .or. deck%maps(kind)%incomplete) return
-    message = 'is no '//trim(kind_names(kind))//' of this deck'
+    message = 'matches no '//trim(kind_names(kind))//' of this deck'
     if (present(suffix)) message = message//suffix
-    call reject_field(deck, place, message)
+    call reject_field(deck, location, message)
   end subroutine resolve_id
 
-  !> An error of the line of each number that has come before.
+  !> Report the lines of repeated numbers.
   subroutine refuse_duplicates(deck, ids, lines, what, owner)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: ids(:), lines(:)   !! in the order of the deck
-    character(*), intent(in) :: what, owner   !! kind of number, what it is the number of
+    character(*), intent(in) :: what, owner   !! kind of number, kind of its owner
     type(id_map_t) :: map
     integer, allocatable :: duplicates(:)
     integer :: i

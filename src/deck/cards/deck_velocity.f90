@@ -17,7 +17,7 @@ module deck_velocity_m
 
 contains
 
-  !> Fill `initial_velocity` when the deck asks for any.
+  !> Read all initial velocities.
   subroutine read_velocities(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
@@ -62,14 +62,13 @@ contains
         .and. (mark_axis(model) .or. mark_rigid_nodes(model%rigids, model%mesh%n_node)))
       velocity(1, held) = 0.0_wp
       call warn_of_nodes(deck, i, 'radial velocity', model, held, ' node(s) on the axis or of ' &
-        //'rigid bodies have an initial velocity in r, which they can not take: it is left out; ' &
-        //'the first is ', '')
+        //'rigid bodies have an initial velocity in r, which is ignored; the first is ', '')
     end if
     call move_alloc(velocity, model%conditions%initial_velocity)
   end subroutine read_velocities
 
-  !> *INITIAL_VELOCITY: a set or all nodes, less those of a second set, which have a velocity of
-  !> their own.
+  !> *INITIAL_VELOCITY: a node set or all nodes, without those of a second set, which have another
+  !> velocity.
   subroutine read_velocity(deck, cursor, model, first_line, velocity)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
@@ -105,7 +104,7 @@ contains
     end do
   end subroutine read_velocity
 
-  !> *INITIAL_VELOCITY_GENERATION: translation and spin about an axis along z.
+  !> *INITIAL_VELOCITY_GENERATION: translation and rotation about an axis along z.
   subroutine read_generation(deck, cursor, model, first_line, velocity)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor
@@ -113,7 +112,7 @@ contains
     integer, intent(inout) :: first_line
     real(wp), intent(inout) :: velocity(:, :)
     character(*), parameter :: turned = &
-      'turns the axis out of z; in the plane bodies spin about z'
+      'tilts the axis; in the plane bodies rotate about z'
     type(card_t) :: card, axis
     logical :: is_chosen(model%mesh%n_node)
     real(wp) :: spin, centre(2), ahead(2)
@@ -130,7 +129,7 @@ contains
     if (any(card%bad) .or. any(axis%bad)) return
     if (first_line == 0) first_line = card%line
     if (model%is_axisymmetric .and. abs(spin) > 0.0_wp) call report_field(deck, card, 'OMEGA', &
-      'turns bodies of revolution out of their plane: axisymmetric parts take no spin')
+      'asks for a rotation about z, which axisymmetric parts do not have')
     if (real_of(axis, 'NZ') < 0.0_wp) spin = -spin
     ahead = reals_of(card, 'VX', 'VY')
     centre = reals_of(axis, 'XC', 'YC')
@@ -142,7 +141,7 @@ contains
     end do
   end subroutine read_generation
 
-  !> Nodes of the part set, part or node set of a card; all for 0.
+  !> Nodes of the part set, part or node set of a card; all nodes for 0.
   subroutine choose_nodes(deck, card, model, is_chosen)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -170,7 +169,7 @@ contains
     end associate
   end subroutine choose_nodes
 
-  !> *INITIAL_VELOCITY_RIGID_BODY: it comes before what nodes of the body are given.
+  !> *INITIAL_VELOCITY_RIGID_BODY, which prevails over velocities of its nodes.
   subroutine read_rigid_velocities(deck, cursor, model)
     type(deck_t), intent(inout) :: deck
     type(cursor_t), intent(inout) :: cursor

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> *RIGIDWALL_PLANAR, and the nodes that see each wall.
+!> *RIGIDWALL_PLANAR, and the nodes of each wall.
 module deck_wall_m
   use kinds_m, only : wp
   use log_m, only : to_text
@@ -19,7 +19,7 @@ module deck_wall_m
 
 contains
 
-  !> All walls. Conditions and rigid bodies have been read.
+  !> Read all walls. Conditions and rigid bodies have been read.
   subroutine read_walls(deck, model)
     type(deck_t), intent(inout) :: deck
     type(model_t), intent(inout) :: model
@@ -43,14 +43,14 @@ contains
     call number_walls(model%walls)
   end subroutine read_walls
 
-  !> One wall and its nodes.
+  !> Read one wall and its nodes.
   subroutine read_wall(deck, i_block, model, wall)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: i_block
     type(model_t), intent(in) :: model
     type(wall_t), intent(inout) :: wall
     type(cursor_t) :: cursor
-    type(card_t) :: card, place
+    type(card_t) :: card, plane_card
     character(:), allocatable :: title
     logical :: is_tracked(model%mesh%n_node)
     integer :: k
@@ -58,17 +58,18 @@ contains
     call open_cursor(deck, i_block, cursor)
     if (deck%blocks(i_block)%titled) call next_heading(deck, cursor, wall%id, title)
     call next_card(deck, cursor, 1, card)
-    call next_card(deck, cursor, 2, place)
+    call next_card(deck, cursor, 2, plane_card)
     call check_rest(deck, cursor)
     call read_active_time(deck, card, ['BIRTH', 'DEATH'], wall%birth, wall%death)
-    call read_plane(deck, place, wall)
-    wall%friction = real_of(place, 'FRIC')
+    call read_plane(deck, plane_card, wall)
+    wall%friction = real_of(plane_card, 'FRIC')
     if (any(.not. abs(wall%friction - [2.0_wp, 3.0_wp]) > 0.0_wp)) then
-      call report_field(deck, place, 'FRIC', 'asks for welding of nodes to the wall, which this ' &
+      call report_field(deck, plane_card, 'FRIC', &
+        'asks for welding of nodes to the wall, which this ' &
         //'version does not have (0 none, 1 sticks, between: coefficient of friction)')
     else if (wall%friction < 0.0_wp .or. wall%friction > friction_sticks) then
-      call report_field(deck, place, 'FRIC', 'is not the friction of a wall (0 none, 1 sticks, ' &
-        //'between: coefficient of friction)')
+      call report_field(deck, plane_card, 'FRIC', &
+        'is not the friction of a wall (0 none, 1 sticks, '//'between: coefficient of friction)')
     end if
     call find_nodes(deck, card, deck%blocks(i_block)%keyword, model, is_tracked)
     is_tracked = is_tracked .and. mark_nodes_with_mass(deck, model)
@@ -81,7 +82,7 @@ contains
     wall%nodes = pack([(k, k=1, model%mesh%n_node)], is_tracked)
   end subroutine read_wall
 
-  !> Tail and head: a point of the wall, and its normal.
+  !> Read tail and head: a point of the wall and its normal.
   subroutine read_plane(deck, card, wall)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -102,7 +103,7 @@ contains
     end if
   end subroutine read_plane
 
-  !> NSID without NSIDEX and nodes of rigid bodies.
+  !> Mark the nodes of NSID without those of NSIDEX and of rigid bodies.
   subroutine find_nodes(deck, card, line, model, is_tracked)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card
@@ -124,11 +125,11 @@ contains
     is_rigid = is_tracked .and. mark_rigid_nodes(model%rigids, size(is_tracked))
     call warn_of_nodes(deck, line, 'wall and rigid body'//to_text(line), model, pack([(k, k=1, &
       size(is_tracked))], is_rigid), &
-      ' node(s) of rigid bodies do not see the wall, the first is ', '')
+      ' node(s) of rigid bodies pass the wall; the first is ', '')
     is_tracked = is_tracked .and. .not. is_rigid
   end subroutine find_nodes
 
-  !> Numbers of walls that have none (0): the position in the deck, or the next number that is free.
+  !> Number the walls without a number (0): position in the deck, or the next free number.
   pure subroutine number_walls(walls)
     type(wall_t), intent(inout) :: walls(:)
     logical :: is_used(2*size(walls))
@@ -146,9 +147,9 @@ contains
     end do
   end subroutine number_walls
 
-  !> A wall without nodes, nodes that start behind it, and nodes that can not give way: wherever the
-  !> wall pushes, a motion is prescribed or the node is fixed. Nodes that are fixed in all such
-  !> directions never come nearer, so they are no reason for a warning.
+  !> Warn of a wall without nodes, of nodes that start behind it, and of nodes with prescribed
+  !> motion that it cannot stop: each direction of its normal is prescribed or fixed. Nodes fixed in
+  !> all these directions do not approach the wall.
   subroutine check_wall_nodes(deck, line, model, wall)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: line
@@ -160,15 +161,15 @@ contains
     integer :: i
 
     if (size(wall%nodes) == 0) call line_warning(deck, line, 'wall'//to_text(line), &
-      'no node sees this wall')
+      'the wall has no nodes')
     associate (x => model%mesh%coordinates)
       round_off = 1.0e-12_wp*maxval(abs(x))
       is_behind = [(wall_distance(wall, x(:, wall%nodes(i)), [0.0_wp, 0.0_wp]) < -round_off, &
         i=1, size(wall%nodes))]
     end associate
     call warn_of_nodes(deck, line, 'behind the wall'//to_text(line), model, pack(wall%nodes, &
-      is_behind), ' node(s) start behind the wall, the first is ', ': they are kept from going ' &
-      //'further, not brought back')
+      is_behind), ' node(s) start behind the wall; the first is ', &
+      '; they are stopped there, not '//'moved back')
     is_pushed = spread(abs(wall%normal) > 0.0_wp, 2, model%mesh%n_node)
     is_moved = .false.
     do i = 1, size(model%conditions%motions)
@@ -179,8 +180,8 @@ contains
     is_moved(1, :) = any(is_moved .and. is_pushed, 1) .and. all(mark_constrained(model) &
       .or. .not. is_pushed, 1)
     call warn_of_nodes(deck, line, 'wall and motion'//to_text(line), model, pack(wall%nodes, &
-      is_moved(1, wall%nodes)), ' node(s) do not see the wall while their motion is prescribed ' &
-      //'(*BOUNDARY_PRESCRIBED_MOTION), the first is ', ': they pass through it')
+      is_moved(1, wall%nodes)), ' node(s) pass the wall while their motion is prescribed ' &
+      //'(*BOUNDARY_PRESCRIBED_MOTION); the first is ', '')
   end subroutine check_wall_nodes
 
 end module deck_wall_m

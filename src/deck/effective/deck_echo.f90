@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What was understood of a deck, for the log, and the deck as run: one file, parameters and command
-!> line resolved, which read again gives the same model to the last bit. Lines that nothing changed
-!> are copied as they were written.
+!> Echo of the model in the log, and the effective deck: one file with parameters and command line
+!> resolved, which gives the same model to the last bit. Unchanged lines are copied.
 module deck_echo_m
   use kinds_m, only : wp
   use log_m, only : log_t, write_log, to_text
@@ -20,7 +19,8 @@ module deck_echo_m
 
 contains
 
-  !> Parts, materials, controls and conditions (elements and interfaces are told by their layers).
+  !> Write parts, materials, controls and conditions to the log (elements and interfaces are written
+  !> by their layers).
   subroutine echo_model(model, path, log)
     type(model_t), intent(in) :: model
     character(*), intent(in) :: path
@@ -40,7 +40,7 @@ contains
       'plane strain, unit depth                                        ', model%is_axisymmetric)))
     if (model%is_axisymmetric) call write_log(log, 'axis: ' &
       //to_text(count(.not. model%mesh%coordinates(1, :) > 0.0_wp)) &
-      //' node(s) at r = 0 keep to it (u_r = 0); rigid bodies move along it alone')
+      //' node(s) at r = 0 are fixed in r; rigid bodies move along the axis only')
     do i = 1, size(model%parts)
       associate (part => model%parts(i))
         call write_log(log, 'part '//to_text(part%id)//' "'//part%title//'": ' &
@@ -54,17 +54,26 @@ contains
     end do
     associate (conditions => model%conditions)
       call write_log(log, 'conditions: '//to_text(size(conditions%fixed_nodes)) &
-        //' fixed and '//to_text(size(conditions%motions))//' moved degrees of freedom, ' &
+        //' fixed and '//to_text(size(conditions%motions))//' prescribed degrees of freedom, ' &
         //to_text(size(conditions%nodal_loads))//' nodal loads, ' &
         //to_text(size(conditions%pressures))//' pressure edges, ' &
         //to_text(size(conditions%body_loads))//' body loads')
     end associate
     if (allocated(model%walls)) call echo_walls(model, log)
-    call write_log(log, 'end: time '//to_text(model%controls%end_time)//', step scale ' &
+    call write_log(log, 'end time '//to_text(model%controls%end_time)//', time step factor ' &
       //to_text(model%controls%dt_scale))
     call echo_short_curves(model, log)
-    if (model%controls%dt_curve > 0) call write_log(log, 'step capped by curve ' &
+    if (model%controls%dt_curve > 0) call write_log(log, 'time step limited by curve ' &
       //to_text(model%curves(model%controls%dt_curve)%id))
+    call echo_outputs(model, log)
+  end subroutine echo_model
+
+  !> Write the intervals of states, histories and restart files to the log.
+  subroutine echo_outputs(model, log)
+    type(model_t), intent(in) :: model
+    type(log_t), intent(inout) :: log
+    integer :: i
+
     call echo_interval('states', model%controls%output%plot)
     do i = 1, n_table
       call echo_interval(trim(history_tables(i)%name), model%controls%output%histories(i))
@@ -84,7 +93,7 @@ contains
 
   contains
 
-    !> How often a file is written.
+    !> Write the interval of an output.
     subroutine echo_interval(name, interval)
       character(*), intent(in) :: name
       type(interval_t), intent(in) :: interval
@@ -97,9 +106,9 @@ contains
       end if
     end subroutine echo_interval
 
-  end subroutine echo_model
+  end subroutine echo_outputs
 
-  !> Curves that end before the run does: what holds after their end.
+  !> Write the curves that end before the end time.
   subroutine echo_short_curves(model, log)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
@@ -110,13 +119,13 @@ contains
         if (curve_is_constant(curve) .or. .not. curve%is_of_time) cycle
         if (curve%abscissa(size(curve%abscissa)) >= model%controls%end_time) cycle
         call write_log(log, 'curve '//to_text(curve%id)//' ends at ' &
-          //to_text(curve%abscissa(size(curve%abscissa)))//', before the end time: its last ' &
-          //'value is held')
+          //to_text(curve%abscissa(size(curve%abscissa)))//', before the end time; its last ' &
+          //'value is used after it')
       end associate
     end do
   end subroutine echo_short_curves
 
-  !> One material.
+  !> Write one material.
   subroutine echo_material(model, i, log)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
@@ -139,7 +148,7 @@ contains
     call write_log(log, text)
   end subroutine echo_material
 
-  !> Flow stress of Johnson and Cook, equation of state and failure.
+  !> Text of flow stress, equation of state, cut-off and failure.
   pure function impact_text(material) result(text)
     type(material_t), intent(in) :: material
     character(:), allocatable :: text
@@ -149,28 +158,28 @@ contains
       //', B '//to_text(material%flow%b)//', n '//to_text(material%flow%n)//', C ' &
       //to_text(material%flow%c)//', rate '//to_text(material%flow%rate)
     if (allocated(material%flow)) then
-      if (material%flow%heat > 0.0_wp) text = text//', heated by all plastic work from ' &
-        //to_text(material%flow%room)//' to melt at '//to_text(material%flow%room &
+      if (material%flow%heat > 0.0_wp) text = text//', adiabatic heating from ' &
+        //to_text(material%flow%room)//', melting at '//to_text(material%flow%room &
         + material%flow%span)//', m '//to_text(material%flow%m)
-      if (material%flow%has_damage) text = text//'; its damaged points (D = 1) carry no deviator ' &
-        //'and no tension'
+      if (material%flow%has_damage) text = text//'; failed points (D = 1) have no deviatoric ' &
+        //'stress and no tension'
     end if
     if (allocated(material%eos)) then
       if (material%eos%id > 0) text = text//', equation of state '//to_text(material%eos%id) &
-        //' (K and c of the start)'
+        //' (initial K and c)'
     end if
     if (allocated(material%rubber)) text = text//', rubber A '//to_text(material%rubber%a) &
       //', B '//to_text(material%rubber%b)//' (moduli of small strain)'
-    if (allocated(material%crush)) text = text//', crushed along curve ' &
-      //to_text(material%crush%id)//', tension up to '//to_text(material%tension)
-    if (material%cutoff > -huge(1.0_wp)) text = text//', cut-off of the pressure ' &
+    if (allocated(material%crush)) text = text//', crush curve ' &
+      //to_text(material%crush%id)//', tensile cut-off '//to_text(material%tension)
+    if (material%cutoff > -huge(1.0_wp)) text = text//', pressure cut-off ' &
       //to_text(material%cutoff)
     if (material%failure_strain < huge(1.0_wp)) text = text//', failure at plastic strain ' &
-      //to_text(material%failure_strain)//': what fails carries no stress'
+      //to_text(material%failure_strain)//' (zero stress after failure)'
     text = text//erosion_text(material)
   end function impact_text
 
-  !> Whether elements leave the mesh.
+  !> Text of the erosion criteria.
   pure function erosion_text(material) result(text)
     type(material_t), intent(in) :: material
     character(:), allocatable :: text
@@ -178,23 +187,23 @@ contains
     text = ''
     if (.not. allocated(material%erosion)) then
       if (allocated(material%flow)) then
-        if (material%flow%has_damage) text = '; broken elements stay in the mesh'
+        if (material%flow%has_damage) text = '; failed elements do not erode'
       end if
       return
     end if
     associate (erosion => material%erosion)
-      text = '; elements leave the mesh'
-      if (erosion%by_law) text = text//' once all of their points have failed,'
-      if (erosion%by_step) text = text//' below the least step (ERODE) or without volume,'
+      text = '; elements erode'
+      if (erosion%by_law) text = text//' when all integration points have failed,'
+      if (erosion%by_step) text = text//' below the smallest time step or without volume (ERODE),'
       if (erosion%n_given > 0) text = text//' where '//to_text(erosion%n_criteria)//' of ' &
         //to_text(erosion%n_given)//' criteria hold at '//to_text(erosion%n_point)//' point(s),'
-      if (erosion%least_step > 0.0_wp) text = text//' below the step ' &
+      if (erosion%least_step > 0.0_wp) text = text//' below the time step ' &
         //to_text(erosion%least_step)//','
       text = text(:len(text) - 1)
     end associate
   end function erosion_text
 
-  !> Hardening by points and its rate effect.
+  !> Text of the hardening and its rate effect.
   pure function hardening_text(hardening) result(text)
     type(hardening_t), intent(in) :: hardening
     character(:), allocatable :: text
@@ -202,7 +211,7 @@ contains
 
     n = size(hardening%strain)
     text = ', yield '//to_text(hardening%stress(1, 1))//', hardening by '//to_text(n) &
-      //' point(s) to plastic strain '//to_text(hardening%strain(n))//', then modulus ' &
+      //' point(s) up to plastic strain '//to_text(hardening%strain(n))//', then modulus ' &
       //to_text(hardening%slope(n, 1))
     if (size(hardening%rate) > 1) text = text//', '//to_text(size(hardening%rate)) &
       //' strain rates from '//to_text(hardening%rate(1))//' to '//to_text(maxval(hardening%rate))
@@ -212,7 +221,7 @@ contains
       //to_text(hardening%rate_factor%id)
   end function hardening_text
 
-  !> Rigid walls.
+  !> Write the rigid walls.
   subroutine echo_walls(model, log)
     type(model_t), intent(in) :: model
     type(log_t), intent(inout) :: log
@@ -226,14 +235,14 @@ contains
         if (.not. wall%friction > 0.0_wp) sliding = 'without friction'
         call write_log(log, 'wall '//to_text(wall%id)//': through ('//to_text(wall%point(1))//', ' &
           //to_text(wall%point(2))//'), normal ('//to_text(wall%normal(1))//', ' &
-          //to_text(wall%normal(2))//'), seen by '//to_text(size(wall%nodes))//' nodes, plastic ' &
-          //'impact '//sliding)
+          //to_text(wall%normal(2))//'), '//to_text(size(wall%nodes))//' nodes, plastic impact ' &
+          //sliding)
       end associate
     end do
   end subroutine echo_walls
 
-  !> The text of the effective deck: its characters are counted, then written. What only messages
-  !> need is given up before, the files that it is made of are on the way.
+  !> The text of the effective deck: its characters are counted, then written. Data for messages and
+  !> the text of the files are deallocated as soon as possible.
   subroutine write_effective(deck, effective)
     type(deck_t), intent(inout) :: deck
     character(:), allocatable, intent(out) :: effective
@@ -263,7 +272,7 @@ contains
               abs(deck%first(line)):deck%last(line)))
           end do
         end if
-        ! The text of a file goes behind its last block.
+        ! The text of a file is not needed after its last block.
         if (k == 2 .and. last_block(source) == i) deallocate (deck%sources(source)%text)
       end do
       call put('*END')

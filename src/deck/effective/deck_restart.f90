@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What a deck may change when a run goes on: its end and its outputs. Decks here are plain text,
-!> cut at the lines that start with an asterisk.
+!> Changes of a deck at a restart: end time and outputs. Decks are plain text here, split at lines
+!> that start with an asterisk.
 module deck_restart_m
   use checksum_m, only : add_bytes, checksum_text
   use kinds_m, only : long
@@ -13,8 +13,8 @@ module deck_restart_m
 
 contains
 
-  !> The deck of a run with the changes that a small deck asks for: its keywords take the place of
-  !> all of the same name. Keywords that may not change are refused, all of them in one message.
+  !> The deck of a run with the changes of a small deck, whose keywords replace all keywords of the
+  !> same name. All keywords that may not change are reported in one error.
   subroutine merge_decks(deck, changes, path, merged, error)
     character(*), intent(in) :: deck         !! as run
     character(*), intent(in) :: changes      !! text of the small deck
@@ -32,8 +32,8 @@ contains
     do while (start <= len(changes))
       call next_block(changes, start, name, next)
       if (.not. may_change(name)) then
-        problems = problems//path//':'//to_text(line)//': *'//name//' can not change when a run ' &
-          //'goes on; *CONTROL_TERMINATION and intervals of *DATABASE_ can'//new_line('a')
+        problems = problems//path//':'//to_text(line)//': *'//name//' cannot change at a ' &
+          //'restart; *CONTROL_TERMINATION and the intervals of *DATABASE_ can'//new_line('a')
       else if (name /= 'END' .and. len(name) > 0) then
         changed = changed//changes(start:next - 1)
         if (changes(next - 1:next - 1) /= new_line('a')) changed = changed//new_line('a')
@@ -63,8 +63,8 @@ contains
     merged = kept(:n)//changed//'*END'//new_line('a')
   end subroutine merge_decks
 
-  !> The block that starts at `start`: its keyword, empty for what comes before the first one,
-  !> and where the next starts.
+  !> The keyword of the block at `start`, empty before the first keyword, and the start of the next
+  !> block.
   pure subroutine next_block(text, start, name, next)
     character(*), intent(in) :: text
     integer, intent(in) :: start
@@ -84,7 +84,7 @@ contains
     if (last > 0) next = start + last
   end subroutine next_block
 
-  !> Whether a keyword may differ when a run goes on.
+  !> Whether a keyword may change at a restart.
   pure function may_change(name) result(may)
     character(*), intent(in) :: name
     logical :: may
@@ -97,7 +97,7 @@ contains
     end select
   end function may_change
 
-  !> Whether a text is a deck with a mesh, not one of changes alone.
+  !> Whether a text is a deck with a mesh, not only changes.
   function is_whole_deck(text) result(whole)
     character(*), intent(in) :: text
     logical :: whole
@@ -113,7 +113,7 @@ contains
     end do
   end function is_whole_deck
 
-  !> Checksum of all that may not change in a deck as run, without comments.
+  !> Checksum of the keywords of an effective deck that may not change, without comments.
   function deck_identity(deck) result(identity)
     character(*), intent(in) :: deck         !! as run
     character(8) :: identity

@@ -1,15 +1,15 @@
 ! SPDX-License-Identifier: MIT
-!> The keywords that are known, and their cards.
+!> Known keywords and their cards.
 !>
-!> A line of the table that starts with a letter names a keyword and its options: t it may have a
-!> title, o it may have no card, r its cards are rows of which blank ones do not count, =KEYWORD its
-!> cards are those of another one; the indented lines after it are its cards, fields in order as
-!> `NAME:kind[treatment][width][=default][range]`. Kinds: i integer, f real, a text, x not used.
-!> Treatments: none honoured, s silently without effect, w warning when given, r refused when given.
-!> A 0 in an honoured field means its default, as in LS-DYNA; `~default` is that of blank fields
-!> alone, and a 0 stays 0. Ranges are `>0`, `>=0`, `<1`, `<=1`, two of these as in `>=0<1`, or the
-!> whole numbers allowed, as in `|1|2|4`. Values, defaults too, are checked where a card is read.
-!> Widths are 10 unless said. A field asks for something when it is neither 0 nor its default.
+!> A line of the table that starts with a letter has the name of a keyword and its options: t with
+!> an optional title, o the first card is optional, r cards are rows and blank rows are skipped,
+!> =KEYWORD the cards are those of another keyword. The indented lines after it are its cards, with
+!> fields `NAME:kind[treatment][width][=default][range]`. Kinds: i integer, f real, a text, x not
+!> used. Treatments: none honoured, s ignored, w ignored with a warning, r refused. A 0 in an
+!> honoured field means its default, as in LS-DYNA; `~default` is the default of blank fields only.
+!> Ranges: `>0`, `>=0`, `<1`, `<=1`, two of them as in `>=0<1`, or the allowed integers as in
+!> `|1|2|4`; they are checked when a card is read, for defaults too. The default width is 10.
+!> Warnings and refusals apply to fields that are neither 0 nor their default.
 module deck_schema_m
   use deck_schema_others_m, only : table_others
   use deck_schema_tables_m, only : table_control, table_mesh, table_conditions, table_contact, &
@@ -20,14 +20,14 @@ module deck_schema_m
     refusal_reason, text_of_field, distance_limit, update_nearest, max_card, known_honoured, &
     known_ignored, known_refused, known_not
 
-  !> All keywords that are honoured, and their cards.
+  !> All honoured keywords and their cards.
   character(131), parameter :: table(*) = [character(131) :: table_control, table_mesh, &
     table_conditions, table_contact, table_database]
-  !> What fields are expected to be, for errors of their range, which follows in parentheses unless
-  !> there are some; of a field with treatment w how its warning goes on. Fields, or beginnings of
-  !> keywords and fields, with commas between; the first that fits.
+  !> Expected values of fields, for errors; the range is appended in parentheses unless the text has
+  !> some. For fields with treatment w: end of the warning. Fields, or beginnings of keywords and
+  !> fields, separated by commas; the first match counts.
   character(188), parameter :: expectations(*) = [character(188) :: &
-    'CONTROL_TERM.DTMIN a share of the first step', &
+    'CONTROL_TERM.DTMIN a fraction of the first time step', &
     'ENDTIM an end time', &
     'DFLAG a policy (1 to 5)', &
     'NOSOL 0 or 1 (stop after the initialisation)', &
@@ -37,12 +37,12 @@ module deck_schema_m
     'TSSFAC a scale of the step', &
     'LCTM,DATABASE.LCUR,DATABASE.LCDT,LCSR a curve number', &
     'ISDO an element length rule (0 area over longest side, 1 area over longest diagonal)', &
-    'ERODE 0 or 1 (1: elements whose step falls below DTMIN times the first step, or whose ' &
-    //'volume vanishes, leave the mesh)', &
-    'MS1ST 0 or 1 (masses are scaled at the start alone)', &
+    'ERODE 0 or 1 (1: elements erode when their time step falls below DTMIN times the first step ' &
+    //'or their volume vanishes)', &
+    'MS1ST 0 or 1 (1: mass scaling at the start only)', &
     'NRCYCK,CYCL a number of cycles', &
-    'DRTOL a share', &
-    'DRFCTR a factor', &
+    'DRTOL a convergence tolerance', &
+    'DRFCTR a relaxation factor', &
     'IDRFLG 0 (relaxation where a curve asks for it), 1 (in any case) or -999 (in no case)', &
     'CONTROL_BULK_VISCOSITY.TYPE a kind of bulk viscosity that this version has (1 standard)', &
     'QH,QM an hourglass coefficient (0 to 10; 0.05 to 0.15 are usual)', &
@@ -65,9 +65,9 @@ module deck_schema_m
     //'on the built-in estimate, 3 share of the largest stable one, 4 factor on K L/A of ' &
     //'implicit springs)', &
     'PENT a penalty (above 0; blank and 0 mean PEN)', &
-    'TFAC a tangential over the normal penalty', &
-    'TARGET a target of the estimate of contact (above 0, below 1)', &
-    'SMOOTH the largest turn between segments of a round surface in degrees (0 is 16, -1: none)', &
+    'TFAC a ratio of the tangential to the normal penalty', &
+    'TARGET a target of the contact error estimate (above 0, below 1)', &
+    'SMOOTH a largest turn between segments of a round surface, degrees (0 is 16, -1 none)', &
     'VDC a damping in per cent of critical', &
     'IPF 0 or 1 (the strict rule of type 5)', &
     'FREQ a number of cycles between two searches', &
@@ -86,7 +86,7 @@ module deck_schema_m
     'MAT_PLASTIC.SIGY,MAT_JOHNSON.A,MAT_SIMPLIFIED.A a yield stress', &
     'MAT_PLASTIC.BETA between 0 (kinematic) and 1 (isotropic hardening)', &
     'MAT_PLASTIC.FS,MAT_ELASTIC.FS,FAIL a plastic strain at failure (0 or more; 0 means never)', &
-    'PC a cut-off, the least pressure, of tension (0 or less; 0 means none)', &
+    'PC a pressure cut-off in tension (0 or less; 0 means none)', &
     'LCSS a curve or table number', &
     'MAT_PIECEWISE.VP a rate form that this version has (0 scales the yield stress with the ' &
     //'total strain rate)', &
@@ -94,18 +94,18 @@ module deck_schema_m
     'EPSO a strain rate', &
     'SPALL 1 (least pressure), 2 (largest stress) or 3 (largest tension)', &
     'MAT_CRUSHABLE.LCID the number of a curve: yield stress against volumetric strain 1 - V', &
-    'NUMFIP a number of points of an element (1 to 4)', &
-    'EOS_GRUNEISEN.C a speed (more than 0, at most 1e12): shocks of no strength run with it', &
-    'V0 the volume of the density RO (0 or 1), with which bodies start in this version', &
+    'NUMFIP a number of integration points (1 to 4)', &
+    'EOS_GRUNEISEN.C a bulk sound speed (above 0, at most 1e12)', &
+    'V0 an initial relative volume of this version (0 or 1: bodies start at the density RO)', &
     'CMO 0 (no constraints) or 1 (constraints in global axes)', &
     'NIP a number of points (0, 1, 2 or blank: one point; 4: two by two, full integration)', &
     'SIDR a phase (0 run, 1 dynamic relaxation, 2 both)', &
     'DOFX,DOFY 0 (free) or 1 (fixed)', &
-    'BOUNDARY_PRESCRIBED_MOTION_RIGID.DOF a motion that a rigid body has here (1 x, 2 y, 7 turn ' &
-    //'about z)', &
+    'BOUNDARY_PRESCRIBED_MOTION_RIGID.DOF a degree of freedom of a rigid body in the plane (1 x, ' &
+    //'2 y, 7 rotation about z)', &
     'LOAD_RIGID_BODY.DOF a load on a rigid body that this version has (1 x, 2 y, 7 moment about ' &
     //'z)', &
-    'CONSTRAINED.DOF a code of directions (1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)', &
+    'CONSTRAINED.DOF a direction code (1 x, 2 y, 3 z, 4 xy, 5 yz, 6 zx, 7 xyz)', &
     'DOF a direction that this version has (1 x, 2 y)', &
     'VAD a kind of motion that this version has (0 velocity, 1 acceleration, 2 displacement)', &
     'DAMPING_PART.LCID a curve number (1 or more); the curve gives the damping over time', &
@@ -114,10 +114,10 @@ module deck_schema_m
     'STYP a kind of set (1 part set, 2 part, 3 node set)', &
     'OMEGA a number of this size (at most 1e30)', &
     'FLAG 0 or 1 (a second card with factors of the directions)', &
-    'COEF a share of critical damping (at most 1; below 0 it is a time)', &
-    'TIE 0 (contact), 1 (tied) or 2 (tied until it breaks)', &
-    'DAMP : the viscous damping of the foam, its rate effect, is left out']
-  !> Other names of keywords, and those in the table.
+    'COEF a fraction of critical damping (at most 1; below 0 it is a time)', &
+    'TIE 0 (contact), 1 (tied) or 2 (tiebreak)', &
+    'DAMP : the rate effect of the foam (viscous damping) is not included']
+  !> Aliases of keywords and their names in the table.
   character(42), parameter :: aliases(*) = [character(42) :: &
     'MAT_001 MAT_ELASTIC', &
     'MAT_003 MAT_PLASTIC_KINEMATIC', &
@@ -140,16 +140,17 @@ module deck_schema_m
     'SET_SHELL_GENERATE SET_SHELL_LIST_GENERATE', &
     'DATABASE_D3PLOT DATABASE_BINARY_D3PLOT', &
     'INCLUDE_PATH_RELATIVE INCLUDE_PATH']
-  !> Why fields with treatment r may not be used; what ends without a `;` goes on as below.
+  !> Reasons for refused fields; the standard ending (`refusal_reason`) is appended to texts without
+  !> a `;`.
   character(145), parameter :: refusals(*) = [character(145) :: &
     'FRIC_S is a shear factor of friction', &
     'WVEL asks for welding of nodes to the wall', &
-    'IGAPCL asks to move nodes onto the surface that they are tied to, which this version does ' &
-    //'not have; leave it 0 (a tie keeps its gap)', &
+    'IGAPCL asks to project tied nodes onto the master surface, which this version does not ' &
+    //'have; leave it 0 (a tie keeps its gap)', &
     'SURFB asks for the forces between two surfaces, which this version does not have; leave it ' &
     //'0 (a transducer adds up all forces on SURFA)', &
     'HSID,BSID,TSID,DSID is a set of elements that this version does not have; leave it 0 (SSID ' &
-    //'is the set of shells)', &
+    //'is the shell set)', &
     'CID,ICID,VID,ID is a local coordinate system', &
     'TF lets the constraint fail, which this version does not have; leave it blank', &
     'CIDL gives the points in another system', &
@@ -167,23 +168,23 @@ module deck_schema_m
     'N5,N6,N7,N8 is a mid-side node; elements and edges have corner nodes only here', &
     'BOXID is a box', &
     'PHASE is a velocity of dynamic relaxation', &
-    'IRELAL asks for a factor that the program finds, which this version does not have; leave ' &
-    //'it 0 and give DRFCTR', &
+    'IRELAL asks for automatic control of the relaxation, which this version does not have; ' &
+    //'leave it 0 and give DRFCTR', &
     'COUPLE,M,ALIAS couples the body to another program or to a surface file, which this ' &
     //'version does not have; leave it blank']
-  !> Characters by which a canonical name is longer than a short one at most (MAT_024).
+  !> Maximum number of characters by which a canonical name is longer than an alias (MAT_024).
   integer, parameter :: longest_addition = 24
-  !> Cards of one keyword at most.
+  !> Maximum number of cards of a keyword.
   integer, parameter :: max_card = 6
-  !> How a keyword is treated.
+  !> Treatment of a keyword.
   integer, parameter :: known_not = 0, known_honoured = 1, known_ignored = 2, known_refused = 3
 
 contains
 
-  !> Where the cards of a keyword (canonical name) stand, and its options.
+  !> Cards and options of a keyword (canonical name).
   subroutine keyword_cards(name, row, n_card, options)
     character(*), intent(in) :: name
-    integer, intent(out) :: row       !! of the table; the cards are in the rows behind it
+    integer, intent(out) :: row       !! of the table; the cards are in the next rows
     integer, intent(out) :: n_card
     character(*), intent(out) :: options
     integer :: at
@@ -201,8 +202,7 @@ contains
     end do
   end subroutine keyword_cards
 
-  !> The row of a keyword (canonical name), 0 where it is not honoured: its name, then a blank. Rows
-  !> of cards begin with a blank. One character tells for most.
+  !> Row of a keyword (canonical name) in the table; 0 where it is not honoured.
   function row_of(name) result(i)
     character(*), intent(in) :: name
     integer :: i
@@ -218,8 +218,7 @@ contains
     i = 0
   end function row_of
 
-  !> What is known of a keyword as written: its canonical name, its treatment, and for a refused one
-  !> the reason. The options _TITLE and _ID are taken off where the keyword has them.
+  !> Canonical name of a keyword without _TITLE and _ID, its treatment, and the reason of a refusal.
   subroutine find_keyword(given, name, known, titled, reason)
     character(*), intent(in) :: given               !! upper case
     character(*), intent(out) :: name
@@ -264,7 +263,7 @@ contains
     end do
   end subroutine strip_option
 
-  !> The one spelling of a keyword that the tables hold.
+  !> The name of a keyword in the table.
   pure function canonical(given) result(name)
     character(*), intent(in) :: given
     character(len(given) + longest_addition) :: name
@@ -277,8 +276,8 @@ contains
     end do
   end function canonical
 
-  !> The honoured keyword that a name is likely meant for: at most two letters away. Blank where
-  !> none is so near, or where the name is one that the table of others has for itself.
+  !> The honoured keyword that is most similar to a name, at most two letters different; blank where
+  !> there is none, or where the name is another keyword of LS-DYNA.
   function nearest_keyword(given) result(nearest)
     character(*), intent(in) :: given   !! upper case
     character(40) :: nearest, longer
@@ -306,12 +305,12 @@ contains
         .and. (len_trim(longer) == 0 .or. n < len_trim(longer))) longer = table(i)(:n)
       call update_nearest(table(i)(:n), trim(base), least, nearest)
     end do
-    ! A name that stops early: the shortest that goes on.
+    ! An incomplete name: the shortest keyword that begins with it.
     if (len_trim(nearest) == 0) nearest = longer
   end function nearest_keyword
 
-  !> The first row of the others that a name fits, and what it fits there: a name, or the beginning
-  !> of one with an asterisk; 0 where there is none.
+  !> The first row of the other keywords that matches a name, and the matching pattern; 0 where
+  !> there is none.
   pure subroutine find_other(name, row, pattern)
     character(*), intent(in) :: name
     integer, intent(out) :: row
@@ -331,7 +330,7 @@ contains
     row = 0
   end subroutine find_other
 
-  !> Why a field with treatment r may not be used.
+  !> Reason for a refused field.
   pure function refusal_reason(field) result(text)
     character(*), intent(in) :: field
     character(:), allocatable :: text
@@ -344,7 +343,7 @@ contains
     end if
   end function refusal_reason
 
-  !> The text of the first row that names a field, or the beginning of its keyword and the field;
+  !> The text of the first row that matches a field, alone or with the beginning of its keyword;
   !> empty where there is none.
   pure function text_of_field(rows, keyword, field) result(text)
     character(*), intent(in) :: rows(:), keyword, field
@@ -367,7 +366,7 @@ contains
     text = ''
   end function text_of_field
 
-  !> Letters by which no name differs from one that it is meant for: three, fewer of a short one.
+  !> Edit distance from which on names are not similar: three, less for short names.
   pure function distance_limit(name) result(letters)
     character(*), intent(in) :: name
     integer :: letters
@@ -375,10 +374,10 @@ contains
     letters = min(3, (len(name) + 2)/2)
   end function distance_limit
 
-  !> Take a name in place of the nearest so far where it is nearer to the one given.
+  !> Replace the most similar name so far where another one is closer to the given name.
   pure subroutine update_nearest(name, given, least, nearest)
     character(*), intent(in) :: name, given      !! without blanks behind
-    integer, intent(inout) :: least              !! distance of the nearest so far
+    integer, intent(inout) :: least              !! its edit distance
     character(*), intent(inout) :: nearest
     integer :: distance
 
@@ -389,8 +388,8 @@ contains
     nearest = name
   end subroutine update_nearest
 
-  !> Letters to insert, to leave out or to change, or neighbours to swap, that make one name of
-  !> another (optimal string alignment).
+  !> Edit distance of two names (optimal string alignment: insertions, deletions, substitutions,
+  !> transpositions).
   pure function edit_distance(a, b) result(distance)
     character(*), intent(in) :: a, b    !! without blanks behind
     integer :: distance

@@ -1,14 +1,13 @@
 ! SPDX-License-Identifier: MIT
-!> Keywords of LS-DYNA that decks may hold and this program does not honour.
+!> Keywords of LS-DYNA that this program ignores or refuses.
 module deck_schema_others_m
   implicit none
   private
   public :: table_others
 
-  !> First match counts: names with commas between, and `ignored`, without effect here, or the
-  !> beginning of `... not available in slideline`. An asterisk stands for any ending. `unknown`
-  !> keeps names of a family that holds honoured keywords from the lines below it: a misspelt one
-  !> must not pass for another.
+  !> Names separated by commas, then `ignored` or the beginning of `... not available in slideline`;
+  !> the first match counts. An asterisk matches any ending. `unknown` excludes misspelt names of a
+  !> family with honoured keywords from the lines below it.
   character(88), parameter :: table_others(*) = [character(88) :: &
     'MAT_* this material is', &
     'EOS_* this equation of state is', &
@@ -38,7 +37,7 @@ module deck_schema_others_m
     'CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE_THERMAL* heat through contact is', &
     'CONTACT_2D_AUTOMATIC_NODE_TO_SURFACE_THERMAL* heat through contact is', &
     'CONTACT_2D_NODE_TO_SOLID* this kind of contact is', &
-    'CONTACT_2D_SLIDING_ONLY* surfaces that slide and may not separate are', &
+    'CONTACT_2D_SLIDING_ONLY* sliding without separation is', &
     'CONTACT_2D_* unknown', &
     'CONTACT_* three-dimensional contact is', &
     'DEFINE_* this definition is', &
@@ -51,7 +50,7 @@ module deck_schema_others_m
     'CONTROL_IMPLICIT_CONSISTENT_MASS a consistent mass matrix is', &
     'CONTROL_IMPLICIT_DYNAMICS_DYN switching phases of an implicit run is', &
     'CONTROL_IMPLICIT_EIGENVALUE* an eigenvalue analysis is', &
-    'CONTROL_IMPLICIT_EXPLICIT_HYBRID an implicit analysis of some parts alone is', &
+    'CONTROL_IMPLICIT_EXPLICIT_HYBRID an implicit analysis of chosen parts is', &
     'CONTROL_IMPLICIT_FORMING*,CONTROL_IMPLICIT_INERTIA_RELIEF this implicit option is', &
     'CONTROL_IMPLICIT_GENERAL_DYN switching phases of an implicit run is', &
     'CONTROL_IMPLICIT_GENERAL_SPR,CONTROL_IMPLICIT_SOLUTION_SPR springback phases are', &
@@ -67,7 +66,7 @@ module deck_schema_others_m
     'CONTROL_ACOUSTIC*,CONTROL_VIBRO_ACOUSTIC acoustics is', &
     'CONTROL_ADAP* adaptive meshing is', &
     'CONTROL_AIRBAG,CONTROL_CPM,AIRBAG_* airbags are', &
-    'CONTROL_COARSEN a mesh that the program makes coarser is', &
+    'CONTROL_COARSEN mesh coarsening is', &
     'CONTROL_COUPLING,COSIM_* coupling to another program is', &
     'CONTROL_DISCRETE_ELEMENT* discrete elements are', &
     'CONTROL_EFG meshless parts are', &
@@ -83,7 +82,7 @@ module deck_schema_others_m
     'CONTROL_REFINE_* refinement of the mesh during the run is', &
     'CONTROL_SEGMENTS_IN_ALE*,ALE_* ALE is', &
     'CONTROL_STAGED_CONSTRUCTION staged construction is', &
-    'CONTROL_START a start at another time than 0 is', &
+    'CONTROL_START a start time other than 0 is', &
     'CONTROL_STEADY_STATE_ROLLING rolling in the steady state is', &
     'CONTROL_SUBCYCLE_* mass scaling of chosen parts is', &
     'CONTROL_SHELL,CONTROL_SOLID,CONTROL_CPU,CONTROL_PARALLEL,CONTROL_MPP_* ignored', &
@@ -112,7 +111,7 @@ module deck_schema_others_m
     'DATABASE_* this output is', &
     'TERMINATION_* this end of a run is', &
     'PERTURBATION_* perturbations are', &
-    'DEFORMABLE_TO_RIGID* parts that become rigid are', &
+    'DEFORMABLE_TO_RIGID* switching parts to rigid bodies is', &
     'EF_* this keyword family is', &
     'BATTERY_* electrochemistry is', &
     'CESE_*,DUALCESE_*,ICFD_* flow of fluids is', &

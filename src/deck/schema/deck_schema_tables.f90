@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> The tables of honoured keywords and their cards (`deck_schema_m` says how to read them).
+!> Tables of honoured keywords and their cards, in the format described in `deck_schema_m`.
 module deck_schema_tables_m
   implicit none
   private

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Value of a Fortran-like expression of *PARAMETER_EXPRESSION: + - * / **, parentheses, functions,
-!> names of parameters (with or without &). What is not defined or too large is told by its value:
-!> arithmetic exceptions do not end the program here.
+!> names of parameters (with or without &). Undefined and too large values are detected after the
+!> operation, with arithmetic traps off.
 module deck_expression_m
   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
   use, intrinsic :: ieee_exceptions, only : ieee_all, ieee_set_halting_mode
@@ -12,20 +12,20 @@ module deck_expression_m
   private
   public :: evaluate
 
-  !> Parentheses, signs and powers inside each other.
+  !> Maximum nesting of parentheses and powers.
   integer, parameter :: max_depth = 100
   !> Largest magnitude of any intermediate value.
   real(wp), parameter :: largest = 1.0e300_wp
   !> Operators of a sum and of a product.
   character(2), parameter :: operators(2) = ['+-', '*/']
 
-  !> Where the reading stands.
+  !> State of the parser.
   type :: scanner_t
     character(:), allocatable :: text
-    integer :: at = 1
+    integer :: at = 1                    !! next character
     integer :: depth = 0
-    integer :: source = 0                !! file that the expression stands in
-    character(:), allocatable :: message !! first mistake
+    integer :: source = 0                !! file of the expression
+    character(:), allocatable :: message !! first error
   end type scanner_t
 
 contains
@@ -34,7 +34,7 @@ contains
   subroutine evaluate(text, parameters, source, value, message)
     character(*), intent(in) :: text
     type(parameters_t), intent(in) :: parameters
-    integer, intent(in) :: source !! file that the text stands in
+    integer, intent(in) :: source !! file of the text
     real(wp), intent(out) :: value
     character(:), allocatable, intent(out) :: message
     type(scanner_t) :: scanner
@@ -51,7 +51,7 @@ contains
     end if
   end subroutine evaluate
 
-  !> Keep the first mistake.
+  !> Store the first error and stop parsing.
   subroutine set_error(scanner, message)
     type(scanner_t), intent(inout) :: scanner
     character(*), intent(in) :: message
@@ -60,7 +60,7 @@ contains
     scanner%at = len(scanner%text)
   end subroutine set_error
 
-  !> Whether `word` comes next behind blanks; it is taken if so. The text ends with a blank.
+  !> Skip blanks, and accept `word` if it comes next. The text ends with a blank.
   function accept(scanner, word) result(accepted)
     type(scanner_t), intent(inout) :: scanner
     character(*), intent(in) :: word
@@ -74,7 +74,7 @@ contains
     if (accepted) scanner%at = scanner%at + len(word)
   end function accept
 
-  !> A sum (level 1) of products (level 2) of factors: operand {operator operand}.
+  !> Parse a sum (level 1) of products (level 2) of factors: operand {operator operand}.
   recursive subroutine parse_terms(scanner, parameters, level, value)
     type(scanner_t), intent(inout) :: scanner
     type(parameters_t), intent(in) :: parameters
@@ -100,7 +100,7 @@ contains
 
   contains
 
-    !> The next operand.
+    !> Parse the next operand.
     recursive subroutine parse_operand(next)
       real(wp), intent(out) :: next
 
@@ -139,7 +139,7 @@ contains
     if (.not. abs(value) <= largest) call set_error(scanner, 'the value is too large')
   end subroutine operate
 
-  !> Signs, a number, and powers of it taken from the right: they bind stronger than a sign, as in
+  !> Parse signs, a primary, and powers from the right, which bind stronger than a sign, as in
   !> Fortran.
   recursive subroutine parse_factor(scanner, parameters, value)
     type(scanner_t), intent(inout) :: scanner
@@ -167,7 +167,7 @@ contains
     if (is_negative) value = -value
   end subroutine parse_factor
 
-  !> A number, a name, a function or an expression in parentheses.
+  !> Parse a number, a name, a function or an expression in parentheses.
   recursive subroutine parse_primary(scanner, parameters, value)
     type(scanner_t), intent(inout) :: scanner
     type(parameters_t), intent(in) :: parameters
@@ -200,11 +200,11 @@ contains
     else if (accept(scanner, '(')) then
       call parse_function(scanner, parameters, word, value)
     else
-      call set_error(scanner, 'there is no parameter '//word//' up to here')
+      call set_error(scanner, 'parameter '//word//' is not defined up to here')
     end if
   end subroutine parse_primary
 
-  !> A number: digits, point, exponent with its letter and sign.
+  !> Parse a number: digits, point, exponent with letter and sign.
   subroutine parse_number(scanner, value)
     type(scanner_t), intent(inout) :: scanner
     real(wp), intent(out) :: value
@@ -226,7 +226,7 @@ contains
     end if
   end subroutine parse_number
 
-  !> The arguments of a function (its opening parenthesis has been taken) and its value.
+  !> Parse the arguments of a function after its opening parenthesis, and evaluate it.
   recursive subroutine parse_function(scanner, parameters, word, value)
     type(scanner_t), intent(inout) :: scanner
     type(parameters_t), intent(in) :: parameters

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What a card may hold, from one line of the table in `deck_schema_tables_m`, and lines to cards:
-!> fields cut by column or at commas, numbers read, defaults filled in; and messages about fields.
+!> Cards: their specification from one line of the table in `deck_schema_tables_m`; fields by column
+!> or between commas, numbers and defaults; messages about fields.
 module deck_fields_m
   use kinds_m, only : wp
   use, intrinsic :: iso_fortran_env, only : error_unit
@@ -16,7 +16,7 @@ module deck_fields_m
   public :: begin_card, card_spec_t, make_spec, field_number, range_text, card_t, cut_card, &
     read_numbers, field_text, field_error, largest_value, smallest_value
 
-  !> What a card may hold.
+  !> Specification of a card.
   type :: card_spec_t
     integer :: n = 0                            !! fields
     integer :: number = 1                       !! card number in messages
@@ -27,19 +27,18 @@ module deck_fields_m
                                                 !! warning, r refused unless it is the default
     integer :: widths(max_field) = 10
     real(wp) :: defaults(max_field) = 0.0_wp
-    character :: zeros(max_field) = ''          !! what a 0 means where blank is another value: =
-                                                !! the default, ~ 0
+    character :: zeros(max_field) = ''          !! meaning of a 0 where blank is not 0: = the
+                                                !! default, ~ 0
     character(32) :: ranges(max_field) = ''     !! as in the table; blank: any value
-    real(wp) :: least(max_field) = -huge(1.0_wp), most(max_field) = huge(1.0_wp) !! of the range;
-                                                !! between those of a list there is no number
+    real(wp) :: least(max_field) = -huge(1.0_wp), most(max_field) = huge(1.0_wp) !! bounds of the
+                                                !! range; an empty range for lists
   end type card_spec_t
 
-  !> Numbers beyond the largest are refused, those below the smallest are zero, so that products of
-  !> deck values and of what follows from them stay finite. Both lie beyond what single precision
-  !> holds.
+  !> Numbers above the largest are errors, numbers below the smallest are zero, so that products of
+  !> deck values stay finite. Both are beyond the range of single precision.
   real(wp), parameter :: largest_value = 1.0e40_wp, smallest_value = 1.0e-40_wp
 
-  !> One card as read. Blank fields hold their defaults. `deck_values_m` asks for fields by name.
+  !> One card as read, blank fields with their defaults. `deck_values_m` gets values by field name.
   type :: card_t
     integer :: line = 0                     !! line in the deck
     integer :: number = 1                   !! card number
@@ -50,14 +49,14 @@ module deck_fields_m
     logical :: blank(max_field) = .true.
     logical :: bad(max_field) = .false.     !! an error has been reported for the field
     character(12) :: names(max_field) = ''
-    character :: kinds(max_field) = 'x'     !! as those of `card_spec_t`
-    integer :: i(max_field) = 0             !! values of the integer fields
-    real(wp) :: r(max_field) = 0.0_wp       !! values of these and of the real fields
+    character :: kinds(max_field) = 'x'     !! as in `card_spec_t`
+    integer :: i(max_field) = 0             !! values of integer fields
+    real(wp) :: r(max_field) = 0.0_wp       !! values of integer and real fields
   end type card_t
 
 contains
 
-  !> A card from its line of the table: words
+  !> Specification of a card from its line of the table, with words
   !> `NAME:kind[treatment][width][=default][range]`, or ~default.
   subroutine make_spec(text, number, layout, spec)
     character(*), intent(in) :: text
@@ -107,8 +106,8 @@ contains
     if (layout == format_i10) spec%widths = max(spec%widths, 10)
   end subroutine make_spec
 
-  !> The range of the last field: `>0`, `>=0`, `<1`, `<=1`, two of them, or whole numbers, as in
-  !> `|1|2|4`.
+  !> Set the range of the last field: `>0`, `>=0`, `<1`, `<=1`, two of them, or a list of integers
+  !> as in `|1|2|4`.
   subroutine set_range(text, spec)
     character(*), intent(in) :: text
     type(card_spec_t), intent(inout) :: spec
@@ -129,7 +128,7 @@ contains
     end do
   end subroutine set_range
 
-  !> Whether a range is a list of whole numbers that has the number.
+  !> Whether a range is a list of integers that contains a value.
   pure function is_listed(range, value) result(yes)
     character(*), intent(in) :: range    !! as in the table
     real(wp), intent(in) :: value
@@ -180,8 +179,8 @@ contains
     end if
   end function bound_text
 
-  !> Position of a field by its name. Names are written in this program, never in a deck: one that
-  !> the card does not have is a fault of the program and ends it.
+  !> Position of a field by its name. A name that the card does not have is a bug and stops the
+  !> program.
   function field_number(names, name) result(k)
     character(*), intent(in) :: names(:)   !! of the card, in order
     character(*), intent(in) :: name
@@ -190,12 +189,12 @@ contains
     do k = 1, size(names)
       if (names(k) == name) return
     end do
-    write (error_unit, '(*(a))') 'slideline: fault of the program: no field ', name, &
+    write (error_unit, '(*(a))') 'slideline: internal error: no field ', name, &
       ' on the card with ', (trim(names(k)), ' ', k=1, size(names))
-    error stop 'a field was asked for by a name that the table of keywords does not have'
+    error stop 'internal error: unknown field name'
   end function field_number
 
-  !> Cut a line into the fields of a card; text beyond them gives a warning.
+  !> Split a line into the fields of a card, with a warning about text beyond the last field.
   subroutine cut_card(deck, spec, source, line, card)
     type(deck_t), intent(inout) :: deck
     type(card_spec_t), intent(in) :: spec
@@ -216,7 +215,7 @@ contains
       'text after the last field (column '//to_text(rest)//') is ignored')
   end subroutine cut_card
 
-  !> Line, number and names of a card, the names only where it has been another one before.
+  !> Set line, number and names of a card, the names only where it was a different card before.
   pure subroutine begin_card(spec, line, card)
     type(card_spec_t), intent(in) :: spec
     integer, intent(in) :: line
@@ -230,7 +229,7 @@ contains
     card%kinds = spec%kinds
   end subroutine begin_card
 
-  !> Cut a text: by column, or at commas when it holds one.
+  !> Split a text by columns, or at commas.
   pure subroutine cut_text(text, spec, comma, card, rest)
     character(*), intent(in) :: text
     type(card_spec_t), intent(in) :: spec
@@ -252,7 +251,7 @@ contains
       first = start
       last = start - 1 + len_trim(text(start:finish))
       do while (first < last)
-        if (iachar(text(first:first)) /= iachar(' ')) exit ! as numbers: without a library call
+        if (iachar(text(first:first)) /= iachar(' ')) exit ! as integers: no library call
         first = first + 1
       end do
       card%first(k) = first
@@ -269,7 +268,7 @@ contains
     if (first > 0) rest = start + first - 1
   end subroutine cut_text
 
-  !> Read the numbers of a card that has been cut, with defaults for blank fields.
+  !> Read the numbers of a card that has been split, with defaults for blank fields.
   subroutine read_numbers(deck, spec, source, card)
     type(deck_t), intent(inout) :: deck
     type(card_spec_t), intent(in) :: spec
@@ -306,7 +305,7 @@ contains
     end do
   end subroutine read_numbers
 
-  !> An error of a number outside the bounds of its field, unless it is one of a list.
+  !> Report a number outside the bounds of its field, unless it is in a list.
   subroutine check_range(deck, spec, card, k)
     type(deck_t), intent(inout) :: deck
     type(card_spec_t), intent(in) :: spec
@@ -331,14 +330,14 @@ contains
     call field_error(deck, card, k, 'is not '//words)
   end subroutine check_range
 
-  !> A 0 in a field whose default is another value: LS-DYNA takes the default. The log names the
-  !> first field of each name and keyword.
+  !> Interpret a 0 in a field with another default, by `zeros`. The log lists the first such field
+  !> of each name and keyword.
   subroutine interpret_zero(deck, spec, card, k)
     type(deck_t), intent(inout) :: deck
     type(card_spec_t), intent(in) :: spec
     type(card_t), intent(inout) :: card
     integer, intent(in) :: k
-    character(:), allocatable :: name, place
+    character(:), allocatable :: name, location
 
     if (spec%zeros(k) == ' ') return
     name = to_text(spec%defaults(k))
@@ -346,8 +345,8 @@ contains
       - anint(spec%defaults(k))) > 0.0_wp) name = to_text(nint(spec%defaults(k)))
     name = trim(spec%names(k))//' = '//name//' of *' &
       //deck%blocks(block_of_line(deck, card%line))%given
-    place = where_text(deck, card%line)
-    place = ' ('//place(:index(place, ': *', back=.true.) - 1)//')'
+    location = where_text(deck, card%line)
+    location = ' ('//location(:index(location, ': *', back=.true.) - 1)//')'
     if (spec%zeros(k) == '~') then
       call append_zero(deck%kept_zeros)
       return
@@ -357,19 +356,19 @@ contains
 
   contains
 
-    !> One more field of a list, unless it has the name already.
+    !> Append a field to a list, unless its name is listed.
     subroutine append_zero(list)
       character(:), allocatable, intent(inout) :: list
 
       if (.not. allocated(list)) list = ''
       if (index(', '//list, ', '//name//' (') > 0) return
       if (len(list) > 0) list = list//', '
-      list = list//name//place
+      list = list//name//location
     end subroutine append_zero
 
   end subroutine interpret_zero
 
-  !> A field that does not hold the number it should.
+  !> Report a field that is not a valid number.
   subroutine number_error(deck, spec, card, k, status)
     type(deck_t), intent(inout) :: deck
     type(card_spec_t), intent(in) :: spec
@@ -384,12 +383,12 @@ contains
     if (status == number_range) message = 'is too large: '//trim(merge( &
       'whole numbers reach 2147483647', 'numbers reach 1e40            ', spec%kinds(k) == 'i'))
     if (text(1:1) == '<' .or. index(text, '&(') == 1 .or. index(text, '-&(') == 1) message = &
-      'is an inline expression, which is not read here; give it a name with *PARAMETER_EXPRESSION'
+      'is an inline expression, which is not supported; define it by *PARAMETER_EXPRESSION'
     call field_error(deck, card, k, message)
     call set_default(spec, card, k)
   end subroutine number_error
 
-  !> The default of a field.
+  !> Set a field to its default.
   pure subroutine set_default(spec, card, k)
     type(card_spec_t), intent(in) :: spec
     type(card_t), intent(inout) :: card
@@ -400,7 +399,7 @@ contains
     if (spec%kinds(k) == 'i') card%i(k) = int(spec%defaults(k))
   end subroutine set_default
 
-  !> Text of a field, without blanks around it.
+  !> Text of a field, trimmed.
   pure function field_text(deck, card, k) result(text)
     type(deck_t), intent(in) :: deck
     type(card_t), intent(in) :: card
@@ -413,8 +412,8 @@ contains
     text = text(card%first(k):card%last(k))
   end function field_text
 
-  !> An error of a field: `file:line: *KEYWORD card c field k (NAME): "text" message`, the card and
-  !> a mark under the field.
+  !> Report an error of a field: `file:line: *KEYWORD card c field k (NAME): "text" message`, the
+  !> line, and a mark below the field.
   subroutine field_error(deck, card, k, message)
     type(deck_t), intent(inout) :: deck
     type(card_t), intent(inout) :: card

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> User ids to indices: a direct table where ids lie close together, a sorted list elsewhere.
+!> Map from user ids to indices: a table where ids are dense, else a sorted list.
 module deck_ids_m
   use kinds_m, only : long
   use sorting_m, only : sorted_order
@@ -9,7 +9,7 @@ module deck_ids_m
     a_part, a_section, a_material, an_eos, an_hourglass, a_curve, a_table, a_node_set, a_part_set, &
     a_segment_set, a_shell_set, a_system
 
-  !> Kinds of things that have user ids.
+  !> Kinds of entities with user ids.
   integer, parameter :: n_kind = 14, a_node = 1, an_element = 2, a_part = 3, a_section = 4, &
     a_material = 5, an_eos = 6, an_hourglass = 7, a_curve = 8, a_table = 9, a_node_set = 10, &
     a_part_set = 11, a_segment_set = 12, a_shell_set = 13, a_system = 14
@@ -17,13 +17,12 @@ module deck_ids_m
     'section', 'material', 'equation of state', '*HOURGLASS', 'curve', 'table', 'node set', &
     'part set', 'segment set', 'shell set', 'coordinate system']
 
-  !> Index of every id of one kind.
+  !> Map of one kind of entity.
   type :: id_map_t
-    logical :: has_refused = .false.                !! some definitions were refused: others may be
-                                                    !! meant
-    logical :: incomplete = .false.          !! lost, or there is none where a deck has some
-    integer :: n = 0                         !! things defined so far
-    integer, allocatable :: ids(:), lines(:) !! of each, and where it is defined
+    logical :: has_refused = .false.         !! some definitions were refused
+    logical :: incomplete = .false.          !! some are refused, or none where a deck needs some
+    integer :: n = 0                         !! number defined so far
+    integer, allocatable :: ids(:), lines(:) !! ids and lines of their definitions
     integer :: low = 1                       !! smallest id of the table
     integer, allocatable :: table(:)         !! index of id low, low + 1, ..., 0 where there is none
     integer, allocatable :: sorted(:)        !! ids in increasing order ...
@@ -32,7 +31,7 @@ module deck_ids_m
 
 contains
 
-  !> Make the map; `twice` lists the positions of ids that have come before.
+  !> Build a map; `duplicates` has the positions of repeated ids.
   subroutine map_ids(ids, map, duplicates)
     integer, intent(in) :: ids(:)
     type(id_map_t), intent(out) :: map
@@ -69,16 +68,16 @@ contains
     type(id_map_t), intent(in) :: map
     integer, intent(in) :: id
     integer :: found
-    integer :: place
+    integer :: position
 
     found = 0
     if (allocated(map%table)) then
       if (id < map%low .or. id - map%low >= size(map%table)) return
       found = map%table(id - map%low + 1)
     else if (allocated(map%sorted)) then
-      place = first_position(map%sorted, id)
-      if (place > size(map%sorted)) return
-      if (map%sorted(place) == id) found = map%order(place)
+      position = first_position(map%sorted, id)
+      if (position > size(map%sorted)) return
+      if (map%sorted(position) == id) found = map%order(position)
     end if
   end function index_of
 
@@ -107,24 +106,24 @@ contains
     end if
   end subroutine ids_between
 
-  !> First place in an increasing list that holds `id` or more.
-  pure function first_position(sorted, id) result(place)
+  !> Position of the first element of an increasing list that is at least `id`.
+  pure function first_position(sorted, id) result(position)
     integer, intent(in) :: sorted(:)
     integer, intent(in) :: id
-    integer :: place
+    integer :: position
     integer :: low, high
 
     low = 0
     high = size(sorted) + 1
     do while (high - low > 1)
-      place = low + (high - low)/2
-      if (sorted(place) < id) then
-        low = place
+      position = low + (high - low)/2
+      if (sorted(position) < id) then
+        low = position
       else
-        high = place
+        high = position
       end if
     end do
-    place = high
+    position = high
   end function first_position
 
 end module deck_ids_m

@@ -1,32 +1,32 @@
 ! SPDX-License-Identifier: MIT
-!> Parameters of a deck by their names, which compare without regard to case; some are private to a
-!> file, some come from the command line.
+!> Table of the parameters of a deck by case-insensitive name; parameters may be local to a file or
+!> come from the command line.
 module deck_parameter_table_m
   use text_m, only : upper_case
   implicit none
   private
   public :: parameter_t, parameters_t, add_parameter, find_given, find_parameter, look_up
 
-  !> Names with the same hash are few, so that decks of many parameters are read fast.
+  !> Number of hash values, for fast reading of decks with many parameters.
   integer, parameter :: n_hash = 4096
 
   !> One parameter.
   type :: parameter_t
     character(20) :: name = ''            !! upper case
     character :: kind = 'R'               !! R real, I integer, C text
-    character(:), allocatable :: text     !! what is put in its place
-    integer :: source = 0                 !! file it is private to, 0 = the whole deck
+    character(:), allocatable :: text     !! its value
+    integer :: source = 0                 !! file it is local to, 0 = the whole deck
     logical :: fixed = .false.            !! given on the command line
-    logical :: found = .false.            !! the deck defines it
-    integer :: next = 0                   !! the one before it of the same hash
+    logical :: found = .false.            !! defined by the deck
+    integer :: next = 0                   !! previous parameter with the same hash
   end type parameter_t
 
-  !> All parameters, in the order they come.
+  !> All parameters, in the order of their definitions.
   type :: parameters_t
     type(parameter_t), allocatable :: items(:)
     integer :: n = 0
-    integer :: last(0:n_hash - 1) = 0     !! of each hash of a name
-    integer :: duplicates = 0                  !! what a second definition does (DFLAG)
+    integer :: last(0:n_hash - 1) = 0     !! last parameter of each hash
+    integer :: duplicates = 0             !! treatment of second definitions (DFLAG)
   end type parameters_t
 
 contains
@@ -59,8 +59,8 @@ contains
     end do
   end function name_hash
 
-  !> The parameter that a definition for a file meets: of its file, or from the command line; 0
-  !> where there is none.
+  !> Index of an existing parameter that a definition in a file repeats: of the same file or from
+  !> the command line; 0 where there is none.
   pure function find_given(parameters, name, source) result(i)
     type(parameters_t), intent(in) :: parameters
     character(*), intent(in) :: name
@@ -76,13 +76,13 @@ contains
     end do
   end function find_given
 
-  !> The parameter of a name that a file can see, one private to it before one of the whole deck; 0
-  !> where there is none.
+  !> Index of the parameter visible in a file: a local one before one of the whole deck; 0 where
+  !> there is none.
   pure function find_parameter(parameters, name, source, is_number) result(found)
     type(parameters_t), intent(in) :: parameters
     character(*), intent(in) :: name
     integer, intent(in) :: source
-    logical, intent(in) :: is_number   !! texts do not count
+    logical, intent(in) :: is_number   !! skip text parameters
     integer :: found
     integer :: i
 

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Files to keyword blocks: read in one go, cut into lines, comments left out, includes put in their
-!> place; keyword lines taken apart.
+!> Reads files into keyword blocks: lines without comments, included files in place, keyword lines
+!> parsed.
 module deck_reader_m
   use, intrinsic :: iso_fortran_env, only : int8
   use kinds_m, only : line_length, long
@@ -13,17 +13,17 @@ module deck_reader_m
   private
   public :: read_file, cut_deck, scan_line, open_block, add_line, file_options
 
-  !> Includes inside includes.
+  !> Maximum nesting of includes.
   integer, parameter :: max_depth = 32
-  !> Characters of all files of a deck together.
+  !> Maximum number of characters of all files of a deck.
   integer, parameter :: max_character = 2000000000
 
 contains
 
-  !> Cut the text of a deck into blocks, its includes in their place.
+  !> Split the text of a deck and its includes into blocks.
   subroutine cut_deck(path, text, deck)
     character(*), intent(in) :: path
-    character(:), allocatable, intent(inout) :: text !! moves into the deck
+    character(:), allocatable, intent(inout) :: text !! moved into the deck
     type(deck_t), intent(inout) :: deck
     character(:), allocatable :: folders
 
@@ -35,13 +35,13 @@ contains
     call cut_source(deck, 1, folders)
   end subroutine cut_deck
 
-  !> Cut a file into lines and blocks, its includes in their place.
+  !> Split a file and its includes into lines and blocks.
   recursive subroutine cut_source(deck, source, folders)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
-    character(:), allocatable, intent(inout) :: folders !! of *INCLUDE_PATH so far, a line each; as
-                                                        !! before behind the file
-    integer :: start, last, next, number, n_before, n_above
+    character(:), allocatable, intent(inout) :: folders !! of *INCLUDE_PATH so far, one line each;
+                                                        !! unchanged on return
+    integer :: start, last, next, number, n_stray_lines, n_above
     integer(int8) :: flags
     logical :: in_block
 
@@ -49,7 +49,7 @@ contains
     n_above = len(folders)
     start = 1
     number = 0
-    n_before = 0
+    n_stray_lines = 0
     in_block = .false.
     if (index(deck%sources(source)%text(:min(3, len(deck%sources(source)%text))), &
       char(239)//char(187)//char(191)) == 1) start = 4
@@ -77,17 +77,17 @@ contains
           call limit_line(deck)
         end if
       else if (last >= start) then
-        if (len_trim(deck%sources(source)%text(start:last)) > 0) n_before = n_before + 1
+        if (len_trim(deck%sources(source)%text(start:last)) > 0) n_stray_lines = n_stray_lines + 1
       end if
       start = next
     end do
     if (in_block) call close_block(deck, source, folders)
     folders = folders(:n_above)
-    if (n_before > 0) call line_error(deck, 0, 'in '//deck%sources(source)%path//', ' &
-      //to_text(n_before)//' line(s) before the first keyword (a line that starts with *)')
+    if (n_stray_lines > 0) call line_error(deck, 0, 'in '//deck%sources(source)%path//', ' &
+      //to_text(n_stray_lines)//' line(s) before the first keyword (a line that starts with *)')
   end subroutine cut_source
 
-  !> The last line may not be too long.
+  !> Report the last line if it is too long.
   subroutine limit_line(deck)
     type(deck_t), intent(inout) :: deck
 
@@ -101,7 +101,7 @@ contains
     end associate
   end subroutine limit_line
 
-  !> The block is complete: an include puts its files here.
+  !> Complete a block: read the files of an include.
   recursive subroutine close_block(deck, source, folders)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
@@ -127,7 +127,7 @@ contains
     end do
   end subroutine close_block
 
-  !> A file name that may go on over several lines (each ends with ` +`); `line` moves past it.
+  !> A file name on one or several lines (continued by ` +`); `line` is moved past it.
   subroutine join_name(deck, i_block, line, name)
     type(deck_t), intent(in) :: deck
     integer, intent(in) :: i_block
@@ -160,8 +160,8 @@ contains
 
     call find_file(deck%sources(1)%path, deck%sources(source)%path, folders, name, path)
     if (len(path) == 0) then
-      call line_error(deck, line, 'the file "'//trim(shown_text(name))//'" was not found; what ' &
-        //'refers to nodes, elements and so on is not judged without it')
+      call line_error(deck, line, 'the file "'//trim(shown_text(name))//'" was not found; ' &
+        //'references to nodes, elements and so on are not checked without it')
       deck%incomplete = .true.
       return
     end if
@@ -188,7 +188,7 @@ contains
     deck%sources(i)%layout = deck%sources(source)%layout
     call read_file(path, deck%sources(i)%text, reason)
     if (.not. allocated(reason)) then
-      ! A real, since the sum may pass the largest integer.
+      ! A real, since the sum may exceed the largest integer.
       if (sum([(real(len(deck%sources(above)%text)), above=1, i)]) > max_character) &
         reason = 'the deck is larger than 2 GB'
     end if
@@ -201,8 +201,8 @@ contains
     call cut_source(deck, i, folders)
   end subroutine include_file
 
-  !> Where an included file is: as given, in the *INCLUDE_PATH folders (which may be meant from
-  !> where the deck is), beside the including file.
+  !> Path of an included file: as given, in the *INCLUDE_PATH folders (also relative to the deck),
+  !> or in the folder of the including file.
   subroutine find_file(main, including, folders, name, path)
     character(*), intent(in) :: main       !! the deck itself
     character(*), intent(in) :: including
@@ -227,7 +227,7 @@ contains
 
   contains
 
-    !> Whether there is a file, whose path is kept.
+    !> Whether a file exists; sets `path`.
     function is_there(candidate) result(exists)
       character(*), intent(in) :: candidate
       logical :: exists
@@ -238,7 +238,7 @@ contains
 
   end subroutine find_file
 
-  !> The bytes of a file; `reason` is set when that fails.
+  !> Read the bytes of a file; `reason` is allocated on failure.
   subroutine read_file(path, text, reason)
     character(*), intent(in) :: path
     character(:), allocatable, intent(out) :: text
@@ -250,13 +250,13 @@ contains
     if (is_directory(path)) then
       reason = 'it is a directory'
     else if (is_endless(path)) then
-      reason = 'it is empty, or a pipe or a device and no file'
+      reason = 'it is empty, a pipe or a device'
     end if
     if (allocated(reason)) return
     open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
       action='read', iostat=status, iomsg=why)
     if (status /= 0) then
-      ! Whoever asks names the file: the library's "Cannot open file 'PATH': " would be the second.
+      ! Without the library's "Cannot open file 'PATH': ": the caller names the file.
       n = index(why, "': ", back=.true.)
       if (n > 0) n = n + 2
       reason = trim(why(n + 1:))
@@ -275,8 +275,8 @@ contains
     close (unit, iostat=status)
   end subroutine read_file
 
-  !> Find the line that starts at `start`: its last character, the start of the next line, and its
-  !> flags. Tabs become blanks on the way.
+  !> Scan the line that starts at `start`: its last character, the start of the next line, and its
+  !> flags. Tabs are replaced by blanks.
   pure subroutine scan_line(text, start, last, next, flags)
     character(*), intent(inout) :: text
     integer, intent(in) :: start
@@ -310,7 +310,7 @@ contains
     end do
   end subroutine scan_line
 
-  !> Make room for `n_more` lines.
+  !> Reserve `n_more` lines.
   subroutine reserve_lines(deck, n_more)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: n_more
@@ -330,7 +330,7 @@ contains
     deck%flags = [deck%flags(:n), int(more, int8)]
   end subroutine reserve_lines
 
-  !> One more line.
+  !> Append a line.
   subroutine add_line(deck, first, last, number, flags)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: first, last, number
@@ -344,7 +344,7 @@ contains
     deck%flags(deck%n_line) = flags
   end subroutine add_line
 
-  !> A new block from its keyword line (already the last line of the deck).
+  !> Append a block for a keyword line, which is the last line of the deck.
   subroutine open_block(deck, source, text)
     type(deck_t), intent(inout) :: deck
     integer, intent(in) :: source
@@ -371,8 +371,8 @@ contains
     end associate
   end subroutine open_block
 
-  !> Characters of the keyword at the start of a line that ends with a blank. A hyphen between two
-  !> letters is part of a name (MAT_BLATZ-KO_RUBBER); behind a name it marks its layout.
+  !> Length of the keyword at the start of a line that ends with a blank. A hyphen between two
+  !> letters is part of the name (MAT_BLATZ-KO_RUBBER); after the name it marks the layout.
   pure function length_of_name(text) result(n)
     character(*), intent(in) :: text !! upper case
     integer :: n
@@ -387,7 +387,7 @@ contains
     end do
   end function length_of_name
 
-  !> Options of a *KEYWORD line: LONG=Y|S|K|N and I10=Y; the others say nothing about the deck.
+  !> Layout options of a *KEYWORD line: LONG=Y|S|K|N and I10=Y.
   pure subroutine file_options(rest, layout)
     character(*), intent(in) :: rest
     integer, intent(inout) :: layout

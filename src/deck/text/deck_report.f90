@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> All that is wrong or strange in a deck, collected while it is read and shown in deck order. The
-!> same mistake many times is one message with a count: errors of one field whose messages differ in
-!> numbers alone are of one kind. Programs get the messages as JSON (RFC 8259).
+!> Errors and warnings of a deck, collected while it is read and written in deck order. Many errors
+!> of one kind (one field, messages that differ in numbers only) are written as one message with a
+!> count. Programs get the messages as JSON (RFC 8259).
 module deck_report_m
   use errors_m, only : error_t, raise, status_input
   use log_m, only : log_t, warn, to_text
@@ -11,59 +11,58 @@ module deck_report_m
   public :: report_t, finding_t, add_error, count_only, add_warning, &
     emit_warnings, emit_errors, list_findings, add_finding, json_text
 
-  !> Errors kept, and warnings; what comes later is counted. Of a kind of errors that comes later
-  !> the first ones are kept too, so that none goes untold.
+  !> Maximum number of stored errors, and of warnings; later ones are counted. The first errors of
+  !> each kind are stored in any case.
   integer, parameter :: max_kept = 1000, first_kept = 3
-  !> Kinds of errors that are told apart.
+  !> Maximum number of kinds of errors.
   integer, parameter :: max_kinds = 200
-  !> Errors of a kind that are shown one by one; more are one message with their count.
+  !> Maximum number of errors of a kind that are written one by one.
   integer, parameter :: max_listed = 10
 
-  !> Where a message points to, for programs that read it. Unset: the deck as a whole.
+  !> A message with its location, for programs. Without a location it belongs to the deck.
   type :: finding_t
-    character(:), allocatable :: message !! without place and card
+    character(:), allocatable :: message !! without location
     character(:), allocatable :: file
     integer :: line = 0                  !! in the file, 0: none
     character(:), allocatable :: keyword !! without asterisk
     integer :: card = 0, field = 0       !! 0: the line as a whole
-    character(12) :: name = ''              !! of the field
-    integer :: first = 0, last = 0       !! columns of the field; 0 where the line as read is not
-                                         !! that of the file
+    character(12) :: name = ''           !! of the field
+    integer :: first = 0, last = 0       !! columns of the field; 0 where the line is not that of
+                                         !! the file
     character(:), allocatable :: found   !! text of the field
   end type finding_t
 
-  !> One message and the deck line that it belongs to.
+  !> One stored message.
   type :: message_t
-    integer :: line = 0                !! index of the line in the deck, for the order
+    integer :: line = 0                !! line of the deck, for the order
     character(:), allocatable :: text
-    character(:), allocatable :: key   !! what makes a warning the same as another
-    integer :: kind = 0                !! of an error, 0: of none that is told apart
+    character(:), allocatable :: key   !! equal for repeated warnings
+    integer :: kind = 0                !! of an error, 0: none
     type(finding_t) :: finding
   end type message_t
 
   !> One kind of errors.
   type :: kind_t
-    character(:), allocatable :: key   !! keyword, field and message, numbers apart
-    integer :: n = 0                   !! errors
-    integer :: n_kept = 0              !! of these with their message
+    character(:), allocatable :: key   !! keyword, field and message without numbers
+    integer :: n = 0                   !! number of errors
+    integer :: n_kept = 0              !! number of stored messages
   end type kind_t
 
-  !> Messages so far.
+  !> All messages.
   type :: report_t
     integer :: n_error = 0
-    integer :: n_kept = 0              !! errors with their message
+    integer :: n_kept = 0              !! stored errors
     integer :: n_kind = 0
     type(kind_t), allocatable :: kinds(:)
-    integer :: n_warning = 0           !! kept
-    integer :: n_dropped = 0           !! warnings beyond these, the same ones more than once
+    integer :: n_warning = 0           !! stored warnings
+    integer :: n_dropped = 0           !! warnings that are not stored
     type(message_t), allocatable :: errors(:)
     type(message_t), allocatable :: warnings(:)
   end type report_t
 
 contains
 
-  !> One more error, `line` giving its place in the order; the same one of the deck as a whole (line
-  !> 0) is told once.
+  !> Add an error, sorted by `line`; equal errors of the deck as a whole (line 0) are added once.
   subroutine add_error(report, line, text, finding)
     type(report_t), intent(inout) :: report
     integer, intent(in) :: line
@@ -79,9 +78,9 @@ contains
     end do
     report%n_error = report%n_error + 1
     if (allocated(finding%keyword)) then
-      call find_kind(report, key_of(finding%keyword, finding%name, finding%message), k)
+      call get_kind(report, key_of(finding%keyword, finding%name, finding%message), k)
     else
-      call find_kind(report, key_of('', '', text), k)
+      call get_kind(report, key_of('', '', text), k)
     end if
     is_kept = report%n_kept < max_kept
     if (k > 0) then
@@ -99,8 +98,8 @@ contains
     end associate
   end subroutine add_error
 
-  !> Count an error whose message need not be made, since enough of its kind are kept; false in
-  !> `is_done` where it has to be added.
+  !> Count an error if enough errors of its kind are stored; `is_done` is false where it has to be
+  !> added.
   subroutine count_only(report, keyword, name, message, is_done)
     type(report_t), intent(inout) :: report
     character(*), intent(in) :: keyword, name, message
@@ -109,15 +108,15 @@ contains
 
     is_done = report%n_kept >= max_kept
     if (.not. is_done) return
-    call find_kind(report, key_of(keyword, name, message), k)
+    call get_kind(report, key_of(keyword, name, message), k)
     if (k > 0) is_done = report%kinds(k)%n >= first_kept
     if (.not. is_done) return
     report%n_error = report%n_error + 1
     if (k > 0) report%kinds(k)%n = report%kinds(k)%n + 1
   end subroutine count_only
 
-  !> The kind of a key, a new one where there is room; 0: none.
-  subroutine find_kind(report, key, k)
+  !> Index of the kind of a key, added where there is room; 0 where there is not.
+  subroutine get_kind(report, key, k)
     type(report_t), intent(inout) :: report
     character(*), intent(in) :: key
     integer, intent(out) :: k
@@ -130,10 +129,10 @@ contains
     report%n_kind = report%n_kind + 1
     k = report%n_kind
     report%kinds(k)%key = key
-  end subroutine find_kind
+  end subroutine get_kind
 
-  !> What errors of one kind share: keyword, field and message, a # for each whole number in field
-  !> and message (the members of a set have numbered fields).
+  !> Key of a kind of errors: keyword, field and message, with # for each integer in field and
+  !> message (the members of a set have numbered fields).
   pure function key_of(keyword, name, message) result(key)
     character(*), intent(in) :: keyword, name, message
     character(:), allocatable :: key
@@ -155,7 +154,7 @@ contains
     key = keyword//' '//text(:n)
   end function key_of
 
-  !> One more warning; warnings of the same key are given once.
+  !> Add a warning; warnings with equal keys are added once.
   subroutine add_warning(report, line, key, text, finding)
     type(report_t), intent(inout) :: report
     integer, intent(in) :: line
@@ -181,7 +180,7 @@ contains
     end associate
   end subroutine add_warning
 
-  !> Give all warnings to the log in deck order.
+  !> Write all warnings to the log in deck order.
   subroutine emit_warnings(report, log)
     type(report_t), intent(in) :: report
     type(log_t), intent(inout) :: log
@@ -197,7 +196,7 @@ contains
       //' more warnings')
   end subroutine emit_warnings
 
-  !> One error that holds all messages in deck order; nothing when there are none.
+  !> One error with all messages in deck order; none without errors.
   subroutine emit_errors(report, path, error)
     type(report_t), intent(in) :: report
     character(*), intent(in) :: path !! name of the deck
@@ -214,7 +213,7 @@ contains
     text = ''
     do i = 1, size(order)
       k = report%errors(order(i))%kind
-      ! So many, or some of them without their text: one message.
+      ! Too many, or some without a stored message: one message with a count.
       many = .false.
       if (k > 0) many = report%kinds(k)%n > max_listed &
         .or. report%kinds(k)%n > report%kinds(k)%n_kept
@@ -233,13 +232,13 @@ contains
     call raise(error, trim(text), status_input)
   end subroutine emit_errors
 
-  !> The line with the count of a kind and its first places.
+  !> Line with the number of errors of a kind and their first locations.
   pure function count_text(report, order, k) result(text)
     type(report_t), intent(in) :: report
     integer, intent(in) :: order(:) !! of the errors, from the first of the kind on
     integer, intent(in) :: k
     character(:), allocatable :: text
-    character(:), allocatable :: place, before
+    character(:), allocatable :: location, before
     integer :: i, n
 
     text = '  | '//to_text(report%kinds(k)%n)//' times'
@@ -248,21 +247,21 @@ contains
     do i = 1, size(order)
       associate (note => report%errors(order(i)))
         if (note%kind /= k .or. .not. allocated(note%finding%file)) cycle
-        place = note%finding%file//':'//to_text(note%finding%line)
+        location = note%finding%file//':'//to_text(note%finding%line)
       end associate
-      if (place == before) cycle
+      if (location == before) cycle
       if (n == 3) then
         text = text//' and so on'
         exit
       end if
       n = n + 1
-      text = text//trim(merge(': ', ', ', n == 1))//' '//place
-      before = place
+      text = text//trim(merge(': ', ', ', n == 1))//' '//location
+      before = location
     end do
     text = text//new_line('a')
   end function count_text
 
-  !> Order of the notes by line, equal lines as they came, those of no line (0) last.
+  !> Order of messages by line, stable, line 0 last.
   pure function deck_order(notes) result(order)
     type(message_t), intent(in) :: notes(:)
     integer :: order(size(notes))
@@ -280,8 +279,7 @@ contains
     end do
   end function deck_order
 
-  !> All messages kept by the report as JSON objects with commas between them, errors first, each
-  !> kind in deck order; empty when there are none.
+  !> All stored messages as JSON objects separated by commas: errors, then warnings, in deck order.
   pure subroutine list_findings(report, findings)
     type(report_t), intent(in) :: report
     character(:), allocatable, intent(out) :: findings
@@ -291,9 +289,9 @@ contains
     call list_notes(report%warnings, report%n_warning, report%n_dropped, 'warning', findings)
   end subroutine list_findings
 
-  !> Messages of one kind, and how many there are beyond those that are kept.
+  !> Append messages of one severity, and the number of those that are not stored.
   pure subroutine list_notes(notes, n, n_more, severity, findings)
-    type(message_t), intent(in), optional :: notes(:) !! absent: there are none
+    type(message_t), intent(in), optional :: notes(:) !! absent: none
     integer, intent(in) :: n, n_more
     character(*), intent(in) :: severity
     character(:), allocatable, intent(inout) :: findings
@@ -310,7 +308,7 @@ contains
     call add_finding(severity, finding, findings)
   end subroutine list_notes
 
-  !> One more object; what is not known of its place is left out.
+  !> Append a finding as JSON object, with the known parts of its location.
   pure subroutine add_finding(severity, finding, findings)
     character(*), intent(in) :: severity !! error or warning
     type(finding_t), intent(in) :: finding
@@ -331,8 +329,7 @@ contains
     findings = findings//'    '//text
   end subroutine add_finding
 
-  !> A JSON string with its quotes, always UTF-8: characters of UTF-8 pass, and a byte that belongs
-  !> to none is taken for Latin-1, whose codes are the first of Unicode.
+  !> A JSON string with quotes in UTF-8; bytes that are not UTF-8 are interpreted as Latin-1.
   pure function json_text(text) result(quoted)
     character(*), intent(in) :: text
     character(:), allocatable :: quoted

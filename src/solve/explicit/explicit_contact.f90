@@ -24,7 +24,7 @@ module explicit_contact_m
   !> Cycles between two samples of the springs; with shorter intervals the sum over all points would
   !> show in the time of a step.
   integer, parameter :: sampling_interval = 20
-  !> Share of the largest energy so far from which on energy made or lost is reported.
+  !> Share of the largest energy so far from which on energy made, lost or withheld is reported.
   real(wp), parameter :: noticed_share = 0.01_wp
   !> Share of the largest energy so far that is admissible for springs loaded at their entry, of all
   !> interfaces together.
@@ -32,10 +32,6 @@ module explicit_contact_m
   character(*), parameter :: hint &
     = '; look at corners there, at the penalty and at the time step', not_lost &
     = ' (damping and friction are no part of it)'
-  !> Limited cycles raise `recent` by 20, others with force lower it by 1: a warning from here on,
-  !> that is after 50 limited cycles in a row, or more where others lie between; never where no more
-  !> than one cycle of 21 is limited.
-  integer, parameter :: again_and_again = 1000
 
 contains
 
@@ -60,8 +56,8 @@ contains
   end subroutine plan_sampling
 
   !> After the forces of an interface: the balance of its springs where they were sampled, and a
-  !> warning the first time that they have made or lost much, or where forces are limited again and
-  !> again.
+  !> warning the first time that they have made or lost much, or that limited forces have withheld
+  !> as much.
   subroutine check_springs(model, i, state, log)
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
@@ -71,13 +67,14 @@ contains
 
     associate (contact => state%contacts(i), limit => state%contacts(i)%limit, &
       monitor => state%contacts(i)%monitor)
-      if (limit%recent >= again_and_again .and. .not. limit%warned) then
-        limit%warned = .true.
-        call warn(log, instant()//'again and again'//limit_text(limit)//hint)
-      end if
       if (.not. monitor%has_sampled) return
       call update_balance(model, i, state)
       if (state%cycle == 0) return
+      if (.not. limit%warned .and. limit%n_limited > 0 .and. limit%withheld > noticed_share &
+        *max(state%largest_energy, contact%energy)) then
+        limit%warned = .true.
+        call warn(log, instant()//limit_text(limit, state%largest_energy)//hint)
+      end if
       sign_of = merge(has_made, has_lost, monitor%balance < 0.0_wp)
       ! In the first cycles the springs hold energy whose work is not in the balance yet.
       if (monitor%changes(sign_of)%warned .or. abs(monitor%balance) <= &
@@ -110,11 +107,13 @@ contains
     type(model_t), intent(in) :: model
     integer, intent(in) :: i
     type(state_t), intent(inout) :: state
-    real(wp) :: change
+    real(wp) :: change, given
 
     associate (contact => state%contacts(i), monitor => state%contacts(i)%monitor)
       ! What springs hold beyond what they were given is not returned (energy_limit).
-      monitor%stored = min(monitor%stored, max(0.0_wp, contact%energy + contact%limit%admissible))
+      given = max(0.0_wp, contact%energy + contact%limit%admissible)
+      contact%limit%withheld = max(contact%limit%withheld, monitor%stored - given)
+      monitor%stored = min(monitor%stored, given)
       change = contact%energy - monitor%stored - monitor%balance
       monitor%balance = contact%energy - monitor%stored
       ! What is loaded at time zero is what it stores.
@@ -131,14 +130,16 @@ contains
   end subroutine update_balance
 
   !> How often forces were limited, and by how much.
-  function limit_text(limit) result(text)
+  function limit_text(limit, largest) result(text)
     type(energy_limit_t), intent(in) :: limit
+    real(wp), intent(in) :: largest !! energy so far, J/m
     character(:), allocatable :: text
 
-    text = ': contact forces limited, so that they return no more energy than they took, in ' &
+    text = 'contact forces limited, so that they return no more energy than they took, in ' &
       //to_text(limit%n_limited)//' of '//to_text(limit%n_loaded) &
       //' cycles with force, the smallest factor '//to_text(limit%least_factor)//' at time ' &
-      //to_text(limit%least_time)
+      //to_text(limit%least_time)//'; at most '//to_text(limit%withheld)//', ' &
+      //percent(limit%withheld, largest)//' of the largest energy so far, was withheld'
   end function limit_text
 
   !> At the end of a run: each interface whose forces were limited, and each whose springs have made
@@ -153,7 +154,8 @@ contains
     do i = 1, size(state%contacts)
       associate (memory => state%contacts(i), monitor => state%contacts(i)%monitor)
         name = 'interface '//to_text(model%contacts(i)%id)
-        if (memory%limit%n_limited > 0) call write_log(log, name//limit_text(memory%limit))
+        if (memory%limit%n_limited > 0) call write_log(log, name//': ' &
+          //limit_text(memory%limit, state%largest_energy))
         sign_of = merge(has_made, has_lost, monitor%balance < 0.0_wp)
         if (sign_of == has_lost .and. model%contacts(i)%penalty_unit == penalty_implicit) then
           ! Impact is plastic within the first row of elements.

@@ -84,7 +84,7 @@ contains
       n_seen = 0
       settles = .true.
       do i = 1, size(model%walls)
-        k = model%walls(i)%place(node)
+        k = model%walls(i)%node_index(node)
         if (k == 0) cycle
         n_seen = n_seen + 1
         state%walls(i)%force(k) = 0.0_wp
@@ -100,7 +100,7 @@ contains
       do round = 1, most_rounds
         most = 0.0_wp
         do i = 1, size(model%walls)
-          k = model%walls(i)%place(node)
+          k = model%walls(i)%node_index(node)
           if (k == 0) cycle
           associate (wall => model%walls(i), force => state%walls(i)%force(k))
             more = missing_force(wall, state%time, leap%dt, model%mesh%coordinates(:, node), &
@@ -227,7 +227,7 @@ contains
 
     work = 0.0_wp
     do i = 1, size(state%walls)
-      k = model%walls(i)%place(node)
+      k = model%walls(i)%node_index(node)
       if (k == 0) cycle
       associate (wall => model%walls(i), memory => state%walls(i))
         if (memory%force(k) > 0.0_wp) work = work + memory%force(k)*way_ahead(state, &

@@ -306,6 +306,9 @@ contains
     call visitor%visit('n_cycle', self%n_cycle)
     call visitor%visit('end_cycle', self%end_cycle)
     call visitor%visit('end_time', self%end_time)
+    call visitor%expect('constant', .not. self%constant > 0.0_wp &
+      .or. self%constant*huge(1) > self%end_time - self%start_time, &
+      'a step too small for the end time')
     call visitor%visit('warned', self%warned)
     call visitor%visit('warned_approach', self%warned_approach)
     call visitor%each('springs', self%springs)

@@ -57,6 +57,7 @@ void GOMP_barrier(void) {
 
 int omp_get_thread_num(void) { return me.number; }
 int omp_get_num_threads(void) { return me.team ? me.team->size : 1; }
+int omp_get_num_threads_(void) { return omp_get_num_threads(); } /* as Fortran calls it */
 
 typedef struct {
   void (*work)(void *);

@@ -15,7 +15,7 @@ FIRST = re.compile(r"warning: interface (\d+): at cycle (\d+), time (\S+), the c
                    r"(\S+), (\S+) % of the largest energy so far (\S+) .{0,120}?near node (\d+) at \((\S+), (\S+)\)")
 LIMITED = re.compile(r"interface (\d+): contact forces limited, so that they return no more energy than they took, in (\d+) of (\d+) "
                      r"cycles with force, the smallest factor (\S+) at time (\S+)")
-AGAIN = re.compile(r"warning: interface (\d+): at cycle (\d+), time \S+, again and again: contact forces limited.{0,160}")
+AGAIN = re.compile(r"warning: interface (\d+): at cycle (\d+), time \S+, contact forces limited.{0,160}")
 IN_ALL = re.compile(r"warning: interface (\d+): in the whole run the contact springs have (made|lost) energy: (\S+), "
                     r".*?up to time \S+")
 

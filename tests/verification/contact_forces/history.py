@@ -3,11 +3,13 @@
 
 Each point is followed from the step in which it comes over the end of the other surface: it starts with
 the depth that it had one step before, never has more than its present depth, and loses with each slip
-the larger of slip / (L/2) of it and 1/20 of the slip.
+the larger of slip / (L/2) of it and 1/20 of the slip. Types 5 and 7: the offset starts with that depth less
+the one that overlaps beside the node bore one step before.
 """
 import numpy as np
 
-from reference import MOST_POINTS, OVERSHOOT, Chain, Offsets, gauss, of_node, of_segment, project
+from reference import (MOST_POINTS, OVERSHOOT, Chain, Offsets, gauss, nts_mar, of_node, of_segment, project,
+                       segmented_mortar)
 
 RAMP = 0.05
 
@@ -30,11 +32,14 @@ def entries(points, starts, ends):
     return found
 
 
-def histories(points, own, other):
+def histories(points, own, other, borne=None):
     """Offsets of points (step, point, 2) over all steps; own(step, point): normals of their own surface;
-    other: nodes of the open surface that they come upon (step, node, 2)."""
+    other: nodes of the open surface that they come upon (step, node, 2); borne(step, offsets in it): depth that
+    overlaps beside each point bear."""
     offsets = np.zeros(points.shape[:2])
-    for n, i, offset in entries(points, other[:, :-1], other[:, 1:]):
+    for n, i, offset in sorted(entries(points, other[:, :-1], other[:, 1:])):
+        if borne:
+            offset = max(0.0, offset - borne(n - 1, offsets[n - 1])[i])
         for n in range(n, len(points)):
             chain = Chain(other[n])
             foot = project([points[n, i]], chain, [own(n, i)])[0]
@@ -58,9 +63,18 @@ def entry_offsets(rule, slave, master):
     still = np.broadcast_to(master, (n_step, *master.shape))
     of_slave, of_master = np.zeros(slave.shape[:2]), np.zeros(still.shape[:2])
     between = np.zeros((n_step, n, MOST_POINTS))
+    rules = {5: lambda *chains, offsets: nts_mar(*chains, 1.0, rule.strict, offsets),
+             7: lambda *chains, offsets: segmented_mortar(*chains, 1.0, offsets)}
+
+    def borne(step, offsets):
+        found = Offsets((offsets, of_master[step]), between[step])
+        rules[rule.kind](Chain(slave[step]), Chain(master), offsets=found)
+        return found.borne
+
     places = {4: np.array([0.25, 0.75]), 6: gauss(rule.gauss)[0]}.get(rule.kind)
     if places is None:
-        of_slave = histories(slave, lambda step, i: of_node(Chain(slave[step]), i), still)
+        of_slave = histories(slave, lambda step, i: of_node(Chain(slave[step]), i), still,
+                             borne if rule.kind in rules else None)
     else:
         points = slave[:, :-1, None, :] + places[:, None] * np.diff(slave, axis=1)[:, :, None, :]
         of_points = histories(points.reshape(n_step, -1, 2), lambda step, i: of_segment(

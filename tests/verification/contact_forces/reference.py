@@ -245,9 +245,11 @@ def one_foot(point, chain, k, at, height):
 
 @dataclass
 class Offsets:
-    """Entry offsets: of the nodes of both sides, and of points between nodes, segment by segment."""
+    """Entry offsets: of the nodes of both sides, and of points between nodes, segment by segment. Forces that are formed
+    with them leave the depth that overlaps beside each slave node bear (types 5 and 7)."""
     nodes: tuple
     between: np.ndarray
+    borne: np.ndarray = None
 
     def on_segment(self, chain, k, at):
         first, second = self.nodes[0][chain.nodes[k]]
@@ -509,12 +511,16 @@ def nts_mar(slave, master, penalty, strict=False, offsets=None):
         force = -penalty * weight[node] * gap * foot.normal
         forces.at_node(0, node, force)
         forces.on_segment(1, foot.segment, foot.at, -force)
+    forces.offsets.borne = np.zeros(len(slave.x))
     for (k, node), w in extra.items():
         away = master.x[node] - slave.start[k]
         gap = np.dot(away, slave.normal[k])
         at = np.dot(away, slave.tangent[k]) / slave.length[k]
         if gap < 0.0:
-            force = -penalty * w * min(0.0, gap + forces.offsets.on_segment(slave, k, at)) * slave.normal[k]
+            depth = max(0.0, -gap - forces.offsets.on_segment(slave, k, at))
+            if w > 0.0:
+                np.maximum.at(forces.offsets.borne, slave.nodes[k], depth * np.array([1.0 - at, at]))
+            force = penalty * w * depth * slave.normal[k]
             forces.at_node(1, node, force)
             forces.on_segment(0, k, at, -force)
     return forces.sides
@@ -555,7 +561,8 @@ def nodal_pressure(slave, master, penalty, spots, offsets=None):
             area[node] += shape * w
             volume[node] += shape * w * (foot.gap + offset)
     gap = np.divide(volume, area, out=np.zeros_like(area), where=area > 0.0)
-    pressure = penalty * np.maximum(0.0, -gap)
+    forces.offsets.borne = np.maximum(0.0, -gap)
+    pressure = penalty * forces.offsets.borne
     for k, at, w, foot in kept:
         first, second = pressure[slave.nodes[k]]
         force = w * ((1.0 - at) * first + at * second) * foot.normal

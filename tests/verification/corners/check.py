@@ -17,6 +17,11 @@ OVERLAP = 0.01
 ONE_PASS = 2
 #: With friction: in the first one forces are limited in most cycles.
 RUBBED = [("three", 52004), ("pair", 52004)]
+#: A block of 1 m x 1 m that rocks: its energy from the corner to the side, springs that it goes 3 mm into by a half segment.
+GRAVITY, ROCKING_PENALTY = 10.0, 1000.0 * 10.0 / 0.003 * 8.0
+FALL, AT_ONCE = 1000.0 * GRAVITY * (np.sqrt(0.5) - 0.5), 0.03
+#: Types, angles in degrees and segments of the plate.
+ROCKING = ((5, 41, 40), (5, 41, 24), (5, 38, 32))
 #: Scenes of every family that are run with all types, in full and in CI.
 FIXED = {"pair": range(5), "rigid slave": range(3), "rigid master": range(3), "three": range(3)}
 FEW = {"pair": range(4), "rigid slave": range(2), "rigid master": range(2), "three": range(2)}
@@ -102,9 +107,33 @@ def check_rolling(run, kind):
               np.max(np.abs(springs["energy"] - springs["stored"])) / np.max(springs["stored"]), 0.001)
 
 
+def rocking_deck(kind, angle, segments):
+    """A rigid square of 4 x 4 quads, the master, falls with a corner on a plate of so many segments and rocks."""
+    deck = Deck(f"rocking block, type {kind}").control(1.0, scale=0.5)
+    square, quads = grid(4, 4, 1.0, 1.0)
+    deck.part(1).add("*MAT_RIGID", (1, 1000.0, 1.0e7, 0.3), (1, 0, 0), (0.0,))
+    deck.mesh(rotate(square, np.radians(angle)) + (0.03, 0.0), quads, part=1)
+    plate, quads = grid(segments, 2, 6.0, 1.0, (-3.0, -1.0))
+    nodes = deck.part(2).elastic(1000.0, 1.0e9, 0.3, 2).mesh(plate, quads, part=2)
+    deck.fix(nodes[:segments + 1], 1, 1).hourglass(4, 0.05).curve(1, [(0.0, 1.0), (1.0, 1.0)])
+    deck.add("*LOAD_BODY_Y", (1, GRAVITY)).add("*SET_PART_LIST", (1,), (1,)).add("*SET_PART_LIST", (2,), (2,))
+    deck.add("*CONTACT_2D_SLIDELINE", (2, 1, kind, 2, ROCKING_PENALTY))
+    return deck.output(glstat=0.0025).add("*DATABASE_SLEOUT", (0.0025,))
+
+
+def check_rocking(run, kind, angle, segments):
+    """Where a corner of the master passes a slave node, this bears what the springs beside it bore: nothing is lost at once."""
+    springs = run.program(rocking_deck(kind, angle, segments), name=f"rocking_{kind}_{angle}_{segments}").table("sleout")
+    lost = np.diff(springs["energy"] - springs["stored"])
+    run.check(f"{TYPES[kind]}, rocking block, {angle} degrees, {segments} segments: lost at once / energy of the fall",
+              lost.max() / FALL, AT_ONCE)
+
+
 def check(run):
     for kind in (2, 3, 6, 7):
         check_rolling(run, kind)
+    for kind, angle, segments in ROCKING:
+        check_rocking(run, kind, angle, segments)
     chosen = FIXED if run.is_full else FEW
     judge(run, measure_all(run, [Scene(family, seed) for family, seeds in chosen.items() for seed in seeds]))
     for family, seed in RUBBED if run.is_full else RUBBED[:1]:

@@ -36,6 +36,7 @@ LONGEST = 120.0   # seconds that the program may take
 
 class ModelError(UserError):
     """A deck that the program refuses, or a program that cannot be run."""
+    has_lines = True  # the lines of the program's messages
 
 
 def labelled(kind: str, one) -> str:
