@@ -11,7 +11,8 @@ module arcs_m
   implicit none
   private
   public :: prepare_arcs, find_curvatures, sagitta, curve_points, arc_shape_t, arc_projection_t, &
-    project_on_arcs, project_virtual_node, present_shape, is_flat, flat_arc, steepest
+    project_on_arcs, project_virtual_node, present_shape, sine_at, is_flat, flat_arc, steepest, &
+    all_of_it
 
   !> Curvature at one end of a segment, as a part of that at the other, below which it is flat.
   real(wp), parameter :: flat = 0.1_wp

@@ -4,7 +4,7 @@
 !> doc/theory/contact.md, section 9). What the formulations make of these, areas above all, is
 !> built from the same parts. All in dual numbers, so that each formula stands here once.
 module linearisation_m
-  use arcs_m, only : arc_shape_t, present_shape, is_flat, flat_arc, steepest
+  use arcs_m, only : arc_shape_t, present_shape, sine_at, is_flat, flat_arc, steepest, all_of_it
   use contact_state_m, only : contact_state_t, touching_gap
   use dual_m, only : dual_t, n_partial, constant, variable, operator(+), operator(-), operator(*), &
     operator(/), sqrt
@@ -165,37 +165,39 @@ contains
   end subroutine project_point
 
   !> Let a projection on a segment be that on its arc, of a point on the arc of its own segment
-  !> (`arcs_m`). The shapes of arcs are held, though they change with nodes beside the segment: that
-  !> is a sixteenth of their motion.
+  !> (`arcs_m`). The shape of the latter is held, though it changes with the nodes beside it.
   pure subroutine project_on_arcs(memory, point, owner, d, t, projection)
     type(contact_state_t), intent(in) :: memory
-    type(linearised_point_t), intent(inout) :: point !! out: its distance
+    type(linearised_point_t), intent(inout) :: point !! out: its distance; nodes beside the segment
+                                                     !! in slots 7, 8
     integer, intent(in) :: owner        !! first slot of the segment
     type(dual_t), intent(in) :: d(2)    !! from its first node to the point, m
     type(dual_t), intent(in) :: t(2)    !! the segment, m
     type(linearised_projection_t), intent(inout) :: projection
     type(dual_t) :: own(2), off(2), length, unit(2), normal(2), across, sine, cosine, height
-    type(arc_shape_t) :: shape, own_shape
+    type(dual_t) :: bend, skew
+    type(arc_shape_t) :: own_shape
 
-    shape = present_shape(memory, point%nodes(owner))
     own_shape = flat_arc
     if (owner == 3 .and. point%nodes(2) > 0) then
       if (point%slave_xi%value*(1.0_wp - point%slave_xi%value) > 0.0_wp) &
         own_shape = present_shape(memory, point%nodes(1))
     end if
-    if (is_flat(shape) .and. is_flat(own_shape)) return
+    if (is_flat(present_shape(memory, point%nodes(owner))) .and. is_flat(own_shape)) return
     off = constant([0.0_wp, 0.0_wp])
     if (.not. is_flat(own_shape)) then
       own = difference(memory%positions, point, 2, 1)
-      call find_height(own_shape, point%slave_xi, height, sine)
+      call find_height(constant(own_shape%bend), constant(own_shape%skew), point%slave_xi, height, &
+        sine)
       off = [height*own(2), -(height*own(1))]
     end if
+    call linearise_shape(memory, point, owner, t, bend, skew)
     length = sqrt(t(1)*t(1) + t(2)*t(2))
     unit = [t(1)/length, t(2)/length]
     normal = [unit(2), -unit(1)]
     across = d(1)*normal(1) + d(2)*normal(2)
-    call find_height(shape, ((d(1) + off(1))*unit(1) + (d(2) + off(2))*unit(2))/length, height, &
-      sine)
+    call find_height(bend, skew, ((d(1) + off(1))*unit(1) + (d(2) + off(2))*unit(2))/length, &
+      height, sine)
     cosine = sqrt(1.0_wp - sine*sine)
     projection%gap = (across + off(1)*normal(1) + off(2)*normal(2) - height*length)*cosine
     projection%normal = [normal(1)*cosine - unit(1)*sine, normal(2)*cosine - unit(2)*sine]
@@ -204,24 +206,70 @@ contains
     point%distance = across/cosine
   end subroutine project_on_arcs
 
+  !> Shape of the arc of a segment; how much of a turn it follows is held.
+  pure subroutine linearise_shape(memory, point, owner, t, bend, skew)
+    type(contact_state_t), intent(in) :: memory
+    type(linearised_point_t), intent(inout) :: point !! out: nodes in slots 7, 8
+    integer, intent(in) :: owner     !! first slot of the segment
+    type(dual_t), intent(in) :: t(2) !! the segment, m
+    type(dual_t), intent(out) :: bend, skew
+    type(dual_t) :: sines(2), beside(2), turn
+    integer :: ends(2), k
+
+    ends = point%nodes(owner:owner + 1)
+    sines = constant([0.0_wp, 0.0_wp])
+    associate (arcs => memory%arcs, share => memory%arcs%share(:, ends(1)))
+      do k = 1, 2
+        if (.not. share(k) > 0.0_wp) cycle
+        point%nodes(6 + k) = arcs%beside(k, ends(k))
+        beside = difference(memory%positions, point, merge(owner, 8, k == 1), &
+          merge(7, owner + 1, k == 1))
+        if (k == 1) then
+          turn = half_turn(beside, t)
+        else
+          turn = half_turn(t, beside)
+        end if
+        sines(k) = turn/sqrt(turn*turn + 1.0_wp)
+        if (share(k) >= all_of_it) sines(k) = 2.0_wp*(turn/(turn*turn + 1.0_wp))
+        associate (value => sine_at(memory, ends(k), share(k)))
+          if (abs(sines(k)%value) > 0.0_wp) sines(k) = (value/sines(k)%value)*sines(k)
+        end associate
+      end do
+      if (share(1) < 0.0_wp) sines(1) = sines(2)
+      if (share(2) < 0.0_wp) sines(2) = sines(1)
+    end associate
+    bend = sines(1) + sines(2)
+    skew = 0.5_wp*(sines(1) - sines(2))
+  end subroutine linearise_shape
+
+  !> Tangent of half the turn from one segment to the next.
+  pure function half_turn(a, b) result(turn)
+    type(dual_t), intent(in) :: a(2), b(2) !! these, m
+    type(dual_t) :: turn
+
+    turn = (a(1)*b(2) - a(2)*b(1))/(sqrt((a(1)*a(1) + a(2)*a(2))*(b(1)*b(1) + b(2)*b(2))) &
+      + (a(1)*b(1) + a(2)*b(2)))
+  end function half_turn
+
   !> Height of an arc over its secant as a part of the length of that, and the sine of its angle to
   !> it (`arcs_m`).
-  pure subroutine find_height(shape, xi, height, sine)
-    type(arc_shape_t), intent(in) :: shape
+  pure subroutine find_height(bend, skew, xi, height, sine)
+    type(dual_t), intent(in) :: bend, skew
     type(dual_t), intent(in) :: xi
     type(dual_t), intent(out) :: height, sine
     type(dual_t) :: x, circle
-    real(wp) :: end_sine
+    type(dual_t) :: end_sine
 
     x = xi
     if (abs(xi%value - 0.5_wp) > 0.5_wp) x = constant(merge(0.0_wp, 1.0_wp, xi%value < 0.5_wp))
-    circle = shape%bend*(0.5_wp - x)
+    circle = bend*(0.5_wp - x)
     if (abs(circle%value) > steepest) circle = constant(sign(steepest, circle%value))
-    end_sine = min(0.5_wp*abs(shape%bend), steepest)
-    sine = circle + shape%skew*(1.0_wp - 6.0_wp*x*(1.0_wp - x))
+    end_sine = 0.5_wp*bend
+    if (abs(end_sine%value) > steepest) end_sine = constant(steepest)
+    sine = circle + skew*(1.0_wp - 6.0_wp*x*(1.0_wp - x))
     if (abs(sine%value) > steepest) sine = constant(sign(steepest, sine%value))
-    height = x*(1.0_wp - x)*(constant(shape%bend)/(sqrt(1.0_wp - circle*circle) + sqrt(1.0_wp &
-      - end_sine**2)) + shape%skew*(1.0_wp - 2.0_wp*x)) + (xi - x)*sine/sqrt(1.0_wp - sine*sine)
+    height = x*(1.0_wp - x)*(bend/(sqrt(1.0_wp - circle*circle) + sqrt(1.0_wp &
+      - end_sine*end_sine)) + skew*(1.0_wp - 2.0_wp*x)) + (xi - x)*sine/sqrt(1.0_wp - sine*sine)
   end subroutine find_height
 
   !> Slip of a point in the step over the segment in slots 3, 4, m: L d(xi). Where slot 4 is not
