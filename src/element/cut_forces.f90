@@ -69,17 +69,17 @@ contains
   end subroutine find_cut_forces
 
   !> Copy the chunks with elements of cross sections, before a step.
-  subroutine store_cut_chunks(model, elements, kept)
+  subroutine store_cut_chunks(model, elements, stored)
     type(model_t), intent(in) :: model
     type(block_state_t), intent(inout) :: elements     !! unchanged
-    type(packed_buffer_t), allocatable, intent(inout) :: kept(:)
+    type(packed_buffer_t), allocatable, intent(inout) :: stored(:)
     integer, allocatable :: list(:)
     integer :: i
 
     list = cut_chunks(model)
-    if (.not. allocated(kept)) allocate (kept(size(list)))
+    if (.not. allocated(stored)) allocate (stored(size(list)))
     do i = 1, size(list)
-      call gather_values(tile_t(list(i), list(i)), elements, kept(i))
+      call gather_values(tile_t(list(i), list(i)), elements, stored(i))
     end do
   end subroutine store_cut_chunks
 

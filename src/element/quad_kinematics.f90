@@ -35,7 +35,7 @@ contains
 
   !> Strain increments, spin and hourglass velocity of the step, in the mid-step geometry.
   pure subroutine form_increments(dt, chunk, stress)
-    real(wp), intent(in) :: dt                      !! step that led here
+    real(wp), intent(in) :: dt                      !! step to the present instant
     type(element_chunk_t), intent(inout) :: chunk
     type(stress_chunk_t), intent(inout) :: stress   !! increments and rotation out
 
@@ -89,7 +89,7 @@ contains
 
   !> Strain increments, spin and hourglass velocity of plane quads, in the mid-step geometry.
   pure subroutine form_plane_increments(dt, chunk, stress)
-    real(wp), intent(in) :: dt                      !! step that led here
+    real(wp), intent(in) :: dt                      !! step to the present instant
     type(element_chunk_t), intent(inout) :: chunk
     type(stress_chunk_t), intent(inout) :: stress   !! increments and rotation out
     real(wp) :: x31, y31, x42, y42, back, factor, lxx, lxy, lyx, lyy, area, turn, square, &
@@ -231,7 +231,7 @@ contains
   !> Strain increments, spin and hourglass velocity of axisymmetric quads, in the mid-step geometry.
   !> The hoop rate is subtracted from both in-plane rates: laws see the same deviator with D_zz = 0.
   pure subroutine form_axisym_increments(dt, chunk, stress)
-    real(wp), intent(in) :: dt                    !! step that led here
+    real(wp), intent(in) :: dt                    !! step to the present instant
     type(element_chunk_t), intent(inout) :: chunk !! trace, gamma.v and mid-step volume out
     type(stress_chunk_t), intent(inout) :: stress !! increments and rotation out
     real(wp) :: ar, az, br, bz, hr, hz, s, area, volume, rad_a, rad_b, rad_h, axi_a, axi_b, axi_h, &

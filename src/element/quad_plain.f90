@@ -131,7 +131,7 @@ contains
   !> Present and mid-step shape, strain increments, rotation and hourglass velocity. Areas stand
   !> twice: a2 = 2A now, s2 at time zero, m2 half a step ago.
   pure subroutine form_shape(dt, n_slot, reference, diagonals, shape)
-    real(wp), intent(in) :: dt                      !! step that led here
+    real(wp), intent(in) :: dt                      !! step to the present instant
     integer, intent(in) :: n_slot
     real(wp), intent(in) :: reference(n_slot, *)
     type(diagonals_t), intent(in) :: diagonals

@@ -182,7 +182,7 @@ contains
     real(wp), intent(in) :: least_pivot
     type(banded_lu_t), intent(inout) :: factor !! with order, width and bytes
     logical, intent(out) :: factored
-    integer :: place(matrix%n), i, j, k, status, w
+    integer :: new_index(matrix%n), i, j, k, status, w
 
     factored = .false.
     if (factor%bytes > available_bytes()) return
@@ -191,12 +191,12 @@ contains
     allocate (factor%band(3*w + 1, matrix%n), factor%exchange(matrix%n), stat=status)
     call expect_allocation_failure(.false._c_bool)
     if (status /= 0) return
-    place(factor%order) = [(i, i=1, matrix%n)]
+    new_index(factor%order) = [(i, i=1, matrix%n)]
     factor%band = 0.0_wp
     do i = 1, matrix%n
       do k = matrix%first(i), matrix%first(i + 1) - 1
-        j = place(matrix%column(k))
-        factor%band(2*w + 1 + place(i) - j, j) = matrix%value(k)
+        j = new_index(matrix%column(k))
+        factor%band(2*w + 1 + new_index(i) - j, j) = matrix%value(k)
       end do
     end do
     call dgbtrf(matrix%n, matrix%n, w, w, factor%band, 3*w + 1, factor%exchange, status)
@@ -333,13 +333,13 @@ contains
     type(sparse_t), intent(in) :: matrix
     integer, intent(in) :: order(:) !! (n)
     integer :: width
-    integer :: place(matrix%n), i, k
+    integer :: new_index(matrix%n), i, k
 
-    place(order) = [(i, i=1, matrix%n)]
+    new_index(order) = [(i, i=1, matrix%n)]
     width = 0
     do i = 1, matrix%n
       do k = matrix%first(i), matrix%first(i + 1) - 1
-        width = max(width, abs(place(matrix%column(k)) - place(i)))
+        width = max(width, abs(new_index(matrix%column(k)) - new_index(i)))
       end do
     end do
   end function bandwidth

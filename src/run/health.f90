@@ -138,14 +138,14 @@ contains
     type(state_t), intent(in) :: state
     type(error_t), allocatable, intent(out) :: error
     character(:), allocatable :: what
-    integer :: look, slot, first, last
+    integer :: test, slot, first, last
 
-    do look = 1, 3
+    do test = 1, 3
       do slot = 1, model%layout%n_slot
         if (model%layout%slot_element(slot) == 0) cycle
-        what = fault_of(model, state, slot, look)
+        what = element_fault(model, state, slot, test)
         if (len(what) == 0) cycle
-        call blame(model, state, slot, what, error)
+        call raise_for_element(model, state, slot, what, error)
         if (index(what, 'negative') == 1) error%message = error%message//remedy
         return
       end do
@@ -154,7 +154,7 @@ contains
     associate (work => abs(state%elements%deviatoric_work) + abs(state%elements%hourglass_work))
       first = (maxloc(work, 1) - 1)*chunk_size + 1
       last = min(first + chunk_size - 1, model%layout%n_slot)
-      if (any(work > 0.5_wp*most_work)) call blame(model, state, first - 1 &
+      if (any(work > 0.5_wp*most_work)) call raise_for_element(model, state, first - 1 &
         + maxloc(maxval(abs(state%elements%deviator(first:last, :)), 2), 1, &
         model%layout%slot_element(first:last) > 0), 'excessive work of stresses', error)
     end associate
@@ -164,16 +164,16 @@ contains
 
   !> Fault of an element in words, empty if there is none, in three passes: stress, volume, and the
   !> volume limit of its equation of state.
-  function fault_of(model, state, slot, look) result(what)
+  function element_fault(model, state, slot, test) result(what)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
-    integer, intent(in) :: slot, look
+    integer, intent(in) :: slot, test
     character(:), allocatable :: what
     real(wp) :: ratio
     integer :: i_chunk, first
 
     what = ''
-    select case (look)
+    select case (test)
     case (1)
       if (.not. all(abs(state%elements%deviator(slot, :)) <= huge(ratio))) &
         what = 'values that are not finite'
@@ -194,10 +194,10 @@ contains
           //'S2 mu^2/(1 + mu) - S3 mu^3/(1 + mu)^2 comes to 0),'
       end associate
     end select
-  end function fault_of
+  end function element_fault
 
   !> Raise the error that names the element in a slot.
-  subroutine blame(model, state, slot, what, error)
+  subroutine raise_for_element(model, state, slot, what, error)
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
     integer, intent(in) :: slot
@@ -206,7 +206,7 @@ contains
 
     call raise(error, trim(what)//' in '//element_text(model, slot)//instant_text(state), &
       status_run)
-  end subroutine blame
+  end subroutine raise_for_element
 
   !> Element and part of a slot in words.
   pure function element_text(model, slot) result(text)

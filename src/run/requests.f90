@@ -43,62 +43,62 @@ module requests_m
 contains
 
   !> Requests by signal, of a process without files.
-  subroutine get_signals(asked)
-    type(requests_t), intent(out) :: asked
+  subroutine get_signals(requests)
+    type(requests_t), intent(out) :: requests
 
-    asked%dump = is_requested(request_dump)
-    asked%plot = is_requested(request_plot)
-    asked%signalled = stop_requested()
-    asked%stop = asked%signalled
+    requests%dump = is_requested(request_dump)
+    requests%plot = is_requested(request_plot)
+    requests%signalled = stop_requested()
+    requests%stop = requests%signalled
   end subroutine get_signals
 
   !> Drop requests that repeat one served within the last second.
-  subroutine drop_repeated(before, echoes, asked)
-    type(requests_t), intent(in) :: before    !! served since the last call
-    type(recent_requests_t), intent(inout) :: echoes
-    type(requests_t), intent(inout) :: asked
+  subroutine drop_repeated(served, recent, requests)
+    type(requests_t), intent(in) :: served    !! requests served since the last call
+    type(recent_requests_t), intent(inout) :: recent
+    type(requests_t), intent(inout) :: requests
     integer(long) :: now, rate
 
-    if (.not. any([before%dump, before%plot, asked%dump, asked%plot])) return
+    if (.not. any([served%dump, served%plot, requests%dump, requests%plot])) return
     call system_clock(now, rate)
-    where ([before%dump, before%plot]) echoes%done = now
-    asked%dump = asked%dump .and. now - rate > echoes%done(1)
-    asked%plot = asked%plot .and. now - rate > echoes%done(2)
+    where ([served%dump, served%plot]) recent%done = now
+    requests%dump = requests%dump .and. now - rate > recent%done(1)
+    requests%plot = requests%plot .and. now - rate > recent%done(2)
   end subroutine drop_repeated
 
   !> Read the requests: signals in each call; d3kil twice a second, or in each call where steps are
   !> long.
-  subroutine read_requests(state, ratio, steps_are_long, monitor, asked, error)
+  subroutine read_requests(state, ratio, steps_are_long, monitor, requests, error)
     type(state_t), intent(in) :: state
     real(wp), intent(in) :: ratio          !! last energy ratio known
     logical, intent(in) :: steps_are_long
     type(monitor_t), intent(inout) :: monitor
-    type(requests_t), intent(out) :: asked
+    type(requests_t), intent(out) :: requests
     type(error_t), allocatable, intent(inout) :: error
-    logical :: looks
+    logical :: is_due
     character(:), allocatable :: switch
 
     switch = ''
-    looks = steps_are_long
-    if (.not. looks) call is_poll_due(monitor%restarts, monitor%clock%is_on, monitor%clock%last, &
-      state%cycle, looks)
-    if (looks) call read_switch(monitor%restarts%directory, switch)
-    call get_signals(asked)
+    is_due = steps_are_long
+    if (.not. is_due) call is_poll_due(monitor%restarts, monitor%clock%is_on, monitor%clock%last, &
+      state%cycle, is_due)
+    if (is_due) call read_switch(monitor%restarts%directory, switch)
+    call get_signals(requests)
     select case (switch)
     case ('')
       continue
     case ('SW1')
-      asked%dump = .true.
-      asked%stop = .true.
+      requests%dump = .true.
+      requests%stop = .true.
     case ('SW2')
       call show_progress(monitor%progress, monitor%clock, state%cycle, state%time, state%dt, &
         ratio, 'status (sw2)', .true.)
     case ('SW3')
-      asked%dump = .true.
+      requests%dump = .true.
     case ('SW4')
-      asked%plot = .true.
+      requests%plot = .true.
     case ('STOP')
-      asked%stop = .true.
+      requests%stop = .true.
     case ('SWA')
       if (.not. allocated(error)) call flush_histories(monitor%histories, .true., error)
     case default

@@ -69,7 +69,7 @@ contains
     if (present(driver)) call lap(monitor%clock, phase_output)
   end subroutine write_restarts
 
-  !> Read the deck as run from the file written at the start; a large deck is not kept in memory.
+  !> Read the deck as run from the file written at the start; a large deck is not held in memory.
   subroutine read_effective_deck(restarts, archive, text)
     type(restarts_t), intent(in) :: restarts
     type(archive_t), intent(inout) :: archive
@@ -146,11 +146,11 @@ contains
     subroutine visit_kept_schedule(name, schedule)
       character(*), intent(in) :: name
       type(schedule_t), intent(inout) :: schedule !! planned from the deck
-      type(schedule_t) :: kept
+      type(schedule_t) :: stored
 
-      kept = schedule
-      call archive%part(name, kept)
-      if (archive%validates) call resume_schedule(kept, time, dt, schedule)
+      stored = schedule
+      call archive%part(name, stored)
+      if (archive%validates) call resume_schedule(stored, time, dt, schedule)
     end subroutine visit_kept_schedule
 
   end subroutine visit_outputs

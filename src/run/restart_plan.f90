@@ -81,16 +81,16 @@ contains
 
   !> Restart files due before a cycle: at their intervals; before the last cycle the numbered one;
   !> before a stop by a signal each kind that the deck asks for.
-  pure function wanted_files(restarts, cycle, asked, is_last, stops) result(wanted)
+  pure function wanted_files(restarts, cycle, is_requested, is_last, stops) result(wanted)
     type(restarts_t), intent(in) :: restarts
     integer, intent(in) :: cycle
-    logical, intent(in) :: asked    !! the user asks for a numbered one
+    logical, intent(in) :: is_requested    !! the user asks for a numbered one
     logical, intent(in) :: is_last  !! the cycle is the last one
     logical, intent(in) :: stops    !! a signal requests a stop
     logical :: wanted(2)            !! numbered_file, running_file
 
-    wanted(numbered_file) = asked .or. (restarts%dump_cycles >= 0 .and. (is_last .or. stops)) &
-      .or. ends_interval(cycle, restarts%dump_cycles)
+    wanted(numbered_file) = is_requested .or. (restarts%dump_cycles >= 0 .and. (is_last .or. &
+      stops)) .or. ends_interval(cycle, restarts%dump_cycles)
     wanted(running_file) = (restarts%running_cycles > 0 .and. stops) &
       .or. ends_interval(cycle, restarts%running_cycles)
   end function wanted_files
@@ -135,9 +135,9 @@ contains
   !> restart files have no last number: beyond the least, or where only a request can ask for one,
   !> consecutive existing files are checked. The restart file that a run reads may have the name of
   !> the running one, or of one that is no longer written.
-  subroutine check_names(restarts, keeps_files, inputs_only, error)
+  subroutine check_names(restarts, has_numbered, inputs_only, error)
     type(restarts_t), intent(in) :: restarts !! directory, job, prefix, inputs and source
-    logical, intent(in) :: keeps_files       !! the deck asks for numbered restart files
+    logical, intent(in) :: has_numbered       !! the deck asks for numbered restart files
     logical, intent(in) :: inputs_only       !! check against the inputs only
     type(error_t), allocatable, intent(out) :: error
     character(12), parameter :: kinds(4) = [character(12) :: '.log', '.effective.k', '.vtkhdf', &
@@ -152,34 +152,37 @@ contains
     if (restarts%is_restart) inputs(n_deck + 1) = facts_of_target(restarts%source%path)
     call check_name(switch_path(restarts%directory), size(inputs), .true.)
     do i = 1, size(kinds)
-      call look(restarts%prefix//trim(kinds(i)), size(inputs))
+      call check_with_unfinished(restarts%prefix//trim(kinds(i)), size(inputs))
     end do
     do i = 1, size(history_tables)
-      call look(restarts%prefix//'.'//trim(history_tables(i)%name), size(inputs))
-      call look(restarts%prefix//'.'//trim(history_tables(i)%name)//'.csv', size(inputs))
+      call check_with_unfinished(restarts%prefix//'.'//trim(history_tables(i)%name), size(inputs))
+      call check_with_unfinished(restarts%prefix//'.'//trim(history_tables(i)%name)//'.csv', &
+        size(inputs))
     end do
-    call look(join_path(restarts%directory, 'status.out'), size(inputs))
-    call look(join_path(restarts%directory, restarts%job//'.status.out'), size(inputs))
-    call look(running_path(restarts), n_deck)
+    call check_with_unfinished(join_path(restarts%directory, 'status.out'), size(inputs))
+    call check_with_unfinished(join_path(restarts%directory, restarts%job//'.status.out'), &
+      size(inputs))
+    call check_with_unfinished(running_path(restarts), n_deck)
     i = 1
     do
-      if (i > least_numbers .or. .not. keeps_files) then
+      if (i > least_numbers .or. .not. has_numbered) then
         if (.not. is_taken(dump_path(restarts, i))) exit
       end if
-      call look(dump_path(restarts, i), merge(n_deck, size(inputs), i <= restarts%n_dump))
+      call check_with_unfinished(dump_path(restarts, i), merge(n_deck, size(inputs), i &
+        <= restarts%n_dump))
       i = i + 1
     end do
 
   contains
 
     !> Check a name and the name of the unfinished file.
-    subroutine look(path, n)
+    subroutine check_with_unfinished(path, n)
       character(*), intent(in) :: path
       integer, intent(in) :: n !! number of inputs that it must not equal, the first ones
 
       call check_name(path, n, inputs_only)
       call check_name(path//unfinished, n, inputs_only)
-    end subroutine look
+    end subroutine check_with_unfinished
 
     !> Refuse one name; the first failure stays.
     subroutine check_name(path, n, may_be_any)

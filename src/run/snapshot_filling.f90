@@ -80,11 +80,11 @@ contains
 
   !> Whether the motion of all nodes is stored: for files, or since some of it does not follow from
   !> nodal forces.
-  pure function stores_motion(model) result(keeps)
+  pure function stores_motion(model) result(stores)
     type(model_t), intent(in) :: model
-    logical :: keeps
+    logical :: stores
 
-    keeps = is_asked(model%controls%output%plot) .or. size(model%controls%output%history_nodes) &
+    stores = is_asked(model%controls%output%plot) .or. size(model%controls%output%history_nodes) &
       > 0 .or. size(model%conditions%motions) > 0 .or. size(model%rigids) > 0 &
       .or. model%controls%implicit%is_on .or. allocated(model%conditions%common_motions)
   end function stores_motion

@@ -51,19 +51,19 @@ contains
     integer, intent(in) :: width          !! values per item
     logical, intent(in) :: to_all
     real(wp), intent(inout) :: values(*)
-    integer :: counts(0:ranks%n - 1), places(0:ranks%n - 1), status
+    integer :: counts(0:ranks%n - 1), offsets(0:ranks%n - 1), status
 
     counts = width*(starts(1:ranks%n) - starts(0:ranks%n - 1))
-    places = width*(starts(0:ranks%n - 1) - 1) ! values before those of each
+    offsets = width*(starts(0:ranks%n - 1) - 1) ! values before those of each
     if (to_all) then
-      call mpi_allgatherv(mpi_in_place, 0, mpi_datatype_null, values, counts, places, &
+      call mpi_allgatherv(mpi_in_place, 0, mpi_datatype_null, values, counts, offsets, &
         mpi_double_precision, mpi_comm_world, status)
     else if (ranks%mine == 0) then
-      call mpi_gatherv(mpi_in_place, 0, mpi_datatype_null, values, counts, places, &
+      call mpi_gatherv(mpi_in_place, 0, mpi_datatype_null, values, counts, offsets, &
         mpi_double_precision, 0, mpi_comm_world, status)
     else
-      call mpi_gatherv(values(places(ranks%mine) + 1), counts(ranks%mine), mpi_double_precision, &
-        values, counts, places, mpi_double_precision, 0, mpi_comm_world, status)
+      call mpi_gatherv(values(offsets(ranks%mine) + 1), counts(ranks%mine), mpi_double_precision, &
+        values, counts, offsets, mpi_double_precision, 0, mpi_comm_world, status)
     end if
     ranks%joined(1) = ranks%joined(1) + 1
     if (to_all .or. ranks%mine == 0) ranks%joined(2) = ranks%joined(2) &

@@ -15,7 +15,7 @@ module element_erosion_m
   use log_m, only : log_t, write_log, to_text
   use model_m, only : model_t
   use node_motion_m, only : leap_t, motion_factors
-  use start_m, only : weigh_contacts
+  use start_m, only : set_contact_masses
   use state_m, only : state_t
   use surface_building_m, only : remaining_surface
   use surfaces_m, only : surface_t
@@ -210,7 +210,7 @@ contains
       end if
       state%elements%erosion%removed_energy(4) = state%elements%erosion%removed_energy(4) + lost
     end do
-    call weigh_contacts(model, state)
+    call set_contact_masses(model, state)
 
   contains
 

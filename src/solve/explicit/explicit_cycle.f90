@@ -11,7 +11,7 @@ module explicit_cycle_m
   use coupled_nodes_m, only : coupled_velocity
   use loads_m, only : fix_nodes, update_activity, is_active
   use explicit_contact_m, only : plan_sampling, check_springs
-  use start_m, only : check_added_mass, weigh_contacts
+  use start_m, only : check_added_mass, set_contact_masses
   use contacts_m, only : penalty_implicit
   use element_erosion_m, only : finish_erosion, release_free_nodes, failure_log_t, &
     update_failures, update_outlines
@@ -194,7 +194,7 @@ contains
         cycle%active = active
         call update_activity(model, state%time, state%mass, state%inverse_mass)
         call fix_nodes(model, state%inverse_mass)
-        call weigh_contacts(model, state)
+        call set_contact_masses(model, state)
       end if
     end if
     do i = 1, size(cycle%displacement)
@@ -370,7 +370,7 @@ contains
     n = size(state%contact_mass)
     where (state%mass(:n) > before(:n)) &
       state%contact_mass = state%contact_mass + (state%mass(:n) - before(:n))
-    call weigh_contacts(model, state)
+    call set_contact_masses(model, state)
     if (allocated(cycle%rates)) deallocate (cycle%rates)
     if (.not. allocated(cycle%error)) call check_added_mass(model, state%elements, cycle%error)
   end subroutine update_masses

@@ -243,23 +243,26 @@ contains
     real(wp), intent(in) :: damping(2)       !! D per direction
     real(wp), intent(in) :: velocity_next(:) !! (n_motion) v(n+1/2) of prescribed motions
     type(snapshot_t), intent(inout) :: snapshot
-    real(wp) :: dt, mean, inertia, led, work, velocity(2), acceleration(2)
+    real(wp) :: dt, mean, inertia, prescribed, rigid_bodies, work, velocity(2), &
+      acceleration(2)
     integer :: i
 
     ! At time zero use the coming step for the previous one.
     dt = merge(state%dt_before, state%dt, state%dt_before > 0.0_wp)
     mean = 0.5_wp*(state%dt + state%dt_before)
-    led = 0.0_wp
-    if (state%dt > 0.0_wp) led = sum(state%mass(model%conditions%motions%node)*((velocity_next &
-      - state%prescribed_velocity)/mean)**2, is_active(model%conditions%motions, state%time))
-    inertia = free_inertia(model, state, damping) + led
-    led = 0.0_wp
+    prescribed = 0.0_wp
+    if (state%dt > 0.0_wp) prescribed = sum(state%mass(model%conditions%motions%node) &
+      *((velocity_next - state%prescribed_velocity)/mean)**2, is_active(model%conditions%motions, &
+      state%time))
+    inertia = free_inertia(model, state, damping) + prescribed
+    rigid_bodies = 0.0_wp
     do i = 1, size(state%rigids)
       associate (rigid => state%rigids(i))
-        led = led + sum(rigid%inertia*((rigid%next_velocity - rigid%velocity)/mean)**2)
+        rigid_bodies = rigid_bodies &
+          + sum(rigid%inertia*((rigid%next_velocity - rigid%velocity)/mean)**2)
       end associate
     end do
-    inertia = inertia + led
+    inertia = inertia + rigid_bodies
     if (allocated(model%conditions%common_motions)) &
       inertia = inertia + coupled_inertia(model, state, damping)
     if (allocated(state%walls) .and. .not. state%dt_before > 0.0_wp) &

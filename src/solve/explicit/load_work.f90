@@ -335,19 +335,19 @@ contains
     integer, allocatable, intent(in) :: rows(:)           !! row of each motion; not allocated
                                                           !! without bndout
     type(state_t), intent(inout) :: state
-    real(wp) :: halves(2), work
+    real(wp) :: half_steps(2), work
     integer :: i
 
-    halves = merge(0.5_wp*[state%dt_before, state%dt], 0.0_wp, due)
+    half_steps = merge(0.5_wp*[state%dt_before, state%dt], 0.0_wp, due)
     work = 0.0_wp
     do i = 1, size(motions)
       if (is_active(motions(i), state%time)) &
-        work = work + reactions(i)*(halves(1)*old(i) + halves(2)*next(i))
+        work = work + reactions(i)*(half_steps(1)*old(i) + half_steps(2)*next(i))
     end do
     state%external_work = state%external_work + work
     if (.not. allocated(state%boundary_work)) return
     ! The work of boundaries may begin at this instant.
-    if (state%cycle == state%boundary_since) halves(1) = 0.0_wp
+    if (state%cycle == state%boundary_since) half_steps(1) = 0.0_wp
     do i = 1, size(motions)
       state%boundary_force(motions(i)%direction, rows(i)) = 0.0_wp
     end do
@@ -355,7 +355,7 @@ contains
       if (.not. is_active(motions(i), state%time)) cycle
       state%boundary_force(motions(i)%direction, rows(i)) = reactions(i)
       state%boundary_work(rows(i)) = state%boundary_work(rows(i)) + reactions(i) &
-        *(halves(1)*old(i) + halves(2)*next(i))
+        *(half_steps(1)*old(i) + half_steps(2)*next(i))
     end do
   end subroutine add_reaction_work
 

@@ -52,7 +52,7 @@ module rank_partition_m
   type, extends(visited_t) :: start_data_t
     integer, allocatable :: parts(:)                !! of elements at contact surfaces
     integer, allocatable :: corners(:, :)           !! (4, elements) their nodes
-    real(wp), allocatable :: places(:, :)           !! (2, 4 elements) positions of these
+    real(wp), allocatable :: positions(:, :)           !! (2, 4 elements) positions of these
     integer, allocatable :: slots(:)                !! of elements of cross sections
     real(wp), allocatable :: mass(:)                !! (n_node) lumped masses
     real(wp), allocatable :: penalties(:, :)        !! (3, interfaces) as in remote_t
@@ -149,7 +149,7 @@ contains
     integer, intent(in) :: mine
     type(motion_sums_t), intent(inout) :: sums
     type(partition_t), intent(inout) :: partition
-    logical, dimension(model%layout%n_special) :: is_common, is_known, knows
+    logical, dimension(model%layout%n_special) :: is_common, is_known, is_known_there
     logical, allocatable :: is_moved(:)
     integer, allocatable :: slots(:)
     integer :: rank, i
@@ -178,10 +178,10 @@ contains
           partition%in_slots = [partition%in_slots, pack(slots, is_known(nodes) &
             .and. .not. is_common(nodes))]
         end associate
-        knows = known_nodes(model, partition, sums, rank) .and. .not. is_common
+        is_known_there = known_nodes(model, partition, sums, rank) .and. .not. is_common
         slots = [(i, i=partition%force_slots(mine), partition%force_slots(mine + 1) - 1)]
         partition%out_slots = [partition%out_slots, pack(slots, &
-          knows(model%layout%special_node(slots)))]
+          is_known_there(model%layout%special_node(slots)))]
         associate (n_out => size(partition%out_slots) + 1, n_in => size(partition%in_slots) + 1, &
           n => size(partition%peers) + 1)
           if (n_out == partition%out_starts(n) .and. n_in == partition%in_starts(n)) cycle
@@ -261,7 +261,7 @@ contains
 
     call visitor%visit('parts', self%parts)
     call visitor%visit('corners', self%corners)
-    call visitor%visit('places', self%places)
+    call visitor%visit('positions', self%positions)
     call visitor%visit('slots', self%slots)
     call visitor%visit('mass', self%mass, of_nodes)
     call visitor%visit('penalties', self%penalties)
@@ -313,7 +313,7 @@ contains
   subroutine broadcast_faces(ranks, model)
     type(ranks_t), intent(inout) :: ranks
     type(model_t), intent(inout) :: model
-    type(start_data_t) :: handed
+    type(start_data_t) :: item
     type(packed_buffer_t) :: buffer
     integer, allocatable :: elements(:), cut(:)
     integer :: i, k
@@ -330,22 +330,22 @@ contains
     end if
     associate (mesh => model%mesh, layout => model%layout)
       if (ranks%mine == 0) then
-        handed%parts = mesh%element_part(elements)
-        handed%corners = mesh%element_nodes(:, elements)
-        handed%places = mesh%coordinates(:, [handed%corners])
-        handed%slots = layout%element_slot(cut)
+        item%parts = mesh%element_part(elements)
+        item%corners = mesh%element_nodes(:, elements)
+        item%positions = mesh%coordinates(:, [item%corners])
+        item%slots = layout%element_slot(cut)
       end if
-      call send_item(ranks, all_ranks, buffer, handed)
+      call send_item(ranks, all_ranks, buffer, item)
       if (ranks%mine == 0) return
       do i = 1, size(elements)
-        mesh%element_part(elements(i)) = handed%parts(i)
-        mesh%element_nodes(:, elements(i)) = handed%corners(:, i)
+        mesh%element_part(elements(i)) = item%parts(i)
+        mesh%element_nodes(:, elements(i)) = item%corners(:, i)
         do k = 1, 4
-          mesh%coordinates(:, handed%corners(k, i)) = handed%places(:, 4*(i - 1) + k)
+          mesh%coordinates(:, item%corners(k, i)) = item%positions(:, 4*(i - 1) + k)
         end do
       end do
       do i = 1, size(cut)
-        layout%element_slot(cut(i)) = handed%slots(i)
+        layout%element_slot(cut(i)) = item%slots(i)
       end do
     end associate
   end subroutine broadcast_faces
@@ -359,30 +359,30 @@ contains
     type(inside_tests_t), allocatable, intent(inout) :: inside_tests !! in the first process in, in
                                                                      !! the others out
     type(packed_buffer_t) :: buffer
-    type(start_data_t) :: handed
+    type(start_data_t) :: item
     type(partition_t) :: partition
     integer :: i
 
     if (ranks%mine == 0) then
-      call move_alloc(state%mass, handed%mass)
-      handed%penalties = reshape([(state%contacts(i)%slave_penalty, &
+      call move_alloc(state%mass, item%mass)
+      item%penalties = reshape([(state%contacts(i)%slave_penalty, &
         state%contacts(i)%master_penalty, state%contacts(i)%node_penalty, &
         i=1, size(state%contacts))], [3, size(state%contacts)])
-      if (allocated(inside_tests%is_inside)) handed%is_inside = inside_tests%is_inside
+      if (allocated(inside_tests%is_inside)) item%is_inside = inside_tests%is_inside
     end if
-    call send_item(ranks, all_ranks, buffer, handed)
+    call send_item(ranks, all_ranks, buffer, item)
     partition = partition_tiles(model%layout, ranks%mine, ranks%n)
-    call distribute_partition(ranks, of_nodes, partition, model%mesh%n_node, handed)
+    call distribute_partition(ranks, of_nodes, partition, model%mesh%n_node, item)
     if (ranks%mine == 0) then
-      call move_alloc(handed%mass, state%mass)
+      call move_alloc(item%mass, state%mass)
       return
     end if
     allocate (remote, source=remote_of(model, partition, ranks))
-    call move_alloc(handed%mass, remote%mass)
-    call move_alloc(handed%penalties, remote%penalties)
+    call move_alloc(item%mass, remote%mass)
+    call move_alloc(item%penalties, remote%penalties)
     allocate (inside_tests)
     inside_tests%are_given = .true.
-    if (allocated(handed%is_inside)) call move_alloc(handed%is_inside, inside_tests%is_inside)
+    if (allocated(item%is_inside)) call move_alloc(item%is_inside, inside_tests%is_inside)
   end subroutine distribute_start
 
   !> Broadcast the data that all processes need, then send each process the data of its tiles. Nodes

@@ -276,13 +276,13 @@ contains
     type(step_t), intent(in) :: step
     type(outcome_t), intent(in) :: outcome
     type(error_t), allocatable, intent(out) :: error
-    integer :: place(2) !! direction and node
+    integer :: freedom(2) !! direction and node
 
     if (outcome%singular_equation > 0) then
-      place = findloc(step%equations%number, outcome%singular_equation)
+      freedom = findloc(step%equations%number, outcome%singular_equation)
       call raise(error, 'the stiffness is singular at time '//to_text(state%time)//': node ' &
-        //to_text(model%mesh%node_id(place(2)))//' is free to move in ' &
-        //merge('x', 'y', place(1) == 1)//'; add constraints, contact or inertia (IMASS 1)', &
+        //to_text(model%mesh%node_id(freedom(2)))//' is free to move in ' &
+        //merge('x', 'y', freedom(1) == 1)//'; add constraints, contact or inertia (IMASS 1)', &
         status_run)
     else
       call raise(error, 'no equilibrium at time '//to_text(step%time)//' with the step ' &

@@ -94,7 +94,7 @@ contains
     type(direction_t) :: direction
     type(report_t) :: report
     type(slip_cycle_t) :: slip_cycle
-    integer :: iteration, place(2) !! direction and node
+    integer :: iteration, freedom(2) !! direction and node
 
     trial%motion(1:2, :) = state%motion(1:2, :)
     call assemble_forces(model, state, step%time, .true., clock, trial)
@@ -135,13 +135,13 @@ contains
       call detect_slip_cycle(trial%contacts, now%residual, slip_cycle)
       if (slip_cycle%is_found) exit
     end do
-    place = max(1, findloc(step%equations%number, now%worst))
+    freedom = max(1, findloc(step%equations%number, now%worst))
     outcome%reason = 'no equilibrium after '//to_text(outcome%iterations)//' iterations'
     if (slip_cycle%is_found) outcome%reason = outcome%reason &
       //', which cycle between the same states of stick and slip'
     outcome%reason = outcome%reason//', largest residual at node ' &
-      //to_text(model%mesh%node_id(place(2)))//' in '//merge('x', 'y', place(1) == 1) &
-      //contacts_of(model, place(2))
+      //to_text(model%mesh%node_id(freedom(2)))//' in '//merge('x', 'y', freedom(1) == 1) &
+      //contacts_of(model, freedom(2))
   end subroutine find_equilibrium
 
   !> Interfaces of a node in words; empty where there are none.

@@ -28,7 +28,8 @@ module start_m
   use state_m, only : state_t
   implicit none
   private
-  public :: start_state, resume_contacts, start_rigids, weigh_body, weigh_contacts, check_added_mass
+  public :: start_state, resume_contacts, start_rigids, set_body_inertia, set_contact_masses, &
+    check_added_mass
 
 contains
 
@@ -95,7 +96,7 @@ contains
     call start_contacts(model, log, state, error, inside_tests)
     if (allocated(error)) return
     state%outlines = model%contacts
-    call weigh_contacts(model, state)
+    call set_contact_masses(model, state)
     if (present(remote)) then
       do i = 1, size(state%contacts)
         state%contacts(i)%slave_penalty = remote%penalties(1, i)
@@ -200,7 +201,7 @@ contains
     allocate (state%rigids(size(model%rigids)))
     do i = 1, size(model%rigids)
       associate (body => model%rigids(i), rigid => state%rigids(i))
-        call weigh_body(model%mesh%coordinates(:, body%nodes), state%mass(body%nodes), rigid)
+        call set_body_inertia(model%mesh%coordinates(:, body%nodes), state%mass(body%nodes), rigid)
         ! Velocity from momentum and angular momentum; exact where all nodes have the same velocity.
         associate (mass => state%mass(body%nodes), v => state%motion(3:4, body%nodes))
           do k = 1, 2
@@ -232,8 +233,8 @@ contains
   end subroutine start_rigids
 
   !> Mass, centre and second moments of a set of lumped masses.
-  pure subroutine weigh_body(places, mass, rigid)
-    real(wp), intent(in) :: places(:, :) !! (2, n) at time zero
+  pure subroutine set_body_inertia(positions, mass, rigid)
+    real(wp), intent(in) :: positions(:, :) !! (2, n) at time zero
     real(wp), intent(in) :: mass(:)      !! (n)
     type(rigid_state_t), intent(inout) :: rigid
     integer :: k
@@ -241,13 +242,14 @@ contains
     rigid%inertia(1:2) = sum(mass)
     do k = 1, 2
       ! From the first node, so that digits are kept far from the origin.
-      rigid%centre(k) = places(k, 1) + sum(mass*(places(k, :) - places(k, 1)))/rigid%inertia(1)
+      rigid%centre(k) = positions(k, 1) + sum(mass*(positions(k, :) - positions(k, &
+        1)))/rigid%inertia(1)
     end do
-    rigid%arms = places - spread(rigid%centre, 2, size(mass))
+    rigid%arms = positions - spread(rigid%centre, 2, size(mass))
     rigid%second = [sum(mass*rigid%arms(1, :)**2), sum(mass*rigid%arms(2, :)**2), &
       sum(mass*rigid%arms(1, :)*rigid%arms(2, :))]
     rigid%inertia(3) = rigid%second(1) + rigid%second(2)
-  end subroutine weigh_body
+  end subroutine set_body_inertia
 
   !> Distribute the mass of a rigid body over its nodes at contact surfaces, in proportion to their
   !> lumped masses, such that no motion of the body gives these nodes more kinetic energy than the
@@ -329,7 +331,7 @@ contains
   !> Set the inverse masses of the nodes of all interfaces, 0 where fixed or prescribed. A node of a
   !> rigid body has its mass in contact, with which no force has a larger effect than on the body; 0
   !> where the body cannot rotate nor move in that direction during the whole run.
-  subroutine weigh_contacts(model, state)
+  subroutine set_contact_masses(model, state)
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     real(wp), allocatable :: inverse(:, :)
@@ -371,7 +373,7 @@ contains
         limit%inverse_mass = inverse(:, state%contacts(i)%nodes)
       end associate
     end do
-  end subroutine weigh_contacts
+  end subroutine set_contact_masses
 
   !> Log elements, mass and centre of mass of each part and of the whole, per unit depth or per
   !> radian.
